@@ -151,11 +151,13 @@ std::vector<Option> ResultOptions() {
                       .placeholder = "DIR"},
                      {.name = "--junit",
                       .help = "also write the verdicts as JUnit XML; -: print it instead of text",
-                      .placeholder = "FILE"},
+                      .placeholder = "FILE",
+                      .is_output = true},
                      {.name = "--record",
                       .help = "also write each episode to FILE, NAME.episodes (docs/episodes.md)",
                       .placeholder = "FILE",
-                      .rule = {.range = {}, .problem = RecordProblem}},
+                      .rule = {.range = {}, .problem = RecordProblem},
+                      .is_output = true},
                      {.name = "--no-pictures", .help = "draw no pictures"},
                      {.name = "--json", .help = "print one JSON object instead of text"},
                  });
@@ -210,8 +212,8 @@ std::string Colored(Verdict verdict, bool colored) {
   return fmt::format("\033[{}m{}\033[0m", color, name);
 }
 
-/// `as_files_say`: the command line changed no grammar and no setting, so that a difference can be
-/// accepted.
+/// `page`: the report; "": it could not be written. `as_files_say`: the command line changed no
+/// grammar and no setting, so that a difference can be accepted.
 void PrintText(const std::vector<ScenarioVerdict>& verdicts, bool as_files_say,
                const std::string& page, const CommandContext& context) {
   for (const ScenarioVerdict& verdict : verdicts) {
@@ -226,7 +228,7 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, bool as_files_say,
   const std::string smallest = SmallestMarginText(verdicts);
   if (!smallest.empty()) context.out << smallest << "\n";
   context.out << TransformsText(verdicts);
-  context.out << "report: " << page << "\n";
+  if (!page.empty()) context.out << "report: " << page << "\n";
   if (as_files_say && std::ranges::any_of(verdicts, &ScenarioVerdict::DiffersFromGolden))
     context.out << "If the new behaviour is intended: " << CommandText({"review"}) << "\n";
   if (tally.pending > 0) {
@@ -317,14 +319,14 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   }
   const std::vector<ScenarioVerdict> verdicts = RunSuite(request, progress);
 
-  if (options.Has("--json")) {
-    context.out << SummaryJson(verdicts, page).dump(2) << "\n";
-  } else if (junit != "-") {
-    const bool as_files_say = !options.Has("--grammar") && !options.Has("--set");
-    PrintText(verdicts, as_files_say, page, context);
-  }
   problem = WriteTextFile(page, ReportHtml(verdicts));
   if (problem.empty() && options.Has("--junit")) problem = WriteTextFile(junit, JunitXml(verdicts));
+  if (options.Has("--json")) {
+    context.out << SummaryJson(verdicts, problem.empty() ? page : "").dump(2) << "\n";
+  } else if (junit != "-") {
+    const bool as_files_say = !options.Has("--grammar") && !options.Has("--set");
+    PrintText(verdicts, as_files_say, problem.empty() ? page : "", context);
+  }
   if (problem.empty()) problem = NotRecordedText(verdicts);
   return problem.empty() ? WorstOf(verdicts) : Complain(context, ExitCode::kFailure, problem);
 }

@@ -15,6 +15,7 @@
 #include "harness/base/shell_quote.h"
 #include "harness/base/text_file.h"
 #include "harness/command/parse_arguments.h"
+#include "harness/command/preconditions.h"
 
 namespace prehend::harness {
 namespace {
@@ -26,20 +27,20 @@ std::vector<Command> Commands() {
           Limited(ValidateCommand(), kOne_s),
           Limited(RunCommand(), kOne_s),
           CheckCommand(),
-          AcceptCommand(),
-          ReviewCommand(),
+          Limited(AcceptCommand(), kMany_s),
+          Limited(ReviewCommand(), kOne_s),
           Limited(RenderCommand(), kOne_s),
           NewCommand(),
           SchemaCommand(),
           BenchCommand(),
           Limited(ResegmentCommand(), kMany_s),
           Limited(QueryCommand(), kMany_s),
-          ScoreCommand(),
+          Limited(ScoreCommand(), kMany_s),
           Limited(ExplainCommand(), kOne_s),
           Limited(TracksCommand(), kOne_s),
           Limited(EpisodesCommand(), kMany_s),
-          ReplayCommand(),
-          SweepCommand(),
+          Limited(ReplayCommand(), kMany_s),
+          Limited(SweepCommand(), kMany_s),
           Limited(TryCommand(), kOne_s)};
 }
 
@@ -101,6 +102,10 @@ ExitCode Run(const ChosenCommand& chosen, const std::vector<std::string>& words)
                     "the name of the project's folder, " + ReadableName(*root) +
                         ", holds what is no printable text; rename it");
   context.root = *root;
+  for (const auto& refusal : {RefuseSmallStack(), RefuseUnreadableFolders(*root),
+                              RefuseOutputsThatAreInputs(*root, *chosen.command, chosen.options)}) {
+    if (refusal) return Complain(context, refusal->exit_code, refusal->reason);
+  }
   return chosen.command->run(chosen.options, context);
 }
 

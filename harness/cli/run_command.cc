@@ -216,7 +216,8 @@ Command RunCommand() {
                 "write the episode to FILE: NAME.episodes holds many episodes and all of each;\n"
                 "any other ending: what the grammar sees, as JSON Lines; -: print these\n"
                 "instead of the table. With --trials: NAME.episodes, an episode per trial",
-            .placeholder = "FILE"},
+            .placeholder = "FILE",
+            .is_output = true},
            {.name = "--measure", .help = "print where the time went, and the peak memory"}},
       .run = RunOne};
 }

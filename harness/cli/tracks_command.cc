@@ -89,7 +89,8 @@ Command TracksCommand() {
                       {.name = "--output",
                        .help = "the file to write, .csv or .json; - or nothing: print CSV",
                        .placeholder = "FILE",
-                       .other_name = "-o"},
+                       .other_name = "-o",
+                       .is_output = true},
                       {.name = "--only",
                        .help = "an event, condition or signal (speed_along); may be repeated;\n"
                                "default: all",

@@ -33,6 +33,7 @@ struct Option {
   ValueRule rule = {};
   bool required = false;
   bool repeatable = false;  ///< may be given several times
+  bool is_output = false;   ///< names a file that is written
   std::string group = {};   ///< heading in the help; "" is the common one
 };
 

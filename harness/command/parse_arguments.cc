@@ -154,7 +154,10 @@ ParsedArguments ParseArguments(const ProgramDescription& program,
     return Worded(error, Find(commands, app));
   }
   const Command* const command = Find(commands, app);
-  const std::vector<std::string> extras = app.remaining(/*recurse=*/true);
+  std::vector<std::string> extras = app.remaining(/*recurse=*/true);
+  // CLI11 leaves over the word that ends the options.
+  if (const auto end = std::ranges::find(extras, "--"); command && end != extras.end())
+    extras.erase(end);
   if (command && extras.empty()) return Chosen(*command, *app.get_subcommand(command->name));
   if (command)
     return UnexpectedWord(*app.get_subcommand(command->name), extras.front(), command->name, words);

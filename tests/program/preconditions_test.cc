@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is refused before any command runs: a stack that is too small, folders that cannot be read,
+// outputs that are inputs. And what a pipe or the word "--" does.
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "tests/program/small_project.h"
+
+namespace prehend::house {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Preconditions : public SmallProject {
+ protected:
+  /// The program after a command of the shell in the same process, like `ulimit -n 4`.
+  Said DoAfter(const std::string& before, const std::string& arguments) const {
+    const std::string out = (root_ / "out").string(), err = (root_ / "err").string();
+    const int status = std::system(("bash -c '" + before + " && PREHEND_HOME=" + root_.string() +
+                                    " exec " PREHEND_BINARY_DIR "/prehend " + arguments + "' >" +
+                                    out + " 2>" + err)
+                                       .c_str());
+    return {WEXITSTATUS(status), ReadFile(out), ReadFile(err)};
+  }
+};
+
+TEST_F(Preconditions, ASmallStackIsRefused) {
+  for (const char* command : {"list", "check --no-pictures", "score", "run carton_rests",
+                              "accept carton_rests --reason x"}) {
+    const Said said = DoAfter("ulimit -s 64", command);
+    EXPECT_EQ(said.exit_code, 3) << command;
+    EXPECT_EQ(said.err.find("prehend: found a stack of 64 KiB, wanted 1024 KiB: see ulimit -s\n"),
+              0u)
+        << command << "\n"
+        << said.err;
+  }
+  EXPECT_EQ(DoAfter("ulimit -S -s 64", "list").exit_code, 0) << "it may raise its own limit";
+}
+
+TEST_F(Preconditions, AFolderThatCannotBeReadIsNotEmpty) {
+  const Said said = DoAfter("ulimit -n 4", "list");
+  EXPECT_EQ(said.exit_code, 3) << said.out;
+  EXPECT_NE(said.err.find("cannot be read: Too many open files"), std::string::npos) << said.err;
+  if (geteuid() == 0) return;  // who may read everything
+  const fs::path folder = Scenario().parent_path();
+  fs::permissions(folder, fs::perms::none);
+  const Said denied = Do("check --no-pictures");
+  fs::permissions(folder, fs::perms::owner_all);
+  EXPECT_EQ(denied.exit_code, 2) << denied.out;
+  EXPECT_NE(denied.err.find("scenarios or a folder in it cannot be read: Permission denied"),
+            std::string::npos)
+      << denied.err;
+}
+
+TEST_F(Preconditions, AnOutputReplacesNoInput) {
+  Accept();
+  const std::string golden = ReadFile(Golden()), scenario = ReadFile(Scenario());
+  for (const std::string& command :
+       {"check --no-pictures --junit " + Golden().string(),
+        "run carton_rests --record " + Scenario().string(),
+        "run carton_rests --record " +
+            (root_ / "golden/../scenarios/rest/carton_rests.yaml").string(),
+        "render carton_rests -o " + Scenario().string()}) {
+    const Said said = Do(command);
+    EXPECT_EQ(said.exit_code, 2) << command;
+    EXPECT_NE(said.err.find("is a file of the project's "), std::string::npos) << said.err;
+  }
+  EXPECT_EQ(ReadFile(Golden()), golden);
+  EXPECT_EQ(ReadFile(Scenario()), scenario);
+  const fs::path recording = root_ / "a.csv";
+  WriteFile(recording, "time\n");
+  const Said said = Do("tracks " + recording.string() + " -o " + (root_ / "./a.csv").string());
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_NE(said.err.find("a.csv is what is read; name another file"), std::string::npos)
+      << said.err;
+  EXPECT_EQ(ReadFile(recording), "time\n");
+  EXPECT_EQ(Do("check --no-pictures --junit " + (root_ / "junit.xml").string()).exit_code, 0);
+  EXPECT_EQ(Do("check --no-pictures --junit " + (root_ / "junit.xml").string()).exit_code, 0)
+      << "what was written before may be written again";
+}
+
+// Nobody writes into the pipe: who opens it waits for ever.
+TEST_F(Preconditions, APipeIsNotWaitedFor) {
+  Accept();
+  const fs::path pipe = root_ / "scenarios/rest/pipe.yaml";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const char* command : {"list", "validate", "check --no-pictures --time-limit 20"}) {
+    const Said said = Do(command);
+    EXPECT_EQ(said.exit_code, 2) << command;
+    EXPECT_NE((said.out + said.err).find("pipe.yaml: error: is not a regular file"),
+              std::string::npos)
+        << command << "\n"
+        << said.err;
+  }
+  fs::remove(pipe);
+  fs::remove(Golden());
+  ASSERT_EQ(mkfifo(Golden().c_str(), 0600), 0);
+  for (const char* command :
+       {"validate", "check --no-pictures --time-limit 20", "accept carton_rests --reason why"}) {
+    const Said said = Do(command);
+    EXPECT_EQ(said.exit_code, 2) << command;
+    EXPECT_NE((said.out + said.err).find("carton_rests.timeline: error: is not a regular file"),
+              std::string::npos)
+        << command << "\n"
+        << said.err;
+  }
+  fs::remove(Golden());
+  fs::create_directories(root_ / "build/check");
+  fs::remove(root_ / "build/check/costs.json");
+  ASSERT_EQ(mkfifo((root_ / "build/check/costs.json").c_str(), 0600), 0);
+  EXPECT_EQ(Do("check --no-pictures").exit_code, 5);
+}
+
+TEST_F(Preconditions, TwoDashesEndTheOptions) {
+  EXPECT_EQ(Do("run -- carton_rests").exit_code, 0);
+  EXPECT_EQ(Do("run --json -- carton_rests").exit_code, 0);
+  const Said said = Do("run -- --json");
+  EXPECT_EQ(said.exit_code, 4) << said.err;
+  EXPECT_NE(said.err.find("no scenario '--json'"), std::string::npos) << said.err;
+}
+
+TEST_F(Preconditions, LimitsOfTimeAndMemoryEndEveryCommandThatPlays) {
+  WriteVariant("rest/long", "wait_s: 0.2", "wait_s: 290");
+  for (const std::string& command :
+       {std::string("accept long --reason why"), std::string("score")}) {
+    const Said late = Do(command + " --time-limit-s 0.2");
+    EXPECT_EQ(late.exit_code, 3) << command;
+    EXPECT_NE(late.err.find("no end after 0.2 s"), std::string::npos) << late.err;
+    const Said large = Do(command + " --memory-limit-mb 1");
+    EXPECT_EQ(large.exit_code, 3) << command;
+    EXPECT_NE(large.err.find("MB"), std::string::npos) << large.err;
+  }
+  EXPECT_FALSE(fs::exists(Golden("rest/long")));
+}
+
+}  // namespace
+}  // namespace prehend::house
