@@ -2,12 +2,16 @@
 // prehend resegment: recorded episodes under another grammar, without physics.
 // Tested by tests/program/recording_test.cc and tests/program/episodes_test.cc
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "grammar/contents.h"
 #include "grammar/name_events.h"
+#include "grammar/never_recognised.h"
+#include "harness/base/text_file.h"
 #include "harness/command/command.h"
 #include "harness/episodes/resegment_many.h"
 #include "harness/episodes/schema.h"
@@ -17,6 +21,41 @@
 
 namespace prehend::harness {
 namespace {
+
+/// Warns of events that need facts which the recording does not have, and of entities of which it
+/// never says where they are. Whether nothing is left that could be recognised.
+bool WarnOfMissing(Episode& episode, const grammar::Program& program,
+                   const CommandContext& context) {
+  grammar::FactsOfEpisode facts;
+  const std::vector<grammar::EntityInfo>& entities = episode.header.entity_table.entities;
+  std::vector<bool> placed = episode.placed;
+  placed.resize(entities.size());
+  for (EpisodeFrame& frame : episode.frames) facts.Add(frame.View());
+  for (std::size_t i = 0; i < entities.size(); ++i) {
+    if (placed[i]) continue;
+    context.err << fmt::format(
+        "warning: no frame says where '{}' is, so it stands at the world's origin\n"
+        "  hint: give it a sample in the first frame, or leave it out of 'entities'\n",
+        entities[i].name);
+  }
+  const auto never = grammar::FindNeverRecognised(program, facts);
+  std::map<std::string_view, std::vector<std::string>> events;
+  for (const grammar::NeverRecognised& one : never) events[one.fact].push_back(one.event);
+  for (const auto& [fact, names] : events) {
+    const auto first = std::ranges::find(never, fact, &grammar::NeverRecognised::fact);
+    context.err << fmt::format(
+        "{}:{}:{}: warning: this recording has no {}, so '{}' is never recognised{}\n"
+        "  hint: {}\n",
+        ReadableName(first->file), first->place.line, first->place.column, fact, names.front(),
+        names.size() == 1
+            ? std::string()
+            : fmt::format(", nor {}", fmt::join(names.begin() + 1, names.end(), ", ")),
+        fact == "gazes" ? "give persons or heads 'gazes_at' in their samples"
+                        : "make these facts of motion, 'use contact from motion' above the other "
+                          "lines, or pick_and_place_from_motion; docs/facts-from-motion.md");
+  }
+  return never.size() == grammar::EventNames(program).size();
+}
 
 ExitCode ResegmentLines(const std::string& file, const ParsedOptions& options,
                         const CommandContext& context) {
@@ -30,6 +69,7 @@ ExitCode ResegmentLines(const std::string& file, const ParsedOptions& options,
 
   const grammar::EntityTable& entity_table = episode->header.entity_table;
   Warn(context, Warnings(*compiled.program, entity_table));
+  const bool never = WarnOfMissing(*episode, *compiled.program, context);
   grammar::Monitor monitor(compiled.program, entity_table);
   std::vector<grammar::Event> events;
   for (EpisodeFrame& frame : episode->frames) monitor.Advance(frame.View(), events);
@@ -43,9 +83,10 @@ ExitCode ResegmentLines(const std::string& file, const ParsedOptions& options,
   run.ticks = episode->end_tick - 1;
   run.is_open = !episode->says_its_end;
   run.timeline = grammar::NameEvents(*compiled.program, entity_table, events);
+  const ExitCode exit_code = never ? ExitCode::kNothing : ExitCode::kAgrees;
   if (!options.Has("--json")) {
     context.out << RunTable(run);
-    return ExitCode::kAgrees;
+    return exit_code;
   }
   Scenario watched;
   watched.name = episode->header.episode;
@@ -53,7 +94,7 @@ ExitCode ResegmentLines(const std::string& file, const ParsedOptions& options,
   OrderedJson json = RunJson(watched, run);
   json.erase("state_hash");  // nothing was simulated
   context.out << json.dump(2) << "\n";
-  return ExitCode::kAgrees;
+  return exit_code;
 }
 
 /// Results of one episode as `run` prints them, of several one after another; with a comparison

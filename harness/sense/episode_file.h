@@ -42,6 +42,7 @@ struct Episode {
   EpisodeHeader header;
   std::vector<EpisodeFrame> frames;
   grammar::Tick end_tick = 0;  ///< the first tick after the episode
+  std::vector<bool> placed;    ///< by entity: some frame says where it is
   bool says_its_end = false;   ///< it has a line with 'end_tick'; otherwise it may be cut off
 };
 

@@ -225,6 +225,8 @@ class EpisodeReader {
     for (const Named<SampleEntry>& sample : entry.samples) {
       const int index = IndexOf(sample.name, sample.name_where, errors);
       if (index == grammar::kNoEntity) continue;
+      episode.placed.resize(now_.entities.size());
+      episode.placed[static_cast<std::size_t>(index)] = true;
       TakeSample(sample.value, first ? 0 : dt_s, now_.entities[index]);
       if (const auto& gazes_at = sample.value.gazes_at) {
         now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, errors);

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rules in the order of the schedule: what a rule asks about is known before it. A condition is
+// false, true or either, when facts that there are not count as what their signals are without
+// them; of what is false, the missing fact is kept.
+#include "grammar/never_recognised.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "grammar/engine/three_valued.h"
+
+namespace prehend::grammar {
+namespace {
+
+struct Judged {
+  Kleene truth = Kleene::kUnknown;
+  std::string_view fact;  ///< why, if it is not unknown
+};
+
+Judged And(const Judged& a, const Judged& b) { return a.truth <= b.truth ? a : b; }
+Judged Or(const Judged& a, const Judged& b) { return a.truth >= b.truth ? a : b; }
+
+class Judge {
+ public:
+  Judge(const Program& program, const FactsOfEpisode& facts)
+      : program_(program), facts_(facts), never_(program.rules.size()) {
+    for (const RuleId rule : program.schedule) never_[rule] = NeverOf(program.rules[rule]);
+  }
+
+  /// Why no interval of the rule ever begins; empty if one may.
+  std::string_view Never(RuleId rule) const { return never_[rule]; }
+
+ private:
+  std::string_view NeverOf(const Rule& rule) const {
+    std::string_view why = NeverOfForm(rule);
+    const auto ask = [&](std::string_view other) {
+      if (why.empty()) why = other;
+    };
+    if (rule.requirement != kNone) ask(WhyFalse(rule, rule.requirement));
+    if (rule.confirmed_by != kNone) ask(NeverOfReference(rule, rule.confirmed_by));
+    return why;
+  }
+
+  std::string_view NeverOfForm(const Rule& rule) const {
+    std::string_view why;
+    const auto ask = [&](std::string_view other) {
+      if (why.empty()) why = other;
+    };
+    switch (rule.form()) {
+      case Form::kTouching:
+        return facts_.touches ? "" : "touches";
+      case Form::kAny:
+        return NeverOfReference(rule, 0);
+      case Form::kWhile:
+        return WhyFalse(rule, rule.As<WhileRule>().condition);
+      case Form::kFromTo: {
+        const FromToRule& part = rule.As<FromToRule>();
+        ask(WhyFalse(rule, part.from));
+        if (part.during != kNone) ask(WhyFalse(rule, part.during));
+        if (!part.absence && (part.or_drop || part.within_s >= 0)) ask(WhyFalse(rule, part.to));
+        return why;
+      }
+      case Form::kUntilSince:
+        ask(WhyFalse(rule, rule.As<UntilSinceRule>().until));
+        ask(WhyFalse(rule, rule.As<UntilSinceRule>().since));
+        return why;
+      case Form::kRestOf:
+        return NeverOfReference(rule, rule.As<RestOfRule>().whole);
+      case Form::kCompose:
+        for (const int part : rule.As<ComposeRule>().parts) ask(NeverOfReference(rule, part));
+        return why;
+    }
+    return why;
+  }
+
+  std::string_view NeverOfReference(const Rule& rule, int slot) const {
+    return never_[rule.references[static_cast<std::size_t>(slot)].rule];
+  }
+
+  std::string_view WhyFalse(const Rule& rule, NodeId node) const {
+    const Judged judged = Truth(rule, node);
+    return judged.truth == Kleene::kFalse ? judged.fact : "";
+  }
+
+  Judged Truth(const Rule& rule, NodeId index) const {
+    const Node& node = program_.nodes[index];
+    switch (node.op) {
+      case Op::kAnd:
+        return And(Truth(rule, node.args[0]), Truth(rule, node.args[1]));
+      case Op::kOr:
+        return Or(Truth(rule, node.args[0]), Truth(rule, node.args[1]));
+      case Op::kNot: {
+        const Judged judged = Truth(rule, node.args[0]);
+        return {Not(judged.truth), judged.fact};
+      }
+      case Op::kBegins:
+      case Op::kEnds: {
+        // What is always true begins with the episode.
+        const Judged judged = Truth(rule, node.args[0]);
+        return judged.truth == Kleene::kFalse ? judged : Judged{};
+      }
+      case Op::kHolds: {
+        const std::string_view why = NeverOfReference(rule, node.slot);
+        return why.empty() ? Judged{} : Judged{Kleene::kFalse, why};
+      }
+      case Op::kGazed:
+        return facts_.gazes ? Judged{} : Judged{Kleene::kFalse, "gazes"};
+      case Op::kSensorSet:
+        return facts_.sensor_sets ? Judged{} : Judged{Kleene::kFalse, "sensor sets"};
+      case Op::kLess:
+      case Op::kLessEqual:
+      case Op::kGreater:
+      case Op::kGreaterEqual:
+      case Op::kEqual:
+      case Op::kNotEqual:
+        return Compared(node);
+      default:
+        return {};
+    }
+  }
+
+  struct Missing {
+    double value = 0;  ///< what the signal is where there is no such fact
+    std::string_view fact;
+  };
+
+  std::optional<Missing> MissingOf(const Node& node) const {
+    switch (node.op) {
+      case Op::kNumber:
+        return Missing{node.number, ""};
+      case Op::kSensorSets:
+        if (!facts_.sensor_sets) return Missing{0, facts_.touches ? "sensor sets" : "touches"};
+        break;
+      case Op::kUp:
+        if (!facts_.touches) return Missing{-1, "touches"};
+        break;
+      case Op::kForceBetween:
+      case Op::kTouchSpeed:
+        if (!facts_.touches) return Missing{0, "touches"};
+        break;
+      case Op::kTrigger:
+        if (!facts_.grips) return Missing{0, "grips"};
+        break;
+      default:
+        break;
+    }
+    return std::nullopt;
+  }
+
+  Judged Compared(const Node& node) const {
+    const auto left = MissingOf(program_.nodes[node.args[0]]);
+    const auto right = MissingOf(program_.nodes[node.args[1]]);
+    if (!left || !right) return {};
+    const double a = left->value, b = right->value;
+    const bool truth = node.op == Op::kLess           ? a < b
+                       : node.op == Op::kLessEqual    ? a <= b
+                       : node.op == Op::kGreater      ? a > b
+                       : node.op == Op::kGreaterEqual ? a >= b
+                       : node.op == Op::kEqual        ? a == b
+                                                      : a != b;
+    return {Known(truth), left->fact.empty() ? right->fact : left->fact};
+  }
+
+  const Program& program_;
+  const FactsOfEpisode& facts_;
+  IdVector<RuleId, std::string_view> never_;
+};
+
+}  // namespace
+
+void FactsOfEpisode::Add(const Frame& frame) {
+  touches = touches || !frame.touches.empty();
+  for (const Touch& touch : frame.touches) sensor_sets = sensor_sets || touch.sensor_sets != 0;
+  for (const HandSample& hand : frame.hands) grips = grips || hand.trigger > 0;
+  for (const EntitySample& look : frame.entities) gazes = gazes || look.gazes_at != kNoEntity;
+}
+
+std::vector<NeverRecognised> FindNeverRecognised(const Program& program,
+                                                 const FactsOfEpisode& facts) {
+  const Judge judge(program, facts);
+  std::vector<NeverRecognised> never;
+  for (const RuleId index : IdsOf(program.rules)) {
+    const Rule& rule = program.rules[index];
+    const std::string_view why = judge.Never(index);
+    if (rule.printed && !why.empty()) never.push_back({rule.name, rule.file, rule.place, why});
+  }
+  return never;
+}
+
+}  // namespace prehend::grammar

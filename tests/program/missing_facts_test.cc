@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recordings of poses alone, shown to grammars that ask for more.
+#include <gtest/gtest.h>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+constexpr const char* kPoses =
+    R"({"recording": 1, "episode": "poses", "ticks_per_second": 100, "entities": {"table": {"fixed": true, "size_m": [1, 1, 0.04]}, "cup": {"size_m": [0.1, 0.1, 0.1]}, "hand": {"hand": true, "size_m": [0, 0, 0]}}}
+{"tick": 0, "samples": {"cup": {"at_m": [0, 0, 0.07]}, "hand": {"at_m": [0, 0, 1]}}}
+{"tick": 50, "samples": {"hand": {"at_m": [0, 0, 0.5]}}}
+{"end_tick": 100}
+)";
+
+TEST(MissingFacts, AreNamedAndNothingRecognisedIsExitCodeFour) {
+  const auto file = FreshFolder("missing") / "poses.jsonl";
+  WriteFile(file, kPoses);
+  const Said said = Prehend({"resegment", file.string(), "--grammar", "pick_and_place"});
+  EXPECT_EQ(said.exit_code, 4);
+  EXPECT_TRUE(said.err.starts_with(
+      "warning: no frame says where 'table' is, so it stands at the world's origin\n"))
+      << said.err;
+  EXPECT_NE(said.err.find("contact.grammar:10:17: warning: this recording has no touches, so "
+                          "'contact' is never recognised, nor supported_by, grasping, "),
+            std::string::npos)
+      << said.err;
+  EXPECT_NE(said.err.find("use contact from motion"), std::string::npos);
+}
+
+TEST(MissingFacts, WhatCanStillBeRecognisedIsExitCodeZero) {
+  const auto folder = FreshFolder("missing");
+  WriteFile(folder / "poses.jsonl", kPoses);
+  WriteFile(folder / "g.grammar",
+            "grammar g\nuse grasp\nevent down(hand: Hand) while vertical_speed(hand) < -10 cm/s\n");
+  const Said said = Prehend({"resegment", (folder / "poses.jsonl").string(), "--grammar",
+                             (folder / "g.grammar").string()});
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_NE(said.err.find("so 'grasping' is never recognised\n"), std::string::npos) << said.err;
+  EXPECT_NE(said.out.find("down"), std::string::npos);
+  const Said motion = Prehend(
+      {"resegment", (folder / "poses.jsonl").string(), "--grammar", "pick_and_place_from_motion"});
+  EXPECT_EQ(motion.exit_code, 0);
+  EXPECT_EQ(motion.err.find("never recognised"), std::string::npos) << motion.err;
+}
+
+}  // namespace
+}  // namespace prehend::house
