@@ -42,10 +42,11 @@ int RunExamples(const std::string& page) {
     const CompileResult compiled = Compile({page, blocks[i]}, LibraryIncluder());
     EXPECT_TRUE(compiled.program) << Format(compiled.diagnostics);
     EXPECT_EQ(Format(compiled.warnings), "");
-    const bool is_drawn = i + 1 < blocks.size() && blocks[i + 1].starts_with("entities ");
+    const bool is_drawn = i + 1 < blocks.size() && (blocks[i + 1].starts_with("entities ") ||
+                                                    blocks[i + 1].starts_with("== "));
     EXPECT_TRUE(is_drawn) << "nothing is drawn below\n" << blocks[i];
     if (!compiled.program || !is_drawn) continue;
-    const CorpusCase drawn = ReadCorpusText(page, "== example\n" + blocks[i + 1]).front();
+    const CorpusCase drawn = ReadCorpusText(page, blocks[i + 1]).front();
     const CorpusRun run = RunCase(drawn, compiled.program);
     EXPECT_EQ(run.error, "");
     EXPECT_FALSE(run.timeline.events.empty());
@@ -58,6 +59,7 @@ int RunExamples(const std::string& page) {
 TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
   EXPECT_EQ(RunExamples("grammar-tutorial.md"), 23);
   EXPECT_EQ(RunExamples("cookbook.md"), 8);
+  EXPECT_EQ(RunExamples("drawings.md"), 1);
   EXPECT_EQ(RunExamples("grammar-language.md"), 5);
 }
 
