@@ -22,8 +22,18 @@ Color Hex(unsigned rgb) {
 }
 
 Color TextColorOn(const Color& background) {
-  const float luma = background.dot(Color(0.30f, 0.59f, 0.11f));
-  return luma > 0.62f ? Hex(0x1B1F24) : Hex(0xFFFFFF);
+  // Contrast as WCAG 2 defines it. One of white and black always has at least 4.58.
+  constexpr float kWanted = 4.5f;
+  const auto linear = [](float c) {
+    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+  };
+  const auto luminance = [&](const Color& c) {
+    return Color(linear(c.x()), linear(c.y()), linear(c.z())).dot(Color(0.2126f, 0.7152f, 0.0722f));
+  };
+  const float ground = luminance(background) + 0.05f;
+  if (1.05f / ground >= kWanted) return Hex(0xFFFFFF);
+  const Color ink = Hex(0x1B1F24);
+  return ground / (luminance(ink) + 0.05f) >= kWanted ? ink : Hex(0x000000);
 }
 
 Canvas::Span Canvas::Clip(float low, float high, int limit) {

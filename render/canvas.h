@@ -24,7 +24,7 @@ struct Rect {
 
 /// Converts 0xRRGGBB to a colour.
 Color Hex(unsigned rgb);
-/// Black or white, whichever is more legible on the colour.
+/// White, a dark grey or black: the first with a contrast of 4.5 to the colour.
 Color TextColorOn(const Color& background);
 
 class Canvas {

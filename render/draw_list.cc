@@ -160,15 +160,85 @@ physics::Pose BodyPose(const physics::Scene& scene, const physics::Snapshot& sna
   return body < snapshot.bodies.size() ? snapshot.bodies[body].X_WB : scene.bodies[body].X_WB;
 }
 
+/// Whether a person's body gives the hand its arm.
+bool HasArm(const physics::Scene& scene, int hand) {
+  return std::ranges::any_of(scene.persons, [&](const physics::Person& person) {
+    return person.has_body && (person.right_hand == hand || person.left_hand == hand);
+  });
+}
+
+/// Two eyes and a nose on a head, whose x axis points ahead.
+void AddFace(const Picture& picture, const physics::Person& person, DrawList* list) {
+  const auto head = static_cast<std::size_t>(person.head);
+  if (person.head < 0 || head >= picture.scene->bodies.size()) return;
+  const physics::Body& body = picture.scene->bodies[head];
+  const auto* skull =
+      body.shapes.empty() ? nullptr : std::get_if<physics::Capsule>(&body.shapes.front().shape);
+  if (!skull) return;
+  const auto r = static_cast<float>(skull->radius_m);
+  const Affine3f X_WHead = ToAffine(BodyPose(*picture.scene, picture.snapshot, head));
+  const Appearance dark{
+      .color = {0.15f, 0.16f, 0.18f}, .gloss = 0.6f, .object = list->first_body + person.head};
+  Appearance skin = dark;
+  skin.color = 0.92f * BodyColor(picture, head);
+  const auto ball = [&](const Vector3f& p, const Vector3f& half_m, const Appearance& look) {
+    Item item = MakeItem(X_WHead * Eigen::Translation3f(p) * Eigen::Scaling(half_m), look);
+    item.primitive = Primitive::kBall;
+    item.rounding_m = 1;
+    AddItem(item, &list->solids, list);
+  };
+  for (const float side : {-1.0f, 1.0f})
+    ball(r * Vector3f(0.90f, 0.36f * side, 0.12f), r * Vector3f(0.10f, 0.13f, 0.13f), dark);
+  ball(r * Vector3f(1.0f, 0, -0.18f), r * Vector3f(0.20f, 0.11f, 0.20f), skin);
+}
+
+void AddProp(const Prop& prop, DrawList* list) {
+  Item item = MakeItem(Affine3f(Eigen::Translation3f(prop.center_m)),
+                       {.color = prop.color, .object = AddObject(prop.name, list)});
+  if (!(prop.half_size_m.minCoeff() > 0)) return;
+  SetRoundedBox(prop.half_size_m, 0.004f, &item);
+  AddItem(item, &list->solids, list);
+}
+
+/// A thin rod from the eyes, and a ball where it ends at something. `scale` as of paths.
+void AddGaze(const GazeRay& ray, std::size_t number, float scale, DrawList* list) {
+  constexpr float kRadius_m = 0.0035f, kBall_m = 0.014f;
+  const Appearance look{.color = {0.80f, 0.10f, 0.52f},
+                        .alpha = 0.85f,
+                        .gloss = 0,
+                        .object = AddObject("gaze:" + std::to_string(number), list)};
+  const Vector3f way = ray.to_m - ray.from_m;
+  if (!way.allFinite() || !(way.norm() > 1e-3f)) return;
+  Item rod = MakeItem(Eigen::Translation3f((ray.from_m + ray.to_m) / 2) *
+                          RotationBetween(Vector3f::UnitZ(), way.normalized()),
+                      look);
+  rod.primitive = Primitive::kBall;
+  rod.half_size_m = {0, 0, way.norm() / 2};
+  rod.rounding_m = kRadius_m * scale;
+  AddItem(rod, &list->paths, list);
+  if (!ray.hits) return;
+  Item ball = MakeItem(Affine3f(Eigen::Translation3f(ray.to_m)), look);
+  ball.primitive = Primitive::kBall;
+  ball.rounding_m = kBall_m * scale;
+  AddItem(ball, &list->paths, list);
+}
+
 void AddBodiesAndHands(const Picture& picture, DrawList* list) {
   const physics::Scene& scene = *picture.scene;
   list->first_body = static_cast<int>(list->objects.size());
   std::size_t first_grain = 0;
+  std::vector<Item> translucent;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Appearance look{.color = BodyColor(picture, i),
                           .object = AddObject("body:" + scene.bodies[i].name, list)};
     if (scene.bodies[i].abstract != physics::Abstract::kNot) {
       AddAbstract(scene.bodies[i], look.object, list);
+      continue;
+    }
+    if (i < picture.body_alphas.size() && picture.body_alphas[i] < 1) {
+      Appearance pale = look;
+      pale.alpha = picture.body_alphas[i];
+      AddBody(scene.bodies[i], BodyPose(scene, picture.snapshot, i), pale, &translucent, list);
       continue;
     }
     AddBody(scene.bodies[i], BodyPose(scene, picture.snapshot, i), look, &list->solids, list);
@@ -177,6 +247,8 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
       first_grain += grains->p_WG_m.size();
     }
   }
+  if (!translucent.empty()) list->ghosts.push_back(std::move(translucent));
+  for (const physics::Person& person : scene.persons) AddFace(picture, person, list);
   list->first_hand = static_cast<int>(list->objects.size());
   for (std::size_t i = 0; i < scene.hands.size(); ++i) {
     const Appearance look{.color = kSkinColor,
@@ -190,6 +262,7 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
                           .alpha = kForearmAlpha,
                           .gloss = 0.15f,
                           .object = AddObject("forearm:" + scene.hands[i].name, list)};
+    if (HasArm(scene, static_cast<int>(i))) continue;
     AddForearm(scene.hands[i].model, picture.snapshot.hands[i], look, &list->ghosts.emplace_back(),
                list);
   }
@@ -208,7 +281,6 @@ void AddGhost(const Picture& picture, std::size_t number, DrawList* list) {
   if (has_hand) {
     look.color = 0.6f * ghost.tint + 0.4f * kSkinColor;
     AddHand(scene.hands[hand].model, ghost.snapshot.hands[hand], look, &items, list);
-    AddForearm(scene.hands[hand].model, ghost.snapshot.hands[hand], look, &items, list);
   }
   for (const int body : ghost.bodies) {
     const auto i = static_cast<std::size_t>(body);
@@ -288,6 +360,9 @@ DrawList MakeDrawList(const Picture& picture) {
     for (std::size_t i = 0; i < picture.ghosts.size(); ++i) AddGhost(picture, i, &list);
   }
   for (std::size_t i = 0; i < picture.markers.size(); ++i) AddMarker(picture, i, &list);
+  for (const Prop& prop : picture.props) AddProp(prop, &list);
+  for (std::size_t i = 0; i < picture.gazes.size(); ++i) AddGaze(picture.gazes[i], i, scale, &list);
+  list.theme = picture.theme;
   return list;
 }
 

@@ -35,7 +35,7 @@ struct Item {
 };
 
 /// A named object: "body:milk", "hand:right_hand", "forearm:right_hand", "path:2:reaching",
-/// "ghost:0:right_hand", "marker:1:contact".
+/// "ghost:0:right_hand", "marker:1:contact", "leg:table", "gaze:0".
 struct DrawnObject {
   std::string name;
   Bounds bounds;
@@ -43,7 +43,7 @@ struct DrawnObject {
 
 struct DrawList {
   std::vector<DrawnObject> objects;  ///< 0 is the background, 1 the ground; then bodies, hands,
-                                     ///< forearms, paths, ghosts, markers
+                                     ///< forearms, paths, ghosts, markers, props, gazes
   std::vector<Mesh> meshes;          ///< meshes of paths and hulls
   std::vector<Item> solids;          ///< bodies and hands
   std::vector<Item> paths;           ///< faintly visible through solids
@@ -51,6 +51,8 @@ struct DrawList {
   std::vector<Item> markers;                            ///< translucent
   Bounds bounds;                                        ///< of all objects but the ground
   Eigen::Vector3f to_light = Eigen::Vector3f::UnitZ();  ///< unit
+
+  Theme theme = Theme::kLight;
 
   int first_body = 2, first_hand = 2;  ///< first body and first hand in `objects`
 };

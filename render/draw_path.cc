@@ -60,8 +60,9 @@ void AddTube(const std::vector<Vector3f>& points, float radius, Item item, DrawL
 
 void AddBeads(const PathStretch& stretch, const std::vector<Vector3f>& points, float radius,
               Item item, DrawList* list) {
-  item.primitive = Primitive::kBall;
-  item.rounding_m = radius;
+  item.primitive = stretch.square_beads ? Primitive::kBox : Primitive::kBall;
+  item.rounding_m = stretch.square_beads ? 0.15f * radius : radius;
+  if (stretch.square_beads) item.half_size_m.setConstant(0.85f * radius);
   const double per_bead =
       std::isfinite(stretch.points_per_s) ? stretch.points_per_s * kBeadEvery_s : 0;
   const auto step = static_cast<std::size_t>(std::clamp(std::round(per_bead), 1.0, 1e6));

@@ -46,9 +46,14 @@ struct Plan {
   View view;
 };
 
+float TextScale(const Picture& picture) {
+  return std::isfinite(picture.text_scale) ? std::clamp(picture.text_scale, 0.3f, 5.0f) : 1;
+}
+
 Plan MakePlan(const Picture& picture, const Font& font) {
   Plan plan;
-  plan.strip = LayOutStrip(picture.strip, font, picture.width_px, picture.height_px);
+  plan.strip =
+      LayOutStrip(picture.strip, font, picture.width_px, picture.height_px, TextScale(picture));
   plan.list = MakeDrawList(picture);
   plan.view = MakeView(picture.camera, picture.width_px, picture.height_px,
                        plan.strip.reserved_px(), plan.list.bounds);
@@ -127,7 +132,7 @@ Rect DrawTitle(const std::string& title, float scale, float width, Canvas* canva
 
 void DrawOverlay(const Picture& picture, const Plan& plan, Canvas* canvas) {
   if (std::min(picture.width_px, picture.height_px) < kMinSideWithText_px) return;
-  const float scale = OverlayScale(picture.height_px);
+  const float scale = OverlayScale(picture.height_px) * TextScale(picture);
   const auto width = static_cast<float>(picture.width_px),
              height = static_cast<float>(picture.height_px);
   const Rect title = DrawTitle(picture.title, scale, width, canvas);

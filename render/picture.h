@@ -23,6 +23,7 @@ struct PathStretch {
   Color color = {0.54f, 0.56f, 0.60f};
   std::vector<Eigen::Vector3f> points_m;
   double points_per_s = 60;
+  bool square_beads = false;  ///< tells a second hand's path from the first one's
 };
 
 /// A translucent copy of a hand and the objects that it holds, at another time.
@@ -38,6 +39,20 @@ struct Marker {
   MarkerKind kind = MarkerKind::kContact;
   Eigen::Vector3f p_W_m = Eigen::Vector3f::Zero();
   Eigen::Vector3f half_size_m = {0.02f, 0.02f, 0.02f};
+};
+
+/// Something solid that only the picture has, upright: a leg of a table.
+struct Prop {
+  std::string name;
+  Eigen::Vector3f center_m = Eigen::Vector3f::Zero();
+  Eigen::Vector3f half_size_m = {0.02f, 0.02f, 0.02f};
+  Color color = {0.6f, 0.5f, 0.4f};
+};
+
+/// Where a person looks; a ball marks what she sees.
+struct GazeRay {
+  Eigen::Vector3f from_m = Eigen::Vector3f::Zero(), to_m = Eigen::Vector3f::UnitX();
+  bool hits = false;
 };
 
 struct Camera {
@@ -59,6 +74,12 @@ struct TimelineStrip {
   double begin_s = 0, end_s = 1;
   double playhead_s = 0;
   std::vector<StripRow> rows;
+  int rows_left_out = 0;  ///< that there was no room for
+};
+
+enum class Theme {
+  kLight,  ///< a floor with a grid under a pale sky
+  kPrint   ///< white paper
 };
 
 inline constexpr int kMaxPictureSide_px = 8192;
@@ -68,11 +89,16 @@ struct Picture {
   const physics::Scene* scene = nullptr;  ///< outlives the call
   physics::Snapshot snapshot;
   std::vector<Color> body_colors;        ///< one per scene body; missing ones: from a palette
+  std::vector<float> body_alphas;        ///< one per scene body; missing ones: 1
   std::vector<std::string> body_labels;  ///< one per scene body, empty: none
   std::vector<std::string> hand_labels;  ///< one per scene hand, empty: none
   std::vector<PathStretch> path;
   std::vector<Ghost> ghosts;
   std::vector<Marker> markers;
+  std::vector<Prop> props;
+  std::vector<GazeRay> gazes;
+  Theme theme = Theme::kLight;
+  float text_scale = 1;
   Camera camera;
   Eigen::Vector3f to_light = {0.38f, -0.42f, 0.82f};  ///< direction of the distant light
   TimelineStrip strip;

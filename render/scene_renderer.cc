@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The passes, in order:
-//   1. depth from the light (solids and paths entity table shadows);
+//   1. depth from the light (solids have shadows; paths have none: a second path on the table would
+//   compete);
 //   2. backdrop, ground, solids, paths into a multisampled buffer;
 //   3. ambient occlusion at half size from its depth, blurred there and multiplied in;
 //   4. hidden parts of paths, faintly; ghosts, each after its own depth so that inner joints do not
@@ -241,7 +242,6 @@ void SceneRenderer::DrawShadows(const Frame& frame) const {
   depth_only_->Use();
   depth_only_->Set("world_to_clip", frame.world_to_light);
   for (const Item& item : frame.list.solids) DrawItem(*depth_only_, frame, item);
-  for (const Item& item : frame.list.paths) DrawItem(*depth_only_, frame, item);
   gl_.Disable(GL_POLYGON_OFFSET_FILL);
 }
 
@@ -250,13 +250,14 @@ void SceneRenderer::DrawSolids(const Frame& frame) const {
   gl_.Clear(GL_DEPTH_BUFFER_BIT);
   gl_.Disable(GL_DEPTH_TEST);
   backdrop_->Use();
+  backdrop_->Set("plain", frame.list.theme == Theme::kPrint ? 1.0f : 0.0f);
   DrawScreen();
   gl_.Enable(GL_DEPTH_TEST);
 
   const Program& surface = UseSurface(frame, solid_);
   for (const Item& item : frame.list.solids) DrawItem(surface, frame, item);
   for (const Item& item : frame.list.paths) DrawItem(surface, frame, item);
-  DrawGround(frame);
+  if (frame.list.theme == Theme::kLight) DrawGround(frame);
 }
 
 // Drawn after the solids, so that hidden ground is not shaded; far out it fades into the backdrop.

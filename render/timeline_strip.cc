@@ -181,8 +181,9 @@ float OverlayScale(int height_px) {
   return std::clamp(static_cast<float>(height_px) / 720, 0.62f, 4.0f);
 }
 
-StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_px, int height_px) {
-  const float scale = OverlayScale(height_px);
+StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_px, int height_px,
+                        float text_scale) {
+  const float scale = OverlayScale(height_px) * text_scale;
   StripLayout layout{.scale = scale, .picture_height_px = height_px};
   constexpr double kMaxSpan_s = 1e7;
   const double duration_s = strip.end_s - strip.begin_s;
@@ -200,6 +201,7 @@ StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_
 
   const float frame_height = (kMargin + 2 * kPadding + kAxisHeight) * scale;
   float used = frame_height;
+  std::size_t shown = 0;
   for (const StripRow& row : strip.rows) {
     std::vector<StripLane> lanes;
     float row_height = 0;
@@ -209,10 +211,13 @@ StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_
     }
     if (used + row_height > kMaxHeightShare * height) break;
     used += row_height;
+    ++shown;
     lanes.front().label = font.Shortened(row.label, text_size, label_width + 1);
     std::move(lanes.begin(), lanes.end(), std::back_inserter(layout.lanes));
   }
   if (layout.lanes.empty()) return layout;
+  const std::size_t left_out = strip.rows.size() - shown + std::max(strip.rows_left_out, 0);
+  if (left_out > 0) layout.note = "+ " + std::to_string(left_out) + " more";
 
   layout.panel = {kMargin * scale, height - used, width - 2 * kMargin * scale,
                   used - kMargin * scale};
@@ -272,6 +277,7 @@ void DrawStrip(const StripLayout& layout, Canvas* canvas) {
   const Rect tag = {left, layout.axis_top + 6 * s, width, size + 5 * s};
   const bool has_playhead = !layout.playhead_label.empty();
   DrawAxis(layout, has_playhead ? tag : Rect{}, canvas);
+  canvas->DrawText(layout.label_left, layout.axis_top + 8 * s, layout.note, size, Hex(0x1B1F24));
   if (!has_playhead) return;
   const Color ink = Hex(0x15181C);
   canvas->DrawLine({layout.playhead_x, layout.panel.y + 2 * s}, {layout.playhead_x, tag.y + 2 * s},

@@ -43,6 +43,7 @@ struct StripLayout {
   std::vector<StripTick> ticks;
   float playhead_x = 0;  ///< NaN: outside
   std::string playhead_label;
+  std::string note;         ///< how many rows are left out; below the rows' labels
   int reserved_px() const;  ///< pixel rows that the scene should leave free
   int picture_height_px = 0;
 };
@@ -50,8 +51,9 @@ struct StripLayout {
 /// Size of text and spacing relative to a picture of 720 rows.
 float OverlayScale(int height_px);
 
-/// Omits the last rows if the strip would be higher than 42 % of the picture.
-StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_px, int height_px);
+/// Omits the last rows if the strip would be higher than 42 % of the picture, and says how many.
+StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_px, int height_px,
+                        float text_scale = 1);
 void DrawStrip(const StripLayout& layout, Canvas* canvas);
 
 }  // namespace prehend::render

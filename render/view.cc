@@ -69,6 +69,10 @@ const std::vector<NamedDirection>& NamedDirections() {
       {"right", {1, -0.12f, 0.42f}},
       {"top", {0, -0.05f, 1}},
       {"three_quarter", {-0.62f, -1, 0.58f}},
+      // These frame something else: the hands and what they hold, all that moves, all persons.
+      {"hand", {-0.80f, -1, 0.45f}},
+      {"action", {-0.62f, -1, 0.50f}},
+      {"body", {-0.30f, -1, 0.30f}},
   };
   return directions;
 }

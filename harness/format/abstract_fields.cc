@@ -49,9 +49,9 @@ void CheckAbstract(const YamlNode& node, const EntityYaml& entity, DiagnosticLis
   const Abstract abstract = AbstractOf(entity);
   if (abstract == Abstract::kNot) return;
   const std::string noun = NounOf(abstract);
-  for (const char* key :
-       {"fixed", "mass_kg", "friction", "rolling_friction", "restitution", "linear_damping_per_s",
-        "angular_damping_per_s", "fixed_to", "slider", "hinge", "ball_joint", "on", "in"}) {
+  for (const char* key : {"fixed", "mass_kg", "friction", "rolling_friction", "restitution",
+                          "linear_damping_per_s", "angular_damping_per_s", "fixed_to", "slider",
+                          "hinge", "ball_joint", "on", "in", "color"}) {
     if (const YamlNode* given = node.Find(key))
       errors.Add(given->key_where,
                  std::string(key) + ": " + noun + " is abstract; this key does not apply to it");

@@ -8,6 +8,7 @@
 #include "harness/format/scenario_fields.h"
 #include "harness/format/scenario_formats.h"
 #include "harness/scenario/classes.h"
+#include "harness/scenario/colors.h"
 #include "harness/yaml/struct_format.h"
 
 namespace prehend::harness {
@@ -104,6 +105,23 @@ ValueFormat<JointYaml> BallJointFormat() {
       .format();
 }
 
+/// A word is looked up; its hint is the nearest word.
+ValueFormat<std::string> ColorFormat() {
+  return ValueFormat<std::string>(
+      {{"anyOf",
+        {{{"enum", ColorWords()}}, {{"type", "string"}, {"pattern", "^#[0-9A-Fa-f]{6}$"}}}}},
+      [](const YamlNode& node, DiagnosticList& errors, std::string& color) {
+        color = node.text;
+        if (node.kind == YamlNode::Kind::kScalar && ColorOfText(color)) return true;
+        const std::string found = node.kind == YamlNode::Kind::kScalar ? color : "a list or a map";
+        errors.AddUnknownName(
+            node.where,
+            fmt::format("color: expected a word or \"#RRGGBB\" in quotes, found '{}'", found),
+            color, ColorWords());
+        return false;
+      });
+}
+
 void CheckClass(const EntityYaml& entity, DiagnosticList& errors) {
   if (!IsScenarioBuiltinClass(entity.class_name.value)) return;
   errors.Add(
@@ -190,6 +208,8 @@ ValueFormat<EntityYaml> EntityFormat() {
                 "What it is; grammars select roles by class.")
       .Optional("part_of", &E::part_of, Identifier(),
                 "The entity that it is a part of, as a handle is of a door.")
+      .Optional("color", &E::color, ColorFormat(),
+                "How pictures show it: a word like blue, or '#RRGGBB'.")
       .Optional("box", &E::box, BoxFormat(), "Its shape: a box.")
       .Optional("sphere", &E::sphere, SphereFormat(), "Its shape: a sphere.")
       .Optional("cylinder", &E::cylinder, CylinderFormat(), "Its shape: a cylinder, axis along z.")

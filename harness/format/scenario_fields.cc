@@ -95,9 +95,10 @@ ValueFormat<PictureYaml> PictureFormat() {
   return StructFormat<PictureYaml>("a picture")
       .Required("at", &PictureYaml::at, MomentFormat(),
                 "When: an event's 'begin' or 'end', or seconds.")
-      .Optional(
-          "camera", &PictureYaml::camera, Identifier(),
-          "From where: front, left, right, top, three_quarter, or an entity that is a camera.")
+      .Optional("camera", &PictureYaml::camera, Identifier(),
+                "From where: front, left, right, top, three_quarter; hand, action or body, which "
+                "are nearer "
+                "to what they name; or an entity that is a camera.")
       .format();
 }
 

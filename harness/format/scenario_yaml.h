@@ -66,6 +66,7 @@ struct EntityYaml {
   Where where;
   Located<std::string> class_name{"Object", {}};
   std::optional<Located<std::string>> part_of;
+  std::optional<Located<std::string>> color;  ///< see harness/scenario/colors.h
   std::optional<physics::Box> box;
   std::optional<physics::Sphere> sphere;
   std::optional<physics::Cylinder> cylinder;

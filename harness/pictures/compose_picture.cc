@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <set>
 
+#include "harness/pictures/framing.h"
+#include "harness/pictures/scenery.h"
 #include "harness/run/event_time.h"
 #include "harness/timeline/event_drawings.h"
 
@@ -17,49 +19,35 @@ namespace {
 
 using grammar::DrawnAs;
 
-/// A larger body is scenery: it does not affect what the camera frames.
-constexpr double kSceneryFrom_m = 0.5;
 /// Paths are thinned to this many points per second; more only costs triangles.
 constexpr double kPathPoints_per_s = 60;
 /// Rows of the strip; more would hide the picture.
 constexpr std::size_t kMaxRows = 6;
 
-render::Color ColorOf(std::uint32_t rgb) {
-  return {static_cast<float>(rgb >> 16 & 255) / 255, static_cast<float>(rgb >> 8 & 255) / 255,
-          static_cast<float>(rgb & 255) / 255};
-}
+/// Of a longer episode a picture shows the paths and ghosts around its moment.
+constexpr double kLong_s = 15;
+constexpr double kBefore_s = 4, kAfter_s = 3;
 
-/// Calm, distinguishable colours for bodies; fixed ones are wood.
-render::Color BodyColor(const physics::Body& body, int index) {
-  if (body.fixed) return ColorOf(0xC8A27C);
-  if (body.kinematic) return ColorOf(0xA9B4BE);  // a person: not the subject of the picture
-  constexpr std::array<std::uint32_t, 6> palette = {0xE9EEF2, 0xE07A3F, 0x3F6E8C,
-                                                    0xC0392B, 0x8FB339, 0x8C6BB1};
-  return ColorOf(palette[index % palette.size()]);
-}
+/// Which part of an episode, and which of its events, a picture shows.
+struct Selection {
+  double from_s = 0, to_s = 1;            ///< of the strip
+  double path_from_s = 0, path_to_s = 1;  ///< of paths and ghosts
+  std::string hand, entity;               ///< empty: all
 
-/// Cameras and lights are not in the picture.
-bool IsSeen(const physics::Body& body) {
-  return body.abstract != physics::Abstract::kCamera && body.abstract != physics::Abstract::kLight;
-}
-
-/// Direction from the middle of the things to the first light; nullopt without a light.
-std::optional<Eigen::Vector3f> ToLight(const physics::Scene& scene) {
-  const auto light =
-      std::ranges::find(scene.bodies, physics::Abstract::kLight, &physics::Body::abstract);
-  if (light == scene.bodies.end()) return std::nullopt;
-  Eigen::AlignedBox3d things;
-  for (const physics::Body& body : scene.bodies)
-    if (physics::IsThing(body)) things.extend(body.X_WB.p_m);
-  if (things.isEmpty()) return std::nullopt;
-  return (light->X_WB.p_m - things.center()).cast<float>();
-}
+  bool IsIn(double t_s) const { return path_from_s <= t_s && t_s <= path_to_s; }
+  bool HasHand(const std::string& name) const { return hand.empty() || hand == name; }
+  bool Has(const grammar::NamedEvent& event) const {
+    if (entity.empty()) return true;
+    return std::ranges::any_of(event.roles,
+                               [&](const grammar::Role& role) { return role.value == entity; });
+  }
+};
 
 double Seconds(grammar::Tick tick, const RunResult& run) {
   return static_cast<double>(tick) / static_cast<double>(run.timeline.ticks_per_second);
 }
 
-render::Color ColorOf(const RunResult& run, const grammar::NamedEvent& event) {
+render::Color EventColor(const RunResult& run, const grammar::NamedEvent& event) {
   return ColorOf(run.drawings.Of(event.event).color);
 }
 
@@ -96,34 +84,36 @@ int BodyNamed(const physics::Scene& scene, const std::string& name) {
 }
 
 /// The phase a hand is in, or nullptr.
-const grammar::NamedEvent* PhaseOf(const RunResult& run, const std::string& hand,
-                                   grammar::Tick tick) {
+const grammar::NamedEvent* PhaseOf(const RunResult& run, const Selection& selection,
+                                   const std::string& hand, grammar::Tick tick) {
   for (const grammar::NamedEvent& event : run.timeline.events) {
-    if (IsOfHand(run, event, DrawnAs::kPhase, hand) && Covers(event, tick)) return &event;
+    if (IsOfHand(run, event, DrawnAs::kPhase, hand) && Covers(event, tick) && selection.Has(event))
+      return &event;
   }
   return nullptr;
 }
 
 /// The path of one hand, cut where its phase changes; a stretch starts at the end of the one
 /// before.
-void AppendPath(const physics::Scene& scene, const RunResult& run, int hand,
-                std::vector<render::PathStretch>& path) {
+void AppendPath(const physics::Scene& scene, const RunResult& run, const Selection& selection,
+                int hand, std::vector<render::PathStretch>& path) {
   const std::string& name = scene.hands[hand].name;
   const grammar::NamedEvent* phase = nullptr;
   double next_point_s = 0;
   bool first = true;
   for (const physics::Snapshot& snapshot : run.recording) {
-    const grammar::NamedEvent* now = PhaseOf(run, name, snapshot.tick);
+    const grammar::NamedEvent* now = PhaseOf(run, selection, name, snapshot.tick);
     const bool change = first || now != phase;
     const double t_s = Seconds(snapshot.tick, run);
+    if (!selection.IsIn(t_s)) continue;
     if (!change && t_s < next_point_s) continue;
     const Eigen::Vector3f point = snapshot.hands[hand].palm.X_WB.p_m.cast<float>();
     if (change) {
       if (!first) path.back().points_m.push_back(point);
-      path.push_back({.points_per_s = kPathPoints_per_s});
+      path.push_back({.points_per_s = kPathPoints_per_s, .square_beads = hand % 2 == 1});
       if (now) {
         path.back().label = now->event;
-        path.back().color = ColorOf(run, *now);
+        path.back().color = EventColor(run, *now);
       }
     }
     path.back().points_m.push_back(point);
@@ -148,26 +138,38 @@ std::vector<int> HeldBodies(const physics::Scene& scene, const RunResult& run,
 /// A ghost of every hand at the begin or end of each phase whose drawing asks for one, except at
 /// the pictured moment itself.
 std::vector<render::Ghost> ComposeGhosts(const physics::Scene& scene, const RunResult& run,
-                                         grammar::Tick moment) {
+                                         const Selection& selection, grammar::Tick moment) {
   std::vector<render::Ghost> ghosts;
   for (std::size_t h = 0; h < scene.hands.size(); ++h) {
+    if (!selection.HasHand(scene.hands[h].name)) continue;
     for (const grammar::NamedEvent& event : run.timeline.events) {
       if (!IsOfHand(run, event, DrawnAs::kPhase, scene.hands[h].name)) continue;
+      if (!selection.Has(event)) continue;
       const grammar::Ghost ghost = run.drawings.Of(event.event).ghost;
       if (ghost == grammar::Ghost::kNoGhost) continue;
       const grammar::Tick tick =
           ghost == grammar::Ghost::kAtEnd ? event.interval.end : event.interval.begin;
-      if (std::abs(Seconds(tick - moment, run)) < 0.15) continue;
+      if (std::abs(Seconds(tick - moment, run)) < 0.15 || !selection.IsIn(Seconds(tick, run)))
+        continue;
       ghosts.push_back({.hand = static_cast<int>(h),
                         .bodies = HeldBodies(scene, run, scene.hands[h].name, tick),
                         .snapshot = SnapshotAt(run, tick),
-                        .tint = ColorOf(run, event)});
+                        .tint = EventColor(run, event)});
     }
   }
   return ghosts;
 }
 
-/// Markers of supports (green, under the supported body) and of hands' contact points (yellow).
+/// Whether a part of a person touches something.
+bool IsPart(const Scenario& scenario, const physics::ContactPoint& contact) {
+  const auto is_part = [&](int body) {
+    return body >= 0 && scenario.scene.bodies[static_cast<std::size_t>(body)].kinematic;
+  };
+  return is_part(contact.a.body) || is_part(contact.b.body);
+}
+
+/// Markers of supports (green, under the supported body) and of contact points of hands and persons
+/// (yellow).
 std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunResult& run,
                                            const physics::Snapshot& snapshot) {
   std::vector<render::Marker> markers;
@@ -184,7 +186,7 @@ std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunRe
                        Eigen::Vector3d(half.x() * 1.35, half.y() * 1.35, 0.006).cast<float>()});
   }
   for (const physics::ContactPoint& contact : snapshot.contacts) {
-    if (contact.a.hand < 0 && contact.b.hand < 0) continue;
+    if (contact.a.hand < 0 && contact.b.hand < 0 && !IsPart(scenario, contact)) continue;
     markers.push_back(
         {render::MarkerKind::kContact, contact.p_W_m.cast<float>(), {0.008f, 0.008f, 0.008f}});
   }
@@ -211,8 +213,10 @@ std::string Printed(std::string name) {
 /// Makes the strip row by row, from bars that are events of the run.
 class StripComposer {
  public:
-  StripComposer(const RunResult& run, grammar::Tick moment) : run_(run) {
-    strip_.end_s = std::max(Seconds(run.ticks, run), 0.1);
+  StripComposer(const RunResult& run, const Selection& selection, grammar::Tick moment)
+      : run_(run), selection_(selection) {
+    strip_.begin_s = selection.from_s;
+    strip_.end_s = selection.to_s;
     strip_.playhead_s = Seconds(moment, run);
   }
 
@@ -251,96 +255,96 @@ class StripComposer {
     Append(std::move(row));
   }
 
-  bool IsFull() const { return strip_.rows.size() >= kMaxRows; }
   const render::TimelineStrip& strip() const { return strip_; }
 
  private:
   void AddBar(const grammar::NamedEvent& event, std::string name, render::StripRow& row) const {
+    if (!selection_.Has(event)) return;
+    const bool is_in = Seconds(event.interval.end, run_) > selection_.from_s &&
+                       Seconds(event.interval.begin, run_) < selection_.to_s;
+    if (!is_in) return;
     row.segments.push_back({std::move(name), Seconds(event.interval.begin, run_),
-                            Seconds(event.interval.end, run_), ColorOf(run_, event)});
+                            Seconds(event.interval.end, run_), EventColor(run_, event)});
   }
   void Append(render::StripRow row) {
-    if (!row.segments.empty()) strip_.rows.push_back(std::move(row));
+    if (row.segments.empty()) return;
+    if (strip_.rows.size() < kMaxRows)
+      strip_.rows.push_back(std::move(row));
+    else
+      ++strip_.rows_left_out;
   }
 
   const RunResult& run_;
+  const Selection& selection_;
   render::TimelineStrip strip_;
 };
 
 /// Rows per hand: its phases, its grasps; then one per kind of other events; then one of supports
 /// per movable body that has any.
 render::TimelineStrip ComposeStrip(const physics::Scene& scene, const RunResult& run,
-                                   grammar::Tick moment) {
-  StripComposer composer(run, moment);
+                                   const Selection& selection, grammar::Tick moment) {
+  StripComposer composer(run, selection, moment);
   for (const physics::Hand& hand : scene.hands) {
+    if (!selection.HasHand(hand.name)) continue;
     composer.AddPhases(scene.hands.size() == 1 ? "phase" : hand.name, hand.name);
     composer.AddGrasps(hand.name);
   }
-  for (const std::string& name : OtherEvents(run))
-    if (!composer.IsFull()) composer.AddEvents(name);
+  for (const std::string& name : OtherEvents(run)) composer.AddEvents(name);
   for (const physics::Body& body : scene.bodies)
-    if (!body.fixed && !body.kinematic && !composer.IsFull()) composer.AddSupports(body.name);
+    if (!body.fixed && !body.kinematic) composer.AddSupports(body.name);
   return composer.strip();
 }
 
-/// A camera of the scenario.
-render::Camera CameraOf(const physics::Body& camera) {
-  const Eigen::Vector3d ahead_m = camera.X_WB * Eigen::Vector3d::UnitX();
-  return {.eye_m = camera.X_WB.p_m.cast<float>(),
-          .look_at_m = ahead_m.cast<float>(),
-          .vertical_field_of_view_deg = static_cast<float>(camera.view_deg)};
-}
-
-/// A camera of the scenario, or one that frames the paths and everything that is not scenery.
-render::Camera ComposeCamera(const Scenario& scenario, const render::Picture& picture,
-                             const std::string& name) {
-  const int own = BodyNamed(scenario.scene, name);
-  if (own >= 0 && scenario.scene.bodies[own].abstract == physics::Abstract::kCamera)
-    return CameraOf(scenario.scene.bodies[own]);
-  Eigen::AlignedBox3f box;
-  for (const render::PathStretch& stretch : picture.path)
-    for (const Eigen::Vector3f& point : stretch.points_m) box.extend(point);
-  for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
-    const physics::LocalBox local = physics::BoundingBox(scenario.scene.bodies[i]);
-    if (local.half_size_m.maxCoeff() * 2 > kSceneryFrom_m || !IsSeen(scenario.scene.bodies[i]))
-      continue;
-    const Eigen::Vector3f centre = (picture.snapshot.bodies[i].X_WB * local.p_BC_m).cast<float>();
-    const float reach = static_cast<float>(local.half_size_m.norm());
-    box.extend(Eigen::Vector3f(centre.array() + reach));
-    box.extend(Eigen::Vector3f(centre.array() - reach));
-  }
-  if (box.isEmpty()) box.extend(Eigen::Vector3f(0, 0, 0)).extend(Eigen::Vector3f(1, 1, 1));
-  return render::NamedCamera(name, box.min(), box.max(),
-                             static_cast<double>(picture.width_px) / picture.height_px);
+Selection SelectionOf(const PictureFormat& format, const RunResult& run, grammar::Tick moment) {
+  const double end_s = std::max(Seconds(run.ticks, run), 0.1), now_s = Seconds(moment, run);
+  Selection selection{.from_s = format.from_s.value_or(0),
+                      .to_s = format.to_s.value_or(end_s),
+                      .hand = format.only,
+                      .entity = format.of};
+  const bool is_given = format.from_s || format.to_s;
+  const bool is_long = !is_given && end_s > kLong_s;
+  selection.path_from_s = is_long ? now_s - kBefore_s : selection.from_s;
+  selection.path_to_s = is_long ? now_s + kAfter_s : selection.to_s;
+  return selection;
 }
 
 }  // namespace
 
 render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
-                               const PictureYaml& entry) {
+                               const PictureYaml& entry, const PictureFormat& format) {
+  const physics::Scene& scene = scenario.scene;
   const FoundTime moment = FindEventTime(entry.at.value, run);
-  render::Picture picture;
-  picture.scene = &scenario.scene;
+  const Selection selection = SelectionOf(format, run, moment.tick);
+  render::Picture picture{.width_px = format.width_px, .height_px = format.height_px};
+  picture.text_scale = static_cast<float>(format.text_scale);
+  picture.theme = format.print ? render::Theme::kPrint : render::Theme::kLight;
+  picture.scene = &scene;
   picture.snapshot = SnapshotAt(run, moment.tick);
-  for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
-    picture.body_colors.push_back(BodyColor(scenario.scene.bodies[i], static_cast<int>(i)));
+  picture.body_colors = BodyColors(scenario);
+  for (std::size_t i = 0; i < scene.bodies.size() && format.labels; ++i) {
     // A person has one label, at her head: labels of eighteen parts would hide her.
     const bool is_part = scenario.body_classes[i] == "BodyPart";
-    const bool is_named = !is_part && IsSeen(scenario.scene.bodies[i]);
-    picture.body_labels.push_back(is_named ? scenario.scene.bodies[i].name : "");
+    const bool is_named = !is_part && IsSeen(scene.bodies[i]);
+    picture.body_labels.push_back(is_named ? scene.bodies[i].name : "");
   }
-  if (const auto to_light = ToLight(scenario.scene)) picture.to_light = *to_light;
-  for (std::size_t h = 0; h < scenario.scene.hands.size(); ++h)
-    AppendPath(scenario.scene, run, static_cast<int>(h), picture.path);
-  picture.ghosts = ComposeGhosts(scenario.scene, run, moment.tick);
+  if (const auto to_light = ToLight(scene)) picture.to_light = *to_light;
+  for (std::size_t h = 0; h < scene.hands.size() && format.paths; ++h) {
+    if (selection.HasHand(scene.hands[h].name))
+      AppendPath(scene, run, selection, static_cast<int>(h), picture.path);
+  }
+  if (format.ghosts) picture.ghosts = ComposeGhosts(scene, run, selection, moment.tick);
   picture.markers = ComposeMarkers(scenario, run, picture.snapshot);
-  picture.strip = ComposeStrip(scenario.scene, run, moment.tick);
-  picture.camera = ComposeCamera(scenario, picture, entry.camera.value);
+  picture.props = LegsOf(scenario, picture.body_colors, picture.snapshot);
+  if (format.gaze) picture.gazes = GazesOf(scene, picture.snapshot);
+  if (format.strip) picture.strip = ComposeStrip(scene, run, selection, moment.tick);
+  picture.camera = CameraFor(scenario, run, picture, entry.camera.value);
+  picture.body_alphas = BodyAlphas(scene, picture.snapshot, picture.camera.eye_m);
+  if (!format.title) return picture;
   const auto name = ParseEventTime(entry.at.value);
   std::string at = name && name->time_s ? "" : fmt::format("  ·  {}", entry.at.value);
   if (!moment.missed.empty()) at = fmt::format("  ·  {}; the end", moment.missed);
-  picture.title =
-      fmt::format("{}{}  ·  {:.3f} s", scenario.name, at, Seconds(picture.snapshot.tick, run));
+  picture.title = fmt::format("{}{}  ·  {:.3f} s  ·  {}", scenario.name, at,
+                              Seconds(picture.snapshot.tick, run), scenario.grammar);
   return picture;
 }
 

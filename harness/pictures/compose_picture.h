@@ -10,6 +10,6 @@ namespace prehend::harness {
 
 /// The recording must not be empty. The scenario must outlive the picture.
 render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
-                               const PictureYaml& entry);
+                               const PictureYaml& entry, const PictureFormat& format = {});
 
 }  // namespace prehend::harness

@@ -4,6 +4,7 @@
 // (harness/pictures/pictures_without_render.cc). Tested by tests/program/acceptance_test.cc
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,17 @@ struct WrittenPicture {
   std::string missed;   ///< empty, or why the end is shown instead of the moment that was asked for
 };
 
+/// How pictures are drawn, whatever they show.
+struct PictureFormat {
+  int width_px = 1280, height_px = 720;
+  double text_scale = 1;
+  bool print = false;                  ///< on white paper
+  std::optional<double> from_s, to_s;  ///< the strip, paths and ghosts of this part of the episode
+  std::string only;                    ///< this hand's paths, ghosts and rows; empty: all
+  std::string of;                      ///< events with this entity in a role; empty: all
+  bool title = true, labels = true, strip = true, ghosts = true, paths = true, gaze = true;
+};
+
 struct PictureResult {
   std::vector<WrittenPicture> pictures;
   std::string error;  ///< empty, or why (some) pictures could not be drawn
@@ -29,11 +41,17 @@ bool CanDrawPictures();
 /// Draws the scenario's pictures from a run made with RunOptions::record, as
 /// DIRECTORY/NAME[-2..].png. The directory must exist.
 PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
-                           const std::string& directory);
+                           const std::string& directory, const PictureFormat& format = {});
 
 /// One picture into one file.
 PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureYaml& entry,
-                          const std::string& file);
+                          const std::string& file, const PictureFormat& format = {});
+
+/// Several pictures in one file, row by row with so many columns. Each has a letter and its moment
+/// in its title.
+PictureResult DrawSheet(const Scenario& scenario, const RunResult& run,
+                        const std::vector<PictureYaml>& entries, int columns,
+                        const std::string& file, const PictureFormat& format = {});
 
 struct PictureDifference {
   std::string text;        ///< "12.3 % of its pixels differ, .."; empty: none

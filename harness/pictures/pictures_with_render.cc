@@ -13,17 +13,36 @@ namespace prehend::harness {
 
 namespace {
 
+double SecondsOf(const render::Picture& picture, const RunResult& run) {
+  return static_cast<double>(picture.snapshot.tick) /
+         static_cast<double>(run.timeline.ticks_per_second);
+}
+
+/// What a list of pictures says of one, also if it has no title.
+std::string CaptionOf(const render::Picture& picture, const RunResult& run) {
+  return picture.title.empty() ? fmt::format("{:.3f} s", SecondsOf(picture, run)) : picture.title;
+}
+
+/// Puts an image into a larger one, which it does not leave.
+void Paste(const render::Image& image, int left, int top, render::Image& onto) {
+  for (int y = 0; y < image.height_px; ++y) {
+    const auto from = image.rgb.begin() + 3ll * y * image.width_px;
+    std::copy(from, from + 3ll * image.width_px,
+              onto.rgb.begin() + 3ll * (1ll * (top + y) * onto.width_px + left));
+  }
+}
+
 /// Draws one entry; returns an error text or "".
 std::string DrawOne(render::Painter& painter, const Scenario& scenario, const RunResult& run,
-                    const PictureYaml& entry, const std::string& file,
+                    const PictureYaml& entry, const PictureFormat& format, const std::string& file,
                     std::vector<WrittenPicture>& written) {
   if (!painter.error().empty()) return painter.error();
   if (run.recording.empty()) return "the run recorded nothing to draw";
-  const render::Picture picture = ComposePicture(scenario, run, entry);
+  const render::Picture picture = ComposePicture(scenario, run, entry, format);
   const render::Image image = painter.Draw(picture);
   if (image.rgb.empty()) return painter.error();
   if (!render::WritePng(image, file)) return "cannot write " + file;
-  written.push_back({file, picture.title, FindEventTime(entry.at.value, run).missed});
+  written.push_back({file, CaptionOf(picture, run), FindEventTime(entry.at.value, run).missed});
   return "";
 }
 
@@ -45,7 +64,7 @@ bool Differs(const render::Image& golden, const render::Image& drawn, std::size_
 bool CanDrawPictures() { return true; }
 
 PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
-                           const std::string& directory) {
+                           const std::string& directory, const PictureFormat& format) {
   PictureResult result;
   if (scenario.pictures.empty()) return result;
   render::Painter painter;
@@ -53,17 +72,49 @@ PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
     const std::string suffix = i == 0 ? "" : fmt::format("-{}", i + 1);
     const std::string file = fmt::format("{}/{}{}.png", directory, scenario.name, suffix);
     const std::string error =
-        DrawOne(painter, scenario, run, scenario.pictures[i], file, result.pictures);
+        DrawOne(painter, scenario, run, scenario.pictures[i], format, file, result.pictures);
     if (!error.empty() && result.error.empty()) result.error = error;
   }
   return result;
 }
 
 PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureYaml& entry,
-                          const std::string& file) {
+                          const std::string& file, const PictureFormat& format) {
   PictureResult result;
   render::Painter painter;
-  result.error = DrawOne(painter, scenario, run, entry, file, result.pictures);
+  result.error = DrawOne(painter, scenario, run, entry, format, file, result.pictures);
+  return result;
+}
+
+PictureResult DrawSheet(const Scenario& scenario, const RunResult& run,
+                        const std::vector<PictureYaml>& entries, int columns,
+                        const std::string& file, const PictureFormat& format) {
+  PictureResult result;
+  render::Painter painter;
+  result.error = painter.error();
+  if (run.recording.empty()) result.error = "the run recorded nothing to draw";
+  if (!result.error.empty()) return result;
+  const int rows = (static_cast<int>(entries.size()) + columns - 1) / columns;
+  render::Image sheet{columns * format.width_px, rows * format.height_px, {}};
+  sheet.rgb.assign(3ull * sheet.width_px * sheet.height_px, 255);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    render::Picture picture = ComposePicture(scenario, run, entries[i], format);
+    if (format.title) {
+      const char letter = static_cast<char>('a' + i % 26);
+      picture.title = fmt::format("{}  ·  {}  ·  {}", letter, entries[i].at.value,
+                                  fmt::format("{:.3f} s", SecondsOf(picture, run)));
+    }
+    const render::Image image = painter.Draw(picture);
+    if (image.rgb.empty()) {
+      result.error = painter.error();
+      return result;
+    }
+    Paste(image, static_cast<int>(i) % columns * format.width_px,
+          static_cast<int>(i) / columns * format.height_px, sheet);
+    result.pictures.push_back(
+        {file, CaptionOf(picture, run), FindEventTime(entries[i].at.value, run).missed});
+  }
+  if (!render::WritePng(sheet, file)) result.error = "cannot write " + file;
   return result;
 }
 

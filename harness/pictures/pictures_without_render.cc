@@ -10,12 +10,18 @@ PictureResult CannotDraw() { return {{}, "this build cannot draw pictures (PREHE
 
 bool CanDrawPictures() { return false; }
 
-PictureResult DrawPictures(const Scenario&, const RunResult&, const std::string&) {
+PictureResult DrawPictures(const Scenario&, const RunResult&, const std::string&,
+                           const PictureFormat&) {
   return CannotDraw();
 }
 
-PictureResult DrawPicture(const Scenario&, const RunResult&, const PictureYaml&,
-                          const std::string&) {
+PictureResult DrawPicture(const Scenario&, const RunResult&, const PictureYaml&, const std::string&,
+                          const PictureFormat&) {
+  return CannotDraw();
+}
+
+PictureResult DrawSheet(const Scenario&, const RunResult&, const std::vector<PictureYaml>&, int,
+                        const std::string&, const PictureFormat&) {
   return CannotDraw();
 }
 

@@ -23,6 +23,7 @@
 #include "harness/read/place_recordings.h"
 #include "harness/read/read_claims.h"
 #include "harness/read/validate_variations.h"
+#include "harness/scenario/colors.h"
 
 namespace prehend::harness {
 namespace {
@@ -176,8 +177,11 @@ Result<Scenario> Resolve(const std::string& file, const YamlDocument& document,
   scenario.sensing = {.sensing_hz = entry.world.sensing_hz,
                       .bearing_share = entry.world.bearing_share,
                       .sensors = entry.sensors};
-  for (const auto& entity : entry.entities)
+  for (const auto& entity : entry.entities) {
     scenario.body_classes.push_back(entity.value.class_name.value);
+    if (const auto& color = entity.value.color)
+      scenario.colors[entity.name] = ColorOfText(color->value).value();
+  }
   AddPersonClasses(scenario);
   for (const auto& kind : entry.classes)
     scenario.base_classes.push_back({kind.name, kind.value.value});

@@ -16,7 +16,8 @@ grammar::Tick DefaultTolerance(const Scenario& scenario) {
 }
 
 const std::vector<std::string>& CameraWords() {
-  static const std::vector<std::string> words = {"front", "left", "right", "top", "three_quarter"};
+  static const std::vector<std::string> words = {"front",         "left", "right",  "top",
+                                                 "three_quarter", "hand", "action", "body"};
   return words;
 }
 

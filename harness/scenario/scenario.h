@@ -71,6 +71,8 @@ struct Scenario {
   physics::Scene scene;  ///< its world has the engine, the rate and the seed
   SensingSettings sensing;
   std::vector<std::string> body_classes;  ///< one per scene body
+  /// 0xRRGGBB of entities that say `color`, by name. Only pictures use them.
+  std::map<std::string, std::uint32_t> colors;
   std::vector<BaseClass> base_classes;    ///< each class at most once
   std::vector<int> body_part_of;  ///< one per scene body: a scene body, or grammar::kNoEntity
   physics::Script script;

@@ -36,6 +36,19 @@ TEST_F(CanvasTest, RoundCornersTakeTheirArea) {
   EXPECT_NEAR(DarkPixels(), M_PI * 15 * 15, 12);
 }
 
+TEST_F(CanvasTest, TextHasAContrastOfFourAndAHalfOnEveryColor) {
+  const auto linear = [](float c) {
+    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+  };
+  const auto luminance = [&](const Color& c) {
+    return 0.2126f * linear(c.x()) + 0.7152f * linear(c.y()) + 0.0722f * linear(c.z()) + 0.05f;
+  };
+  for (unsigned rgb = 0; rgb < 0x1000000; rgb += 0x0F0D0B) {
+    const float a = luminance(Hex(rgb)), b = luminance(TextColorOn(Hex(rgb)));
+    EXPECT_GE(std::max(a, b) / std::min(a, b), 4.5f) << std::hex << rgb;
+  }
+}
+
 TEST_F(CanvasTest, LineHasItsWidth) {
   Canvas(*font_, &image_).DrawLine({10, 20}, {50, 20}, 4, Hex(0x000000));
   EXPECT_NEAR(DarkPixels(), 40 * 4 + M_PI * 4, 6);

@@ -56,6 +56,47 @@ TEST(DrawListTest, EverythingHasItsName) {
   EXPECT_EQ(names, expected);
 }
 
+TEST(DrawListTest, LegsAndGazesAreDrawnLast) {
+  const physics::Scene scene = DemoScene();
+  Picture picture{.scene = &scene};
+  picture.props = {{.name = "leg:table", .center_m = {0, 0, 0.3f}, .half_size_m = {1, 2, 0.3f}}};
+  picture.gazes = {{.from_m = {0, 0, 1}, .to_m = {0, 1, 1}, .hits = true},
+                   {.from_m = {0, 0, 1}, .to_m = {0, 0, 1}}};
+  const DrawList list = MakeDrawList(picture);
+  ASSERT_GE(list.objects.size(), 3u);
+  const auto end = list.objects.end();
+  EXPECT_EQ((end - 3)->name, "leg:table");
+  EXPECT_NEAR((end - 3)->bounds.high_m.z(), 0.6f, 1e-6f);
+  EXPECT_EQ((end - 2)->name, "gaze:0");
+  EXPECT_EQ(list.paths.size(), 2u) << "a rod and a ball; a gaze of no length is not drawn";
+}
+
+TEST(DrawListTest, APaleBodyIsAGhost) {
+  const physics::Scene scene = DemoScene();
+  Picture picture{.scene = &scene, .body_alphas = {1, 0.3f}};
+  const DrawList list = MakeDrawList(picture);
+  ASSERT_EQ(list.ghosts.size(), 1u);
+  EXPECT_EQ(list.ghosts[0].front().object, list.first_body + 1);
+  EXPECT_EQ(list.ghosts[0].front().alpha, 0.3f);
+  EXPECT_TRUE(std::ranges::none_of(
+      list.solids, [&](const Item& item) { return item.object == list.first_body + 1; }));
+}
+
+TEST(DrawListTest, AHandWithAPersonsArmHasNoOtherForearm) {
+  physics::Scene scene = DemoScene();
+  scene.persons.push_back({.name = "anna", .head = -1, .has_body = true, .right_hand = 0});
+  Picture picture{.scene = &scene, .snapshot = DemoPicture(scene).snapshot};
+  EXPECT_TRUE(MakeDrawList(picture).ghosts.empty());
+  scene.persons[0].right_hand = -1;
+  EXPECT_EQ(MakeDrawList(picture).ghosts.size(), 1u);
+}
+
+TEST(DrawListTest, ASecondHandsPathHasSquareBeads) {
+  PathStretch stretch{.label = "reaching", .points_per_s = 60, .square_beads = true};
+  for (int i = 0; i <= 60; ++i) stretch.points_m.emplace_back(0.01f * static_cast<float>(i), 0, 1);
+  EXPECT_EQ(Count(MakeDrawList({.path = {stretch}}).paths, Primitive::kBox), 6);
+}
+
 TEST(DrawListTest, GrainsAreBallsWhereTheSnapshotHasThem) {
   physics::Scene scene;
   physics::Body peas{

@@ -37,6 +37,23 @@ TEST_F(TimelineStripTest, BarsStandAtTheirTimes) {
   EXPECT_EQ(lane.bars[0].name_place, NamePlace::kInside);
 }
 
+TEST_F(TimelineStripTest, ItSaysHowManyRowsAreLeftOut) {
+  TimelineStrip strip{.end_s = 4, .rows = {{"row", {{"a", 0, 1}}}}};
+  EXPECT_EQ(Layout(strip).note, "");
+  strip.rows_left_out = 8;
+  EXPECT_EQ(Layout(strip).note, "+ 8 more");
+  strip.rows.assign(40, strip.rows[0]);
+  const StripLayout layout = Layout(strip);
+  EXPECT_EQ(layout.note, "+ " + std::to_string(48 - layout.lanes.size()) + " more");
+}
+
+TEST_F(TimelineStripTest, TextAndBarsGrowTogether) {
+  const TimelineStrip strip{.end_s = 4, .rows = {{"row", {{"a", 0, 1}}}}};
+  const StripLayout usual = LayOutStrip(strip, *font_, 1280, 720),
+                    large = LayOutStrip(strip, *font_, 1280, 720, 2);
+  EXPECT_NEAR(large.lanes.at(0).track.height, 2 * usual.lanes.at(0).track.height, 1e-3);
+}
+
 TEST_F(TimelineStripTest, NarrowBarsHaveTheirNamesAbove) {
   const StripLayout layout = Layout(
       {.begin_s = 0,

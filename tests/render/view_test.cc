@@ -42,7 +42,7 @@ Extent ProjectedExtent(const View& view) {
 }
 
 TEST(ViewTest, NamedCamerasFrameTheBoxTightlyAndCentred) {
-  ASSERT_EQ(CameraNames().size(), 5u);
+  ASSERT_EQ(CameraNames().size(), 8u);
   for (const std::string& name : CameraNames()) {
     for (const int width : {1280, 720, 400}) {
       const Camera camera = NamedCamera(name, kLow, kHigh, width / 720.0);

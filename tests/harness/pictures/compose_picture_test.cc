@@ -87,6 +87,7 @@ TEST(ComposePictureTest, RowsBeyondTheSixthAreLeftOut) {
   const auto rows = stage.At("0.5").strip.rows;
   ASSERT_EQ(rows.size(), 6u);
   EXPECT_EQ(rows.back().label, "three");
+  EXPECT_EQ(stage.At("0.5").strip.rows_left_out, 3) << "four, five and cup on";
 }
 
 TEST(ComposePictureTest, ThePathIsCutWherePhasesChange) {
@@ -112,8 +113,65 @@ TEST(ComposePictureTest, SupportsOfTheMomentAreMarked) {
 }
 
 TEST(ComposePictureTest, TheTitleSaysWhichMomentItIs) {
-  EXPECT_EQ(Stage().At("0.5").title, "stage  ·  0.500 s");
-  EXPECT_EQ(Stage().At("moves_to.begin").title, "stage  ·  moves_to.begin  ·  0.100 s");
+  EXPECT_EQ(Stage().At("0.5").title, "stage  ·  0.500 s  ·  pick_and_place");
+  EXPECT_EQ(Stage().At("moves_to.begin").title,
+            "stage  ·  moves_to.begin  ·  0.100 s  ·  pick_and_place");
+}
+
+TEST(ComposePictureTest, AWindowHoldsItsPathsGhostsAndRows) {
+  const Stage stage;
+  const auto window = [&](double from_s, double to_s) {
+    return ComposePicture(stage.scenario, stage.run, {.at = {"0.6", {}}},
+                          {.from_s = from_s, .to_s = to_s});
+  };
+  const render::Picture late = window(0.55, 1);
+  EXPECT_EQ(late.strip.begin_s, 0.55);
+  EXPECT_EQ(late.strip.end_s, 1);
+  ASSERT_EQ(late.strip.rows.size(), 1u);
+  EXPECT_EQ(late.strip.rows[0].label, "grasp");
+  EXPECT_TRUE(late.ghosts.empty());
+  ASSERT_EQ(late.path.size(), 1u);
+  EXPECT_NEAR(late.path[0].points_m.front().x(), 0.6, 1e-6);
+  EXPECT_EQ(window(0, 0.3).ghosts.size(), 1u);
+}
+
+TEST(ComposePictureTest, OneHandOrOneThingIsToldApart) {
+  Stage stage;
+  stage.Add("moves_to", {{"h", "left"}, {"x", "tray"}}, 240, 480);
+  const auto rows = [&](const PictureFormat& format) {
+    return ComposePicture(stage.scenario, stage.run, {.at = {"0.5", {}}}, format).strip.rows;
+  };
+  EXPECT_EQ(rows({})[0].segments.size(), 2u);
+  EXPECT_EQ(rows({.of = "cup"})[0].segments.size(), 1u);
+  EXPECT_EQ(rows({.of = "tray"})[0].segments.size(), 1u);
+  const render::Picture other =
+      ComposePicture(stage.scenario, stage.run, {.at = {"0.5", {}}}, {.only = "right"});
+  EXPECT_TRUE(other.path.empty());
+  EXPECT_TRUE(other.ghosts.empty());
+}
+
+TEST(ComposePictureTest, PartsAreLeftOutWhenAsked) {
+  const Stage stage;
+  const render::Picture bare = ComposePicture(
+      stage.scenario, stage.run, {.at = {"0.5", {}}},
+      {.title = false, .labels = false, .strip = false, .ghosts = false, .paths = false});
+  EXPECT_EQ(bare.title, "");
+  EXPECT_TRUE(bare.body_labels.empty() && bare.strip.rows.empty() && bare.ghosts.empty() &&
+              bare.path.empty());
+}
+
+TEST(ComposePictureTest, PicturesOfOneScenarioHaveOneCamera) {
+  Stage stage;
+  for (physics::Snapshot& snapshot : stage.run.recording)
+    snapshot.bodies[1].X_WB.p_m.z() = static_cast<double>(snapshot.tick) / 480;
+  const render::Camera early = stage.At("0.1").camera, late = stage.At("0.9").camera;
+  EXPECT_EQ(early.eye_m, late.eye_m);
+  EXPECT_EQ(early.look_at_m, late.look_at_m);
+  const auto hand = [&](const char* at) {
+    return ComposePicture(stage.scenario, stage.run, {.at = {at, {}}, .camera = {"hand", {}}})
+        .camera;
+  };
+  EXPECT_NE(hand("0.1").eye_m, hand("0.9").eye_m) << "it follows the hand";
 }
 
 }  // namespace

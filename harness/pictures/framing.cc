@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/pictures/framing.h"
+
+#include <algorithm>
+
+#include "harness/pictures/scenery.h"
+
+namespace prehend::harness {
+namespace {
+
+/// A larger body is scenery: it does not affect what the camera frames.
+constexpr double kSceneryFrom_m = 0.5;
+/// A body that moves farther than this takes part in the action.
+constexpr double kMoves_m = 0.02;
+/// What is nearer to a hand than this is framed with it.
+constexpr double kNearHand_m = 0.18;
+constexpr double kPalmReach_m = 0.11;
+/// Snapshots that are looked at per episode, at most.
+constexpr std::size_t kLooks = 400;
+
+class Framing {
+ public:
+  Framing(const Scenario& scenario, const RunResult& run) : scenario_(scenario), run_(run) {}
+
+  void AddBody(std::size_t body, const physics::Snapshot& now) {
+    const physics::LocalBox local = physics::BoundingBox(scenario_.scene.bodies[body]);
+    AddBall((now.bodies[body].X_WB * local.p_BC_m), local.half_size_m.norm());
+  }
+  void AddBall(const Eigen::Vector3d& p_W_m, double radius_m) {
+    box_.extend(Eigen::Vector3d(p_W_m.array() - radius_m));
+    box_.extend(Eigen::Vector3d(p_W_m.array() + radius_m));
+  }
+  void AddHands(const physics::Snapshot& now) {
+    for (const physics::HandState& hand : now.hands) AddBall(hand.palm.X_WB.p_m, kPalmReach_m);
+  }
+  /// Of the whole recording, evenly.
+  template <class Visit>
+  void ForEachLook(const Visit& visit) const {
+    const std::size_t step = std::max<std::size_t>(1, run_.recording.size() / kLooks);
+    for (std::size_t i = 0; i < run_.recording.size(); i += step) visit(run_.recording[i]);
+    visit(run_.recording.back());
+  }
+  bool Moves(std::size_t body) const {
+    double most_m = 0;
+    const Eigen::Vector3d begin = run_.recording.front().bodies[body].X_WB.p_m;
+    ForEachLook([&](const physics::Snapshot& now) {
+      most_m = std::max(most_m, (now.bodies[body].X_WB.p_m - begin).norm());
+    });
+    return most_m > kMoves_m;
+  }
+  bool IsSmall(std::size_t body) const {
+    return 2 * physics::BoundingBox(scenario_.scene.bodies[body]).half_size_m.maxCoeff() <=
+           kSceneryFrom_m;
+  }
+  const Eigen::AlignedBox3d& box() const { return box_; }
+
+ private:
+  const Scenario& scenario_;
+  const RunResult& run_;
+  Eigen::AlignedBox3d box_;
+};
+
+void FrameHands(const Scenario& scenario, const physics::Snapshot& now, Framing& framing) {
+  framing.AddHands(now);
+  for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
+    const physics::Body& body = scenario.scene.bodies[i];
+    if (!physics::IsThing(body) || !framing.IsSmall(i)) continue;
+    for (const physics::HandState& hand : now.hands) {
+      if ((now.bodies[i].X_WB.p_m - hand.palm.X_WB.p_m).norm() < kNearHand_m)
+        framing.AddBody(i, now);
+    }
+  }
+}
+
+/// A person who has a body and a hand of the scene is looked over the shoulder: only her hands are
+/// framed, unless `body` asks for all of her.
+bool IsFramed(const Scenario& scenario, std::size_t body, const std::string& camera) {
+  const physics::Body& of_scene = scenario.scene.bodies[body];
+  if (!IsSeen(of_scene)) return false;
+  if (!of_scene.kinematic) return true;
+  const bool has_bodies = std::ranges::any_of(scenario.scene.persons, &physics::Person::has_body);
+  return camera == "body" || scenario.scene.hands.empty() || !has_bodies;
+}
+
+}  // namespace
+
+render::Camera CameraFor(const Scenario& scenario, const RunResult& run,
+                         const render::Picture& picture, const std::string& name) {
+  for (const physics::Body& body : scenario.scene.bodies) {
+    if (body.name != name || body.abstract != physics::Abstract::kCamera) continue;
+    const Eigen::Vector3d ahead_m = body.X_WB * Eigen::Vector3d::UnitX();
+    return {.eye_m = body.X_WB.p_m.cast<float>(),
+            .look_at_m = ahead_m.cast<float>(),
+            .vertical_field_of_view_deg = static_cast<float>(body.view_deg)};
+  }
+  Framing framing(scenario, run);
+  if (name == "hand" && !scenario.scene.hands.empty()) {
+    FrameHands(scenario, picture.snapshot, framing);
+  } else {
+    framing.ForEachLook([&](const physics::Snapshot& now) { framing.AddHands(now); });
+    for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
+      if (!framing.IsSmall(i) || !IsFramed(scenario, i, name)) continue;
+      if (framing.Moves(i))
+        framing.ForEachLook([&](const physics::Snapshot& now) { framing.AddBody(i, now); });
+      else if (name != "action")
+        framing.AddBody(i, run.recording.front());
+    }
+  }
+  Eigen::AlignedBox3f box = framing.box().cast<float>();
+  if (box.isEmpty()) box = {Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(1, 1, 1)};
+  return render::NamedCamera(name, box.min(), box.max(),
+                             static_cast<double>(picture.width_px) / picture.height_px);
+}
+
+}  // namespace prehend::harness

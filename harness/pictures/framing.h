@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// From where a picture is seen. A camera is fitted to the whole episode, not to the moment, so
+// that pictures of one scenario can be laid over each other. Tested by
+// tests/harness/pictures/compose_picture_test.cc
+#pragma once
+
+#include <string>
+
+#include "harness/run/run_scenario.h"
+#include "harness/scenario/scenario.h"
+#include "render/picture.h"
+
+namespace prehend::harness {
+
+/// `name` is one of CamerasOf(): a camera of the scenario, or
+///  - front, left, right, top, three_quarter: hands, small things and what moves, all the time;
+///  - action: hands, and small things that move, all the time;
+///  - body: persons, too;
+///  - hand: the hands as they are in the picture's snapshot, and what is near them.
+render::Camera CameraFor(const Scenario& scenario, const RunResult& run,
+                         const render::Picture& picture, const std::string& name);
+
+}  // namespace prehend::harness

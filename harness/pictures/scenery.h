@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a picture shows of a scene besides what happens: colours, legs of furniture, where persons
+// look, and which persons stand in the way of the view. Tested by
+// tests/harness/pictures/scenery_test.cc
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "harness/scenario/scenario.h"
+#include "physics/scene/snapshot.h"
+#include "render/picture.h"
+
+namespace prehend::harness {
+
+/// 0xRRGGBB.
+render::Color ColorOf(std::uint32_t rgb);
+
+/// Cameras and lights are not in the picture.
+bool IsSeen(const physics::Body& body);
+
+/// One per scene body: what `color` says, else a colour word in the name, else the class, else one
+/// of a palette by index.
+std::vector<render::Color> BodyColors(const Scenario& scenario);
+
+/// Legs of fixed boards that nothing below carries, down to the floor at z = 0.
+std::vector<render::Prop> LegsOf(const Scenario& scenario, const std::vector<render::Color>& colors,
+                                 const physics::Snapshot& now);
+
+/// A ray from the eyes of each person to what she sees.
+std::vector<render::GazeRay> GazesOf(const physics::Scene& scene, const physics::Snapshot& now);
+
+/// One per scene body: less than 1 for a person who hides a hand from the eye of the camera.
+std::vector<float> BodyAlphas(const physics::Scene& scene, const physics::Snapshot& now,
+                              const Eigen::Vector3f& eye_m);
+
+/// Direction from the middle of the things to the first light; nullopt without a light.
+std::optional<Eigen::Vector3f> ToLight(const physics::Scene& scene);
+
+}  // namespace prehend::harness
