@@ -14,7 +14,7 @@ namespace prehend::harness {
 /// A drawn picture that has a golden.
 struct PictureComparison {
   std::filesystem::path golden, drawn;
-  std::string difference;          ///< "12.3 % of its pixels differ, .."; empty: none
+  std::string difference;          ///< "812 of its pixels differ, .."; empty: none
   std::filesystem::path shown_in;  ///< where StorePictures() shows what differs; or empty
 };
 

@@ -54,12 +54,11 @@ PictureResult DrawSheet(const Scenario& scenario, const RunResult& run,
                         const std::string& file, const PictureFormat& format = {});
 
 struct PictureDifference {
-  std::string text;        ///< "12.3 % of its pixels differ, .."; empty: none
+  std::string text;        ///< "812 of its pixels differ, .."; empty: none
   bool same_size = false;  ///< both could be read and have the same size
 };
 
-/// Compares a picture with its golden: at most 1 % of the pixels may differ, by more than 24 of 255
-/// in some colour (smoothed edges and another rasteriser do less).
+/// Compares a picture with its golden (render/compare_images.h).
 PictureDifference ComparePicture(const std::string& golden_file, const std::string& drawn_file);
 
 /// Writes the golden in pale grey with every pixel that differs in red; both must have one size.

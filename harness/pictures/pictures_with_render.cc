@@ -2,12 +2,13 @@
 // Draws and compares pictures, with render/. Tested by tests/program/acceptance_test.cc
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 
 #include "harness/pictures/compose_picture.h"
 #include "harness/pictures/pictures.h"
 #include "harness/run/event_time.h"
+#include "render/compare_images.h"
 
 namespace prehend::harness {
 
@@ -44,19 +45,6 @@ std::string DrawOne(render::Painter& painter, const Scenario& scenario, const Ru
   if (!render::WritePng(image, file)) return "cannot write " + file;
   written.push_back({file, CaptionOf(picture, run), FindEventTime(entry.at.value, run).missed});
   return "";
-}
-
-bool SameSize(const render::Image& a, const render::Image& b) {
-  return a.width_px == b.width_px && a.height_px == b.height_px;
-}
-
-/// The pixel whose red is the i-th byte.
-bool Differs(const render::Image& golden, const render::Image& drawn, std::size_t i) {
-  constexpr int kMaxColourDifference = 24;
-  const auto far_apart = [&](std::size_t k) {
-    return std::abs(int{golden.rgb[k]} - int{drawn.rgb[k]}) > kMaxColourDifference;
-  };
-  return far_apart(i) || far_apart(i + 1) || far_apart(i + 2);
 }
 
 }  // namespace
@@ -119,20 +107,19 @@ PictureResult DrawSheet(const Scenario& scenario, const RunResult& run,
 }
 
 PictureDifference ComparePicture(const std::string& golden_file, const std::string& drawn_file) {
-  constexpr double kMaxPixelShare = 0.01;
   const render::Image golden = render::ReadPng(golden_file), drawn = render::ReadPng(drawn_file);
   if (golden.rgb.empty()) return {golden_file + " cannot be read"};
-  if (!SameSize(golden, drawn)) {
+  const render::ImageDifference found = render::CompareImages(golden, drawn);
+  if (!found.same_size) {
     return {fmt::format("it has {} x {} pixels, its golden {} x {}", drawn.width_px,
                         drawn.height_px, golden.width_px, golden.height_px)};
   }
-  std::size_t differing = 0;
-  for (std::size_t i = 0; i < golden.rgb.size(); i += 3) differing += Differs(golden, drawn, i);
-  const double share =
-      static_cast<double>(differing) / (static_cast<double>(golden.rgb.size()) / 3);
-  if (share <= kMaxPixelShare) return {.text = "", .same_size = true};
-  return {.text = fmt::format("{:.1f} % of its pixels differ, at most {:g} % may", 100 * share,
-                              100 * kMaxPixelShare),
+  if (found.AreEqual()) return {.text = "", .same_size = true};
+  return {.text = fmt::format(
+              "{} of its pixels differ ({:.2g} %), at most {} may; they lie between ({}, {}) and "
+              "({}, {})",
+              found.pixels, 300.0 * found.pixels / golden.rgb.size(), render::kMaxDifferingPixels,
+              found.left, found.top, found.right, found.bottom),
           .same_size = true};
 }
 
@@ -140,9 +127,9 @@ bool WritePictureDifference(const std::string& golden_file, const std::string& d
                             const std::string& file) {
   render::Image golden = render::ReadPng(golden_file);
   const render::Image drawn = render::ReadPng(drawn_file);
-  if (golden.rgb.empty() || !SameSize(golden, drawn)) return false;
+  if (golden.rgb.empty() || !render::CompareImages(golden, drawn).same_size) return false;
   for (std::size_t i = 0; i < golden.rgb.size(); i += 3) {
-    const bool differs = Differs(golden, drawn, i);
+    const bool differs = render::PixelDiffers(golden, drawn, i);
     const int grey = (golden.rgb[i] + golden.rgb[i + 1] + golden.rgb[i + 2]) / 3;
     const auto pale = static_cast<std::uint8_t>(160 + grey * 3 / 8);
     golden.rgb[i] = differs ? 220 : pale;

@@ -107,7 +107,7 @@ TEST(AbstractEntities, PicturesAreMadeFromTheScenariosCameras) {
   EXPECT_EQ(Complaint(camera, "pictures: [{at: 0, camera: it}]\n"), "");
   EXPECT_EQ(Complaint(camera, "pictures: [{at: 0, camera: cup}]\n"),
             "7:28: camera: no camera is called 'cup' | known: front, left, right, top, "
-            "three_quarter, it\n");
+            "three_quarter, hand, action, body, it\n");
 }
 
 TEST(AbstractEntities, AHullIsReadWithThePlaceOfEachMistake) {
