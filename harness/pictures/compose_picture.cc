@@ -332,7 +332,9 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
     if (selection.HasHand(scene.hands[h].name))
       AppendPath(scene, run, selection, static_cast<int>(h), picture.path);
   }
-  if (format.ghosts) picture.ghosts = ComposeGhosts(scene, run, selection, moment.tick);
+  // Near a hand, a ghost would hide it.
+  if (format.ghosts && entry.camera.value != "hand")
+    picture.ghosts = ComposeGhosts(scene, run, selection, moment.tick);
   picture.markers = ComposeMarkers(scenario, run, picture.snapshot);
   picture.props = LegsOf(scenario, picture.body_colors, picture.snapshot);
   if (format.gaze) picture.gazes = GazesOf(scene, picture.snapshot);

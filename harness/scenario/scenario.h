@@ -73,8 +73,8 @@ struct Scenario {
   std::vector<std::string> body_classes;  ///< one per scene body
   /// 0xRRGGBB of entities that say `color`, by name. Only pictures use them.
   std::map<std::string, std::uint32_t> colors;
-  std::vector<BaseClass> base_classes;    ///< each class at most once
-  std::vector<int> body_part_of;  ///< one per scene body: a scene body, or grammar::kNoEntity
+  std::vector<BaseClass> base_classes;  ///< each class at most once
+  std::vector<int> body_part_of;        ///< one per scene body: a scene body, or grammar::kNoEntity
   physics::Script script;
   std::vector<VariationYaml> variations;
   std::vector<Outcome> outcomes;
