@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/compare_images.h"
+// Tested by tests/render/compare_images_test.cc
 
 #include <algorithm>
 #include <cstdlib>
+
+#include "render/picture.h"
 
 namespace prehend::render {
 

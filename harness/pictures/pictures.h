@@ -58,7 +58,7 @@ struct PictureDifference {
   bool same_size = false;  ///< both could be read and have the same size
 };
 
-/// Compares a picture with its golden (render/compare_images.h).
+/// Compares a picture with its golden (render/compare_images.cc).
 PictureDifference ComparePicture(const std::string& golden_file, const std::string& drawn_file);
 
 /// Writes the golden in pale grey with every pixel that differs in red; both must have one size.

@@ -8,7 +8,6 @@
 #include "harness/pictures/compose_picture.h"
 #include "harness/pictures/pictures.h"
 #include "harness/run/event_time.h"
-#include "render/compare_images.h"
 
 namespace prehend::harness {
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "harness/scenario/scenario.h"
-#include "physics/scene/snapshot.h"
 #include "render/picture.h"
 
 namespace prehend::harness {

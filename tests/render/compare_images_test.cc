@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The gate of golden pictures: which faults it must catch, and what it must let pass.
-#include "render/compare_images.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/render/demo_picture.h"
