@@ -81,7 +81,7 @@ ExitCode ResegmentLines(const std::string& file, const ParsedOptions& options,
   RunResult run;
   run.status.kind = physics::RunStatus::Kind::kCompleted;
   run.ticks = episode->end_tick - 1;
-  run.is_open = !episode->says_its_end;
+  run.is_unfinished = !episode->says_its_end;
   run.timeline = grammar::NameEvents(*compiled.program, entity_table, events);
   const ExitCode exit_code = never ? ExitCode::kNothing : ExitCode::kAgrees;
   if (!options.Has("--json")) {

@@ -30,7 +30,7 @@ struct RunSeconds {
 struct RunResult {
   physics::RunStatus status;
   grammar::Tick ticks = 0;
-  bool is_open = false;  ///< nobody says that it ended here: a recording without 'end_tick'
+  bool is_unfinished = false;  ///< nobody says that it ended here: a recording without 'end_tick'
   std::uint64_t state_hash = 0;
   grammar::Timeline timeline;                ///< what was recognised up to the end of the run
   EventDrawings drawings;                    ///< how the grammar wants its events drawn

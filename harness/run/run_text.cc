@@ -32,9 +32,9 @@ std::string StatusText(const RunResult& run) {
   const physics::RunStatus& status = run.status;
   const Tick rate = run.timeline.ticks_per_second;
   if (Completed(run))
-    return fmt::format("{}: {} s, {} ticks{}", run.is_open ? "open" : "completed",
+    return fmt::format("{}: {} s, {} ticks{}", run.is_unfinished ? "unfinished" : "completed",
                        SecondsText(run.ticks, rate), run.ticks,
-                       run.is_open ? "; the recording does not say that it ended here" : "");
+                       run.is_unfinished ? "; the recording does not say that it ended here" : "");
   std::string text =
       fmt::format("failed at {} s (tick {}): ", SecondsText(status.tick, rate), status.tick);
   if (!status.entity.empty()) text += status.entity + ": ";
@@ -75,9 +75,9 @@ std::string HashText(std::uint64_t hash) { return fmt::format("0x{:016x}", hash)
 OrderedJson RunJson(const Scenario& scenario, const RunResult& run) {
   OrderedJson json = {{"scenario", scenario.name},
                       {"id", ScenarioId(scenario.skill, scenario.name)},
-                      {"status", !Completed(run) ? "failed"
-                                 : run.is_open   ? "open"
-                                                 : "completed"},
+                      {"status", !Completed(run)     ? "failed"
+                                 : run.is_unfinished ? "unfinished"
+                                                     : "completed"},
                       {"ticks_per_second", run.timeline.ticks_per_second},
                       {"ticks", run.ticks},
                       {"state_hash", HashText(run.state_hash)},

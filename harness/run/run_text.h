@@ -13,8 +13,8 @@ namespace prehend::harness {
 
 using OrderedJson = nlohmann::ordered_json;
 
-/// "completed: 5.1000 s, 2448 ticks", "open: ..", or "failed at 0.5000 s (tick 240): milk: reason;
-/// advice".
+/// "completed: 5.1000 s, 2448 ticks", "unfinished: ..", or "failed at 0.5000 s (tick 240): milk:
+/// reason; advice".
 std::string StatusText(const RunResult& run);
 
 /// The events as an aligned table with a head, then the status line.

@@ -119,7 +119,7 @@ TEST(Recording, AHandIsPartOfItsPerson) {
   EXPECT_EQ(EventsNamed("nobody_holds", said).size(), 1u) << said.out;
 }
 
-TEST(Recording, WithoutItsLastLineItIsOpenAndNotCompleted) {
+TEST(Recording, WithoutItsLastLineItIsUnfinished) {
   const auto folder = FreshFolder("open_recording");
   const auto file = (folder / "whole.jsonl").string();
   ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", file}).exit_code, 0);
@@ -129,11 +129,12 @@ TEST(Recording, WithoutItsLastLineItIsOpenAndNotCompleted) {
   EXPECT_NE(Prehend({"resegment", file}).out.find("\ncompleted: 5.1500 s, 2472 ticks\n"),
             std::string::npos);
   const Said open = Prehend({"resegment", cut.string()});
-  EXPECT_NE(open.out.find("\nopen: 5.1500 s, 2472 ticks; the recording does not say that it ended "
-                          "here\n"),
-            std::string::npos)
+  EXPECT_NE(
+      open.out.find("\nunfinished: 5.1500 s, 2472 ticks; the recording does not say that it ended "
+                    "here\n"),
+      std::string::npos)
       << open.out;
-  EXPECT_NE(Prehend({"resegment", cut.string(), "--json"}).out.find("\"status\": \"open\""),
+  EXPECT_NE(Prehend({"resegment", cut.string(), "--json"}).out.find("\"status\": \"unfinished\""),
             std::string::npos);
   // Cut within a line it has no end either, and is refused at the place of the cut.
   WriteFile(cut, whole.substr(0, whole.size() / 2));
