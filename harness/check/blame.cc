@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <filesystem>
+#include <algorithm>
 
 #include "harness/base/content_hash.h"
 
@@ -23,10 +23,7 @@ std::string ProgramText(const LastPass& last_pass, const DifferingRun& now) {
 std::vector<std::string> WhatChanged(const LastPass& last_pass, const DifferingRun& now,
                                      const std::string& root) {
   std::vector<std::string> changed;
-  const auto add = [&](const std::string& path) {
-    const auto relative = std::filesystem::path(path).lexically_relative(root).generic_string();
-    changed.push_back(relative.empty() || relative.starts_with("..") ? path : relative);
-  };
+  const auto add = [&](const std::string& path) { changed.push_back(RelativeTo(root, path)); };
   const auto add_unless_replaced = [&](const std::string& path) {
     if (!now.other_grammar || !path.ends_with(".grammar")) add(path);
   };
@@ -81,6 +78,33 @@ std::string CauseText(const std::optional<LastPass>& last_pass,
   return fmt::format(
       "cause: {}. Changed since: {}\n", FirstCause(*its_trace, now),
       changed.empty() ? "no known file" : fmt::format("{}", fmt::join(changed, ", ")));
+}
+
+std::optional<Suspects> SuspectsOf(const std::optional<LastPass>& last_pass,
+                                   const std::optional<StateTrace>& its_trace,
+                                   const DifferingRun& now, const std::string& root) {
+  if (!last_pass || !its_trace) return std::nullopt;
+  Suspects suspects{.changes = ChangesBetween(last_pass->verdict.settings, now.settings),
+                    .other_changes = WhatChanged(*last_pass, now, root),
+                    .motion_differs = its_trace->entities != now.trace.entities ||
+                                      FirstDivergence(*its_trace, now.trace).has_value()};
+  // What is known more exactly.
+  std::erase_if(suspects.other_changes, [&](const std::string& changed) {
+    return std::ranges::any_of(suspects.changes, [&](const SettingChange& change) {
+      return change.file == changed || changed.starts_with("--set " + change.name + "=") ||
+             changed.starts_with("--set '" + change.name + "=");
+    });
+  });
+  return suspects;
+}
+
+std::string ChangesText(const std::vector<SettingChange>& changes) {
+  constexpr std::size_t kMost = 10;
+  std::string text;
+  for (std::size_t i = 0; i < changes.size() && i < kMost; ++i)
+    text += fmt::format("changed: {} in {}\n", ChangeText(changes[i]), changes[i].file);
+  if (changes.size() > kMost) text += fmt::format("changed: {} more\n", changes.size() - kMost);
+  return text;
 }
 
 }  // namespace prehend::harness

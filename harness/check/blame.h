@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/check/attribute.h"
 #include "harness/check/last_pass.h"
 #include "harness/check/state_trace.h"
 
@@ -17,6 +18,7 @@ struct DifferingRun {
   std::string program;  ///< ProgramHash()
   std::string build;    ///< BuildText()
   FileHashes inputs;
+  Settings settings;
   std::vector<std::string> options;  ///< of its command line: "--grammar original_2020"
   bool other_grammar = false;        ///< the command line chose the grammar
   StateTrace trace;
@@ -30,5 +32,13 @@ struct DifferingRun {
 std::string CauseText(const std::optional<LastPass>& last_pass,
                       const std::optional<StateTrace>& its_trace, const DifferingRun& now,
                       const std::string& root);
+
+/// What may have caused the differences of a run. Nothing without a run that passed.
+std::optional<Suspects> SuspectsOf(const std::optional<LastPass>& last_pass,
+                                   const std::optional<StateTrace>& its_trace,
+                                   const DifferingRun& now, const std::string& root);
+
+/// "changed: `reach_radius` 30 cm -> 20 cm in grammar/x.grammar", a line for each of at most ten.
+std::string ChangesText(const std::vector<SettingChange>& changes);
 
 }  // namespace prehend::harness

@@ -9,8 +9,10 @@
 #include "grammar/base/check.h"
 #include "harness/base/build_text.h"
 #include "harness/base/shell_quote.h"
+#include "harness/check/attribute.h"
 #include "harness/check/blame.h"
 #include "harness/check/last_pass.h"
+#include "harness/check/settings.h"
 #include "harness/check/state_trace.h"
 #include "harness/episodes/load_episode.h"
 #include "harness/episodes/record_episode.h"
@@ -109,20 +111,57 @@ Findings Draw(const CheckRequest& request, const CheckedRun& checked,
            .details = "no picture: " + drawn.error + "\n"}};
 }
 
-/// What is attributed to physics, sensing or grammar: the run against the last one that passed.
-std::string CauseOf(const CheckRequest& request, const CheckedRun& checked,
-                    const FileHashes& inputs) {
+/// A run that differs, beside the last one that passed.
+struct Blame {
+  std::string text;  ///< CauseText() and what changed
+  std::vector<Attribution> attributions;
+};
+
+/// The same motion, with some parameters as they were.
+std::optional<Comparison> CompareWithSettings(const CheckRequest& request,
+                                              const CheckedRun& checked, const Golden& golden,
+                                              const std::vector<std::string>& settings) {
+  RunRequest changed = request.run;
+  for (const std::string& setting : settings) {
+    const std::string name = setting.substr(0, setting.find('=') + 1);
+    std::erase_if(changed.settings, [&](const auto& other) { return other.starts_with(name); });
+    changed.settings.push_back(setting);
+  }
+  const Result<LoadedRun> loaded = LoadRun(changed, request.root);
+  if (!loaded) return std::nullopt;
+  const Scenario& scenario = checked.loaded.scenario;
+  return Compare(
+      golden,
+      Resegment(scenario, checked.result.recording, loaded->program, checked.result.ticks + 1),
+      DefaultTolerance(scenario));
+}
+
+/// Attributes what differs to physics, sensing or grammar, and to single values.
+Blame BlameFor(const CheckRequest& request, const CheckedRun& checked, const Golden& golden,
+               const Comparison& comparison, const ScenarioVerdict& verdict) {
   const LastPasses records(request.root);
   const RunResult& run = checked.result;
-  return CauseText(records.Read(request.id), ReadTrace(records.TracePath(request.id)),
-                   {.program = request.program,
-                    .build = BuildText(),
-                    .inputs = inputs,
-                    .options = OptionsOf(request.run),
-                    .other_grammar = !request.run.grammar.empty(),
-                    .trace = TraceOf(checked.loaded.scenario.scene, run.recording),
-                    .ticks_per_second = static_cast<double>(run.timeline.ticks_per_second)},
-                   request.root);
+  const auto last_pass = records.Read(request.id);
+  const auto trace = ReadTrace(records.TracePath(request.id));
+  const DifferingRun now{.program = request.program,
+                         .build = BuildText(),
+                         .inputs = verdict.inputs,
+                         .settings = verdict.settings,
+                         .options = OptionsOf(request.run),
+                         .other_grammar = !request.run.grammar.empty(),
+                         .trace = TraceOf(checked.loaded.scenario.scene, run.recording),
+                         .ticks_per_second = static_cast<double>(run.timeline.ticks_per_second)};
+  Blame blame{.text = CauseText(last_pass, trace, now, request.root), .attributions = {}};
+  const auto suspects = SuspectsOf(last_pass, trace, now, request.root);
+  if (suspects) blame.text += ChangesText(suspects->changes);
+  const bool can_undo = request.episode == 0 && !run.recording.empty();
+  blame.attributions = AttributeDifferences(
+      comparison, suspects.value_or(Suspects{}),
+      [&](const std::vector<std::string>& settings) -> std::optional<Comparison> {
+        if (!can_undo) return std::nullopt;
+        return CompareWithSettings(request, checked, golden, settings);
+      });
+  return blame;
 }
 
 /// A planar scenario has the same events in both engines; `difference` is how they differ.
@@ -142,13 +181,13 @@ Findings JudgeOtherEngine(const CheckedRun& checked, std::string& difference) {
 struct Judgement {
   Findings findings;
   std::optional<GoldenComparison> golden;  ///< empty if the golden cannot be read
-  std::string cause;                       ///< of differences from the golden
+  Blame blame;                             ///< of differences from the golden
   std::string engine_difference;
   std::vector<PictureComparison> pictures;
 };
 
 void JudgeAgainstGolden(const CheckRequest& request, const CheckedRun& checked,
-                        const FileHashes& inputs, Judgement& judgement) {
+                        const ScenarioVerdict& verdict, Judgement& judgement) {
   std::optional<Golden> golden;
   if (request.in_project) {
     auto read = GoldenFiles(request.root).ReadGoldenOf(request.id);
@@ -159,8 +198,9 @@ void JudgeAgainstGolden(const CheckRequest& request, const CheckedRun& checked,
     golden = std::move(*read);
   }
   judgement.golden = CompareWithGolden(golden, checked);
-  if (judgement.golden->Differs()) judgement.cause = CauseOf(request, checked, inputs);
-  Append(judgement.findings, JudgeGolden(*judgement.golden, checked, judgement.cause));
+  if (judgement.golden->Differs())
+    judgement.blame = BlameFor(request, checked, *golden, judgement.golden->comparison, verdict);
+  Append(judgement.findings, JudgeGolden(*judgement.golden, checked, judgement.blame.text));
 }
 
 void JudgePictures(const CheckRequest& request, const CheckedRun& checked,
@@ -246,6 +286,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   checked.result =
       played ? std::move(*played) : Play(request, checked.loaded, recorder ? &*recorder : nullptr);
   if (recorder) verdict.not_recorded = recorder->problem();
+  verdict.settings = SettingsOf(checked.loaded, request.run, verdict.inputs, request.root);
   verdict.shows = checked.loaded.scenario.shows;
   verdict.state_hash = HashText(checked.result.state_hash);
   verdict.ticks = checked.result.ticks;
@@ -262,7 +303,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   Append(judgement.findings, JudgeLaws(checked));
   verdict.claims = JudgeClaims(checked.loaded, checked.result.timeline);
   Append(judgement.findings, ClaimFindings(verdict.claims));
-  JudgeAgainstGolden(request, checked, verdict.inputs, judgement);
+  JudgeAgainstGolden(request, checked, verdict, judgement);
   if (request.episode == 0)
     Append(judgement.findings, JudgeOtherEngine(checked, judgement.engine_difference));
   JudgePictures(request, checked, verdict.pictures, judgement);
@@ -281,7 +322,8 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
     verdict.has_golden = judgement.golden->has_golden;
     verdict.drawings = checked.result.drawings;
   }
-  verdict.cause = std::move(judgement.cause);
+  verdict.cause = std::move(judgement.blame.text);
+  verdict.attributions = std::move(judgement.blame.attributions);
   verdict.picture_differences = PictureDifferencesText(
       judgement.pictures, AsItsFileSays(request) ? AcceptPicturesCommand(request.id) : "");
   if (verdict.verdict == Verdict::kPending && request.in_project && AsItsFileSays(request))

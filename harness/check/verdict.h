@@ -11,6 +11,8 @@
 
 #include "harness/base/content_hash.h"
 #include "harness/base/exit_code.h"
+#include "harness/check/attribute.h"
+#include "harness/check/settings.h"
 #include "harness/claims/judge_claims.h"
 #include "harness/golden/compare.h"
 #include "harness/judge/judge_transforms.h"
@@ -47,7 +49,9 @@ struct ScenarioVerdict {
   bool has_golden = false;                   ///< there is one, and it could be read
   EventDrawings drawings;                    ///< how the grammar wants the comparison drawn
   std::string explain;                       ///< the command that asks about the scenario's events
-  std::string cause;    ///< CauseText(): what the differences are attributed to; or empty
+  std::string cause;  ///< CauseText(): what the differences are attributed to; or empty
+  std::vector<Attribution> attributions;  ///< one for each of comparison->Differing(), or none
+  Settings settings;                      ///< what its files say, value by value
   std::string command;  ///< repeats the check; of what is pending, shows what to accept
   std::string state_hash;
   std::int64_t ticks = 0;

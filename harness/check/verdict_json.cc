@@ -50,10 +50,11 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, ticks_per_second, pairings, relat
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportedPicture, file, caption)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, claim, place, says, found, times)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TransformVerdict, transform, says, why)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attribution, event, what, shift_ms, because, question)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, shows, verdict, exit_code, reason,
                                    details, claims, transforms, comparison, has_golden, drawings,
-                                   explain, cause, command, state_hash, ticks, seconds,
-                                   peak_memory_kib, inputs, pictures, not_recorded,
+                                   explain, cause, attributions, settings, command, state_hash,
+                                   ticks, seconds, peak_memory_kib, inputs, pictures, not_recorded,
                                    picture_differences)
 
 namespace {
@@ -89,6 +90,16 @@ Json TransformsJson(const std::vector<TransformVerdict>& verdicts) {
   return transforms;
 }
 
+Json AttributionsJson(const std::vector<Attribution>& attributions) {
+  Json list = Json::array();
+  for (const Attribution& difference : attributions)
+    list.push_back({{"event", difference.event},
+                    {"what", difference.what},
+                    {"shift_ms", difference.shift_ms},
+                    {"because", difference.because}});
+  return list;
+}
+
 Json InputsJson(const FileHashes& inputs) {
   Json hashes = Json::object();
   for (const auto& [path, hash] : inputs) hashes[ReadableName(path)] = hash;
@@ -114,6 +125,7 @@ Json VerdictJson(const ScenarioVerdict& verdict) {
           {"differences", DifferencesJson(compared, verdict.explain)},
           {"relations", RelationsJson(compared)},
           {"blame", verdict.cause},
+          {"causes", AttributionsJson(verdict.attributions)},
           {"headroom", MarginText(verdict)},
           {"boundaries", BoundariesJson(compared)},
           {"command", verdict.command},

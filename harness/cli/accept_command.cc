@@ -89,6 +89,7 @@ void LeaveBaseline(const CommandContext& context, const Played& played) {
                   .verdict = {}};
   record.verdict.scenario = played.id;
   record.verdict.inputs = HashFiles(played.files);
+  record.verdict.settings = SettingsOf(played.loaded, {}, record.verdict.inputs, context.root);
   // Without it, only the cause of the next difference stays unknown.
   (void)records.Write(record);
   (void)WriteTrace(records.TracePath(played.id),

@@ -10,6 +10,7 @@
 
 #include "harness/base/atomic_file.h"
 #include "harness/base/shell_quote.h"
+#include "harness/check/causes.h"
 #include "harness/check/run_suite.h"
 #include "harness/command/command.h"
 #include "harness/episodes/record_episode.h"
@@ -159,6 +160,8 @@ std::vector<Option> ResultOptions() {
                       .rule = {.range = {}, .problem = RecordProblem},
                       .is_output = true},
                      {.name = "--no-pictures", .help = "draw no pictures"},
+                     {.name = "--verbose",
+                      .help = "print the details of every failure, also of more than ten"},
                      {.name = "--json", .help = "print one JSON object instead of text"},
                  });
 }
@@ -212,14 +215,27 @@ std::string Colored(Verdict verdict, bool colored) {
   return fmt::format("\033[{}m{}\033[0m", color, name);
 }
 
-/// `page`: the report; "": it could not be written. `as_files_say`: the command line changed no
-/// grammar and no setting, so that a difference can be accepted.
-void PrintText(const std::vector<ScenarioVerdict>& verdicts, bool as_files_say,
+/// With more failures their details are in the report only, unless they are asked for.
+constexpr std::ptrdiff_t kMostDetailed = 10;
+
+struct TextOptions {
+  bool as_files_say = true;  ///< the command line changed no grammar and no setting, so that a
+                             ///< difference can be accepted
+  bool verbose = false;      ///< details of however many failures
+};
+
+/// `page`: the report; "": it could not be written.
+void PrintText(const std::vector<ScenarioVerdict>& verdicts, const TextOptions& options,
                const std::string& page, const CommandContext& context) {
+  const auto failed = std::ranges::count_if(verdicts, [](const ScenarioVerdict& verdict) {
+    return verdict.exit_code != ExitCode::kAgrees && verdict.exit_code != ExitCode::kPending;
+  });
+  const bool brief = failed > kMostDetailed && !options.verbose;
   for (const ScenarioVerdict& verdict : verdicts) {
     const std::string note = verdict.reason.empty() ? MarginText(verdict) : verdict.reason;
     context.out << fmt::format("{}  {}{}{}\n", Colored(verdict.verdict, context.colored),
                                verdict.scenario, note.empty() ? "" : "  ", note);
+    if (brief && verdict.exit_code != ExitCode::kAgrees) continue;
     context.out << Indented(verdict.details);  // of what passed: claims that were not judged
     if (verdict.exit_code == ExitCode::kAgrees) continue;
     context.out << "    " << CommandLabel(verdict) << ": " << verdict.command << "\n";
@@ -227,9 +243,13 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, bool as_files_say,
   const Tally tally = Count(verdicts);
   const std::string smallest = SmallestMarginText(verdicts);
   if (!smallest.empty()) context.out << smallest << "\n";
-  context.out << TransformsText(verdicts);
+  context.out << TransformsText(verdicts) << BrittleText(BrittlePasses(verdicts))
+              << CausesText(CausesOf(verdicts));
+  if (brief)
+    context.out << fmt::format("{} failures: details are in the report, or printed by --verbose\n",
+                               failed);
   if (!page.empty()) context.out << "report: " << page << "\n";
-  if (as_files_say && std::ranges::any_of(verdicts, &ScenarioVerdict::DiffersFromGolden))
+  if (options.as_files_say && std::ranges::any_of(verdicts, &ScenarioVerdict::DiffersFromGolden))
     context.out << "If the new behaviour is intended: " << CommandText({"review"}) << "\n";
   if (tally.pending > 0) {
     context.out << fmt::format(
@@ -251,8 +271,14 @@ nlohmann::ordered_json SummaryJson(const std::vector<ScenarioVerdict>& verdicts,
   for (const ScenarioVerdict& verdict : verdicts) {
     scenarios.push_back(VerdictJson(verdict));
   }
-  return {{"passed", tally.passed},       {"failed", tally.failed}, {"pending", tally.pending},
-          {"unchanged", tally.unchanged}, {"report", page},         {"scenarios", scenarios}};
+  return {{"passed", tally.passed},
+          {"failed", tally.failed},
+          {"pending", tally.pending},
+          {"unchanged", tally.unchanged},
+          {"report", page},
+          {"scenarios", scenarios},
+          {"causes", CausesJson(CausesOf(verdicts))},
+          {"brittle", BrittleJson(BrittlePasses(verdicts))}};
 }
 
 /// "" if every episode that should be recorded was.
@@ -324,8 +350,10 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--json")) {
     context.out << SummaryJson(verdicts, problem.empty() ? page : "").dump(2) << "\n";
   } else if (junit != "-") {
-    const bool as_files_say = !options.Has("--grammar") && !options.Has("--set");
-    PrintText(verdicts, as_files_say, problem.empty() ? page : "", context);
+    PrintText(verdicts,
+              {.as_files_say = !options.Has("--grammar") && !options.Has("--set"),
+               .verbose = options.Has("--verbose")},
+              problem.empty() ? page : "", context);
   }
   if (problem.empty()) problem = NotRecordedText(verdicts);
   return problem.empty() ? WorstOf(verdicts) : Complain(context, ExitCode::kFailure, problem);

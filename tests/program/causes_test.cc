@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Three faults in a copy of two skills' scenarios: `check` names them, with parameter and value.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Causes, ThreeSeededFaultsAreNamedWithTheirValues) {
+  const fs::path root = FreshFolder("causes");
+  for (const char* folder : {"grammar/library", "physics/library", "scenarios/slide",
+                             "scenarios/reach", "golden/slide", "golden/reach"}) {
+    fs::create_directories(root / folder);
+    fs::copy(fs::path(PREHEND_SOURCE_DIR) / folder, root / folder, fs::copy_options::recursive);
+  }
+  const auto check = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"check", "--no-pictures"};
+    words.insert(words.end(), more.begin(), more.end());
+    return Prehend(words, {"PREHEND_HOME=" + root.string()});
+  };
+  ASSERT_EQ(check({}).exit_code, 0);
+
+  const auto change = [&](const char* file, const char* from, const char* to) {
+    WriteFile(root / file, Replaced(ReadFile(root / file), from, to));
+  };
+  const char* const grammar = "grammar/library/pick_and_place.grammar";
+  change(grammar, "param reach_radius = 30 cm", "param reach_radius = 20 cm");
+  change(grammar, "param slide_distance = 2 cm", "param slide_distance = 5 cm");
+  change("scenarios/slide/carton_slides_then_is_transported.yaml", "mass_kg: 0.4", "mass_kg: 8");
+  const Said said = check({});
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_NE(said.out.find("3 causes:\n"
+                          "1. `reach_radius` 30 cm -> 20 cm in "
+                          "grammar/library/pick_and_place.grammar: "),
+            std::string::npos)
+      << said.out;
+  EXPECT_NE(said.out.find(" x reaching begins later, median +"), std::string::npos) << said.out;
+  for (const char* part :
+       {"`slide_distance` 2 cm -> 5 cm in grammar/library/pick_and_place.grammar: "
+        "slide/four_centimetres_are_a_slide\n     1 x sliding missing\n",
+        "`entities.milk.mass_kg` 0.4 -> 8 in "
+        "scenarios/slide/carton_slides_then_is_transported.yaml: "
+        "slide/carton_slides_then_is_transported\n"})
+    EXPECT_NE(said.out.find(part), std::string::npos) << said.out;
+  EXPECT_EQ(said.out.find("facts at"), std::string::npos) << "one line for each of so many";
+
+  const auto json = nlohmann::json::parse(check({"--json", "slide/four*"}).out);
+  EXPECT_EQ(json["causes"].size(), 2);
+  EXPECT_EQ(json["causes"][0]["effects"][0]["count"], 1);
+}
+
+}  // namespace
+}  // namespace prehend::house
