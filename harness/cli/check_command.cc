@@ -345,7 +345,10 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   }
   const std::vector<ScenarioVerdict> verdicts = RunSuite(request, progress);
 
-  problem = WriteTextFile(page, ReportHtml(verdicts));
+  problem = WriteTextFile(page, ReportHtml(verdicts, {.command = CommandText(context.words),
+                                                      .program = "prehend",
+                                                      .date = context.today,
+                                                      .folder = request.report_folder}));
   if (problem.empty() && options.Has("--junit")) problem = WriteTextFile(junit, JunitXml(verdicts));
   if (options.Has("--json")) {
     context.out << SummaryJson(verdicts, problem.empty() ? page : "").dump(2) << "\n";

@@ -60,7 +60,12 @@ class Drawing {
         document_, "svg",
         {{"class", "timeline"},
          {"viewBox", fmt::format("0 0 {:g} {:g}", kLabelWidth + kChartWidth + 2 * kMargin, height)},
-         {"role", "img"}});
+         {"role", "img"},
+         {"aria-label", LabelText()},
+         {"data-left", fmt::format("{:g}", kLabelWidth)},
+         {"data-per-second",
+          fmt::format("{:g}", kChartWidth * static_cast<double>(comparison_.ticks_per_second) /
+                                  static_cast<double>(end_))}});
     DrawAxis(height);
     for (std::size_t i = 0; i < rows_.size(); ++i)
       DrawRow(rows_[i], kAxisHeight + kRowHeight * static_cast<double>(i));
@@ -71,6 +76,15 @@ class Drawing {
   double X(Tick tick) const {
     return kLabelWidth + kChartWidth * static_cast<double>(std::clamp<Tick>(tick, 0, end_)) /
                              static_cast<double>(end_);
+  }
+
+  /// What somebody hears who does not see it.
+  std::string LabelText() const {
+    const auto differing = std::ranges::count_if(comparison_.pairings, [](const Pairing& pairing) {
+      return pairing.agreement != LineVerdict::kMatched;
+    });
+    return fmt::format("timeline: {} events, {} differ from the golden",
+                       comparison_.pairings.size(), differing);
   }
 
   /// A line per second, or per 1, 2, 5, 10, .. seconds so that there are at most 12.

@@ -4,11 +4,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 #include "harness/base/markup.h"
+#include "harness/check/causes.h"
 #include "harness/golden/timeline_svg.h"
+#include "harness/report/page_script.h"
 
 namespace prehend::harness {
 namespace {
@@ -36,6 +43,16 @@ svg.timeline { width: 100%; height: auto; margin-top: .6rem; } svg text { font: 
 svg text.axis { fill: var(--soft); font-size: 11px; } svg text.differs { fill: var(--failed); font-weight: 600; }
 svg .grid { stroke: var(--line); } svg rect { rx: 2px; } svg rect.golden { opacity: .45; }
 svg rect.differs { stroke: var(--failed); stroke-width: 1.5; }
+svg rect.differs.golden { stroke-dasharray: 4 2; } svg line.cursor { stroke: var(--ink); stroke-width: 1; pointer-events: none; }
+.scroll { overflow-x: auto; } .scroll svg.timeline { min-width: 640px; } output { color: var(--soft); font-size: 13px; }
+#tools { position: sticky; top: 0; background: var(--paper); padding: .5rem 0; display: flex; flex-wrap: wrap; gap: .4rem; z-index: 1; }
+#tools[hidden] { display: none; } #tools input { font: inherit; flex: 1 1 12rem; min-width: 8rem; }
+button.chip { font: inherit; border: 1px solid var(--line); border-radius: 1rem; background: var(--card); color: var(--ink); padding: 0 .8rem; }
+button.chip[aria-pressed=true] { background: var(--ink); color: var(--paper); }
+summary { cursor: pointer; } summary h2 { display: inline; } section.scenario { scroll-margin-top: 3.5rem; }
+h2, td, p, li { overflow-wrap: anywhere; } ol.causes li { margin-bottom: .6rem; } code { font-size: 13px; }
+@media (max-width: 600px) { td:nth-child(4), th:nth-child(4) { display: none; } section { padding: .7rem; } }
+@media print { #tools { display: none; } section { break-inside: avoid; } }
 figure { margin: .8rem 0 0; } figure img { max-width: 100%; border-radius: 6px; } figcaption { color: var(--soft); }
 )";
 
@@ -88,7 +105,7 @@ void FillTime(pugi::xml_node cell, const ScenarioVerdict& verdict) {
 /// From left to right.
 constexpr Column kColumns[] = {{"verdict", false, FillVerdict},
                                {"scenario", false, FillScenario},
-                               {"", false, FillReason},
+                               {"result", false, FillReason},
                                {"time", true, FillTime}};
 
 pugi::xml_node AddCell(pugi::xml_node row, const char* kind, const Column& column) {
@@ -101,33 +118,101 @@ void AddTable(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts)
   for (const Column& column : kColumns) AddText(AddCell(head, "th", column), column.title);
   AddText(table, kNewLine);
   for (const ScenarioVerdict& verdict : verdicts) {
-    const pugi::xml_node row = AddElement(table, "tr");
+    const pugi::xml_node row = AddElement(table, "tr", {{"data-of", verdict.scenario}});
     for (const Column& column : kColumns) column.fill(AddCell(row, "td", column), verdict);
     AddText(table, kNewLine);
   }
 }
 
-void AddPicture(pugi::xml_node section, const ReportedPicture& picture) {
-  const pugi::xml_node figure = AddElement(section, "figure");
-  AddElement(figure, "img", {{"loading", "lazy"}, {"src", picture.file}, {"alt", picture.caption}});
-  AddElement(figure, "figcaption", {}, picture.caption);
+std::string Base64(std::string_view bytes) {
+  static constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63u];
+  }
+  return text;
 }
 
-void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict) {
+/// Puts pictures into the page as long as there is room.
+class PictureBox {
+ public:
+  explicit PictureBox(std::string folder) : folder_(std::move(folder)) {}
+
+  void Add(pugi::xml_node section, const ReportedPicture& picture) {
+    const auto path = std::filesystem::path(folder_) / picture.file;
+    std::ifstream file(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    if (bytes.empty() || used_ + bytes.size() > kMostPictureBytes) {
+      AddElement(section, "p", {{"class", "soft"}},
+                 "picture, not in this page: " + picture.file + " (" + picture.caption + ")");
+      return;
+    }
+    used_ += bytes.size();
+    const pugi::xml_node figure = AddElement(section, "figure");
+    AddElement(figure, "img",
+               {{"loading", "lazy"},
+                {"src", "data:image/png;base64," + Base64(bytes)},
+                {"alt", picture.caption}});
+    AddElement(figure, "figcaption", {}, picture.caption);
+  }
+
+ private:
+  std::string folder_;
+  std::size_t used_ = 0;
+};
+
+void AddCommand(pugi::xml_node parent, const std::string& command) {
+  AddElement(parent, "pre", {{"tabindex", "0"}}, command);
+}
+
+/// The causes of one scenario's differences as sentences.
+void AddReasons(pugi::xml_node section, const ScenarioVerdict& verdict) {
+  for (const Cause& cause : CausesOf({verdict})) {
+    if (cause.because.empty()) continue;
+    std::string effects;
+    for (const Effect& effect : cause.effects)
+      effects += (effects.empty() ? "" : ", ") + effect.event + " " + effect.what;
+    AddElement(section, "p", {}, "Because of " + cause.because + ": " + effects + ".");
+  }
+}
+
+bool IsGood(const ScenarioVerdict& verdict) {
+  return verdict.verdict == Verdict::kPassed || verdict.verdict == Verdict::kUnchanged;
+}
+
+void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, PictureBox& pictures) {
   const std::string name(Name(verdict.verdict));
-  const pugi::xml_node section = AddElement(body, "section", {{"id", verdict.scenario}});
-  const pugi::xml_node title = AddElement(section, "h2");
+  const pugi::xml_node section = AddElement(
+      body, "section", {{"id", verdict.scenario}, {"class", "scenario"}, {"data-verdict", name}});
+  const pugi::xml_node fold = AddElement(section, "details");
+  if (!IsGood(verdict)) fold.append_attribute("open").set_value("open");
+  const pugi::xml_node summary = AddElement(fold, "summary");
+  const pugi::xml_node title = AddElement(summary, "h2");
   AddElement(title, "span", {{"class", name}}, name);
   AddText(title, " " + verdict.scenario);
-  AddElement(section, "div", {{"class", "soft"}}, verdict.shows);
-  if (!verdict.reason.empty()) AddElement(section, "p", {{"class", name}}, verdict.reason);
-  if (!verdict.details.empty()) AddElement(section, "pre", {}, verdict.details);
-  if (verdict.comparison)
-    AddMarkup(section, TimelineSvg(*verdict.comparison, verdict.ticks + 1, verdict.drawings));
+  AddElement(fold, "div", {{"class", "soft"}}, verdict.shows);
+  if (!verdict.reason.empty()) AddElement(fold, "p", {{"class", name}}, verdict.reason);
+  AddReasons(fold, verdict);
+  if (verdict.comparison) {
+    const pugi::xml_node scroll = AddElement(fold, "div",
+                                             {{"class", "scroll"},
+                                              {"tabindex", "0"},
+                                              {"role", "group"},
+                                              {"aria-label", "timeline of " + verdict.scenario}});
+    AddMarkup(scroll, TimelineSvg(*verdict.comparison, verdict.ticks + 1, verdict.drawings));
+    AddElement(scroll, "output", {}, "");
+  }
+  if (!verdict.details.empty()) AddElement(fold, "pre", {{"tabindex", "0"}}, verdict.details);
   const std::string margin = MarginText(verdict);
-  if (!margin.empty()) AddElement(section, "div", {{"class", "soft"}}, margin);
-  for (const ReportedPicture& picture : verdict.pictures) AddPicture(section, picture);
-  AddElement(section, "pre", {}, verdict.command);
+  if (!margin.empty()) AddElement(fold, "div", {{"class", "soft"}}, margin);
+  for (const ReportedPicture& picture : verdict.pictures) pictures.Add(fold, picture);
+  AddCommand(fold, verdict.command);
   AddText(body, kNewLine);
 }
 
@@ -140,21 +225,114 @@ void AddHead(pugi::xml_node html) {
   AddElement(head, "style", {}, kStyle);
 }
 
+void AddCauses(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {
+  const std::vector<Cause> causes = CausesOf(verdicts);
+  const std::vector<Brittle> brittle = BrittlePasses(verdicts);
+  if (!causes.empty()) {
+    AddElement(body, "h2", {}, "Causes");
+    const pugi::xml_node list = AddElement(body, "ol", {{"class", "causes"}});
+    for (const Cause& cause : causes) {
+      const pugi::xml_node item = AddElement(list, "li");
+      AddElement(item, "strong", {},
+                 cause.because.empty() ? "nothing known has changed" : cause.because);
+      AddText(item, fmt::format(": {} scenario{}, for example ", cause.scenarios.size(),
+                                cause.scenarios.size() == 1 ? "" : "s"));
+      AddElement(item, "a", {{"href", "#" + cause.scenarios.front()}}, cause.scenarios.front());
+      for (const Effect& effect : cause.effects) AddElement(item, "div", {}, EffectText(effect));
+      AddElement(item, "code", {}, cause.effects.front().command);
+    }
+  }
+  if (brittle.empty()) return;
+  const pugi::xml_node fold = AddElement(body, "details");
+  AddElement(fold, "summary", {}, "Passed at the limit of a tolerance");
+  AddElement(fold, "pre", {{"tabindex", "0"}}, BrittleText(brittle));
+}
+
+void AddTools(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {
+  const pugi::xml_node tools = AddElement(body, "div", {{"id", "tools"}, {"hidden", "hidden"}});
+  AddElement(tools, "input",
+             {{"id", "search"},
+              {"type", "search"},
+              {"placeholder", "search (/), next (n), previous (p)"},
+              {"aria-label", "search scenarios"}});
+  for (const Verdict each : {Verdict::kFailed, Verdict::kFlaky, Verdict::kPending, Verdict::kPassed,
+                             Verdict::kUnchanged}) {
+    const std::string name(Name(each));
+    if (std::ranges::none_of(verdicts, [&](const auto& of) { return of.verdict == each; }))
+      continue;
+    AddElement(
+        tools, "button",
+        {{"class", "chip"}, {"type", "button"}, {"data-verdict", name}, {"aria-pressed", "false"}},
+        name);
+  }
+  AddElement(tools, "span", {{"id", "shown"}, {"role", "status"}, {"class", "soft"}}, "");
+}
+
+void AddHeader(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts,
+               const ReportHeader& header) {
+  AddElement(body, "p", {{"class", "soft"}},
+             fmt::format("{}, {}, by {}", header.date, header.program, header.command));
+  Settings parameters;
+  for (const ScenarioVerdict& verdict : verdicts) {
+    for (const auto& [file, values] : verdict.settings) {
+      if (file.ends_with(".grammar")) parameters[file] = values;
+    }
+  }
+  const pugi::xml_node fold = AddElement(body, "details");
+  AddElement(fold, "summary", {}, "Grammars with their parameters, slowest scenarios");
+  for (const auto& [file, values] : parameters) {
+    std::string text = file + "\n";
+    for (const auto& [name, value] : values) text += "  " + name + " = " + value + "\n";
+    AddElement(fold, "pre", {{"tabindex", "0"}}, text);
+  }
+  std::vector<const ScenarioVerdict*> slowest;
+  for (const ScenarioVerdict& verdict : verdicts) slowest.push_back(&verdict);
+  std::ranges::stable_sort(slowest, std::greater{}, &ScenarioVerdict::seconds);
+  slowest.resize(std::min<std::size_t>(5, slowest.size()));
+  for (const ScenarioVerdict* verdict : slowest)
+    AddElement(fold, "div", {}, fmt::format("{:.2f} s  {}", verdict->seconds, verdict->scenario));
+}
+
+/// What needs a person first; in one kind, as they were.
+std::vector<ScenarioVerdict> WorstFirst(std::vector<ScenarioVerdict> verdicts) {
+  const auto rank = [](const ScenarioVerdict& verdict) {
+    switch (verdict.verdict) {
+      case Verdict::kFailed:
+        return 0;
+      case Verdict::kFlaky:
+        return 1;
+      case Verdict::kPending:
+        return 2;
+      default:
+        return 3;
+    }
+  };
+  std::ranges::stable_sort(verdicts, {}, rank);
+  return verdicts;
+}
+
 }  // namespace
 
-std::string ReportHtml(const std::vector<ScenarioVerdict>& verdicts) {
+std::string ReportHtml(const std::vector<ScenarioVerdict>& unsorted, const ReportHeader& header) {
+  const std::vector<ScenarioVerdict> verdicts = WorstFirst(unsorted);
   pugi::xml_document document;
   document.append_child(pugi::node_doctype).set_value("html");
   const pugi::xml_node html = AddElement(document, "html", {{"lang", "en"}});
   AddHead(html);
-  const pugi::xml_node body = AddElement(html, "body");
+  const pugi::xml_node body = AddElement(AddElement(html, "body"), "main");
   AddElement(body, "h1", {}, "Regression suite");
   AddSummary(body, Count(verdicts));
-  AddElement(body, "p", {{"class", "soft"}},
-             "In every row, the golden is above (pale) and the recognised event below.");
+  AddHeader(body, verdicts, header);
+  AddCauses(body, verdicts);
+  AddTools(body, verdicts);
   AddTable(body, verdicts);
   AddText(body, kNewLine);
-  for (const ScenarioVerdict& verdict : verdicts) AddSection(body, verdict);
+  AddElement(body, "p", {{"class", "soft"}},
+             "In every row of a timeline, the golden is above (pale) and the recognised event "
+             "below.");
+  PictureBox pictures(header.folder);
+  for (const ScenarioVerdict& verdict : verdicts) AddSection(body, verdict, pictures);
+  AddElement(body, "script", {}, kPageScript);
   return ToText(document, Layout::kAsItIs) + "\n";
 }
 

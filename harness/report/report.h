@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The suite as one web page: verdicts, timelines (golden above recognised), pictures, differences,
-// and the commands that show them again. One file, no scripts; pictures beside it. Tested by
-// tests/harness/report/report_test.cc
+// The suite as one web page, one file that works offline: causes of failures, verdicts with what
+// failed first, timelines (golden above recognised), pictures, differences, and the commands that
+// show them again. Tested by tests/harness/report/report_test.cc
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,17 @@
 
 namespace prehend::harness {
 
-std::string ReportHtml(const std::vector<ScenarioVerdict>& verdicts);
+struct ReportHeader {
+  std::string command;  ///< that made the page
+  std::string program;  ///< "prehend 0.1.0"
+  std::string date;     ///< YYYY-MM-DD
+  std::string folder;   ///< what the files of pictures are relative to
+};
+
+/// Pictures are in the page, those of failures first, up to this size in all; of the others the
+/// page says that they lie beside it.
+inline constexpr std::size_t kMostPictureBytes = 15'000'000;
+
+std::string ReportHtml(const std::vector<ScenarioVerdict>& verdicts, const ReportHeader& header);
 
 }  // namespace prehend::harness

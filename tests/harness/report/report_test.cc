@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "harness/golden/timeline_svg.h"
 
 namespace prehend::harness {
@@ -46,17 +49,39 @@ int CountOf(const std::string& text, const std::string& part) {
 }
 
 TEST(Report, HasVerdictsTimelinesPicturesDifferencesAndCommands) {
-  const std::string html = ReportHtml(Verdicts());
+  const std::string html =
+      ReportHtml(Verdicts(), {.command = "prehend check", .program = {}, .date = {}, .folder = {}});
   for (const char* part :
-       {"1 passed", "1 failed", "1 pending", "href=\"#slide/good\"", "<section id=\"slide/bad\">",
-        "src=\"pictures/slide/good.png\"", "golden sliding(h, cup), 1.0000..2.0000 s: matched",
-        "In every row", "shifted sliding(hand, cup)", "prehend check slide/bad",
-        "it &lt;slides&gt;", "margin: all boundaries match exactly", "no golden yet"}) {
+       {"1 passed", "1 failed", "1 pending", "href=\"#slide/good\"", "<section id=\"slide/bad\"",
+        "picture, not in this page: pictures/slide/good.png (sliding.begin)",
+        "golden sliding(h, cup), 1.0000..2.0000 s: matched", "In every row",
+        "shifted sliding(hand, cup)", "prehend check slide/bad", "it &lt;slides&gt;",
+        "margin: all boundaries match exactly", "no golden yet"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
   EXPECT_EQ(html.find("<slides>"), std::string::npos);
   EXPECT_EQ(CountOf(html, "<section"), CountOf(html, "</section>"));
   EXPECT_EQ(html.find("http"), std::string::npos) << "the page must not need the network";
+}
+
+TEST(Report, WhatFailedIsFirstAndCausesAreAbove) {
+  const std::string html = ReportHtml(Verdicts(), {});
+  const auto at = [&](const std::string& part) { return html.find(part); };
+  ASSERT_NE(at("<section id=\"slide/good\""), std::string::npos);
+  EXPECT_LT(at(">Causes<"), at("<table"));
+  EXPECT_LT(at("<section id=\"slide/bad\""), at("<section id=\"slide/new\""));
+  EXPECT_LT(at("<section id=\"slide/new\""), at("<section id=\"slide/good\""));
+}
+
+TEST(Report, PicturesAreInThePage) {
+  const std::string folder = testing::TempDir() + "report_pictures";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder + "/a.png") << "Mano";
+  std::vector<ScenarioVerdict> verdicts = Verdicts();
+  verdicts[0].pictures[0].file = "a.png";
+  const std::string html =
+      ReportHtml(verdicts, {.command = {}, .program = {}, .date = {}, .folder = folder});
+  EXPECT_NE(html.find("src=\"data:image/png;base64,TWFubw==\""), std::string::npos);
 }
 
 TEST(TimelineSvg, DrawsTheGoldenAboveWhatWasRecognised) {
