@@ -190,7 +190,7 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, PictureBox&
   const std::string name(Name(verdict.verdict));
   const pugi::xml_node section = AddElement(
       body, "section", {{"id", verdict.scenario}, {"class", "scenario"}, {"data-verdict", name}});
-  const pugi::xml_node fold = AddElement(section, "details");
+  pugi::xml_node fold = AddElement(section, "details");
   if (!IsGood(verdict)) fold.append_attribute("open").set_value("open");
   const pugi::xml_node summary = AddElement(fold, "summary");
   const pugi::xml_node title = AddElement(summary, "h2");
