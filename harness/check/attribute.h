@@ -20,7 +20,7 @@ struct Attribution {
   std::string event;     ///< "reaching"
   std::string what;      ///< "begins later", "missing", "object: milk -> cup"
   double shift_ms = 0;   ///< of the boundary that moved most, recognised - expected; else 0
-  std::string because;   ///< "`reach_radius` 30 cm -> 20 cm in grammar/x.grammar"; "" is unknown
+  std::string because;   ///< "`reach_radius` 30 cm -> 20 cm in x.grammar"; "" is unknown
   std::string question;  ///< to `prehend explain`
 };
 

@@ -38,7 +38,7 @@ std::optional<Suspects> SuspectsOf(const std::optional<LastPass>& last_pass,
                                    const std::optional<StateTrace>& its_trace,
                                    const DifferingRun& now, const std::string& root);
 
-/// "changed: `reach_radius` 30 cm -> 20 cm in grammar/x.grammar", a line for each of at most ten.
+/// "changed: `reach_radius` 30 cm -> 20 cm in x.grammar", a line for each of at most ten.
 std::string ChangesText(const std::vector<SettingChange>& changes);
 
 }  // namespace prehend::harness
