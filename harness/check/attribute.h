@@ -17,7 +17,7 @@ namespace prehend::harness {
 
 /// A difference of a scenario, and what it is attributed to.
 struct Attribution {
-  std::string event;     ///< "reaching"
+  std::string event;     ///< its name
   std::string what;      ///< "begins later", "missing", "object: milk -> cup"
   double shift_ms = 0;   ///< of the boundary that moved most, recognised - expected; else 0
   std::string because;   ///< "`reach_radius` 30 cm -> 20 cm in x.grammar"; "" is unknown

@@ -13,7 +13,7 @@ namespace prehend::harness {
 
 /// What one cause does to one event.
 struct Effect {
-  std::string event;  ///< "reaching"; "" of what is no event: a claim, a run that failed
+  std::string event;  ///< its name; "" of what is no event: a claim, a run that failed
   std::string what;   ///< "begins later"
   int count = 0;      ///< of differences
   double median_ms = 0, least_ms = 0, most_ms = 0;  ///< of shifts, by magnitude; else 0
