@@ -25,8 +25,8 @@ struct Effect {
 std::string EffectText(const Effect& effect);
 
 struct Cause {
-  std::string because;          ///< "`reach_radius` 30 cm -> 20 cm in x.grammar"; or ""
-  std::vector<Effect> effects;  ///< the most frequent first
+  std::string because;                 ///< "`reach_radius` 30 cm -> 20 cm in x.grammar"; or ""
+  std::vector<Effect> effects;         ///< the most frequent first
   std::vector<std::string> scenarios;  ///< sorted; a scenario may have several causes
 };
 
