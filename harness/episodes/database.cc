@@ -138,20 +138,27 @@ std::string_view Statement::Bytes(int column) const {
 }
 
 Database::Database(const std::string& path, Mode mode) {
-  const auto open = [&](const std::string& options, int flags) {
-    sqlite3* database = nullptr;
-    const int code =
-        sqlite3_open_v2(AsUri(path, options).c_str(), &database, flags | SQLITE_OPEN_URI, nullptr);
-    database_.reset(database);
-    return code == SQLITE_OK;
-  };
   const bool writes = mode == Mode::kWrite;
   std::string options;
   // A finished file can be read where nothing can be written, not even a lock.
   const std::string folder = std::filesystem::absolute(path).parent_path().string();
   if (!writes && access(folder.c_str(), W_OK) != 0 && !std::filesystem::exists(path + "-wal"))
     options = "?immutable=1";
-  if (!open(options, writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY)) {
+  Open(AsUri(path, options),
+       writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY);
+}
+
+Database Database::InMemory() {
+  Database database;
+  database.Open("file::memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+  return database;
+}
+
+void Database::Open(const std::string& uri, int flags) {
+  sqlite3* database = nullptr;
+  const int code = sqlite3_open_v2(uri.c_str(), &database, flags | SQLITE_OPEN_URI, nullptr);
+  database_.reset(database);
+  if (code != SQLITE_OK) {
     if (!database_) throw DatabaseError("out of memory");
     Throw(database_.get());
   }

@@ -58,6 +58,7 @@ class Database {
   enum class Mode { kRead, kWrite };
   /// `kWrite` creates the file. Waits for other writers. Throws DatabaseError.
   Database(const std::string& path, Mode mode);
+  static Database InMemory();
 
   Statement Prepare(std::string_view sql) const { return {database_.get(), sql}; }
   void Execute(const std::string& sql) const;
@@ -68,6 +69,8 @@ class Database {
   struct Close {
     void operator()(sqlite3* database) const;
   };
+  Database() = default;
+  void Open(const std::string& uri, int flags);
   std::unique_ptr<sqlite3, Close> database_;
 };
 

@@ -220,12 +220,19 @@ struct EpisodeFrames::State {
   }
 };
 
-EpisodeFrames::EpisodeFrames(const EpisodeFile& file, const EpisodeRow& episode, FrameLayout layout)
-    : state_(std::make_unique<State>(file.state_->database, episode.id, std::move(layout))) {}
+EpisodeFrames::EpisodeFrames(const EpisodeFile& file, const EpisodeRow& episode,
+                             FrameLayout layout) {
+  try {
+    state_ = std::make_unique<State>(file.state_->database, episode.id, std::move(layout));
+  } catch (const DatabaseError& error) {
+    damage_ = error.what();
+  }
+}
 EpisodeFrames::~EpisodeFrames() = default;
 
 std::string EpisodeFrames::Play(const std::function<void(const physics::Snapshot&)>& look,
                                 const std::function<bool(std::int64_t tick)>& wanted, bool links) {
+  if (!state_) return damage_;
   try {
     Statement& chunks = state_->all_chunks;
     chunks.Reset();
@@ -250,6 +257,7 @@ std::string EpisodeFrames::Play(const std::function<void(const physics::Snapshot
 }
 
 std::optional<physics::Snapshot> EpisodeFrames::At(std::int64_t tick) {
+  if (!state_) return std::nullopt;
   try {
     State& state = *state_;
     state.find_tick.Reset();
@@ -271,6 +279,7 @@ std::optional<physics::Snapshot> EpisodeFrames::At(std::int64_t tick) {
 }
 
 std::optional<std::vector<EpisodeFrames::Moment>> EpisodeFrames::TrackOf(std::size_t body) {
+  if (!state_) return std::nullopt;
   try {
     State& state = *state_;
     const FrameLayout& layout = state.player.layout();

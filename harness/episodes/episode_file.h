@@ -91,6 +91,7 @@ class EpisodeFrames {
  private:
   struct State;
   std::unique_ptr<State> state_;
+  std::string damage_;  ///< why there is no state
 };
 
 }  // namespace prehend::harness::episodes

@@ -8,7 +8,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <random>
+#include <set>
 
 #include "harness/base/content_hash.h"
 
@@ -144,6 +146,25 @@ void RefuseOthers(const Database& database) {
         version, kSchemaVersion));
   }
   if (version < 1) throw DatabaseError("is damaged: its format has no version");
+  // Tables and columns that a program reads must be there; what others added is left alone.
+  constexpr const char* kColumns =
+      "SELECT tables.name, columns.name FROM sqlite_master AS tables,"
+      " pragma_table_info(tables.name) AS columns WHERE tables.type = 'table'";
+  const Database model = Database::InMemory();
+  model.Execute(kTables);
+  std::map<std::string, std::set<std::string>> found;
+  Statement columns = database.Prepare(kColumns);
+  while (columns.Step()) found[columns.Text(0)].insert(columns.Text(1));
+  Statement wanted = model.Prepare(kColumns);
+  while (wanted.Step()) {
+    const auto table = found.find(wanted.Text(0));
+    if (table == found.end())
+      throw DatabaseError(fmt::format("is damaged: it has no table '{}'", wanted.Text(0)));
+    if (!table->second.contains(wanted.Text(1))) {
+      throw DatabaseError(fmt::format("is damaged: its table '{}' has no column '{}'",
+                                      wanted.Text(0), wanted.Text(1)));
+    }
+  }
 }
 
 }  // namespace

@@ -174,6 +174,24 @@ TEST(EpisodeFileOfMany, ForeignAndDamagedFilesAreRefusedWithTheirCause) {
             "needed");
 }
 
+TEST(EpisodeFileOfMany, MissingTablesAndColumnsAreNamed) {
+  const fs::path folder = Fresh("missing");
+  const fs::path good = folder / "a.episodes", bad = folder / "b.episodes";
+  ASSERT_EQ(Record(good.string()).problem, "");
+  const auto said = [&](const char* change) {
+    fs::copy_file(good, bad, fs::copy_options::overwrite_existing);
+    Database(bad.string(), Database::Mode::kWrite).Execute(change);
+    return MessageOf(EpisodeFile::Open(bad.string()));
+  };
+  EXPECT_EQ(said("ALTER TABLE part RENAME TO parx"), "is damaged: it has no table 'part'");
+  EXPECT_EQ(said("ALTER TABLE note RENAME COLUMN text TO texx"),
+            "is damaged: its table 'note' has no column 'text'");
+  EXPECT_TRUE([&] {
+    said("CREATE TABLE remark(text TEXT); ALTER TABLE note ADD COLUMN author TEXT");
+    return EpisodeFile::Open(bad.string()).has_value();
+  }()) << "what others added is left alone";
+}
+
 TEST(EpisodeFileOfMany, EveryDamagedByteIsReportedOrHarmless) {
   const fs::path folder = Fresh("flipped");
   const fs::path good = folder / "a.episodes";
