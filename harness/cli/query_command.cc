@@ -4,8 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/cli/query_pictures.h"
 #include "harness/command/command.h"
 #include "harness/episodes/query_events.h"
+#include "harness/pictures/pictures.h"
 #include "harness/timeline/event_text.h"
 
 namespace prehend::harness {
@@ -35,14 +37,18 @@ Json EventJson(const EventAnswer& answer, const grammar::NamedEvent& event) {
           {"end_s", SecondsAt(answer, event.interval.end)}};
 }
 
-void PrintQueryJson(const std::vector<EventAnswer>& answers, bool parts, std::ostream& out) {
+/// `pictures`: one file per answer, or none.
+void PrintQueryJson(const std::vector<EventAnswer>& answers,
+                    const std::vector<std::string>& pictures, bool parts, std::ostream& out) {
   Json all = Json::array();
-  for (const EventAnswer& answer : answers) {
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const EventAnswer& answer = answers[i];
     Json one = {{"file", answer.file}, {"episode", answer.episode}, {"scenario", answer.scenario}};
     one.update(EventJson(answer, answer.event));
     for (const grammar::NamedEvent& part : answer.parts) {
       if (parts) one["parts"].push_back(EventJson(answer, part));
     }
+    if (!pictures.empty()) one["picture"] = pictures[i];
     all.push_back(std::move(one));
   }
   out << all.dump(2) << "\n";
@@ -55,20 +61,24 @@ std::string Csv(const std::string& cell) {
   return quoted + "\"";
 }
 
-void PrintQueryTable(const std::vector<EventAnswer>& answers, bool parts, bool csv,
+void PrintQueryTable(const std::vector<EventAnswer>& answers,
+                     const std::vector<std::string>& pictures, bool parts, bool csv,
                      std::ostream& out) {
   std::vector<std::vector<std::string>> rows = {
       {"file", "episode", "scenario", "event", "begin_s", "end_s", "roles"}};
-  const auto add = [&](const EventAnswer& answer, const grammar::NamedEvent& event, bool is_part) {
+  if (!pictures.empty()) rows[0].push_back("picture");
+  const auto add = [&](std::size_t i, const grammar::NamedEvent& event, bool is_part) {
+    const EventAnswer& answer = answers[i];
     rows.push_back({answer.file, std::to_string(answer.episode), answer.scenario,
                     (is_part && !csv ? "  " : "") + event.event,
                     SecondsText(event.interval.begin, answer.ticks_per_second),
                     SecondsText(event.interval.end, answer.ticks_per_second), RolesText(event)});
+    if (!pictures.empty()) rows.back().push_back(is_part ? "" : pictures[i]);
   };
-  for (const EventAnswer& answer : answers) {
-    add(answer, answer.event, false);
-    for (const grammar::NamedEvent& part : answer.parts) {
-      if (parts) add(answer, part, true);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    add(i, answers[i].event, false);
+    for (const grammar::NamedEvent& part : answers[i].parts) {
+      if (parts) add(i, part, true);
     }
   }
   if (csv) {
@@ -117,6 +127,8 @@ EventQuestion EventQuestionOf(const ParsedOptions& options) {
 ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--json") && options.Has("--csv"))
     return Complain(context, ExitCode::kBadInput, "--json contradicts --csv; give one of them");
+  if (options.Has("--show") && !CanDrawPictures())
+    return Complain(context, ExitCode::kBadInput, "--show: this build draws no pictures");
   const EventQuestion question = EventQuestionOf(options);
   std::vector<EventAnswer> answers;
   for (const std::string& path : options.All("files")) {
@@ -124,10 +136,14 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
     if (!found) return Complain(context, found.error());
     answers.insert(answers.end(), found->begin(), found->end());
   }
+  QueryPictures drawn;
+  if (options.Has("--show")) drawn = DrawAnswers(answers, options.Text("--show"), context.root);
   if (options.Has("--json"))
-    PrintQueryJson(answers, options.Has("--parts"), context.out);
+    PrintQueryJson(answers, drawn.files, options.Has("--parts"), context.out);
   else
-    PrintQueryTable(answers, options.Has("--parts"), options.Has("--csv"), context.out);
+    PrintQueryTable(answers, drawn.files, options.Has("--parts"), options.Has("--csv"),
+                    context.out);
+  if (!drawn.error.empty()) return Complain(context, ExitCode::kFailure, "--show: " + drawn.error);
   return answers.empty() ? ExitCode::kNothing : ExitCode::kAgrees;
 }
 
@@ -147,44 +163,50 @@ Option SecondsOption(const std::string& name, const std::string& help) {
 }  // namespace
 
 Command QueryCommand() {
-  return {.name = "query",
-          .summary = "Find events in recorded episodes",
-          .examples = {"query suite.episodes --event sliding --class object=CerealBox",
-                       "query suite.episodes --event grasping --class object=Handle --part-of "
-                       "object=FridgeDoor",
-                       "query suite.episodes --event pick_and_place --parts --json",
-                       "query *.episodes --event sliding --relation 'meets transporting' --csv"},
-          .options = {{.name = "files",
-                       .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
-                       .required = true,
-                       .repeatable = true},
-                      {.name = "--event", .help = "its name, or a glob", .placeholder = "NAME"},
-                      RoleOption("--role", "who or what has a role (of any role: any=NAME)",
-                                 "ROLE=NAME"),
-                      RoleOption("--class", "of which class it is, directly or not", "ROLE=CLASS"),
-                      RoleOption("--part-of",
-                                 "of what it is a part, directly or not: an entity or a class",
-                                 "ROLE=NAME"),
-                      SecondsOption("--at-least-s", "the event lasts at least so long"),
-                      SecondsOption("--at-most-s", "the event lasts at most so long"),
-                      SecondsOption("--from-s", "it begins at this time of its episode or later"),
-                      SecondsOption("--until-s", "it ends at this time of its episode or earlier"),
-                      {.name = "--relation",
-                       .help = "how it lies to another event of its episode, in Allen's words\n"
-                               "(before, meets, overlaps, starts, inside, finishes, equals, ..);\n"
-                               "may be repeated",
-                       .placeholder = "'RELATION EVENT'",
-                       .rule = {.range = {}, .problem = RelationProblem},
-                       .repeatable = true},
-                      {.name = "--scenario",
-                       .help = "only episodes of this scenario (a name, skill/name or a glob)",
-                       .placeholder = "NAME"},
-                      {.name = "--parts",
-                       .help = "below each event also those within it that are of the same\n"
-                               "participants"},
-                      {.name = "--json", .help = "print a JSON array instead of a table"},
-                      {.name = "--csv", .help = "print CSV instead of a table"}},
-          .run = RunQuery};
+  return {
+      .name = "query",
+      .summary = "Find events in recorded episodes",
+      .examples = {"query suite.episodes --event sliding --class object=CerealBox",
+                   "query suite.episodes --event grasping --class object=Handle --part-of "
+                   "object=FridgeDoor",
+                   "query suite.episodes --event pick_and_place --parts --json",
+                   "query *.episodes --event sliding --relation 'meets transporting' --csv",
+                   "query suite.episodes --event grasping --class object=Handle --show shown"},
+      .options = {{.name = "files",
+                   .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
+                   .required = true,
+                   .repeatable = true},
+                  {.name = "--event", .help = "its name, or a glob", .placeholder = "NAME"},
+                  RoleOption("--role", "who or what has a role (of any role: any=NAME)",
+                             "ROLE=NAME"),
+                  RoleOption("--class", "of which class it is, directly or not", "ROLE=CLASS"),
+                  RoleOption("--part-of",
+                             "of what it is a part, directly or not: an entity or a class",
+                             "ROLE=NAME"),
+                  SecondsOption("--at-least-s", "the event lasts at least so long"),
+                  SecondsOption("--at-most-s", "the event lasts at most so long"),
+                  SecondsOption("--from-s", "it begins at this time of its episode or later"),
+                  SecondsOption("--until-s", "it ends at this time of its episode or earlier"),
+                  {.name = "--relation",
+                   .help = "how it lies to another event of its episode, in Allen's words\n"
+                           "(before, meets, overlaps, starts, inside, finishes, equals, ..);\n"
+                           "may be repeated",
+                   .placeholder = "'RELATION EVENT'",
+                   .rule = {.range = {}, .problem = RelationProblem},
+                   .repeatable = true},
+                  {.name = "--scenario",
+                   .help = "only episodes of this scenario (a name, skill/name or a glob)",
+                   .placeholder = "NAME"},
+                  {.name = "--parts",
+                   .help = "below each event also those within it that are of the same\n"
+                           "participants"},
+                  {.name = "--show",
+                   .help = "draw each answer into this folder: the world when the event begins,\n"
+                           "with the paths of its hand and its thing until it ends",
+                   .placeholder = "FOLDER"},
+                  {.name = "--json", .help = "print a JSON array instead of a table"},
+                  {.name = "--csv", .help = "print CSV instead of a table"}},
+      .run = RunQuery};
 }
 
 }  // namespace prehend::harness

@@ -312,7 +312,7 @@ Command RenderCommand() {
                    .help = "paths, ghosts and rows of this hand only",
                    .placeholder = "HAND"},
                   {.name = "--of",
-                   .help = "events that this thing takes part in only",
+                   .help = "the path of this thing, and only events that it takes part in",
                    .placeholder = "NAME"},
                   {.name = "--without",
                    .help = "leave these out",

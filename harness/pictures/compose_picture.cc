@@ -123,6 +123,25 @@ void AppendPath(const physics::Scene& scene, const RunResult& run, const Selecti
   }
 }
 
+/// The path of one body in its colour, while it moves.
+void AppendBodyPath(const RunResult& run, const Selection& selection, int body,
+                    const render::Color& color, std::vector<render::PathStretch>& path) {
+  constexpr float kStill_m = 0.002f;
+  render::PathStretch stretch{
+      .label = selection.entity, .color = color, .points_per_s = kPathPoints_per_s};
+  double next_point_s = 0;
+  for (const physics::Snapshot& snapshot : run.recording) {
+    const double t_s = Seconds(snapshot.tick, run);
+    if (!selection.IsIn(t_s) || t_s < next_point_s) continue;
+    const physics::BodyState& state = snapshot.bodies[static_cast<std::size_t>(body)];
+    const Eigen::Vector3f point = state.X_WB.p_m.cast<float>();
+    if (!stretch.points_m.empty() && (stretch.points_m.back() - point).norm() < kStill_m) continue;
+    stretch.points_m.push_back(point);
+    next_point_s = t_s + 1 / kPathPoints_per_s;
+  }
+  if (stretch.points_m.size() > 1) path.push_back(std::move(stretch));
+}
+
 /// Bodies that a hand holds at a tick.
 std::vector<int> HeldBodies(const physics::Scene& scene, const RunResult& run,
                             const std::string& hand, grammar::Tick tick) {
@@ -332,6 +351,10 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
     if (selection.HasHand(scene.hands[h].name))
       AppendPath(scene, run, selection, static_cast<int>(h), picture.path);
   }
+  const int of = BodyNamed(scene, selection.entity);
+  if (of >= 0 && format.paths)
+    AppendBodyPath(run, selection, of, picture.body_colors[static_cast<std::size_t>(of)],
+                   picture.path);
   // Near a hand, a ghost would hide it.
   if (format.ghosts && entry.camera.value != "hand")
     picture.ghosts = ComposeGhosts(scene, run, selection, moment.tick);

@@ -26,7 +26,7 @@ struct PictureFormat {
   bool print = false;                  ///< on white paper
   std::optional<double> from_s, to_s;  ///< the strip, paths and ghosts of this part of the episode
   std::string only;                    ///< this hand's paths, ghosts and rows; empty: all
-  std::string of;                      ///< events with this entity in a role; empty: all
+  std::string of;  ///< the path of this entity, and events with it in a role; empty: all events
   bool title = true, labels = true, strip = true, ghosts = true, paths = true, gaze = true;
 };
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tests/program/program.h"
 
@@ -106,6 +108,30 @@ TEST(Query, Sqlite3AnswersTheDocumentedQuestions) {
     ++asked;
   }
   EXPECT_EQ(asked, 3);
+}
+
+TEST(Query, EachAnswerIsDrawn) {
+  const std::string file = ThreeEpisodes("query_show");
+  const auto folder = FreshFolder("query_shown") / "new";
+  const Said bad = Prehend({"query", file, "--show", file});
+  if (bad.err.find("draws no pictures") != std::string::npos) GTEST_SKIP() << bad.err;
+  EXPECT_EQ(bad.exit_code, 3);
+  EXPECT_NE(bad.err.find(file + " is not a folder"), std::string::npos) << bad.err;
+  const auto answers =
+      Asked(file, {"--event", "*ing", "--class", "any=Handle", "--show", folder.string()});
+  ASSERT_GT(answers.size(), 1u);
+  std::set<std::uintmax_t> sizes;
+  for (const auto& answer : answers) {
+    const std::string picture = answer["picture"];
+    EXPECT_EQ(std::filesystem::path(picture).parent_path(), folder);
+    ASSERT_TRUE(std::filesystem::exists(picture)) << picture;
+    sizes.insert(std::filesystem::file_size(picture));
+  }
+  EXPECT_EQ(sizes.size(), answers.size()) << "each shows something else";
+  const Said csv =
+      Prehend({"query", file, "--event", "grasping", "--csv", "--show", folder.string()});
+  EXPECT_EQ(csv.out.substr(0, csv.out.find('\n')),
+            "file,episode,scenario,event,begin_s,end_s,roles,picture");
 }
 
 }  // namespace
