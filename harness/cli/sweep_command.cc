@@ -6,6 +6,7 @@
 #include "harness/base/atomic_file.h"
 #include "harness/base/default_grammar.h"
 #include "harness/command/command.h"
+#include "harness/pictures/svg_file.h"
 #include "harness/sweep/plateau.h"
 #include "harness/sweep/sweep.h"
 
@@ -25,10 +26,6 @@ std::string TruthProblem(const std::string& text) {
   return text == "golden" || text == "oracle" || text == "recorded"
              ? ""
              : "found '" + text + "', wanted golden, oracle or recorded";
-}
-
-std::string PictureProblem(const std::string& text) {
-  return text.ends_with(".svg") ? "" : "found '" + text + "', wanted a file NAME.svg";
 }
 
 ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
@@ -82,9 +79,9 @@ ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--output")) problem = WriteTextFile(options.Text("--output"), csv);
   if (problem.empty() && options.Has("--picture"))
     problem =
-        WriteTextFile(options.Text("--picture"),
-                      sweep::HeatMapSvg(request.axes, result->points,
-                                        sweep::FindPlateau(request.axes, result->points, within)));
+        WriteDrawing(options.Text("--picture"),
+                     sweep::HeatMapSvg(request.axes, result->points,
+                                       sweep::FindPlateau(request.axes, result->points, within)));
   if (!options.Has("--output")) context.out << csv;
   context.out << sweep::PlateauText(request.axes, *result, within);
   return problem.empty() ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, problem);
@@ -98,7 +95,7 @@ Command SweepCommand() {
       .summary = "Try a grammar's parameters on recorded episodes",
       .examples = {"sweep suite.episodes --over reach_radius=10cm..50cm:9 -o sweep.csv",
                    "sweep suite.episodes --over reach_radius=10cm..50cm:9 --over "
-                   "lift_rise=2cm..8cm:7 --truth oracle --picture sweep.svg",
+                   "lift_rise=2cm..8cm:7 --truth oracle --picture sweep.png",
                    "sweep *.episodes --grammar my/rules.grammar --over still_for=50ms..200ms:4 "
                    "--truth recorded"},
       .options = {{.name = "files",
@@ -140,9 +137,9 @@ Command SweepCommand() {
                    .other_name = "-o",
                    .is_output = true},
                   {.name = "--picture",
-                   .help = "a heat map of one or two parameters, NAME.svg",
+                   .help = "a heat map of one or two parameters: NAME.svg, NAME.png or NAME.pdf",
                    .placeholder = "FILE",
-                   .rule = {.range = {}, .problem = PictureProblem},
+                   .rule = {.range = {}, .problem = WhyNoDrawingFile},
                    .is_output = true},
                   {.name = "--jobs",
                    .help = "episodes at a time; default: one per core",

@@ -26,13 +26,13 @@ std::vector<std::string> LinesOf(const std::string& text) {
 TEST(Sweep, IsEqualToItsSingleRuns) {
   const auto folder = FreshFolder("sweep");
   const std::string file = TwoEpisodes(folder), csv = (folder / "sweep.csv").string(),
-                    svg = (folder / "sweep.svg").string();
+                    png = (folder / "sweep.png").string();
   const Said swept =
       Prehend({"sweep", file, "--over", "lift_rise=1cm..41cm:3", "--over",
-               "reach_min=50ms..150ms:2", "--truth", "recorded", "-o", csv, "--picture", svg});
+               "reach_min=50ms..150ms:2", "--truth", "recorded", "-o", csv, "--picture", png});
   ASSERT_EQ(swept.exit_code, 0) << swept.err;
   EXPECT_NE(swept.out.find("6 settings on 2 episodes"), std::string::npos) << swept.out;
-  EXPECT_TRUE(ReadFile(svg).find("<svg") != std::string::npos);
+  EXPECT_EQ(ReadFile(png).substr(1, 3), "PNG");
   const std::vector<std::string> lines = LinesOf(ReadFile(csv));
   ASSERT_EQ(lines.size(), 7u);
   EXPECT_EQ(lines[0],
