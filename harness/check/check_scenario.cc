@@ -25,6 +25,7 @@
 #include "harness/judge/judge_pictures.h"
 #include "harness/judge/judge_transforms.h"
 #include "harness/pictures/pictures.h"
+#include "harness/replay/replay_data.h"
 #include "harness/run/run_text.h"
 
 namespace prehend::harness {
@@ -246,6 +247,12 @@ void Conclude(const Findings& findings, ScenarioVerdict& verdict) {
   verdict.reason = first.reason;
 }
 
+void AddReplay(const CheckRequest& request, const CheckedRun& checked, ScenarioVerdict& verdict) {
+  const bool wanted = request.replays == Replays::kAll || (request.replays == Replays::kFailures &&
+                                                           verdict.verdict != Verdict::kPassed);
+  if (wanted) verdict.replay = ReplayData(checked.loaded.scenario, checked.result);
+}
+
 }  // namespace
 
 ScenarioVerdict CheckScenario(const CheckRequest& request) {
@@ -296,6 +303,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
            {{ExitCode::kFailure, "the simulation failed", StatusText(checked.result) + "\n"}});
     Conclude(judgement.findings, verdict);
     verdict.command = Command("run", request.id, request.run);
+    AddReplay(request, checked, verdict);
     return verdict;
   }
 
@@ -326,6 +334,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   verdict.attributions = std::move(judgement.blame.attributions);
   verdict.picture_differences = PictureDifferencesText(
       judgement.pictures, AsItsFileSays(request) ? AcceptPicturesCommand(request.id) : "");
+  AddReplay(request, checked, verdict);
   if (verdict.verdict == Verdict::kPending && request.in_project && AsItsFileSays(request))
     verdict.command = Command("review", request.id, {});
   return verdict;

@@ -13,12 +13,16 @@
 
 namespace prehend::harness {
 
+/// Of which verdicts the report gets a 3D replay.
+enum class Replays { kNone, kFailures, kAll };
+
 struct CheckRequest {
   RunRequest run;
-  std::int64_t episode = 0;   ///< not 0: this one of the episode file `run.scenario_file`
-  std::string id;             ///< skill/name, or the path of a scenario outside the project
-  std::string root;           ///< the project's
-  std::string report_folder;  ///< pictures go to its folder `pictures`
+  std::int64_t episode = 0;          ///< not 0: this one of the episode file `run.scenario_file`
+  std::string id;                    ///< skill/name, or the path of a scenario outside the project
+  std::string root;                  ///< the project's
+  std::string report_folder;         ///< pictures go to its folder `pictures`
+  Replays replays = Replays::kNone;  ///< kFailures: of what has not passed
   bool pictures = true;
   bool leave_nothing_behind = false;  ///< no pending golden, no trace; only the verdict
   bool in_project = true;             ///< below scenarios/, so that it may have a golden

@@ -112,6 +112,7 @@ class Suite {
         .id = Id(turn.scenario),
         .root = request_.root,
         .report_folder = request_.report_folder,
+        .replays = turn.repetition == 0 ? request_.replays : Replays::kNone,
         .pictures = request_.pictures && turn.repetition == 0,
         .leave_nothing_behind = Changed() || turn.repetition > 0 || !IsRemembered(turn.scenario),
         .in_project = InProject(turn.scenario),
@@ -166,10 +167,12 @@ class Suite {
       // Without its record the next check takes longer; if build/ cannot be written, the report,
       // which is in it, too, is an error.
       if (merged.verdict == Verdict::kPassed) {
+        ScenarioVerdict kept = merged;
+        kept.replay.clear();  // large, and quickly made again
         (void)records_.Write({.program = program_,
                               .build = BuildText(),
                               .pictures = request_.pictures,
-                              .verdict = merged});
+                              .verdict = std::move(kept)});
       }
     }
     (void)records_.WriteCosts(costs_);

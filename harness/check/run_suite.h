@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/check/check_scenario.h"
 #include "harness/check/select_scenarios.h"
 #include "harness/check/verdict.h"
 #include "harness/process/worker_pool.h"
@@ -25,6 +26,7 @@ struct SuiteRequest {
   std::string record_file;  ///< an episode file that gets the first run of each; or empty
   std::string today;        ///< YYYY-MM-DD, for that file
   bool pictures = true;
+  Replays replays = Replays::kNone;
   bool only_changed = false;  ///< skip what passed and depends on nothing that changed since
   int repeat = 1;
   std::vector<Transform> transforms;          ///< of each scenario, whose events must not change

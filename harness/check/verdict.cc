@@ -93,6 +93,7 @@ ScenarioVerdict MergeRepeats(const std::vector<ScenarioVerdict>& runs) {
     merged.peak_memory_kib = std::max(merged.peak_memory_kib, run.peak_memory_kib);
     if (!run.picture_differences.empty()) merged.picture_differences = run.picture_differences;
     if (!run.pictures.empty()) merged.pictures = run.pictures;
+    if (!run.replay.empty()) merged.replay = run.replay;
     if (!run.not_recorded.empty()) merged.not_recorded = run.not_recorded;
   }
   const bool agree = std::ranges::all_of(

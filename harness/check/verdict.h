@@ -59,6 +59,7 @@ struct ScenarioVerdict {
   std::int64_t peak_memory_kib = 0;  ///< of its worker
   FileHashes inputs;  ///< every file that decides what the verdict is, as it was before the run
   std::vector<ReportedPicture> pictures;
+  std::string replay;  ///< ReplayData() (harness/replay/replay_data.h), or empty
   std::string
       not_recorded;  ///< empty, or why the episode is not in its file; no part of the verdict
   std::string picture_differences;  ///< several lines; only one of several repetitions draws

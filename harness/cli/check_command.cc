@@ -16,6 +16,7 @@
 #include "harness/episodes/record_episode.h"
 #include "harness/episodes/schema.h"
 #include "harness/report/junit.h"
+#include "harness/report/page_texts.h"
 #include "harness/report/report.h"
 #include "harness/transform/transform.h"
 
@@ -144,26 +145,44 @@ std::string RecordProblem(const std::string& file) {
   return episodes::IsEpisodeFile(file) ? "" : "found '" + file + "', wanted a file NAME.episodes";
 }
 
+std::string ReplayProblem(const std::string& word) {
+  if (word == "failures" || word == "all" || word == "none") return "";
+  return "found '" + word + "', wanted failures, all or none";
+}
+
+/// A page that cannot show replays gets none.
+Replays ReplaysOf(const ParsedOptions& options) {
+  const std::string word = options.TextOr("--replay", "failures");
+  if (word == "none" || ReplayBundle().empty()) return Replays::kNone;
+  return word == "all" ? Replays::kAll : Replays::kFailures;
+}
+
 std::vector<Option> ResultOptions() {
-  return InGroup("What is written",
-                 {
-                     {.name = "--report",
-                      .help = "folder for index.html and pictures; default: build/report",
-                      .placeholder = "DIR"},
-                     {.name = "--junit",
-                      .help = "also write the verdicts as JUnit XML; -: print it instead of text",
-                      .placeholder = "FILE",
-                      .is_output = true},
-                     {.name = "--record",
-                      .help = "also write each episode to FILE, NAME.episodes (docs/episodes.md)",
-                      .placeholder = "FILE",
-                      .rule = {.range = {}, .problem = RecordProblem},
-                      .is_output = true},
-                     {.name = "--no-pictures", .help = "draw no pictures"},
-                     {.name = "--verbose",
-                      .help = "print the details of every failure, also of more than ten"},
-                     {.name = "--json", .help = "print one JSON object instead of text"},
-                 });
+  return InGroup(
+      "What is written",
+      {
+          {.name = "--report",
+           .help = "folder for index.html and pictures; default: build/report",
+           .placeholder = "DIR"},
+          {.name = "--junit",
+           .help = "also write the verdicts as JUnit XML; -: print it instead of text",
+           .placeholder = "FILE",
+           .is_output = true},
+          {.name = "--record",
+           .help = "also write each episode to FILE, NAME.episodes (docs/episodes.md)",
+           .placeholder = "FILE",
+           .rule = {.range = {}, .problem = RecordProblem},
+           .is_output = true},
+          {.name = "--no-pictures", .help = "draw no pictures"},
+          {.name = "--replay",
+           .help = "of which scenarios the page has a 3D replay: failures (the default),\n"
+                   "all, none",
+           .placeholder = "WHICH",
+           .rule = {.range = {}, .problem = ReplayProblem}},
+          {.name = "--verbose",
+           .help = "print the details of every failure, also of more than ten"},
+          {.name = "--json", .help = "print one JSON object instead of text"},
+      });
 }
 
 std::uint64_t MemoryLimit_bytes(const ParsedOptions& options) {
@@ -185,6 +204,7 @@ SuiteRequest RequestFrom(const ParsedOptions& options, const CommandContext& con
                        .record_file = options.Text("--record"),
                        .today = context.today,
                        .pictures = !options.Has("--no-pictures"),
+                       .replays = ReplaysOf(options),
                        .only_changed = options.Has("--changed"),
                        .repeat = options.IntOr("--repeat", 1),
                        .transforms = TransformsOf(options),

@@ -130,7 +130,33 @@ class Drawing {
     for (const Pairing* pairing : row.pairings) {
       if (pairing->expected) DrawBar("golden", *pairing->expected, y + 4, *pairing);
       if (pairing->actual) DrawBar("actual", *pairing->actual, y + 5 + kBarHeight, *pairing);
+      DrawDifference(*pairing, y + 3);
     }
+  }
+
+  std::string SecondsText(Tick tick) const {
+    return fmt::format(
+        "{:.6g}", static_cast<double>(tick) / static_cast<double>(comparison_.ticks_per_second));
+  }
+
+  /// Hatches the time in which only one of the two sides has the event.
+  void DrawDifference(const Pairing& pairing, double y) {
+    if (pairing.agreement == LineVerdict::kMatched) return;
+    const auto hatch = [&](Tick from, Tick to) {
+      if (from == to) return;
+      const double x = X(std::min(from, to));
+      AddElement(
+          svg_, "rect",
+          {{"class", "hatch"},
+           {"x", fmt::format("{:.2f}", x)},
+           {"y", fmt::format("{:g}", y)},
+           {"width", fmt::format("{:.2f}", std::max(kNarrowestBar, X(std::max(from, to)) - x))},
+           {"height", fmt::format("{:g}", 2 * kBarHeight + 3)}});
+    };
+    if (!pairing.expected || !pairing.actual)
+      return hatch(pairing.event().interval.begin, pairing.event().interval.end);
+    hatch(pairing.expected->interval.begin, pairing.actual->interval.begin);
+    hatch(pairing.expected->interval.end, pairing.actual->interval.end);
   }
 
   void DrawBar(const char* side, const NamedEvent& event, double y, const Pairing& pairing) {
@@ -144,6 +170,8 @@ class Drawing {
                     {"y", fmt::format("{:g}", y)},
                     {"width", fmt::format("{:.2f}", width)},
                     {"height", fmt::format("{:g}", kBarHeight)},
+                    {"data-begin", SecondsText(event.interval.begin)},
+                    {"data-end", SecondsText(event.interval.end)},
                     {"fill", fmt::format("#{:06x}", drawings_.Of(event.event).color)}});
     AddElement(bar, "title", {},
                fmt::format("{} {}, {}: {}", side, event.Label(),

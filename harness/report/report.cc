@@ -12,49 +12,24 @@
 #include <string_view>
 #include <tuple>
 
+#include "harness/base/base64.h"
 #include "harness/base/markup.h"
 #include "harness/check/causes.h"
 #include "harness/golden/timeline_svg.h"
-#include "harness/report/page_script.h"
+#include "harness/report/page_texts.h"
 
 namespace prehend::harness {
 namespace {
 
-// Without <, > and &, which HTML would not unescape here.
-constexpr std::string_view kStyle = R"(
-:root { color-scheme: light dark; --ink: #1d2329; --soft: #66707a; --line: #d9dee3; --paper: #fbfbfa; --card: #ffffff;
-  --passed: #1f7a3d; --failed: #b3261e; --pending: #9a6700; }
-@media (prefers-color-scheme: dark) { :root { --ink: #e6e8ea; --soft: #9aa4ae; --line: #363d45; --paper: #15181b;
-  --card: #1d2125; --passed: #5cc27f; --failed: #f2837b; --pending: #e0b354; } }
-body { font: 15px/1.5 system-ui, sans-serif; color: var(--ink); background: var(--paper); max-width: 1100px;
-  margin: 2rem auto; padding: 0 1rem; }
-h1 { font-size: 1.6rem; margin-bottom: .2rem; } h2 { font-size: 1.15rem; margin: 0; }
-a { color: inherit; } .soft { color: var(--soft); }
-table { border-collapse: collapse; width: 100%; margin: 1rem 0 2rem; }
-td, th { text-align: left; padding: .3rem .8rem .3rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
-td.number, th.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
-.passed { color: var(--passed); } .failed { color: var(--failed); } .pending { color: var(--pending); }
-.flaky { color: var(--failed); } .unchanged { color: var(--passed); }
-.verdict { font-weight: 600; }
-section { background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: 1rem 1.2rem; margin: 1rem 0; }
-pre { background: var(--paper); border: 1px solid var(--line); border-radius: 6px; padding: .6rem .8rem; overflow-x: auto;
-  font-size: 13px; }
-svg.timeline { width: 100%; height: auto; margin-top: .6rem; } svg text { font: 12px system-ui, sans-serif; fill: var(--ink); }
-svg text.axis { fill: var(--soft); font-size: 11px; } svg text.differs { fill: var(--failed); font-weight: 600; }
-svg .grid { stroke: var(--line); } svg rect { rx: 2px; } svg rect.golden { opacity: .45; }
-svg rect.differs { stroke: var(--failed); stroke-width: 1.5; }
-svg rect.differs.golden { stroke-dasharray: 4 2; } svg line.cursor { stroke: var(--ink); stroke-width: 1; pointer-events: none; }
-.scroll { overflow-x: auto; } .scroll svg.timeline { min-width: 640px; } output { color: var(--soft); font-size: 13px; }
-#tools { position: sticky; top: 0; background: var(--paper); padding: .5rem 0; display: flex; flex-wrap: wrap; gap: .4rem; z-index: 1; }
-#tools[hidden] { display: none; } #tools input { font: inherit; flex: 1 1 12rem; min-width: 8rem; }
-button.chip { font: inherit; border: 1px solid var(--line); border-radius: 1rem; background: var(--card); color: var(--ink); padding: 0 .8rem; }
-button.chip[aria-pressed=true] { background: var(--ink); color: var(--paper); }
-summary { cursor: pointer; } summary h2 { display: inline; } section.scenario { scroll-margin-top: 3.5rem; }
-h2, td, p, li { overflow-wrap: anywhere; } ol.causes li { margin-bottom: .6rem; } code { font-size: 13px; }
-@media (max-width: 600px) { td:nth-child(4), th:nth-child(4) { display: none; } section { padding: .7rem; } }
-@media print { #tools { display: none; } section { break-inside: avoid; } }
-figure { margin: .8rem 0 0; } figure img { max-width: 100%; border-radius: 6px; } figcaption { color: var(--soft); }
-)";
+// Where style and scripts go: HTML does not unescape what is in them.
+constexpr std::string_view kStylePlace = "@style@", kScriptPlace = "@script@";
+
+// What timelines hatch their differences with.
+constexpr std::string_view kHatch =
+    R"=(<svg width="0" height="0" aria-hidden="true" style="position:absolute"><defs>)="
+    R"=(<pattern id="hatch" width="6" height="6" patternUnits="userSpaceOnUse" )="
+    R"=(patternTransform="rotate(45)"><line class="hatch" x1="0" y1="0" x2="0" y2="6"/>)="
+    R"=(</pattern></defs></svg>)=";
 
 constexpr const char* kNewLine = "\n";  // between blocks, where a browser shows none
 
@@ -124,21 +99,6 @@ void AddTable(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts)
   }
 }
 
-std::string Base64(std::string_view bytes) {
-  static constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63u];
-  }
-  return text;
-}
-
 /// Puts pictures into the page as long as there is room.
 class PictureBox {
  public:
@@ -167,8 +127,45 @@ class PictureBox {
   std::size_t used_ = 0;
 };
 
+/// Puts replays into the page as long as there is room.
+class ReplayBox {
+ public:
+  void Add(pugi::xml_node section, const std::string& data) {
+    if (data.empty() || ReplayBundle().empty()) return;
+    if (used_ + data.size() > kMostReplayBytes) {
+      AddElement(section, "p", {{"class", "soft"}},
+                 "The 3D replay is not in this page, which would grow too large: check this "
+                 "scenario alone.");
+      return;
+    }
+    used_ += data.size();
+    AddElement(section, "div", {{"class", "replay"}}, "");
+    AddElement(section, "script", {{"type", "text/plain"}, {"class", "replay-data"}}, data);
+  }
+  bool any() const { return used_ > 0; }
+
+ private:
+  std::size_t used_ = 0;
+};
+
 void AddCommand(pugi::xml_node parent, const std::string& command) {
   AddElement(parent, "pre", {{"tabindex", "0"}}, command);
+}
+
+/// What stands between backticks as code.
+void AddSentence(pugi::xml_node parent, std::string_view text) {
+  for (bool code = false; !text.empty(); code = !code) {
+    std::size_t end = text.find('`');
+    // A backtick without partner is one.
+    if (!code && end != std::string_view::npos && text.find('`', end + 1) == std::string_view::npos)
+      end = std::string_view::npos;
+    const std::string_view part = text.substr(0, end);
+    if (code)
+      AddElement(parent, "code", {}, part);
+    else
+      AddText(parent, part);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
 }
 
 /// The causes of one scenario's differences as sentences.
@@ -178,7 +175,7 @@ void AddReasons(pugi::xml_node section, const ScenarioVerdict& verdict) {
     std::string effects;
     for (const Effect& effect : cause.effects)
       effects += (effects.empty() ? "" : ", ") + effect.event + " " + effect.what;
-    AddElement(section, "p", {}, "Because of " + cause.because + ": " + effects + ".");
+    AddSentence(AddElement(section, "p"), "Because of " + cause.because + ": " + effects + ".");
   }
 }
 
@@ -186,7 +183,8 @@ bool IsGood(const ScenarioVerdict& verdict) {
   return verdict.verdict == Verdict::kPassed || verdict.verdict == Verdict::kUnchanged;
 }
 
-void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, PictureBox& pictures) {
+void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, PictureBox& pictures,
+                ReplayBox& replays) {
   const std::string name(Name(verdict.verdict));
   const pugi::xml_node section = AddElement(
       body, "section", {{"id", verdict.scenario}, {"class", "scenario"}, {"data-verdict", name}});
@@ -206,8 +204,9 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, PictureBox&
                                               {"role", "group"},
                                               {"aria-label", "timeline of " + verdict.scenario}});
     AddMarkup(scroll, TimelineSvg(*verdict.comparison, verdict.ticks + 1, verdict.drawings));
-    AddElement(scroll, "output", {}, "");
+    AddElement(fold, "output", {}, "");
   }
+  replays.Add(fold, verdict.replay);
   if (!verdict.details.empty()) AddElement(fold, "pre", {{"tabindex", "0"}}, verdict.details);
   const std::string margin = MarginText(verdict);
   if (!margin.empty()) AddElement(fold, "div", {{"class", "soft"}}, margin);
@@ -222,7 +221,7 @@ void AddHead(pugi::xml_node html) {
   AddElement(head, "meta",
              {{"name", "viewport"}, {"content", "width=device-width, initial-scale=1"}});
   AddElement(head, "title", {}, "prehend: regression suite");
-  AddElement(head, "style", {}, kStyle);
+  AddElement(head, "style", {}, kStylePlace);
 }
 
 void AddCauses(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {
@@ -233,8 +232,8 @@ void AddCauses(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts
     const pugi::xml_node list = AddElement(body, "ol", {{"class", "causes"}});
     for (const Cause& cause : causes) {
       const pugi::xml_node item = AddElement(list, "li");
-      AddElement(item, "strong", {},
-                 cause.because.empty() ? "nothing known has changed" : cause.because);
+      AddSentence(AddElement(item, "strong"),
+                  cause.because.empty() ? "nothing known has changed" : cause.because);
       AddText(item, fmt::format(": {} scenario{}, for example ", cause.scenarios.size(),
                                 cause.scenarios.size() == 1 ? "" : "s"));
       AddElement(item, "a", {{"href", "#" + cause.scenarios.front()}}, cause.scenarios.front());
@@ -293,6 +292,12 @@ void AddHeader(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts
     AddElement(fold, "div", {}, fmt::format("{:.2f} s  {}", verdict->seconds, verdict->scenario));
 }
 
+/// In the element whose only text is `place`.
+void Put(std::string& page, std::string_view place, std::string_view text) {
+  const std::size_t at = page.find(fmt::format(">{}</", place));
+  if (at != std::string::npos) page.replace(at + 1, place.size(), text);
+}
+
 /// What needs a person first; in one kind, as they were.
 std::vector<ScenarioVerdict> WorstFirst(std::vector<ScenarioVerdict> verdicts) {
   const auto rank = [](const ScenarioVerdict& verdict) {
@@ -329,11 +334,22 @@ std::string ReportHtml(const std::vector<ScenarioVerdict>& unsorted, const Repor
   AddText(body, kNewLine);
   AddElement(body, "p", {{"class", "soft"}},
              "In every row of a timeline, the golden is above (pale) and the recognised event "
-             "below.");
+             "below; where they differ it is hatched. A click moves the cursor; so do the arrows, "
+             "and b and B to the next and the last boundary.");
+  AddMarkup(body, kHatch);
+  if (!WhyNoReplay().empty())
+    AddElement(body, "p", {{"class", "soft"}},
+               fmt::format("3D replay was left out: {}.", WhyNoReplay()));
   PictureBox pictures(header.folder);
-  for (const ScenarioVerdict& verdict : verdicts) AddSection(body, verdict, pictures);
-  AddElement(body, "script", {}, kPageScript);
-  return ToText(document, Layout::kAsItIs) + "\n";
+  ReplayBox replays;
+  for (const ScenarioVerdict& verdict : verdicts) AddSection(body, verdict, pictures, replays);
+  if (replays.any())
+    AddElement(body, "script", {{"type", "text/plain"}, {"id", "replay-bundle"}}, ReplayBundle());
+  AddElement(body, "script", {}, kScriptPlace);
+  std::string text = ToText(document, Layout::kAsItIs) + "\n";
+  Put(text, kStylePlace, PageStyle());
+  Put(text, kScriptPlace, PageScript());
+  return text;
 }
 
 }  // namespace prehend::harness

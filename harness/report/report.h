@@ -23,6 +23,9 @@ struct ReportHeader {
 /// page says that they lie beside it.
 inline constexpr std::size_t kMostPictureBytes = 15'000'000;
 
+/// The same for 3D replays.
+inline constexpr std::size_t kMostReplayBytes = 10'000'000;
+
 std::string ReportHtml(const std::vector<ScenarioVerdict>& verdicts, const ReportHeader& header);
 
 }  // namespace prehend::harness

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "harness/golden/timeline_svg.h"
+#include "harness/report/page_texts.h"
 
 namespace prehend::harness {
 namespace {
@@ -73,6 +74,50 @@ TEST(Report, WhatFailedIsFirstAndCausesAreAbove) {
   EXPECT_LT(at("<section id=\"slide/new\""), at("<section id=\"slide/good\""));
 }
 
+TEST(Report, WhatStandsBetweenBackticksIsCode) {
+  std::vector<ScenarioVerdict> verdicts = Verdicts();
+  Attribution shifted;
+  shifted.event = "sliding";
+  shifted.because = "`reach_radius` 30 cm -> 20 cm";
+  verdicts[1].comparison = Compared();
+  verdicts[1].comparison->pairings[0].agreement = LineVerdict::kShifted;
+  verdicts[1].has_golden = true;
+  verdicts[1].attributions = {shifted};
+  const std::string html = ReportHtml(verdicts, {});
+  EXPECT_NE(html.find("<strong><code>reach_radius</code> 30 cm -&gt; 20 cm</strong>"),
+            std::string::npos)
+      << html.substr(html.find("Causes"), 400);
+}
+
+TEST(Report, ReplaysAreInThePageOfABuildThatHasThem) {
+  std::vector<ScenarioVerdict> verdicts = Verdicts();
+  verdicts[1].replay = "QUFB";
+  const std::string html = ReportHtml(verdicts, {});
+  const int has = ReplayBundle().empty() ? 0 : 1;
+  EXPECT_EQ(CountOf(html, "class=\"replay-data\">QUFB</script>"), has);
+  EXPECT_EQ(CountOf(html, "id=\"replay-bundle\""), has);
+  EXPECT_EQ(CountOf(html, "3D replay was left out"), 1 - has);
+  EXPECT_EQ(WhyNoReplay().empty(), has == 1);
+  EXPECT_EQ(CountOf(ReportHtml(Verdicts(), {}), "id=\"replay-bundle\""), 0);
+}
+
+TEST(Report, ReplaysThatAreTooLargeAreLeftOut) {
+  std::vector<ScenarioVerdict> verdicts = Verdicts();
+  for (ScenarioVerdict& verdict : verdicts) verdict.replay.assign(kMostReplayBytes / 2, 'A');
+  const std::string html = ReportHtml(verdicts, {});
+  const int has = ReplayBundle().empty() ? 0 : 1;
+  EXPECT_EQ(CountOf(html, "The 3D replay is not in this page"), has);
+  EXPECT_EQ(CountOf(html, "class=\"replay-data\""), 2 * has);
+}
+
+TEST(Report, ScriptAndStyleAreInThePageAsTheyAre) {
+  const std::string html = ReportHtml(Verdicts(), {});
+  EXPECT_NE(html.find(std::string(PageScript()) + "</script>"), std::string::npos);
+  EXPECT_NE(html.find(std::string(PageStyle()) + "</style>"), std::string::npos);
+  EXPECT_EQ(PageScript().find("</"), std::string_view::npos);
+  EXPECT_EQ(PageStyle().find("</"), std::string_view::npos);
+}
+
 TEST(Report, PicturesAreInThePage) {
   const std::string folder = testing::TempDir() + "report_pictures";
   std::filesystem::create_directories(folder);
@@ -93,7 +138,8 @@ TEST(TimelineSvg, DrawsTheGoldenAboveWhatWasRecognised) {
   late.interval.begin = 150;
   const std::string svg =
       TimelineSvg(Compare(golden, {.ticks_per_second = 100, .events = {late}}, 2), 400, {});
-  EXPECT_EQ(CountOf(svg, "<rect"), 2);
+  EXPECT_EQ(CountOf(svg, "<rect"), 3);
+  EXPECT_EQ(CountOf(svg, "class=\"hatch\""), 1) << "only its begin is another";
   EXPECT_EQ(CountOf(svg, "class=\"row differs\""), 1);
   EXPECT_NE(svg.find("golden sliding(h, cup), 1.0000..2.0000 s: shifted"), std::string::npos);
   EXPECT_NE(svg.find("actual sliding(h, cup), 1.5000..2.0000 s: shifted"), std::string::npos);

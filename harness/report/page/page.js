@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// The script of the report page: filter, search, keyboard, links, one cursor across the rows of a timeline and the 3D
+// replay. Without it everything can be read. What it offers to other scripts, window.prehendReport, is described in
+// docs/report-page.md.
+(function () {
+  'use strict';
+  const sections = Array.from(document.querySelectorAll('section.scenario'));
+  const search = document.getElementById('search');
+  const chips = Array.from(document.querySelectorAll('button.chip'));
+  const shown = document.getElementById('shown');
+  document.getElementById('tools').hidden = false;
+
+  function rowOf(section) { return document.querySelector('tr[data-of="' + CSS.escape(section.id) + '"]'); }
+  function textOf(section) {
+    if (!section.searched) {
+      const parts = Array.from(section.querySelectorAll('h2, div.soft, p, pre, text, title'));
+      section.searched = parts.map((part) => part.textContent).join(' ').toLowerCase();
+    }
+    return section.searched;
+  }
+  function wanted(section) {
+    const pressed = chips.filter((chip) => chip.getAttribute('aria-pressed') === 'true');
+    if (pressed.length > 0 && !pressed.some((chip) => chip.dataset.verdict === section.dataset.verdict)) return false;
+    const words = search.value.toLowerCase().split(' ').filter(Boolean);
+    return words.length === 0 || words.every((word) => textOf(section).includes(word));
+  }
+  function filter() {
+    let count = 0;
+    sections.forEach((section) => {
+      const keep = wanted(section);
+      section.hidden = !keep;
+      const row = rowOf(section);
+      if (row) row.hidden = !keep;
+      if (keep) count += 1;
+    });
+    shown.textContent = count + ' of ' + sections.length + ' shown';
+  }
+  search.addEventListener('input', filter);
+  chips.forEach((chip) => chip.addEventListener('click', () => {
+    chip.setAttribute('aria-pressed', String(chip.getAttribute('aria-pressed') !== 'true'));
+    filter();
+  }));
+
+  function open(section) {
+    section.querySelector('details').open = true;
+    section.querySelector('summary').focus({preventScroll: true});
+    section.scrollIntoView({block: 'start'});
+  }
+  let at = -1;
+  function step(by) {
+    const visible = sections.filter((section) => !section.hidden);
+    if (visible.length === 0) return;
+    at = Math.min(Math.max(at + by, 0), visible.length - 1);
+    open(visible[at]);
+    history.replaceState(null, '', '#' + encodeURI(visible[at].id));
+  }
+  document.addEventListener('keydown', (event) => {
+    if (event.target === search) {
+      if (event.key === 'Escape') { search.value = ''; filter(); search.blur(); }
+      return;
+    }
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches('input, select')) return;
+    if (event.key === 'n' || event.key === 'j') step(1);
+    if (event.key === 'p' || event.key === 'k') step(-1);
+    if (event.key === '/') { event.preventDefault(); search.focus(); }
+  });
+
+  // One cursor per section, in seconds: a line across its timeline, and the time of its replay.
+  function timelineOf(section) { return section.querySelector('svg.timeline[data-per-second]'); }
+  function mark(section, seconds) {
+    const svg = timelineOf(section);
+    if (!svg) return;
+    let line = svg.querySelector('line.cursor');
+    if (!line) {
+      line = document.createElementNS(svg.namespaceURI, 'line');
+      line.setAttribute('class', 'cursor');
+      line.setAttribute('y1', 0);
+      line.setAttribute('y2', svg.viewBox.baseVal.height);
+      svg.appendChild(line);
+    }
+    const x = Number(svg.dataset.left) + seconds * Number(svg.dataset.perSecond);
+    line.setAttribute('x1', x);
+    line.setAttribute('x2', x);
+    svg.parentNode.parentNode.querySelector('output').textContent = seconds.toFixed(4) + ' s';
+  }
+  function setCursor(section, seconds) {
+    if (section.player) return section.player.seek(seconds);  // which marks it
+    section.cursor = seconds;
+    mark(section, seconds);
+  }
+  function link(section) {
+    return '#' + encodeURI(section.id) + '@' + (section.cursor || 0).toFixed(4) + 's';
+  }
+  function endOf(svg) { return (svg.viewBox.baseVal.width - Number(svg.dataset.left) - 20) / Number(svg.dataset.perSecond); }
+  sections.forEach((section) => {
+    const svg = timelineOf(section);
+    if (!svg) return;
+    function moment(event) {
+      const frame = svg.getBoundingClientRect();
+      const x = (event.clientX - frame.left) * svg.viewBox.baseVal.width / frame.width;
+      const seconds = (x - Number(svg.dataset.left)) / Number(svg.dataset.perSecond);
+      return Math.min(Math.max(0, seconds), endOf(svg));
+    }
+    svg.addEventListener('pointermove', (event) => { if (event.buttons > 0) setCursor(section, moment(event)); });
+    svg.addEventListener('click', (event) => {
+      const bar = event.target.closest('rect[data-begin]');
+      const exact = bar ? nearest(moment(event), [Number(bar.dataset.begin), Number(bar.dataset.end)], svg) : moment(event);
+      setCursor(section, exact);
+      history.replaceState(null, '', link(section));
+    });
+    svg.parentNode.addEventListener('keydown', (event) => {
+      const by = {ArrowLeft: -1 / 60, ArrowRight: 1 / 60}[event.key];
+      if (event.key === 'b' || event.key === 'B') {
+        event.preventDefault();
+        setCursor(section, boundary(svg, section.cursor || 0, event.key === 'b'));
+        history.replaceState(null, '', link(section));
+      }
+      if (!by) return;
+      event.preventDefault();
+      setCursor(section, Math.min(Math.max(0, (section.cursor || 0) + by * (event.shiftKey ? 10 : 1)), endOf(svg)));
+      history.replaceState(null, '', link(section));
+    });
+  });
+  /// A click near the end of a bar means that end.
+  function nearest(seconds, ends, svg) {
+    const near = 8 / Number(svg.dataset.perSecond);
+    const end = ends.find((each) => Math.abs(each - seconds) <= near);
+    return end === undefined ? seconds : end;
+  }
+  /// The next boundary of any event after this time, or the last before it.
+  function boundary(svg, seconds, forward) {
+    const all = [];
+    svg.querySelectorAll('rect[data-begin]').forEach((bar) => all.push(Number(bar.dataset.begin), Number(bar.dataset.end)));
+    const beyond = all.filter((each) => (forward ? each > seconds + 1e-6 : each < seconds - 1e-6));
+    if (beyond.length === 0) return seconds;
+    return forward ? Math.min(...beyond) : Math.max(...beyond);
+  }
+
+  // The 3D replay: its script and its data are deflated in the page and read when somebody wants them.
+  async function inflated(base64) {
+    const bytes = Uint8Array.from(atob(base64), (char) => char.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
+    return new Response(stream).text();
+  }
+  async function loadPlayer() {
+    if (window.prehendReplay) return;
+    const script = document.createElement('script');
+    script.textContent = await inflated(document.getElementById('replay-bundle').textContent);
+    document.head.appendChild(script);
+  }
+  let playing = null;
+  async function openReplay(section) {
+    if (section.player) return section.player;
+    const place = section.querySelector('.replay');
+    if (!place) return null;
+    await loadPlayer();
+    const data = JSON.parse(await inflated(section.querySelector('script.replay-data').textContent));
+    if (section.player) return section.player;
+    if (playing) closeReplay(playing);
+    const button = place.querySelector('button');
+    const stage = document.createElement('div');
+    place.appendChild(stage);
+    try {
+      const start = section.cursor || 0;
+      section.player = window.prehendReplay.mount(stage, data, (seconds) => {
+        section.cursor = seconds;
+        mark(section, seconds);
+      });
+      playing = section;
+      button.textContent = 'Close the 3D replay';
+      button.setAttribute('aria-expanded', 'true');
+      section.player.seek(start);
+    } catch (error) {
+      stage.textContent = 'This browser cannot show the 3D replay: ' + error.message;
+    }
+    return section.player;
+  }
+  function closeReplay(section) {
+    section.player.remove();
+    section.player = null;
+    const place = section.querySelector('.replay');
+    place.lastElementChild.remove();
+    const button = place.querySelector('button');
+    button.textContent = '3D replay';
+    button.setAttribute('aria-expanded', 'false');
+    if (playing === section) playing = null;
+  }
+  document.querySelectorAll('.replay').forEach((place) => {
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.className = 'chip';
+    button.textContent = '3D replay';
+    button.setAttribute('aria-expanded', 'false');
+    place.appendChild(button);
+    const section = place.closest('section');
+    button.addEventListener('click', () => (section.player ? closeReplay(section) : openReplay(section)));
+  });
+
+  function follow() {
+    const parts = decodeURI(location.hash.slice(1)).split('@');
+    const section = document.getElementById(parts[0]);
+    if (!section || !section.matches('section.scenario')) return;
+    at = sections.filter((each) => !each.hidden).indexOf(section);
+    open(section);
+    const seconds = parseFloat(parts[1]);
+    if (!(seconds >= 0)) return;
+    setCursor(section, seconds);
+    openReplay(section);
+  }
+  window.addEventListener('hashchange', follow);
+  window.addEventListener('beforeprint', () => {
+    document.querySelectorAll('section.scenario:not([data-verdict=passed]):not([data-verdict=unchanged]) details')
+      .forEach((each) => { each.open = true; });
+  });
+
+  function sectionOf(id) { return sections.find((section) => section.id === id); }
+  window.prehendReport = {
+    scenarios: () => sections.map((section) => section.id),
+    setCursor: (id, seconds) => setCursor(sectionOf(id), seconds),
+    cursorOf: (id) => sectionOf(id).cursor || 0,
+    openReplay: (id) => openReplay(sectionOf(id)),
+  };
+  filter();
+  follow();
+}());
