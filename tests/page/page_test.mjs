@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// The report page in Chromium, as somebody uses it. Started by tests/page/run.
+import {strict as assert} from 'node:assert';
+import {spawnSync} from 'node:child_process';
+import {readFileSync, statSync} from 'node:fs';
+import {after, before, test} from 'node:test';
+import {chromium} from 'playwright-core';
+
+const {PREHEND, PROJECT, SUITE_PAGE} = process.env;
+const FAILS = 'pick_and_place/milk_carton_wrap', BODY = 'body/arm_follows_the_hand';
+const CHANGED = ['--set', 'reach_radius=20cm'];
+const FILE = process.cwd() + '/page/index.html';
+const axe = readFileSync('node_modules/axe-core/axe.min.js', 'utf8');
+
+function prehend(...words) {
+  const said = spawnSync(PREHEND, words, {cwd: PROJECT, encoding: 'utf8', maxBuffer: 1 << 28});
+  return said.stdout;
+}
+
+/// Pose of an entity at a tick, as the program records it for other grammars: what moved since.
+function recordedPose(name, tick) {
+  let pose = null;
+  for (const line of prehend('run', FAILS, ...CHANGED, '--record', '-').split('\n')) {
+    const frame = line ? JSON.parse(line) : {};
+    if (!frame.samples || frame.tick > tick) continue;
+    if (frame.samples[name]) pose = frame.samples[name].at_m;
+  }
+  return pose;
+}
+
+let browser, hasReplay;
+before(async () => {
+  prehend('check', FAILS, BODY, 'slide/*', 'support/*', ...CHANGED, '--replay', 'all', '--report', process.cwd() + '/page');
+  hasReplay = readFileSync(FILE, 'utf8').includes('id="replay-bundle"');
+  if (!hasReplay) console.error('\nSKIPPED: the 3D replay in a browser: this build has none\n');
+  browser = await chromium.launch({
+    executablePath: '/usr/bin/chromium', args: ['--no-sandbox', '--enable-unsafe-swiftshader', '--use-angle=swiftshader']});
+});
+after(() => browser && browser.close());
+
+/// The page, and what it asked for and complained about.
+async function opened({hash = '', file = FILE, ...options} = {}) {
+  const context = await browser.newContext({viewport: {width: 1280, height: 900}, ...options});
+  const page = await context.newPage();
+  const seen = {requests: [], complaints: []};
+  page.on('request', (request) => {
+    if (!request.url().startsWith('data:')) seen.requests.push(request.url());
+  });
+  page.on('console', (message) => {
+    if (['error', 'warning'].includes(message.type())) seen.complaints.push(message.text());
+  });
+  page.on('pageerror', (error) => seen.complaints.push(String(error)));
+  await page.goto('file://' + file + hash);
+  return {page, seen, close: () => context.close()};
+}
+
+/// What axe-core calls serious or critical, a line each.
+async function serious(page) {
+  await page.evaluate(axe);
+  const result = await page.evaluate(() => window.axe.run());
+  return result.violations.filter((each) => ['serious', 'critical'].includes(each.impact))
+    .flatMap((each) => each.nodes.map((node) => `${each.id}: ${node.html.slice(0, 120)} ${node.failureSummary}`));
+}
+
+test('asks for nothing but itself and complains of nothing', async () => {
+  const {page, seen, close} = await opened();
+  if (hasReplay) {
+    await page.evaluate((id) => window.prehendReport.openReplay(id), FAILS);
+    await page.evaluate((id) => window.prehendReport.openReplay(id), BODY);
+  }
+  assert.deepEqual(seen, {requests: ['file://' + FILE], complaints: []});
+  await close();
+});
+
+test('what failed is the first section', async () => {
+  const {page, close} = await opened();
+  const first = await page.evaluate(() => document.querySelector('section').dataset.verdict);
+  assert.equal(first, 'failed');
+  const verdicts = await page.evaluate(() => Array.from(document.querySelectorAll('section'), (each) => each.dataset.verdict));
+  assert.ok(verdicts.includes('passed'), 'some pass, else this shows nothing');
+  await close();
+});
+
+test('scrubbing to the begin of an event puts the thing where it was', async (context) => {
+  if (!hasReplay) return context.skip('this build has no replay');
+  const {events} = JSON.parse(prehend('run', FAILS, ...CHANGED, '--json'));
+  const {page, close} = await opened();
+  for (const wanted of ['picking_up', 'transporting', 'putting_down']) {
+    const event = events.find((each) => each.event === wanted);
+    for (const name of ['milk', 'right_hand']) {
+      const drawn = await page.evaluate(async ([id, seconds, what]) => {
+        const player = await window.prehendReport.openReplay(id);
+        const scrubber = document.getElementById(id).querySelector('input[type=range]');
+        scrubber.value = String(seconds);
+        scrubber.dispatchEvent(new Event('input'));
+        return player.poseOf(what).p;
+      }, [FAILS, event.begin_s, name]);
+      const true_m = recordedPose(name, event.begin_tick);
+      const off_mm = 1000 * Math.hypot(...drawn.map((value, i) => value - true_m[i]));
+      assert.ok(off_mm < 1, `${name} at ${wanted}.begin is ${off_mm.toFixed(3)} mm off`);
+    }
+  }
+  const cursor = await page.evaluate((id) => document.getElementById(id).querySelector('output').textContent, FAILS);
+  assert.equal(cursor, events.find((each) => each.event === 'putting_down').begin_s.toFixed(4) + ' s', 'one cursor');
+  await close();
+});
+
+test('a link opens a scenario at a moment', async () => {
+  const {page, close} = await opened({hash: '#' + FAILS + '@1.2500s'});
+  assert.equal(await page.evaluate((id) => window.prehendReport.cursorOf(id), FAILS), 1.25);
+  if (hasReplay) {
+    await page.waitForSelector('.replay canvas');
+    assert.match(await page.textContent('.replay .clock'), /^1\.250 of/);
+  }
+  await close();
+});
+
+test('by keyboard: search, next, boundaries, play', async () => {
+  const {page, close} = await opened();
+  await page.keyboard.press('n');
+  assert.equal(decodeURI(new URL(page.url()).hash), '#' + await page.evaluate(() => window.prehendReport.scenarios()[0]));
+  await page.keyboard.press('/');
+  await page.keyboard.type('milk_carton_wrap');
+  assert.equal(await page.textContent('#shown'), '1 of ' + await page.locator('section.scenario').count() + ' shown');
+  const timeline = page.locator('section:visible .scroll');
+  await timeline.focus();
+  await page.keyboard.press('b');
+  const first = await page.evaluate((id) => window.prehendReport.cursorOf(id), FAILS);
+  await page.keyboard.press('b');
+  assert.ok(await page.evaluate((id) => window.prehendReport.cursorOf(id), FAILS) > first);
+  assert.match(page.url(), /@0\.\d{4}s$/);
+  if (hasReplay) {
+    await page.locator('section:visible .replay button').focus();
+    await page.keyboard.press('Enter');
+    await page.waitForSelector('.replay canvas');
+    await page.locator('.replay canvas').focus();
+    await page.keyboard.press('.');
+    const moved = await page.evaluate((id) => window.prehendReport.cursorOf(id), FAILS);
+    await page.keyboard.press(' ');
+    await page.waitForFunction(([id, from]) => window.prehendReport.cursorOf(id) > from + 0.05, [FAILS, moved]);
+    await page.keyboard.press(' ');
+    assert.equal(await page.textContent('.replay .play'), 'play', 'it pauses');
+  }
+  await close();
+});
+
+test('layers and views change the picture', async (context) => {
+  if (!hasReplay) return context.skip('this build has no replay');
+  const {page, close} = await opened();
+  await page.evaluate((id) => window.prehendReport.openReplay(id).then((player) => player.seek(2)), BODY);
+  const picture = () => page.evaluate(() => document.querySelector('.replay canvas').toDataURL());
+  for (const layer of ['contacts', 'paths', 'gaze', 'body']) {
+    const shown = await picture();
+    await page.getByLabel(layer, {exact: true}).uncheck();
+    assert.notEqual(await picture(), shown, layer);
+  }
+  const views = await page.locator('.replay select[aria-label=camera] option').allTextContents();
+  assert.deepEqual(views, ['fitted', 'front', 'side', 'top', 'hand', 'eyes']);
+  const pictures = new Set();
+  for (const view of views) {
+    await page.getByLabel('camera').selectOption(view);
+    pictures.add(await picture());
+  }
+  assert.equal(pictures.size, views.length);
+  await close();
+});
+
+for (const [where, options] of Object.entries({
+  'on a desktop': {}, 'in the dark': {colorScheme: 'dark'}, 'on a phone': {viewport: {width: 390, height: 844}, isMobile: true, hasTouch: true}})) {
+  test('has no serious barrier ' + where, async () => {
+    const {page, close} = await opened(options);
+    if (hasReplay) await page.evaluate((id) => window.prehendReport.openReplay(id), FAILS);
+    assert.deepEqual(await serious(page), []);
+    const [content, screen] = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
+    assert.ok(content <= screen, `sideways scroll: ${content} of ${screen} px`);
+    await close();
+  });
+}
+
+test('on a phone the tools do not cover the title', async () => {
+  const {page, close} = await opened({hash: '#' + FAILS, viewport: {width: 390, height: 844}, isMobile: true, hasTouch: true});
+  const covered = await page.evaluate((id) => {
+    const title = document.getElementById(id).querySelector('h2').getBoundingClientRect();
+    const tools = document.getElementById('tools').getBoundingClientRect();
+    return tools.bottom > title.top && tools.top < title.bottom;
+  }, FAILS);
+  assert.equal(covered, false);
+  await close();
+});
+
+test('a whole suite has at most 30 MB', async (context) => {
+  if (!SUITE_PAGE) return context.skip('no page of a suite was given');
+  const size_mb = statSync(SUITE_PAGE).size / 1e6;
+  assert.ok(size_mb <= 30, `${size_mb.toFixed(1)} MB`);
+  const begin = Date.now();
+  const {page, seen, close} = await opened({file: SUITE_PAGE});
+  await page.keyboard.press('n');
+  const count = await page.locator('section.scenario').count();
+  context.diagnostic(`${count} scenarios, ${size_mb.toFixed(1)} MB, usable after ${((Date.now() - begin) / 1000).toFixed(2)} s`);
+  assert.deepEqual(seen.complaints, []);
+  await close();
+});
