@@ -31,6 +31,7 @@ std::vector<EventSignature> EventSignatures(const Program& program) {
     event.name = rule.name;
     event.has_style = rule.style_role != kNone;
     event.symmetric = rule.symmetric;
+    event.composed = rule.form() == Form::kCompose;
     event.drawing = rule.drawing;
     for (const RuleRole& role : rule.roles) {
       event.roles.push_back(role.name);

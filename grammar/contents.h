@@ -30,6 +30,7 @@ struct EventSignature {
   std::vector<std::string> attributes;  ///< of `with NAME = value`
   bool has_style = false;               ///< `with style = style(hand)`
   bool symmetric = false;               ///< its first two roles may be exchanged
+  bool composed = false;                ///< `compose ..`: it consists of other events
   Drawing drawing;                      ///< `drawn as ..`
 };
 /// Of the events, in the order of EventNames().

@@ -41,6 +41,8 @@ std::vector<Command> Commands() {
           Limited(EpisodesCommand(), kMany_s),
           Limited(ReplayCommand(), kMany_s),
           Limited(SweepCommand(), kMany_s),
+          Limited(KnowledgeCommand(), kMany_s),
+          AskCommand(),
           Limited(TryCommand(), kOne_s)};
 }
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/cli/query_pictures.h"
+#include "harness/cli/moment_pictures.h"
 #include "harness/command/command.h"
 #include "harness/episodes/query_events.h"
 #include "harness/pictures/pictures.h"
@@ -121,6 +121,7 @@ EventQuestion EventQuestionOf(const ParsedOptions& options) {
   std::string problem;
   for (const std::string& text : options.All("--relation"))
     question.relations.push_back(*episodes::ParseRelation(text, problem));
+  question.with = options.All("--with");
   return question;
 }
 
@@ -136,8 +137,12 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
     if (!found) return Complain(context, found.error());
     answers.insert(answers.end(), found->begin(), found->end());
   }
-  QueryPictures drawn;
-  if (options.Has("--show")) drawn = DrawAnswers(answers, options.Text("--show"), context.root);
+  MomentPictures drawn;
+  if (options.Has("--show")) {
+    std::vector<Moment> moments;
+    for (const EventAnswer& answer : answers) moments.push_back(MomentOf(answer));
+    drawn = DrawMoments(moments, options.Text("--show"), context.root);
+  }
   if (options.Has("--json"))
     PrintQueryJson(answers, drawn.files, options.Has("--parts"), context.out);
   else
@@ -197,9 +202,13 @@ Command QueryCommand() {
                   {.name = "--scenario",
                    .help = "only episodes of this scenario (a name, skill/name or a glob)",
                    .placeholder = "NAME"},
+                  {.name = "--with",
+                   .help = "it has a part of this name (see --parts); may be repeated",
+                   .placeholder = "EVENT",
+                   .repeatable = true},
                   {.name = "--parts",
-                   .help = "below each event also those within it that are of the same\n"
-                           "participants"},
+                   .help = "below each event also its parts: those that begin within it and have\n"
+                           "no other participants"},
                   {.name = "--show",
                    .help = "draw each answer into this folder: the world when the event begins,\n"
                            "with the paths of its hand and its thing until it ends",

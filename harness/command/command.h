@@ -60,6 +60,8 @@ Command ReplayCommand();
 Command QueryCommand();
 Command SweepCommand();
 Command TryCommand();
+Command KnowledgeCommand();
+Command AskCommand();
 
 /// The same command, in a process of its own, with the options --time-limit-s (`time_limit_s` where
 /// it is not given) and --memory-limit-mb. A run beyond a limit, or one that crashes, ends with

@@ -110,6 +110,24 @@ Result<TaskFiles> EpisodeFile::TaskOf(const EpisodeRow& episode) const {
   }
 }
 
+Result<KeptTask> EpisodeFile::DescribeTaskOf(const EpisodeRow& episode) const {
+  try {
+    Statement find = state_->database.Prepare(
+        "SELECT task.uuid, shows, task.id FROM task JOIN episode ON episode.task = task.id"
+        " WHERE episode.id = ?");
+    if (!find.Bind(episode.id).Step())
+      return tl::unexpected(Damage(path_, "the file is damaged: an episode has no task"));
+    KeptTask task{.uuid = find.Text(0), .shows = find.Text(1), .assets = {}};
+    Statement assets =
+        state_->database.Prepare("SELECT path, hash FROM task_asset WHERE task = ? ORDER BY path");
+    assets.Bind(find.Integer(2));
+    while (assets.Step()) task.assets.push_back({assets.Text(0), assets.Text(1)});
+    return task;
+  } catch (const DatabaseError& error) {
+    return tl::unexpected(Damage(path_, error.what()));
+  }
+}
+
 Result<grammar::Timeline> EpisodeFile::TimelineOf(const EpisodeRow& episode) const {
   try {
     grammar::Timeline timeline{.ticks_per_second = episode.ticks_per_second, .events = {}};
@@ -145,7 +163,8 @@ Result<std::vector<KeptEntity>> EpisodeFile::EntitiesOf(const EpisodeRow& episod
   try {
     std::vector<KeptEntity> entities;
     Statement find = state_->database.Prepare(
-        "SELECT entity.number, name, coalesce(part_of, -1), entity_class.class"
+        "SELECT entity.number, name, coalesce(part_of, -1), entity_class.class, entity.uuid,"
+        " coalesce(mass_kg, 0), size_x_m, size_y_m, size_z_m"
         " FROM episode JOIN entity USING(task) JOIN entity_class ON"
         " entity_class.task = entity.task AND entity_class.number = entity.number"
         " WHERE episode.id = ? ORDER BY entity.number, depth");
@@ -153,7 +172,12 @@ Result<std::vector<KeptEntity>> EpisodeFile::EntitiesOf(const EpisodeRow& episod
     while (find.Step()) {
       const std::int64_t number = find.Integer(0);
       if (number == static_cast<std::int64_t>(entities.size()))
-        entities.push_back({find.Text(1), {}, static_cast<int>(find.Integer(2))});
+        entities.push_back({.name = find.Text(1),
+                            .classes = {},
+                            .part_of = static_cast<int>(find.Integer(2)),
+                            .uuid = find.Text(4),
+                            .mass_kg = find.Double(5),
+                            .size_m = {find.Double(6), find.Double(7), find.Double(8)}});
       if (number + 1 != static_cast<std::int64_t>(entities.size()))
         return tl::unexpected(Damage(path_, "the file is damaged: an entity is missing"));
       entities.back().classes.push_back(find.Text(3));

@@ -3,6 +3,7 @@
 // frame of them. Tested by tests/harness/episodes/episode_file_test.cc
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -35,8 +36,20 @@ struct EpisodeRow {
 /// An entity as a file keeps it.
 struct KeptEntity {
   std::string name;
-  std::vector<std::string> classes;  ///< the most specific first
-  int part_of = -1;                  ///< index of an entity of the same episode, or -1
+  std::vector<std::string> classes;   ///< the most specific first
+  int part_of = -1;                   ///< index of an entity of the same episode, or -1
+  std::string uuid;                   ///< the same in all episodes of a task
+  double mass_kg = 0;                 ///< 0: it has none
+  std::array<double, 3> size_m = {};  ///< of its bounding box
+};
+
+/// What was run, as a file keeps it.
+struct KeptTask {
+  struct Asset {
+    std::string path, hash;  ///< XXH3 of its content
+  };
+  std::string uuid, shows;
+  std::vector<Asset> assets;
 };
 
 /// A file that is open for reading. Functions that return a Result report damage with the file.
@@ -51,6 +64,8 @@ class EpisodeFile {
   const std::vector<EpisodeRow>& episodes() const { return episodes_; }
 
   Result<TaskFiles> TaskOf(const EpisodeRow& episode) const;
+  /// The same without the contents of its files.
+  Result<KeptTask> DescribeTaskOf(const EpisodeRow& episode) const;
   /// What was recognised when it was recorded.
   Result<grammar::Timeline> TimelineOf(const EpisodeRow& episode) const;
   /// In the order of their numbers.

@@ -18,6 +18,11 @@ bool Fits(const std::string& pattern, const std::string& text) {
   return fnmatch(pattern.c_str(), text.c_str(), 0) == 0;
 }
 
+const KeptEntity* EntityNamed(const std::string& name, const std::vector<KeptEntity>& entities) {
+  const auto found = std::ranges::find(entities, name, &KeptEntity::name);
+  return found == entities.end() ? nullptr : &*found;
+}
+
 class Asker {
  public:
   Asker(const EventQuestion& question, const std::vector<KeptEntity>& entities,
@@ -47,25 +52,11 @@ class Asker {
                    [&](const std::string& value, const std::string& wanted) {
                      return IsPartOf(value, wanted);
                    }) &&
-           std::ranges::all_of(question_.relations, [&](const EventQuestion::Relation& relation) {
-             return HasRelation(event, relation);
-           });
-  }
-
-  std::vector<grammar::NamedEvent> PartsOf(const grammar::NamedEvent& whole) const {
-    std::vector<grammar::NamedEvent> parts;
-    for (const grammar::NamedEvent& event : timeline_.events) {
-      if (&event == &whole || event.interval.begin < whole.interval.begin ||
-          event.interval.end > whole.interval.end)
-        continue;
-      const bool same_participants = std::ranges::all_of(event.roles, [&](const auto& role) {
-        return std::ranges::any_of(whole.roles, [&](const grammar::Role& other) {
-          return other.value == role.value || !Find(role.value);
-        });
-      });
-      if (same_participants) parts.push_back(event);
-    }
-    return parts;
+           std::ranges::all_of(question_.relations,
+                               [&](const EventQuestion::Relation& relation) {
+                                 return HasRelation(event, relation);
+                               }) &&
+           (question_.with.empty() || HasParts(event));
   }
 
  private:
@@ -80,10 +71,15 @@ class Asker {
     });
   }
 
-  const KeptEntity* Find(const std::string& name) const {
-    const auto found = std::ranges::find(entities_, name, &KeptEntity::name);
-    return found == entities_.end() ? nullptr : &*found;
+  bool HasParts(const grammar::NamedEvent& event) const {
+    const auto parts = PartsOf(event, timeline_, entities_);
+    return std::ranges::all_of(question_.with, [&](const std::string& name) {
+      return std::ranges::any_of(
+          parts, [&](const grammar::NamedEvent* part) { return Fits(name, part->event); });
+    });
   }
+
+  const KeptEntity* Find(const std::string& name) const { return EntityNamed(name, entities_); }
 
   static bool IsA(const KeptEntity& entity, const std::string& wanted) {
     return std::ranges::any_of(entity.classes,
@@ -116,6 +112,24 @@ class Asker {
 };
 
 }  // namespace
+
+std::vector<const grammar::NamedEvent*> PartsOf(const grammar::NamedEvent& whole,
+                                                const grammar::Timeline& timeline,
+                                                const std::vector<KeptEntity>& entities) {
+  std::vector<const grammar::NamedEvent*> parts;
+  for (const grammar::NamedEvent& event : timeline.events) {
+    if (&event == &whole || event.interval.begin < whole.interval.begin ||
+        event.interval.begin >= whole.interval.end)
+      continue;
+    const bool same_participants = std::ranges::all_of(event.roles, [&](const auto& role) {
+      return std::ranges::any_of(whole.roles, [&](const grammar::Role& other) {
+        return other.value == role.value || !EntityNamed(role.value, entities);
+      });
+    });
+    if (same_participants) parts.push_back(&event);
+  }
+  return parts;
+}
 
 std::optional<RoleCondition> ParseRoleCondition(std::string_view text) {
   const std::size_t equals = text.find('=');
@@ -159,9 +173,11 @@ Result<std::vector<EventAnswer>> Ask(const std::string& path, const EventQuestio
     if (!entities) return tl::unexpected(entities.error());
     const Asker asker(question, *entities, *timeline);
     for (const grammar::NamedEvent& event : timeline->events) {
-      if (asker.Holds(event))
-        answers.push_back(
-            {path, row.id, row.scenario, row.ticks_per_second, event, asker.PartsOf(event)});
+      if (!asker.Holds(event)) continue;
+      EventAnswer& answer = answers.emplace_back();
+      answer = {path, row.id, row.scenario, row.ticks_per_second, event, {}};
+      for (const grammar::NamedEvent* part : PartsOf(event, *timeline, *entities))
+        answer.parts.push_back(*part);
     }
   }
   return answers;

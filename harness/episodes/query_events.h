@@ -30,6 +30,7 @@ struct EventQuestion {
     std::string relation, event;
   };
   std::vector<Relation> relations;
+  std::vector<std::string> with;  ///< it has a part of each of these names
 };
 
 /// "ROLE=VALUE"; nothing if it is not of that form.
@@ -43,9 +44,14 @@ struct EventAnswer {
   std::string scenario;
   grammar::Tick ticks_per_second = 480;
   grammar::NamedEvent event;
-  /// The events of the episode within this one whose roles are all roles of this one.
-  std::vector<grammar::NamedEvent> parts;
+  std::vector<grammar::NamedEvent> parts;  ///< PartsOf() it
 };
+
+/// The events of an episode that begin within this one and whose participants are all its own, in
+/// the order of the timeline.
+std::vector<const grammar::NamedEvent*> PartsOf(const grammar::NamedEvent& whole,
+                                                const grammar::Timeline& timeline,
+                                                const std::vector<KeptEntity>& entities);
 
 /// The answers in one file, in the order of episodes and time.
 Result<std::vector<EventAnswer>> Ask(const std::string& file, const EventQuestion& question);

@@ -212,6 +212,22 @@ std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunRe
   return markers;
 }
 
+/// A bubble around each thing that is marked; it surrounds the corners of what the thing fills.
+void MarkThings(const physics::Scene& scene, const physics::Snapshot& snapshot,
+                const std::vector<std::string>& names, std::vector<render::Marker>& markers) {
+  constexpr double kAroundCorners = 1.75;
+  for (const std::string& name : names) {
+    const int body = BodyNamed(scene, name);
+    if (body < 0) continue;
+    const physics::LocalBox box = physics::BoundingBox(scene.bodies[body]);
+    const physics::Pose& X_WB = snapshot.bodies[body].X_WB;
+    const Eigen::Vector3d half =
+        kAroundCorners * (X_WB.q.toRotationMatrix().cwiseAbs() * box.half_size_m);
+    markers.push_back(
+        {render::MarkerKind::kRegion, (X_WB * box.p_BC_m).cast<float>(), half.cast<float>()});
+  }
+}
+
 /// Events with a row of their own, in the order in which they first happen.
 std::vector<std::string> OtherEvents(const RunResult& run) {
   std::vector<std::string> names;
@@ -342,7 +358,7 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
   picture.body_colors = BodyColors(scenario);
   for (std::size_t i = 0; i < scene.bodies.size() && format.labels; ++i) {
     // A person has one label, at her head: labels of eighteen parts would hide her.
-    const bool is_part = scenario.body_classes[i] == "BodyPart";
+    const bool is_part = scene.bodies[i].kinematic && scenario.body_classes[i] != "Person";
     const bool is_named = !is_part && IsSeen(scene.bodies[i]);
     picture.body_labels.push_back(is_named ? scene.bodies[i].name : "");
   }
@@ -359,6 +375,7 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
   if (format.ghosts && entry.camera.value != "hand")
     picture.ghosts = ComposeGhosts(scene, run, selection, moment.tick);
   picture.markers = ComposeMarkers(scenario, run, picture.snapshot);
+  MarkThings(scene, picture.snapshot, format.marked, picture.markers);
   picture.props = LegsOf(scenario, picture.body_colors, picture.snapshot);
   if (format.gaze) picture.gazes = GazesOf(scene, picture.snapshot);
   if (format.strip) picture.strip = ComposeStrip(scene, run, selection, moment.tick);

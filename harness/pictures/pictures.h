@@ -27,6 +27,7 @@ struct PictureFormat {
   std::optional<double> from_s, to_s;  ///< the strip, paths and ghosts of this part of the episode
   std::string only;                    ///< this hand's paths, ghosts and rows; empty: all
   std::string of;  ///< the path of this entity, and events with it in a role; empty: all events
+  std::vector<std::string> marked;  ///< things that get a bubble around them
   bool title = true, labels = true, strip = true, ghosts = true, paths = true, gaze = true;
 };
 

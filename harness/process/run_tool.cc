@@ -7,6 +7,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -97,6 +98,10 @@ ToolResult RunTool(const std::vector<std::string>& words, const std::string& inp
                          ? fmt::format("'{}' is not installed", words[0])
                          : fmt::format("'{}' cannot be started: {}", words[0], strerror(failed));
     return result;
+  }
+  if (limits.memory_bytes > 0) {
+    const rlimit limit{limits.memory_bytes, limits.memory_bytes};
+    prlimit(process, RLIMIT_AS, &limit, nullptr);
   }
   its_in.Close();
   its_out.Close();

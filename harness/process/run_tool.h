@@ -11,6 +11,7 @@ namespace prehend::harness {
 struct ToolLimits {
   double time_s = 60;
   std::size_t output_bytes = std::size_t{1} << 28;  ///< of standard output and error together
+  std::size_t memory_bytes = 0;                     ///< of its address space; 0: any
 };
 
 struct ToolResult {

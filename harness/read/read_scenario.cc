@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -104,6 +106,23 @@ std::string SkillOf(const std::string& file) {
   return folder.parent_path().filename() == "scenarios" ? folder.filename().string() : "";
 }
 
+/// "Forearm" of "anna_right_forearm".
+std::string ClassOfPart(const std::string& name, const std::string& person) {
+  std::string part = name.substr(person.size() + 1);
+  for (const char* side : {"right_", "left_"})
+    if (part.starts_with(side)) part = part.substr(std::strlen(side));
+  // The grammar's `Hand` has fingers, sensors and a script; the one that hangs down has none.
+  if (part == "hand") return "RestingHand";
+  std::string words;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (part[i] == '_') continue;
+    const bool begins = i == 0 || part[i - 1] == '_';
+    words +=
+        begins ? static_cast<char>(std::toupper(static_cast<unsigned char>(part[i]))) : part[i];
+  }
+  return words;
+}
+
 /// The head stands for the person; her other bodies are parts of it.
 void AddPersonClasses(Scenario& scenario) {
   for (std::size_t i = scenario.body_classes.size(); i < scenario.scene.bodies.size(); ++i) {
@@ -112,7 +131,10 @@ void AddPersonClasses(Scenario& scenario) {
         persons.rbegin(), persons.rend(),
         [&](const physics::Person& person) { return static_cast<std::size_t>(person.head) <= i; });
     const bool is_head = static_cast<std::size_t>(owner->head) == i;
-    scenario.body_classes.push_back(is_head ? "Person" : "BodyPart");
+    const auto head = static_cast<std::size_t>(owner->head);
+    const auto& bodies = scenario.scene.bodies;
+    scenario.body_classes.push_back(is_head ? "Person"
+                                            : ClassOfPart(bodies[i].name, bodies[head].name));
     scenario.body_part_of.push_back(is_head ? grammar::kNoEntity : owner->head);
   }
 }

@@ -35,6 +35,10 @@ std::vector<std::string> BuiltInClassesOf(const physics::Scene& scene, std::size
       break;
   }
   if (is.grains) return {"Grains", "Entity"};
+  const bool is_head = std::ranges::any_of(scene.persons, [&](const physics::Person& person) {
+    return person.head == static_cast<int>(body);
+  });
+  if (is.kinematic && !is_head) return {"BodyPart", "Entity"};
   if (!physics::IsThing(is)) return {"Entity"};
   return {MobilityOf(scene, static_cast<int>(body)), "Thing", "Entity"};
 }

@@ -73,6 +73,8 @@ const Arrows& ProjectArrows() {
         "render"}},
       {"harness/replay",
        {"harness/base", "harness/pictures", "harness/run", "harness/scenario", "physics/scene"}},
+      {"harness/knowledge",
+       {"grammar", "harness/base", "harness/episodes", "harness/process", "physics/scene"}},
       {"harness/score",
        {"grammar", "grammar/base", "harness/base", "harness/claims", "harness/closed_form",
         "harness/episodes", "harness/oracle", "harness/run", "harness/timeline"}},
@@ -96,12 +98,12 @@ const Arrows& ProjectArrows() {
        {"grammar/base", "harness/base", "harness/episodes", "harness/process", "harness/run",
         "harness/sense"}},
       {"harness/cli",
-       {"grammar",          "harness/base",     "harness/check",   "harness/closed_form",
-        "harness/command",  "harness/episodes", "harness/explain", "harness/format",
-        "harness/golden",   "harness/judge",    "harness/oracle",  "harness/pictures",
-        "harness/process",  "harness/read",     "harness/report",  "harness/run",
-        "harness/score",    "harness/sense",    "harness/speed",   "harness/sweep",
-        "harness/timeline", "harness/transform"}},
+       {"grammar",          "harness/base",     "harness/check",     "harness/closed_form",
+        "harness/command",  "harness/episodes", "harness/explain",   "harness/format",
+        "harness/golden",   "harness/judge",    "harness/knowledge", "harness/oracle",
+        "harness/pictures", "harness/process",  "harness/read",      "harness/report",
+        "harness/run",      "harness/score",    "harness/sense",     "harness/speed",
+        "harness/sweep",    "harness/timeline", "harness/transform"}},
   };
   return arrows;
 }

@@ -40,7 +40,8 @@ TEST(PersonsTest, ABodyIsAnEntityWithParts) {
   EXPECT_EQ(entity_table.entities[2].name, "anna");
   EXPECT_EQ(entity_table.entities[2].classes, (std::vector<std::string>{"Person", "Entity"}));
   EXPECT_EQ(entity_table.entities[3].name, "anna_neck");
-  EXPECT_EQ(entity_table.entities[3].classes, (std::vector<std::string>{"BodyPart", "Entity"}));
+  EXPECT_EQ(entity_table.entities[3].classes,
+            (std::vector<std::string>{"Neck", "BodyPart", "Entity"}));
   EXPECT_EQ(entity_table.entities[3].part_of, 2);
   EXPECT_EQ(entity_table.entities.back().name, "right_hand");
 }

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend knowledge: recorded episodes for knowledge bases. Tested by
+// tests/program/knowledge_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/command/command.h"
+#include "harness/knowledge/write_knowledge.h"
+
+namespace prehend::harness {
+namespace {
+
+std::string FormProblem(const std::string& text) {
+  return text == "owl" || text == "neem" ? "" : "found '" + text + "', wanted owl or neem";
+}
+
+ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& context) {
+  const auto episodes = episodes::SelectEpisodes(options.All("files"), options.Text("--episode"));
+  if (!episodes) return Complain(context, episodes.error());
+  if (episodes->empty())
+    return Complain(context, ExitCode::kNothing,
+                    fmt::format("--episode: no episode matches '{}'", options.Text("--episode")));
+  const std::vector<std::string> forms = options.All("--to");
+  const auto asked = [&](const char* form) {
+    return std::ranges::find(forms, form) != forms.end();
+  };
+  const std::string folder = options.TextOr("--output", "kb");
+  const Result<knowledge::KnowledgeWritten> written = knowledge::WriteKnowledge(
+      *episodes,
+      {.root = context.root, .folder = folder, .owl = asked("owl"), .neem = asked("neem")});
+  if (!written) return Complain(context, written.error());
+  context.out << fmt::format("{}: {} episodes of {} tasks, {} events, {} statements\n", folder,
+                             written->episodes, written->tasks, written->events,
+                             written->statements);
+  return ExitCode::kAgrees;
+}
+
+}  // namespace
+
+Command KnowledgeCommand() {
+  return {.name = "knowledge",
+          .summary = "Write recorded episodes for knowledge bases (RDF, OWL, NEEM)",
+          .examples = {"knowledge suite.episodes -o kb",
+                       "knowledge suite.episodes --episode 'slide/*' --to owl --to neem -o kb"},
+          .options = {{.name = "files",
+                       .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
+                       .required = true,
+                       .repeatable = true},
+                      {.name = "--output",
+                       .help = "the folder; default: kb. It gets prehend.ttl, maps/ and episodes/",
+                       .placeholder = "FOLDER",
+                       .other_name = "-o"},
+                      {.name = "--to",
+                       .help = "also as owl (RDF/XML beside each Turtle file) or neem (BSON\n"
+                               "collections as mongodump writes them); may be repeated",
+                       .placeholder = "owl|neem",
+                       .rule = {.range = {}, .problem = FormProblem},
+                       .repeatable = true},
+                      {.name = "--episode",
+                       .help = "only these episodes: a number, or a scenario (a name, skill/name "
+                               "or a glob)",
+                       .placeholder = "WHICH"}},
+          .run = RunKnowledge};
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/knowledge/write_knowledge.h. Tested by tests/program/knowledge_test.cc
+#include "harness/knowledge/write_knowledge.h"
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "grammar/contents.h"
+#include "harness/base/atomic_file.h"
+#include "harness/episodes/load_episode.h"
+#include "harness/knowledge/episode_graph.h"
+#include "harness/knowledge/neem.h"
+#include "harness/process/run_tool.h"
+
+namespace prehend::harness::knowledge {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of the transforms of a NEEM.
+constexpr grammar::Tick kTransforms_per_s = 30;
+
+grammar::Diagnostics Problem(const std::string& file, const std::string& message) {
+  return {{.file = file, .place = {}, .message = message, .source_line = {}, .hint = {}}};
+}
+
+/// Milliseconds since 1970 at the begin of a day, "2026-11-23"; 0 if it is none.
+std::int64_t MillisecondsOf(const std::string& day) {
+  int year = 0;
+  unsigned month = 0, of_month = 0;
+  if (std::sscanf(day.c_str(), "%d-%u-%u", &year, &month, &of_month) != 3) return 0;
+  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(month),
+                                         std::chrono::day(of_month)};
+  if (!date.ok()) return 0;
+  return std::chrono::sys_days(date).time_since_epoch().count() * std::int64_t{86'400'000};
+}
+
+class KnowledgeWriter {
+ public:
+  KnowledgeWriter(const KnowledgeRequest& request, Vocabulary vocabulary)
+      : request_(request), vocabulary_(std::move(vocabulary)), loader_(request.root) {
+    std::string ignored;
+    hierarchy_.Add(ReadTurtle(vocabulary_.text(), ignored));
+  }
+
+  /// Returns what could not be read or written.
+  grammar::Diagnostics WriteTerminology() { return WriteText("prehend", vocabulary_.text()); }
+
+  grammar::Diagnostics Write(const episodes::EpisodeName& name) {
+    if (!file_ || file_->path() != name.file) {
+      auto opened = episodes::EpisodeFile::Open(name.file);
+      if (!opened) return opened.error();
+      file_ = std::make_unique<episodes::EpisodeFile>(std::move(*opened));
+    }
+    const auto row = std::ranges::find(file_->episodes(), name.id, &episodes::EpisodeRow::id);
+    if (row == file_->episodes().end()) return Problem(name.file, "the episode is gone");
+    EpisodeOfTask episode{
+        .row = *row, .file = fs::absolute(name.file).string(), .timeline = {}, .composed = {}};
+    auto loaded = loader_.Load(*file_, *row);
+    if (!loaded) return loaded.error();
+    auto timeline = file_->TimelineOf(*row);
+    if (!timeline) return timeline.error();
+    episode.timeline = std::move(*timeline);
+    for (const grammar::EventSignature& event : grammar::EventSignatures(*loaded->program))
+      if (event.composed) episode.composed.insert(event.name);
+
+    episodes::EpisodeFrames frames(*file_, *row, episodes::LayoutOf(loaded->scenario.scene));
+    auto map = MapOf(*row, frames);
+    if (!map) return map.error();
+    const std::vector<Triple> triples = EpisodeTriples(episode, **map, vocabulary_);
+    ++written_.episodes;
+    written_.events += episode.timeline.events.size();
+    grammar::Diagnostics bad = WriteTriples("episodes/" + row->uuid, triples);
+    if (bad.empty() && request_.neem) bad = WriteNeem(*row, **map, triples, frames);
+    return bad;
+  }
+
+  const KnowledgeWritten& written() const { return written_; }
+
+ private:
+  struct WrittenMap {
+    MapOfTask map;
+    std::vector<Triple> triples;
+  };
+
+  /// The map of the episode's task, which is written when it is first asked for.
+  Result<const MapOfTask*> MapOf(const episodes::EpisodeRow& row, episodes::EpisodeFrames& frames) {
+    auto task = file_->DescribeTaskOf(row);
+    if (!task) return tl::unexpected(task.error());
+    const std::string uuid = task->uuid;
+    if (const auto known = maps_.find(uuid); known != maps_.end()) return &known->second.map;
+    auto entities = file_->EntitiesOf(row);
+    if (!entities) return tl::unexpected(entities.error());
+    MapOfTask map{.task = std::move(*task),
+                  .scenario = row.scenario,
+                  .entities = std::move(*entities),
+                  .poses = {}};
+    if (const auto first = frames.At(0)) {
+      for (const physics::BodyState& body : first->bodies) map.poses.push_back(body.X_WB);
+      for (const physics::HandState& hand : first->hands) map.poses.push_back(hand.palm.X_WB);
+    }
+    std::vector<Triple> triples = MapTriples(map, vocabulary_);
+    hierarchy_.Add(triples);
+    ++written_.tasks;
+    const grammar::Diagnostics bad = WriteTriples("maps/" + uuid, triples);
+    if (!bad.empty()) return tl::unexpected(bad);
+    return &(maps_[uuid] = {std::move(map), std::move(triples)}).map;
+  }
+
+  grammar::Diagnostics WriteTriples(const std::string& name, const std::vector<Triple>& triples) {
+    written_.statements += triples.size();
+    return WriteText(name, ToTurtle(triples));
+  }
+
+  grammar::Diagnostics WriteText(const std::string& name, const std::string& turtle) {
+    const std::string file = request_.folder + "/" + name;
+    const std::string problem = WriteTextFile(file + ".ttl", turtle);
+    if (!problem.empty()) return Problem(file + ".ttl", problem);
+    if (!request_.owl) return {};
+    const ToolResult xml = RunTool({"rapper", "--quiet", "--input", "turtle", "--output",
+                                    "rdfxml-abbrev", "-", "http://prehend.local/"},
+                                   turtle);
+    if (!xml.Succeeded()) {
+      std::string why = xml.problem.empty() ? "rapper: " + xml.err : xml.problem;
+      if (why.ends_with("is not installed")) why += "; Debian's package raptor2-utils has it";
+      return Problem(file + ".owl", why);
+    }
+    const std::string unwritten = WriteTextFile(file + ".owl", xml.out);
+    return unwritten.empty() ? grammar::Diagnostics() : Problem(file + ".owl", unwritten);
+  }
+
+  grammar::Diagnostics WriteNeem(const episodes::EpisodeRow& row, const MapOfTask& map,
+                                 const std::vector<Triple>& triples,
+                                 episodes::EpisodeFrames& frames) {
+    std::vector<Triple> all = maps_.at(map.task.uuid).triples;
+    all.insert(all.end(), triples.begin(), triples.end());
+    hierarchy_.Add(triples);
+    std::vector<Transform> transforms;
+    const std::int64_t day = MillisecondsOf(row.recorded_on);
+    const std::int64_t ticks = std::max<std::int64_t>(row.ticks_per_second / kTransforms_per_s, 1);
+    const std::string damage = frames.Play(
+        [&](const physics::Snapshot& now) {
+          AddTransforms(map, now, day + 1000 * now.tick / row.ticks_per_second, transforms);
+        },
+        [&](std::int64_t tick) { return tick % ticks == 0; }, false);
+    if (!damage.empty()) return Problem(file_->path(), damage);
+    const std::string folder = request_.folder + "/neem/" + row.uuid + "/";
+    for (const auto& [name, bytes] : {std::pair{"triples", TriplesBson(all, hierarchy_)},
+                                      std::pair{"tf", TransformsBson(transforms)},
+                                      std::pair{"annotations", AnnotationsBson(all)}}) {
+      const std::string metadata =
+          std::string(
+              "{\"options\":{},\"indexes\":[{\"v\":2,\"key\":{\"_id\":1},\"name\":\"_id_\"}]"
+              ",\"collectionName\":\"") +
+          name + "\"}\n";
+      for (const auto& [ending, content] :
+           {std::pair{".bson", &bytes}, std::pair{".metadata.json", &metadata}}) {
+        const std::string problem = WriteTextFile(folder + name + ending, *content);
+        if (!problem.empty()) return Problem(folder + name + ending, problem);
+      }
+    }
+    return {};
+  }
+
+  /// Of what has moved since its last transform, or has none.
+  void AddTransforms(const MapOfTask& map, const physics::Snapshot& now, std::int64_t milliseconds,
+                     std::vector<Transform>& transforms) {
+    if (now.tick == 0) last_.clear();
+    std::size_t number = 0;
+    const auto add = [&](const physics::Pose& X_WE) {
+      if (number >= map.entities.size()) return;
+      const std::string& uuid = map.entities[number++].uuid;
+      const auto last = last_.find(uuid);
+      if (last != last_.end() && last->second.p_m == X_WE.p_m &&
+          last->second.q.coeffs() == X_WE.q.coeffs())
+        return;
+      last_[uuid] = X_WE;
+      transforms.push_back({milliseconds, FullName("log:" + uuid), X_WE});
+    };
+    for (const physics::BodyState& body : now.bodies) add(body.X_WB);
+    for (const physics::HandState& hand : now.hands) add(hand.palm.X_WB);
+  }
+
+  const KnowledgeRequest& request_;
+  Vocabulary vocabulary_;
+  Hierarchy hierarchy_;
+  episodes::EpisodeLoader loader_;
+  std::unique_ptr<episodes::EpisodeFile> file_;
+  std::map<std::string, WrittenMap> maps_;  ///< by the UUID of their task
+  std::map<std::string, physics::Pose> last_;
+  KnowledgeWritten written_;
+};
+
+}  // namespace
+
+Result<KnowledgeWritten> WriteKnowledge(const std::vector<episodes::EpisodeName>& episodes,
+                                        const KnowledgeRequest& request) {
+  Result<Vocabulary> vocabulary = Vocabulary::Load(request.root);
+  if (!vocabulary) return tl::unexpected(vocabulary.error());
+  KnowledgeWriter writer(request, std::move(*vocabulary));
+  if (const grammar::Diagnostics bad = writer.WriteTerminology(); !bad.empty())
+    return tl::unexpected(bad);
+  for (const episodes::EpisodeName& episode : episodes) {
+    if (const grammar::Diagnostics bad = writer.Write(episode); !bad.empty())
+      return tl::unexpected(bad);
+  }
+  return writer.written();
+}
+
+}  // namespace prehend::harness::knowledge
