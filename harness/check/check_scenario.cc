@@ -253,46 +253,16 @@ void AddReplay(const CheckRequest& request, const CheckedRun& checked, ScenarioV
   if (wanted) verdict.replay = ReplayData(checked.loaded.scenario, checked.result);
 }
 
-}  // namespace
-
-ScenarioVerdict CheckScenario(const CheckRequest& request) {
+ScenarioVerdict BlankVerdict(const CheckRequest& request) {
   ScenarioVerdict verdict{.scenario = request.id, .shows = {}};
   verdict.command = RepeatCommand(request.id, request.run);
   verdict.explain = ExplainCommand(request.id, request.run);
-  std::vector<std::string> files;
-  std::optional<RunResult> played;
-  Result<LoadedRun> loaded;
-  if (request.episode == 0) {
-    loaded = LoadRun(request.run, request.root, &files);
-  } else if (auto recorded = ReadPlayed(request)) {
-    loaded = std::move(recorded->first);
-    played = std::move(recorded->second);
-  } else {
-    loaded = tl::unexpected(std::move(recorded.error()));
-  }
-  const std::vector<std::string> read = files;
-  std::ranges::move(FilesOfGolden(request, loaded ? &loaded->scenario : nullptr),
-                    std::back_inserter(files));
-  verdict.inputs = HashFiles(files);
-  if (!loaded) {
-    Conclude({{ExitCode::kBadInput, "cannot be read", Format(loaded.error())}}, verdict);
-    verdict.command = Command("validate", request.id, request.run);
-    return verdict;
-  }
+  return verdict;
+}
 
-  CheckedRun checked{.id = request.id,
-                     .in_project = request.in_project,
-                     .loaded = std::move(*loaded),
-                     .result = {},
-                     .explain = verdict.explain};
-  std::optional<episodes::EpisodeRecorder> recorder;
-  if (!request.record_file.empty())
-    recorder.emplace(episodes::RecordRequest{request.record_file, request.root, request.run, read,
-                                             request.today, request.program},
-                     checked.loaded.scenario);
-  checked.result =
-      played ? std::move(*played) : Play(request, checked.loaded, recorder ? &*recorder : nullptr);
-  if (recorder) verdict.not_recorded = recorder->problem();
+/// Everything that is judged of a run that was played.
+ScenarioVerdict VerdictOn(const CheckRequest& request, const CheckedRun& checked,
+                          ScenarioVerdict verdict) {
   verdict.settings = SettingsOf(checked.loaded, request.run, verdict.inputs, request.root);
   verdict.shows = checked.loaded.scenario.shows;
   verdict.state_hash = HashText(checked.result.state_hash);
@@ -338,6 +308,61 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   if (verdict.verdict == Verdict::kPending && request.in_project && AsItsFileSays(request))
     verdict.command = Command("review", request.id, {});
   return verdict;
+}
+
+}  // namespace
+
+ScenarioVerdict CheckScenario(const CheckRequest& request) {
+  ScenarioVerdict verdict = BlankVerdict(request);
+  std::vector<std::string> files;
+  std::optional<RunResult> played;
+  Result<LoadedRun> loaded;
+  if (request.episode == 0) {
+    loaded = LoadRun(request.run, request.root, &files);
+  } else if (auto recorded = ReadPlayed(request)) {
+    loaded = std::move(recorded->first);
+    played = std::move(recorded->second);
+  } else {
+    loaded = tl::unexpected(std::move(recorded.error()));
+  }
+  const std::vector<std::string> read = files;
+  std::ranges::move(FilesOfGolden(request, loaded ? &loaded->scenario : nullptr),
+                    std::back_inserter(files));
+  verdict.inputs = HashFiles(files);
+  if (!loaded) {
+    Conclude({{ExitCode::kBadInput, "cannot be read", Format(loaded.error())}}, verdict);
+    verdict.command = Command("validate", request.id, request.run);
+    return verdict;
+  }
+
+  CheckedRun checked{.id = request.id,
+                     .in_project = request.in_project,
+                     .loaded = std::move(*loaded),
+                     .result = {},
+                     .explain = verdict.explain};
+  std::optional<episodes::EpisodeRecorder> recorder;
+  if (!request.record_file.empty())
+    recorder.emplace(episodes::RecordRequest{request.record_file, request.root, request.run, read,
+                                             request.today, request.program},
+                     checked.loaded.scenario);
+  checked.result =
+      played ? std::move(*played) : Play(request, checked.loaded, recorder ? &*recorder : nullptr);
+  if (recorder) verdict.not_recorded = recorder->problem();
+  return VerdictOn(request, checked, std::move(verdict));
+}
+
+ScenarioVerdict JudgeRun(const CheckRequest& request, LoadedRun loaded, RunResult run,
+                         const std::vector<std::string>& files) {
+  ScenarioVerdict verdict = BlankVerdict(request);
+  std::vector<std::string> inputs = files;
+  std::ranges::move(FilesOfGolden(request, &loaded.scenario), std::back_inserter(inputs));
+  verdict.inputs = HashFiles(inputs);
+  const CheckedRun checked{.id = request.id,
+                           .in_project = request.in_project,
+                           .loaded = std::move(loaded),
+                           .result = std::move(run),
+                           .explain = verdict.explain};
+  return VerdictOn(request, checked, std::move(verdict));
 }
 
 std::string ExplainCommand(const std::string& id, const RunRequest& changes) {

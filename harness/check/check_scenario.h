@@ -37,6 +37,10 @@ struct CheckRequest {
 /// Never fails: what goes wrong is the verdict.
 ScenarioVerdict CheckScenario(const CheckRequest& request);
 
+/// The same of a run that was played already, with its recording. `files`: what it was read from.
+ScenarioVerdict JudgeRun(const CheckRequest& request, LoadedRun loaded, RunResult run,
+                         const std::vector<std::string>& files);
+
 /// The command that asks about a scenario's events, with the grammar and settings of `changes`.
 std::string ExplainCommand(const std::string& id, const RunRequest& changes);
 

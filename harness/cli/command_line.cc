@@ -40,6 +40,7 @@ std::vector<Command> Commands() {
           Limited(TracksCommand(), kOne_s),
           Limited(EpisodesCommand(), kMany_s),
           Limited(ReplayCommand(), kMany_s),
+          Limited(ReportCommand(), kMany_s),
           Limited(SweepCommand(), kMany_s),
           Limited(KnowledgeCommand(), kMany_s),
           AskCommand(),

@@ -8,9 +8,12 @@
 #include "harness/base/atomic_file.h"
 #include "harness/base/content_hash.h"
 #include "harness/base/shell_quote.h"
+#include "harness/base/text_file.h"
+#include "harness/check/check_scenario.h"
 #include "harness/command/command.h"
 #include "harness/episodes/record_episode.h"
 #include "harness/episodes/schema.h"
+#include "harness/report/report.h"
 #include "harness/run/outcome.h"
 #include "harness/run/run_text.h"
 #include "harness/run/run_trials.h"
@@ -43,10 +46,10 @@ struct Recorders {
 };
 
 /// Plays the scenario, records it, and judges its outcomes.
-RunResult Play(const LoadedRun& loaded, bool measure, const Recorders& recorders) {
+RunResult Play(const LoadedRun& loaded, const RunOptions& how, const Recorders& recorders) {
   const Scenario& scenario = loaded.scenario;
   OutcomeWatch outcomes(scenario.scene, scenario.outcomes);
-  ScenarioRun playing(scenario, loaded.program, {.measure = measure});
+  ScenarioRun playing(scenario, loaded.program, how);
   while (playing.Step()) {
     outcomes.Look(playing.snapshot());
     if (recorders.lines && playing.sensed()) recorders.lines->Write(playing.frame());
@@ -66,7 +69,7 @@ TrialResult RecordTrial(int trial, const RunRequest& varied, const std::string& 
   if (!loaded) return {trial, "failed", grammar::Format(loaded.error()), {}};
   episodes::EpisodeRecorder episode(
       {file, context.root, varied, files, context.today, ProgramHash()}, loaded->scenario);
-  const RunResult run = Play(*loaded, false, {.lines = nullptr, .episode = &episode});
+  const RunResult run = Play(*loaded, {}, {.lines = nullptr, .episode = &episode});
   episode.Finish(run);
   const bool completed = run.status.kind == physics::RunStatus::Kind::kCompleted;
   return {trial, completed ? run.outcome : "failed",
@@ -109,11 +112,33 @@ ExitCode CountTrials(const ParsedOptions& options, const RunRequest& request,
                               report->results.size(), first->not_recorded));
 }
 
+/// The run as a page, judged as a check judges it. Returns "", or why it could not be written.
+std::string WriteReport(const ParsedOptions& options, const CommandContext& context,
+                        const ScenarioFile& file, const RunRequest& request,
+                        const LoadedRun& loaded, const RunResult& run,
+                        const std::vector<std::string>& files) {
+  const CheckRequest check{.run = request,
+                           .id = IdOf(file),
+                           .root = context.root,
+                           .replays = Replays::kAll,
+                           .pictures = false,
+                           .leave_nothing_behind = true,
+                           .in_project = file.in_project,
+                           .today = context.today,
+                           .program = ProgramHash()};
+  const ScenarioVerdict verdict = JudgeRun(check, loaded, run, files);
+  return WriteTextFile(options.Text("--report"),
+                       ReportHtml({verdict}, {.command = CommandText(context.words),
+                                              .program = "prehend",
+                                              .date = context.today,
+                                              .title = "Run of " + verdict.scenario}));
+}
+
 ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
   const auto file = FindScenarioOrComplain(options.Text("scenario"), context);
   if (!file) return file.error();
   RunRequest request = RequestOf(options, file->path);
-  for (const char* of_one_run : {"--trial", "--measure"}) {
+  for (const char* of_one_run : {"--trial", "--measure", "--report"}) {
     if (options.Has("--trials") && options.Has(of_one_run))
       return Complain(context, ExitCode::kBadInput,
                       fmt::format("{} needs a single run; --trials makes many", of_one_run));
@@ -131,6 +156,10 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
     if (record_is_output && options.Has(of_output))
       return Complain(context, ExitCode::kBadInput,
                       fmt::format("--record - contradicts {}: both would be printed", of_output));
+  }
+  if (options.Has("--report")) {
+    const std::string problem = WhyNotWritable(options.Text("--report"));
+    if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--report: " + problem);
   }
   std::vector<std::string> files;
   const Result<LoadedRun> loaded = LoadRun(request, context.root, &files);
@@ -155,8 +184,8 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
     recorder.emplace(record->stream(),
                      EpisodeHeader{scenario.name, scenario.grammar, MakeEntityTable(scenario)});
   }
-  const RunResult run =
-      Play(*loaded, measure, {recorder ? &*recorder : nullptr, episode ? &*episode : nullptr});
+  const RunResult run = Play(*loaded, {.record = options.Has("--report"), .measure = measure},
+                             {recorder ? &*recorder : nullptr, episode ? &*episode : nullptr});
   for (const std::string& note : NoteLines(loaded->scenario, run)) context.err << note << "\n";
   std::string not_recorded;
   if (recorder) {
@@ -177,6 +206,10 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
   }
   if (!not_recorded.empty())
     return Complain(context, ExitCode::kFailure, "--record: " + not_recorded);
+  if (options.Has("--report")) {
+    const std::string problem = WriteReport(options, context, *file, request, *loaded, run, files);
+    if (!problem.empty()) return Complain(context, ExitCode::kFailure, "--report: " + problem);
+  }
   if (run.status.kind == physics::RunStatus::Kind::kCompleted) return ExitCode::kAgrees;
   return Complain(context, ExitCode::kFailure, StatusText(run));
 }
@@ -189,6 +222,7 @@ Command RunCommand() {
       .summary = "Simulate one scenario and print the events that its grammar recognises",
       .examples = {"run milk_carton_wrap", "run milk_carton_wrap --json",
                    "run milk_carton_wrap --record milk.episodes",
+                   "run milk_carton_wrap --report milk.html",
                    "run milk_carton_wrap --set entities.milk.mass_kg=8",
                    "run milk_carton_wrap --set lift_rise=10cm --measure",
                    "run furniture/drawer_is_opened_with_hook --trials 50",
@@ -216,6 +250,10 @@ Command RunCommand() {
                 "write the episode to FILE: NAME.episodes holds many episodes and all of each;\n"
                 "any other ending: what the grammar sees, as JSON Lines; -: print these\n"
                 "instead of the table. With --trials: NAME.episodes, an episode per trial",
+            .placeholder = "FILE",
+            .is_output = true},
+           {.name = "--report",
+            .help = "also write the run as a web page with its 3D replay, judged as by check",
             .placeholder = "FILE",
             .is_output = true},
            {.name = "--measure", .help = "print where the time went, and the peak memory"}},

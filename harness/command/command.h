@@ -57,6 +57,7 @@ Command ExplainCommand();
 Command TracksCommand();
 Command EpisodesCommand();
 Command ReplayCommand();
+Command ReportCommand();
 Command QueryCommand();
 Command SweepCommand();
 Command TryCommand();

@@ -48,10 +48,11 @@ std::vector<Row> RowsOf(const Comparison& comparison) {
 
 class Drawing {
  public:
-  Drawing(const Comparison& comparison, Tick end, const EventDrawings& drawings)
+  Drawing(const Comparison& comparison, Tick end, const EventDrawings& drawings, bool has_golden)
       : comparison_(comparison),
         end_(std::max<Tick>(1, end)),
         drawings_(drawings),
+        has_golden_(has_golden),
         rows_(RowsOf(comparison)) {}
 
   std::string Draw() {
@@ -73,6 +74,10 @@ class Drawing {
   }
 
  private:
+  bool Agrees(const Pairing& pairing) const {
+    return !has_golden_ || pairing.agreement == LineVerdict::kMatched;
+  }
+
   double X(Tick tick) const {
     return kLabelWidth + kChartWidth * static_cast<double>(std::clamp<Tick>(tick, 0, end_)) /
                              static_cast<double>(end_);
@@ -80,9 +85,9 @@ class Drawing {
 
   /// What somebody hears who does not see it.
   std::string LabelText() const {
-    const auto differing = std::ranges::count_if(comparison_.pairings, [](const Pairing& pairing) {
-      return pairing.agreement != LineVerdict::kMatched;
-    });
+    const auto differing = std::ranges::count_if(
+        comparison_.pairings, [&](const Pairing& pairing) { return !Agrees(pairing); });
+    if (!has_golden_) return fmt::format("timeline: {} events", comparison_.pairings.size());
     return fmt::format("timeline: {} events, {} differ from the golden",
                        comparison_.pairings.size(), differing);
   }
@@ -118,9 +123,8 @@ class Drawing {
   }
 
   void DrawRow(const Row& row, double y) {
-    const bool agrees = std::all_of(
-        row.pairings.begin(), row.pairings.end(),
-        [](const Pairing* pairing) { return pairing->agreement == LineVerdict::kMatched; });
+    const bool agrees = std::all_of(row.pairings.begin(), row.pairings.end(),
+                                    [&](const Pairing* pairing) { return Agrees(*pairing); });
     AddElement(svg_, "text",
                {{"class", agrees ? "row" : "row differs"},
                 {"x", fmt::format("{:g}", kLabelWidth - 8)},
@@ -141,7 +145,7 @@ class Drawing {
 
   /// Hatches the time in which only one of the two sides has the event.
   void DrawDifference(const Pairing& pairing, double y) {
-    if (pairing.agreement == LineVerdict::kMatched) return;
+    if (Agrees(pairing)) return;
     const auto hatch = [&](Tick from, Tick to) {
       if (from == to) return;
       const double x = X(std::min(from, to));
@@ -162,7 +166,7 @@ class Drawing {
   void DrawBar(const char* side, const NamedEvent& event, double y, const Pairing& pairing) {
     const double x = X(event.interval.begin);
     const double width = std::max(kNarrowestBar, X(event.interval.end) - x);
-    const bool agrees = pairing.agreement == LineVerdict::kMatched;
+    const bool agrees = Agrees(pairing);
     const pugi::xml_node bar =
         AddElement(svg_, "rect",
                    {{"class", std::string(side) + (agrees ? "" : " differs")},
@@ -176,12 +180,13 @@ class Drawing {
     AddElement(bar, "title", {},
                fmt::format("{} {}, {}: {}", side, event.Label(),
                            IntervalText(event.interval, comparison_.ticks_per_second),
-                           Name(pairing.agreement)));
+                           has_golden_ ? Name(pairing.agreement) : "no golden"));
   }
 
   const Comparison& comparison_;
   Tick end_;
   const EventDrawings& drawings_;
+  bool has_golden_;
   std::vector<Row> rows_;
   pugi::xml_document document_;
   pugi::xml_node svg_;
@@ -189,8 +194,9 @@ class Drawing {
 
 }  // namespace
 
-std::string TimelineSvg(const Comparison& comparison, Tick end, const EventDrawings& drawings) {
-  return Drawing(comparison, end, drawings).Draw();
+std::string TimelineSvg(const Comparison& comparison, grammar::Tick end,
+                        const EventDrawings& drawings, bool has_golden) {
+  return Drawing(comparison, end, drawings, has_golden).Draw();
 }
 
 }  // namespace prehend::harness

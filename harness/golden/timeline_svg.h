@@ -10,8 +10,9 @@
 
 namespace prehend::harness {
 
-/// An <svg> element. `end` is the episode's end in the comparison's ticks.
+/// An <svg> element. `end` is the episode's end in the comparison's ticks. Without a golden nothing
+/// differs.
 std::string TimelineSvg(const Comparison& comparison, grammar::Tick end,
-                        const EventDrawings& drawings);
+                        const EventDrawings& drawings, bool has_golden = true);
 
 }  // namespace prehend::harness

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -183,13 +184,14 @@ bool IsGood(const ScenarioVerdict& verdict) {
   return verdict.verdict == Verdict::kPassed || verdict.verdict == Verdict::kUnchanged;
 }
 
-void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, PictureBox& pictures,
-                ReplayBox& replays) {
+/// `open`: nothing has to be clicked to read it.
+void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, bool open,
+                PictureBox& pictures, ReplayBox& replays) {
   const std::string name(Name(verdict.verdict));
   const pugi::xml_node section = AddElement(
       body, "section", {{"id", verdict.scenario}, {"class", "scenario"}, {"data-verdict", name}});
   pugi::xml_node fold = AddElement(section, "details");
-  if (!IsGood(verdict)) fold.append_attribute("open").set_value("open");
+  if (open) fold.append_attribute("open").set_value("open");
   const pugi::xml_node summary = AddElement(fold, "summary");
   const pugi::xml_node title = AddElement(summary, "h2");
   AddElement(title, "span", {{"class", name}}, name);
@@ -203,7 +205,8 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, PictureBox&
                                               {"tabindex", "0"},
                                               {"role", "group"},
                                               {"aria-label", "timeline of " + verdict.scenario}});
-    AddMarkup(scroll, TimelineSvg(*verdict.comparison, verdict.ticks + 1, verdict.drawings));
+    AddMarkup(scroll, TimelineSvg(*verdict.comparison, verdict.ticks + 1, verdict.drawings,
+                                  verdict.has_golden));
     AddElement(fold, "output", {}, "");
   }
   replays.Add(fold, verdict.replay);
@@ -215,12 +218,12 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, PictureBox&
   AddText(body, kNewLine);
 }
 
-void AddHead(pugi::xml_node html) {
+void AddHead(pugi::xml_node html, const std::string& title) {
   const pugi::xml_node head = AddElement(html, "head");
   AddElement(head, "meta", {{"charset", "utf-8"}});
   AddElement(head, "meta",
              {{"name", "viewport"}, {"content", "width=device-width, initial-scale=1"}});
-  AddElement(head, "title", {}, "prehend: regression suite");
+  AddElement(head, "title", {}, "prehend: " + title);
   AddElement(head, "style", {}, kStylePlace);
 }
 
@@ -292,6 +295,16 @@ void AddHeader(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts
     AddElement(fold, "div", {}, fmt::format("{:.2f} s  {}", verdict->seconds, verdict->scenario));
 }
 
+/// Episodes of the same scenario are numbered, as links go by names.
+std::vector<ScenarioVerdict> WithOwnNames(std::vector<ScenarioVerdict> verdicts) {
+  std::map<std::string, int> seen;
+  for (ScenarioVerdict& verdict : verdicts) {
+    const int number = ++seen[verdict.scenario];
+    if (number > 1) verdict.scenario += fmt::format(" ({})", number);
+  }
+  return verdicts;
+}
+
 /// In the element whose only text is `place`.
 void Put(std::string& page, std::string_view place, std::string_view text) {
   const std::size_t at = page.find(fmt::format(">{}</", place));
@@ -319,13 +332,13 @@ std::vector<ScenarioVerdict> WorstFirst(std::vector<ScenarioVerdict> verdicts) {
 }  // namespace
 
 std::string ReportHtml(const std::vector<ScenarioVerdict>& unsorted, const ReportHeader& header) {
-  const std::vector<ScenarioVerdict> verdicts = WorstFirst(unsorted);
+  const std::vector<ScenarioVerdict> verdicts = WithOwnNames(WorstFirst(unsorted));
   pugi::xml_document document;
   document.append_child(pugi::node_doctype).set_value("html");
   const pugi::xml_node html = AddElement(document, "html", {{"lang", "en"}});
-  AddHead(html);
+  AddHead(html, header.title);
   const pugi::xml_node body = AddElement(AddElement(html, "body"), "main");
-  AddElement(body, "h1", {}, "Regression suite");
+  AddElement(body, "h1", {}, header.title);
   AddSummary(body, Count(verdicts));
   AddHeader(body, verdicts, header);
   AddCauses(body, verdicts);
@@ -342,7 +355,10 @@ std::string ReportHtml(const std::vector<ScenarioVerdict>& unsorted, const Repor
                fmt::format("3D replay was left out: {}.", WhyNoReplay()));
   PictureBox pictures(header.folder);
   ReplayBox replays;
-  for (const ScenarioVerdict& verdict : verdicts) AddSection(body, verdict, pictures, replays);
+  for (const ScenarioVerdict& verdict : verdicts) {
+    const bool open = !IsGood(verdict) || verdicts.size() == 1;
+    AddSection(body, verdict, open, pictures, replays);
+  }
   if (replays.any())
     AddElement(body, "script", {{"type", "text/plain"}, {"id", "replay-bundle"}}, ReplayBundle());
   AddElement(body, "script", {}, kScriptPlace);

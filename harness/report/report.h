@@ -17,6 +17,7 @@ struct ReportHeader {
   std::string program;  ///< "prehend 0.1.0"
   std::string date;     ///< YYYY-MM-DD
   std::string folder;   ///< what the files of pictures are relative to
+  std::string title = "Regression suite";
 };
 
 /// Pictures are in the page, those of failures first, up to this size in all; of the others the
