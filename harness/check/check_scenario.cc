@@ -305,6 +305,9 @@ ScenarioVerdict VerdictOn(const CheckRequest& request, const CheckedRun& checked
   verdict.picture_differences = PictureDifferencesText(
       judgement.pictures, AsItsFileSays(request) ? AcceptPicturesCommand(request.id) : "");
   AddReplay(request, checked, verdict);
+  if (request.explain && verdict.DiffersFromGolden())
+    verdict.explained = Explain(checked.loaded.scenario, checked.result, checked.loaded.program,
+                                *verdict.comparison);
   if (verdict.verdict == Verdict::kPending && request.in_project && AsItsFileSays(request))
     verdict.command = Command("review", request.id, {});
   return verdict;

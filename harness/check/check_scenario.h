@@ -23,6 +23,7 @@ struct CheckRequest {
   std::string root;                  ///< the project's
   std::string report_folder;         ///< pictures go to its folder `pictures`
   Replays replays = Replays::kNone;  ///< kFailures: of what has not passed
+  bool explain = false;              ///< what has a golden and does not pass
   bool pictures = true;
   bool leave_nothing_behind = false;  ///< no pending golden, no trace; only the verdict
   bool in_project = true;             ///< below scenarios/, so that it may have a golden

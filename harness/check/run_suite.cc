@@ -113,6 +113,7 @@ class Suite {
         .root = request_.root,
         .report_folder = request_.report_folder,
         .replays = turn.repetition == 0 ? request_.replays : Replays::kNone,
+        .explain = turn.repetition == 0,
         .pictures = request_.pictures && turn.repetition == 0,
         .leave_nothing_behind = Changed() || turn.repetition > 0 || !IsRemembered(turn.scenario),
         .in_project = InProject(turn.scenario),

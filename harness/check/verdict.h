@@ -12,6 +12,7 @@
 #include "harness/base/content_hash.h"
 #include "harness/base/exit_code.h"
 #include "harness/check/attribute.h"
+#include "harness/check/explained.h"
 #include "harness/check/settings.h"
 #include "harness/claims/judge_claims.h"
 #include "harness/golden/compare.h"
@@ -59,7 +60,8 @@ struct ScenarioVerdict {
   std::int64_t peak_memory_kib = 0;  ///< of its worker
   FileHashes inputs;  ///< every file that decides what the verdict is, as it was before the run
   std::vector<ReportedPicture> pictures;
-  std::string replay;  ///< ReplayData() (harness/replay/replay_data.h), or empty
+  Explained explained;  ///< of what has a golden and did not pass
+  std::string replay;   ///< ReplayData() (harness/replay/replay_data.h), or empty
   std::string
       not_recorded;  ///< empty, or why the episode is not in its file; no part of the verdict
   std::string picture_differences;  ///< several lines; only one of several repetitions draws

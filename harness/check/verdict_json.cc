@@ -55,7 +55,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, shows, verdict, ex
                                    details, claims, transforms, comparison, has_golden, drawings,
                                    explain, cause, attributions, settings, command, state_hash,
                                    ticks, seconds, peak_memory_kib, inputs, pictures, not_recorded,
-                                   picture_differences, replay)
+                                   picture_differences, explained, replay)
 
 namespace {
 

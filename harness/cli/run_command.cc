@@ -121,6 +121,7 @@ std::string WriteReport(const ParsedOptions& options, const CommandContext& cont
                            .id = IdOf(file),
                            .root = context.root,
                            .replays = Replays::kAll,
+                           .explain = true,
                            .pictures = false,
                            .leave_nothing_behind = true,
                            .in_project = file.in_project,

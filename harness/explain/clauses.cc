@@ -18,7 +18,14 @@ using grammar::InstanceId;
 using grammar::kNone;
 using grammar::Node;
 using grammar::Op;
+using grammar::Tick;
 using Mark = Reason::Mark;
+
+namespace {
+
+constexpr double kCourse_s = 0.4;  ///< on both sides of the frame that decided
+
+}  // namespace
 
 std::string Clauses::Time(FrameNumber frame) {
   return At(past_.TickOf(frame), past_.entity_table().ticks_per_second);
@@ -80,7 +87,7 @@ Reason Clauses::Measurement(const Clause& clause, const Moment& at,
   if (!now) return reason;
   const std::string unit =
       now->dimension == grammar::kPlain ? "" : grammar::DimensionText(now->dimension);
-  reason.reading = Reading{now->value, now->limit, unit};
+  reason.reading = Reading{now->value, now->limit, unit, {}};
   const ValueTexts texts = Compared(now->value, now->limit, now->dimension);
   const bool is_region = !now->of.empty();
   const std::string verb = !before || before->of != now->of ? "is"
@@ -96,6 +103,22 @@ Reason Clauses::Measurement(const Clause& clause, const Moment& at,
   if (tell_by) relation = QuantityText(by, now->dimension) + " " + relation;
   reason.how += relation + texts.limit;
   return reason;
+}
+
+std::vector<Reading::Sample> Clauses::Course(grammar::NodeId node, const Moment& at) {
+  const Tick around = past_.AtMostTicks(kCourse_s);
+  const FrameNumber floor =
+      AsksFor(past_.program(), node, Op::kAtBegin) && at.begin ? *at.begin : 0;
+  const Tick now = past_.TickOf(at.frame);
+  const FrameNumber first = std::max(floor, past_.FrameAt(std::max<Tick>(0, now - around)));
+  const FrameNumber last = std::min(past_.frames() - 1, past_.FrameAt(now + around));
+  std::vector<Reading::Sample> course;
+  Moment then = at;
+  for (then.frame = first; then.frame <= last; ++then.frame) {
+    if (const auto measured = Measure(node, then))
+      course.push_back({past_.TickOf(then.frame), measured->value, measured->limit});
+  }
+  return course;
 }
 
 std::string Clauses::Since(grammar::NodeId node, const Moment& at, bool truth) {
@@ -118,6 +141,7 @@ Reason Clauses::Leaf(grammar::NodeId node, const Moment& at, bool truth, bool br
   reason.mark = turned || at.frame == 0 ? Mark::kTurned : Mark::kHeld;
   if (reason.how.empty())
     reason.how = std::string(turned ? "became " : "") + (truth ? "true" : "false");
+  if (turned && !brief && reason.reading) reason.reading->course = Course(node, at);
   if (!turned && !brief) reason.how += ", " + Since(node, at, truth);
   return reason;
 }
@@ -273,6 +297,8 @@ Reason Clauses::Told(const Clause& clause, const Moment& at) {
     if (reason.how.empty()) reason.how = now ? "true" : "false" + WhenInstead(n, at);
   }
   reason.mark = now == clause.truth ? Mark::kHeld : Mark::kFailed;
+  if (reason.mark == Mark::kFailed && reason.reading)
+    reason.reading->course = Course(clause.node, at);
   return reason;
 }
 

@@ -64,6 +64,7 @@ class Clauses {
     std::string of;  ///< " from the centre"
   };
   std::optional<Measured> Measure(grammar::NodeId node, const Moment& at);
+  std::vector<Reading::Sample> Course(grammar::NodeId node, const Moment& at);
   Reason Boundary(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome, bool end,
                   const Follow& follow);
   void Edge(grammar::NodeId node, const Moment& at, bool truth, const Follow& follow, bool brief,

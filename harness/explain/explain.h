@@ -26,6 +26,8 @@ WhyMissing ExplainMissing(grammar::ReplayMonitor& past, const Ask& ask);
 
 std::string Text(const WhyEvent& why, grammar::Tick ticks_per_second);
 std::string Text(const WhyMissing& why, grammar::Tick ticks_per_second);
+/// The clause that turned first, in one line; or "".
+std::string InOneLine(const Reasons& reasons);
 /// One line per event.
 std::string Table(const std::vector<WhyEvent>& events, grammar::Tick ticks_per_second);
 

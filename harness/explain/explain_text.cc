@@ -84,12 +84,6 @@ std::string Short(const std::string& clause) {
   return clause.substr(0, open) + "(..)" + clause.substr(std::min(close + 1, clause.size()));
 }
 
-std::string InOneLine(const Reasons& reasons) {
-  const Reason* first = FirstTurned(reasons);
-  if (first == nullptr) return "";
-  return first->how.empty() ? first->what : Short(first->what) + " " + first->how;
-}
-
 std::string Late(const WhyEvent& why, Tick ticks_per_second) {
   if (why.open_end) return "at the end of the episode";
   if (why.decided == why.interval.end) return "at its end";
@@ -97,6 +91,12 @@ std::string Late(const WhyEvent& why, Tick ticks_per_second) {
 }
 
 }  // namespace
+
+std::string InOneLine(const Reasons& reasons) {
+  const Reason* first = FirstTurned(reasons);
+  if (first == nullptr) return "";
+  return first->how.empty() ? first->what : Short(first->what) + " " + first->how;
+}
 
 std::string Text(const WhyEvent& why, Tick ticks_per_second) {
   std::string text =

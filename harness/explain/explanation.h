@@ -16,6 +16,11 @@ struct Reading {
   double value = 0;
   double limit = 0;
   std::string unit;  ///< of both, SI: "m", "m/s"; empty for a plain number
+  struct Sample {
+    grammar::Tick tick = 0;
+    double value = 0, limit = 0;
+  };
+  std::vector<Sample> course;  ///< around that frame, where it decided something; else empty
 };
 
 struct Reason {

@@ -17,6 +17,7 @@
 #include "harness/base/markup.h"
 #include "harness/check/causes.h"
 #include "harness/golden/timeline_svg.h"
+#include "harness/report/explanations.h"
 #include "harness/report/page_texts.h"
 
 namespace prehend::harness {
@@ -209,8 +210,16 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, bool open,
                                   verdict.has_golden));
     AddElement(fold, "output", {}, "");
   }
+  if (verdict.comparison)
+    AddExplanations(fold, verdict.explained, verdict.comparison->ticks_per_second);
   replays.Add(fold, verdict.replay);
-  if (!verdict.details.empty()) AddElement(fold, "pre", {{"tabindex", "0"}}, verdict.details);
+  if (!verdict.details.empty()) {
+    // Where it is explained above, it does not have to be read first.
+    pugi::xml_node details = AddElement(fold, "details");
+    if (verdict.explained.differences.empty()) details.append_attribute("open").set_value("open");
+    AddElement(details, "summary", {}, "Everything that was found, as text");
+    AddElement(details, "pre", {{"tabindex", "0"}}, verdict.details);
+  }
   const std::string margin = MarginText(verdict);
   if (!margin.empty()) AddElement(fold, "div", {{"class", "soft"}}, margin);
   for (const ReportedPicture& picture : verdict.pictures) pictures.Add(fold, picture);

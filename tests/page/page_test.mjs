@@ -115,6 +115,32 @@ test('a link opens a scenario at a moment', async () => {
   await close();
 });
 
+test('a click on a boundary says which condition turned there', async () => {
+  const {page, close} = await opened({hash: '#' + FAILS});
+  const section = page.locator('section[id="' + FAILS + '"]');
+  const bar = section.locator('rect.actual').filter({has: page.locator('title', {hasText: 'picking_up'})});
+  const box = await bar.evaluate((each) => {
+    each.scrollIntoView({block: 'center'});
+    const {left, top, height} = each.getBoundingClientRect();
+    return {x: left + 2, y: top + height / 2};
+  });
+  await page.mouse.click(box.x, box.y);
+  const told = await section.locator('.turned').textContent();
+  assert.match(told, /picking_up\(right_hand, milk\) began: \S/);
+  assert.match(told, /supported_by\(milk, table\) ended: \S/);
+  await close();
+});
+
+test('each difference is explained, with the signal that decided', async () => {
+  const {page, close} = await opened({hash: '#' + FAILS});
+  const why = page.locator('section[id="' + FAILS + '"] details.difference');
+  assert.equal(await why.count(), 2);
+  assert.match(await why.first().textContent(), /Why: shifted reaching\(right_hand, milk\)/);
+  assert.match(await why.first().locator('svg.signal').first().getAttribute('aria-label'), /in_sphere.*within 200 mm/);
+  assert.ok(await why.first().locator('svg.signal').first().isVisible());
+  await close();
+});
+
 test('by keyboard: search, next, boundaries, play', async () => {
   const {page, close} = await opened();
   await page.keyboard.press('n');

@@ -81,7 +81,27 @@
     const x = Number(svg.dataset.left) + seconds * Number(svg.dataset.perSecond);
     line.setAttribute('x1', x);
     line.setAttribute('x2', x);
-    svg.parentNode.parentNode.querySelector('output').textContent = seconds.toFixed(4) + ' s';
+    section.querySelector('output').textContent = seconds.toFixed(4) + ' s';
+    tellBoundaries(section, seconds);
+  }
+  /// What began or ended where the cursor is, and which condition did it.
+  function tellBoundaries(section, seconds) {
+    const place = section.querySelector('.turned');
+    if (!place) return;
+    if (!section.boundaries) section.boundaries = JSON.parse(section.querySelector('script.boundaries').textContent);
+    const lines = [];
+    section.boundaries.forEach((each) => {
+      if (Math.abs(each.begin - seconds) < 1e-4) lines.push(each.event + ' began: ' + each.began);
+      if (Math.abs(each.end - seconds) < 1e-4) lines.push(each.event + ' ended: ' + each.ended);
+    });
+    const text = lines.join('\n');
+    if (place.dataset.told === text) return;
+    place.dataset.told = text;
+    place.replaceChildren(...lines.map((line) => {
+      const told = document.createElement('div');
+      told.textContent = line;
+      return told;
+    }));
   }
   function setCursor(section, seconds) {
     if (section.player) return section.player.seek(seconds);  // which marks it

@@ -110,6 +110,28 @@ TEST(Report, ReplaysThatAreTooLargeAreLeftOut) {
   EXPECT_EQ(CountOf(html, "class=\"replay-data\""), 2 * has);
 }
 
+TEST(Report, DifferencesAreExplained) {
+  std::vector<ScenarioVerdict> verdicts = Verdicts();
+  verdicts[1].comparison = Compared();
+  verdicts[1].explained.events = {{"sliding(h, cup)", 100, 200, "speed(cup) < 1", "b </script>"}};
+  verdicts[1].explained.differences = {{.what = "shifted sliding(h, cup)",
+                                        .text = "began at 1 s",
+                                        .signals = {{.clause = "speed(cup) > 1",
+                                                     .how = "rose",
+                                                     .unit = "m/s",
+                                                     .tick = 2,
+                                                     .ticks = {1, 2},
+                                                     .values = {0, 2},
+                                                     .limits = {1, 1}}}}};
+  const std::string html = ReportHtml(verdicts, {});
+  for (const char* part :
+       {"<summary>Why: shifted sliding(h, cup)</summary>", "<svg class=\"signal\"",
+        "<figcaption>speed(cup) &gt; 1</figcaption>", "began at 1 s</pre>",
+        "\"began\":\"speed(cup) \\u003c 1\",\"begin\":1.0,\"end\":2.0",
+        "\"ended\":\"b \\u003c/script\\u003e\""})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+}
+
 TEST(Report, ScriptAndStyleAreInThePageAsTheyAre) {
   const std::string html = ReportHtml(Verdicts(), {});
   EXPECT_NE(html.find(std::string(PageScript()) + "</script>"), std::string::npos);
