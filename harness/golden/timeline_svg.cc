@@ -24,25 +24,40 @@ constexpr double kLabelWidth = 260;
 constexpr double kChartWidth = 720;
 constexpr double kMargin = 10;
 constexpr double kRowHeight = 26;
+constexpr double kGroupHeight = 20;
 constexpr double kBarHeight = 8;
 constexpr double kAxisHeight = 22;
 constexpr double kNarrowestBar = 1.5;
 
 struct Row {
+  std::string group;  ///< whose event it is
   std::string label;
   std::vector<const Pairing*> pairings;
 };
 
-/// Rows in the order in which they first begin.
-std::vector<Row> RowsOf(const Comparison& comparison) {
+/// The hand of a phase or grasp, or who has the first role.
+std::string GroupOf(const NamedEvent& event, const EventDrawings& drawings) {
+  if (event.roles.empty()) return "";
+  const EventDrawing& drawing = drawings.Of(event.event);
+  const bool has_hand =
+      drawing.as == grammar::DrawnAs::kPhase || drawing.as == grammar::DrawnAs::kGrasp;
+  return event.roles[has_hand && drawing.hand < event.roles.size() ? drawing.hand : 0].value;
+}
+
+/// Rows of a group after each other; groups, and rows in them, in the order in which they first
+/// begin.
+std::vector<Row> RowsOf(const Comparison& comparison, const EventDrawings& drawings) {
   std::vector<Row> rows;
   std::map<std::string, std::size_t> row_of;
   for (const Pairing& pairing : comparison.pairings) {
     const std::string label = pairing.event().Label();
     const auto [found, is_new] = row_of.try_emplace(label, rows.size());
-    if (is_new) rows.push_back({label, {}});
+    if (is_new) rows.push_back({GroupOf(pairing.event(), drawings), label, {}});
     rows[found->second].pairings.push_back(&pairing);
   }
+  std::map<std::string, std::size_t> first_of;
+  for (std::size_t i = 0; i < rows.size(); ++i) first_of.try_emplace(rows[i].group, i);
+  std::ranges::stable_sort(rows, {}, [&](const Row& row) { return first_of.at(row.group); });
   return rows;
 }
 
@@ -53,10 +68,11 @@ class Drawing {
         end_(std::max<Tick>(1, end)),
         drawings_(drawings),
         has_golden_(has_golden),
-        rows_(RowsOf(comparison)) {}
+        rows_(RowsOf(comparison, drawings)) {}
 
   std::string Draw() {
-    const double height = kAxisHeight + kRowHeight * static_cast<double>(rows_.size()) + kMargin;
+    const double height = kAxisHeight + kRowHeight * static_cast<double>(rows_.size()) +
+                          kGroupHeight * Groups() + kMargin;
     svg_ = AddElement(
         document_, "svg",
         {{"class", "timeline"},
@@ -68,12 +84,30 @@ class Drawing {
           fmt::format("{:g}", kChartWidth * static_cast<double>(comparison_.ticks_per_second) /
                                   static_cast<double>(end_))}});
     DrawAxis(height);
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-      DrawRow(rows_[i], kAxisHeight + kRowHeight * static_cast<double>(i));
+    double y = kAxisHeight;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (Groups() > 0 && BeginsGroup(i)) {
+        AddElement(svg_, "text",
+                   {{"class", "group"}, {"x", "4"}, {"y", fmt::format("{:g}", y + 14)}},
+                   rows_[i].group);
+        y += kGroupHeight;
+      }
+      DrawRow(rows_[i], y);
+      y += kRowHeight;
+    }
     return ToText(document_, Layout::kAsItIs);
   }
 
  private:
+  bool BeginsGroup(std::size_t row) const {
+    return row == 0 || rows_[row].group != rows_[row - 1].group;
+  }
+  /// How many headings there are: a single group needs none.
+  int Groups() const {
+    int groups = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) groups += BeginsGroup(i) ? 1 : 0;
+    return groups > 1 ? groups : 0;
+  }
   bool Agrees(const Pairing& pairing) const {
     return !has_golden_ || pairing.agreement == LineVerdict::kMatched;
   }

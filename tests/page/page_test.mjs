@@ -131,6 +131,30 @@ test('a click on a boundary says which condition turned there', async () => {
   await close();
 });
 
+test('zooming keeps the cursor where it is', async () => {
+  const {page, close} = await opened({hash: '#' + FAILS});
+  const section = page.locator('section[id="' + FAILS + '"]');
+  await page.evaluate((id) => window.prehendReport.setCursor(id, 1.5), FAILS);
+  const bar = section.locator('rect.actual').filter({has: page.locator('title', {hasText: 'picking_up'})});
+  const x = () => section.locator('line.cursor').evaluate((line) => Number(line.getAttribute('x1')));
+  const width = () => bar.evaluate((each) => Number(each.getAttribute('width')));
+  const [x_before, width_before] = [await x(), await width()];
+  await section.locator('.scroll').focus();
+  await page.keyboard.press('+');
+  await page.keyboard.press('+');
+  assert.ok(Math.abs(await x() - x_before) < 0.5, 'the cursor moved');
+  assert.ok(Math.abs(await width() - 4 * width_before) < 0.5, `${await width()} of ${width_before}`);
+  const box = await bar.evaluate((each) => {
+    const {left, top, height} = each.getBoundingClientRect();
+    return {x: left + 2, y: top + height / 2};
+  });
+  await page.mouse.click(box.x, box.y);
+  assert.match(await section.locator('.turned').textContent(), /picking_up\(right_hand, milk\) began/);
+  await page.keyboard.press('0');
+  assert.ok(Math.abs(await width() - width_before) < 0.01);
+  await close();
+});
+
 test('each difference is explained, with the signal that decided', async () => {
   const {page, close} = await opened({hash: '#' + FAILS});
   const why = page.locator('section[id="' + FAILS + '"] details.difference');

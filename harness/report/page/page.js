@@ -65,6 +65,48 @@
     if (event.key === '/') { event.preventDefault(); search.focus(); }
   });
 
+  // The part of its time that a timeline shows, in seconds: everything, unless somebody zooms.
+  function endOf(svg) { return (svg.viewBox.baseVal.width - Number(svg.dataset.left) - 20) / Number(svg.dataset.perSecond); }
+  function shownOf(section) { return section.shown || {from: 0, to: endOf(timelineOf(section))}; }
+  function perSecond(section) {
+    const svg = timelineOf(section), shown = shownOf(section);
+    return endOf(svg) * Number(svg.dataset.perSecond) / (shown.to - shown.from);
+  }
+  function xAt(section, seconds) {
+    return Number(timelineOf(section).dataset.left) + (seconds - shownOf(section).from) * perSecond(section);
+  }
+  function zoom(section, factor) {
+    const svg = timelineOf(section), end = endOf(svg), now = shownOf(section);
+    const span = Math.min(end, Math.max(0.05, (now.to - now.from) / factor));
+    const at = section.cursor >= now.from && section.cursor <= now.to ? section.cursor : (now.from + now.to) / 2;
+    const share = (at - now.from) / (now.to - now.from);
+    const from = factor === 0 ? 0 : Math.min(Math.max(0, at - share * span), end - span);
+    section.shown = {from: from, to: factor === 0 ? end : from + span};
+    layOut(section);
+  }
+  function layOut(section) {
+    const svg = timelineOf(section), {from, to} = shownOf(section);
+    svg.querySelectorAll('rect[data-begin]').forEach((bar) => {
+      const begin = Math.max(from, Number(bar.dataset.begin)), end = Math.min(to, Number(bar.dataset.end));
+      bar.style.display = begin <= end ? '' : 'none';
+      bar.setAttribute('x', xAt(section, begin));
+      bar.setAttribute('width', Math.max(1.5, (end - begin) * perSecond(section)));
+    });
+    const line = svg.querySelector('line.grid'), label = svg.querySelector('text.axis');
+    let step = 1e-3;
+    for (const factor of [2, 2.5, 2, 2, 2.5, 2, 2, 2.5, 2, 2, 2.5, 2, 2, 2.5, 2]) if ((to - from) / step > 12) step *= factor;
+    svg.querySelectorAll('line.grid, text.axis').forEach((each) => each.remove());
+    for (let k = Math.ceil(from / step - 1e-9); k * step <= to + 1e-9; ++k) {
+      const grid = line.cloneNode(), text = label.cloneNode();
+      grid.setAttribute('x1', xAt(section, k * step));
+      grid.setAttribute('x2', xAt(section, k * step));
+      text.setAttribute('x', xAt(section, k * step));
+      text.textContent = Number((k * step).toFixed(3)) + ' s';
+      svg.prepend(grid, text);
+    }
+    mark(section, section.cursor || 0);
+  }
+
   // One cursor per section, in seconds: a line across its timeline, and the time of its replay.
   function timelineOf(section) { return section.querySelector('svg.timeline[data-per-second]'); }
   function mark(section, seconds) {
@@ -78,9 +120,10 @@
       line.setAttribute('y2', svg.viewBox.baseVal.height);
       svg.appendChild(line);
     }
-    const x = Number(svg.dataset.left) + seconds * Number(svg.dataset.perSecond);
+    const x = xAt(section, seconds);
     line.setAttribute('x1', x);
     line.setAttribute('x2', x);
+    line.setAttribute('visibility', x < Number(svg.dataset.left) - 0.01 || x > svg.viewBox.baseVal.width ? 'hidden' : 'visible');
     section.querySelector('output').textContent = seconds.toFixed(4) + ' s';
     tellBoundaries(section, seconds);
   }
@@ -111,24 +154,40 @@
   function link(section) {
     return '#' + encodeURI(section.id) + '@' + (section.cursor || 0).toFixed(4) + 's';
   }
-  function endOf(svg) { return (svg.viewBox.baseVal.width - Number(svg.dataset.left) - 20) / Number(svg.dataset.perSecond); }
   sections.forEach((section) => {
     const svg = timelineOf(section);
     if (!svg) return;
     function moment(event) {
       const frame = svg.getBoundingClientRect();
       const x = (event.clientX - frame.left) * svg.viewBox.baseVal.width / frame.width;
-      const seconds = (x - Number(svg.dataset.left)) / Number(svg.dataset.perSecond);
+      const seconds = shownOf(section).from + (x - Number(svg.dataset.left)) / perSecond(section);
       return Math.min(Math.max(0, seconds), endOf(svg));
     }
     svg.addEventListener('pointermove', (event) => { if (event.buttons > 0) setCursor(section, moment(event)); });
     svg.addEventListener('click', (event) => {
       const bar = event.target.closest('rect[data-begin]');
-      const exact = bar ? nearest(moment(event), [Number(bar.dataset.begin), Number(bar.dataset.end)], svg) : moment(event);
+      const exact = bar ? nearest(moment(event), [Number(bar.dataset.begin), Number(bar.dataset.end)], section) : moment(event);
       setCursor(section, exact);
       history.replaceState(null, '', link(section));
     });
+    const buttons = document.createElement('div');
+    buttons.className = 'zoom';
+    for (const [text, factor, key] of [['zoom in', 2, '+'], ['zoom out', 0.5, '-'], ['all', 0, '0']]) {
+      const button = document.createElement('button');
+      button.type = 'button';
+      button.className = 'chip';
+      button.textContent = text;
+      button.title = 'key ' + key;
+      button.addEventListener('click', () => zoom(section, factor));
+      buttons.appendChild(button);
+    }
+    svg.parentNode.before(buttons);
     svg.parentNode.addEventListener('keydown', (event) => {
+      const factor = {'+': 2, '=': 2, '-': 0.5, 0: 0}[event.key];
+      if (factor !== undefined) {
+        event.preventDefault();
+        zoom(section, factor);
+      }
       const by = {ArrowLeft: -1 / 60, ArrowRight: 1 / 60}[event.key];
       if (event.key === 'b' || event.key === 'B') {
         event.preventDefault();
@@ -142,8 +201,8 @@
     });
   });
   /// A click near the end of a bar means that end.
-  function nearest(seconds, ends, svg) {
-    const near = 8 / Number(svg.dataset.perSecond);
+  function nearest(seconds, ends, section) {
+    const near = 8 / perSecond(section);
     const end = ends.find((each) => Math.abs(each - seconds) <= near);
     return end === undefined ? seconds : end;
   }

@@ -168,6 +168,24 @@ TEST(TimelineSvg, DrawsTheGoldenAboveWhatWasRecognised) {
   EXPECT_EQ(CountOf(svg, "class=\"axis\""), 9) << "every half second of four";
 }
 
+TEST(TimelineSvg, RowsAreGroupedByWhoseTheyAre) {
+  const auto event = [](const char* name, const char* whose, grammar::Tick begin) {
+    return grammar::NamedEvent{
+        .event = name, .roles = {{"who", whose}}, .interval = {begin, begin + 10}};
+  };
+  const grammar::Timeline timeline{
+      .ticks_per_second = 100,
+      .events = {event("first", "left", 0), event("second", "cup", 5), event("third", "left", 20)}};
+  const std::string svg = TimelineSvg(Compare({}, timeline, 2), 400, {}, false);
+  const auto at = [&](const char* text) { return svg.find(text); };
+  EXPECT_EQ(CountOf(svg, "class=\"group\""), 2);
+  EXPECT_LT(at(">left</text>"), at(">first(left)</text>"));
+  EXPECT_LT(at(">first(left)</text>"), at(">third(left)</text>"));
+  EXPECT_LT(at(">third(left)</text>"), at(">cup</text>"));
+  EXPECT_LT(at(">cup</text>"), at(">second(cup)</text>"));
+  EXPECT_EQ(CountOf(svg, "class=\"hatch\""), 0) << "without a golden nothing differs";
+}
+
 TEST(TimelineSvg, AnEmptyTimelineIsAPictureToo) {
   const std::string svg = TimelineSvg(Comparison{}, 0, {});
   EXPECT_TRUE(svg.starts_with("<svg class=\"timeline\"")) << svg;
