@@ -20,7 +20,7 @@ constexpr int kDefaultMost = 100, kMostAnswers = 1'000'000;
 constexpr double kDefaultAsk_s = 10, kMostAsk_s = 3600;
 /// Loading the folder is not part of the query's time.
 constexpr double kLoading_s = 120;
-constexpr double kMegabyte = 1 << 20;
+constexpr double kMebibyte = 1 << 20;
 constexpr int kStack_MB = 512, kMemory_MB = 4096;
 
 struct Answered {
@@ -36,7 +36,7 @@ Answered AskSwipl(const std::string& root, const std::string& folder, const std:
                std::to_string(most), fmt::format("{}", time_limit_s)},
               query,
               {.time_s = time_limit_s + kLoading_s,
-               .memory_bytes = static_cast<std::size_t>(kMemory_MB * kMegabyte)});
+               .memory_bytes = static_cast<std::size_t>(kMemory_MB * kMebibyte)});
   Answered answered;
   bool ended = false;
   for (std::size_t begin = 0; begin < said.out.size();) {
