@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <map>
 
 #include "harness/build/build_abstract.h"
@@ -17,6 +19,8 @@
 namespace prehend::harness {
 namespace {
 
+/// Hands look no farther for what they come near to (physics/hand/hand_clearance.h).
+constexpr double kMaxGap_m = 0.09;
 /// How far outside an entity a point to grasp may be, since written numbers are rounded.
 constexpr double kMaxOutside_m = 0.005;
 
@@ -95,6 +99,23 @@ struct StepMaker {
   physics::Step operator()(const RecordingYaml& e) const {
     return Follow(physics::PosesStep{e.poses}, e.style);
   }
+  physics::Step operator()(const TurnHandYaml& e) const {
+    if (e.turn_by_deg.value.isZero())
+      errors.Add(e.turn_by_deg.where, "turn_by_deg: all three are 0, so nothing turns");
+    return {0, physics::TurnHandStep{e.turn_by_deg.value * (M_PI / 180), e.own_axes}, e.over_s};
+  }
+  physics::Step operator()(const OrbitYaml& e) const {
+    CheckEntity("orbit", e.orbit.around);
+    return {0, physics::OrbitStep{e.orbit.around.value, e.orbit.by_deg * M_PI / 180, e.orbit.at_m},
+            e.over_s};
+  }
+  physics::Step operator()(const PressYaml& e) const {
+    CheckEntity("press_n", e.against);
+    if (e.along.value.norm() < 0.01)
+      errors.Add(e.along.where, "along: the direction has no length");
+    return {0, physics::PressStep{e.against.value, e.press_n, e.along.value.normalized()},
+            e.over_s};
+  }
   template <class PersonYaml>
   physics::Step operator()(const PersonYaml&) const {
     errors.Add(written.name_where,
@@ -103,7 +124,38 @@ struct StepMaker {
     return {};
   }
 
+  /// What ends the step before its time; most steps have no such key.
+  std::optional<physics::Until> UntilOf() const {
+    return std::visit(
+        [&](const auto& entry) -> std::optional<physics::Until> {
+          if constexpr (requires { entry.until; }) {
+            if (entry.until) return ParseUntil(*entry.until);
+          }
+          return {};
+        },
+        written.value);
+  }
+
  private:
+  /// Of a text that its format has accepted: "gap(milk) < 5 mm, or go on".
+  physics::Until ParseUntil(const Located<std::string>& text) const {
+    const std::size_t open = text.value.find('('), close = text.value.find(')');
+    const Located<std::string> thing{text.value.substr(open + 1, close - open - 1), text.where};
+    CheckEntity("until", thing);
+    physics::Until until{
+        .thing = thing.value, .gap_m = {}, .or_go_on = text.value.ends_with("or go on")};
+    if (text.value.starts_with("touching")) return until;
+    const char* number = text.value.c_str() + close + 4;
+    char* unit = nullptr;
+    const double value = std::strtod(number, &unit);
+    const std::string_view rest(unit);
+    until.gap_m = value * (rest.starts_with(" mm") ? 0.001 : rest.starts_with(" cm") ? 0.01 : 1);
+    if (*until.gap_m > kMaxGap_m)
+      errors.Add(text.where, fmt::format("until: a gap of {:g} mm is too far, at most {:g} mm",
+                                         1000 * *until.gap_m, 1000 * kMaxGap_m));
+    return until;
+  }
+
   /// Reports entities that do not exist or are not physical objects.
   void CheckEntity(const char* key, const Located<std::string>& name) const {
     const auto found = std::find(entities.begin(), entities.end(), name.value);
@@ -283,8 +335,9 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
       const bool known = hand >= 0 && hand < static_cast<int>(scene.hands.size());
       const physics::HandModel* model =
           known ? &scene.hands[static_cast<std::size_t>(hand)].model : nullptr;
-      physics::Step step =
-          std::visit(StepMaker{entities, scene, model, named, errors}, named.value);
+      const StepMaker maker{entities, scene, model, named, errors};
+      physics::Step step = std::visit(maker, named.value);
+      step.until = maker.UntilOf();
       step.hand = hand;
       step.written_at = errors.PlaceText(named.name_where);
       stage.steps.push_back(std::move(step));

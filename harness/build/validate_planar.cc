@@ -62,6 +62,15 @@ struct StepCheck {
     errors.Add(e.recording.where, "a recorded motion does not stay in the plane y = 0",
                "write the motion as way-points: poses: [..]");
   }
+  void operator()(const TurnHandYaml& e) const {
+    if (e.turn_by_deg.value.x() != 0 || e.turn_by_deg.value.z() != 0)
+      errors.Add(e.turn_by_deg.where, "turn_by_deg: this turns the hand out of the plane y = 0",
+                 "a hand turns about y only: [0, degrees, 0]");
+  }
+  void operator()(const OrbitYaml& e) const {
+    errors.Add(e.orbit.around.where, "orbit: this leaves the plane y = 0", kZeroY);
+  }
+  void operator()(const PressYaml& e) const { CheckWay("along", e.along.value.y(), e.along.where); }
   template <class Other>
   void operator()(const Other&) const {}
 

@@ -57,6 +57,14 @@ class OnPaper {
       for (const Named<StepYaml>& step : stage) {
         hand_ = &hands_[step.name];
         std::visit(*this, step.value);
+        const bool is_guarded = std::visit(
+            [](const auto& entry) {
+              if constexpr (requires { entry.until; }) return entry.until.has_value();
+              return false;
+            },
+            step.value);
+        // It ends somewhere on its way.
+        if (is_guarded) LoseAll();
       }
     }
   }
@@ -89,6 +97,13 @@ class OnPaper {
     Lose(hand_->body);
   }
   void operator()(const FollowJointYaml&) { LoseAll(); }
+  void operator()(const TurnHandYaml&) {
+    if (Holds()) LoseAll();
+  }
+  void operator()(const OrbitYaml&) { LoseAll(); }
+  void operator()(const PressYaml&) {
+    if (hand_->trigger <= 0) LoseAll();
+  }
   void operator()(const PosesYaml& e) {
     for (const PoseYaml& pose : e.poses) Follow(pose.trigger);
     LoseAll();

@@ -171,9 +171,13 @@ struct ReachYaml {
   std::optional<Located<Eigen::Vector3d>> point_m;
   double over_s = 0.8;
 };
+/// "touching(milk)", "gap(milk) < 5 mm", either with ", or go on"; see
+/// harness/build/build_script.cc.
+using UntilYaml = std::optional<Located<std::string>>;
 struct CloseYaml {
   double close_to = 1;
   double over_s = 0.6;
+  UntilYaml until;
 };
 struct OpenYaml {
   double open_to = 0;
@@ -182,15 +186,18 @@ struct OpenYaml {
 struct LiftYaml {
   double lift_by_m = 0;
   double over_s = 0.6;
+  UntilYaml until;
 };
 struct MoveYaml {
   Located<Eigen::Vector3d> move_by_m{Eigen::Vector3d::Zero(), {}};
   double over_s = 0.8;
+  UntilYaml until;
 };
 struct CarryYaml {
   Where where;
   Located<Eigen::Vector2d> carry_to_m{Eigen::Vector2d::Zero(), {}};
   double over_s = 1.0;
+  UntilYaml until;
 };
 struct PlaceYaml {
   Where where;
@@ -200,6 +207,7 @@ struct PlaceYaml {
 struct RetreatYaml {
   double retreat_by_m = 0;
   double over_s = 0.6;
+  UntilYaml until;
 };
 struct FollowJointYaml {
   Located<std::string> follow_joint;
@@ -242,6 +250,27 @@ struct RecordingYaml {
   std::vector<physics::TimedPose> poses;
   std::vector<physics::TimedPosture> postures;
 };
+struct TurnHandYaml {
+  Located<Eigen::Vector3d> turn_by_deg{Eigen::Vector3d::Zero(), {}};
+  bool own_axes = false;
+  double over_s = 0.8;
+};
+struct OrbitYaml {
+  struct Around {
+    Located<std::string> around;
+    double by_deg = 90;
+    std::optional<double> at_m;
+  };
+  Around orbit;
+  double over_s = 1.5;
+  UntilYaml until;
+};
+struct PressYaml {
+  double press_n = 0;
+  Located<std::string> against;
+  Located<Eigen::Vector3d> along{-Eigen::Vector3d::UnitZ(), {}};
+  double over_s = 1.0;
+};
 // Steps of persons.
 struct LookAtYaml {
   Located<std::string> look_at;
@@ -280,8 +309,9 @@ struct MoveLimbYaml {
 
 using StepYaml =
     std::variant<WaitYaml, ReachYaml, CloseYaml, OpenYaml, LiftYaml, MoveYaml, CarryYaml, PlaceYaml,
-                 RetreatYaml, FollowJointYaml, PosesYaml, RecordingYaml, LookAtYaml,
-                 LookAtPointYaml, EyesYaml, WalkYaml, TurnYaml, LeanYaml, SwayYaml, MoveLimbYaml>;
+                 RetreatYaml, FollowJointYaml, PosesYaml, RecordingYaml, TurnHandYaml, OrbitYaml,
+                 PressYaml, LookAtYaml, LookAtPointYaml, EyesYaml, WalkYaml, TurnYaml, LeanYaml,
+                 SwayYaml, MoveLimbYaml>;
 
 /// One item of the script: what each named actor does at the same time.
 using StageYaml = std::vector<Named<StepYaml>>;

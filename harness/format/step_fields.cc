@@ -19,6 +19,16 @@ constexpr double kMaxStep_s = 600;
 
 ValueFormat<double> Duration() { return Number(kMinStep_s, kMaxStep_s); }
 const std::string kOverDoc = "Duration in seconds.";
+const std::string kUntilDoc =
+    "Ends the step before its time: 'touching(milk)' or 'gap(milk) < 5 mm'. If that never happens "
+    "the run fails; with ', or go on' it goes on.";
+ValueFormat<std::string> UntilFormat() {
+  return Word(
+      "(touching\\([a-z][a-z0-9_]*\\)|gap\\([a-z][a-z0-9_]*\\) < [0-9]+(\\.[0-9]+)? (mm|cm|m))(, "
+      "or go "
+      "on)?",
+      "'touching(milk)' or 'gap(milk) < 5 mm', perhaps with ', or go on'", 120);
+}
 const std::string kStyleDoc = "The grasp style that the hand takes; default: unchanged.";
 
 /// A step with one value and a duration; most steps are of this kind.
@@ -29,6 +39,63 @@ ValueFormat<StepYaml> TimedStep(const std::string& key, M Entry::*member, ValueF
                                      .Required(key, member, std::move(format), doc)
                                      .Optional("over_s", &Entry::over_s, Duration(), kOverDoc)
                                      .format());
+}
+
+/// The same, and it may end before its time.
+template <class Entry, class M, class F>
+ValueFormat<StepYaml> GuardedStep(const std::string& key, M Entry::*member, ValueFormat<F> format,
+                                  const std::string& doc) {
+  return AsAlternative<StepYaml>(StructFormat<Entry>("a " + key + " step")
+                                     .Required(key, member, std::move(format), doc)
+                                     .Optional("over_s", &Entry::over_s, Duration(), kOverDoc)
+                                     .Optional("until", &Entry::until, UntilFormat(), kUntilDoc)
+                                     .format());
+}
+
+ValueFormat<StepYaml> TurnHandFormat() {
+  using T = TurnHandYaml;
+  return AsAlternative<StepYaml>(
+      StructFormat<T>("a turn_by_deg step")
+          .Required("turn_by_deg", &T::turn_by_deg, Vector<3>(-3600, 3600),
+                    "The hand turns about its palm: degrees about x, y or z; of several about the "
+                    "axis that they point along, by their length.")
+          .Optional("axes", &T::own_axes, Choice<bool>({{"world", false}, {"hand", true}}),
+                    "Whose axes these are.")
+          .Optional("over_s", &T::over_s, Duration(), kOverDoc)
+          .format());
+}
+
+ValueFormat<StepYaml> OrbitFormat() {
+  using O = OrbitYaml;
+  using A = OrbitYaml::Around;
+  return AsAlternative<StepYaml>(
+      StructFormat<O>("an orbit step")
+          .Required("orbit", &O::orbit,
+                    StructFormat<A>("an orbit")
+                        .Required("around", &A::around, Identifier(),
+                                  "The entity that the hand goes around, turning with it.")
+                        .Optional("by_deg", &A::by_deg, Number(-3600, 3600),
+                                  "How far, counter-clockwise as seen from above.")
+                        .Optional("at_m", &A::at_m, Number(0.01, kMaxMove_m),
+                                  "Distance from its centre in the end; default: as now.")
+                        .format(),
+                    "Around the vertical through an entity's centre.")
+          .Optional("over_s", &O::over_s, Duration(), kOverDoc)
+          .Optional("until", &O::until, UntilFormat(), kUntilDoc)
+          .format());
+}
+
+ValueFormat<StepYaml> PressFormat() {
+  using P = PressYaml;
+  return AsAlternative<StepYaml>(
+      StructFormat<P>("a press_n step")
+          .Required("press_n", &P::press_n, Number(0.1, 200),
+                    "Press with this force, with the hand or with what it holds.")
+          .Required("against", &P::against, Identifier(), "The entity that is pressed.")
+          .Optional("along", &P::along, Vector<3>(-1, 1),
+                    "Where to, a direction in world axes; default: down.")
+          .Optional("over_s", &P::over_s, Duration(), kOverDoc)
+          .format());
 }
 
 ValueFormat<StepYaml> ReachFormat() {
@@ -191,25 +258,29 @@ ValueFormat<StepYaml> StepFormat() {
   return ByKey<StepYaml>(
       "a step",
       {{"reach", ReachFormat()},
-       {"close_to", TimedStep("close_to", &CloseYaml::close_to, grip,
-                              "Grip: 0 open, 1 closed with full effort.")},
+       {"close_to", GuardedStep("close_to", &CloseYaml::close_to, grip,
+                                "Grip: 0 open, 1 closed with full effort.")},
        {"open_to",
         TimedStep("open_to", &OpenYaml::open_to, grip, "Grip: 0 open, 1 closed with full effort.")},
-       {"lift_by_m", TimedStep("lift_by_m", &LiftYaml::lift_by_m, Number(-kMaxMove_m, kMaxMove_m),
-                               "Straight up by this much; negative is down.")},
+       {"lift_by_m", GuardedStep("lift_by_m", &LiftYaml::lift_by_m, Number(-kMaxMove_m, kMaxMove_m),
+                                 "Straight up by this much; negative is down.")},
        {"move_by_m",
-        TimedStep("move_by_m", &MoveYaml::move_by_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
-                  "Straight by [x, y, z], world axes.")},
-       {"carry_to_m",
-        TimedStep("carry_to_m", &CarryYaml::carry_to_m, Vector<2>(-kMaxDistance_m, kMaxDistance_m),
-                  "The held object's centre goes to this [x, y], height kept.")},
+        GuardedStep("move_by_m", &MoveYaml::move_by_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
+                    "Straight by [x, y, z], world axes.")},
+       {"carry_to_m", GuardedStep("carry_to_m", &CarryYaml::carry_to_m,
+                                  Vector<2>(-kMaxDistance_m, kMaxDistance_m),
+                                  "The held object's centre goes to this [x, y], height kept.")},
        {"place_on", TimedStep("place_on", &PlaceYaml::place_on, Identifier(),
                               "Lower until the held object stands on this entity.")},
-       {"retreat_by_m", TimedStep("retreat_by_m", &RetreatYaml::retreat_by_m, Number(0, kMaxMove_m),
-                                  "Back by this much, along the path the hand came.")},
+       {"retreat_by_m",
+        GuardedStep("retreat_by_m", &RetreatYaml::retreat_by_m, Number(0, kMaxMove_m),
+                    "Back by this much, along the path the hand came.")},
        {"follow_joint", FollowJointFormat()},
        {"wait_s", WaitFormat()},
        {"poses", PosesFormat()},
+       {"turn_by_deg", TurnHandFormat()},
+       {"orbit", OrbitFormat()},
+       {"press_n", PressFormat()},
        {"recording", RecordingFormat()},
        {"look_at", TimedStep("look_at", &LookAtYaml::look_at, Identifier(),
                              "The entity or hand that a person looks at from now on.")},

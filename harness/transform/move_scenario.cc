@@ -71,6 +71,15 @@ struct MoveStep {
     if (step.point_m) step.point_m = motion.Own(*step.point_m);
   }
   void operator()(physics::MoveStep& step) const { step.by_m = motion.Direction(step.by_m); }
+  void operator()(physics::TurnHandStep& step) const {
+    step.by_rad = !step.own_axes   ? motion.Axis(step.by_rad)
+                  : motion.mirrors ? AxisInMirror(step.by_rad)
+                                   : step.by_rad;
+  }
+  void operator()(physics::OrbitStep& step) const {
+    if (motion.mirrors) step.by_rad = -step.by_rad;
+  }
+  void operator()(physics::PressStep& step) const { step.along_W = motion.Direction(step.along_W); }
   void operator()(physics::CarryStep& step) const { step.to_m = motion.Ground(step.to_m); }
   void operator()(physics::PosesStep& step) const { Move(motion, step.poses); }
   void operator()(physics::LookAtStep& step) const {

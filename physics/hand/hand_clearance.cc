@@ -19,8 +19,6 @@ constexpr double kBallsApart_radii = 4;
 constexpr double kCorner_m = 0.001;
 /// Time step of the samples: one centimetre at 1.5 m/s, the peak speed of a long reach.
 constexpr int kLooks = 120;
-/// Distances are cut off here; larger ones do not matter.
-constexpr double kFar_m = 0.1;
 
 /// Whether a body is a part of the person whose hand this is. Parts stand together in a scene, from
 /// the head on.
@@ -75,13 +73,21 @@ HandClearance::HandClearance(const Scene& scene, int hand, const std::vector<dou
 
 double HandClearance::At(const Pose& X_WH, const Snapshot& now) const {
   double least = kFar_m;
-  for (const std::size_t b : obstacles_) {
-    for (const PlacedShape& placed : scene_.bodies[b].shapes) {
-      const Pose X_SH = (now.bodies[b].X_WB * placed.X_BS).inverse() * X_WH;
-      if (SignedDistance(placed.shape, X_SH.p_m) > reach_m_ + least) continue;
-      for (const Ball& ball : balls_)
-        least = std::min(least, SignedDistance(placed.shape, X_SH * ball.p_H_m) - ball.radius_m);
-    }
+  for (const std::size_t b : obstacles_) least = LessTo(b, X_WH, now, least);
+  return least;
+}
+
+double HandClearance::To(int body, const Pose& X_WH, const Snapshot& now) const {
+  return LessTo(static_cast<std::size_t>(body), X_WH, now, kFar_m);
+}
+
+double HandClearance::LessTo(std::size_t body, const Pose& X_WH, const Snapshot& now,
+                             double least) const {
+  for (const PlacedShape& placed : scene_.bodies[body].shapes) {
+    const Pose X_SH = (now.bodies[body].X_WB * placed.X_BS).inverse() * X_WH;
+    if (SignedDistance(placed.shape, X_SH.p_m) > reach_m_ + least) continue;
+    for (const Ball& ball : balls_)
+      least = std::min(least, SignedDistance(placed.shape, X_SH * ball.p_H_m) - ball.radius_m);
   }
   return least;
 }

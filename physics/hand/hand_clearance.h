@@ -20,10 +20,17 @@ class HandClearance {
   /// Smallest distance of a hand at X_WH to any body that may obstruct it, metres; negative:
   /// penetration.
   double At(const Pose& X_WH, const Snapshot& now) const;
+  /// Distance of a hand at X_WH to one body, metres, at most kFar_m; exact within a few
+  /// millimetres.
+  double To(int body, const Pose& X_WH, const Snapshot& now) const;
+  /// Distances are cut off here; larger ones do not matter.
+  static constexpr double kFar_m = 0.1;
   /// The smallest distance along a motion, sampled at even time steps.
   double Along(const Segment& segment, const Snapshot& now) const;
 
  private:
+  /// The distance to this body, if it is less than `least`.
+  double LessTo(std::size_t body, const Pose& X_WH, const Snapshot& now, double least) const;
   struct Ball {
     Eigen::Vector3d p_H_m;
     double radius_m;

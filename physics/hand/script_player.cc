@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "physics/hand/hand_contacts.h"
 #include "physics/hand/reach_planner.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/joint.h"
@@ -38,6 +39,8 @@ constexpr double kNotedWidth_m = 0.0005;
 /// Number of way-points on the arc of a joint: between two of them the arc deviates from a straight
 /// line by 0.1 mm at most.
 constexpr int kJointWaypoints = 40;
+/// Likewise of an orbit or a turn, per whole turn.
+constexpr int kTurnWaypoints = 160;
 
 double DurationOf(const Step& step) {
   const auto* poses = std::get_if<PosesStep>(&step.action);
@@ -49,10 +52,16 @@ double DurationOf(const PersonStep& step) {
   return head && !head->poses.empty() ? head->poses.back().t_s : step.over_s;
 }
 
-double DurationOf(const ScriptStage& stage) {
+/// Of the persons' steps of a stage.
+double PersonDurationOf(const ScriptStage& stage) {
   double longest = 0;
-  for (const Step& step : stage.steps) longest = std::max(longest, DurationOf(step));
   for (const PersonStep& step : stage.person_steps) longest = std::max(longest, DurationOf(step));
+  return longest;
+}
+
+double DurationOf(const ScriptStage& stage) {
+  double longest = PersonDurationOf(stage);
+  for (const Step& step : stage.steps) longest = std::max(longest, DurationOf(step));
   return longest;
 }
 
@@ -80,13 +89,6 @@ double BorneBy(int body, const Snapshot& now, double rate_hz) {
   return impulse_n_s * rate_hz;
 }
 
-bool Touches(int hand, int body, const Snapshot& now) {
-  return std::ranges::any_of(now.contacts, [&](const ContactPoint& contact) {
-    return (contact.a.hand == hand && contact.b.hand < 0 && contact.b.body == body) ||
-           (contact.b.hand == hand && contact.a.hand < 0 && contact.a.body == body);
-  });
-}
-
 /// Whether the body touches others than hands.
 bool TouchesAnything(int body, const Snapshot& now) {
   for (const auto& points : now.AllContacts()) {
@@ -97,10 +99,6 @@ bool TouchesAnything(int body, const Snapshot& now) {
     }
   }
   return false;
-}
-
-std::string Millimetres(double length_m) {
-  return std::to_string(std::lround(1000 * length_m)) + " mm";
 }
 
 /// Remarks on a reach that is executed in spite of problems; empty if there are none.
@@ -144,6 +142,9 @@ class ScriptPlayer::Resolver {
   void operator()(const RetreatStep& retreat);
   void operator()(const FollowJointStep& follow);
   void operator()(const PosesStep& poses);
+  void operator()(const TurnHandStep& turn);
+  void operator()(const OrbitStep& orbit);
+  void operator()(const PressStep& press);
 
  private:
   void MoveBy(const Eigen::Vector3d& by_m, double duration_s);
@@ -296,6 +297,65 @@ void ScriptPlayer::Resolver::operator()(const FollowJointStep& follow) {
   Follow(poses);
 }
 
+void ScriptPlayer::Resolver::operator()(const TurnHandStep& turn) {
+  const double angle = turn.by_rad.norm();
+  if (angle == 0) return;
+  const int count = std::max(2, static_cast<int>(std::ceil(kTurnWaypoints * angle / (2 * M_PI))));
+  const Pose& X_WH = hand_.target.X_WH;
+  std::vector<TimedPose> poses;
+  for (int i = 1; i <= count; ++i) {
+    const double x = static_cast<double>(i) / count;
+    const Eigen::Quaterniond by(
+        Eigen::AngleAxisd(MinimumJerk(x) * angle, Eigen::Vector3d(turn.by_rad / angle)));
+    const Eigen::Quaterniond q = turn.own_axes ? X_WH.q * by : by * X_WH.q;
+    poses.push_back({.t_s = x * step_.over_s, .X_WH = {X_WH.p_m, q.normalized()}, .trigger = {}});
+  }
+  Follow(poses);
+}
+
+void ScriptPlayer::Resolver::operator()(const OrbitStep& orbit) {
+  const int body = FindBody(scene_, orbit.around);
+  if (body < 0) {
+    problem_ = "orbit: there is no entity '" + orbit.around + "'";
+    return;
+  }
+  const auto index = static_cast<std::size_t>(body);
+  const Eigen::Vector3d centre = now_.bodies[index].X_WB * BoundingBox(scene_.bodies[index]).p_BC_m;
+  const Pose& X_WH = hand_.target.X_WH;
+  const Eigen::Vector2d away = (X_WH.p_m - centre).head<2>();
+  const double from_m = away.norm();
+  if (from_m < 0.001) {
+    problem_ = "orbit: the hand is above the centre of '" + orbit.around + "'";
+    return;
+  }
+  const double to_m = orbit.at_m.value_or(from_m);
+  const int count = std::max(
+      8, static_cast<int>(std::ceil(kTurnWaypoints * std::abs(orbit.by_rad) / (2 * M_PI))));
+  std::vector<TimedPose> poses;
+  for (int i = 1; i <= count; ++i) {
+    const double x = static_cast<double>(i) / count, share = MinimumJerk(x);
+    const Eigen::Quaterniond by(Eigen::AngleAxisd(share * orbit.by_rad, Eigen::Vector3d::UnitZ()));
+    const Eigen::Vector2d out = away * ((from_m + share * (to_m - from_m)) / from_m);
+    const Eigen::Vector3d offset =
+        by * Eigen::Vector3d(out.x(), out.y(), X_WH.p_m.z() - centre.z());
+    poses.push_back({.t_s = x * step_.over_s,
+                     .X_WH = {centre + offset, (by * X_WH.q).normalized()},
+                     .trigger = {}});
+  }
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(orbit.by_rad, Eigen::Vector3d::UnitZ()));
+  hand_.came_along_W = turned * hand_.came_along_W;
+  Follow(poses);
+}
+
+void ScriptPlayer::Resolver::operator()(const PressStep& press) {
+  const int body = FindBody(scene_, press.against);
+  if (body < 0) {
+    problem_ = "press_n: there is no entity '" + press.against + "'";
+    return;
+  }
+  hand_.pressing = Pressing{.against = body, .force_n = press.force_n, .along_W = press.along_W};
+}
+
 ScriptPlayer::ScriptPlayer(const Scene& scene, Script script)
     : scene_(scene), script_(std::move(script)) {
   const std::vector<int> styles = FirstStyles(scene_, script_);
@@ -328,6 +388,10 @@ void ScriptPlayer::StartStage(const Snapshot& now) {
     double& height_m = hand.target.X_WH.p_m.z();
     if (hand.placing) height_m = hand.placing->HeightOf(height_m);
     hand.placing.reset();
+    hand.waiting.reset();
+    if (hand.pressing) hand.target.X_WH.p_m += hand.pressing->depth_m * hand.pressing->along_W;
+    hand.pressing.reset();
+    hand.step_ticks = 0;
     hand.motion = Trajectory(hand.target);
   }
   tick_in_stage_ = 0;
@@ -339,18 +403,24 @@ void ScriptPlayer::StartStage(const Snapshot& now) {
   begun_.push_back(stage_);
   const ScriptStage& stage = script_.stages[stage_++];
   stage_ticks_ = planned_ticks_ = std::llround(DurationOf(stage) * rate_hz);
+  person_ticks_ = std::llround(PersonDurationOf(stage) * rate_hz);
   for (const Step& step : stage.steps) {
     HandState& hand = hands_[static_cast<std::size_t>(step.hand)];
     hand.written_at = step.written_at;
+    hand.step_ticks = std::llround(DurationOf(step) * rate_hz);
+    if (step.until)
+      hand.waiting = Waiting{.until = *step.until, .thing = FindBody(scene_, step.until->thing)};
     Resolver resolver(scene_, now, step, hand);
     problem_ = resolver.Resolve();
     if (!resolver.note().empty()) notes_.push_back({now.tick, step.hand, resolver.note()});
-    problem_hand_ = step.hand;
-    if (!problem_.empty()) {
-      if (!step.written_at.empty()) problem_ = step.written_at + ": " + problem_;
-      return;
-    }
+    if (!problem_.empty()) return Fail(step.hand, std::string(problem_));
   }
+}
+
+void ScriptPlayer::Fail(int hand, const std::string& problem) {
+  const std::string& written_at = hands_[static_cast<std::size_t>(hand)].written_at;
+  problem_ = written_at.empty() ? problem : written_at + ": " + problem;
+  problem_hand_ = hand;
 }
 
 bool ScriptPlayer::Placing::Stands() const { return touches && borne_n >= kBorneShare * weight_n; }
@@ -401,8 +471,7 @@ void ScriptPlayer::CheckThatAllStand(const Snapshot& now) {
       const double low_m = WorldBounds(scene_.bodies[body], now.bodies[body].X_WB).min().z();
       problem_ += ", but is held " + Millimetres(low_m - *landing_m) + " above it";
     }
-    if (!hands_[h].written_at.empty()) problem_ = hands_[h].written_at + ": " + problem_;
-    problem_hand_ = hand;
+    Fail(hand, std::string(problem_));
   }
 }
 
@@ -410,11 +479,15 @@ const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
   commands_.clear();
   begun_.clear();
   Watch(now);
+  WatchGuards(now);
+  Press(now);
   if (tick_in_stage_ == stage_ticks_) {
-    if (Waits())
+    if (Waits()) {
       ++stage_ticks_;
-    else
+    } else {
       CheckThatAllStand(now);
+      CheckGuards(now);
+    }
   }
   while (tick_in_stage_ == stage_ticks_ && !settling_ && problem_.empty()) StartStage(now);
   if (!problem_.empty() || tick_in_stage_ == stage_ticks_) return nullptr;
@@ -424,6 +497,7 @@ const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
     HandCommand& command = commands_.emplace_back(HandCommand{hand.motion.At(t_s), hand.style});
     double& height_m = command.target.X_WH.p_m.z();
     if (hand.placing) height_m = hand.placing->HeightOf(height_m);
+    if (hand.pressing) command.target.X_WH.p_m += hand.pressing->depth_m * hand.pressing->along_W;
   }
   return &commands_;
 }

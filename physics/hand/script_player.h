@@ -2,7 +2,8 @@
 // Plays a script for the hands. When a stage starts, each of its steps is resolved into a motion of
 // a hand's tracked target, from the state of the world at that time. Hands without a step keep
 // their target. A step that puts a thing down looks at the world until the thing stands: the target
-// goes on down, and the stage lasts longer, if it does not. Tested by
+// goes on down, and the stage lasts longer, if it does not. A guarded step ends when what it waits
+// for happens, and with the last step the stage. Tested by
 // tests/physics/hand/script_player_test.cc
 #pragma once
 
@@ -68,6 +69,20 @@ class ScriptPlayer {
       return lifted_off ? std::min(motion_m - lowered_m, lowest_m) : motion_m - lowered_m;
     }
   };
+  /// What ends the present step before its time.
+  struct Waiting {
+    Until until;
+    int thing = 0;  ///< index into Scene::bodies
+    bool met = false;
+  };
+  /// The target goes on along a direction until the force is reached.
+  struct Pressing {
+    int against = 0;  ///< index into Scene::bodies
+    double force_n = 0;
+    Eigen::Vector3d along_W;
+    double present_n = 0;  ///< a mean over some 20 ms
+    double depth_m = 0;    ///< how far the target has gone
+  };
   struct HandState {
     TargetState target;  ///< present target, or the one at the end of the motion
     Trajectory motion{TargetState{}};
@@ -76,6 +91,9 @@ class ScriptPlayer {
     Eigen::Vector3d came_along_W =
         Eigen::Vector3d::Zero();  ///< direction of the last arrival; zero before the first reach
     std::optional<Placing> placing = std::nullopt;
+    std::optional<Waiting> waiting = std::nullopt;
+    std::optional<Pressing> pressing = std::nullopt;
+    std::int64_t step_ticks = 0;  ///< how long the present step lasts; 0: there is none
     std::string written_at = {};  ///< the present step
   };
   class Resolver;
@@ -84,6 +102,13 @@ class ScriptPlayer {
   void Watch(const Snapshot& now);
   bool Waits() const;
   void CheckThatAllStand(const Snapshot& now);
+  /// Ends guarded steps, and with them perhaps the stage.
+  void WatchGuards(const Snapshot& now);
+  void CheckGuards(const Snapshot& now);
+  void Press(const Snapshot& now);
+  bool IsTouched(int hand, int thing, const Snapshot& now) const;
+  double GapTo(int hand, int thing, const Snapshot& now) const;
+  void Fail(int hand, const std::string& problem);
 
   const Scene& scene_;
   Script script_;
@@ -93,6 +118,7 @@ class ScriptPlayer {
   std::int64_t tick_in_stage_ = 0;
   std::int64_t stage_ticks_ = 0;    ///< how long it lasts,
   std::int64_t planned_ticks_ = 0;  ///< and should
+  std::int64_t person_ticks_ = 0;   ///< how long its persons' steps last
   std::vector<std::size_t> begun_;
   bool settling_ = false;
   std::string problem_;

@@ -51,13 +51,38 @@ struct PosesStep {  ///< 6D way-points
   std::vector<TimedPose> poses;
   std::string style = {};  ///< new grasp style; empty: unchanged
 };
-using StepAction = std::variant<WaitStep, ReachStep, TriggerStep, MoveStep, CarryStep, PlaceStep,
-                                RetreatStep, FollowJointStep, PosesStep>;
+struct TurnHandStep {                                ///< turn_by_deg: about the palm's centre
+  Eigen::Vector3d by_rad = Eigen::Vector3d::Zero();  ///< about this axis, by its length
+  bool own_axes = false;                             ///< the axis is one of the hand, not the world
+};
+struct OrbitStep {  ///< around the vertical through a thing's centre; the hand turns with it
+  std::string around;
+  double by_rad = 0;
+  std::optional<double> at_m;  ///< distance from it in the end; else as now
+};
+struct PressStep {  ///< presses, by itself or with what it holds
+  std::string against;
+  double force_n = 0;
+  Eigen::Vector3d along_W = -Eigen::Vector3d::UnitZ();  ///< unit
+};
+using StepAction =
+    std::variant<WaitStep, ReachStep, TriggerStep, MoveStep, CarryStep, PlaceStep, RetreatStep,
+                 FollowJointStep, PosesStep, TurnHandStep, OrbitStep, PressStep>;
+
+/// What ends a step before its time. If it never happens the script cannot continue.
+struct Until {
+  std::string thing;
+  /// The hand, or the thing that it last reached for and touches, touches the thing; or, if set,
+  /// the hand's surface is nearer to it than this.
+  std::optional<double> gap_m;
+  bool or_go_on = false;  ///< the script continues also if it never happens
+};
 
 struct Step {
   int hand = 0;  ///< index into Scene::hands
   StepAction action;
   double over_s = 0.5;
+  std::optional<Until> until = {};
   std::string written_at = {};  ///< "FILE:LINE:COLUMN", for what is said about it; may be empty
 };
 

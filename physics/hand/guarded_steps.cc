@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of the ScriptPlayer that looks at the world while a step is played: steps that end when
+// something happens, and steps that press. Tested by tests/physics/hand/guarded_motion_test.cc
+#include <algorithm>
+#include <cmath>
+
+#include "physics/hand/hand_clearance.h"
+#include "physics/hand/hand_contacts.h"
+#include "physics/hand/script_player.h"
+
+namespace prehend::physics {
+namespace {
+
+/// The force is a mean over this time.
+constexpr double kForce_s = 0.02;
+/// A hand that presses too little goes on as if it were held back by the palm's spring and a damper
+/// with this time constant,
+constexpr double kPressing_s = 0.1;
+/// but not faster.
+constexpr double kMaxPressing_m_per_s = 0.05;
+/// A hand that reaches less than this share of the force is noted.
+constexpr double kNotedForceShare = 0.8;
+
+}  // namespace
+
+bool Touches(int hand, int body, const Snapshot& now) {
+  return std::ranges::any_of(now.contacts, [&](const ContactPoint& contact) {
+    return (contact.a.hand == hand && contact.b.hand < 0 && contact.b.body == body) ||
+           (contact.b.hand == hand && contact.a.hand < 0 && contact.a.body == body);
+  });
+}
+
+std::string Millimetres(double length_m) {
+  return std::to_string(std::lround(1000 * length_m)) + " mm";
+}
+
+bool ScriptPlayer::IsTouched(int hand, int thing, const Snapshot& now) const {
+  const int object = hands_[static_cast<std::size_t>(hand)].object;
+  const int held = object >= 0 && object != thing && Touches(hand, object, now) ? object : -1;
+  bool touched = false;
+  ForEachContact(hand, held, thing, now, [&](const ContactPoint& contact) {
+    touched |= contact.distance_m <= 0 || contact.normal_impulse_n_s > 0;
+  });
+  return touched;
+}
+
+double ScriptPlayer::GapTo(int hand, int thing, const Snapshot& now) const {
+  const HandClearance clearance(scene_, hand, now.hands[static_cast<std::size_t>(hand)].joints);
+  return clearance.To(thing, now.hands[static_cast<std::size_t>(hand)].palm.X_WB, now);
+}
+
+void ScriptPlayer::WatchGuards(const Snapshot& now) {
+  bool changed = false;
+  for (std::size_t h = 0; h < hands_.size(); ++h) {
+    HandState& hand = hands_[h];
+    if (!hand.waiting || hand.waiting->met || tick_in_stage_ >= hand.step_ticks) continue;
+    const int index = static_cast<int>(h), thing = hand.waiting->thing;
+    const std::optional<double>& gap_m = hand.waiting->until.gap_m;
+    hand.waiting->met = gap_m ? GapTo(index, thing, now) < *gap_m : IsTouched(index, thing, now);
+    if (!hand.waiting->met) continue;
+    // It stays where it is: the target is ahead of the hand, which would go on to it.
+    const double t_s = static_cast<double>(tick_in_stage_) / scene_.world.rate_hz;
+    hand.target = hand.motion.At(t_s);
+    if (const Eigen::Vector3d ahead_W = hand.target.v_m_per_s.normalized(); !ahead_W.isZero()) {
+      const double ahead_m = ahead_W.dot(hand.target.X_WH.p_m - now.hands[h].palm.X_WB.p_m);
+      hand.target.X_WH.p_m -= std::max(ahead_m, 0.0) * ahead_W;
+    }
+    hand.target.v_m_per_s.setZero();
+    hand.target.w_rad_per_s.setZero();
+    hand.motion = Trajectory(hand.target);
+    hand.step_ticks = tick_in_stage_;
+    changed = true;
+  }
+  if (!changed) return;
+  planned_ticks_ = std::max(person_ticks_, tick_in_stage_);
+  for (const HandState& hand : hands_) planned_ticks_ = std::max(planned_ticks_, hand.step_ticks);
+  stage_ticks_ = planned_ticks_;
+}
+
+void ScriptPlayer::CheckGuards(const Snapshot& now) {
+  for (std::size_t h = 0; h < hands_.size() && problem_.empty(); ++h) {
+    const std::optional<Waiting>& waiting = hands_[h].waiting;
+    if (!waiting || waiting->met || waiting->until.or_go_on) continue;
+    const int hand = static_cast<int>(h);
+    const double gap_m = GapTo(hand, waiting->thing, now);
+    const std::string away = gap_m >= HandClearance::kFar_m
+                                 ? "more than " + Millimetres(HandClearance::kFar_m)
+                                 : Millimetres(gap_m);
+    const std::string wanted =
+        waiting->until.gap_m ? "came nearer than " + Millimetres(*waiting->until.gap_m) + " to"
+                             : "touched";
+    Fail(hand, "until: the step is over, and '" + scene_.hands[h].name + "' has not " + wanted +
+                   " '" + waiting->until.thing + "': it is " + away + " away from it");
+  }
+}
+
+/// Follows the force.
+void ScriptPlayer::Press(const Snapshot& now) {
+  const double rate_hz = scene_.world.rate_hz;
+  for (std::size_t h = 0; h < hands_.size(); ++h) {
+    if (!hands_[h].pressing) continue;
+    Pressing& pressing = *hands_[h].pressing;
+    const int hand = static_cast<int>(h), object = hands_[h].object;
+    const bool holds = object >= 0 && object != pressing.against && Touches(hand, object, now);
+    double impulse_n_s = 0;
+    ForEachContact(hand, holds ? object : -1, pressing.against, now,
+                   [&](const ContactPoint& contact) { impulse_n_s += contact.normal_impulse_n_s; });
+    const double share = std::min(1 / (kForce_s * rate_hz), 1.0);
+    pressing.present_n += share * (impulse_n_s * rate_hz - pressing.present_n);
+    const double stiffness_n_per_m = std::max(scene_.hands[h].model.translation.proportional, 1.0);
+    const double speed_m_per_s =
+        std::clamp((pressing.force_n - pressing.present_n) / (stiffness_n_per_m * kPressing_s),
+                   -kMaxPressing_m_per_s, kMaxPressing_m_per_s);
+    pressing.depth_m = std::max(pressing.depth_m + speed_m_per_s / rate_hz, 0.0);
+    if (tick_in_stage_ + 1 == stage_ticks_ &&
+        pressing.present_n < kNotedForceShare * pressing.force_n) {
+      const auto body = static_cast<std::size_t>(pressing.against);
+      notes_.push_back({now.tick, hand,
+                        "presses with " + std::to_string(std::lround(pressing.present_n)) +
+                            " N against " + scene_.bodies[body].name + ", not with " +
+                            std::to_string(std::lround(pressing.force_n)) + " N"});
+    }
+  }
+}
+
+}  // namespace prehend::physics

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// Steps that end when something happens, turn, go around or press.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "physics/hand/hand_clearance.h"
+#include "physics/hand/script_player.h"
+#include "tests/physics/tabletop.h"
+
+namespace prehend::physics {
+namespace {
+
+Step Guarded(StepAction action, double over_s, Until until) {
+  return {.hand = 0, .action = std::move(action), .over_s = over_s, .until = std::move(until)};
+}
+
+struct Played {
+  Simulation simulation;
+  Played(const Scene& scene, Script script) : simulation(scene, std::move(script)) {
+    while (simulation.Step()) {
+    }
+  }
+};
+
+TEST(GuardedMotion, EndsWhenTheHandTouches) {
+  const Scene scene = MakeScene({.hand_at_m = {-0.3, -0.2, 1.0}});
+  Script script;
+  script.stages = {{{Guarded(MoveStep{{0, 0, -0.4}}, 4, {.thing = "table"})}},
+                   {{{0, MoveStep{{0, 0, 0.05}}, 0.5}}}};
+  script.settle_s = 0.3;
+  const Played played(scene, script);
+  EXPECT_EQ(played.simulation.status().kind, RunStatus::Kind::kCompleted)
+      << played.simulation.status().reason;
+  EXPECT_LT(played.simulation.snapshot().tick, 480 * 4) << "shorter than planned";
+  const Snapshot& now = played.simulation.snapshot();
+  const HandClearance clearance(scene, 0, now.hands[0].joints);
+  EXPECT_NEAR(clearance.To(kTable, now.hands[0].palm.X_WB, now), 0.05, 0.01)
+      << "it goes up from where it was stopped";
+}
+
+TEST(GuardedMotion, WhatNeverHappensFailsOrGoesOn) {
+  const Scene scene = MakeScene({.hand_at_m = {-0.3, -0.2, 1.2}});
+  Script script;
+  script.stages = {{{Guarded(MoveStep{{0, 0, -0.05}}, 0.5, {.thing = "table"})}}};
+  script.stages[0].steps[0].written_at = "a.yaml:3:5";
+  const Played failed(scene, script);
+  EXPECT_EQ(failed.simulation.status().kind, RunStatus::Kind::kFailed);
+  EXPECT_EQ(failed.simulation.status().reason,
+            "a.yaml:3:5: until: the step is over, and 'hand' has not touched 'table': it is more "
+            "than 100 mm away from it");
+  script.stages[0].steps[0].until->or_go_on = true;
+  EXPECT_EQ(Played(scene, script).simulation.status().kind, RunStatus::Kind::kCompleted);
+}
+
+TEST(GuardedMotion, StopsAtAGap) {
+  const Scene scene = MakeScene({.hand_at_m = {-0.3, -0.2, 1.0}});
+  Script script;
+  script.stages = {{{Guarded(MoveStep{{0, 0, -0.3}}, 6, {.thing = "table", .gap_m = 0.02})}}};
+  script.settle_s = 0.5;
+  const Played played(scene, script);
+  const Snapshot& now = played.simulation.snapshot();
+  const HandClearance clearance(scene, 0, now.hands[0].joints);
+  EXPECT_NEAR(clearance.To(kTable, now.hands[0].palm.X_WB, now), 0.02, 0.003);
+}
+
+TEST(GuardedMotion, AHeldThingTouchesToo) {
+  const Scene scene = MakeScene({});
+  Script script = MakeScript({});
+  script.stages.resize(3);  // reached, closed, lifted by 25 cm
+  script.stages.push_back({{Guarded(MoveStep{{0, 0, -0.4}}, 4, {.thing = "table"})}});
+  script.settle_s = 0.3;
+  const Played played(scene, script);
+  ASSERT_EQ(played.simulation.status().kind, RunStatus::Kind::kCompleted);
+  EXPECT_NEAR(played.simulation.snapshot().bodies[kObject].X_WB.p_m.z(), kTop_m + 0.1, 0.005);
+}
+
+/// The target at the end of one step, in a world that does not move.
+Pose EndOf(const Scene& scene, StepAction action) {
+  Simulation still(scene, {});
+  ScriptPlayer player(scene, {.stages = {{{{0, std::move(action), 1}}}}, .settle_s = 0.1});
+  Pose last;
+  while (const auto* commands = player.Advance(still.snapshot()))
+    last = commands->front().target.X_WH;
+  EXPECT_EQ(player.problem(), "");
+  return last;
+}
+
+TEST(GuardedMotion, AnOrbitEndsAtItsAngleAndDistance) {
+  const Scene scene = MakeScene({});  // the object stands at (0.2, 0.1)
+  const Pose begin = scene.hands[0].X_WH;
+  const Pose end = EndOf(scene, OrbitStep{"object", M_PI / 2, 0.3});
+  const Eigen::Vector2d centre(0.2, 0.1), from = begin.p_m.head<2>() - centre,
+                                          to = end.p_m.head<2>() - centre;
+  EXPECT_NEAR(to.norm(), 0.3, 1e-9);
+  EXPECT_NEAR(from.normalized().dot(to.normalized()), 0, 1e-9);
+  EXPECT_GT(from.x() * to.y() - from.y() * to.x(), 0) << "counter-clockwise";
+  EXPECT_NEAR(end.p_m.z(), begin.p_m.z(), 1e-12);
+  EXPECT_NEAR(end.q.angularDistance(begin.q), M_PI / 2, 1e-9) << "the hand turns with it";
+}
+
+TEST(GuardedMotion, ATurnIsAboutTheWorldsAxesOrTheHands) {
+  Scene scene = MakeScene({});
+  scene.hands[0].X_WH.q = Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()));
+  const Eigen::Quaterniond quarter(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
+  const Pose world = EndOf(scene, TurnHandStep{{0, 0, M_PI / 2}}),
+             own = EndOf(scene, TurnHandStep{{0, 0, M_PI / 2}, true});
+  EXPECT_LT(world.q.angularDistance(quarter * scene.hands[0].X_WH.q), 1e-6);
+  EXPECT_LT(own.q.angularDistance(scene.hands[0].X_WH.q * quarter), 1e-6);
+  const Pose around = EndOf(scene, TurnHandStep{{0, 0, 2 * M_PI}});
+  EXPECT_LT(around.q.angularDistance(scene.hands[0].X_WH.q), 1e-6) << "a whole turn";
+}
+
+TEST(GuardedMotion, PressesWithTheForceThatIsAsked) {
+  const Scene scene = MakeScene({.hand_at_m = {-0.3, -0.2, 0.9}});
+  Script script;
+  script.stages = {{{Guarded(MoveStep{{0, 0, -0.3}}, 2, {.thing = "table"})}},
+                   {{{0, PressStep{"table", 10}, 1.5}}}};
+  script.settle_s = 0;
+  Simulation simulation(scene, script);
+  std::vector<double> force_n;
+  while (simulation.Step()) {
+    double impulse_n_s = 0;
+    for (const ContactPoint& contact : simulation.snapshot().contacts)
+      if (contact.a.hand == 0 || contact.b.hand == 0) impulse_n_s += contact.normal_impulse_n_s;
+    force_n.push_back(impulse_n_s * scene.world.rate_hz);
+  }
+  ASSERT_GT(force_n.size(), 480u);
+  EXPECT_NEAR(std::accumulate(force_n.end() - 240, force_n.end(), 0.0) / 240, 10, 1.5);
+}
+
+}  // namespace
+}  // namespace prehend::physics
