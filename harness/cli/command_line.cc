@@ -33,6 +33,7 @@ std::vector<Command> Commands() {
           NewCommand(),
           SchemaCommand(),
           BenchCommand(),
+          Limited(ImportCommand(), kOne_s),
           Limited(ResegmentCommand(), kMany_s),
           Limited(QueryCommand(), kMany_s),
           Limited(ScoreCommand(), kMany_s),

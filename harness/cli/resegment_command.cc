@@ -2,60 +2,21 @@
 // prehend resegment: recorded episodes under another grammar, without physics.
 // Tested by tests/program/recording_test.cc and tests/program/episodes_test.cc
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 
-#include "grammar/contents.h"
 #include "grammar/name_events.h"
-#include "grammar/never_recognised.h"
-#include "harness/base/text_file.h"
 #include "harness/command/command.h"
 #include "harness/episodes/resegment_many.h"
 #include "harness/episodes/schema.h"
 #include "harness/run/load_grammar.h"
+#include "harness/run/missing_facts.h"
 #include "harness/run/run_text.h"
 #include "harness/sense/episode_file.h"
 
 namespace prehend::harness {
 namespace {
-
-/// Warns of events that need facts which the recording does not have, and of entities of which it
-/// never says where they are. Whether nothing is left that could be recognised.
-bool WarnOfMissing(Episode& episode, const grammar::Program& program,
-                   const CommandContext& context) {
-  grammar::FactsOfEpisode facts;
-  const std::vector<grammar::EntityInfo>& entities = episode.header.entity_table.entities;
-  std::vector<bool> placed = episode.placed;
-  placed.resize(entities.size());
-  for (EpisodeFrame& frame : episode.frames) facts.Add(frame.View());
-  for (std::size_t i = 0; i < entities.size(); ++i) {
-    if (placed[i]) continue;
-    context.err << fmt::format(
-        "warning: no frame says where '{}' is, so it stands at the world's origin\n"
-        "  hint: give it a sample in the first frame, or leave it out of 'entities'\n",
-        entities[i].name);
-  }
-  const auto never = grammar::FindNeverRecognised(program, facts);
-  std::map<std::string_view, std::vector<std::string>> events;
-  for (const grammar::NeverRecognised& one : never) events[one.fact].push_back(one.event);
-  for (const auto& [fact, names] : events) {
-    const auto first = std::ranges::find(never, fact, &grammar::NeverRecognised::fact);
-    context.err << fmt::format(
-        "{}:{}:{}: warning: this recording has no {}, so '{}' is never recognised{}\n"
-        "  hint: {}\n",
-        ReadableName(first->file), first->place.line, first->place.column, fact, names.front(),
-        names.size() == 1
-            ? std::string()
-            : fmt::format(", nor {}", fmt::join(names.begin() + 1, names.end(), ", ")),
-        fact == "gazes" ? "give persons or heads 'gazes_at' in their samples"
-                        : "make these facts of motion, 'use contact from motion' above the other "
-                          "lines, or pick_and_place_from_motion; docs/facts-from-motion.md");
-  }
-  return never.size() == grammar::EventNames(program).size();
-}
 
 ExitCode ResegmentLines(const std::string& file, const ParsedOptions& options,
                         const CommandContext& context) {
@@ -69,7 +30,8 @@ ExitCode ResegmentLines(const std::string& file, const ParsedOptions& options,
 
   const grammar::EntityTable& entity_table = episode->header.entity_table;
   Warn(context, Warnings(*compiled.program, entity_table));
-  const bool never = WarnOfMissing(*episode, *compiled.program, context);
+  const MissingFacts missing = FindMissingFacts(*episode, *compiled.program);
+  context.err << missing.warnings;
   grammar::Monitor monitor(compiled.program, entity_table);
   std::vector<grammar::Event> events;
   for (EpisodeFrame& frame : episode->frames) monitor.Advance(frame.View(), events);
@@ -83,7 +45,7 @@ ExitCode ResegmentLines(const std::string& file, const ParsedOptions& options,
   run.ticks = episode->end_tick - 1;
   run.is_unfinished = !episode->says_its_end;
   run.timeline = grammar::NameEvents(*compiled.program, entity_table, events);
-  const ExitCode exit_code = never ? ExitCode::kNothing : ExitCode::kAgrees;
+  const ExitCode exit_code = missing.nothing_left ? ExitCode::kNothing : ExitCode::kAgrees;
   if (!options.Has("--json")) {
     context.out << RunTable(run);
     return exit_code;

@@ -3,12 +3,13 @@
 
 #include "harness/command/command.h"
 #include "harness/format/scenario_fields.h"
+#include "harness/import/import_map.h"
 
 namespace prehend::harness {
 namespace {
 
-ExitCode RunSchema(const ParsedOptions&, const CommandContext& context) {
-  context.out << ScenarioSchema();
+ExitCode RunSchema(const ParsedOptions& options, const CommandContext& context) {
+  context.out << (options.Has("--import-map") ? import::ImportMapSchema() : ScenarioSchema());
   return ExitCode::kAgrees;
 }
 
@@ -18,7 +19,8 @@ Command SchemaCommand() {
   return {.name = "schema",
           .summary = "Print the JSON Schema of scenario files",
           .examples = {"schema > scenarios/scenario.schema.json"},
-          .options = {},
+          .options = {{.name = "--import-map",
+                       .help = "that of the maps of 'prehend import' (docs/motion-capture.md)"}},
           .run = RunSchema};
 }
 

@@ -49,6 +49,7 @@ Command AcceptCommand();
 Command ReviewCommand();
 Command RenderCommand();
 Command NewCommand();
+Command ImportCommand();
 Command ResegmentCommand();
 Command SchemaCommand();
 Command BenchCommand();

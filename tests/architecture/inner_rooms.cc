@@ -65,6 +65,7 @@ const Arrows& ProjectArrows() {
       {"harness/episodes",
        {"grammar", "grammar/base", "harness/base", "harness/process", "harness/read", "harness/run",
         "harness/sense", "physics", "physics/scene"}},
+      {"harness/import", {"harness/base", "harness/sense", "harness/yaml"}},
       {"harness/explain",
        {"grammar", "grammar/base", "grammar/program", "harness/base", "harness/run",
         "harness/timeline"}},
@@ -98,12 +99,12 @@ const Arrows& ProjectArrows() {
        {"grammar/base", "harness/base", "harness/episodes", "harness/process", "harness/run",
         "harness/sense"}},
       {"harness/cli",
-       {"grammar",          "harness/base",     "harness/check",     "harness/closed_form",
-        "harness/command",  "harness/episodes", "harness/explain",   "harness/format",
-        "harness/golden",   "harness/judge",    "harness/knowledge", "harness/oracle",
-        "harness/pictures", "harness/process",  "harness/read",      "harness/report",
-        "harness/run",      "harness/score",    "harness/sense",     "harness/speed",
-        "harness/sweep",    "harness/timeline", "harness/transform"}},
+       {"grammar",         "harness/base",     "harness/check",    "harness/closed_form",
+        "harness/command", "harness/episodes", "harness/explain",  "harness/format",
+        "harness/golden",  "harness/import",   "harness/judge",    "harness/knowledge",
+        "harness/oracle",  "harness/pictures", "harness/process",  "harness/read",
+        "harness/report",  "harness/run",      "harness/score",    "harness/sense",
+        "harness/speed",   "harness/sweep",    "harness/timeline", "harness/transform"}},
   };
   return arrows;
 }

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/import/doubts.h. Tested by tests/program/import_test.cc
+#include "harness/import/doubts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace prehend::harness::import {
+namespace {
+
+// What a room is like.
+constexpr double kFarFromOrigin_m = 30;   ///< median distance of all poses
+constexpr double kNothingMoves_m = 0.03;  ///< extent of all poses together
+constexpr double kLeastRate_hz = 2, kMostRate_hz = 2500;
+constexpr double kLift_m = 0.05;  ///< what is lifted gets so far up, and comes down again
+constexpr double kDip_m = 0.02;   ///< and does not get lower than where it stood
+constexpr double kNear_m = 0.5;   ///< something gets so near to what stands
+
+constexpr const char* kAxes = "xyz";
+
+class DoubtFinder {
+ public:
+  DoubtFinder(const PoseFile& poses, const MapFile& map)
+      : poses_(poses),
+        map_(map.map),
+        errors_(map.document),
+        scale_(MetresPerUnit(map.map.unit.value)) {}
+
+  grammar::Diagnostics Find() {
+    if (Asks(Doubt::kZero) && !map_.zero_is_missing) Zeros();
+    if (Asks(Doubt::kTime)) Times();
+    if (Asks(Doubt::kUnit)) Unit();
+    // With a wrong unit, lengths mean nothing.
+    if (errors_.empty() && Asks(Doubt::kUp)) Up();
+    if (errors_.empty() && Asks(Doubt::kPlace)) Near();
+    if (Asks(Doubt::kQuaternionOrder) && map_.quaternion_order) Order();
+    return errors_.Sorted();
+  }
+
+ private:
+  bool Asks(Doubt doubt) const { return !map_.IsSure(doubt); }
+
+  void Add(const Where& where, Doubt doubt, const std::string& message, const std::string& remedy) {
+    errors_.Add(where, message,
+                fmt::format("{}; or, if it is right, sure: [{}]", remedy,
+                            kDoubtNames[static_cast<std::size_t>(doubt)]));
+  }
+
+  void Zeros() {
+    for (const Named<MappedEntity>& entity : map_.entities) {
+      if (!entity.value.from) continue;
+      const PoseBody& body = BodyOf(entity.value);
+      const auto zeros = std::ranges::count_if(
+          body.samples, [](const PoseSample& sample) { return sample.p.isZero(0); });
+      if (zeros == 0 || static_cast<std::size_t>(zeros) == body.samples.size()) continue;
+      Add(entity.value.from->where, Doubt::kZero,
+          fmt::format("'{}' is at exactly 0, 0, 0 in {} of {} poses; many trackers write that for "
+                      "'not tracked'",
+                      body.name, zeros, body.samples.size()),
+          "zero_is_missing: true");
+    }
+  }
+
+  void Times() {
+    std::vector<double> steps;
+    for (const PoseBody& body : poses_.bodies) steps.push_back(UsualStep_s(body));
+    const double step_s = *std::ranges::min_element(steps);
+    const double rate_hz = 1 / step_s;
+    if (map_.rate_hz && std::abs(rate_hz / map_.rate_hz->value - 1) > 0.05) {
+      Add(map_.rate_hz->where, Doubt::kTime,
+          fmt::format("rate_hz: {:g}, but poses are {:.4g} s apart: {:.4g} Hz", map_.rate_hz->value,
+                      step_s, rate_hz),
+          "correct rate_hz or time_unit");
+    } else if (rate_hz < kLeastRate_hz || rate_hz > kMostRate_hz) {
+      Add(map_.time_unit.where, Doubt::kTime,
+          fmt::format("poses are {:.4g} s apart: {:.4g} Hz{}", step_s, rate_hz,
+                      Plausible(rate_hz * 1e3)   ? "; the times look like milliseconds"
+                      : Plausible(rate_hz * 1e6) ? "; the times look like microseconds"
+                      : Plausible(rate_hz * 1e9) ? "; the times look like nanoseconds"
+                      : Plausible(rate_hz / 1e3) ? "; the times look a thousand times longer"
+                                                 : ""),
+          "correct time_unit");
+    }
+  }
+
+  static bool Plausible(double rate_hz) { return rate_hz >= 10 && rate_hz <= 1000; }
+
+  void Unit() {
+    std::vector<double> distances;
+    Eigen::AlignedBox3d extent;
+    for (const PoseBody& body : poses_.bodies) {
+      for (const PoseSample& sample : body.samples) {
+        distances.push_back(sample.p.norm() * scale_);
+        extent.extend(sample.p * scale_);
+      }
+    }
+    const double median_m = Median(std::move(distances)), span_m = extent.diagonal().norm();
+    if (median_m > kFarFromOrigin_m) {
+      Add(map_.unit.where, Doubt::kUnit,
+          fmt::format("the poses are {:.4g} m from the origin (median){}", median_m,
+                      map_.unit.value != LengthUnit::kMetre ? ""
+                      : median_m > 150                      ? "; they look like millimetres"
+                                       : "; they look like centimetres or millimetres"),
+          "correct unit");
+    } else if (span_m < kNothingMoves_m) {
+      Add(map_.unit.where, Doubt::kUnit,
+          fmt::format(
+              "all poses are within {:.3g} mm{}", span_m * 1e3,
+              map_.unit.value == LengthUnit::kMetre
+                  ? ""
+                  : fmt::format("; as metres they would be within {:.3g} m", span_m / scale_)),
+          "correct unit");
+    }
+  }
+
+  /// What a hand moves is lifted, and comes down again where it is put down.
+  struct Lifts {
+    int moving = 0, lifted = 0;
+    double highest_m = 0;
+    std::string example;
+  };
+  Lifts LiftsAlong(int axis) const {
+    Lifts lifts;
+    for (const Named<MappedEntity>& entity : map_.entities) {
+      if (!entity.value.from || entity.value.hand) continue;
+      const PoseBody& body = BodyOf(entity.value);
+      Eigen::AlignedBox3d extent;
+      for (const PoseSample& sample : body.samples) extent.extend(sample.p * scale_);
+      if (extent.diagonal().norm() < 0.1) continue;
+      ++lifts.moving;
+      const double begin = body.samples.front().p[axis] * scale_,
+                   end = body.samples.back().p[axis] * scale_;
+      const double rise_m = extent.max()[axis] - std::max(begin, end);
+      const double dip_m = std::min(begin, end) - extent.min()[axis];
+      if (rise_m < kLift_m || dip_m > kDip_m) continue;
+      ++lifts.lifted;
+      if (rise_m <= lifts.highest_m) continue;
+      lifts.highest_m = rise_m;
+      lifts.example = body.name;
+    }
+    return lifts;
+  }
+
+  void Up() {
+    const int up = map_.up.value;
+    const Lifts stated = LiftsAlong(up);
+    if (stated.moving == 0 || stated.lifted > 0) return;
+    for (const int axis : {1, 2, 0}) {
+      const Lifts other = LiftsAlong(axis);
+      if (axis == up || other.lifted < other.moving) continue;
+      Add(map_.up.where, Doubt::kUp,
+          fmt::format("nothing is lifted along {}, but '{}' rises {:.2f} m along {} and comes "
+                      "down again: {} looks up",
+                      kAxes[up], other.example, other.highest_m, kAxes[axis], kAxes[axis]),
+          fmt::format("axes: {}_up", kAxes[axis]));
+      return;
+    }
+  }
+
+  void Near() {
+    double nearest_m = std::numeric_limits<double>::infinity();
+    const Named<MappedEntity>* nearest = nullptr;
+    const PoseBody* comes = nullptr;
+    for (const Named<MappedEntity>& standing : map_.entities) {
+      const MappedEntity& e = standing.value;
+      if (!e.at_m) continue;
+      const Eigen::Quaterniond q(e.quat_wxyz[0], e.quat_wxyz[1], e.quat_wxyz[2], e.quat_wxyz[3]);
+      for (const PoseBody& body : poses_.bodies) {
+        for (const PoseSample& sample : body.samples) {
+          const Eigen::Vector3d p_B = q.conjugate() * (Upright(sample.p * scale_) - *e.at_m);
+          const double distance_m = (p_B.cwiseAbs() - e.size_m / 2).cwiseMax(0).norm();
+          if (distance_m >= nearest_m) continue;
+          nearest_m = distance_m;
+          nearest = &standing;
+          comes = &body;
+        }
+      }
+    }
+    if (!nearest || nearest_m <= kNear_m) return;
+    Add(nearest->name_where, Doubt::kPlace,
+        fmt::format("nothing tracked comes nearer to '{}' than {:.2f} m ('{}')", nearest->name,
+                    nearest_m, comes->name),
+        "correct its at_m (z up, metres, after the change of axes), or unit, or axes");
+  }
+
+  /// z up, as in the recording.
+  Eigen::Vector3d Upright(const Eigen::Vector3d& p) const {
+    if (map_.up.value == 0) return {p.y(), p.z(), p.x()};
+    if (map_.up.value == 1) return {p.x(), -p.z(), p.y()};
+    return p;
+  }
+
+  /// A body that stands as when it was defined has w near 1.
+  void Order() {
+    std::vector<double> as_read, other;
+    const bool w_first = map_.quaternion_order->value == QuaternionOrder::kWxyz;
+    for (const PoseBody& body : poses_.bodies) {
+      for (const PoseSample& sample : body.samples) {
+        as_read.push_back(std::abs(sample.q.w()));
+        other.push_back(std::abs(w_first ? sample.q.z() : sample.q.x()));
+      }
+    }
+    const double w = Median(std::move(as_read)), other_w = Median(std::move(other));
+    if (w > 0.5 || other_w < 0.85) return;
+    Add(map_.quaternion_order->where, Doubt::kQuaternionOrder,
+        fmt::format("the {} of four numbers, as w, is {:.2f} (median, without its sign), the {} is "
+                    "{:.2f}: this looks like {}",
+                    w_first ? "first" : "last", w, w_first ? "last" : "first", other_w,
+                    w_first ? "xyzw" : "wxyz"),
+        fmt::format("quaternion_order: {}", w_first ? "xyzw" : "wxyz"));
+  }
+
+  const PoseBody& BodyOf(const MappedEntity& entity) const {
+    return *std::ranges::find(poses_.bodies, entity.from->value, &PoseBody::name);
+  }
+
+  const PoseFile& poses_;
+  const ImportMap& map_;
+  DiagnosticList errors_;
+  double scale_ = 1;
+};
+
+}  // namespace
+
+grammar::Diagnostics FindDoubts(const PoseFile& poses, const MapFile& map) {
+  return DoubtFinder(poses, map).Find();
+}
+
+double MetresPerUnit(LengthUnit unit) {
+  return unit == LengthUnit::kMetre ? 1 : unit == LengthUnit::kCentimetre ? 1e-2 : 1e-3;
+}
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+double UsualStep_s(const PoseBody& body) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < body.samples.size(); ++i)
+    steps.push_back(body.samples[i].t_s - body.samples[i - 1].t_s);
+  return Median(std::move(steps));
+}
+
+}  // namespace prehend::harness::import

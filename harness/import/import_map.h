@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// The map of an import: what a file of poses means. Its keys are in docs/motion-capture.md. Tested
+// by tests/program/import_test.cc
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/base/result.h"
+#include "harness/yaml/struct_format.h"
+
+namespace prehend::harness::import {
+
+enum class LengthUnit { kMetre, kCentimetre, kMillimetre };
+enum class TimeUnit { kSecond, kMillisecond, kMicrosecond, kNanosecond, kFrame };
+enum class QuaternionOrder { kWxyz, kXyzw };
+enum class Separator { kComma, kSemicolon, kTab };
+enum class Lost { kRefuse, kHold };
+/// What looks wrong, and is accepted because the map says that it is right.
+enum class Doubt { kUnit, kUp, kQuaternionOrder, kTime, kPlace, kZero };
+
+inline constexpr std::array kDoubtNames = {"unit", "up",    "quaternion_order",
+                                           "time", "place", "zero"};
+
+/// The names of columns. `{}` in a name stands for the body's name: then a row has all bodies.
+struct Columns {
+  Where where;
+  std::optional<Located<std::string>> body;  ///< holds the body's name: then a row has one body
+  std::optional<Located<std::string>> time;
+  std::vector<Located<std::string>> position;    ///< of x, y, z
+  std::vector<Located<std::string>> quaternion;  ///< four in `quaternion_order`, or none
+};
+
+/// One entity of the recording.
+struct MappedEntity {
+  std::optional<Located<std::string>> from;  ///< the body in the file
+  std::optional<Eigen::Vector3d> at_m;       ///< of what no tracker sees
+  Eigen::Vector4d quat_wxyz = {1, 0, 0, 0};
+  bool hand = false;
+  bool fixed = false;
+  std::string class_name = "Object";
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
+  /// From the markers' origin to the entity's, in the body's frame, z up, metres.
+  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
+  std::optional<Located<double>> upright_at_s;  ///< when it stands as it is described, not turned
+};
+
+/// The whole file.
+struct ImportMap {
+  int version = 1;
+  std::string episode;  ///< "": as the file of poses is called
+  std::string grammar = "pick_and_place_from_motion";
+  Located<LengthUnit> unit;
+  Located<int> up;  ///< an axis of the file: 0 x, 1 y, 2 z
+  std::optional<Located<QuaternionOrder>> quaternion_order;
+  Located<TimeUnit> time_unit;
+  std::optional<Located<double>> rate_hz;
+  Separator separator = Separator::kComma;
+  int header_line = 1;
+  std::vector<std::string> missing;  ///< cells that mean "not tracked", besides empty ones
+  bool zero_is_missing = false;
+  double bridge_s = 0.1;  ///< the longest gap that is filled with a straight line
+  Lost lost = Lost::kRefuse;
+  std::vector<Doubt> sure;
+  std::int64_t ticks_per_second = 10'000;
+  Columns columns;
+  std::vector<Named<MappedEntity>> entities;
+
+  bool IsSure(Doubt doubt) const;
+};
+
+/// The map with the document that its places refer to.
+struct MapFile {
+  YamlDocument document;
+  ImportMap map;
+};
+
+/// Errors have their places.
+Result<MapFile> ReadImportMap(const std::string& path);
+
+/// The JSON Schema of maps, as text.
+std::string ImportMapSchema();
+
+}  // namespace prehend::harness::import

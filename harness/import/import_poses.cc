@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/import/import_poses.h. Tested by tests/program/import_test.cc
+#include "harness/import/import_poses.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "harness/import/doubts.h"
+
+namespace prehend::harness::import {
+namespace {
+
+constexpr double kMostSpeed_m_per_s = 20;  ///< of a hand that throws; faster is a jump
+constexpr double kGap = 1.5;               ///< of the usual step: longer is a gap
+constexpr double kFarthest_m = 1e4;        ///< of the recording format
+
+std::string EpisodeName(const ImportMap& map, const std::string& path) {
+  if (!map.episode.empty()) return map.episode;
+  std::string name = std::filesystem::path(path).stem().string();
+  for (char& c : name) {
+    const bool is_plain =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!is_plain) c = '_';
+  }
+  if (name.empty() || (name[0] >= '0' && name[0] <= '9')) name = "take_" + name;
+  return name;
+}
+
+/// From the file's axes to z up.
+Eigen::Quaterniond TurnOf(int up) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  if (up == 0) turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+  if (up == 1) turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return Eigen::Quaterniond(turn);
+}
+
+struct Pose {
+  double t_s = 0;
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  bool after_loss = false;  ///< how it came here is not known
+};
+
+/// An entity over time.
+struct Track {
+  std::vector<Pose> poses;
+  std::size_t next = 0;  ///< the first one that is later than the present time
+
+  Pose At(double t_s) {
+    while (next < poses.size() && poses[next].t_s <= t_s) ++next;
+    if (next == 0) return poses.front();
+    const Pose& before = poses[next - 1];
+    if (next == poses.size() || poses[next].after_loss) return before;
+    const Pose& after = poses[next];
+    const double part = (t_s - before.t_s) / (after.t_s - before.t_s);
+    if (part <= 0) return before;
+    return {.t_s = t_s,
+            .p = before.p + part * (after.p - before.p),
+            .q = before.q.slerp(part, after.q)};
+  }
+};
+
+class Importer {
+ public:
+  Importer(const PoseFile& file, const MapFile& map)
+      : file_(file), map_(map.map), errors_(map.document) {}
+
+  Result<Imported> Import() {
+    Describe();
+    for (const Named<MappedEntity>& entity : map_.entities) AddTrack(entity);
+    if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
+    if (const std::string problem = SetTicks(); !problem.empty())
+      return tl::unexpected(grammar::Diagnostics{
+          {.file = file_.file, .place = {}, .message = problem, .source_line = {}, .hint = {}}});
+    AddFrames();
+    for (const std::string& body : file_.unused)
+      Warn(fmt::format("the file has '{}', which the map does not mention", body));
+    return std::move(imported_);
+  }
+
+ private:
+  void Warn(std::string text) { imported_.warnings.push_back(std::move(text)); }
+
+  void Describe() {
+    imported_.duration_s = file_.last_s;
+    EpisodeHeader& header = imported_.episode.header;
+    header.episode = EpisodeName(map_, file_.file);
+    header.grammar = map_.grammar;
+    header.entity_table.ticks_per_second = map_.ticks_per_second;
+    for (const Named<MappedEntity>& entity : map_.entities) {
+      const MappedEntity& e = entity.value;
+      grammar::EntityInfo& info = header.entity_table.entities.emplace_back();
+      info.name = entity.name;
+      info.half_size_m = e.size_m / 2;
+      if (e.hand) {
+        info.classes = {"Hand", "Entity"};
+        info.sensor_sets = {"fingers", "thumb", "palm"};
+      } else {
+        info.classes = {e.class_name, e.fixed ? "Fixed" : "Movable", "Thing", "Entity"};
+      }
+    }
+  }
+
+  void AddTrack(const Named<MappedEntity>& entity) {
+    const MappedEntity& e = entity.value;
+    EntityReport report{.name = entity.name, .from = {}, .extent = {}};
+    Track track;
+    if (e.at_m) {
+      const Eigen::Quaterniond q(e.quat_wxyz[0], e.quat_wxyz[1], e.quat_wxyz[2], e.quat_wxyz[3]);
+      track.poses.push_back({.t_s = 0, .p = *e.at_m, .q = q.normalized()});
+    } else {
+      report.from = e.from->value;
+      const PoseBody& body = *std::ranges::find(file_.bodies, report.from, &PoseBody::name);
+      track.poses = Converted(body, e);
+      MarkGaps(body, e, track.poses, report);
+      WarnOfMotion(body, entity, track.poses, report);
+    }
+    for (const Pose& pose : track.poses) report.extent.extend(pose.p);
+    if (report.extent.min().minCoeff() < -kFarthest_m ||
+        report.extent.max().maxCoeff() > kFarthest_m)
+      errors_.Add(entity.name_where, fmt::format("'{}' is farther than {:g} m from the origin",
+                                                 entity.name, kFarthest_m));
+    imported_.entities.push_back(std::move(report));
+    tracks_.push_back(std::move(track));
+  }
+
+  std::vector<Pose> Converted(const PoseBody& body, const MappedEntity& entity) const {
+    const Eigen::Quaterniond turn = TurnOf(map_.up.value);
+    const double scale = MetresPerUnit(map_.unit.value);
+    const auto upright = [&](const Eigen::Quaterniond& q) { return turn * q * turn.conjugate(); };
+    Eigen::Quaterniond rest = Eigen::Quaterniond::Identity();
+    if (entity.upright_at_s) {
+      const double t_s = entity.upright_at_s->value;
+      const auto then = std::ranges::min_element(
+          body.samples, {}, [&](const PoseSample& sample) { return std::abs(sample.t_s - t_s); });
+      rest = upright(then->q).conjugate();
+    }
+    std::vector<Pose> poses;
+    for (const PoseSample& sample : body.samples) {
+      const Eigen::Quaterniond q = (upright(sample.q) * rest).normalized();
+      poses.push_back(
+          {.t_s = sample.t_s, .p = turn * (sample.p * scale) + q * entity.offset_m, .q = q});
+    }
+    return poses;
+  }
+
+  void MarkGaps(const PoseBody& body, const MappedEntity& entity, std::vector<Pose>& poses,
+                EntityReport& report) {
+    const double usual_s = UsualStep_s(body);
+    report.poses = poses.size();
+    report.rate_hz = usual_s > 0 ? 1 / usual_s : 0;
+    double longest_s = 0, longest_from_s = 0;
+    const auto take = [&](double from_s, double until_s, bool within) {
+      const double gap_s = until_s - from_s;
+      if (gap_s <= kGap * usual_s) return false;
+      const bool lost = gap_s > map_.bridge_s + 1e-9 || !within;
+      (lost ? report.lost : report.bridged) += 1;
+      (lost ? report.lost_s : report.bridged_s) += gap_s;
+      if (lost && gap_s > longest_s) {
+        longest_s = gap_s;
+        longest_from_s = from_s;
+      }
+      return lost;
+    };
+    take(0, poses.front().t_s, false);
+    for (std::size_t i = 1; i < poses.size(); ++i)
+      poses[i].after_loss = take(poses[i - 1].t_s, poses[i].t_s, true);
+    take(poses.back().t_s, file_.last_s, false);
+    if (report.lost == 0) return;
+    const std::string text = fmt::format(
+        "'{}' is not tracked for {:.3f} s from {:.3f} s on; in all {} such times, {:.3f} s",
+        report.from, longest_s, longest_from_s, report.lost, report.lost_s);
+    if (map_.lost == Lost::kHold) return Warn(text + ": it is held where it was, at rest");
+    errors_.Add(entity.from->where, text,
+                fmt::format("bridge_s is {:g}: a longer one fills it with a straight line; lost: "
+                            "hold keeps it where it was",
+                            map_.bridge_s));
+  }
+
+  void WarnOfMotion(const PoseBody& body, const Named<MappedEntity>& entity,
+                    const std::vector<Pose>& poses, const EntityReport& report) {
+    std::size_t jumps = 0, uneven = 0, worst = 0;
+    double fastest = 0;
+    const double usual_s = 1 / report.rate_hz;
+    Eigen::AlignedBox3d extent;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      extent.extend(poses[i].p);
+      if (i == 0) continue;
+      const double step_s = poses[i].t_s - poses[i - 1].t_s;
+      uneven += std::abs(step_s / usual_s - 1) > 0.2;
+      const double speed = (poses[i].p - poses[i - 1].p).norm() / step_s;
+      if (poses[i].after_loss || speed < kMostSpeed_m_per_s) continue;
+      ++jumps;
+      if (speed <= fastest) continue;
+      fastest = speed;
+      worst = i;
+    }
+    if (jumps > 0)
+      Warn(fmt::format("{}:{}: '{}' jumps {} times, here {:.3f} m in {:.4f} s ({:.0f} m/s)",
+                       file_.file, body.samples[worst].line, report.from, jumps,
+                       (poses[worst].p - poses[worst - 1].p).norm(),
+                       poses[worst].t_s - poses[worst - 1].t_s, fastest));
+    if (uneven * 10 > poses.size())
+      Warn(fmt::format("'{}': {} of {} steps are more than 20 % off the usual {:.4f} s",
+                       report.from, uneven, poses.size() - 1, usual_s));
+    if (entity.value.hand && extent.diagonal().norm() < 0.01)
+      Warn(fmt::format("the hand '{}' never leaves {:.1f} mm", entity.name,
+                       extent.diagonal().norm() * 1e3));
+  }
+
+  std::int64_t TickOf(double t_s) const {
+    return std::llround(t_s * static_cast<double>(map_.ticks_per_second));
+  }
+
+  /// The times of all poses. Returns what is wrong, or "".
+  std::string SetTicks() {
+    for (const Track& track : tracks_) {
+      for (std::size_t i = 0; i < track.poses.size(); ++i) {
+        if (i > 0 && TickOf(track.poses[i].t_s) == TickOf(track.poses[i - 1].t_s))
+          return fmt::format(
+              "two poses are {:.3g} s apart, and a second has {} ticks; give the "
+              "map more ticks_per_second",
+              track.poses[i].t_s - track.poses[i - 1].t_s, map_.ticks_per_second);
+        times_.emplace(TickOf(track.poses[i].t_s), track.poses[i].t_s);
+      }
+    }
+    times_.emplace(0, 0.0);
+    times_.emplace(TickOf(file_.last_s), file_.last_s);
+    if (times_.size() > kMaxEpisodeFrames)
+      return fmt::format("{} different times; a recording has at most {} frames", times_.size(),
+                         kMaxEpisodeFrames);
+    return "";
+  }
+
+  void AddFrames() {
+    Episode& episode = imported_.episode;
+    EpisodeFrame before;
+    double before_s = 0;
+    for (const auto& [tick, t_s] : times_) {
+      EpisodeFrame frame;
+      frame.tick = tick;
+      for (std::size_t i = 0; i < tracks_.size(); ++i) {
+        const std::size_t passed = tracks_[i].next;
+        const Pose pose = tracks_[i].At(t_s);
+        grammar::EntitySample& sample = frame.entities.emplace_back();
+        sample.p_WB_m = pose.p;
+        sample.q_WB = pose.q;
+        if (!before.entities.empty() && !Found(tracks_[i], passed))
+          SetVelocity(before.entities[i], t_s - before_s, sample);
+        if (map_.entities[i].value.hand) {
+          frame.hands.push_back({.entity = static_cast<int>(i),
+                                 .ahead_W = pose.q * Eigen::Vector3d::UnitX(),
+                                 .collision_spheres = {}});
+          frame.collision_spheres.push_back({{pose.p, 0}});
+        }
+      }
+      episode.frames.push_back(frame);
+      before = std::move(frame);
+      before_s = t_s;
+    }
+    episode.placed.assign(tracks_.size(), true);
+    episode.says_its_end = true;
+    episode.end_tick = episode.frames.back().tick + 1;
+  }
+
+  /// Whether it was found again since `passed` poses had been passed: then its way is not known.
+  static bool Found(const Track& track, std::size_t passed) {
+    for (std::size_t i = passed; i < track.next; ++i) {
+      if (track.poses[i].after_loss) return true;
+    }
+    return false;
+  }
+
+  static void SetVelocity(const grammar::EntitySample& before, double dt_s,
+                          grammar::EntitySample& sample) {
+    sample.v_WB_m_per_s = (sample.p_WB_m - before.p_WB_m) / dt_s;
+    const Eigen::AngleAxisd turn(sample.q_WB * before.q_WB.conjugate());
+    sample.w_WB_rad_per_s = turn.axis() * turn.angle() / dt_s;
+  }
+
+  const PoseFile& file_;
+  const ImportMap& map_;
+  DiagnosticList errors_;
+  Imported imported_;
+  std::vector<Track> tracks_;
+  std::map<std::int64_t, double> times_;
+};
+
+}  // namespace
+
+Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path) {
+  const Result<MapFile> map = ReadImportMap(map_path);
+  if (!map) return tl::unexpected(map.error());
+  const Result<PoseFile> poses = ReadCsvPoses(poses_path, *map);
+  if (!poses) return tl::unexpected(poses.error());
+  if (grammar::Diagnostics doubts = FindDoubts(*poses, *map); !doubts.empty())
+    return tl::unexpected(std::move(doubts));
+  return Importer(*poses, *map).Import();
+}
+
+std::string ImportTable(const Imported& imported) {
+  const Episode& episode = imported.episode;
+  std::string table = fmt::format("{}: {} frames, {:.3f} s\n", episode.header.episode,
+                                  episode.frames.size(), imported.duration_s);
+  table +=
+      fmt::format("{:<16} {:<16} {:>7} {:>7} {:>8} {:>9} {:>5} {:>7}  {:<14} {:<14} {}\n", "entity",
+                  "from", "poses", "Hz", "bridged", "s", "lost", "s", "x, m", "y, m", "z, m");
+  for (const EntityReport& one : imported.entities) {
+    const auto range = [&](int axis) {
+      return fmt::format("{:.2f}..{:.2f}", one.extent.min()[axis], one.extent.max()[axis]);
+    };
+    table += fmt::format(
+        "{:<16} {:<16} {:>7} {:>7.1f} {:>8} {:>9.3f} {:>5} {:>7.3f}  {:<14} {:<14} {}\n", one.name,
+        one.from.empty() ? "(the map)" : one.from, one.poses, one.rate_hz, one.bridged,
+        one.bridged_s, one.lost, one.lost_s, range(0), range(1), range(2));
+  }
+  return table;
+}
+
+}  // namespace prehend::harness::import

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// A file of poses and its map -> a recording in metres, z up, with one time base. Tested by
+// tests/program/import_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/import/pose_file.h"
+#include "harness/sense/episode_file.h"
+
+namespace prehend::harness::import {
+
+/// What became of one entity.
+struct EntityReport {
+  std::string name, from;  ///< from: the body, or "" if the map says where it stands
+  std::size_t poses = 0;
+  double rate_hz = 0;          ///< the usual one
+  std::size_t bridged = 0;     ///< gaps that were filled
+  double bridged_s = 0;        ///< of them all
+  std::size_t lost = 0;        ///< gaps in which it is held where it was
+  double lost_s = 0;           ///< of them all
+  Eigen::AlignedBox3d extent;  ///< of its origin, in the recording
+};
+
+struct Imported {
+  Episode episode;
+  std::vector<EntityReport> entities;
+  double duration_s = 0;
+  std::vector<std::string> warnings;  ///< one line each
+};
+
+/// Reads, doubts and converts. Nothing comes of a file with errors.
+Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path);
+
+/// Extents, rates and gaps, as a table for people.
+std::string ImportTable(const Imported& imported);
+
+}  // namespace prehend::harness::import

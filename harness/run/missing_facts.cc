@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/run/missing_facts.h. Tested by tests/program/missing_facts_test.cc
+#include "harness/run/missing_facts.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+#include "grammar/contents.h"
+#include "grammar/never_recognised.h"
+#include "harness/base/text_file.h"
+
+namespace prehend::harness {
+
+MissingFacts FindMissingFacts(Episode& episode, const grammar::Program& program) {
+  MissingFacts missing;
+  grammar::FactsOfEpisode facts;
+  const std::vector<grammar::EntityInfo>& entities = episode.header.entity_table.entities;
+  std::vector<bool> placed = episode.placed;
+  placed.resize(entities.size());
+  for (EpisodeFrame& frame : episode.frames) facts.Add(frame.View());
+  for (std::size_t i = 0; i < entities.size(); ++i) {
+    if (placed[i]) continue;
+    missing.warnings += fmt::format(
+        "warning: no frame says where '{}' is, so it stands at the world's origin\n"
+        "  hint: give it a sample in the first frame, or leave it out of 'entities'\n",
+        entities[i].name);
+  }
+  const auto never = grammar::FindNeverRecognised(program, facts);
+  std::map<std::string_view, std::vector<std::string>> events;
+  for (const grammar::NeverRecognised& one : never) events[one.fact].push_back(one.event);
+  for (const auto& [fact, names] : events) {
+    const auto first = std::ranges::find(never, fact, &grammar::NeverRecognised::fact);
+    missing.warnings += fmt::format(
+        "{}:{}:{}: warning: this recording has no {}, so '{}' is never recognised{}\n"
+        "  hint: {}\n",
+        ReadableName(first->file), first->place.line, first->place.column, fact, names.front(),
+        names.size() == 1
+            ? std::string()
+            : fmt::format(", nor {}", fmt::join(names.begin() + 1, names.end(), ", ")),
+        fact == "gazes" ? "give persons or heads 'gazes_at' in their samples"
+                        : "make these facts of motion, 'use contact from motion' above the other "
+                          "lines, or pick_and_place_from_motion; docs/facts-from-motion.md");
+  }
+  missing.nothing_left = never.size() == grammar::EventNames(program).size();
+  return missing;
+}
+
+}  // namespace prehend::harness

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a grammar asks for and a recording does not have. Tested by
+// tests/program/missing_facts_test.cc
+#pragma once
+
+#include <string>
+
+#include "grammar/monitor.h"
+#include "harness/sense/episode_file.h"
+
+namespace prehend::harness {
+
+struct MissingFacts {
+  /// Warnings of events that need facts which the recording does not have, and of entities of which
+  /// it never says where they are; or "".
+  std::string warnings;
+  bool nothing_left = false;  ///< no event is left that could be recognised
+};
+
+MissingFacts FindMissingFacts(Episode& episode, const grammar::Program& program);
+
+}  // namespace prehend::harness

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files of poses become recordings; what is wrong with them, or looks wrong, is named, and nothing
+// is written.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <sstream>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+constexpr const char* kMap = R"(import: 1
+episode: a_cup_is_carried
+unit: m
+axes: z_up
+quaternion_order: wxyz
+time_unit: s
+columns:
+  time: t
+  body: name
+  position: ['x', 'y', 'z']
+  quaternion: [qw, qx, qy, qz]
+entities:
+  table: {at_m: [0, 0, 0.7], fixed: true, class: Table, size_m: [2.0, 1.0, 0.04]}
+  cup: {from: Mug, class: Cup, size_m: [0.08, 0.08, 0.1]}
+  hand: {from: Glove, hand: true, size_m: [0, 0, 0]}
+)";
+
+struct Row {
+  double t_s, x, y, z;
+};
+
+/// Between points in time, straight lines.
+double Along(const std::vector<std::pair<double, double>>& points, double t) {
+  if (t <= points.front().first) return points.front().second;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const auto [t0, v0] = points[i - 1];
+    const auto [t1, v1] = points[i];
+    if (t < t1) return v0 + (v1 - v0) * (t - t0) / (t1 - t0);
+  }
+  return points.back().second;
+}
+
+Row CupAt(double t) {
+  return {t, Along({{2, 0}, {3, 0.4}}, t), 0,
+          0.77 + Along({{1.3, 0}, {2, 0.215}, {3, 0.215}, {3.5, 0}}, t)};
+}
+Row HandAt(double t) {
+  const Row cup = CupAt(t);
+  const double away = Along({{0.2, 0.4}, {1, 0}, {3.7, 0}, {4.3, 0.4}}, t);
+  return {t, cup.x - 0.08 - away, 0, cup.z + away / 2};
+}
+
+using Writer = std::function<std::string(const char* name, Row row)>;
+
+std::string AsWritten(const char* name, Row row) {
+  char text[200];
+  std::snprintf(text, sizeof text, "%.4f,%s,%.5f,%.5f,%.5f,1,0,0,0\n", row.t_s, name, row.x, row.y,
+                row.z);
+  return text;
+}
+
+/// Five seconds at 60 Hz, both bodies.
+std::string Csv(const Writer& write = AsWritten) {
+  std::string csv = "t,name,x,y,z,qw,qx,qy,qz\n";
+  for (int i = 0; i <= 300; ++i) {
+    csv += write("Mug", CupAt(i / 60.0));
+    csv += write("Glove", HandAt(i / 60.0));
+  }
+  return csv;
+}
+
+Said Import(const std::filesystem::path& folder, const std::string& csv, const std::string& map,
+            const std::vector<std::string>& more = {}) {
+  WriteFile(folder / "poses.csv", csv);
+  WriteFile(folder / "map.yaml", map);
+  std::vector<std::string> words = {"import", (folder / "poses.csv").string(), "--map",
+                                    (folder / "map.yaml").string()};
+  words.insert(words.end(), more.begin(), more.end());
+  if (more.empty()) words.insert(words.end(), {"-o", (folder / "take.jsonl").string()});
+  return Prehend(words);
+}
+
+std::string Events(const std::filesystem::path& folder) {
+  return Prehend({"resegment", (folder / "take.jsonl").string()}).out;
+}
+
+TEST(Import, PosesBecomeARecordingInWhichACupIsCarried) {
+  const auto folder = FreshFolder("import");
+  const Said said = Import(folder, Csv(), kMap);
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(said.err, "");
+  EXPECT_TRUE(said.out.starts_with("a_cup_is_carried: 301 frames, 5.000 s\n")) << said.out;
+  const std::string events = Events(folder);
+  for (const char* event : {"picking_up", "transporting", "putting_down", "pick_and_place"})
+    EXPECT_NE(events.find(event), std::string::npos) << event << "\n" << events;
+}
+
+TEST(Import, UnitsAxesOrdersAndLayoutsMakeNoDifference) {
+  const auto folder = FreshFolder("import");
+  ASSERT_EQ(Import(folder, Csv(), kMap).exit_code, 0);
+  const std::string events = Events(folder);
+
+  // Millimetres, y up, xyzw, milliseconds, semicolons.
+  std::string csv = "t;name;x;y;z;qx;qy;qz;qw\n";
+  csv += Csv([](const char* name, Row row) {
+           char text[200];
+           std::snprintf(text, sizeof text, "%.1f;%s;%.2f;%.2f;%.2f;0;0;0;1\n", row.t_s * 1e3, name,
+                         row.x * 1e3, row.z * 1e3, -row.y * 1e3);
+           return std::string(text);
+         }).substr(std::string("t,name,x,y,z,qw,qx,qy,qz\n").size());
+  std::string map = Replaced(kMap, "unit: m\n", "unit: mm\nseparator: semicolon\n");
+  map = Replaced(map, "z_up", "y_up");
+  map = Replaced(map, "wxyz", "xyzw");
+  map = Replaced(map, "time_unit: s", "time_unit: ms");
+  map = Replaced(map, "[qw, qx, qy, qz]", "[qx, qy, qz, qw]");
+  const Said said = Import(folder, csv, map);
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(Events(folder), events);
+
+  // All bodies in one row, without orientations, frames counted.
+  csv = "frame,Mug x,Mug y,Mug z,Glove x,Glove y,Glove z\n";
+  for (int i = 0; i <= 300; ++i) {
+    const Row cup = CupAt(i / 60.0), hand = HandAt(i / 60.0);
+    char text[200];
+    std::snprintf(text, sizeof text, "%d,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f\n", i, cup.x, cup.y, cup.z,
+                  hand.x, hand.y, hand.z);
+    csv += text;
+  }
+  map = Replaced(kMap, "time_unit: s", "time_unit: frame\nrate_hz: 60");
+  map = Replaced(map, "  body: name\n", "");
+  map = Replaced(map, "  time: t\n", "  time: frame\n");
+  map = Replaced(map, "['x', 'y', 'z']", "['{} x', '{} y', '{} z']");
+  map = Replaced(map, "  quaternion: [qw, qx, qy, qz]\n", "");
+  const Said wide = Import(folder, csv, map);
+  EXPECT_EQ(wide.exit_code, 0) << wide.err;
+  EXPECT_EQ(Events(folder), events);
+}
+
+TEST(Import, AnOffsetIsInTheFrameOfTheBodyAsItStandsUpright) {
+  const auto folder = FreshFolder("import");
+  ASSERT_EQ(Import(folder, Csv(), kMap).exit_code, 0);
+  const std::string events = Events(folder);
+  // The cup's markers hang 5 cm above it, and its frame lies on its side.
+  const Said said = Import(
+      folder, Csv([](const char* name, Row row) {
+        if (name[0] == 'G') return AsWritten(name, row);
+        row.z += 0.05;
+        return Replaced(AsWritten(name, row), ",1,0,0,0\n", ",0.70710678,0.70710678,0,0\n");
+      }),
+      Replaced(kMap, "{from: Mug,", "{from: Mug, upright_at_s: 0.5, offset_m: [0, 0, -0.05],"));
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(Events(folder), events);
+}
+
+TEST(Import, AShortGapIsBridgedAndALongOneIsRefusedOrHeld) {
+  const auto folder = FreshFolder("import");
+  const auto without = [](double from_s, double until_s) {
+    return Csv([=](const char* name, Row row) {
+      const bool lost = name[0] == 'M' && row.t_s > from_s && row.t_s < until_s;
+      return lost ? std::string() : AsWritten(name, row);
+    });
+  };
+  const Said bridged = Import(folder, without(2.5, 2.58), kMap);
+  EXPECT_EQ(bridged.exit_code, 0) << bridged.err;
+  EXPECT_NE(
+      bridged.out.find("cup              Mug                  297    59.9        1     0.083"),
+      std::string::npos)
+      << bridged.out;
+
+  std::filesystem::remove(folder / "take.jsonl");
+  const Said lost = Import(folder, without(2.2, 2.9), kMap);
+  EXPECT_EQ(lost.exit_code, 2);
+  EXPECT_NE(
+      lost.err.find("map.yaml:14:15: error: 'Mug' is not tracked for 0.700 s from 2.200 s on"),
+      std::string::npos)
+      << lost.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "take.jsonl"));
+
+  const Said held = Import(folder, without(2.2, 2.9), std::string(kMap) + "lost: hold\n");
+  EXPECT_EQ(held.exit_code, 0) << held.err;
+  EXPECT_NE(held.err.find("held where it was"), std::string::npos) << held.err;
+  // It does not fly to where it is found again.
+  EXPECT_EQ(held.err.find("jumps"), std::string::npos) << held.err;
+}
+
+TEST(Import, CheckWritesNothingAndSaysWhatAGrammarWillMiss) {
+  const auto folder = FreshFolder("import");
+  const Said said = Import(folder, Csv(), kMap, {"--check"});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.out.find("Glove"), std::string::npos);
+  const Said touches = Import(folder, Csv(), kMap, {"--check", "--grammar", "pick_and_place"});
+  EXPECT_EQ(touches.exit_code, 4);
+  EXPECT_NE(touches.err.find("this recording has no touches"), std::string::npos) << touches.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "take.jsonl"));
+}
+
+/// What is done to a good file and its map, and what is said of it.
+struct Fault {
+  const char* name;
+  std::string csv, map, says;
+};
+
+TEST(Import, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
+  const auto scaled = [](double factor) {
+    return Csv([=](const char* name, Row row) {
+      return AsWritten(name, {row.t_s, row.x * factor, row.y * factor, row.z * factor});
+    });
+  };
+  const auto change = [](const std::string& from, const std::string& to) {
+    return Replaced(Csv(), from, to);
+  };
+  const std::string mug = AsWritten("Mug", CupAt(1));
+  const std::vector<Fault> faults = {
+      {"millimetres", scaled(1e3), kMap, "map.yaml:3:7: error: the poses are 8"},
+      {"metres as mm", Csv(), Replaced(kMap, "unit: m", "unit: mm"),
+       "map.yaml:3:7: error: all poses are within 0.9"},
+      {"y up", Csv([](const char* name, Row row) {
+         return AsWritten(name, {row.t_s, row.x, row.z, row.y});
+       }),
+       kMap, "map.yaml:4:7: error: nothing is lifted along z, but 'Mug' rises 0.2"},
+      {"another order of quaternions", Csv([](const char* name, Row row) {
+         return Replaced(AsWritten(name, row), ",1,0,0,0\n", ",0,0,0,1\n");
+       }),
+       kMap, "map.yaml:5:19: error: the first of four numbers, as w, is 0.00"},
+      {"milliseconds", Csv([](const char* name, Row row) {
+         return AsWritten(name, {row.t_s * 1e3, row.x, row.y, row.z});
+       }),
+       kMap, "map.yaml:6:12: error: poses are 16.67 s apart: 0.06 Hz; the times look like millis"},
+      {"another rate", Csv(), Replaced(kMap, "time_unit: s", "time_unit: s\nrate_hz: 120"),
+       "map.yaml:7:10: error: rate_hz: 120, but poses are 0.0167 s apart: 59.88 Hz"},
+      {"not of length one", Replaced(Csv(), mug, Replaced(mug, ",1,0,0,0\n", ",1,0,0.5,0\n")), kMap,
+       "poses.csv:122:36: error: 'Mug': expected a unit quaternion, found one of length 1.118"},
+      {"time goes back", change("\n1.0000,Mug", "\n0.9000,Mug"), kMap,
+       "poses.csv:122:1: error: the times must increase from row to row"},
+      {"nan", change("\n1.0000,Mug,0.00000", "\n1.0000,Mug,nan"), kMap,
+       "poses.csv:122:12: error: expected a number, found 'nan'"},
+      {"no number", change("\n1.0000,Mug,0.00000", "\n1.0000,Mug,left"), kMap,
+       "poses.csv:122:12: error: expected a number, found 'left'"},
+      {"cut", Csv().substr(0, Csv().size() - 12), kMap, "is the file cut off?"},
+      {"half a pose", change("\n1.0000,Mug,0.00000", "\n1.0000,Mug,"), kMap,
+       "poses.csv:122:12: error: 'Mug' has a pose without 'x'"},
+      {"twice", Replaced(Csv(), mug, mug + mug), kMap,
+       "poses.csv:123:42: error: 'Mug' has two poses at 1 s"},
+      {"lost as zero", Csv([](const char* name, Row row) {
+         if (name[0] == 'M' && row.t_s > 2.5 && row.t_s < 2.58) row = {row.t_s, 0, 0, 0};
+         return AsWritten(name, row);
+       }),
+       kMap, "map.yaml:14:15: error: 'Mug' is at exactly 0, 0, 0 in 4 of 301 poses"},
+      {"far from the table", Csv(), Replaced(kMap, "at_m: [0, 0, 0.7]", "at_m: [5, 0, 0.7]"),
+       "map.yaml:13:3: error: nothing tracked comes nearer to 'table' than 3.6"},
+      {"no such column", Csv(), Replaced(kMap, "time: t", "time: tt"),
+       "map.yaml:8:9: error: no column is called 'tt'"},
+      {"no such body", Csv(), Replaced(kMap, "from: Mug", "from: Mugg"),
+       "map.yaml:14:15: error: 'Mugg' has 0 poses in the file"},
+      {"no such key", Csv(), Replaced(kMap, "unit: m", "units: m"), "did you mean 'unit'?"},
+      {"a column twice", Replaced(Csv(), "t,name,x,y,z", "t,name,x,y,x"), kMap,
+       "poses.csv:1:12: error: a second column is called 'x'"},
+      {"no rows", "t,name,x,y,z,qw,qx,qy,qz\n", kMap, "0 rows; a recording has at least 2"},
+      {"empty", "", kMap, "poses.csv: error: the file is empty"},
+  };
+  for (const Fault& fault : faults) {
+    const auto folder = FreshFolder("import");
+    const Said said = Import(folder, fault.csv, fault.map);
+    EXPECT_EQ(said.exit_code, 2) << fault.name << "\n" << said.out;
+    EXPECT_NE(said.err.find(fault.says), std::string::npos) << fault.name << "\n" << said.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "take.jsonl")) << fault.name;
+  }
+}
+
+TEST(Import, WhatTheMapIsSureOfIsNoError) {
+  const auto folder = FreshFolder("import");
+  const Said said = Import(
+      folder, Csv(),
+      Replaced(kMap, "at_m: [0, 0, 0.7]", "at_m: [5, 0, 0.7]") + std::string("sure: [place]\n"));
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+}
+
+/// The page's map is the shipped one, and its transport is that of the simulated run, within a
+/// frame.
+TEST(Import, TheDocumentedRecordingIsSegmentedAsThePageSays) {
+  const std::filesystem::path docs = std::filesystem::path(PREHEND_SOURCE_DIR) / "docs";
+  const std::string page = ReadFile(docs / "motion-capture.md"),
+                    map = ReadFile(docs / "motion_capture" / "bodies.yaml");
+  EXPECT_NE(page.find("```yaml\n" + map.substr(map.find('\n') + 1) + "```"), std::string::npos);
+  const auto file = FreshFolder("import") / "milk.jsonl";
+  const Said said = Prehend({"import", (docs / "motion_capture" / "poses.csv").string(), "--map",
+                             (docs / "motion_capture" / "bodies.yaml").string(), "-o",
+                             file.string(), "--grammar", "pick_and_place_from_motion"});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(said.err, "");
+  EXPECT_NE(page.find(said.out), std::string::npos) << said.out;
+  const std::string events = Prehend({"resegment", file.string()}).out;
+  EXPECT_NE(page.find(events), std::string::npos) << events;
+}
+
+TEST(Import, TheSchemaOfMapsIsJson) {
+  const Said said = Prehend({"schema", "--import-map"});
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_NE(said.out.find("\"quaternion_order\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace prehend::house
