@@ -11,6 +11,7 @@
 #include <map>
 #include <set>
 
+#include "harness/base/project_paths.h"
 #include "harness/base/text_file.h"
 #include "harness/build/build_joints.h"
 #include "harness/build/build_outcomes.h"
@@ -24,6 +25,7 @@
 #include "harness/format/scenario_formats.h"
 #include "harness/read/place_recordings.h"
 #include "harness/read/read_claims.h"
+#include "harness/read/repeat_blocks.h"
 #include "harness/read/validate_variations.h"
 #include "harness/scenario/colors.h"
 
@@ -37,6 +39,28 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// What stands between '+' in the value of `grammar`.
+std::vector<std::string> SplitGrammars(const std::string& joined) {
+  std::vector<std::string> grammars;
+  for (std::size_t begin = 0; begin <= joined.size();) {
+    const std::size_t end = std::min(joined.find('+', begin), joined.size());
+    grammars.push_back(joined.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return grammars;
+}
+
+/// The same with the paths of files beside the scenario.
+std::string GrammarsBeside(const std::string& joined, const std::string& file) {
+  std::string all;
+  for (const std::string& grammar : SplitGrammars(joined)) {
+    const bool is_file = grammar.ends_with(kGrammarEnding);
+    if (!all.empty()) all += "+";
+    all += is_file ? (path(file).parent_path() / grammar).lexically_normal().string() : grammar;
+  }
+  return all;
+}
+
 void CheckNames(const std::string& file, const ScenarioYaml& entry, const ScenarioLibrary& library,
                 DiagnosticList& errors) {
   const std::string stem = path(file).stem().string();
@@ -46,10 +70,16 @@ void CheckNames(const std::string& file, const ScenarioYaml& entry, const Scenar
                            entry.name.value, path(file).filename().string()),
                "rename one of them");
   }
-  if (!Contains(library.grammars, entry.grammar.value)) {
-    errors.AddUnknownName(entry.grammar.where,
-                          fmt::format("grammar: no grammar is called '{}'", entry.grammar.value),
-                          entry.grammar.value, library.grammars);
+  for (const std::string& grammar : SplitGrammars(entry.grammar.value)) {
+    if (grammar.ends_with(kGrammarEnding)) {
+      if (const path beside = path(file).parent_path() / grammar; !std::filesystem::exists(beside))
+        errors.Add(entry.grammar.where, fmt::format("grammar: there is no file '{}'", grammar),
+                   fmt::format("it was looked for as {}", beside.lexically_normal().string()));
+    } else if (!Contains(library.grammars, grammar)) {
+      errors.AddUnknownName(entry.grammar.where,
+                            fmt::format("grammar: no grammar is called '{}'", grammar), grammar,
+                            library.grammars);
+    }
   }
   for (const auto& actor : entry.actors) {
     const bool taken = std::any_of(entry.entities.begin(), entry.entities.end(),
@@ -149,7 +179,8 @@ Result<Scenario> Resolve(const std::string& file, const YamlDocument& document,
                          const ScenarioLibrary& library) {
   DiagnosticList errors(document);
   ScenarioYaml entry;
-  const bool well_formed = ScenarioFormat().Read(document.root, errors, entry);
+  const bool well_formed =
+      ScenarioFormat().Read(WithoutRepeats(document.root, errors), errors, entry);
   SortActors(entry);
   CheckNames(file, entry, library, errors);
   Diagnostics in_other_files;
@@ -194,7 +225,7 @@ Result<Scenario> Resolve(const std::string& file, const YamlDocument& document,
   scenario.file = file;
   scenario.skill = SkillOf(file);
   scenario.shows = entry.shows;
-  scenario.grammar = entry.grammar.value;
+  scenario.grammar = GrammarsBeside(entry.grammar.value, file);
   scenario.tags = std::move(entry.tags);
   scenario.sensing = {.sensing_hz = entry.world.sensing_hz,
                       .bearing_share = entry.world.bearing_share,

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <set>
 
 #include "grammar/compile/compile.h"
@@ -28,12 +29,62 @@ std::string GrammarFile(const std::string& root, const std::string& name_or_path
   return is_path ? name_or_path : GrammarPath(root, name_or_path);
 }
 
+namespace {
+
+/// A grammar that uses all of these: its text, and where each is.
+struct JoinedGrammars {
+  std::string text;
+  std::map<std::string, std::string, std::less<>> paths;  ///< by name; only of files
+};
+
+JoinedGrammars Join(const std::string& joined) {
+  JoinedGrammars all;
+  std::string name, uses;
+  for (std::size_t begin = 0; begin <= joined.size();) {
+    const std::size_t end = std::min(joined.find('+', begin), joined.size());
+    const std::string one = joined.substr(begin, end - begin);
+    begin = end + 1;
+    const std::string stem = one.ends_with(kGrammarEnding) ? fs::path(one).stem().string() : one;
+    if (stem != one) all.paths[stem] = one;
+    name += (name.empty() ? "" : "_and_") + stem;
+    uses += "use " + stem + "\n";
+  }
+  all.text = "grammar " + name + "\n" + uses;
+  return all;
+}
+
+}  // namespace
+
 grammar::CompileResult LoadGrammar(const std::string& root, const std::string& name_or_path,
                                    const grammar::Overrides& overrides,
                                    std::vector<std::string>* files) {
   const auto note = [files](const std::string& path) {
     if (files) files->push_back(path);
   };
+  if (name_or_path.find('+') != std::string::npos && !fs::exists(name_or_path)) {
+    const JoinedGrammars all = Join(name_or_path);
+    std::string beside;  // a file's own files are searched there
+    const auto include = [&](std::string_view used) -> std::optional<grammar::GrammarText> {
+      const auto path = all.paths.find(used);
+      std::vector<std::string> candidates = {GrammarPath(root, std::string(used))};
+      if (path != all.paths.end()) {
+        candidates = {path->second};
+        beside = fs::path(path->second).parent_path().string();
+      } else if (used.ends_with(kGrammarEnding)) {
+        candidates = {std::string(used)};
+      } else if (!beside.empty()) {
+        candidates.insert(candidates.begin(), beside + "/" + std::string(used) + kGrammarEnding);
+      }
+      for (const std::string& candidate : candidates) {
+        note(candidate);
+        if (Result<std::string> found = ReadTextFile(candidate))
+          return grammar::GrammarText{candidate, std::move(*found)};
+      }
+      return std::nullopt;
+    };
+    return grammar::Compile({name_or_path, all.text}, include, overrides,
+                            ProjectLibrary(root).grammars);
+  }
   const std::string file = GrammarFile(root, name_or_path);
   note(file);
   Result<std::string> text = ReadTextFile(file);

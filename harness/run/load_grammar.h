@@ -13,6 +13,8 @@ namespace prehend::harness {
 /// The file for a name of the library, or for a path (it has a slash, or ends with ".grammar").
 std::string GrammarFile(const std::string& root, const std::string& name_or_path);
 
+/// Several are joined with '+': "pick_and_place+furniture+./kitchen.grammar" is compiled as one
+/// grammar that uses all of them, in this order, and is called `pick_and_place_and_furniture_..`.
 /// Grammars that it uses are searched beside it, then in the library. `files` receives every path
 /// that was tried, whether or not the file exists.
 grammar::CompileResult LoadGrammar(const std::string& root, const std::string& name_or_path,
