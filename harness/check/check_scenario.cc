@@ -3,7 +3,10 @@
 // in Store() only. Tested by tests/harness/check/check_scenario_test.cc
 #include "harness/check/check_scenario.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 #include "grammar/base/check.h"
@@ -247,6 +250,51 @@ void Conclude(const Findings& findings, ScenarioVerdict& verdict) {
   verdict.reason = first.reason;
 }
 
+/// The first boundary that is out of its tolerance, as the scene at both of its times, in the same
+/// view. Empty if there is none, or nothing can be drawn.
+std::vector<DisputedMoment> DrawDisputed(const CheckRequest& request, const CheckedRun& checked,
+                                         const Comparison& comparison) {
+  if (!request.pictures || !CanDrawPictures()) return {};
+  for (const Pairing* pairing : comparison.Differing()) {
+    if (!pairing->expected || !pairing->actual) continue;
+    const bool at_begin = std::abs(pairing->begin_offset) > pairing->tolerance;
+    if (!at_begin && std::abs(pairing->end_offset) <= pairing->tolerance) continue;
+    const auto boundary = [&](const grammar::NamedEvent& event) {
+      return at_begin ? event.interval.begin : event.interval.end;
+    };
+    const fs::path folder =
+        fs::path("pictures") / checked.loaded.scenario.skill / checked.loaded.scenario.name;
+    const PictureFormat format{.width_px = 480,
+                               .height_px = 270,
+                               .title = false,
+                               .labels = false,
+                               .strip = false,
+                               .ghosts = false,
+                               .paths = false};
+    bool drawn = true;
+    const auto draw = [&](const char* side, grammar::Tick tick) {
+      const double time_s =
+          static_cast<double>(tick) / static_cast<double>(comparison.ticks_per_second);
+      PictureYaml entry;
+      entry.at.value = fmt::format("{:.6f}", time_s);
+      const std::string file = folder.generic_string() + "." + side + ".png";
+      const PictureResult result =
+          DrawPicture(checked.loaded.scenario, checked.result, entry,
+                      (fs::path(request.report_folder) / file).string(), format);
+      drawn = drawn && result.error.empty();
+      return ReportedPicture{file, fmt::format("{}: {:.4f} s", side, time_s)};
+    };
+    std::error_code error;
+    fs::create_directories((fs::path(request.report_folder) / folder).parent_path(), error);
+    DisputedMoment moment{.what = (at_begin ? "begin of " : "end of ") + pairing->event().Label(),
+                          .expected = draw("golden", boundary(*pairing->expected)),
+                          .recognised = draw("recognised", boundary(*pairing->actual))};
+    if (!drawn) return {};
+    return {std::move(moment)};
+  }
+  return {};
+}
+
 void AddReplay(const CheckRequest& request, const CheckedRun& checked, ScenarioVerdict& verdict) {
   const bool wanted = request.replays == Replays::kAll || (request.replays == Replays::kFailures &&
                                                            verdict.verdict != Verdict::kPassed);
@@ -305,6 +353,8 @@ ScenarioVerdict VerdictOn(const CheckRequest& request, const CheckedRun& checked
   verdict.picture_differences = PictureDifferencesText(
       judgement.pictures, AsItsFileSays(request) ? AcceptPicturesCommand(request.id) : "");
   AddReplay(request, checked, verdict);
+  if (verdict.DiffersFromGolden())
+    verdict.disputed = DrawDisputed(request, checked, *verdict.comparison);
   if (request.explain && verdict.DiffersFromGolden())
     verdict.explained = Explain(checked.loaded.scenario, checked.result, checked.loaded.program,
                                 *verdict.comparison);

@@ -37,6 +37,12 @@ struct ReportedPicture {
   std::string caption;
 };
 
+/// The scene when the golden says that an event begins or ends, and when it was recognised.
+struct DisputedMoment {
+  std::string what;  ///< "begin of reaching(right_hand, milk)"
+  ReportedPicture expected, recognised;
+};
+
 struct ScenarioVerdict {
   std::string scenario;  ///< skill/name
   std::string shows;
@@ -60,8 +66,9 @@ struct ScenarioVerdict {
   std::int64_t peak_memory_kib = 0;  ///< of its worker
   FileHashes inputs;  ///< every file that decides what the verdict is, as it was before the run
   std::vector<ReportedPicture> pictures;
-  Explained explained;  ///< of what has a golden and did not pass
-  std::string replay;   ///< ReplayData() (harness/replay/replay_data.h), or empty
+  std::vector<DisputedMoment> disputed;  ///< the first one, if pictures are drawn
+  Explained explained;                   ///< of what has a golden and did not pass
+  std::string replay;                    ///< ReplayData() (harness/replay/replay_data.h), or empty
   std::string
       not_recorded;  ///< empty, or why the episode is not in its file; no part of the verdict
   std::string picture_differences;  ///< several lines; only one of several repetitions draws

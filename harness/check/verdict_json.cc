@@ -48,6 +48,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RelationChange, first, second, expected, actu
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Margin, label, at_end, offset, tolerance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, ticks_per_second, pairings, relations, margins)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportedPicture, file, caption)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DisputedMoment, what, expected, recognised)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, claim, place, says, found, times)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TransformVerdict, transform, says, why)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attribution, event, what, shift_ms, because, question)
@@ -55,7 +56,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, shows, verdict, ex
                                    details, claims, transforms, comparison, has_golden, drawings,
                                    explain, cause, attributions, settings, command, state_hash,
                                    ticks, seconds, peak_memory_kib, inputs, pictures, not_recorded,
-                                   picture_differences, explained, replay)
+                                   picture_differences, disputed, explained, replay)
 
 namespace {
 

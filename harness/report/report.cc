@@ -212,6 +212,12 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, bool open,
   }
   if (verdict.comparison)
     AddExplanations(fold, verdict.explained, verdict.comparison->ticks_per_second);
+  for (const DisputedMoment& moment : verdict.disputed) {
+    const pugi::xml_node pair = AddElement(fold, "div", {{"class", "disputed"}});
+    AddElement(pair, "p", {}, "The scene at the disputed " + moment.what);
+    pictures.Add(pair, moment.expected);
+    pictures.Add(pair, moment.recognised);
+  }
   replays.Add(fold, verdict.replay);
   if (!verdict.details.empty()) {
     // Where it is explained above, it does not have to be read first.

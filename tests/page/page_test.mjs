@@ -90,7 +90,7 @@ test('scrubbing to the begin of an event puts the thing where it was', async (co
     for (const name of ['milk', 'right_hand']) {
       const drawn = await page.evaluate(async ([id, seconds, what]) => {
         const player = await window.prehendReport.openReplay(id);
-        const scrubber = document.getElementById(id).querySelector('input[type=range]');
+        const scrubber = document.getElementById(id).querySelector('.replay input[type=range]');
         scrubber.value = String(seconds);
         scrubber.dispatchEvent(new Event('input'));
         return player.poseOf(what).p;
@@ -128,6 +128,21 @@ test('a click on a boundary says which condition turned there', async () => {
   const told = await section.locator('.turned').textContent();
   assert.match(told, /picking_up\(right_hand, milk\) began: \S/);
   assert.match(told, /supported_by\(milk, table\) ended: \S/);
+  await close();
+});
+
+test('the disputed moment is shown as golden, recognised, difference, and with a slider', async (context) => {
+  const {page, seen, close} = await opened({hash: '#' + FAILS});
+  const pair = page.locator('section[id="' + FAILS + '"] .disputed');
+  if (await pair.count() === 0) return context.skip('this build draws no pictures');
+  assert.match(await pair.locator('p').textContent(), /begin of (reaching|pick_and_place)\(right_hand, milk\)/);
+  const captions = await pair.locator('figcaption').allTextContents();
+  assert.deepEqual(captions.map((each) => each.split(/[: ]/)[0]), ['golden', 'recognised', 'difference', 'golden']);
+  const [golden, recognised] = await pair.locator('img').evaluateAll((images) => images.map((image) => image.src));
+  assert.notEqual(golden, recognised);
+  await pair.getByRole('slider').fill('80');
+  assert.equal(await pair.locator('img').last().evaluate((image) => image.style.clipPath), 'inset(0px 0px 0px 80%)');
+  assert.deepEqual(seen.complaints, []);
   await close();
 });
 

@@ -215,6 +215,38 @@
     return forward ? Math.min(...beyond) : Math.max(...beyond);
   }
 
+  // Pictures at a disputed moment: the difference of both, and one over the other with a slider.
+  function tile(pair, caption, ...images) {
+    const figure = document.createElement('figure'), stack = document.createElement('div'), text = document.createElement('figcaption');
+    stack.className = 'stack';
+    for (const image of images) {
+      const copy = document.createElement('img');
+      copy.src = image.src;
+      copy.alt = '';
+      stack.appendChild(copy);
+    }
+    text.textContent = caption;
+    figure.append(stack, text);
+    pair.appendChild(figure);
+    return figure;
+  }
+  document.querySelectorAll('.disputed').forEach((pair) => {
+    const images = pair.querySelectorAll('img');
+    if (images.length !== 2) return;
+    tile(pair, 'difference', ...images).classList.add('blend');
+    const over = tile(pair, 'golden left of the slider, recognised right of it', ...images);
+    const slider = document.createElement('input');
+    slider.type = 'range';
+    slider.min = 0;
+    slider.max = 100;
+    slider.value = 50;
+    slider.setAttribute('aria-label', 'share of the golden picture that is shown');
+    const cut = () => { over.querySelector('img:last-child').style.clipPath = 'inset(0 0 0 ' + slider.value + '%)'; };
+    slider.addEventListener('input', cut);
+    over.insertBefore(slider, over.lastChild);
+    cut();
+  });
+
   // The 3D replay: its script and its data are deflated in the page and read when somebody wants them.
   async function inflated(base64) {
     const bytes = Uint8Array.from(atob(base64), (char) => char.charCodeAt(0));
