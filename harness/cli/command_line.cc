@@ -45,6 +45,7 @@ std::vector<Command> Commands() {
           Limited(SweepCommand(), kMany_s),
           Limited(KnowledgeCommand(), kMany_s),
           AskCommand(),
+          WatchCommand(),
           Limited(TryCommand(), kOne_s)};
 }
 

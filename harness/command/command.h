@@ -62,6 +62,7 @@ Command ReportCommand();
 Command QueryCommand();
 Command SweepCommand();
 Command TryCommand();
+Command WatchCommand();
 Command KnowledgeCommand();
 Command AskCommand();
 

@@ -15,20 +15,11 @@
 #include "harness/scenario/classes.h"
 #include "harness/sense/episode_file.h"
 #include "harness/sense/episode_format.h"
+#include "harness/sense/episode_stream.h"
 #include "harness/yaml/located_json.h"
 
 namespace prehend::harness {
-namespace {
-
-using episode::EndEntry;
-using episode::FrameEntry;
-using episode::HandEntry;
-using episode::HeaderEntry;
-using episode::LineEntry;
-using episode::MemberEntry;
-using episode::PartEntry;
-using episode::SampleEntry;
-using episode::TouchEntry;
+namespace episode {
 
 /// Reads line after line into an episode. The first line with an error ends it.
 class EpisodeReader {
@@ -57,6 +48,31 @@ class EpisodeReader {
     }
     if (!errors.empty()) Report(errors.Sorted());
   }
+
+  /// As if the line had not been there, if there is anything wrong with it. Only the last frame is
+  /// kept.
+  grammar::Diagnostics TakeLineOrNothing(const std::string& text) {
+    const EpisodeFrame now = now_;
+    const std::vector<bool> has_ahead = has_ahead_, has_spheres = has_spheres_;
+    const std::size_t frames = episode.frames.size();
+    const bool said_its_end = episode.says_its_end;
+    const grammar::Tick end_tick = episode.end_tick;
+    TakeLine(text);
+    grammar::Diagnostics found = std::move(diagnostics);
+    diagnostics.clear();
+    if (!found.empty() && had_header_) {
+      now_ = now;
+      has_ahead_ = has_ahead;
+      has_spheres_ = has_spheres;
+      episode.frames.resize(frames);
+      episode.says_its_end = said_its_end;
+      episode.end_tick = end_tick;
+    }
+    if (found.empty() && header_) had_header_ = true;
+    if (episode.frames.size() > 1) episode.frames.erase(episode.frames.begin());
+    return found;
+  }
+  bool has_header() const { return had_header_; }
 
   void Finish() {
     if (!diagnostics.empty()) return;
@@ -365,21 +381,49 @@ class EpisodeReader {
   ValueFormat<LineEntry> line_format_;
   int line_ = 0;
   bool header_ = false;
+  bool had_header_ = false;  ///< a good one
   std::vector<std::string> names_;
   std::vector<int> hands_;
   std::vector<bool> has_ahead_, has_spheres_;  ///< of each hand: its last mention gave them
   EpisodeFrame now_;
 };
 
-}  // namespace
+}  // namespace episode
 
 grammar::Frame EpisodeFrame::View() {
   for (std::size_t i = 0; i < hands.size(); ++i) hands[i].collision_spheres = collision_spheres[i];
   return {tick, entities, hands, touches};
 }
 
+struct EpisodeStream::Reader {
+  episode::EpisodeReader lines;
+};
+
+EpisodeStream::EpisodeStream(const std::string& name)
+    : reader_(std::make_unique<Reader>(Reader{episode::EpisodeReader(name)})) {}
+EpisodeStream::~EpisodeStream() = default;
+
+grammar::Diagnostics EpisodeStream::Take(const std::string& line) {
+  std::vector<EpisodeFrame>& frames = reader_->lines.episode.frames;
+  const bool first = frames.empty();
+  const grammar::Tick before = first ? 0 : frames.back().tick;
+  grammar::Diagnostics found = reader_->lines.TakeLineOrNothing(line);
+  const bool is_new = !frames.empty() && (first || frames.back().tick != before);
+  frame_ = is_new ? &frames.back() : nullptr;
+  return found;
+}
+
+bool EpisodeStream::has_header() const { return reader_->lines.has_header(); }
+const EpisodeHeader& EpisodeStream::header() const { return reader_->lines.episode.header; }
+bool EpisodeStream::says_its_end() const { return reader_->lines.episode.says_its_end; }
+grammar::Tick EpisodeStream::end_tick() const {
+  const Episode& episode = reader_->lines.episode;
+  if (episode.says_its_end) return episode.end_tick;
+  return episode.frames.empty() ? 0 : episode.frames.back().tick + 1;
+}
+
 Result<Episode> ReadEpisode(const std::string& path) {
-  EpisodeReader reader(path);
+  episode::EpisodeReader reader(path);
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
     reader.diagnostics.push_back(

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Events while a recording is written: the same as afterwards, each when it is decided.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A recording of the scenario, all facts.
+std::filesystem::path Recorded(const std::filesystem::path& folder) {
+  const auto file = folder / "milk.jsonl";
+  EXPECT_EQ(Prehend({"run", "milk_carton_wrap", "--record", file.string()}).exit_code, 0);
+  return file;
+}
+
+std::vector<Json> Lines(const std::string& text) {
+  std::vector<Json> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(Json::parse(line));
+  return lines;
+}
+
+void ExpectTheEventsOf(const std::filesystem::path& file, const Said& watched) {
+  const Json all = Json::parse(Prehend({"resegment", file.string(), "--json"}).out)["events"];
+  std::vector<Json> lines = Lines(watched.out);
+  EXPECT_TRUE(std::is_sorted(lines.begin(), lines.end(), [](const Json& a, const Json& b) {
+    return a["decided_tick"] < b["decided_tick"];
+  })) << watched.out;
+  EXPECT_EQ(lines.size(), all.size());
+  for (const Json& event : all)
+    EXPECT_NE(std::find(lines.begin(), lines.end(), event), lines.end()) << event;
+}
+
+TEST(Watch, PrintsTheEventsOfResegmentInTheOrderInWhichTheyAreDecided) {
+  const auto folder = FreshFolder("watch");
+  const auto file = Recorded(folder);
+  const Said said = Prehend({"watch", file.string(), "--json"});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_GT(Lines(said.out).size(), 8u);
+  ExpectTheEventsOf(file, said);
+}
+
+TEST(Watch, ReadsAPipeAndPrintsBeforeItsEnd) {
+  const auto folder = FreshFolder("watch");
+  const auto file = Recorded(folder);
+  const std::string out = (folder / "out").string(), fifo = (folder / "fifo").string();
+  // The producer writes two thirds of the lines, waits until a reach is printed, and writes the
+  // rest.
+  const std::string producer = "mkfifo " + fifo + " && { { head -n 800 " + file.string() +
+                               "; for i in $(seq 100); do grep -q reaching " + out +
+                               " && break; sleep 0.1; done; grep -q reaching " + out +
+                               " && echo seen > " + (folder / "seen").string() + "; tail -n +801 " +
+                               file.string() + "; } > " + fifo + " & } && { " + PREHEND_BINARY_DIR +
+                               "/prehend watch " + fifo + " --json > " + out + "; }";
+  ASSERT_EQ(std::system(("cd " PREHEND_SOURCE_DIR " && " + producer).c_str()), 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "seen"));
+  ExpectTheEventsOf(file, {.exit_code = 0, .out = ReadFile(out), .err = ""});
+}
+
+TEST(Watch, AFaultyLineIsNamedAndLeftOut) {
+  const auto folder = FreshFolder("watch");
+  const auto file = Recorded(folder);
+  const std::string text = ReadFile(file);
+  std::size_t at = 0;
+  for (int i = 0; i < 300; ++i) at = text.find('\n', at) + 1;
+  const auto faulty = folder / "faulty.jsonl";
+  WriteFile(faulty, text.substr(0, at) + "{\"tick\": 1, \n" +
+                        "{\"tick\": 100000, \"samples\": {\"milk\": {\"at_m\": [9, 9, 9]}, "
+                        "\"mlk\": {\"at_m\": [0, 0, 0]}}}\n" +
+                        text.substr(at));
+  const Said said = Prehend({"watch", faulty.string(), "--json"});
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_NE(said.err.find("faulty.jsonl:301:"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("faulty.jsonl:302:"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("did you mean 'milk'?"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("2 faulty lines were skipped"), std::string::npos) << said.err;
+  ExpectTheEventsOf(file, said);
+}
+
+TEST(Watch, AProducerThatIsLostEndsTheEpisode) {
+  const auto folder = FreshFolder("watch");
+  const std::string text = ReadFile(Recorded(folder));
+  const auto cut = folder / "cut.jsonl";
+  WriteFile(cut, text.substr(0, text.find("\n{\"end_tick\"") + 1));
+  const Said said = Prehend({"watch", cut.string(), "--json"});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.err.find("without 'end_tick': what was open ends there"), std::string::npos)
+      << said.err;
+  ExpectTheEventsOf(cut, said);
+  WriteFile(cut, "");
+  EXPECT_EQ(Prehend({"watch", cut.string()}).exit_code, 2);
+  WriteFile(cut, "no recording\n");
+  const Said none = Prehend({"watch", cut.string()});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("cut.jsonl:1:1: error: "), std::string::npos) << none.err;
+}
+
+}  // namespace
+}  // namespace prehend::house
