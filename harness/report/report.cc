@@ -110,17 +110,17 @@ class PictureBox {
     const auto path = std::filesystem::path(folder_) / picture.file;
     std::ifstream file(path, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-    if (bytes.empty() || used_ + bytes.size() > kMostPictureBytes) {
+    const std::string text = Base64(bytes);
+    if (bytes.empty() || used_ + text.size() > kMostPictureBytes) {
       AddElement(section, "p", {{"class", "soft"}},
                  "picture, not in this page: " + picture.file + " (" + picture.caption + ")");
       return;
     }
-    used_ += bytes.size();
+    used_ += text.size();
     const pugi::xml_node figure = AddElement(section, "figure");
-    AddElement(figure, "img",
-               {{"loading", "lazy"},
-                {"src", "data:image/png;base64," + Base64(bytes)},
-                {"alt", picture.caption}});
+    AddElement(
+        figure, "img",
+        {{"loading", "lazy"}, {"src", "data:image/png;base64," + text}, {"alt", picture.caption}});
     AddElement(figure, "figcaption", {}, picture.caption);
   }
 

@@ -20,8 +20,8 @@ struct ReportHeader {
   std::string title = "Regression suite";
 };
 
-/// Pictures are in the page, those of failures first, up to this size in all; of the others the
-/// page says that they lie beside it.
+/// Pictures are in the page, those of failures first, up to this size (as text) in all; of the
+/// others the page says that they lie beside it.
 inline constexpr std::size_t kMostPictureBytes = 15'000'000;
 
 /// The same for 3D replays.
