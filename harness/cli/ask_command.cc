@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/cli/moment_pictures.h"
+#include "harness/command/moment_pictures.h"
 #include "harness/command/command.h"
 #include "harness/pictures/pictures.h"
 #include "harness/process/run_tool.h"

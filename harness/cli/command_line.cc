@@ -30,6 +30,7 @@ std::vector<Command> Commands() {
           Limited(AcceptCommand(), kMany_s),
           Limited(ReviewCommand(), kOne_s),
           Limited(RenderCommand(), kOne_s),
+          Limited(PosesCommand(), kOne_s),
           NewCommand(),
           SchemaCommand(),
           BenchCommand(),

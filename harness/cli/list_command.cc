@@ -7,6 +7,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "harness/check/select_scenarios.h"
 #include "harness/command/command.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/project_library.h"
@@ -20,7 +21,15 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   grammar::Diagnostics diagnostics;
   const ScenarioLibrary library = ProjectLibrary(context.root);
-  for (const ScenarioFile& file : ListScenarios(context.root)) {
+  std::string problem;
+  const auto selection =
+      SelectScenarios(options.All("names"), options.All("--filter"), context.root, problem);
+  if (!selection) return Complain(context, ExitCode::kNothing, problem);
+  for (const ScenarioFile& file : selection->scenarios) {
+    if (file.episode != 0)
+      return Complain(context, ExitCode::kBadInput,
+                      "list shows scenarios; '" + CommandText({"episodes", file.path}) +
+                          "' shows what an episode file has");
     Result<Scenario> read = ReadScenario(file.path, {}, library);
     std::ranges::copy(ErrorsOf(read), std::back_inserter(diagnostics));
     const Scenario scenario = std::move(read).value_or(Scenario{.shows = "(cannot be read)"});
@@ -47,8 +56,16 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
 Command ListCommand() {
   return {.name = "list",
           .summary = "List the scenarios: name, what each shows, tags",
-          .examples = {"list", "list --json"},
-          .options = {{.name = "--json", .help = "print one JSON object instead of a table"}},
+          .examples = {"list", "list 'slide/*'", "list --filter tag:furniture --json"},
+          .options = {{.name = "names",
+                       .help = "which ones: names, skill/name, globs or files; default: all",
+                       .repeatable = true},
+                      {.name = "--filter",
+                       .help = "only those that match this glob or tag:NAME, or with ! in front do "
+                               "not;\nmay be repeated",
+                       .placeholder = "PATTERN",
+                       .repeatable = true},
+                      {.name = "--json", .help = "print one JSON object instead of a table"}},
           .run = RunList};
 }
 

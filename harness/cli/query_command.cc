@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/cli/moment_pictures.h"
+#include "harness/command/moment_pictures.h"
 #include "harness/command/command.h"
 #include "harness/episodes/query_events.h"
 #include "harness/pictures/pictures.h"

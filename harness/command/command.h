@@ -42,6 +42,7 @@ struct Command {
 };
 
 Command ListCommand();
+Command PosesCommand();
 Command ValidateCommand();
 Command RunCommand();
 Command CheckCommand();

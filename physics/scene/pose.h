@@ -35,6 +35,9 @@ inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& q) {
 /// only in physics/scene/pose.cc.
 Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
+/// The inverse of FromRollPitchYaw(): pitch from -90 to 90.
+Eigen::Vector3d ToRollPitchYaw(const Eigen::Quaterniond& q);
+
 /// Rotates about the world's x, then y, then z axis; degrees.
 inline Eigen::Quaterniond FromRollPitchYaw(const Eigen::Vector3d& rpy_deg) {
   const Eigen::Vector3d rad = rpy_deg * std::numbers::pi / 180;

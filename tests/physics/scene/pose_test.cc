@@ -29,5 +29,14 @@ TEST(PoseTest, RollPitchAndYawAreAboutTheWorldsAxesInThisOrder) {
   EXPECT_LT((FromRollPitchYaw({0, 90, 0}) * Vector3d::UnitX() + Vector3d::UnitZ()).norm(), 1e-12);
 }
 
+TEST(PoseTest, RollPitchYawComesBack) {
+  for (const Eigen::Vector3d& rpy_deg :
+       {Eigen::Vector3d(10, 20, 30), Eigen::Vector3d(-170, 80, 179), Eigen::Vector3d(0, 90, 40),
+        Eigen::Vector3d(0, -90, -100), Eigen::Vector3d(0, 0, 0)}) {
+    const Eigen::Quaterniond q = FromRollPitchYaw(rpy_deg);
+    EXPECT_LT(FromRollPitchYaw(ToRollPitchYaw(q)).angularDistance(q), 1e-6) << rpy_deg.transpose();
+  }
+}
+
 }  // namespace
 }  // namespace prehend::physics

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/cli/moment_pictures.h. Tested by tests/program/query_test.cc
-#include "harness/cli/moment_pictures.h"
+// See harness/command/moment_pictures.h. Tested by tests/program/query_test.cc
+#include "harness/command/moment_pictures.h"
 
 #include <fmt/format.h>
 
