@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/command/moment_pictures.h"
 #include "harness/command/command.h"
+#include "harness/command/moment_pictures.h"
 #include "harness/pictures/pictures.h"
 #include "harness/process/run_tool.h"
 #include "harness/timeline/event_text.h"

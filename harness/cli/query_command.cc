@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/command/moment_pictures.h"
 #include "harness/command/command.h"
+#include "harness/command/moment_pictures.h"
 #include "harness/episodes/query_events.h"
 #include "harness/pictures/pictures.h"
 #include "harness/timeline/event_text.h"
