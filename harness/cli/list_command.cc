@@ -56,7 +56,7 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
 Command ListCommand() {
   return {.name = "list",
           .summary = "List the scenarios: name, what each shows, tags",
-          .examples = {"list", "list 'slide/*'", "list --filter tag:furniture --json"},
+          .examples = {"list", "list 'slide/*' --filter tag:claim", "list --json"},
           .options = {{.name = "names",
                        .help = "which ones: names, skill/name, globs or files; default: all",
                        .repeatable = true},

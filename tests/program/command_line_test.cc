@@ -69,7 +69,7 @@ TEST_F(CommandLine, UsageErrorsEndWithASuggestion) {
        "carton_rests "
        "--json\n  see: prehend run --help\n"},
       {"run", 2, "prehend: the argument 'scenario' is missing\n  see: prehend run --help\n"},
-      {"list more", 2, "prehend: unexpected argument 'more'\n  see: prehend list --help\n"},
+      {"schema more", 2, "prehend: unexpected argument 'more'\n  see: prehend schema --help\n"},
       {"check --jobs none", 2,
        "prehend: --jobs: found 'none', wanted a whole number from 1 to 256\n  see: prehend check "
        "--help\n"},
@@ -176,8 +176,8 @@ TEST_F(CommandLine, PrintedCommandsHaveTheNameThatTheProgramWasCalledBy) {
   EXPECT_EQ(Prehend({"run", "carton_rest"}, environment).err,
             "prehend: no scenario 'carton_rest'; did you mean 'carton_rests'? ('./run list' shows "
             "all)\n  again: ./run run carton_rests\n");
-  EXPECT_EQ(Prehend({"list", "more"}, environment).err,
-            "prehend: unexpected argument 'more'\n  see: ./run list --help\n");
+  EXPECT_EQ(Prehend({"schema", "more"}, environment).err,
+            "prehend: unexpected argument 'more'\n  see: ./run schema --help\n");
   const Said help = Prehend({"list", "--help"}, environment);
   EXPECT_NE(help.out.find("\n  ./run list --json\n"), std::string::npos) << help.out;
 }
