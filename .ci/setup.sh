@@ -24,6 +24,8 @@ install_missing() {
   local wanted missing=() name
   wanted=$(cat "$@" | sed 's/#.*//' | tr -s ' \t\n' ' ')
   for name in $wanted; do
+    # A Node.js of another source brings its npm along, and conflicts with Debian's.
+    [ "$name" = npm ] && command -v npm >/dev/null && continue
     [ -e "/var/lib/dpkg/info/$name.list" ] || compgen -G "/var/lib/dpkg/info/$name:*.list" >/dev/null || missing+=("$name")
   done
   [ ${#missing[@]} -eq 0 ] && return 0
