@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "harness/format/limits.h"
 #include "harness/format/scenario_fields.h"
@@ -251,6 +252,39 @@ ValueFormat<StepYaml> MoveLimbFormat() {
           .format());
 }
 
+/// Words that people try first, and what is written instead.
+Remedies StepRemedies() {
+  const std::pair<const char*, const char*> groups[] = {
+      {"grasp grip grab take pick pick_up",
+       "a grasp is two steps: 'reach: milk', then 'close_to: 1'"},
+      {"release let_go drop", "to let go is 'open_to: 0'; before it 'place_on: table' sets down"},
+      {"open open_hand",
+       "a hand opens by 'open_to: 0'; a drawer or door by 'reach: handle', 'close_to: 1', "
+       "'follow_joint: drawer'"},
+      {"close close_hand shut",
+       "a hand closes by 'close_to: 1'; a drawer or door by 'follow_joint: drawer, to: 0'"},
+      {"lift lift_m raise", "straight up is 'lift_by_m: 0.2'"},
+      {"move move_to move_to_m go_to goto carry carry_to transport",
+       "'reach: milk' goes to a thing, 'move_by_m: [x, y, z]' by a way, 'carry_to_m: [x, y]' "
+       "brings "
+       "what is held to a place, 'poses: [..]' goes anywhere"},
+      {"wait pause hold sleep delay_s", "to hold still is 'wait_s: 1'"},
+      {"turn rotate twist", "to turn the hand is 'turn_by_deg: [0, 0, 90]'"},
+      {"place put put_down put_on set_down", "to set down is 'place_on: table'"},
+      {"push slide", "a hand that moves pushes: 'close_to: 0.8', then 'move_by_m: [0.1, 0, 0]'"},
+      {"pour", "'lift_by_m', 'carry_to_m' above the vessel, then 'turn_by_deg: [120, 0, 0]'"},
+      {"retreat", "'retreat_by_m: 0.2' goes back the way the hand came"},
+      {"press", "'press_n: 5, against: table' presses with 5 N"},
+      {"look", "a person looks by 'look_at: milk'"},
+      {"walk walk_to", "a person walks by 'walk_to_m: [x, y]'"}};
+  Remedies remedies;
+  for (const auto& [words, remedy] : groups) {
+    std::istringstream each(words);
+    for (std::string word; each >> word;) remedies.emplace_back(word, remedy);
+  }
+  return remedies;
+}
+
 }  // namespace
 
 ValueFormat<StepYaml> StepFormat() {
@@ -299,7 +333,8 @@ ValueFormat<StepYaml> StepFormat() {
        {"sway_by_m",
         TimedStep("sway_by_m", &SwayYaml::sway_by_m, Vector<2>(-kMaxSway_m, kMaxSway_m),
                   "A person's hips shift this far [ahead, left] from above her feet.")},
-       {"move_limb", MoveLimbFormat()}});
+       {"move_limb", MoveLimbFormat()}},
+      StepRemedies());
 }
 
 }  // namespace prehend::harness

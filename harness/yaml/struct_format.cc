@@ -75,7 +75,8 @@ Json Requires(const std::vector<std::string>& keys) { return {{"required", keys}
 
 /// The index of the one key of `cases` that is in the mapping; nothing after an error.
 std::optional<std::size_t> FindCase(const YamlNode& node, const std::string& noun,
-                                    const std::vector<std::string>& cases, DiagnosticList& errors) {
+                                    const std::vector<std::string>& cases, const Remedies& remedies,
+                                    DiagnosticList& errors) {
   if (node.kind != YamlNode::Kind::kMapping) {
     ReportExpected(node, errors, fmt::format("a mapping with the fields of {}", noun));
     return std::nullopt;
@@ -88,6 +89,12 @@ std::optional<std::size_t> FindCase(const YamlNode& node, const std::string& nou
   if (present.size() > 1) {
     errors.Add(node.Find(present[1])->key_where,
                fmt::format("{} has one of '{}' and '{}', not both", noun, present[0], present[1]));
+    return std::nullopt;
+  }
+  for (const YamlNode& child : node.children) {
+    const auto tried = std::ranges::find(remedies, child.key, &Remedies::value_type::first);
+    if (tried == remedies.end()) continue;
+    errors.Add(child.key_where, fmt::format("{} has no key '{}'", noun, child.key), tried->second);
     return std::nullopt;
   }
   const std::string first = node.children.empty() ? "" : node.children[0].key;
@@ -211,7 +218,8 @@ ErasedFormat FormatOf(const StructRules& rules) {
 }
 
 ErasedFormat ErasedByKey(const std::string& noun,
-                         std::vector<std::pair<std::string, ErasedFormat>> cases) {
+                         std::vector<std::pair<std::string, ErasedFormat>> cases,
+                         Remedies remedies) {
   Json one_of = Json::array();
   std::vector<std::string> keys;
   std::vector<ErasedFormat::Read> readers;
@@ -221,9 +229,10 @@ ErasedFormat ErasedByKey(const std::string& noun,
     readers.push_back(std::move(format.read));
   }
   return {.schema = {{"oneOf", std::move(one_of)}},
-          .read = [noun, keys = std::move(keys), readers = std::move(readers)](
-                      const YamlNode& node, DiagnosticList& errors, void* value) {
-            const auto found = FindCase(node, noun, keys, errors);
+          .read = [noun, keys = std::move(keys), readers = std::move(readers),
+                   remedies = std::move(remedies)](const YamlNode& node, DiagnosticList& errors,
+                                                   void* value) {
+            const auto found = FindCase(node, noun, keys, remedies, errors);
             return found && readers[*found](node, errors, value);
           }};
 }

@@ -175,17 +175,22 @@ class StructFormat {
   StructRules rules_;
 };
 
+/// Keys that people try, and what is written instead.
+using Remedies = std::vector<std::pair<std::string, std::string>>;
+
 /// One of several structs, told apart by a key that only that one has. `cases` are formats of the
 /// same type.
 ErasedFormat ErasedByKey(const std::string& noun,
-                         std::vector<std::pair<std::string, ErasedFormat>> cases);
+                         std::vector<std::pair<std::string, ErasedFormat>> cases,
+                         Remedies remedies);
 
 template <class T>
 ValueFormat<T> ByKey(const std::string& noun,
-                     const std::vector<std::pair<std::string, ValueFormat<T>>>& cases) {
+                     const std::vector<std::pair<std::string, ValueFormat<T>>>& cases,
+                     Remedies remedies = {}) {
   std::vector<std::pair<std::string, ErasedFormat>> erased;
   for (const auto& [key, format] : cases) erased.emplace_back(key, format.erased());
-  return ValueFormat<T>(ErasedByKey(noun, std::move(erased)));
+  return ValueFormat<T>(ErasedByKey(noun, std::move(erased), std::move(remedies)));
 }
 
 /// A struct read as one alternative of a variant.
