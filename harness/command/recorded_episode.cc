@@ -65,6 +65,7 @@ EpisodeSource SourceOf(RecordedEpisode episode) {
     std::string problem =
         frames.Play([&](const physics::Snapshot& snapshot) { watch(sensing.Sense(snapshot)); },
                     [&](std::int64_t tick) { return sensing.Due(tick); });
+    if (!problem.empty()) problem = shared->file.path() + ": " + problem;
     const bool completed = shared->row.end.kind == physics::RunStatus::Kind::kCompleted;
     if (problem.empty() && !completed) {
       RunResult run;

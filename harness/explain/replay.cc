@@ -24,7 +24,7 @@ Watched Watch(const EpisodeSource& source) {
         "the episode has more than {} frames, and all of them would have to be remembered",
         kMaxFrames);
   } else if (past.frames() == 0) {
-    watched.problem = "the episode has no frames";
+    watched.problem = played.failure.empty() ? "the episode has no frames" : played.failure;
   }
   return watched;
 }

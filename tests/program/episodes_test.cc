@@ -160,6 +160,21 @@ TEST(Episodes, BadUseIsExplained) {
   EXPECT_NE(lines.err.find("--jobs needs episode files"), std::string::npos) << lines.err;
 }
 
+TEST(Episodes, DamageIsNamedByEveryCommandThatLooksAtFrames) {
+  const auto file = (FreshFolder("damaged_episodes") / "a.episodes").string();
+  ASSERT_EQ(Prehend({"run", kShort, "--record", file}).exit_code, 0);
+  const std::string damage =
+      "sqlite3 '" + file + "' \"UPDATE part SET data = substr(data, 1, length(data) / 2)\"";
+  ASSERT_EQ(std::system(damage.c_str()), 0);
+  for (const char* command : {"explain", "tracks", "resegment", "poses", "replay"}) {
+    const Said said = Prehend({command, file});
+    EXPECT_EQ(said.exit_code, 2) << command << said.out;
+    EXPECT_NE(said.err.find(file), std::string::npos) << command << ": " << said.err;
+    EXPECT_NE(said.err.find("the file is damaged: chunk 0"), std::string::npos)
+        << command << ": " << said.err;
+  }
+}
+
 TEST(Episodes, AreWholeAfterTheProgramWasKilledAtAnyMoment) {
   const auto folder = FreshFolder("killed_episodes");
   const auto file = (folder / "a.episodes").string();
