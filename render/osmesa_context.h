@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An OpenGL context without a window or a graphics card. Only three functions are public, so that
+// An OpenGL context without a window or a graphics card. Few functions are public, so that
 // another off-screen library can replace OSMesa without changes elsewhere.
 // Tested by tests/render/painter_test.cc
 #pragma once
@@ -15,6 +15,8 @@ class OffscreenContext {
   /// failure.
   static std::unique_ptr<OffscreenContext> Create(std::string* error);
   ~OffscreenContext();
+  /// Loads the library, which Create() does otherwise.
+  static void LoadLibrary();
   OffscreenContext(const OffscreenContext&) = delete;
   OffscreenContext& operator=(const OffscreenContext&) = delete;
 

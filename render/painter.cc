@@ -169,6 +169,8 @@ bool Painter::State::Prepare(const Picture& picture) {
   return error.empty();
 }
 
+void Painter::LoadLibrary() { OffscreenContext::LoadLibrary(); }
+
 Painter::Painter(const std::string& font_file) : state_(std::make_unique<State>()) {
   State& state = *state_;
   state.font = Font::Read(font_file, &state.error);

@@ -130,6 +130,10 @@ class Painter {
   Painter(const Painter&) = delete;
   Painter& operator=(const Painter&) = delete;
 
+  /// Loads the OpenGL library, which the first Painter does otherwise. For a process that forks
+  /// others that draw: each of them would load it again.
+  static void LoadLibrary();
+
   /// The reason why no picture can be drawn (no context, missing font, failed self-test), or empty.
   const std::string& error() const;
   /// An empty image on failure; error() then has the reason.

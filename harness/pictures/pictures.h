@@ -39,6 +39,9 @@ struct PictureResult {
 /// Whether this build can draw at all.
 bool CanDrawPictures();
 
+/// Loads what drawing needs. To be called before processes are forked that draw.
+void PrepareToDraw();
+
 /// Draws the scenario's pictures from a run made with RunOptions::record, as
 /// DIRECTORY/NAME[-2..].png. The directory must exist.
 PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,

@@ -50,6 +50,8 @@ std::string DrawOne(render::Painter& painter, const Scenario& scenario, const Ru
 
 bool CanDrawPictures() { return true; }
 
+void PrepareToDraw() { render::Painter::LoadLibrary(); }
+
 PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
                            const std::string& directory, const PictureFormat& format) {
   PictureResult result;

@@ -10,6 +10,8 @@ PictureResult CannotDraw() { return {{}, "this build cannot draw pictures (PREHE
 
 bool CanDrawPictures() { return false; }
 
+void PrepareToDraw() {}
+
 PictureResult DrawPictures(const Scenario&, const RunResult&, const std::string&,
                            const PictureFormat&) {
   return CannotDraw();
