@@ -34,6 +34,9 @@ std::string WhyNotReplaceable(const fs::path& path) {
   return access(path.c_str(), W_OK) == 0 ? "" : cannot + std::strerror(errno);
 }
 
+/// By which an open file without a name can be opened and linked.
+fs::path NameOf(int file) { return "/proc/self/fd/" + std::to_string(file); }
+
 std::string MakeFolderOf(const fs::path& path) {
   std::error_code error;
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
@@ -52,17 +55,30 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
   std::error_code error;
   target_ = fs::weakly_canonical(path, error);
   unfinished_ = target_.string() + "." + std::to_string(getpid()) + ".unfinished";
-  file_.open(unfinished_, std::ios::binary);
+  const fs::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
+  nameless_ = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (nameless_ >= 0) file_.open(NameOf(nameless_), std::ios::binary);
+  if (!file_.is_open()) {
+    ForgetNameless();
+    file_.open(unfinished_, std::ios::binary);
+  }
   if (!file_) {
     problem_ = "cannot write " + path.string() + ": " + std::strerror(errno);
   } else if (fs::exists(target_, error)) {
-    fs::permissions(unfinished_, fs::status(target_, error).permissions(), error);
+    fs::permissions(nameless_ >= 0 ? NameOf(nameless_) : unfinished_,
+                    fs::status(target_, error).permissions(), error);
   }
 }
 
 AtomicFile::~AtomicFile() {
+  ForgetNameless();
   std::error_code error;
   if (!unfinished_.empty()) fs::remove(unfinished_, error);
+}
+
+void AtomicFile::ForgetNameless() {
+  if (nameless_ >= 0) close(nameless_);
+  nameless_ = -1;
 }
 
 std::string AtomicFile::Commit() {
@@ -71,6 +87,10 @@ std::string AtomicFile::Commit() {
   if (file_.is_open()) file_.close();
   if (!stream_->flush()) return cannot + "not all of it could be written; is the disk full?";
   if (unfinished_.empty()) return "";
+  if (nameless_ >= 0 && linkat(AT_FDCWD, NameOf(nameless_).c_str(), AT_FDCWD, unfinished_.c_str(),
+                               AT_SYMLINK_FOLLOW) != 0)
+    return cannot + std::strerror(errno);
+  ForgetNameless();
   std::error_code error;
   fs::rename(unfinished_, target_, error);
   return error ? cannot + error.message() : "";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that appears as a whole or not at all: it is written beside its place under another name,
-// and renamed at the end. Tested by tests/harness/base/atomic_file_test.cc
+// A file that appears as a whole or not at all: it is written without a name (or, where the file
+// system has no such files, beside its place under another name) and gets its name at the end.
+// Tested by tests/harness/base/atomic_file_test.cc
 #pragma once
 
 #include <filesystem>
@@ -30,9 +31,12 @@ class AtomicFile {
   std::string Commit();
 
  private:
+  void ForgetNameless();
+
   std::filesystem::path path_;        ///< as the caller named it
   std::filesystem::path target_;      ///< what it is after links
   std::filesystem::path unfinished_;  ///< beside the target; empty for standard output
+  int nameless_ = -1;  ///< the file while it has no name, which a killed process leaves nothing of
   std::ofstream file_;
   std::ostream* stream_ = &file_;
   std::string problem_;

@@ -2,6 +2,7 @@
 // What is written appears whole, at the place that is meant, or not at all.
 #include "harness/base/atomic_file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -58,6 +59,19 @@ TEST_F(AtomicFileTest, AppearsAtTheEndOrNotAtAll) {
   EXPECT_EQ(Read(path), large);
   EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read | fs::perms::owner_write);
   EXPECT_EQ(FilesInFolder(), 1u);
+}
+
+TEST_F(AtomicFileTest, NothingIsSeenBeforeTheEnd) {
+  const int nameless = open(folder_.c_str(), O_TMPFILE | O_WRONLY, 0600);
+  if (nameless < 0) GTEST_SKIP() << "this file system has no files without a name";
+  close(nameless);
+  AtomicFile file(folder_ / "a");
+  file.stream() << std::string(100'000, 'x') << std::flush;
+  EXPECT_EQ(FilesInFolder(), 0u) << "a killed process leaves nothing behind";
+  EXPECT_EQ(file.Commit(), "");
+  EXPECT_EQ(Read(folder_ / "a"), std::string(100'000, 'x'));
+  EXPECT_EQ(FilesInFolder(), 1u);
+  EXPECT_EQ(file.Commit().substr(0, 12), "cannot write") << "once only";
 }
 
 /// Files of this process may not grow beyond `bytes`, as on a disk that is full.
