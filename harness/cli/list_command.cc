@@ -7,6 +7,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "harness/base/shell_quote.h"
 #include "harness/check/select_scenarios.h"
 #include "harness/command/command.h"
 #include "harness/read/read_scenario.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "harness/base/atomic_file.h"
 #include "harness/base/shell_quote.h"
 #include "harness/base/text_file.h"
 #include "harness/check/run_suite.h"

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "harness/base/shell_quote.h"
 #include "harness/episodes/resegment_many.h"
 #include "harness/episodes/schema.h"
 #include "harness/run/run_text.h"

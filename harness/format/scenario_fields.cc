@@ -2,6 +2,8 @@
 // Tested by tests/harness/format/scenario_fields_test.cc
 #include "harness/format/scenario_fields.h"
 
+#include <fmt/format.h>
+
 #include "harness/format/limits.h"
 #include "harness/format/scenario_formats.h"
 #include "harness/yaml/struct_format.h"

@@ -9,6 +9,7 @@
 
 #include "grammar/compile/compile.h"
 #include "grammar/describe.h"
+#include "grammar/monitor.h"
 #include "grammar/program/program.h"
 
 namespace {
