@@ -15,6 +15,7 @@
 #include "harness/base/text_file.h"
 #include "harness/check/check_scenario.h"
 #include "harness/check/last_pass.h"
+#include "harness/pictures/pictures.h"
 #include "harness/process/progress_counters.h"
 
 namespace prehend::harness {
@@ -36,17 +37,19 @@ class Suite {
         costs_(records_.ReadCosts()),
         runs_(scenarios_.size()) {}
 
-  std::vector<ScenarioVerdict> Run(const SuiteProgress& progress) {
+  std::vector<ScenarioVerdict> Run(const SuiteProgress& progress, Interrupt* interrupt) {
     const std::vector<Turn> turns = Turns();
     ProgressCounters last_ticks(turns.size());
+    if (request_.pictures) PrepareToDraw();
     std::vector<WorkerJob> jobs;
     for (std::size_t i = 0; i < turns.size(); ++i) jobs.push_back(Job(turns[i], last_ticks[i]));
     std::size_t done = 0;
-    RunInWorkers(jobs, request_.limits, [&](std::size_t job, const WorkerResult& result) {
+    const auto keep = [&](std::size_t job, const WorkerResult& result) {
       const std::size_t scenario = turns[job].scenario;
       runs_[scenario].push_back(VerdictOf(scenario, result, last_ticks[job]));
       if (progress) progress(++done, jobs.size(), Id(scenario));
-    });
+    };
+    RunInWorkers(jobs, request_.limits, keep, interrupt);
     return Verdicts();
   }
 
@@ -161,6 +164,7 @@ class Suite {
   std::vector<ScenarioVerdict> Verdicts() {
     std::vector<ScenarioVerdict> verdicts;
     for (std::size_t i = 0; i < runs_.size(); ++i) {
+      if (runs_[i].empty()) continue;  // interrupted before it ended
       verdicts.push_back(MergeRepeats(runs_[i]));
       const ScenarioVerdict& merged = verdicts.back();
       if (merged.verdict == Verdict::kUnchanged || Changed() || !IsRemembered(i)) continue;
@@ -202,8 +206,9 @@ class Suite {
 
 }  // namespace
 
-std::vector<ScenarioVerdict> RunSuite(const SuiteRequest& request, const SuiteProgress& progress) {
-  return Suite(request).Run(progress);
+std::vector<ScenarioVerdict> RunSuite(const SuiteRequest& request, const SuiteProgress& progress,
+                                      Interrupt* interrupt) {
+  return Suite(request).Run(progress, interrupt);
 }
 
 }  // namespace prehend::harness

@@ -37,7 +37,9 @@ struct SuiteRequest {
 /// Called after each run: how many of how many are done, and the id of the scenario.
 using SuiteProgress = std::function<void(std::size_t done, std::size_t all, const std::string& id)>;
 
-/// One verdict per scenario in the order of the selection, then one per orphan.
-std::vector<ScenarioVerdict> RunSuite(const SuiteRequest& request, const SuiteProgress& progress);
+/// One verdict per scenario in the order of the selection, then one per orphan. When `interrupt`
+/// comes, only those of the scenarios that have ended.
+std::vector<ScenarioVerdict> RunSuite(const SuiteRequest& request, const SuiteProgress& progress,
+                                      Interrupt* interrupt = nullptr);
 
 }  // namespace prehend::harness

@@ -312,6 +312,16 @@ std::string NotRecordedText(const std::vector<ScenarioVerdict>& verdicts) {
                      verdicts.size(), first->scenario, first->not_recorded);
 }
 
+/// ": stopped by SIGINT; 12 of 232 scenarios were not checked", or "".
+std::string StoppedText(const SuiteRequest& request, const std::vector<ScenarioVerdict>& verdicts,
+                        Interrupt& interrupt) {
+  if (!interrupt.Came()) return "";
+  const auto all = request.selection.scenarios.size();
+  const auto checked = verdicts.size() - request.selection.orphans.size();
+  return fmt::format(": stopped by {}; {} of {} scenarios were not checked", interrupt.Name(),
+                     all - checked, all);
+}
+
 ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--changed") && (options.Has("--grammar") || options.Has("--set"))) {
     return Complain(context, ExitCode::kBadInput,
@@ -363,20 +373,31 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
       if (done == all) context.err << "\r\033[K" << std::flush;
     };
   }
-  const std::vector<ScenarioVerdict> verdicts = RunSuite(request, progress);
+  Interrupt interrupt;
+  const std::vector<ScenarioVerdict> verdicts = RunSuite(request, progress, &interrupt);
+  const std::string stopped = StoppedText(request, verdicts, interrupt);
+  if (context.progress && !stopped.empty()) context.err << "\r\033[K";
 
-  problem = WriteTextFile(page, ReportHtml(verdicts, {.command = CommandText(context.words),
-                                                      .program = "prehend",
-                                                      .date = context.today,
-                                                      .folder = request.report_folder}));
+  problem =
+      WriteTextFile(page, ReportHtml(verdicts, {.command = CommandText(context.words) + stopped,
+                                                .program = "prehend",
+                                                .date = context.today,
+                                                .folder = request.report_folder}));
   if (problem.empty() && options.Has("--junit")) problem = WriteTextFile(junit, JunitXml(verdicts));
   if (options.Has("--json")) {
-    context.out << SummaryJson(verdicts, problem.empty() ? page : "").dump(2) << "\n";
+    nlohmann::ordered_json summary = SummaryJson(verdicts, problem.empty() ? page : "");
+    if (interrupt.Came()) summary["stopped_by"] = interrupt.Name();
+    context.out << summary.dump(2) << "\n";
   } else if (junit != "-") {
     PrintText(verdicts,
               {.as_files_say = !options.Has("--grammar") && !options.Has("--set"),
                .verbose = options.Has("--verbose")},
               problem.empty() ? page : "", context);
+  }
+  if (!stopped.empty()) {
+    context.out.flush();
+    context.err << "prehend" << stopped << std::endl;
+    interrupt.EndProcess();
   }
   if (problem.empty()) problem = NotRecordedText(verdicts);
   return problem.empty() ? WorstOf(verdicts) : Complain(context, ExitCode::kFailure, problem);

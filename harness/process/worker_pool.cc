@@ -163,8 +163,8 @@ struct Worker {
 
 class Pool {
  public:
-  Pool(const std::vector<WorkerJob>& jobs, const WorkerLimits& limits)
-      : jobs_(jobs), limits_(limits), results_(jobs.size()) {}
+  Pool(const std::vector<WorkerJob>& jobs, const WorkerLimits& limits, Interrupt* interrupt)
+      : jobs_(jobs), limits_(limits), interrupt_(interrupt), results_(jobs.size()) {}
 
   std::vector<WorkerResult> Run(const std::function<void(std::size_t, const WorkerResult&)>& done) {
     while (next_ < jobs_.size() || !workers_.empty()) {
@@ -173,6 +173,10 @@ class Pool {
         Start(next_++, done);
       }
       WaitAndRead(done);
+      if (interrupt_ != nullptr && interrupt_->Came()) {
+        KillAll();
+        break;
+      }
     }
     return std::move(results_);
   }
@@ -190,6 +194,7 @@ class Pool {
     if (process == 0) {
       close(ends[0]);
       dup2(standard_error, STDERR_FILENO);
+      if (interrupt_ != nullptr) interrupt_->ReleaseInWorker();
       const auto send = [&] {
         WriteAll(ends[1], jobs_[job]());
         return 0;
@@ -212,6 +217,17 @@ class Pool {
                         .output = {}});
   }
 
+  void KillAll() {
+    for (const Worker& worker : workers_) {
+      kill(worker.process, SIGKILL);
+      close(worker.pipe);
+      close(worker.standard_error);
+      while (waitpid(worker.process, nullptr, 0) < 0 && errno == EINTR) {
+      }
+    }
+    workers_.clear();
+  }
+
   void WaitAndRead(const Done& done) {
     std::vector<pollfd> pipes;
     double nearest_deadline_s = limits_.time_limit_s;
@@ -221,7 +237,10 @@ class Pool {
         nearest_deadline_s =
             std::min(nearest_deadline_s, limits_.time_limit_s - SecondsSince(worker.start));
     }
+    const int interrupt = interrupt_ == nullptr ? -1 : interrupt_->fd();  // poll() ignores -1
+    pipes.push_back({.fd = interrupt, .events = POLLIN, .revents = 0});
     poll(pipes.data(), pipes.size(), std::max(1, static_cast<int>(1000 * nearest_deadline_s) + 1));
+    if (pipes.back().revents != 0) return;  // workers may have had the signal, too
     for (std::size_t i = workers_.size(); i-- > 0;) {
       Worker& worker = workers_[i];
       if (!worker.killed && SecondsSince(worker.start) > limits_.time_limit_s) {
@@ -285,6 +304,7 @@ class Pool {
 
   const std::vector<WorkerJob>& jobs_;
   const WorkerLimits limits_;
+  Interrupt* const interrupt_;
   std::vector<WorkerResult> results_;
   std::vector<Worker> workers_;
   std::size_t next_ = 0;
@@ -340,8 +360,8 @@ LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& 
 
 std::vector<WorkerResult> RunInWorkers(
     const std::vector<WorkerJob>& jobs, const WorkerLimits& limits,
-    const std::function<void(std::size_t, const WorkerResult&)>& done) {
-  return Pool(jobs, limits).Run(done);
+    const std::function<void(std::size_t, const WorkerResult&)>& done, Interrupt* interrupt) {
+  return Pool(jobs, limits, interrupt).Run(done);
 }
 
 }  // namespace prehend::harness

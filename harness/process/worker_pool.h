@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/process/interrupt.h"
+
 namespace prehend::harness {
 
 inline constexpr std::uint64_t kMegabyte = 1'000'000;
@@ -34,14 +36,16 @@ struct WorkerResult {
 using WorkerJob = std::function<std::string()>;
 
 /// The results, in the order of the jobs, which is also the order in which they start. The parent
-/// calls `done` for each job as it ends.
+/// calls `done` for each job as it ends. When `interrupt` comes, the jobs that run are killed, no
+/// further one starts, and `done` is not called for either.
 ///
 /// A job ends as out of memory when `new` fails, wherever that is. When a library in C is refused
 /// memory, the job ends as that library ends it (a signal, an exit status), and the reason names
 /// the peak and the limit.
 std::vector<WorkerResult> RunInWorkers(
     const std::vector<WorkerJob>& jobs, const WorkerLimits& limits,
-    const std::function<void(std::size_t job, const WorkerResult&)>& done = {});
+    const std::function<void(std::size_t job, const WorkerResult&)>& done = {},
+    Interrupt* interrupt = nullptr);
 
 /// How a process ended that RunWithinLimits() started.
 struct LimitedEnd {
