@@ -3,6 +3,7 @@
 // costs the verdict of what is strange, never that of the rest.
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "tests/program/small_project.h"
 
@@ -81,6 +82,91 @@ TEST_F(Hostile, TwoAcceptsAtOnceKeepBothReasons) {
   const std::string golden = ReadFile(Golden());
   EXPECT_NE(golden.find("first"), std::string::npos) << golden;
   EXPECT_NE(golden.find("second"), std::string::npos) << golden;
+}
+
+/// Words that hurt: no UTF-8, controls of all kinds, what is syntax in goldens, shells and formats.
+std::string HostileWords(std::mt19937& random) {
+  const std::vector<std::string> parts = {"\xe9t\xe9",
+                                          "\xff\xfe",
+                                          "\xc0\xaf",
+                                          "\xed\xa0\x80",
+                                          "\x1b[31m",
+                                          "\xc2\x9b"
+                                          "31m",
+                                          "\n",
+                                          "\r",
+                                          "\t",
+                                          "\x01",
+                                          "\x7f",
+                                          "\"",
+                                          "\\",
+                                          "\\n",
+                                          "\\\"",
+                                          "#",
+                                          "# accepted: ",
+                                          "event",
+                                          ": ",
+                                          "'",
+                                          "$(exit 9)",
+                                          "`exit 9`",
+                                          "\xe2\x80\xae",
+                                          "\xe2\x80\xa8",
+                                          "\xef\xbf\xbe",
+                                          "\xef\xbb\xbf",
+                                          "\xf0\x9f\xa5\x9b",
+                                          "\xe6\x97\xa5",
+                                          "e\xcc\x81",
+                                          "%s%n",
+                                          "{}",
+                                          "--json",
+                                          "-",
+                                          "",
+                                          " ",
+                                          "a reason",
+                                          "spread=1.0/2.0ms",
+                                          std::string(3000, 'x'),
+                                          std::string(200, '"')};
+  std::string words;
+  for (std::size_t n = 1 + random() % 4; n > 0; --n) words += parts[random() % parts.size()];
+  return words;
+}
+
+TEST_F(Hostile, AReasonLeavesTheGoldenReadableOrUntouched) {
+  std::mt19937 random(1);
+  const auto accept = [&](const std::string& name, const std::string& reason, const char* option) {
+    return Prehend({"accept", name, option, reason, "--reason", "tried"},
+                   {"PREHEND_HOME=" + root_.string(), "CI="});
+  };
+  Accept();
+  const std::string first = ReadFile(Golden());
+  int accepted = 0;
+  for (int i = 0; i < 200; ++i) {
+    const std::string words = HostileWords(random);
+    const bool as_derivation = i % 2 == 0;
+    if (!as_derivation) fs::remove(Golden());
+    const Said said = as_derivation ? accept("carton_rests", words, "--derived")
+                                    : Prehend({"accept", "carton_rests", "--reason", words},
+                                              {"PREHEND_HOME=" + root_.string(), "CI="});
+    EXPECT_TRUE(said.exit_code == 0 || said.exit_code == 2) << said.exit_code << words << said.err;
+    EXPECT_TRUE(IsPlain(said.out) && IsPlain(said.err)) << words;
+    const std::string golden = ReadFile(Golden());
+    if (said.exit_code == 0) {
+      ++accepted;
+      EXPECT_EQ(Do("validate").exit_code, 0) << golden;
+    } else {
+      EXPECT_EQ(golden, as_derivation ? first : "") << words;
+    }
+    WriteFile(Golden(), first);
+  }
+  EXPECT_GT(accepted, 20) << "some are plain text";
+  EXPECT_LT(accepted, 180);
+  for (int i = 0; i < 40; ++i) {
+    const std::string words = HostileWords(random);
+    const Said said = accept("../" + words, "no such", "--derived");
+    EXPECT_TRUE(said.exit_code == 2 || said.exit_code == 4) << said.exit_code << words;
+    EXPECT_TRUE(IsPlain(said.err)) << words;
+  }
+  EXPECT_EQ(ReadFile(Golden()), first);
 }
 
 }  // namespace
