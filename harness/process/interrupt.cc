@@ -5,6 +5,8 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include <cstring>
+
 namespace prehend::harness {
 
 Interrupt::Interrupt() {
