@@ -39,6 +39,8 @@ struct RenameIn {
   void operator()(physics::ReachStep& step) const { (*this)(step.object); }
   void operator()(physics::PlaceStep& step) const { (*this)(step.support); }
   void operator()(physics::FollowJointStep& step) const { (*this)(step.entity); }
+  void operator()(physics::OrbitStep& step) const { (*this)(step.around); }
+  void operator()(physics::PressStep& step) const { (*this)(step.against); }
   void operator()(physics::LookAtStep& step) const {
     if (auto* const name = std::get_if<std::string>(&step.target)) (*this)(*name);
   }
@@ -91,7 +93,10 @@ Scenario Renamed(Scenario scenario, const std::map<std::string, std::string>& na
   for (physics::Hand& hand : scenario.scene.hands) rename(hand.name);
   for (physics::Person& person : scenario.scene.persons) rename(person.name);
   for (physics::ScriptStage& stage : scenario.script.stages) {
-    for (physics::Step& step : stage.steps) std::visit(rename, step.action);
+    for (physics::Step& step : stage.steps) {
+      std::visit(rename, step.action);
+      if (step.until) rename(step.until->thing);
+    }
     for (physics::PersonStep& step : stage.person_steps) std::visit(rename, step.action);
   }
   return scenario;

@@ -87,7 +87,7 @@ void ScriptPlayer::CheckGuards(const Snapshot& now) {
                                  ? "more than " + Millimetres(HandClearance::kFar_m)
                                  : Millimetres(gap_m);
     const std::string wanted =
-        waiting->until.gap_m ? "came nearer than " + Millimetres(*waiting->until.gap_m) + " to"
+        waiting->until.gap_m ? "come nearer than " + Millimetres(*waiting->until.gap_m) + " to"
                              : "touched";
     Fail(hand, "until: the step is over, and '" + scene_.hands[h].name + "' has not " + wanted +
                    " '" + waiting->until.thing + "': it is " + away + " away from it");

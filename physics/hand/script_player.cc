@@ -408,8 +408,11 @@ void ScriptPlayer::StartStage(const Snapshot& now) {
     HandState& hand = hands_[static_cast<std::size_t>(step.hand)];
     hand.written_at = step.written_at;
     hand.step_ticks = std::llround(DurationOf(step) * rate_hz);
-    if (step.until)
+    if (step.until) {
       hand.waiting = Waiting{.until = *step.until, .thing = FindBody(scene_, step.until->thing)};
+      if (hand.waiting->thing < 0)
+        return Fail(step.hand, "until: there is no entity '" + step.until->thing + "'");
+    }
     Resolver resolver(scene_, now, step, hand);
     problem_ = resolver.Resolve();
     if (!resolver.note().empty()) notes_.push_back({now.tick, step.hand, resolver.note()});

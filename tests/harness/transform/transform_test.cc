@@ -7,6 +7,7 @@
 #include "harness/judge/judge_transforms.h"
 #include "harness/run/load_run.h"
 #include "harness/run/run_scenario.h"
+#include "harness/transform/change_entities.h"
 #include "harness/transform/move_scenario.h"
 
 namespace prehend::harness {
@@ -166,6 +167,22 @@ TEST_P(SameStory, HasTheSameEvents) {
 
 INSTANTIATE_TEST_SUITE_P(All, SameStory, testing::ValuesIn(TransformNames()),
                          [](const auto& row) { return std::string(row.param.name); });
+
+// `until`, `orbit` and `press_n` name things, too.
+TEST(Transform, WhatScriptsNameHasItsNewName) {
+  for (const char* scenario : {"reach/resting_beside_a_can_before_it_is_taken",
+                               "slide/sponge_is_pressed_and_wipes_the_table"}) {
+    const auto [here, golden] = Here(Load(scenario));
+    const TransformJudgement judged =
+        JudgeTransforms(here, golden, {Transform::kRename, Transform::kCopies});
+    for (const TransformVerdict& verdict : judged.verdicts)
+      EXPECT_EQ(verdict.says, kSameStory) << verdict.transform << ": " << verdict.why;
+  }
+  Scenario orbits = Load("reach/slow_approach_is_one_reach").scenario;
+  orbits.script.stages[0].steps[0].action = physics::OrbitStep{.around = "milk"};
+  const Scenario renamed = Renamed(orbits, {{"milk", "e1"}});
+  EXPECT_EQ(std::get<physics::OrbitStep>(renamed.script.stages[0].steps[0].action).around, "e1");
+}
 
 // 0.3 s of waiting last 0.3 s at every rate; an event that has moved by more than 50 ms differs.
 TEST(Transform, OtherRatesAreComparedInSeconds) {
