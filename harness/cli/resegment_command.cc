@@ -7,9 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "grammar/name_events.h"
+#include "harness/base/atomic_file.h"
 #include "harness/command/command.h"
 #include "harness/episodes/resegment_many.h"
 #include "harness/episodes/schema.h"
+#include "harness/labels/read_labels.h"
+#include "harness/labels/take.h"
+#include "harness/labels/write_labels.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/missing_facts.h"
 #include "harness/run/run_text.h"
@@ -130,8 +134,46 @@ ExitCode ResegmentEpisodes(const ParsedOptions& options, const CommandContext& c
   return worst == ExitCode::kAgrees && differs ? ExitCode::kDiffers : worst;
 }
 
+std::string LabelsProblem(const std::string& file) {
+  return labels::IsLabelFile(file) && !file.ends_with(".timeline")
+             ? ""
+             : "found '" + file + "', wanted a file .csv, .eaf or .TextGrid";
+}
+
+/// `--labels`: the events of one recording for an annotation program.
+ExitCode WriteLabels(const ParsedOptions& options, const CommandContext& context) {
+  const auto takes = labels::TakesOf(options.All("recording"), options.Text("--episode"));
+  if (!takes) return Complain(context, takes.error());
+  if (takes->size() != 1)
+    return Complain(context, takes->empty() ? ExitCode::kNothing : ExitCode::kBadInput,
+                    fmt::format("--labels writes one recording; {} are selected", takes->size()));
+  Result<labels::Take> take = labels::OpenTake(takes->front(), context.root);
+  if (!take) return Complain(context, take.error());
+  Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
+  if (!settings) return Complain(context, settings.error());
+  const grammar::CompileResult compiled =
+      LoadGrammar(context.root, options.TextOr("--grammar", take->grammar), *settings);
+  if (!compiled.program) return Complain(context, compiled.diagnostics);
+  const Result<grammar::Timeline> found = take->segment(compiled.program);
+  if (!found) return Complain(context, found.error());
+  const std::string& file = options.Text("--labels");
+  const std::string problem = WriteTextFile(
+      file, labels::LabelsText(file.substr(file.rfind('.')), *found, take->end, context.today));
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  context.out << fmt::format("{}: {} labels\n", file, found->events.size());
+  return ExitCode::kAgrees;
+}
+
 ExitCode RunResegment(const ParsedOptions& options, const CommandContext& context) {
   const std::vector<std::string>& files = options.All("recording");
+  if (options.Has("--labels")) {
+    for (const char* other : {"--compare", "--json", "--jobs"}) {
+      if (options.Has(other))
+        return Complain(context, ExitCode::kBadInput,
+                        fmt::format("--labels writes a file of labels: {} does not apply", other));
+    }
+    return WriteLabels(options, context);
+  }
   const auto lines = std::ranges::find_if_not(files, episodes::IsEpisodeFile);
   if (lines == files.end()) return ResegmentEpisodes(options, context);
   for (const char* of_episodes : {"--episode", "--compare", "--jobs"}) {
@@ -183,6 +225,12 @@ Command ResegmentCommand() {
                    .help = "set a parameter of the grammar (reach_radius=25cm); may be repeated",
                    .placeholder = "NAME=VALUE",
                    .repeatable = true},
+                  {.name = "--labels",
+                   .help = "write the events of one recording for an annotation program\n"
+                           "(docs/labels.md): ELAN (.eaf), Praat (.TextGrid) or .csv",
+                   .placeholder = "FILE",
+                   .rule = {.range = {}, .problem = LabelsProblem},
+                   .is_output = true},
                   {.name = "--json", .help = "print one JSON object instead of a table"}},
       .run = RunResegment};
 }

@@ -12,6 +12,7 @@
 #include "harness/check/select_scenarios.h"
 #include "harness/closed_form/closed_form.h"
 #include "harness/command/command.h"
+#include "harness/labels/read_truths.h"
 #include "harness/oracle/oracle.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/load_grammar.h"
@@ -177,6 +178,77 @@ void Print(const std::vector<score::Score>& scores, double collar_s, std::ostrea
          "events.\n";
 }
 
+/// `score TAKES --truth LABELS`: against what people marked.
+ExitCode RunLabels(const std::vector<std::string>& grammars, const ParsedOptions& options,
+                   const CommandContext& context) {
+  for (const char* other : {"--filter", "--events", "--differences", "--closed-form"}) {
+    if (options.Has(other))
+      return Complain(
+          context, ExitCode::kBadInput,
+          fmt::format("--truth compares what the labels mean: {} does not apply", other));
+  }
+  const auto takes = labels::TakesOf(options.All("names"), options.Text("--episode"));
+  if (!takes) return Complain(context, takes.error());
+  if (takes->empty())
+    return Complain(context, ExitCode::kNothing,
+                    options.Has("names") ? "--episode: no episode matches"
+                                         : "--truth: which recordings? score take1.jsonl --truth "
+                                           "take1.csv");
+  const double collar_s = options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
+  std::vector<std::vector<EpisodeToScore>> all(grammars.size()), by_hand(grammars.size());
+  std::vector<std::vector<std::string>> not_covered(grammars.size());
+  std::vector<labels::Take> opened;
+  for (const labels::TakeName& name : *takes) {
+    Result<labels::Take> take = labels::OpenTake(name, context.root);
+    if (!take) return Complain(context, take.error());
+    opened.push_back(std::move(*take));
+  }
+  for (std::size_t g = 0; g < grammars.size(); ++g) {
+    const grammar::CompileResult compiled = LoadGrammar(context.root, grammars[g]);
+    if (!compiled.program) return Complain(context, compiled.diagnostics);
+    const auto truths = labels::ReadTruths(*takes, options.All("--truth"), options.Text("--map"),
+                                           *compiled.program);
+    if (!truths) return Complain(context, truths.error());
+    for (std::size_t i = 0; i < opened.size(); ++i) {
+      const labels::Take& take = opened[i];
+      const auto truth = truths->Truth(i, take.entities, take.ticks_per_second, take.end);
+      if (!truth) return Complain(context, truth.error());
+      const Result<grammar::Timeline> found = take.segment(compiled.program);
+      if (!found) return Complain(context, found.error());
+      EpisodeToScore episode{.scenario = (*takes)[i].scenario, .ticks = take.end};
+      episode.truth = *truth;
+      episode.found = labels::Compared(*found, truths->compared());
+      for (const grammar::NamedEvent& event : found->events)
+        if (!truths->compared().contains(event.event)) ++episode.ignored[event.event];
+      all[g].push_back(episode);
+      episode.truth = labels::ByHand(std::move(episode.truth));
+      episode.found = labels::ByHand(std::move(episode.found));
+      by_hand[g].push_back(std::move(episode));
+    }
+  }
+  std::vector<score::Score> scores, of_hands;
+  for (std::size_t g = 0; g < grammars.size(); ++g) {
+    scores.push_back(ScoreOf(grammars[g], all[g], collar_s));
+    of_hands.push_back(ScoreOf(grammars[g], by_hand[g], collar_s));
+    scores.back().ignored_because = "no label means them";
+    of_hands.back().ignored.clear();
+  }
+  if (options.Has("--json")) {
+    nlohmann::ordered_json json = ScoresJson(scores, collar_s);
+    json["by_hand"] = ScoresJson(of_hands, collar_s);
+    context.out << json.dump(2) << "\n";
+    return ExitCode::kAgrees;
+  }
+  Print(scores, collar_s, context.out);
+  const bool has_hands = std::ranges::any_of(of_hands, [&](const score::Score& one) {
+    return one.events.size() > scores[&one - of_hands.data()].events.size();
+  });
+  if (!has_hands) return ExitCode::kAgrees;
+  context.out << "\nEach hand for itself:\n\n";
+  for (const score::Score& one : of_hands) context.out << ScoreTable(one, collar_s) << "\n";
+  return ExitCode::kAgrees;
+}
+
 /// `score --closed-form`: the grammars and the oracle on recordings whose events are known.
 ExitCode RunClosedForms(const std::vector<ClosedFormWitness>& recognisers,
                         const ParsedOptions& options, const CommandContext& context) {
@@ -200,6 +272,12 @@ ExitCode RunClosedForms(const std::vector<ClosedFormWitness>& recognisers,
 ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   std::vector<std::string> grammars = options.All("--grammar");
   if (grammars.empty()) grammars = {kDefaultGrammar, "original_2020"};
+  if (options.Has("--truth")) return RunLabels(grammars, options, context);
+  for (const char* of_labels : {"--map", "--episode"}) {
+    if (options.Has(of_labels))
+      return Complain(context, ExitCode::kBadInput,
+                      fmt::format("{} needs --truth: where are the labels?", of_labels));
+  }
   const std::vector<std::string> events = NamesIn(options.All("--events"));
   if (const std::string unknown = UnknownEvent(events); !unknown.empty())
     return Complain(context, ExitCode::kBadInput, unknown);
@@ -258,7 +336,9 @@ Command ScoreCommand() {
           .summary = "Score grammars against what physically happened",
           .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
                        "score --grammar my/rules.grammar --events grasping,sliding",
-                       "score 'slide/*' --collar-ms 20 --json", "score --closed-form"},
+                       "score 'slide/*' --collar-ms 20 --json", "score --closed-form",
+                       "score take1.jsonl take2.jsonl --truth labels --map labels.yaml --grammar "
+                       "pick_and_place_from_motion"},
           .options = {{.name = "names",
                        .help = "names, skill/name, globs or files; default: all scenarios",
                        .repeatable = true},
@@ -271,6 +351,19 @@ Command ScoreCommand() {
                                "original_2020",
                        .placeholder = "NAME|FILE",
                        .repeatable = true},
+                      {.name = "--truth",
+                       .help = "labels by people (.csv, .eaf, .TextGrid) of the recordings or\n"
+                               "episode files that are named, one file for each or a folder\n"
+                               "(docs/labels.md); may be repeated",
+                       .placeholder = "FILE|FOLDER",
+                       .repeatable = true},
+                      {.name = "--map",
+                       .help = "what the labels mean: a YAML file; without it labels are events,\n"
+                               "like grasping(right_hand, cup)",
+                       .placeholder = "FILE"},
+                      {.name = "--episode",
+                       .help = "with --truth: only these episodes of episode files",
+                       .placeholder = "WHICH"},
                       {.name = "--events",
                        .help = "score only these events; default: all that docs/events.md defines",
                        .placeholder = "NAME,..",

@@ -12,6 +12,7 @@
 #include <optional>
 #include <sstream>
 
+#include "harness/base/csv_cells.h"
 #include "harness/base/text_file.h"
 #include "harness/import/pose_file.h"
 
@@ -23,29 +24,6 @@ using grammar::Place;
 
 constexpr std::size_t kMostComplaints = 12;
 constexpr double kUnitTolerance = 0.01;
-
-struct Cell {
-  std::string_view text;
-  int column = 1;  ///< in bytes, from 1
-};
-
-/// A cell may stand in quotes, and then hold separators.
-std::vector<Cell> CellsOf(std::string_view line, char separator) {
-  std::vector<Cell> cells;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    std::size_t end = std::min(line.find(separator, begin), line.size());
-    if (begin < line.size() && line[begin] == '"') {
-      const std::size_t quote = line.find('"', begin + 1);
-      if (quote != std::string_view::npos) end = std::min(line.find(separator, quote), line.size());
-    }
-    std::size_t first = begin, last = end;
-    while (first < last && (line[first] == ' ' || line[first] == '"')) ++first;
-    while (last > first && (line[last - 1] == ' ' || line[last - 1] == '"')) --last;
-    cells.push_back({line.substr(first, last - first), static_cast<int>(first) + 1});
-    begin = end + 1;
-  }
-  return cells;
-}
 
 double SecondsPer(const ImportMap& map) {
   switch (map.time_unit.value) {
@@ -101,9 +79,9 @@ class CsvPoseReader {
       if (++line_ < map_.header_line) continue;
       if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
       if (line_ == map_.header_line)
-        TakeHeader(CellsOf(line, separator_));
+        TakeHeader(CsvCellsOf(line, separator_));
       else if (line.find_first_not_of(" \t") != std::string_view::npos)
-        TakeRow(CellsOf(line, separator_));
+        TakeRow(CsvCellsOf(line, separator_));
       if (!map_errors_.empty()) return;
     }
     if (line_ < map_.header_line)
@@ -128,7 +106,7 @@ class CsvPoseReader {
         grammar::DiagnosticAt(poses.file, poses.text, place, std::move(message), std::move(hint)));
   }
 
-  void TakeHeader(const std::vector<Cell>& cells) {
+  void TakeHeader(const std::vector<CsvCell>& cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const std::string name(cells[i].text);
       names_.push_back(name);
@@ -195,7 +173,7 @@ class CsvPoseReader {
     return seats;
   }
 
-  void TakeRow(const std::vector<Cell>& cells) {
+  void TakeRow(const std::vector<CsvCell>& cells) {
     if (cells.size() != names_.size())
       return Complain(
           {line_, cells.back().column},
@@ -227,11 +205,11 @@ class CsvPoseReader {
       poses.unused.push_back(name);
   }
 
-  bool IsMissing(const Cell& cell) const {
+  bool IsMissing(const CsvCell& cell) const {
     return cell.text.empty() || std::ranges::find(map_.missing, cell.text) != map_.missing.end();
   }
 
-  void TakePose(const std::vector<Cell>& cells, const Seats& seats, double t_s, PoseBody& body) {
+  void TakePose(const std::vector<CsvCell>& cells, const Seats& seats, double t_s, PoseBody& body) {
     std::vector<std::size_t> all = seats.position;
     all.insert(all.end(), seats.quaternion.begin(), seats.quaternion.end());
     const auto missing = [&](std::size_t seat) { return IsMissing(cells[seat]); };
@@ -267,7 +245,7 @@ class CsvPoseReader {
     body.samples.push_back(sample);
   }
 
-  std::optional<double> Number(const Cell& cell) {
+  std::optional<double> Number(const CsvCell& cell) {
     double value = 0;
     const char *begin = cell.text.data(), *end = begin + cell.text.size();
     const auto [rest, error] = std::from_chars(begin, end, value);

@@ -59,6 +59,7 @@ struct Score {
   std::vector<std::string>
       not_covered;  ///< events that are scored, but that no rule of the grammar prints
   std::map<std::string, int> ignored;  ///< of all episodes
+  std::string ignored_because = "docs/events.md does not define them";
 };
 
 /// Labels are events with their roles. `collar_s` is for the collar-based scores.

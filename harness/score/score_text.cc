@@ -115,7 +115,7 @@ std::string IgnoredText(const Score& score) {
   std::vector<std::string> kinds;
   for (const auto& [event, times] : score.ignored)
     kinds.push_back(fmt::format("{} ({} found)", event, times));
-  return fmt::format("ignored: {}; docs/events.md does not define them\n", fmt::join(kinds, ", "));
+  return fmt::format("ignored: {}; {}\n", fmt::join(kinds, ", "), score.ignored_because);
 }
 
 }  // namespace

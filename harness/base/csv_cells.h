@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The cells of a line of comma-separated values. Tested by tests/harness/base/csv_cells_test.cc
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace prehend::harness {
+
+struct CsvCell {
+  std::string_view text;  ///< without blanks and quotes around it
+  int column = 1;         ///< in bytes, from 1
+};
+
+/// A cell may stand in quotes, and then hold separators.
+std::vector<CsvCell> CsvCellsOf(std::string_view line, char separator);
+
+}  // namespace prehend::harness

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/labels/label_map.h. Tested by tests/harness/labels/labels_test.cc
+#include "harness/labels/label_map.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "harness/timeline/event_text.h"
+#include "harness/yaml/diagnostic_list.h"
+#include "harness/yaml/yaml_scalar.h"
+
+namespace prehend::harness::labels {
+namespace {
+
+using grammar::Diagnostics;
+using grammar::EventSignature;
+using Events = std::vector<EventSignature>;
+
+/// A label may end so long after its recording; people stop marking later than cameras stop.
+constexpr double kMostBeyondEnd_s = 1;
+
+const EventSignature* FindEvent(const Events& events, const std::string& name) {
+  const auto found = std::ranges::find(events, name, &EventSignature::name);
+  return found == events.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> NamesOf(const Events& events) {
+  std::vector<std::string> names;
+  for (const EventSignature& event : events) names.push_back(event.name);
+  return names;
+}
+
+/// In the order of the event's head; the two of a symmetric event by the alphabet, as recognised
+/// events have them.
+void PutInOrder(const EventSignature& event, std::vector<grammar::Role>& roles) {
+  std::ranges::sort(roles, {}, [&](const grammar::Role& role) {
+    return std::ranges::find(event.roles, role.name) - event.roles.begin();
+  });
+  if (event.symmetric && roles.size() >= 2 && roles[1].value < roles[0].value)
+    std::swap(roles[0].value, roles[1].value);
+}
+
+class MapReader {
+ public:
+  MapReader(LabelMap& map, const Events& events)
+      : map_(map), events_(events), errors_(map.document) {}
+
+  Diagnostics Read() {
+    const YamlNode& root = map_.document.root;
+    if (root.kind != YamlNode::Kind::kMapping) {
+      errors_.Add(root.where, "expected a map of labels, found " + Describe(root), kExample);
+      return errors_.Sorted();
+    }
+    for (const YamlNode& node : root.children) {
+      if (node.key == "offset_s")
+        ReadOffset(node);
+      else if (node.key == "tiers")
+        ReadTiers(node);
+      else if (node.key != "labels")
+        errors_.AddUnknownName(node.key_where, "unknown key '" + node.key + "'", node.key,
+                               {"labels", "tiers", "offset_s"});
+    }
+    if (const YamlNode* labels = root.Find("labels"))
+      ReadLabelNodes(*labels);
+    else
+      errors_.Add(root.where, "'labels' is missing", kExample);
+    return errors_.Sorted();
+  }
+
+ private:
+  static constexpr const char* kExample =
+      "labels:\n    hold: {event: grasping, object: cup}\n    idle: ignore";
+
+  void ReadOffset(const YamlNode& node) {
+    const std::optional<double> number = NumberOf(node);
+    if (number)
+      map_.offset_s = *number;
+    else
+      errors_.Add(node.where, "offset_s: expected seconds, found " + Describe(node));
+  }
+
+  bool IsMapping(const YamlNode& node) {
+    if (node.kind == YamlNode::Kind::kMapping && !node.children.empty()) return true;
+    errors_.Add(node.where, node.key + ": expected a mapping, found " + Describe(node), kExample);
+    return false;
+  }
+
+  static bool SaysIgnore(const YamlNode& node) {
+    return node.kind == YamlNode::Kind::kScalar && node.text == "ignore";
+  }
+
+  void ReadTiers(const YamlNode& tiers) {
+    if (!IsMapping(tiers)) return;
+    std::set<std::string> known;
+    for (const EventSignature& event : events_)
+      known.insert(event.roles.begin(), event.roles.end());
+    for (const YamlNode& node : tiers.children) {
+      Meaning& tier = map_.tiers[node.key];
+      tier.where = node.key_where;
+      tier.ignored = SaysIgnore(node);
+      if (tier.ignored || !IsMapping(node)) continue;
+      for (const YamlNode& role : node.children) {
+        if (!known.contains(role.key))
+          errors_.AddUnknownName(role.key_where, "no event has a role '" + role.key + "'", role.key,
+                                 {known.begin(), known.end()});
+        ReadRole(role, tier);
+      }
+    }
+  }
+
+  void ReadRole(const YamlNode& node, Meaning& meaning) {
+    if (node.kind != YamlNode::Kind::kScalar || node.text.empty())
+      errors_.Add(node.where,
+                  node.key + ": expected the name of an entity, found " + Describe(node));
+    else
+      meaning.roles.push_back({node.key, node.text});
+  }
+
+  void ReadLabelNodes(const YamlNode& labels) {
+    if (!IsMapping(labels)) return;
+    for (const YamlNode& node : labels.children) {
+      Meaning& label = map_.labels[node.key];
+      label.where = node.key_where;
+      label.ignored = SaysIgnore(node);
+      if (label.ignored) continue;
+      const YamlNode* name = node.kind == YamlNode::Kind::kMapping ? node.Find("event") : nullptr;
+      if (!name) {
+        errors_.Add(
+            node.where,
+            fmt::format("'{}': expected an event or 'ignore', found {}", node.key, Describe(node)),
+            kExample);
+        continue;
+      }
+      label.event = name->text;
+      const EventSignature* event = FindEvent(events_, label.event);
+      if (!event) {
+        errors_.AddUnknownName(name->where, "the grammar has no event '" + label.event + "'",
+                               label.event, NamesOf(events_));
+        continue;
+      }
+      for (const YamlNode& role : node.children) {
+        if (role.key == "event") continue;
+        if (std::ranges::find(event->roles, role.key) == event->roles.end())
+          errors_.AddUnknownName(role.key_where,
+                                 fmt::format("'{}' has no role '{}'", event->name, role.key),
+                                 role.key, event->roles);
+        ReadRole(role, label);
+      }
+    }
+  }
+
+  LabelMap& map_;
+  const Events& events_;
+  DiagnosticList errors_;
+};
+
+std::string Trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t\n"), end = text.find_last_not_of(" \t\n");
+  return begin == std::string_view::npos ? "" : std::string(text.substr(begin, end - begin + 1));
+}
+
+/// "grasping(right_hand, cup)", or "grasping" without roles. Nothing, and `problem`, if it is no
+/// event.
+std::optional<grammar::NamedEvent> EventIn(const std::string& text, const Events& events,
+                                           std::string& problem) {
+  const std::size_t open = text.find('(');
+  const std::string name = Trimmed(std::string_view(text).substr(0, open));
+  const EventSignature* event = FindEvent(events, name);
+  if (!event) {
+    const std::string near = grammar::NearestName(name, NamesOf(events));
+    problem = fmt::format("found the label '{}', wanted an event of the grammar{}", text,
+                          near.empty() ? "" : ", like " + near);
+    return std::nullopt;
+  }
+  grammar::NamedEvent named{.event = name, .roles = {}, .interval = {}};
+  if (open == std::string::npos) return named;
+  const std::size_t close = text.find(')', open);
+  std::vector<std::string> values;
+  std::string_view inner = std::string_view(text).substr(open + 1, close - open - 1);
+  for (std::size_t begin = 0; begin <= inner.size();) {
+    const std::size_t end = std::min(inner.find(',', begin), inner.size());
+    values.push_back(Trimmed(inner.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  if (close == std::string::npos || close + 1 != text.size() ||
+      values.size() != event->roles.size()) {
+    problem = fmt::format("found the label '{}', wanted {}({})", text, name,
+                          fmt::join(event->roles, ", "));
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < values.size(); ++i)
+    named.roles.push_back({event->roles[i], values[i]});
+  PutInOrder(*event, named.roles);
+  return named;
+}
+
+}  // namespace
+
+Result<LabelMap> ReadLabelMap(const std::string& path, const Events& events) {
+  Result<YamlDocument> document = ReadYamlFile(path);
+  if (!document) return tl::unexpected(std::move(document.error()));
+  LabelMap map{.document = std::move(*document)};
+  Diagnostics problems = MapReader(map, events).Read();
+  if (!problems.empty()) return tl::unexpected(std::move(problems));
+  return map;
+}
+
+Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelMap* map,
+                                      const Events& events) {
+  LabelReading reading;
+  Diagnostics problems;
+  std::set<std::string> unknown;
+  const auto compare = [&](const grammar::NamedEvent& event) {
+    std::vector<std::string> roles;
+    for (const grammar::Role& role : event.roles) roles.push_back(role.name);
+    const auto [found, is_new] = reading.compared_.try_emplace(event.event, roles);
+    if (!is_new)
+      std::erase_if(found->second, [&](const std::string& role) {
+        return std::ranges::find(roles, role) == roles.end();
+      });
+  };
+  for (const LabelFile& file : files) {
+    std::vector<LabelledEvent>& of_file = reading.events_.emplace_back();
+    const auto complain = [&](const Label& label, std::string message, std::string hint) {
+      if (problems.size() < kMostComplaints && unknown.insert(message).second)
+        problems.push_back(file.At(label.place, std::move(message), std::move(hint)));
+    };
+    for (const Label& label : file.labels) {
+      const std::string text = Trimmed(label.text);
+      grammar::NamedEvent named;
+      if (!map) {
+        std::string problem;
+        const auto event = EventIn(text, events, problem);
+        if (!event) {
+          complain(label, problem, "say what your labels mean in a file: --map labels.yaml");
+          continue;
+        }
+        named = *event;
+      } else {
+        const auto tier = map->tiers.find(label.tier);
+        if (tier == map->tiers.end() && !map->tiers.empty()) {
+          std::vector<std::string> known;
+          for (const auto& [name, _] : map->tiers) known.push_back(name);
+          const std::string near = grammar::NearestName(label.tier, known);
+          complain(label, fmt::format("the map has no tier '{}'", label.tier),
+                   near.empty() ? fmt::format("tiers: {{{}: ignore}}", label.tier)
+                                : "did you mean '" + near + "'?");
+          continue;
+        }
+        if (tier != map->tiers.end() && tier->second.ignored) continue;
+        const auto meaning = map->labels.find(text);
+        if (meaning == map->labels.end()) {
+          std::vector<std::string> known;
+          for (const auto& [name, _] : map->labels) known.push_back(name);
+          const std::string near = grammar::NearestName(text, known);
+          complain(label, fmt::format("the map has no label '{}'", text),
+                   near.empty() ? fmt::format("labels: {{\"{}\": ignore}}", text)
+                                : "did you mean '" + near + "'?");
+          continue;
+        }
+        if (meaning->second.ignored) continue;
+        named.event = meaning->second.event;
+        named.roles = meaning->second.roles;
+        const EventSignature& event = *FindEvent(events, named.event);
+        if (tier != map->tiers.end()) {
+          for (const grammar::Role& role : tier->second.roles) {
+            const bool has_it = std::ranges::find(event.roles, role.name) != event.roles.end();
+            const bool given = std::ranges::find(named.roles, role.name, &grammar::Role::name) !=
+                               named.roles.end();
+            if (has_it && !given) named.roles.push_back(role);
+          }
+        }
+        PutInOrder(event, named.roles);
+      }
+      compare(named);
+      const double offset_s = map ? map->offset_s : 0;
+      of_file.push_back(
+          {label.begin_s + offset_s, label.end_s + offset_s, std::move(named), label.place});
+    }
+  }
+  // What labels could name: without one of them, what is recognised of it is too much.
+  if (map) {
+    for (const auto& [text, meaning] : map->labels)
+      if (!meaning.ignored && !reading.compared_.contains(meaning.event)) {
+        grammar::NamedEvent event{.event = meaning.event, .roles = meaning.roles, .interval = {}};
+        compare(event);
+      }
+  }
+  // Of a symmetric event one role alone says nothing.
+  for (auto& [name, roles] : reading.compared_) {
+    const EventSignature& event = *FindEvent(events, name);
+    if (event.symmetric && roles.size() == 1) roles.clear();
+  }
+  if (!problems.empty()) return tl::unexpected(std::move(problems));
+  reading.files_ = std::move(files);
+  return reading;
+}
+
+Result<grammar::Timeline> LabelReading::Truth(std::size_t file,
+                                              const std::vector<std::string>& entities,
+                                              grammar::Tick ticks_per_second,
+                                              grammar::Tick end) const {
+  const LabelFile& labels = files_[file];
+  grammar::Timeline truth{.ticks_per_second = ticks_per_second, .events = {}};
+  Diagnostics problems;
+  const double end_s = static_cast<double>(end) / static_cast<double>(ticks_per_second);
+  for (const LabelledEvent& label : events_[file]) {
+    if (problems.size() >= kMostComplaints) break;
+    for (const grammar::Role& role : label.event.roles) {
+      if (std::ranges::find(entities, role.value) != entities.end()) continue;
+      const std::string near = grammar::NearestName(role.value, entities);
+      problems.push_back(
+          labels.At(label.place, fmt::format("the recording has no entity '{}'", role.value),
+                    near.empty() ? fmt::format("it has {}", fmt::join(entities, ", "))
+                                 : "did you mean '" + near + "'?"));
+    }
+    if (label.begin_s < -kMostBeyondEnd_s || label.end_s > end_s + kMostBeyondEnd_s) {
+      problems.push_back(labels.At(
+          label.place,
+          fmt::format("the label lies at {:g} to {:g} s, the recording ends after {:g} s",
+                      label.begin_s, label.end_s, end_s),
+          "is it of another recording, in another unit, or by another clock? offset_s in the map "
+          "moves all labels"));
+      continue;
+    }
+    grammar::NamedEvent event = label.event;
+    event.interval.begin =
+        std::clamp<grammar::Tick>(TickAt(label.begin_s, ticks_per_second), 0, end - 1);
+    event.interval.end = std::clamp<grammar::Tick>(TickAt(label.end_s, ticks_per_second),
+                                                   event.interval.begin + 1, end);
+    event.decided = event.interval.end;
+    truth.events.push_back(std::move(event));
+  }
+  if (!problems.empty()) return tl::unexpected(std::move(problems));
+  return Compared(truth, compared_);
+}
+
+grammar::Timeline Compared(const grammar::Timeline& timeline, const ComparedRoles& roles) {
+  std::map<std::string, std::vector<grammar::NamedEvent>> by_label;
+  for (grammar::NamedEvent event : timeline.events) {
+    const auto compared = roles.find(event.event);
+    if (compared == roles.end()) continue;
+    std::erase_if(event.roles, [&](const grammar::Role& role) {
+      return std::ranges::find(compared->second, role.name) == compared->second.end();
+    });
+    event.values.clear();
+    by_label[event.Label()].push_back(std::move(event));
+  }
+  grammar::Timeline all{.ticks_per_second = timeline.ticks_per_second, .events = {}};
+  for (auto& [label, events] : by_label) {
+    std::ranges::sort(events, {}, [](const grammar::NamedEvent& event) {
+      return std::pair(event.interval.begin, event.interval.end);
+    });
+    const std::size_t first = all.events.size();
+    for (grammar::NamedEvent& event : events) {
+      if (all.events.size() > first && event.interval.begin < all.events.back().interval.end) {
+        grammar::NamedEvent& before = all.events.back();
+        before.interval.end = std::max(before.interval.end, event.interval.end);
+        before.decided = std::max(before.decided, event.decided);
+      } else {
+        all.events.push_back(std::move(event));
+      }
+    }
+  }
+  Sort(all);
+  return all;
+}
+
+grammar::Timeline ByHand(grammar::Timeline timeline) {
+  for (grammar::NamedEvent& event : timeline.events) {
+    const std::string& hand = RoleValue(event, "hand");
+    if (!hand.empty()) event.event += " of " + hand;
+  }
+  return timeline;
+}
+
+}  // namespace prehend::harness::labels

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which events people's labels mean. With a map: a YAML file, see docs/labels.md. Without one a
+// label is an event as it is printed: "grasping(right_hand, cup)". Tested by
+// tests/harness/labels/labels_test.cc
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grammar/base/timeline.h"
+#include "grammar/contents.h"
+#include "harness/labels/read_labels.h"
+#include "harness/yaml/located_yaml.h"
+
+namespace prehend::harness::labels {
+
+/// A label, or what a tier adds to its labels.
+struct Meaning {
+  bool ignored = false;
+  std::string event;
+  std::vector<grammar::Role> roles;
+  Where where;
+};
+
+struct LabelMap {
+  YamlDocument document;
+  double offset_s = 0;  ///< added to all times of labels
+  std::map<std::string, Meaning> labels;
+  std::map<std::string, Meaning> tiers;  ///< empty: tiers mean nothing
+};
+
+/// Errors have their places. Events and roles must be those of `events`.
+Result<LabelMap> ReadLabelMap(const std::string& path,
+                              const std::vector<grammar::EventSignature>& events);
+
+/// Of each event that labels name the roles that they name with it: what is compared.
+using ComparedRoles = std::map<std::string, std::vector<std::string>>;
+
+/// Labels as events. One without roles in common with other labels of its event is compared without
+/// them.
+class LabelReading {
+ public:
+  /// `map` may be null. Errors are labels that the map does not have, or that are no events.
+  static Result<LabelReading> Of(std::vector<LabelFile> files, const LabelMap* map,
+                                 const std::vector<grammar::EventSignature>& events);
+
+  const ComparedRoles& compared() const { return compared_; }
+
+  /// The events of the file with this index in a take of these entities and this length. Errors
+  /// are entities that it does not have, and labels beyond its end.
+  Result<grammar::Timeline> Truth(std::size_t file, const std::vector<std::string>& entities,
+                                  grammar::Tick ticks_per_second, grammar::Tick end) const;
+
+ private:
+  struct LabelledEvent {
+    double begin_s = 0, end_s = 0;
+    grammar::NamedEvent event;
+    grammar::Place place;
+  };
+  std::vector<LabelFile> files_;
+  std::vector<std::vector<LabelledEvent>> events_;  ///< per file
+  ComparedRoles compared_;
+};
+
+/// Only the compared events, each with its compared roles; those of the same label that overlap
+/// become one.
+grammar::Timeline Compared(const grammar::Timeline& timeline, const ComparedRoles& roles);
+
+/// The same with the hand in the name of each event that has one: "grasping of left_hand".
+grammar::Timeline ByHand(grammar::Timeline timeline);
+
+}  // namespace prehend::harness::labels

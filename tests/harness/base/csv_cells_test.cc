@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/base/csv_cells.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace prehend::harness {
+namespace {
+
+std::vector<std::string> Texts(std::string_view line, char separator = ',') {
+  std::vector<std::string> texts;
+  for (const CsvCell& cell : CsvCellsOf(line, separator)) texts.emplace_back(cell.text);
+  return texts;
+}
+
+TEST(CsvCells, AreCutAtSeparatorsOutsideOfQuotes) {
+  using V = std::vector<std::string>;
+  EXPECT_EQ(Texts("a, b ,c"), (V{"a", "b", "c"}));
+  EXPECT_EQ(Texts("\"a, b\",c"), (V{"a, b", "c"}));
+  EXPECT_EQ(Texts("a;b", ';'), (V{"a", "b"}));
+  EXPECT_EQ(Texts(""), (V{""}));
+  EXPECT_EQ(Texts("a,"), (V{"a", ""}));
+  EXPECT_EQ(Texts("\"open, end"), (V{"open", "end"}));
+}
+
+TEST(CsvCells, KnowTheirPlace) {
+  const auto cells = CsvCellsOf("ab, \"c\"", ',');
+  EXPECT_EQ(cells[1].column, 6);
+}
+
+}  // namespace
+}  // namespace prehend::harness

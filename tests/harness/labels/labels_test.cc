@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+// Labels by people: each format as its program writes it, what is wrong in it, and what the labels
+// mean.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "harness/labels/label_map.h"
+#include "harness/labels/read_labels.h"
+#include "harness/labels/write_labels.h"
+
+namespace prehend::harness::labels {
+namespace {
+
+namespace fs = std::filesystem;
+using grammar::EventSignature;
+
+const std::vector<EventSignature> kEvents = {
+    {.name = "reaching", .roles = {"hand", "object"}},
+    {.name = "grasping", .roles = {"hand", "object"}, .has_style = true},
+    {.name = "contact", .roles = {"a", "b"}, .symmetric = true}};
+
+class Labels : public testing::Test {
+ protected:
+  Labels() { fs::create_directories(folder_); }
+  ~Labels() override { fs::remove_all(folder_); }
+
+  std::string File(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return (folder_ / name).string();
+  }
+  /// "0.5..1.5 hold [right]; .."
+  std::string Read(const std::string& name, const std::string& text) const {
+    const Result<LabelFile> file = ReadLabels(File(name, text));
+    if (!file) return grammar::Format(file.error().front());
+    std::string all;
+    for (const Label& label : file->labels)
+      all += fmt::format("{:g}..{:g} {}{}; ", label.begin_s, label.end_s, label.text,
+                         label.tier.empty() ? "" : " [" + label.tier + "]");
+    return all;
+  }
+  /// The first message without its folder.
+  std::string Problem(const std::string& name, const std::string& text) const {
+    const std::string said = Read(name, text);
+    const std::size_t at = said.find(name);
+    return at == std::string::npos ? said : said.substr(at, said.find('\n') - at);
+  }
+  Result<LabelMap> Map(const std::string& text) const {
+    return ReadLabelMap(File("map.yaml", text), kEvents);
+  }
+  std::string MapProblem(const std::string& text) const {
+    const Result<LabelMap> map = Map(text);
+    if (map) return "";
+    const std::string said = grammar::Format(map.error().front());
+    const std::size_t at = said.find("map.yaml");
+    return said.substr(at, said.find('\n') - at);
+  }
+
+  const fs::path folder_ =
+      fs::path(testing::TempDir()) /
+      ("labels_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+};
+
+TEST_F(Labels, CsvHasItsColumnsByName) {
+  EXPECT_EQ(Read("a.csv", "begin_s,end_s,label\n0.5,1.5,hold\n\n2,3,\"a, b\"\n"),
+            "0.5..1.5 hold; 2..3 a, b; ");
+  EXPECT_EQ(Read("a.csv", "Tier;Label;Start_ms;End_ms;note\nright;hold;500;1500;x\n"),
+            "0.5..1.5 hold [right]; ");
+  EXPECT_EQ(Read("a.csv", "onset\toffset\taction\n0\t1\thold\n0\t1\t\n"), "0..1 hold; ");
+}
+
+TEST_F(Labels, FaultyCsvIsNamed) {
+  const std::string head = "begin_s,end_s,label\n";
+  EXPECT_EQ(Problem("a.csv", "begin,label\n1,x\n"),
+            "a.csv:1:1: error: found the columns begin, label; wanted one for the begin, the end "
+            "and the label of each row");
+  EXPECT_EQ(Problem("a.csv", head + "x,1,hold\n"),
+            "a.csv:2:1: error: begin_s: found 'x', wanted a number");
+  EXPECT_EQ(Problem("a.csv", head + "0,1e999,hold\n"),
+            "a.csv:2:3: error: end_s: found '1e999', wanted a number");
+  EXPECT_EQ(Problem("a.csv", head + "0,nan,hold\n"),
+            "a.csv:2:3: error: end_s: found 'nan', wanted a number");
+  EXPECT_EQ(Problem("a.csv", head + "0,1\n"), "a.csv:2:1: error: found 2 cells, wanted 3");
+  EXPECT_EQ(Problem("a.csv", head + "2,1,hold\n"),
+            "a.csv:2:5: error: 'hold' ends before it begins: 2 s to 1 s");
+  EXPECT_EQ(Problem("a.csv", head), "a.csv: error: it has no labels");
+  EXPECT_EQ(Problem("a.csv", head + "0,1,h\xe9\n"), "a.csv:2:6: error: byte 0xe9 is not UTF-8");
+  EXPECT_NE(Problem("a.csv", "").find("a.csv"), std::string::npos);
+  EXPECT_EQ(Problem("a.txt", head),
+            "a.txt: error: no file of labels, which end in .csv, .eaf, "
+            ".TextGrid, .timeline");
+}
+
+const std::string kEaf = R"(<?xml version="1.0" encoding="UTF-8"?>
+<ANNOTATION_DOCUMENT FORMAT="3.0">
+  <HEADER TIME_UNITS="milliseconds"/>
+  <TIME_ORDER>
+    <TIME_SLOT TIME_SLOT_ID="ts1" TIME_VALUE="500"/>
+    <TIME_SLOT TIME_SLOT_ID="ts2"/>
+    <TIME_SLOT TIME_SLOT_ID="ts3" TIME_VALUE="1500"/>
+  </TIME_ORDER>
+  <TIER TIER_ID="right" LINGUISTIC_TYPE_REF="event">
+    <ANNOTATION><ALIGNABLE_ANNOTATION ANNOTATION_ID="a1" TIME_SLOT_REF1="ts1" TIME_SLOT_REF2="ts2">
+      <ANNOTATION_VALUE>hold &amp; lift</ANNOTATION_VALUE></ALIGNABLE_ANNOTATION></ANNOTATION>
+    <ANNOTATION><ALIGNABLE_ANNOTATION ANNOTATION_ID="a2" TIME_SLOT_REF1="ts2" TIME_SLOT_REF2="ts3">
+      <ANNOTATION_VALUE></ANNOTATION_VALUE></ALIGNABLE_ANNOTATION></ANNOTATION>
+  </TIER>
+  <TIER TIER_ID="objects" PARENT_REF="right" LINGUISTIC_TYPE_REF="of">
+    <ANNOTATION><REF_ANNOTATION ANNOTATION_ID="a3" ANNOTATION_REF="a1">
+      <ANNOTATION_VALUE>cup</ANNOTATION_VALUE></REF_ANNOTATION></ANNOTATION>
+  </TIER>
+</ANNOTATION_DOCUMENT>
+)";
+
+std::string With(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST_F(Labels, EafHasAlignedAndReferringAnnotations) {
+  EXPECT_EQ(Read("a.eaf", kEaf), "0.5..1 hold & lift [right]; 0.5..1 cup [objects]; ");
+}
+
+TEST_F(Labels, FaultyEafIsNamed) {
+  EXPECT_NE(Problem("a.eaf", kEaf.substr(0, 300)).find("error: it is no XML: "), std::string::npos);
+  EXPECT_EQ(Problem("a.eaf", "<html/>"),
+            "a.eaf:1:2: error: found <html>, wanted <ANNOTATION_DOCUMENT>, as ELAN writes it");
+  EXPECT_EQ(Problem("a.eaf", With(kEaf, "milliseconds", "PAL-frames")),
+            "a.eaf:3:4: error: TIME_UNITS: found 'PAL-frames', wanted milliseconds");
+  EXPECT_EQ(Problem("a.eaf", With(kEaf, "\"500\"", "\"0.5 s\"")),
+            "a.eaf:5:6: error: TIME_VALUE: found '0.5 s', wanted milliseconds");
+  EXPECT_EQ(Problem("a.eaf", With(kEaf, "\"500\"", "\"-5\"")),
+            "a.eaf:5:6: error: TIME_VALUE: found '-5', wanted milliseconds");
+  EXPECT_EQ(Problem("a.eaf", With(kEaf, "REF1=\"ts1\"", "REF1=\"ts9\"")),
+            "a.eaf:10:18: error: TIME_SLOT_REF1: there is no time slot 'ts9' with a time");
+  EXPECT_EQ(Problem("a.eaf", With(kEaf, " TIME_VALUE=\"1500\"", "")),
+            "a.eaf:10:18: error: TIME_SLOT_REF2: there is no time slot 'ts2' with a time");
+  EXPECT_EQ(Problem("a.eaf", With(kEaf, "REF=\"a1\"", "REF=\"a7\"")),
+            "a.eaf:16:18: error: ANNOTATION_REF: there is no annotation 'a7' before it");
+  EXPECT_EQ(Problem("a.eaf", With(kEaf, "\"1500\"", "\"100\"")).substr(0, 12), "a.eaf:10:18:");
+  EXPECT_EQ(Problem("a.eaf", "<ANNOTATION_DOCUMENT/>"), "a.eaf: error: it has no labels");
+}
+
+const std::string kShort = R"(File type = "ooTextFile"
+Object class = "TextGrid"
+
+0
+3
+<exists>
+2
+"IntervalTier"
+"right"
+0
+3
+2
+0
+1.5
+""
+1.5
+3
+"say ""hold"""
+"TextTier"
+"clicks"
+0
+3
+1
+2.5
+"click"
+)";
+const std::string kLong = R"(File type = "ooTextFile"
+Object class = "TextGrid"
+
+xmin = 0
+xmax = 3
+tiers? <exists>
+size = 1
+item []:
+    item [1]:
+        class = "IntervalTier" ! of one hand
+        name = "right"
+        xmin = 0
+        xmax = 3
+        intervals: size = 1
+        intervals [1]:
+            xmin = 0.5
+            xmax = 3
+            text = "hold"
+)";
+
+std::string AsUtf16(const std::string& text, bool big_endian) {
+  std::string bytes = big_endian ? "\xFE\xFF" : "\xFF\xFE";
+  for (const char c : text) {
+    if (big_endian) bytes += '\0';
+    bytes += c;
+    if (!big_endian) bytes += '\0';
+  }
+  return bytes;
+}
+
+TEST_F(Labels, TextGridsAreLongOrShortAndOfAnyUtf) {
+  EXPECT_EQ(Read("a.TextGrid", kShort), "1.5..3 say \"hold\" [right]; 2.5..2.5 click [clicks]; ");
+  EXPECT_EQ(Read("a.TextGrid", kLong), "0.5..3 hold [right]; ");
+  EXPECT_EQ(Read("a.textgrid", AsUtf16(kLong, true)), "0.5..3 hold [right]; ");
+  EXPECT_EQ(Read("a.textgrid", AsUtf16(kLong, false)), "0.5..3 hold [right]; ");
+}
+
+TEST_F(Labels, FaultyTextGridsAreNamed) {
+  const auto problem = [&](const std::string& from, const std::string& to) {
+    return Problem("a.TextGrid", With(kLong, from, to));
+  };
+  EXPECT_EQ(problem("\"TextGrid\"", "\"Sound\""),
+            "a.TextGrid:1:1: error: found a file of type 'ooTextFile', 'Sound'; wanted ooTextFile, "
+            "TextGrid");
+  EXPECT_EQ(problem("<exists>", "<absent>"), "a.TextGrid:6:8: error: it has no tiers");
+  EXPECT_EQ(problem("\"IntervalTier\"", "\"PitchTier\""),
+            "a.TextGrid:13:16: error: found a tier of class 'PitchTier', wanted IntervalTier or "
+            "TextTier");
+  EXPECT_EQ(problem("xmin = 0.5", "xmin = \"0.5\""),
+            "a.TextGrid:16:20: error: found \"0.5\", wanted the begin of a label");
+  EXPECT_EQ(problem("intervals: size = 1", "intervals: size = 2"),
+            "a.TextGrid:19:1: error: the file ends before the begin of a label");
+  EXPECT_EQ(problem("intervals: size = 1", "intervals: size = 1e9"),
+            "a.TextGrid:14:27: error: the number of labels of a tier: found 1e+09, wanted a whole "
+            "number up to 1e+06");
+  EXPECT_EQ(problem("size = 1\nitem", "size = 1.5\nitem"),
+            "a.TextGrid:7:8: error: the number of tiers: found 1.5, wanted a whole number up to "
+            "10000");
+  EXPECT_EQ(problem("\"hold\"", "\"hold"), "a.TextGrid:18:20: error: the quote is not closed");
+  EXPECT_EQ(problem("xmin = 0.5", "xmin = 5"),
+            "a.TextGrid:18:20: error: 'hold' ends before it begins: 5 s to 3 s");
+  EXPECT_EQ(Problem("a.TextGrid", kLong.substr(0, 120)),
+            "a.TextGrid:10:3: error: the file ends before the class of a tier");
+}
+
+constexpr const char* kMap = R"(offset_s: 0.5
+tiers:
+  right: {hand: right_hand}
+  notes: ignore
+labels:
+  hold: {event: grasping, object: cup}
+  reach: {event: reaching}
+  touch: {event: contact, a: cup, b: table}
+  idle: ignore
+)";
+
+grammar::Timeline TruthOf(const Result<LabelReading>& reading) {
+  const auto truth = reading->Truth(0, {"right_hand", "cup", "table"}, 100, 1000);
+  if (!truth) ADD_FAILURE() << grammar::Format(truth.error());
+  return truth ? *truth : grammar::Timeline{};
+}
+
+std::string Text(const grammar::Timeline& timeline) {
+  std::string text;
+  for (const grammar::NamedEvent& event : timeline.events)
+    text += fmt::format("{} {}..{}; ", event.Label(), event.interval.begin, event.interval.end);
+  return text;
+}
+
+TEST_F(Labels, AMapSaysWhatTheyMean) {
+  const auto map = Map(kMap);
+  ASSERT_TRUE(map) << grammar::Format(map.error());
+  const auto file = ReadLabels(File("a.csv",
+                                    "begin_s,end_s,label,tier\n0,1,reach,right\n1,2,hold,right\n"
+                                    "1,2,touch,right\n0,9,talk,notes\n3,4,idle,right\n"));
+  const auto reading = LabelReading::Of({*file}, &*map, kEvents);
+  ASSERT_TRUE(reading) << grammar::Format(reading.error());
+  EXPECT_EQ(Text(TruthOf(reading)),
+            "reaching(right_hand) 50..150; contact(cup, table) 150..250; "
+            "grasping(right_hand, cup) 150..250; ");
+  EXPECT_EQ(reading->compared().at("reaching"), std::vector<std::string>{"hand"});
+}
+
+TEST_F(Labels, WhatIsFoundIsComparedInTheRolesOfTheLabels) {
+  grammar::Timeline found{.ticks_per_second = 100, .events = {}};
+  const auto add = [&](const char* event, const char* object, grammar::Tick begin,
+                       grammar::Tick end) {
+    found.events.push_back({.event = event,
+                            .roles = {{"hand", "right_hand"}, {"object", object}},
+                            .interval = {begin, end},
+                            .decided = end});
+  };
+  add("reaching", "cup", 0, 10);
+  add("reaching", "can", 5, 20);
+  add("reaching", "can", 30, 40);
+  add("grasping", "can", 30, 40);
+  EXPECT_EQ(Text(Compared(found, {{"reaching", {"hand"}}})),
+            "reaching(right_hand) 0..20; reaching(right_hand) 30..40; ");
+  EXPECT_EQ(ByHand(found).events[0].event, "reaching of right_hand");
+}
+
+TEST_F(Labels, FaultyMapsAreNamed) {
+  EXPECT_EQ(MapProblem("labels: 3\n"),
+            "map.yaml:1:9: error: labels: expected a mapping, found '3'");
+  EXPECT_EQ(MapProblem("label:\n  a: ignore\n"), "map.yaml:1:1: error: unknown key 'label'");
+  EXPECT_EQ(MapProblem("labels:\n  a: {event: grasp}\n"),
+            "map.yaml:2:14: error: the grammar has no event 'grasp'");
+  EXPECT_EQ(MapProblem("labels:\n  a: {event: grasping, thing: cup}\n"),
+            "map.yaml:2:24: error: 'grasping' has no role 'thing'");
+  EXPECT_EQ(MapProblem("labels:\n  a: grasping\n"),
+            "map.yaml:2:6: error: 'a': expected an event or 'ignore', found 'grasping'");
+  EXPECT_EQ(MapProblem("offset_s: early\nlabels:\n  a: ignore\n"),
+            "map.yaml:1:11: error: offset_s: expected seconds, found 'early'");
+  EXPECT_EQ(MapProblem("tiers:\n  left: {hnd: left_hand}\nlabels:\n  a: ignore\n"),
+            "map.yaml:2:10: error: no event has a role 'hnd'");
+  EXPECT_EQ(MapProblem("labels:\n  a: {event: grasping, object: [cup]}\n"),
+            "map.yaml:2:32: error: object: expected the name of an entity, found a list");
+}
+
+TEST_F(Labels, UnknownLabelsTiersEntitiesAndTimesAreNamed) {
+  const auto map = Map(kMap);
+  const auto problem = [&](const std::string& row, const LabelMap* meaning) {
+    const auto file = ReadLabels(File("a.csv", "begin_s,end_s,label,tier\n" + row + "\n"));
+    const auto reading = LabelReading::Of({*file}, meaning, kEvents);
+    if (!reading) return grammar::Format(reading.error().front());
+    const auto truth = reading->Truth(0, {"right_hand", "table"}, 100, 1000);
+    return truth ? std::string() : grammar::Format(truth.error().front());
+  };
+  const auto has = [](const std::string& text, const char* part) {
+    return text.find(part) != std::string::npos ? "" : text;
+  };
+  EXPECT_EQ(has(problem("0,1,holt,right", &*map), "a.csv:2:5: error: the map has no label 'holt'"),
+            "");
+  EXPECT_EQ(has(problem("0,1,holt,right", &*map), "did you mean 'hold'?"), "");
+  EXPECT_EQ(has(problem("0,1,hold,left", &*map), "the map has no tier 'left'"), "");
+  EXPECT_EQ(has(problem("0,1,hold,right", &*map), "the recording has no entity 'cup'"), "");
+  EXPECT_EQ(has(problem("0,99,reach,right", &*map),
+                "the label lies at 0.5 to 99.5 s, the recording ends after 10 s"),
+            "");
+  EXPECT_EQ(has(problem("0,1,hold,right", nullptr), "found the label 'hold', wanted an event"), "");
+  EXPECT_EQ(
+      has(problem("0,1,\"grasping(right_hand)\",x", nullptr), "wanted grasping(hand, object)"), "");
+}
+
+TEST_F(Labels, WhatIsWrittenIsReadAgain) {
+  grammar::Timeline timeline{.ticks_per_second = 100, .events = {}};
+  const auto add = [&](const char* event, std::vector<grammar::Role> roles, grammar::Tick begin,
+                       grammar::Tick end) {
+    timeline.events.push_back(
+        {.event = event, .roles = std::move(roles), .interval = {begin, end}, .decided = end});
+  };
+  add("reaching", {{"hand", "right_hand"}, {"object", "cup"}}, 0, 50);
+  add("reaching", {{"hand", "right_hand"}, {"object", "table"}}, 10, 60);
+  add("contact", {{"a", "cup"}, {"b", "table"}}, 20, 1000);
+  add("grasping", {{"hand", "right_hand"}, {"object", "cup"}}, 60, 70);
+  add("grasping", {{"hand", "right_hand"}, {"object", "cup"}}, 70, 90);
+  Sort(timeline);
+  for (const char* ending : {".csv", ".eaf", ".TextGrid"}) {
+    const auto file = ReadLabels(
+        File(std::string("a") + ending, LabelsText(ending, timeline, 1000, "2026-01-31")));
+    ASSERT_TRUE(file) << grammar::Format(file.error());
+    const auto reading = LabelReading::Of({*file}, nullptr, kEvents);
+    ASSERT_TRUE(reading) << grammar::Format(reading.error());
+    EXPECT_EQ(Text(TruthOf(reading)), Text(timeline)) << ending;
+  }
+}
+
+}  // namespace
+}  // namespace prehend::harness::labels
