@@ -44,6 +44,7 @@ std::vector<Command> Commands() {
           Limited(ReplayCommand(), kMany_s),
           Limited(ReportCommand(), kMany_s),
           Limited(SweepCommand(), kMany_s),
+          Limited(MarginsCommand(), kMany_s),
           Limited(KnowledgeCommand(), kMany_s),
           AskCommand(),
           WatchCommand(),

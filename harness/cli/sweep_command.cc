@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend sweep: a grammar's parameters on recorded episodes. Tested by
+// prehend sweep and margins: a grammar's parameters on recorded episodes. Tested by
 // tests/program/sweep_test.cc
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
 
 #include "harness/base/atomic_file.h"
 #include "harness/base/default_grammar.h"
 #include "harness/command/command.h"
+#include "harness/episodes/schema.h"
+#include "harness/labels/read_labels.h"
+#include "harness/labels/take.h"
 #include "harness/pictures/svg_file.h"
+#include "harness/sweep/margins.h"
 #include "harness/sweep/plateau.h"
 #include "harness/sweep/sweep.h"
 
@@ -22,72 +30,199 @@ std::string AxisProblem(const std::string& text) {
   return problem;
 }
 
-std::string TruthProblem(const std::string& text) {
-  return text == "golden" || text == "oracle" || text == "recorded"
-             ? ""
-             : "found '" + text + "', wanted golden, oracle or recorded";
-}
+constexpr double kDefaultMargin_percent = 1;
 
-ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
+/// What both commands have in common. Nothing, after a complaint.
+std::optional<sweep::SweepRequest> RequestFrom(const ParsedOptions& options,
+                                               const std::vector<const char*>& outputs,
+                                               const CommandContext& context) {
   sweep::SweepRequest request{.root = context.root,
                               .grammar = options.TextOr("--grammar", kDefaultGrammar),
                               .settings = options.All("--set"),
                               .axes = {}};
+  std::vector<std::string> truths = options.All("--truth");
+  if (truths.empty()) truths = {"golden"};
+  request.truth = truths.front() == "oracle"     ? sweep::Truth::kOracle
+                  : truths.front() == "recorded" ? sweep::Truth::kRecorded
+                  : truths.front() == "golden"   ? sweep::Truth::kGolden
+                                                 : sweep::Truth::kLabels;
+  std::error_code error;
+  for (const std::string& truth : truths) {
+    const bool is_word = truth == "golden" || truth == "oracle" || truth == "recorded";
+    const bool is_known =
+        is_word ? truths.size() == 1
+                : labels::IsLabelFile(truth) || std::filesystem::is_directory(truth, error);
+    if (is_known) continue;
+    Complain(context, ExitCode::kBadInput,
+             fmt::format("--truth: found '{}', wanted golden, oracle or recorded, or files of "
+                         "labels or a folder of them",
+                         truth));
+    return std::nullopt;
+  }
+  if (request.truth == sweep::Truth::kLabels) request.label_files = truths;
+  request.label_map = options.Text("--map");
+  if (request.truth != sweep::Truth::kLabels && options.Has("--map")) {
+    Complain(context, ExitCode::kBadInput, "--map needs labels: --truth FILE or FOLDER");
+    return std::nullopt;
+  }
+  request.collar_s = options.NumberOr("--collar-ms", kDefaultSweepCollar_ms) / 1000;
+  request.jobs = options.IntOr("--jobs", CoreCount());
+  for (const char* output : outputs) {
+    const std::string why = options.Has(output) ? WhyNotWritable(options.Text(output)) : "";
+    if (why.empty()) continue;
+    Complain(context, ExitCode::kBadInput, std::string(output) + ": " + why);
+    return std::nullopt;
+  }
+  return request;
+}
+
+/// The recordings, or the exit code after a complaint.
+tl::expected<std::vector<labels::TakeName>, ExitCode> EpisodesFrom(
+    const ParsedOptions& options, const sweep::SweepRequest& request,
+    const CommandContext& context) {
+  const std::vector<std::string>& files = options.All("files");
+  const auto lines = std::ranges::find_if_not(files, episodes::IsEpisodeFile);
+  if (lines != files.end() && request.truth != sweep::Truth::kLabels)
+    return tl::unexpected(Complain(
+        context, ExitCode::kBadInput,
+        fmt::format("'{}' is no episode file: its events are known only from labels; --truth FILE",
+                    *lines)));
+  const auto episodes = labels::TakesOf(files, options.Text("--episode"));
+  if (!episodes) return tl::unexpected(Complain(context, episodes.error()));
+  if (episodes->empty())
+    return tl::unexpected(
+        Complain(context, ExitCode::kNothing,
+                 fmt::format("--episode: no episode matches '{}'", options.Text("--episode"))));
+  return *episodes;
+}
+
+/// Nothing if there is something to print. Labels that do not fit are bad input; of other truths
+/// what has none is left out.
+std::optional<ExitCode> ComplainOf(const sweep::SweepResult& result,
+                                   const sweep::SweepRequest& request,
+                                   const CommandContext& context) {
+  if (request.truth == sweep::Truth::kLabels && !result.left_out.empty())
+    return Complain(context, ExitCode::kBadInput, result.left_out.front());
+  for (const std::string& line : result.left_out)
+    context.err << "prehend: left out: " << line << "\n";
+  if (result.episodes == 0)
+    return Complain(context, ExitCode::kNothing, "no episode has events to compare with");
+  return std::nullopt;
+}
+
+ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context) {
+  const auto request = RequestFrom(options, {"--output"}, context);
+  if (!request) return ExitCode::kBadInput;
+  const auto episodes = EpisodesFrom(options, *request, context);
+  if (!episodes) return episodes.error();
+  const double within = options.NumberOr("--within", kDefaultMargin_percent) / 100;
+  const Result<sweep::Margins> margins = sweep::FindMargins(*episodes, *request, within);
+  if (!margins) return Complain(context, margins.error());
+  if (const auto problem = ComplainOf(margins->sweep, *request, context)) return *problem;
+  context.out << MarginsText(*margins, within);
+  const std::string problem =
+      options.Has("--output") ? WriteTextFile(options.Text("--output"), MarginsCsv(*margins)) : "";
+  return problem.empty() ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, problem);
+}
+
+ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
+  auto request = RequestFrom(options, {"--output", "--picture"}, context);
+  if (!request) return ExitCode::kBadInput;
   std::size_t settings = 1;
   for (const std::string& text : options.All("--over")) {
     std::string problem;
-    request.axes.push_back(*sweep::ParseAxis(text, problem));
-    settings *= request.axes.back().values.size();
-    for (std::size_t i = 0; i + 1 < request.axes.size(); ++i) {
-      if (request.axes[i].parameter == request.axes.back().parameter)
+    request->axes.push_back(*sweep::ParseAxis(text, problem));
+    settings *= request->axes.back().values.size();
+    for (std::size_t i = 0; i + 1 < request->axes.size(); ++i) {
+      if (request->axes[i].parameter == request->axes.back().parameter)
         return Complain(context, ExitCode::kBadInput,
-                        "--over: " + request.axes[i].parameter + " is given twice");
+                        "--over: " + request->axes[i].parameter + " is given twice");
     }
     if (settings > sweep::kMostSettings)
       return Complain(context, ExitCode::kBadInput,
                       fmt::format("--over: more than {} settings", sweep::kMostSettings));
   }
-  if (request.axes.empty())
+  if (request->axes.empty())
     return Complain(context, ExitCode::kBadInput,
                     "--over is missing: which parameter? --over reach_radius=10cm..50cm:9");
-  const std::string truth = options.TextOr("--truth", "golden");
-  request.truth = truth == "oracle"     ? sweep::Truth::kOracle
-                  : truth == "recorded" ? sweep::Truth::kRecorded
-                                        : sweep::Truth::kGolden;
-  request.collar_s = options.NumberOr("--collar-ms", kDefaultSweepCollar_ms) / 1000;
-  request.jobs = options.IntOr("--jobs", CoreCount());
-  for (const char* output : {"--output", "--picture"}) {
-    const std::string why = options.Has(output) ? WhyNotWritable(options.Text(output)) : "";
-    if (!why.empty())
-      return Complain(context, ExitCode::kBadInput, std::string(output) + ": " + why);
-  }
-  const auto episodes = episodes::SelectEpisodes(options.All("files"), options.Text("--episode"));
-  if (!episodes) return Complain(context, episodes.error());
-  if (episodes->empty())
-    return Complain(context, ExitCode::kNothing,
-                    fmt::format("--episode: no episode matches '{}'", options.Text("--episode")));
-  const Result<sweep::SweepResult> result = sweep::Sweep(*episodes, request);
+  const auto episodes = EpisodesFrom(options, *request, context);
+  if (!episodes) return episodes.error();
+  const Result<sweep::SweepResult> result = sweep::Sweep(*episodes, *request);
   if (!result) return Complain(context, result.error());
-  for (const std::string& line : result->left_out)
-    context.err << "prehend: left out: " << line << "\n";
-  if (result->episodes == 0)
-    return Complain(context, ExitCode::kNothing, "no episode has events to compare with");
+  if (const auto problem = ComplainOf(*result, *request, context)) return *problem;
 
   const double within = options.NumberOr("--within", kDefaultWithin_percent) / 100;
-  const std::string csv = sweep::CsvText(request.axes, result->points);
+  const std::string csv = sweep::CsvText(request->axes, result->points);
   std::string problem;
   if (options.Has("--output")) problem = WriteTextFile(options.Text("--output"), csv);
   if (problem.empty() && options.Has("--picture"))
     problem =
         WriteDrawing(options.Text("--picture"),
-                     sweep::HeatMapSvg(request.axes, result->points,
-                                       sweep::FindPlateau(request.axes, result->points, within)));
+                     sweep::HeatMapSvg(request->axes, result->points,
+                                       sweep::FindPlateau(request->axes, result->points, within)));
   if (!options.Has("--output")) context.out << csv;
-  context.out << sweep::PlateauText(request.axes, *result, within);
+  context.out << sweep::PlateauText(request->axes, *result, within);
   return problem.empty() ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, problem);
 }
 
+Option TruthOption() {
+  return {.name = "--truth",
+          .help =
+              "what the events are compared with: golden (default), oracle, recorded (the\n"
+              "events of the recording), or labels by people: one file for each recording\n"
+              "(.csv, .eaf, .TextGrid, .timeline) or a folder (docs/labels.md)",
+          .placeholder = "golden|oracle|recorded|FILE|FOLDER",
+          .repeatable = true};
+}
+Option MapOption() {
+  return {.name = "--map", .help = "what labels mean: a YAML file", .placeholder = "FILE"};
+}
+Option CollarOption() {
+  return {.name = "--collar-ms",
+          .help = "an event is right if both boundaries are so near; default: 50",
+          .placeholder = "MS",
+          .rule = NumbersFrom(0, 1e6)};
+}
+Option JobsOption() {
+  return {.name = "--jobs",
+          .help = "episodes at a time; default: one per core",
+          .placeholder = "N",
+          .rule = IntegersFrom(1, kMaxJobs)};
+}
+
 }  // namespace
+
+Command MarginsCommand() {
+  return {.name = "margins",
+          .summary = "How far each parameter of a grammar may be from its value",
+          .examples = {"margins suite.episodes --truth oracle --grammar my/rules.grammar",
+                       "margins take1.jsonl take2.jsonl --truth labels --map labels.yaml --grammar "
+                       "pick_and_place_from_motion -o margins.csv"},
+          .options = {{.name = "files",
+                       .help = "episode files, or with labels also recordings as JSON Lines",
+                       .required = true,
+                       .repeatable = true},
+                      GrammarOption(),
+                      {.name = "--set",
+                       .help = "set a parameter of the grammar; may be repeated",
+                       .placeholder = "NAME=VALUE",
+                       .repeatable = true},
+                      TruthOption(),
+                      MapOption(),
+                      CollarOption(),
+                      {.name = "--within",
+                       .help = "how many percent of F1 a score may be below the best; default: 1",
+                       .placeholder = "PERCENT",
+                       .rule = NumbersFrom(0, 100)},
+                      EpisodeOption(),
+                      {.name = "--output",
+                       .help = "also write a CSV file",
+                       .placeholder = "FILE",
+                       .other_name = "-o",
+                       .is_output = true},
+                      JobsOption()},
+          .run = RunMargins};
+}
 
 Command SweepCommand() {
   return {
@@ -113,24 +248,15 @@ Command SweepCommand() {
                    .help = "set another parameter of the grammar; may be repeated",
                    .placeholder = "NAME=VALUE",
                    .repeatable = true},
-                  {.name = "--truth",
-                   .help = "what the events are compared with: golden (default), oracle, or\n"
-                           "recorded, the events of the recording",
-                   .placeholder = "golden|oracle|recorded",
-                   .rule = {.range = {}, .problem = TruthProblem}},
-                  {.name = "--collar-ms",
-                   .help = "an event is right if both boundaries are so near; default: 50",
-                   .placeholder = "MS",
-                   .rule = NumbersFrom(0, 1e6)},
+                  TruthOption(),
+                  MapOption(),
+                  CollarOption(),
                   {.name = "--within",
                    .help = "the plateau: settings whose F1 is within so many percent of the "
                            "best;\ndefault: 0.5",
                    .placeholder = "PERCENT",
                    .rule = NumbersFrom(0, 100)},
-                  {.name = "--episode",
-                   .help = "only these episodes: a number, or a scenario (a name, skill/name "
-                           "or a glob)",
-                   .placeholder = "WHICH"},
+                  EpisodeOption(),
                   {.name = "--output",
                    .help = "the CSV file; default: print it",
                    .placeholder = "FILE",
@@ -141,10 +267,7 @@ Command SweepCommand() {
                    .placeholder = "FILE",
                    .rule = {.range = {}, .problem = WhyNoDrawingFile},
                    .is_output = true},
-                  {.name = "--jobs",
-                   .help = "episodes at a time; default: one per core",
-                   .placeholder = "N",
-                   .rule = IntegersFrom(1, kMaxJobs)}},
+                  JobsOption()},
       .run = RunSweep};
 }
 

@@ -62,6 +62,7 @@ Command ReplayCommand();
 Command ReportCommand();
 Command QueryCommand();
 Command SweepCommand();
+Command MarginsCommand();
 Command TryCommand();
 Command WatchCommand();
 Command KnowledgeCommand();

@@ -73,7 +73,7 @@ class MapReader {
 
  private:
   static constexpr const char* kExample =
-      "labels:\n    hold: {event: grasping, object: cup}\n    idle: ignore";
+      "labels:\n    hold: {event: EVENT, object: cup}\n    idle: ignore";
 
   void ReadOffset(const YamlNode& node) {
     const std::optional<double> number = NumberOf(node);
@@ -163,7 +163,7 @@ std::string Trimmed(std::string_view text) {
   return begin == std::string_view::npos ? "" : std::string(text.substr(begin, end - begin + 1));
 }
 
-/// "grasping(right_hand, cup)", or "grasping" without roles. Nothing, and `problem`, if it is no
+/// "grasping(right_hand, cup)", or the name alone. Nothing, and `problem`, if it is no
 /// event.
 std::optional<grammar::NamedEvent> EventIn(const std::string& text, const Events& events,
                                            std::string& problem) {

@@ -11,6 +11,7 @@
 
 #include "grammar/contents.h"
 #include "harness/golden/golden_files.h"
+#include "harness/labels/read_truths.h"
 #include "harness/oracle/oracle.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/load_grammar.h"
@@ -153,6 +154,23 @@ Json JudgedEpisode(const episodes::EpisodeName& name, const SweepRequest& reques
   return {{"points", std::move(points)}};
 }
 
+/// The same of a recording with labels by people.
+Json JudgedTake(const labels::TakeName& name, std::size_t index, const labels::LabelReading& labels,
+                const SweepRequest& request, const Programs& programs) {
+  const Result<labels::Take> take = labels::OpenTake(name, request.root);
+  if (!take) return {{"out", grammar::Format(take.error().front())}};
+  const auto truth = labels.Truth(index, take->entities, take->ticks_per_second, take->end);
+  if (!truth) return {{"out", grammar::Format(truth.error().front())}};
+  Json points = Json::array();
+  for (const auto& program : programs) {
+    const Result<grammar::Timeline> found = take->segment(program);
+    if (!found) return {{"out", grammar::Format(found.error().front())}};
+    points.push_back(
+        Judged(*truth, labels::Compared(*found, labels.compared()), request, take->end));
+  }
+  return {{"points", std::move(points)}};
+}
+
 double MedianMs(std::vector<std::int64_t>& microseconds) {
   if (microseconds.empty()) return 0;
   const auto middle =
@@ -197,6 +215,13 @@ Result<SweepResult> Sweep(const std::vector<episodes::EpisodeName>& episodes,
                           const SweepRequest& request) {
   const Result<Programs> programs = CompileAll(request);
   if (!programs) return tl::unexpected(programs.error());
+  std::optional<labels::LabelReading> labels;
+  if (request.truth == Truth::kLabels) {
+    Result<labels::LabelReading> read =
+        labels::ReadTruths(episodes, request.label_files, request.label_map, *programs->front());
+    if (!read) return tl::unexpected(std::move(read.error()));
+    labels = std::move(*read);
+  }
   const std::size_t slices =
       std::min(episodes.size(), kSlicesPerJob * static_cast<std::size_t>(request.jobs));
   std::vector<WorkerJob> jobs;
@@ -205,7 +230,8 @@ Result<SweepResult> Sweep(const std::vector<episodes::EpisodeName>& episodes,
       episodes::EpisodeLoader loader(request.root);
       Json all = Json::array();
       for (std::size_t i = slice; i < episodes.size(); i += slices)
-        all.push_back(JudgedEpisode(episodes[i], request, *programs, loader));
+        all.push_back(labels ? JudgedTake(episodes[i], i, *labels, request, *programs)
+                             : JudgedEpisode(episodes[i], request, *programs, loader));
       const std::vector<std::uint8_t> bytes = Json::to_cbor(all);
       return std::string(bytes.begin(), bytes.end());
     });

@@ -28,9 +28,10 @@ std::optional<Axis> ParseAxis(const std::string& text, std::string& problem);
 
 /// What the events are compared with.
 enum class Truth {
-  kGolden,   ///< the project's golden of the scenario, if it is one of the same grammar
-  kOracle,   ///< the physical oracle with the numbers of docs/events.md
-  kRecorded  ///< what was recognised when the episode was recorded
+  kGolden,    ///< the project's golden of the scenario, if it is one of the same grammar
+  kOracle,    ///< the physical oracle with the numbers of docs/events.md
+  kRecorded,  ///< what was recognised when the episode was recorded
+  kLabels     ///< files of labels (docs/labels.md); recordings as JSON Lines have no other truth
 };
 
 struct SweepRequest {
@@ -38,6 +39,8 @@ struct SweepRequest {
   std::vector<std::string> settings;  ///< of parameters that stay as they are
   std::vector<Axis> axes;
   Truth truth = Truth::kGolden;
+  std::vector<std::string> label_files;  ///< one per episode, or one folder
+  std::string label_map;                 ///< "": labels are events
   double collar_s = 0.05;
   int jobs = 1;
 };

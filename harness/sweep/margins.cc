@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/sweep/margins.h. Tested by tests/program/sweep_test.cc
+#include "harness/sweep/margins.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "grammar/base/quantity.h"
+#include "grammar/describe.h"
+#include "harness/run/load_grammar.h"
+#include "harness/timeline/event_text.h"
+
+namespace prehend::harness::sweep {
+namespace {
+
+constexpr std::array kFactors = {0.125, 0.177, 0.25, 0.354, 0.5, 0.707, 0.841, 1.0,
+                                 1.19,  1.414, 2.0,  2.83,  4.0, 5.66,  8.0};
+
+/// The values that the grammar accepts; `own` becomes the index of the parameter's own one.
+Axis AxisOf(const grammar::ProgramParam& param, const SweepRequest& request,
+            const grammar::Overrides& fixed, std::size_t& own) {
+  Axis axis{.parameter = param.name, .unit = {}, .values = {}};
+  const std::string text = grammar::QuantityText(param.value);
+  if (const std::size_t blank = text.find(' '); blank != std::string::npos)
+    axis.unit = text.substr(blank + 1);
+  for (const double factor : kFactors) {
+    const double value = param.value.value * factor;
+    axis.values.push_back(factor == 1.0 ? value : std::stod(fmt::format("{:.3g}", value)));
+    grammar::Overrides overrides = fixed;
+    overrides[param.name] = axis.ValueText(axis.values.size() - 1);
+    const bool is_own = factor == 1.0;
+    if (is_own)
+      own = axis.values.size() - 1;
+    else if (!LoadGrammar(request.root, request.grammar, overrides).program)
+      axis.values.pop_back();
+  }
+  return axis;
+}
+
+Margin MarginOf(const Axis& axis, const std::vector<SweepPoint>& points, std::size_t own,
+                double within) {
+  auto best = std::ranges::max_element(points, {}, &SweepPoint::f1);
+  if (points[own].f1 == best->f1) best = points.begin() + static_cast<std::ptrdiff_t>(own);
+  Margin margin{.parameter = axis.parameter,
+                .value = axis.ValueText(own),
+                .f1 = points[own].f1,
+                .from = {},
+                .to = {},
+                .best = best->f1,
+                .best_at = axis.ValueText(static_cast<std::size_t>(best - points.begin()))};
+  margin.has_effect = std::ranges::any_of(
+      points, [&](const SweepPoint& point) { return point.f1 != points[own].f1; });
+  const auto is_good = [&](std::size_t i) { return points[i].f1 >= best->f1 - within; };
+  if (!is_good(own)) return margin;
+  std::size_t from = own, to = own;
+  while (from > 0 && is_good(from - 1)) --from;
+  while (to + 1 < points.size() && is_good(to + 1)) ++to;
+  margin.from = axis.ValueText(from);
+  margin.to = axis.ValueText(to);
+  margin.open_below = from == 0;
+  margin.open_above = to + 1 == points.size();
+  margin.near_edge = (from == own && own > 0) || (to == own && own + 1 < points.size());
+  return margin;
+}
+
+/// Narrow ranges first; of all, what is not in its range.
+double Width(const Margin& margin) {
+  if (margin.from.empty()) return 0;
+  const double from = std::stod(margin.from), to = std::stod(margin.to);
+  return 1 + (margin.open_below ? 8 : 0) + (margin.open_above ? 8 : 0) + to / from;
+}
+
+}  // namespace
+
+Result<Margins> FindMargins(const std::vector<episodes::EpisodeName>& episodes,
+                            SweepRequest request, double within) {
+  const Result<grammar::Overrides> fixed = ParameterSettings(request.settings);
+  if (!fixed) return tl::unexpected(fixed.error());
+  const grammar::CompileResult compiled = LoadGrammar(request.root, request.grammar, *fixed);
+  if (!compiled.program) return tl::unexpected(compiled.diagnostics);
+  Margins all;
+  for (const grammar::ProgramParam& param : grammar::Describe(*compiled.program).params) {
+    if (param.value.value == 0) {
+      all.without.push_back(param.name);
+      continue;
+    }
+    std::size_t own = 0;
+    request.axes = {AxisOf(param, request, *fixed, own)};
+    Result<SweepResult> swept = Sweep(episodes, request);
+    if (!swept) return tl::unexpected(std::move(swept.error()));
+    all.margins.push_back(MarginOf(request.axes.front(), swept->points, own, within));
+    all.sweep = std::move(*swept);
+    if (all.sweep.episodes == 0) break;
+  }
+  std::ranges::stable_sort(all.margins, {}, Width);
+  return all;
+}
+
+std::string MarginsText(const Margins& margins, double within) {
+  std::vector<std::vector<std::string>> rows = {
+      {"parameter", "value", "F1", "stays from", "to", "best", "at", ""}};
+  std::vector<std::string> idle;
+  for (const Margin& margin : margins.margins) {
+    if (!margin.has_effect) {
+      idle.push_back(margin.parameter);
+      continue;
+    }
+    rows.push_back({margin.parameter, margin.value, fmt::format("{:.1f}", 100 * margin.f1),
+                    margin.from.empty() ? "-" : (margin.open_below ? "<= " : "") + margin.from,
+                    margin.to.empty() ? "-" : (margin.open_above ? ">= " : "") + margin.to,
+                    fmt::format("{:.1f}", 100 * margin.best), margin.best_at,
+                    margin.from.empty() ? "warning: not among the best"
+                    : margin.near_edge  ? "warning: at an edge"
+                                        : ""});
+  }
+  std::string text;
+  for (const std::string& line : AlignColumns(rows)) text += line + "\n";
+  text += fmt::format(
+      "{} recording{}; each parameter from an eighth to eight times its value, the others as they "
+      "are;\na score stays if it is within {:g} percent of the best of its row\n",
+      margins.sweep.episodes, margins.sweep.episodes == 1 ? "" : "s", 100 * within);
+  if (!idle.empty())
+    text += fmt::format("without any effect on these recordings: {}\n", fmt::join(idle, ", "));
+  if (!margins.without.empty())
+    text += fmt::format("not tried, because they are 0: {}\n", fmt::join(margins.without, ", "));
+  return text;
+}
+
+std::string MarginsCsv(const Margins& margins) {
+  std::string text = "parameter,value,f1,from,to,open_below,open_above,best,best_at,near_edge\n";
+  for (const Margin& m : margins.margins)
+    text += fmt::format("{},{},{:.6g},{},{},{:d},{:d},{:.6g},{},{:d}\n", m.parameter, m.value, m.f1,
+                        m.from, m.to, m.open_below, m.open_above, m.best, m.best_at, m.near_edge);
+  return text;
+}
+
+}  // namespace prehend::harness::sweep

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// From recordings and people's labels to a table, as docs/labels.md says.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool Has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class Labelled : public testing::Test {
+ protected:
+  ~Labelled() override { fs::remove_all(folder_); }
+
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  /// The recording of docs/motion-capture.md.
+  std::string Take(const std::string& name) const {
+    const Said said = Prehend(
+        {"import", docs_ + "/poses.csv", "--map", docs_ + "/bodies.yaml", "-o", Path(name)});
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    return Path(name);
+  }
+
+  const std::string docs_ = PREHEND_SOURCE_DIR "/docs/motion_capture";
+  const std::string map_ = docs_ + "/labels.yaml";
+  const fs::path folder_ =
+      FreshFolder(testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+TEST_F(Labelled, ARecordingIsScored) {
+  const std::string take = Take("milk.jsonl");
+  const Said said = Prehend({"score", take, "--truth", docs_ + "/labels.csv", "--map", map_,
+                             "--grammar", "pick_and_place_from_motion", "--json"});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const auto json = nlohmann::json::parse(said.out);
+  const auto& score = json["grammars"][0];
+  EXPECT_EQ(score["episodes"], 1);
+  EXPECT_TRUE(json.contains("by_hand"));
+  const Said table = Prehend({"score", take, "--truth", docs_ + "/labels.csv", "--map", map_,
+                              "--grammar", "pick_and_place_from_motion"});
+  EXPECT_TRUE(Has(table.out, "all              5      5  5")) << table.out;
+  EXPECT_TRUE(Has(table.out, "no label means them")) << table.out;
+}
+
+TEST_F(Labelled, TakesOfAFolderAreSummed) {
+  const std::string one = Take("one.jsonl"), two = Take("two.jsonl");
+  for (const char* name : {"one.csv", "two.csv"})
+    WriteFile(folder_ / "labels" / name, ReadFile(docs_ + "/labels.csv"));
+  const Said both = Prehend({"score", one, two, "--truth", Path("labels"), "--map", map_,
+                             "--grammar", "pick_and_place_from_motion"});
+  EXPECT_TRUE(Has(both.out, "2 episodes")) << both.out << both.err;
+  EXPECT_TRUE(Has(both.out, "all             10     10  10")) << both.out;
+  fs::remove(folder_ / "labels/two.csv");
+  const Said missing = Prehend({"score", one, two, "--truth", Path("labels"), "--map", map_});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_TRUE(Has(missing.err, "has no labels of 'two'")) << missing.err;
+}
+
+TEST_F(Labelled, WhatIsWrittenIsReadAgain) {
+  const std::string take = Take("milk.jsonl");
+  for (const char* ending : {"csv", "eaf", "TextGrid"}) {
+    const std::string file = Path(std::string("out.") + ending);
+    EXPECT_EQ(Prehend({"resegment", take, "--labels", file}).exit_code, 0);
+    const Said said = Prehend(
+        {"score", take, "--truth", file, "--grammar", "pick_and_place_from_motion", "--json"});
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    const auto total = nlohmann::json::parse(said.out)["grammars"][0]["total"];
+    EXPECT_EQ(total["f1_50"], 1.0) << ending << total;
+  }
+  const Said other = Prehend({"resegment", take, "--labels", Path("out.txt")});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_TRUE(Has(other.err, "wanted a file .csv, .eaf or .TextGrid")) << other.err;
+  EXPECT_FALSE(fs::exists(Path("out.txt")));
+}
+
+TEST_F(Labelled, EpisodesAndScenariosOfASuiteTakeLabelsToo) {
+  const std::string file = Path("a.episodes");
+  for (const char* scenario : {"pick_and_place/milk_carton_wrap", "slide/hop_divides_a_slide"})
+    ASSERT_EQ(Prehend({"run", scenario, "--record", file}).exit_code, 0);
+  const Said swept = Prehend({"sweep", file, "--over", "reach_radius=10cm..30cm:2", "--truth",
+                              PREHEND_SOURCE_DIR "/golden"});
+  ASSERT_EQ(swept.exit_code, 0) << swept.err;
+  EXPECT_TRUE(Has(swept.out, "2 settings on 2 episodes; the best F1 is 100.00 %")) << swept.out;
+  const Said of_lines = Prehend({"sweep", Take("a.jsonl"), "--over", "reach_radius=1cm..3cm:2"});
+  EXPECT_EQ(of_lines.exit_code, 2);
+  EXPECT_TRUE(Has(of_lines.err, "its events are known only from labels")) << of_lines.err;
+}
+
+TEST_F(Labelled, MarginsNameWhatIsAtAnEdge) {
+  const Said said = Prehend({"margins", Take("milk.jsonl"), "--truth", docs_ + "/labels.csv",
+                             "--map", map_, "--grammar", "pick_and_place_from_motion",
+                             "--collar-ms", "200", "-o", Path("margins.csv")});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_TRUE(Has(said.out, "touch_back")) << said.out;
+  EXPECT_TRUE(Has(said.out, "warning: not among the best")) << said.out;
+  EXPECT_TRUE(Has(said.out, "without any effect on these recordings: ")) << said.out;
+  EXPECT_TRUE(ReadFile(Path("margins.csv")).starts_with("parameter,value,f1,from,to"));
+}
+
+TEST_F(Labelled, OptionsOfLabelsNeedLabels) {
+  EXPECT_EQ(Prehend({"score", "--map", map_}).exit_code, 2);
+  EXPECT_EQ(Prehend({"score", "--truth", docs_ + "/labels.csv"}).exit_code, 4);
+  EXPECT_EQ(
+      Prehend({"score", Take("a.jsonl"), "--truth", docs_ + "/labels.csv", "--events", "grasping"})
+          .exit_code,
+      2);
+  const Said unknown =
+      Prehend({"sweep", "a.episodes", "--over", "reach_radius=1cm..3cm:2", "--truth", "gold"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_TRUE(Has(unknown.err, "found 'gold', wanted golden, oracle or recorded")) << unknown.err;
+}
+
+}  // namespace
+}  // namespace prehend::house
