@@ -115,6 +115,10 @@ std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>&
     std::ranges::copy_if(all, std::back_inserter(named),
                          [&](const ScenarioFile& file) { return Matches(pattern, file); });
     if (named.size() > before) continue;
+    for (const ScenarioFile& shipped : ShippedScenarios(root)) {
+      if (Matches(pattern, shipped)) named.push_back(ScenarioAt(all, shipped.path));
+    }
+    if (named.size() > before) continue;
     if (!IsFile(pattern)) {
       problem = WhyNoMatch(pattern, all);
       return std::nullopt;

@@ -100,9 +100,10 @@ ExitCode Run(const ChosenCommand& chosen, const std::vector<std::string>& words)
     const char* const home = std::getenv("PREHEND_HOME");
     return Complain(context, ExitCode::kBadInput,
                     home && *home ? "PREHEND_HOME is " + ShellQuoted(ReadableName(home)) +
-                                        ", which has no grammar/library"
-                                  : std::string("the project's folder was not found (it has a "
-                                                "grammar/library); go there or set PREHEND_HOME"));
+                                        ", which has neither prehend.yaml nor grammar/library"
+                                  : std::string("the project's folder was not found (it has "
+                                                "prehend.yaml or grammar/library); go there or set "
+                                                "PREHEND_HOME"));
   }
   if (ReadableName(*root) != *root)
     return Complain(context, ExitCode::kBadInput,

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend new: a commented scenario to start from. Tested by tests/program/command_line_test.cc
+// prehend new: a commented scenario to start from, or a project of one's own. Tested by
+// tests/program/command_line_test.cc and tests/program/project_test.cc
 #include <filesystem>
 
 #include "harness/base/atomic_file.h"
 #include "harness/base/default_grammar.h"
+#include "harness/base/project_paths.h"
 #include "harness/base/shell_quote.h"
 #include "harness/base/text_file.h"
 #include "harness/command/command.h"
 #include "harness/format/scenario_copy.h"
+#include "harness/format/scenario_fields.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/project_library.h"
 
@@ -87,6 +90,100 @@ std::optional<std::string> Composed(const Model& model, const std::filesystem::p
   return std::nullopt;
 }
 
+constexpr const char* kOwnGrammar =
+    R"(# Rules of your own. The language: docs/grammar-tutorial.md of prehend teaches it.
+grammar my_rules
+
+use pick_and_place      # from what ships with prehend: reaching, grasping, picking_up, transporting, ..
+
+param still_below = 5 cm/s
+param still_for   = 0.3 s
+
+# A thing is held in the air and does not move.
+event held_still(hand: Hand, object: Movable)
+  while grasping(hand, object) and not supported_by(object, any) and speed(object) < still_below
+  bridging 50 ms
+  lasting still_for
+)";
+
+constexpr const char* kProjectText =
+    R"(# The root of a project of prehend. Only the place of this file matters: prehend, called in this folder or
+# below it, uses its scenarios, goldens, grammars and hands first, and what ships with prehend second.
+)";
+
+constexpr const char* kProjectReadme = R"(# A project of prehend
+
+| folder | holds |
+|---|---|
+| `scenarios/SKILL/NAME.yaml` | what happens, and what must be recognised |
+| `golden/SKILL/NAME.timeline` | what was accepted, written by `prehend accept` |
+| `grammars/NAME.grammar` | your rules; a file here comes before one of the same name that ships with prehend |
+| `hands/NAME.hand.yaml` | your hands, likewise |
+| `build/` | reports and what waits for review; can be deleted |
+
+    prehend check                   # all scenarios of this project, with a web page
+    prehend review                  # what is new or differs
+    prehend accept carton_is_held_still --reason "..."
+    prehend new cup_is_lifted       # one more scenario
+    prehend run milk_carton_wrap    # scenarios that ship with prehend can be run, too
+)";
+
+constexpr const char* kEditorSettings = R"({
+  "yaml.schemas": {"./scenarios/scenario.schema.json": "scenarios/**/*.yaml"}
+}
+)";
+
+/// The template as the scenario of a project with rules of its own.
+std::string FirstScenario() {
+  std::string text = kTemplate;
+  const auto replace = [&](std::string_view from, std::string_view to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("scenario: name", "scenario: carton_is_held_still");
+  replace("a carton is picked up with a wrap grasp and put down further to the right",
+          "a carton is picked up, held still for a moment and put down further to the right");
+  replace("grammar: pick_and_place            # a file of grammar/library/, without \".grammar\"",
+          "grammar: my_rules                  # grammars/my_rules.grammar");
+  replace("  - no sliding\n", "  - no sliding\n  - one held_still(right_hand, carton)\n");
+  replace("  - right_hand: {carry_to_m",
+          "  - right_hand: {wait_s: 0.5}\n  - right_hand: {carry_to_m");
+  replace("at: transporting.begin", "at: held_still.begin");
+  return text;
+}
+
+/// `new --project DIR`.
+ExitCode MakeProject(const std::string& typed, const CommandContext& context) {
+  namespace fs = std::filesystem;
+  const fs::path folder = typed;
+  std::error_code error;
+  if (fs::exists(folder, error) &&
+      !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
+    return Complain(context, ExitCode::kBadInput,
+                    "--project: found " + ReadableName(typed) +
+                        ", which is not empty; wanted a new or an empty folder");
+  const std::pair<const char*, std::string> files[] = {
+      {"scenarios/pick_and_place/carton_is_held_still.yaml", FirstScenario()},
+      {"scenarios/scenario.schema.json", ScenarioSchema()},
+      {"grammars/my_rules.grammar", kOwnGrammar},
+      {"README.md", kProjectReadme},
+      {".vscode/settings.json", kEditorSettings},
+      {".gitignore", "build/\n"},
+      {kProjectFile, kProjectText},  // last: without it the folder is no project
+  };
+  for (const auto& [name, text] : files) {
+    const std::string problem = WriteTextFile(folder / name, text);
+    if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+    context.out << (folder / name).string() << "\n";
+  }
+  context.out << "next:\n  cd " << ShellQuoted(typed) << "\n";
+  for (const char* command : {"run", "check", "review"}) {
+    const std::vector<std::string> words = {command, "carton_is_held_still"};
+    context.out << "  " << CommandText(words) << "\n";
+  }
+  context.out << "  " << CommandText({"accept", "carton_is_held_still"}) << " --reason \"...\"\n";
+  return ExitCode::kAgrees;
+}
+
 /// A small letter, then small letters, digits and '_', at most 64 in all.
 bool IsName(std::string_view word) {
   return !word.empty() && word.size() <= 64 && word.front() >= 'a' && word.front() <= 'z' &&
@@ -94,6 +191,16 @@ bool IsName(std::string_view word) {
 }
 
 ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--project")) {
+    if (options.Has("name") || options.Has("--like"))
+      return Complain(context, ExitCode::kBadInput,
+                      "--project makes a project, not a scenario: leave out the other words");
+    return MakeProject(options.Text("--project"), context);
+  }
+  if (!options.Has("name"))
+    return Complain(context, ExitCode::kBadInput,
+                    "the name of the scenario is missing, like 'new cup_is_lifted'; for a project "
+                    "of your own: --project DIR");
   const std::string typed = options.Text("name");
   const std::size_t slash = typed.find('/');
   const std::string name = slash == std::string::npos ? typed : typed.substr(slash + 1);
@@ -149,16 +256,19 @@ ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
 
 Command NewCommand() {
   return {.name = "new",
-          .summary = "Write a commented, runnable scenario to start from",
+          .summary = "Write a commented, runnable scenario to start from, or a project",
           .examples = {"new carton_is_lifted",
-                       "new slide/carton_slides_far --like carton_slides_then_is_transported"},
+                       "new slide/carton_slides_far --like carton_slides_then_is_transported",
+                       "new --project my_kitchen"},
           .options = {{.name = "name",
                        .help = "what the scenario claims, like carton_slides_then_is_lifted; or "
-                               "skill/name",
-                       .required = true},
+                               "skill/name"},
                       {.name = "--like",
                        .help = "start from this scenario instead of the template",
-                       .placeholder = "SCENARIO"}},
+                       .placeholder = "SCENARIO"},
+                      {.name = "--project",
+                       .help = "make a project of your own in this new folder (docs/projects.md)",
+                       .placeholder = "DIR"}},
           .run = RunNew};
 }
 

@@ -122,6 +122,8 @@ tl::expected<ScenarioFile, ExitCode> FindScenarioOrComplain(const std::string& t
   if (const auto refused = RefuseRecording(typed, context)) return tl::unexpected(*refused);
   const std::vector<ScenarioFile> scenarios = ListScenarios(context.root);
   if (const auto path = FindScenario(scenarios, typed)) return ScenarioAt(scenarios, *path);
+  if (const auto path = FindScenario(ShippedScenarios(context.root), typed))
+    return ScenarioAt(scenarios, *path);
   std::string message = "no scenario '" + typed + "'";
   const std::string hint = HintForScenario(scenarios, typed);
   if (!hint.empty()) message += "; " + hint;

@@ -18,11 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Relative to the project, or to what ships with the program, whose folders have other names.
 std::string Stored(const std::string& path, const fs::path& root) {
   const fs::path whole = fs::absolute(path).lexically_normal();
-  const fs::path relative = whole.lexically_relative(root);
-  const bool is_inside = !relative.empty() && *relative.begin() != "..";
-  return (is_inside ? relative : whole).generic_string();
+  for (const fs::path& home : {root, fs::path(ShippedRoot())}) {
+    const fs::path relative = home.empty() ? fs::path() : whole.lexically_relative(home);
+    if (!relative.empty() && *relative.begin() != "..") return relative.generic_string();
+  }
+  return whole.generic_string();
 }
 
 }  // namespace
@@ -44,7 +47,7 @@ TaskFiles PackTask(const RunRequest& run, const std::vector<std::string>& tried,
     task.run.grammar = Stored(run.grammar, home);
   std::vector<std::string> paths = tried;
   // The scenario's own grammar is not read then, but has to be known.
-  for (const std::string& name : NamesIn(GrammarFolder(root), kGrammarEnding)) {
+  for (const std::string& name : GrammarNames(root)) {
     if (!run.grammar.empty()) paths.push_back(GrammarPath(root, name));
   }
   for (const std::string& path : paths) {

@@ -68,6 +68,11 @@ std::vector<ScenarioFile> ListScenarios(const std::string& root) {
   return scenarios;
 }
 
+std::vector<ScenarioFile> ShippedScenarios(const std::string& root) {
+  if (!IsOwnProject(root) || ShippedRoot().empty()) return {};
+  return ListScenarios(ShippedRoot());
+}
+
 std::optional<std::string> FindScenario(const std::vector<ScenarioFile>& scenarios,
                                         const std::string& typed) {
   const auto matching = Matching(scenarios, typed);

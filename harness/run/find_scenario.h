@@ -24,6 +24,10 @@ struct ScenarioFile {
 /// All below root/scenarios, sorted by skill and name, without the folder `invalid`.
 std::vector<ScenarioFile> ListScenarios(const std::string& root);
 
+/// For a project of one's own the scenarios that ship with the program, which are found by name
+/// when the project has none of this name. They are no part of the project.
+std::vector<ScenarioFile> ShippedScenarios(const std::string& root);
+
 /// The file for what a user typed: a path, "name" or "skill/name". No value if there is none, or if
 /// several skills have a scenario of this name.
 std::optional<std::string> FindScenario(const std::vector<ScenarioFile>& scenarios,

@@ -93,9 +93,13 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
     const bool is_name = file != name_or_path;
     if (is_name && std::ranges::count(known, name_or_path) == 0) {
       const std::string near = grammar::NearestName(name_or_path, known);
-      text.error().front().hint = near.empty()
-                                      ? fmt::format("there are: {}", fmt::join(known, ", "))
-                                      : fmt::format("did you mean '{}'?", near);
+      const std::vector<std::string> folders = GrammarFolders(root);
+      const std::string looked =
+          folders.size() < 2 ? "" : fmt::format(" (looked for in {})", fmt::join(folders, " and "));
+      text.error().front().hint =
+          (near.empty() ? fmt::format("there are: {}", fmt::join(known, ", "))
+                        : fmt::format("did you mean '{}'?", near)) +
+          looked;
     }
     return {nullptr, std::move(text.error())};
   }

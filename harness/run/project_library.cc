@@ -17,8 +17,8 @@ ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<std::string>
     Result<physics::HandModel> hand;
   };
   const auto known = std::make_shared<std::map<std::string, Known>>();
-  return {.grammars = NamesIn(GrammarFolder(root), kGrammarEnding),
-          .hands = NamesIn(HandFolder(root), kHandEnding),
+  return {.grammars = GrammarNames(root),
+          .hands = HandNames(root),
           .read_hand =
               [root, files, known](const std::string& name_or_path,
                                    const std::vector<std::string>& grasps) {

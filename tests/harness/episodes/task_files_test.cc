@@ -21,6 +21,7 @@ TEST(TaskFilesOfARun, ComeBackWhereTheProjectIsGone) {
   const std::string root = (folder / "home").string(), outside = (folder / "my.grammar").string();
   ASSERT_EQ(WriteTextFile(root + "/scenarios/reach/a.yaml", "name: a\n"), "");
   ASSERT_EQ(WriteTextFile(outside, "grammar my\n"), "");
+  fs::create_directories(root + "/grammar/library");  // has what it needs
   const TaskFiles task = PackTask(
       {.scenario_file = root + "/scenarios/reach/a.yaml", .grammar = outside, .settings = {"a=1"}},
       {root + "/scenarios/reach/a.yaml", outside, root + "/no/such/file"}, root);

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// A project of one's own, outside of the checkout: nothing is copied into it.
+#include <gtest/gtest.h>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool Has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class OwnProject : public testing::Test {
+ protected:
+  OwnProject() { made_ = In(folder_, {"new", "--project", "kitchen"}); }
+  ~OwnProject() override { fs::remove_all(folder_); }
+
+  /// `prehend` called in that folder.
+  static Said In(const fs::path& folder, const std::vector<std::string>& words) {
+    return Prehend(words, {"CI="}, "unset PREHEND_HOME && cd '" + folder.string() + "'");
+  }
+  Said Do(const std::vector<std::string>& words) const { return In(kitchen_, words); }
+
+  const fs::path folder_ =
+      FreshFolder(testing::UnitTest::GetInstance()->current_test_info()->name());
+  const fs::path kitchen_ = folder_ / "kitchen";
+  Said made_;
+};
+
+TEST_F(OwnProject, IsMadeRunCheckedAndAccepted) {
+  ASSERT_EQ(made_.exit_code, 0) << made_.err;
+  EXPECT_FALSE(fs::exists(kitchen_ / "grammar")) << "no library is copied";
+  const Said run = Do({"run", "carton_is_held_still"});
+  EXPECT_TRUE(Has(run.out, "held_still")) << run.err;
+  EXPECT_EQ(Do({"check", "--no-pictures"}).exit_code, 5);
+  const Said accepted = Do({"accept", "carton_is_held_still", "--reason", "as it says"});
+  EXPECT_EQ(accepted.exit_code, 0) << accepted.err;
+  EXPECT_TRUE(fs::exists(kitchen_ / "golden/pick_and_place/carton_is_held_still.timeline"));
+  const Said checked = In(kitchen_ / "scenarios/pick_and_place", {"check"});
+  EXPECT_EQ(checked.exit_code, 0) << checked.out << checked.err;
+  EXPECT_TRUE(Has(checked.out, "1 passed, 0 failed\n")) << "only its own: " << checked.out;
+  EXPECT_TRUE(fs::exists(kitchen_ / "build/report/index.html"));
+  EXPECT_EQ(Do({"validate"}).exit_code, 0);
+}
+
+TEST_F(OwnProject, IsNotMadeWhereSomethingIs) {
+  const Said again = In(folder_, {"new", "--project", "kitchen"});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_TRUE(Has(again.err, "found kitchen, which is not empty; wanted a new or an empty folder"))
+      << again.err;
+  EXPECT_EQ(In(folder_, {"new"}).exit_code, 2);
+  EXPECT_EQ(In(folder_, {"new", "cup_is_lifted", "--project", "other"}).exit_code, 2);
+  EXPECT_FALSE(fs::exists(folder_ / "other"));
+}
+
+TEST_F(OwnProject, ComesFirstAndWhatShipsSecond) {
+  const Said shipped = Do({"run", "milk_carton_wrap"});
+  EXPECT_EQ(shipped.exit_code, 0) << shipped.err;
+  EXPECT_TRUE(Has(shipped.out, "transporting")) << shipped.out;
+  WriteFile(kitchen_ / "grammars/pick_and_place.grammar",
+            ReadFile(fs::path(PREHEND_SOURCE_DIR) / "grammar/library/pick_and_place.grammar") +
+                "\nevent mine(a: Movable, b: Fixed)\n  while touching(a, b)\n");
+  const Said own = Do({"run", "milk_carton_wrap"});
+  EXPECT_TRUE(Has(own.out, "mine")) << own.out << own.err;
+  const Said unknown = Do({"run", "milk_carton_wrap", "--grammar", "pourin"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_TRUE(Has(unknown.err, "did you mean 'pouring'? (looked for in ")) << unknown.err;
+  EXPECT_TRUE(Has(unknown.err, (kitchen_ / "grammars").string())) << unknown.err;
+}
+
+TEST_F(OwnProject, ItsHandsAreFound) {
+  const fs::path library = fs::path(PREHEND_SOURCE_DIR) / "physics/library";
+  fs::create_directories(kitchen_ / "hands");
+  std::string hand = ReadFile(library / "gripper.hand.yaml");
+  hand = Replaced(hand, "hand: gripper", "hand: my_gripper");
+  WriteFile(kitchen_ / "hands/my_gripper.hand.yaml", hand);
+  const fs::path scenario = kitchen_ / "scenarios/pick_and_place/carton_is_held_still.yaml";
+  std::string text = Replaced(ReadFile(scenario), "hand: human_right", "hand: my_gripper");
+  text = Replaced(Replaced(text, "style: wrap", "style: parallel"), "style=wrap", "style=parallel");
+  WriteFile(scenario, text);
+  const Said said = Do({"validate", "carton_is_held_still"});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  WriteFile(scenario, Replaced(text, "hand: my_gripper", "hand: my_griper"));
+  const Said unknown = Do({"validate", "carton_is_held_still"});
+  EXPECT_TRUE(Has(unknown.err, "did you mean 'my_gripper'?")) << unknown.err;
+}
+
+TEST_F(OwnProject, ItsEpisodesAreReadElsewhere) {
+  ASSERT_EQ(Do({"run", "carton_is_held_still", "--record", "held.episodes"}).exit_code, 0);
+  fs::rename(kitchen_ / "held.episodes", folder_ / "held.episodes");
+  fs::remove_all(kitchen_);
+  const Said said = In(folder_, {"resegment", "held.episodes", "--compare", "recorded"});
+  EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
+  EXPECT_TRUE(Has(said.out, "1 episodes, 0 with differences")) << said.out;
+}
+
+}  // namespace
+}  // namespace prehend::house
