@@ -45,6 +45,7 @@ std::vector<Command> Commands() {
           Limited(ReportCommand(), kMany_s),
           Limited(SweepCommand(), kMany_s),
           Limited(MarginsCommand(), kMany_s),
+          Limited(FigureCommand(), kMany_s),
           Limited(KnowledgeCommand(), kMany_s),
           AskCommand(),
           WatchCommand(),

@@ -63,6 +63,7 @@ Command ReportCommand();
 Command QueryCommand();
 Command SweepCommand();
 Command MarginsCommand();
+Command FigureCommand();
 Command TryCommand();
 Command WatchCommand();
 Command KnowledgeCommand();

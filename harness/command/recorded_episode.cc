@@ -49,6 +49,24 @@ tl::expected<RecordedEpisode, ExitCode> OpenRecordedOrComplain(const std::string
   return RecordedEpisode{std::move(*file), found, std::move(*loaded)};
 }
 
+tl::expected<PlayedRun, ExitCode> PlayOrReplay(const std::string& typed,
+                                               const ParsedOptions& options,
+                                               const CommandContext& context) {
+  if (episodes::IsEpisodeFile(typed)) {
+    auto opened = OpenRecordedOrComplain(typed, options, context);
+    if (!opened) return tl::unexpected(opened.error());
+    Result<RunResult> run = episodes::Replay(opened->file, opened->row, opened->loaded);
+    if (!run) return tl::unexpected(Complain(context, run.error()));
+    return PlayedRun{std::move(opened->loaded), std::move(*run)};
+  }
+  const auto file = FindScenarioOrComplain(typed, context);
+  if (!file) return tl::unexpected(file.error());
+  Result<LoadedRun> loaded = LoadRun(RequestOf(options, file->path), context.root);
+  if (!loaded) return tl::unexpected(Complain(context, loaded.error()));
+  RunResult run = RunScenario(loaded->scenario, loaded->program, {.record = true});
+  return PlayedRun{std::move(*loaded), std::move(run)};
+}
+
 namespace {
 
 /// The same as a source of frames.

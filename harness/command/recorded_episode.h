@@ -24,6 +24,18 @@ tl::expected<RecordedEpisode, ExitCode> OpenRecordedOrComplain(const std::string
                                                                const ParsedOptions& options,
                                                                const CommandContext& context);
 
+/// A run with every frame.
+struct PlayedRun {
+  LoadedRun loaded;
+  RunResult run;
+};
+
+/// The scenario that was typed, simulated with the grammar and the settings of the command line; or
+/// the episode of the file that was typed, read again. Otherwise, after a report, the exit code.
+tl::expected<PlayedRun, ExitCode> PlayOrReplay(const std::string& typed,
+                                               const ParsedOptions& options,
+                                               const CommandContext& context);
+
 /// The episode that was typed for `scenario`, a scenario, an episode file or a
 /// recording, with the run options;
 /// otherwise, after reporting why there is none, the exit code.

@@ -57,6 +57,18 @@ PictureResult DrawSheet(const Scenario& scenario, const RunResult& run,
                         const std::vector<PictureYaml>& entries, int columns,
                         const std::string& file, const PictureFormat& format = {});
 
+/// A picture of a sheet, with a title of its own.
+struct SheetEntry {
+  const Scenario* scenario = nullptr;
+  const RunResult* run = nullptr;
+  PictureYaml picture;
+  std::string title;
+};
+
+/// The same of several runs.
+PictureResult DrawSheet(const std::vector<SheetEntry>& entries, int columns,
+                        const std::string& file, const PictureFormat& format = {});
+
 struct PictureDifference {
   std::string text;        ///< "812 of its pixels differ, .."; empty: none
   bool same_size = false;  ///< both could be read and have the same size

@@ -78,20 +78,32 @@ PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const 
 PictureResult DrawSheet(const Scenario& scenario, const RunResult& run,
                         const std::vector<PictureYaml>& entries, int columns,
                         const std::string& file, const PictureFormat& format) {
+  std::vector<SheetEntry> sheet;
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    sheet.push_back({&scenario, &run, entries[i], {}});
+  return DrawSheet(sheet, columns, file, format);
+}
+
+PictureResult DrawSheet(const std::vector<SheetEntry>& entries, int columns,
+                        const std::string& file, const PictureFormat& format) {
   PictureResult result;
   render::Painter painter;
   result.error = painter.error();
-  if (run.recording.empty()) result.error = "the run recorded nothing to draw";
+  if (std::ranges::any_of(entries,
+                          [](const SheetEntry& entry) { return entry.run->recording.empty(); }))
+    result.error = "the run recorded nothing to draw";
   if (!result.error.empty()) return result;
   const int rows = (static_cast<int>(entries.size()) + columns - 1) / columns;
   render::Image sheet{columns * format.width_px, rows * format.height_px, {}};
   sheet.rgb.assign(3ull * sheet.width_px * sheet.height_px, 255);
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    render::Picture picture = ComposePicture(scenario, run, entries[i], format);
+    const auto& [scenario, run, entry, title] = entries[i];
+    render::Picture picture = ComposePicture(*scenario, *run, entry, format);
     if (format.title) {
       const char letter = static_cast<char>('a' + i % 26);
-      picture.title = fmt::format("{}  ·  {}  ·  {}", letter, entries[i].at.value,
-                                  fmt::format("{:.3f} s", SecondsOf(picture, run)));
+      picture.title = title.empty() ? fmt::format("{}  ·  {}  ·  {:.3f} s", letter, entry.at.value,
+                                                  SecondsOf(picture, *run))
+                                    : fmt::format("{}  ·  {}", letter, title);
     }
     const render::Image image = painter.Draw(picture);
     if (image.rgb.empty()) {
@@ -101,7 +113,7 @@ PictureResult DrawSheet(const Scenario& scenario, const RunResult& run,
     Paste(image, static_cast<int>(i) % columns * format.width_px,
           static_cast<int>(i) / columns * format.height_px, sheet);
     result.pictures.push_back(
-        {file, CaptionOf(picture, run), FindEventTime(entries[i].at.value, run).missed});
+        {file, CaptionOf(picture, *run), FindEventTime(entry.at.value, *run).missed});
   }
   if (!render::WritePng(sheet, file)) result.error = "cannot write " + file;
   return result;

@@ -27,6 +27,11 @@ PictureResult DrawSheet(const Scenario&, const RunResult&, const std::vector<Pic
   return CannotDraw();
 }
 
+PictureResult DrawSheet(const std::vector<SheetEntry>&, int, const std::string&,
+                        const PictureFormat&) {
+  return CannotDraw();
+}
+
 PictureDifference ComparePicture(const std::string&, const std::string&) { return {}; }
 
 bool WritePictureDifference(const std::string&, const std::string&, const std::string&) {

@@ -72,6 +72,7 @@ const Arrows& ProjectArrows() {
       {"harness/pictures",
        {"harness/base", "harness/process", "harness/run", "harness/scenario", "harness/timeline",
         "render"}},
+      {"harness/figures", {"harness/base", "harness/run", "harness/scenario", "harness/timeline"}},
       {"harness/replay",
        {"harness/base", "harness/pictures", "harness/run", "harness/scenario", "physics/scene"}},
       {"harness/knowledge",
@@ -103,13 +104,13 @@ const Arrows& ProjectArrows() {
        {"grammar/base", "harness/base", "harness/episodes", "harness/process", "harness/pictures",
         "harness/run", "harness/sense"}},
       {"harness/cli",
-       {"grammar",          "harness/base",     "harness/check",    "harness/closed_form",
-        "harness/command",  "harness/episodes", "harness/explain",  "harness/format",
-        "harness/golden",   "harness/import",   "harness/judge",    "harness/knowledge",
-        "harness/labels",   "harness/oracle",   "harness/pictures", "harness/process",
-        "harness/read",     "harness/report",   "harness/run",      "harness/score",
-        "harness/sense",    "harness/speed",    "harness/sweep",    "harness/timeline",
-        "harness/transform"}},
+       {"grammar",           "harness/base",     "harness/check",   "harness/closed_form",
+        "harness/command",   "harness/episodes", "harness/explain", "harness/figures",
+        "harness/format",    "harness/golden",   "harness/import",  "harness/judge",
+        "harness/knowledge", "harness/labels",   "harness/oracle",  "harness/pictures",
+        "harness/process",   "harness/read",     "harness/report",  "harness/run",
+        "harness/score",     "harness/sense",    "harness/speed",   "harness/sweep",
+        "harness/timeline",  "harness/transform"}},
   };
   return arrows;
 }

@@ -192,7 +192,8 @@ TEST_F(CommandLine, AnEmptyValueIsRefused) {
   }
   const Said homeless = Prehend({"list"}, {"PREHEND_HOME=/nowhere"});
   EXPECT_EQ(homeless.exit_code, 2);
-  EXPECT_NE(homeless.err.find("PREHEND_HOME is /nowhere, which has no grammar/library"),
+  EXPECT_NE(homeless.err.find(
+                "PREHEND_HOME is /nowhere, which has neither prehend.yaml nor grammar/library"),
             std::string::npos)
       << homeless.err;
 }

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/figures/chart.h. Tested by tests/harness/figures/chart_test.cc
+#include "harness/figures/chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "harness/base/markup.h"
+
+namespace prehend::harness::figures {
+namespace {
+
+/// Okabe and Ito's palette without yellow, which is pale on white ("Color Universal Design", 2008).
+constexpr std::array<const char*, 6> kColors = {"#0072B2", "#D55E00", "#009E73",
+                                                "#CC79A7", "#56B4E9", "#000000"};
+constexpr std::array<const char*, 4> kDashes = {"none", "6 3", "2 3", "8 3 2 3"};
+constexpr const char* kInk = "#222222";
+constexpr std::size_t kMostPoints = 1500;  ///< of a curve; more cannot be seen
+
+std::string Number(double value) { return fmt::format("{:.6g}", value); }
+
+/// Whether dark text can be read on it: its luminance (ITU-R BT.709).
+bool IsLight(std::uint32_t color) {
+  const double red = color >> 16 & 255, green = color >> 8 & 255, blue = color & 255;
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue > 140;
+}
+
+class Drawing {
+ public:
+  Drawing(const Chart& chart, const ChartFormat& format) : chart_(chart), format_(format) {
+    const double letter_px = 0.6 * format.text_px;
+    std::size_t longest = 0;
+    for (const Row& row : chart.rows) longest = std::max(longest, row.name.size());
+    left_ = 20 + std::max(50.0, letter_px * static_cast<double>(longest));
+    right_ = format.width_px - 14;
+  }
+
+  std::string Run() {
+    const double row_px = 1.9 * format_.text_px, panel_px = 9 * format_.text_px,
+                 gap_px = 1.6 * format_.text_px;
+    double y = chart_.title.empty() ? 8 : 2.4 * format_.text_px;
+    const double rows_px = row_px * static_cast<double>(chart_.rows.size());
+    const double height = y + rows_px +
+                          (gap_px + panel_px) * static_cast<double>(chart_.panels.size()) +
+                          4 * format_.text_px;
+    svg_ = AddElement(document_, "svg",
+                      {{"xmlns", "http://www.w3.org/2000/svg"},
+                       {"width", Number(format_.width_px)},
+                       {"height", Number(height)},
+                       {"viewBox", "0 0 " + Number(format_.width_px) + " " + Number(height)},
+                       {"font-family", "DejaVu Sans, Arial, sans-serif"},
+                       {"font-size", Number(format_.text_px)}});
+    if (!format_.transparent)
+      AddElement(svg_, "rect", {{"width", "100%"}, {"height", "100%"}, {"fill", "#FFFFFF"}});
+    if (!chart_.title.empty()) Text(left_, 1.4 * format_.text_px, chart_.title, "start", "bold");
+    DrawTimes(y, height - 4 * format_.text_px);
+    for (const Row& row : chart_.rows) {
+      DrawRow(row, y, row_px);
+      y += row_px;
+    }
+    for (const Panel& panel : chart_.panels) {
+      y += gap_px;
+      DrawPanel(panel, y, panel_px);
+      y += panel_px;
+    }
+    return ToText(document_, Layout::kIndented);
+  }
+
+ private:
+  double X(double time_s) const {
+    const double share = (time_s - chart_.from_s) / (chart_.to_s - chart_.from_s);
+    return left_ + std::clamp(share, 0.0, 1.0) * (right_ - left_);
+  }
+
+  void Text(double x, double y, const std::string& text, const char* anchor,
+            const char* weight = "normal", const char* color = kInk) {
+    AddElement(svg_, "text",
+               {{"x", Number(x)},
+                {"y", Number(y)},
+                {"text-anchor", anchor},
+                {"font-weight", weight},
+                {"fill", color}},
+               text);
+  }
+  void Line(double x1, double y1, double x2, double y2, const char* color) {
+    AddElement(svg_, "line",
+               {{"x1", Number(x1)},
+                {"y1", Number(y1)},
+                {"x2", Number(x2)},
+                {"y2", Number(y2)},
+                {"stroke", color},
+                {"stroke-width", "1"}});
+  }
+
+  void DrawRow(const Row& row, double y, double height) {
+    Text(left_ - 8, y + 0.5 * height + 0.35 * format_.text_px, row.name, "end");
+    for (const Bar& bar : row.bars) {
+      if (bar.end_s <= chart_.from_s || bar.begin_s >= chart_.to_s) continue;
+      const double x = X(bar.begin_s), width = std::max(1.5, X(bar.end_s) - x);
+      AddElement(svg_, "rect",
+                 {{"x", Number(x)},
+                  {"y", Number(y + 2)},
+                  {"width", Number(width)},
+                  {"height", Number(height - 4)},
+                  {"fill", fmt::format("#{:06X}", bar.color)},
+                  {"stroke", "#FFFFFF"}});
+      if (0.62 * format_.text_px * static_cast<double>(bar.text.size()) < width - 6)
+        Text(x + width / 2, y + 0.5 * height + 0.35 * format_.text_px, bar.text, "middle", "normal",
+             IsLight(bar.color) ? "#000000" : "#FFFFFF");
+    }
+  }
+
+  void DrawPanel(const Panel& panel, double top, double height) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const Curve& curve : panel.curves) {
+      for (const auto& [time_s, value] : curve.points) {
+        if (time_s < chart_.from_s || time_s > chart_.to_s || !std::isfinite(value)) continue;
+        least = std::min(least, value);
+        most = std::max(most, value);
+      }
+    }
+    if (!(least <= most)) least = 0, most = 1;
+    if (most - least < 1e-9) most = least + 1;
+    const double room = 0.06 * (most - least);
+    least -= room;
+    most += room;
+    const auto y_of = [&](double value) {
+      return top + height - (value - least) / (most - least) * height;
+    };
+    for (const double tick : RoundTicks(least, most, 4)) {
+      Line(left_, y_of(tick), right_, y_of(tick), "#DDDDDD");
+      Text(left_ - 8, y_of(tick) + 0.35 * format_.text_px, Number(tick), "end");
+    }
+    Line(left_, top, left_, top + height, kInk);
+    double legend = right_;
+    for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+      const Curve& curve = panel.curves[i];
+      const char* color = kColors[i % kColors.size()];
+      const char* dash = kDashes[i % kDashes.size()];
+      DrawCurve(curve, y_of, color, dash);
+      const double name_px = 0.6 * format_.text_px * static_cast<double>(curve.name.size());
+      legend -= name_px + 34;
+      if (panel.curves.size() > 1 || !curve.name.empty()) {
+        AddElement(svg_, "line",
+                   {{"x1", Number(legend)},
+                    {"y1", Number(top - 0.4 * format_.text_px)},
+                    {"x2", Number(legend + 22)},
+                    {"y2", Number(top - 0.4 * format_.text_px)},
+                    {"stroke", color},
+                    {"stroke-width", "2"},
+                    {"stroke-dasharray", dash}});
+        Text(legend + 26, top - 0.1 * format_.text_px, curve.name, "start");
+      }
+    }
+    Text(left_, top - 0.1 * format_.text_px, panel.name, "start", "bold");
+  }
+
+  template <typename YOf>
+  void DrawCurve(const Curve& curve, const YOf& y_of, const char* color, const char* dash) {
+    const std::size_t step = curve.points.size() / kMostPoints + 1;
+    std::string points;
+    for (std::size_t i = 0; i < curve.points.size(); i += step) {
+      const auto& [time_s, value] = curve.points[i];
+      if (time_s < chart_.from_s || time_s > chart_.to_s || !std::isfinite(value)) continue;
+      points += fmt::format("{:.2f},{:.2f} ", X(time_s), y_of(value));
+    }
+    if (points.empty()) return;
+    points.pop_back();
+    AddElement(svg_, "polyline",
+               {{"points", points},
+                {"fill", "none"},
+                {"stroke", color},
+                {"stroke-width", "1.6"},
+                {"stroke-dasharray", dash}});
+  }
+
+  void DrawTimes(double top, double bottom) {
+    Line(left_, bottom, right_, bottom, kInk);
+    for (const double tick : RoundTicks(chart_.from_s, chart_.to_s, 10)) {
+      Line(X(tick), top, X(tick), bottom, "#EEEEEE");
+      Line(X(tick), bottom, X(tick), bottom + 4, kInk);
+      Text(X(tick), bottom + 4 + 1.1 * format_.text_px, Number(tick), "middle");
+    }
+    Text((left_ + right_) / 2, bottom + 8 + 2.3 * format_.text_px, "time, s", "middle");
+  }
+
+  const Chart& chart_;
+  const ChartFormat& format_;
+  double left_ = 0, right_ = 0;
+  pugi::xml_document document_;
+  pugi::xml_node svg_;
+};
+
+}  // namespace
+
+std::vector<double> RoundTicks(double from, double to, int most) {
+  const double raw = (to - from) / most, power = std::pow(10.0, std::floor(std::log10(raw)));
+  double step = 10 * power;
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= raw * (1 - 1e-9)) {
+      step = factor * power;
+      break;
+    }
+  }
+  std::vector<double> ticks;
+  for (auto i = static_cast<long>(std::ceil(from / step - 1e-9));
+       static_cast<double>(i) * step <= to + 1e-9 * step; ++i)
+    ticks.push_back(static_cast<double>(i) * step);
+  return ticks;
+}
+
+std::string ChartSvg(const Chart& chart, const ChartFormat& format) {
+  return Drawing(chart, format).Run();
+}
+
+}  // namespace prehend::harness::figures

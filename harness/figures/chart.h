@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of bars and panels of curves over one time axis, as SVG for papers: on white or without a
+// ground, colours that a colour-blind reader can tell apart, doubled by dashes. Tested by
+// tests/harness/figures/chart_test.cc
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace prehend::harness::figures {
+
+struct Bar {
+  double begin_s = 0, end_s = 0;
+  std::string text;  ///< in the bar if it fits
+  std::uint32_t color = 0x888888;
+};
+struct Row {
+  std::string name;
+  std::vector<Bar> bars;
+};
+struct Curve {
+  std::string name;
+  std::vector<std::pair<double, double>> points;  ///< time in s, value; times increase
+};
+struct Panel {
+  std::string name;  ///< "height, m"
+  std::vector<Curve> curves;
+};
+struct Chart {
+  std::string title;
+  double from_s = 0, to_s = 1;
+  std::vector<Row> rows;
+  std::vector<Panel> panels;
+};
+
+struct ChartFormat {
+  double width_px = 900, text_px = 12;
+  bool transparent = false;  ///< no white ground
+};
+
+/// What lies outside of the chart's time is left out.
+std::string ChartSvg(const Chart& chart, const ChartFormat& format = {});
+
+/// Where ticks of an axis stand: at most `most`, at round values.
+std::vector<double> RoundTicks(double from, double to, int most);
+
+}  // namespace prehend::harness::figures

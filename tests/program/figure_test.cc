@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// The figures of docs/figures.md, as a person asks for them.
+#include <gtest/gtest.h>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Figure : public testing::Test {
+ protected:
+  ~Figure() override { fs::remove_all(folder_); }
+
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  Said Do(std::vector<std::string> words) const {
+    words.insert(words.begin(), "figure");
+    return Prehend(words);
+  }
+
+  const fs::path folder_ =
+      FreshFolder(testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+bool Has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST_F(Figure, ChartsAreVectorsOrPixels) {
+  for (const char* name : {"a.svg", "a.pdf", "a.png"}) {
+    const Said said = Do({"phases", "-o", Path(name)});
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    EXPECT_EQ(said.out, Path(name) + "\n");
+  }
+  EXPECT_TRUE(Has(ReadFile(Path("a.svg")), "milk_carton_wrap, pick_and_place"));
+  EXPECT_EQ(ReadFile(Path("a.pdf")).substr(0, 4), "%PDF");
+  EXPECT_EQ(ReadFile(Path("a.png")).substr(1, 3), "PNG");
+  ASSERT_EQ(
+      Do({"plate", "-o", Path("b.svg"), "--from", "1", "--to", "2", "--transparent"}).exit_code, 0);
+  EXPECT_FALSE(Has(ReadFile(Path("b.svg")), "\"100%\""));
+}
+
+TEST_F(Figure, AnEpisodeIsDrawnAsItsScenario) {
+  const std::string episodes = Path("a.episodes");
+  ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", episodes}).exit_code, 0);
+  ASSERT_EQ(Do({"phases", episodes, "-o", Path("read.svg")}).exit_code, 0);
+  ASSERT_EQ(Do({"phases", "-o", Path("played.svg")}).exit_code, 0);
+  EXPECT_EQ(ReadFile(Path("read.svg")), ReadFile(Path("played.svg")));
+}
+
+TEST_F(Figure, GrammarsAndGoldensAreSideBySide) {
+  ASSERT_EQ(Do({"phases", "--against", "original_2020", "-o", Path("a.svg")}).exit_code, 0);
+  EXPECT_TRUE(Has(ReadFile(Path("a.svg")), "right_hand (original_2020)"));
+  ASSERT_EQ(Do({"phases", "--against", "golden", "-o", Path("b.svg")}).exit_code, 0);
+  EXPECT_TRUE(Has(ReadFile(Path("b.svg")), "right_hand (golden)"));
+}
+
+TEST_F(Figure, WhatCannotBeDrawnIsRefused) {
+  const auto refused = [&](std::vector<std::string> words, const char* why) {
+    const Said said = Do(std::move(words));
+    EXPECT_EQ(said.exit_code, 2) << said.out;
+    EXPECT_TRUE(Has(said.err, why)) << said.err;
+  };
+  refused({"plates", "-o", Path("a.svg")}, "found 'plates', wanted keyframes, phases, grasps");
+  refused({"grasps", "-o", Path("a.svg")}, "wanted a file NAME.png");
+  refused({"phases", "-o", Path("a.gif")}, "a.gif");
+  refused({"plate", "-o", Path("a.svg"), "--from", "3", "--to", "2"}, "wanted less than --to");
+  refused({"plate", "-o", Path("a.svg"), "--against", "golden"}, "--against is for phases");
+  refused({"phases", "-o", Path("a.svg"), "--against", "nope"}, "no such file");
+  const Said alone = Do({"gaze", "milk_carton_wrap", "-o", Path("a.svg")});
+  EXPECT_EQ(alone.exit_code, 4);
+  EXPECT_TRUE(fs::is_empty(folder_)) << "nothing was written";
+}
+
+TEST_F(Figure, ScenesAreSheets) {
+  const Said said = Do({"keyframes", "--to", "1.5", "-o", Path("a.png")});
+  if (Has(said.err, "PREHEND_RENDER=OFF")) GTEST_SKIP() << said.err;
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(ReadFile(Path("a.png")).substr(1, 3), "PNG");
+  ASSERT_EQ(Do({"grasps", "styles/pinch*", "-o", Path("b.png")}).exit_code, 0);
+  EXPECT_EQ(Do({"keyframes", "--camera", "nowhere", "-o", Path("c.png")}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace prehend::house
