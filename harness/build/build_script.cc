@@ -136,6 +136,16 @@ struct StepMaker {
         written.value);
   }
 
+  /// How long the hand waits before it begins.
+  double DelayOf() const {
+    return std::visit(
+        [](const auto& entry) {
+          if constexpr (requires { entry.delay_s; }) return entry.delay_s;
+          return 0.0;
+        },
+        written.value);
+  }
+
  private:
   /// Of a text that its format has accepted: "gap(milk) < 5 mm, or go on".
   physics::Until ParseUntil(const Located<std::string>& text) const {
@@ -228,7 +238,8 @@ struct StepMaker {
 
 double DurationOf(const physics::ScriptStage& stage) {
   double longest_s = 0;
-  for (const physics::Step& step : stage.steps) longest_s = std::max(longest_s, step.over_s);
+  for (const physics::Step& step : stage.steps)
+    longest_s = std::max(longest_s, step.delay_s + step.over_s);
   for (const physics::PersonStep& step : stage.person_steps)
     longest_s = std::max(longest_s, step.over_s);
   return longest_s;
@@ -338,6 +349,7 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
       const StepMaker maker{entities, scene, model, named, errors};
       physics::Step step = std::visit(maker, named.value);
       step.until = maker.UntilOf();
+      step.delay_s = maker.DelayOf();
       step.hand = hand;
       step.written_at = errors.PlaceText(named.name_where);
       stage.steps.push_back(std::move(step));

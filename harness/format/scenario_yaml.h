@@ -170,6 +170,7 @@ struct ReachYaml {
   Located<Eigen::Vector3d> offset_m{Eigen::Vector3d::Zero(), {}};
   std::optional<Located<Eigen::Vector3d>> point_m;
   double over_s = 0.8;
+  double delay_s = 0;
 };
 /// "touching(milk)", "gap(milk) < 5 mm", either with ", or go on"; see
 /// harness/build/build_script.cc.
@@ -178,41 +179,49 @@ struct CloseYaml {
   double close_to = 1;
   double over_s = 0.6;
   UntilYaml until;
+  double delay_s = 0;
 };
 struct OpenYaml {
   double open_to = 0;
   double over_s = 0.45;
+  double delay_s = 0;
 };
 struct LiftYaml {
   double lift_by_m = 0;
   double over_s = 0.6;
   UntilYaml until;
+  double delay_s = 0;
 };
 struct MoveYaml {
   Located<Eigen::Vector3d> move_by_m{Eigen::Vector3d::Zero(), {}};
   double over_s = 0.8;
   UntilYaml until;
+  double delay_s = 0;
 };
 struct CarryYaml {
   Where where;
   Located<Eigen::Vector2d> carry_to_m{Eigen::Vector2d::Zero(), {}};
   double over_s = 1.0;
   UntilYaml until;
+  double delay_s = 0;
 };
 struct PlaceYaml {
   Where where;
   Located<std::string> place_on;
   double over_s = 0.6;
+  double delay_s = 0;
 };
 struct RetreatYaml {
   double retreat_by_m = 0;
   double over_s = 0.6;
   UntilYaml until;
+  double delay_s = 0;
 };
 struct FollowJointYaml {
   Located<std::string> follow_joint;
   double to = 1;
   double over_s = 1.5;
+  double delay_s = 0;
 };
 struct WaitYaml {
   double wait_s = 0;
@@ -254,6 +263,7 @@ struct TurnHandYaml {
   Located<Eigen::Vector3d> turn_by_deg{Eigen::Vector3d::Zero(), {}};
   bool own_axes = false;
   double over_s = 0.8;
+  double delay_s = 0;
 };
 struct OrbitYaml {
   struct Around {
@@ -264,12 +274,14 @@ struct OrbitYaml {
   Around orbit;
   double over_s = 1.5;
   UntilYaml until;
+  double delay_s = 0;
 };
 struct PressYaml {
   double press_n = 0;
   Located<std::string> against;
   Located<Eigen::Vector3d> along{-Eigen::Vector3d::UnitZ(), {}};
   double over_s = 1.0;
+  double delay_s = 0;
 };
 // Steps of persons.
 struct LookAtYaml {

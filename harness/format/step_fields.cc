@@ -20,6 +20,8 @@ constexpr double kMaxStep_s = 600;
 
 ValueFormat<double> Duration() { return Number(kMinStep_s, kMaxStep_s); }
 const std::string kOverDoc = "Duration in seconds.";
+const std::string kDelayDoc =
+    "Seconds that the hand waits first, while others in this stage already act.";
 const std::string kUntilDoc =
     "Ends the step before its time: 'touching(milk)' or 'gap(milk) < 5 mm'. If that never happens "
     "the run fails; with ', or go on' it goes on.";
@@ -32,37 +34,49 @@ ValueFormat<std::string> UntilFormat() {
 }
 const std::string kStyleDoc = "The grasp style that the hand takes; default: unchanged.";
 
+/// The key of hands' steps by which they begin later than their stage.
+template <class Entry>
+StructFormat<Entry> WithDelay(StructFormat<Entry> format) {
+  if constexpr (requires { &Entry::delay_s; })
+    format.Optional("delay_s", &Entry::delay_s, Number(0, kMaxStep_s), kDelayDoc);
+  return format;
+}
+
 /// A step with one value and a duration; most steps are of this kind.
 template <class Entry, class M, class F>
 ValueFormat<StepYaml> TimedStep(const std::string& key, M Entry::*member, ValueFormat<F> format,
                                 const std::string& doc) {
-  return AsAlternative<StepYaml>(StructFormat<Entry>("a " + key + " step")
-                                     .Required(key, member, std::move(format), doc)
-                                     .Optional("over_s", &Entry::over_s, Duration(), kOverDoc)
-                                     .format());
+  return AsAlternative<StepYaml>(
+      WithDelay(StructFormat<Entry>("a " + key + " step")
+                    .Required(key, member, std::move(format), doc)
+                    .Optional("over_s", &Entry::over_s, Duration(), kOverDoc))
+          .format());
 }
 
 /// The same, and it may end before its time.
 template <class Entry, class M, class F>
 ValueFormat<StepYaml> GuardedStep(const std::string& key, M Entry::*member, ValueFormat<F> format,
                                   const std::string& doc) {
-  return AsAlternative<StepYaml>(StructFormat<Entry>("a " + key + " step")
-                                     .Required(key, member, std::move(format), doc)
-                                     .Optional("over_s", &Entry::over_s, Duration(), kOverDoc)
-                                     .Optional("until", &Entry::until, UntilFormat(), kUntilDoc)
-                                     .format());
+  return AsAlternative<StepYaml>(
+      WithDelay(StructFormat<Entry>("a " + key + " step")
+                    .Required(key, member, std::move(format), doc)
+                    .Optional("over_s", &Entry::over_s, Duration(), kOverDoc)
+                    .Optional("until", &Entry::until, UntilFormat(), kUntilDoc))
+          .format());
 }
 
 ValueFormat<StepYaml> TurnHandFormat() {
   using T = TurnHandYaml;
   return AsAlternative<StepYaml>(
-      StructFormat<T>("a turn_by_deg step")
-          .Required("turn_by_deg", &T::turn_by_deg, Vector<3>(-3600, 3600),
-                    "The hand turns about its palm: degrees about x, y or z; of several about the "
-                    "axis that they point along, by their length.")
-          .Optional("axes", &T::own_axes, Choice<bool>({{"world", false}, {"hand", true}}),
-                    "Whose axes these are.")
-          .Optional("over_s", &T::over_s, Duration(), kOverDoc)
+      WithDelay(
+          StructFormat<T>("a turn_by_deg step")
+              .Required(
+                  "turn_by_deg", &T::turn_by_deg, Vector<3>(-3600, 3600),
+                  "The hand turns about its palm: degrees about x, y or z; of several about the "
+                  "axis that they point along, by their length.")
+              .Optional("axes", &T::own_axes, Choice<bool>({{"world", false}, {"hand", true}}),
+                        "Whose axes these are.")
+              .Optional("over_s", &T::over_s, Duration(), kOverDoc))
           .format());
 }
 
@@ -70,32 +84,33 @@ ValueFormat<StepYaml> OrbitFormat() {
   using O = OrbitYaml;
   using A = OrbitYaml::Around;
   return AsAlternative<StepYaml>(
-      StructFormat<O>("an orbit step")
-          .Required("orbit", &O::orbit,
-                    StructFormat<A>("an orbit")
-                        .Required("around", &A::around, Identifier(),
-                                  "The entity that the hand goes around, turning with it.")
-                        .Optional("by_deg", &A::by_deg, Number(-3600, 3600),
-                                  "How far, counter-clockwise as seen from above.")
-                        .Optional("at_m", &A::at_m, Number(0.01, kMaxMove_m),
-                                  "Distance from its centre in the end; default: as now.")
-                        .format(),
-                    "Around the vertical through an entity's centre.")
-          .Optional("over_s", &O::over_s, Duration(), kOverDoc)
-          .Optional("until", &O::until, UntilFormat(), kUntilDoc)
+      WithDelay(
+          StructFormat<O>("an orbit step")
+              .Required("orbit", &O::orbit,
+                        StructFormat<A>("an orbit")
+                            .Required("around", &A::around, Identifier(),
+                                      "The entity that the hand goes around, turning with it.")
+                            .Optional("by_deg", &A::by_deg, Number(-3600, 3600),
+                                      "How far, counter-clockwise as seen from above.")
+                            .Optional("at_m", &A::at_m, Number(0.01, kMaxMove_m),
+                                      "Distance from its centre in the end; default: as now.")
+                            .format(),
+                        "Around the vertical through an entity's centre.")
+              .Optional("over_s", &O::over_s, Duration(), kOverDoc)
+              .Optional("until", &O::until, UntilFormat(), kUntilDoc))
           .format());
 }
 
 ValueFormat<StepYaml> PressFormat() {
   using P = PressYaml;
   return AsAlternative<StepYaml>(
-      StructFormat<P>("a press_n step")
-          .Required("press_n", &P::press_n, Number(0.1, 200),
-                    "Press with this force, with the hand or with what it holds.")
-          .Required("against", &P::against, Identifier(), "The entity that is pressed.")
-          .Optional("along", &P::along, Vector<3>(-1, 1),
-                    "Where to, a direction in world axes; default: down.")
-          .Optional("over_s", &P::over_s, Duration(), kOverDoc)
+      WithDelay(StructFormat<P>("a press_n step")
+                    .Required("press_n", &P::press_n, Number(0.1, 200),
+                              "Press with this force, with the hand or with what it holds.")
+                    .Required("against", &P::against, Identifier(), "The entity that is pressed.")
+                    .Optional("along", &P::along, Vector<3>(-1, 1),
+                              "Where to, a direction in world axes; default: down.")
+                    .Optional("over_s", &P::over_s, Duration(), kOverDoc))
           .format());
 }
 
@@ -103,34 +118,36 @@ ValueFormat<StepYaml> ReachFormat() {
   using R = ReachYaml;
   using physics::Approach;
   return AsAlternative<StepYaml>(
-      StructFormat<R>("a reach step")
-          .Required("reach", &R::reach, Identifier(),
-                    "The entity to move the hand to, ready to close around it.")
-          .Optional("style", &R::style, Identifier(), "The grasp style, one of the hand's.")
-          .Optional("from", &R::from,
-                    Choice<Approach>({{"auto", Approach::kAuto},
-                                      {"above", Approach::kAbove},
-                                      {"side", Approach::kSide}}),
-                    "Where the hand comes from; auto chooses by style and shape.")
-          .Optional("offset_m", &R::offset_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
-                    "Added to where the hand goes, world axes: reach beside or above the entity.")
-          .Optional(
-              "point_m", &R::point_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-              "The point to grasp, in the entity's own coordinate frame; default: its centre.")
-          .Optional("over_s", &R::over_s, Duration(), kOverDoc)
+      WithDelay(
+          StructFormat<R>("a reach step")
+              .Required("reach", &R::reach, Identifier(),
+                        "The entity to move the hand to, ready to close around it.")
+              .Optional("style", &R::style, Identifier(), "The grasp style, one of the hand's.")
+              .Optional("from", &R::from,
+                        Choice<Approach>({{"auto", Approach::kAuto},
+                                          {"above", Approach::kAbove},
+                                          {"side", Approach::kSide}}),
+                        "Where the hand comes from; auto chooses by style and shape.")
+              .Optional(
+                  "offset_m", &R::offset_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
+                  "Added to where the hand goes, world axes: reach beside or above the entity.")
+              .Optional(
+                  "point_m", &R::point_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+                  "The point to grasp, in the entity's own coordinate frame; default: its centre.")
+              .Optional("over_s", &R::over_s, Duration(), kOverDoc))
           .format());
 }
 
 ValueFormat<StepYaml> FollowJointFormat() {
   using F = FollowJointYaml;
   return AsAlternative<StepYaml>(
-      StructFormat<F>("a follow_joint step")
-          .Required(
-              "follow_joint", &F::follow_joint, Identifier(),
-              "The entity on a slider or hinge whose path the hand follows, with what it holds.")
-          .Optional("to", &F::to, Number(0, 1),
-                    "Where the joint ends: 0 is the minimum of its range, 1 the maximum.")
-          .Optional("over_s", &F::over_s, Duration(), kOverDoc)
+      WithDelay(StructFormat<F>("a follow_joint step")
+                    .Required("follow_joint", &F::follow_joint, Identifier(),
+                              "The entity on a slider or hinge whose path the hand follows, with "
+                              "what it holds.")
+                    .Optional("to", &F::to, Number(0, 1),
+                              "Where the joint ends: 0 is the minimum of its range, 1 the maximum.")
+                    .Optional("over_s", &F::over_s, Duration(), kOverDoc))
           .format());
 }
 

@@ -59,8 +59,7 @@ void ScriptPlayer::WatchGuards(const Snapshot& now) {
     hand.waiting->met = gap_m ? GapTo(index, thing, now) < *gap_m : IsTouched(index, thing, now);
     if (!hand.waiting->met) continue;
     // It stays where it is: the target is ahead of the hand, which would go on to it.
-    const double t_s = static_cast<double>(tick_in_stage_) / scene_.world.rate_hz;
-    hand.target = hand.motion.At(t_s);
+    hand.target = hand.motion.At(MotionTime(hand));
     if (const Eigen::Vector3d ahead_W = hand.target.v_m_per_s.normalized(); !ahead_W.isZero()) {
       const double ahead_m = ahead_W.dot(hand.target.X_WH.p_m - now.hands[h].palm.X_WB.p_m);
       hand.target.X_WH.p_m -= std::max(ahead_m, 0.0) * ahead_W;
@@ -68,7 +67,7 @@ void ScriptPlayer::WatchGuards(const Snapshot& now) {
     hand.target.v_m_per_s.setZero();
     hand.target.w_rad_per_s.setZero();
     hand.motion = Trajectory(hand.target);
-    hand.step_ticks = tick_in_stage_;
+    hand.step_ticks = hand.begin_tick = tick_in_stage_;
     changed = true;
   }
   if (!changed) return;

@@ -44,7 +44,7 @@ constexpr int kTurnWaypoints = 160;
 
 double DurationOf(const Step& step) {
   const auto* poses = std::get_if<PosesStep>(&step.action);
-  return poses && !poses->poses.empty() ? poses->poses.back().t_s : step.over_s;
+  return step.delay_s + (poses && !poses->poses.empty() ? poses->poses.back().t_s : step.over_s);
 }
 
 double DurationOf(const PersonStep& step) {
@@ -391,7 +391,8 @@ void ScriptPlayer::StartStage(const Snapshot& now) {
     hand.waiting.reset();
     if (hand.pressing) hand.target.X_WH.p_m += hand.pressing->depth_m * hand.pressing->along_W;
     hand.pressing.reset();
-    hand.step_ticks = 0;
+    hand.step_ticks = hand.begin_tick = 0;
+    hand.delayed = nullptr;
     hand.motion = Trajectory(hand.target);
   }
   tick_in_stage_ = 0;
@@ -408,16 +409,39 @@ void ScriptPlayer::StartStage(const Snapshot& now) {
     HandState& hand = hands_[static_cast<std::size_t>(step.hand)];
     hand.written_at = step.written_at;
     hand.step_ticks = std::llround(DurationOf(step) * rate_hz);
-    if (step.until) {
-      hand.waiting = Waiting{.until = *step.until, .thing = FindBody(scene_, step.until->thing)};
-      if (hand.waiting->thing < 0)
-        return Fail(step.hand, "until: there is no entity '" + step.until->thing + "'");
-    }
-    Resolver resolver(scene_, now, step, hand);
-    problem_ = resolver.Resolve();
-    if (!resolver.note().empty()) notes_.push_back({now.tick, step.hand, resolver.note()});
-    if (!problem_.empty()) return Fail(step.hand, std::string(problem_));
+    hand.begin_tick = std::llround(step.delay_s * rate_hz);
+    if (hand.begin_tick > 0)
+      hand.delayed = &step;
+    else
+      StartStep(step, now);
+    if (!problem_.empty()) return;
   }
+}
+
+void ScriptPlayer::StartStep(const Step& step, const Snapshot& now) {
+  HandState& hand = hands_[static_cast<std::size_t>(step.hand)];
+  if (step.until) {
+    hand.waiting = Waiting{.until = *step.until, .thing = FindBody(scene_, step.until->thing)};
+    if (hand.waiting->thing < 0)
+      return Fail(step.hand, "until: there is no entity '" + step.until->thing + "'");
+  }
+  Resolver resolver(scene_, now, step, hand);
+  problem_ = resolver.Resolve();
+  if (!resolver.note().empty()) notes_.push_back({now.tick, step.hand, resolver.note()});
+  if (!problem_.empty()) Fail(step.hand, std::string(problem_));
+}
+
+void ScriptPlayer::StartDelayed(const Snapshot& now) {
+  for (HandState& hand : hands_) {
+    if (!hand.delayed || tick_in_stage_ < hand.begin_tick || !problem_.empty()) continue;
+    const Step& step = *hand.delayed;
+    hand.delayed = nullptr;
+    StartStep(step, now);
+  }
+}
+
+double ScriptPlayer::MotionTime(const HandState& hand) const {
+  return static_cast<double>(tick_in_stage_ - hand.begin_tick) / scene_.world.rate_hz;
 }
 
 void ScriptPlayer::Fail(int hand, const std::string& problem) {
@@ -493,11 +517,12 @@ const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
     }
   }
   while (tick_in_stage_ == stage_ticks_ && !settling_ && problem_.empty()) StartStage(now);
+  StartDelayed(now);
   if (!problem_.empty() || tick_in_stage_ == stage_ticks_) return nullptr;
   ++tick_in_stage_;
-  const double t_s = static_cast<double>(tick_in_stage_) / scene_.world.rate_hz;
   for (const HandState& hand : hands_) {
-    HandCommand& command = commands_.emplace_back(HandCommand{hand.motion.At(t_s), hand.style});
+    HandCommand& command =
+        commands_.emplace_back(HandCommand{hand.motion.At(MotionTime(hand)), hand.style});
     double& height_m = command.target.X_WH.p_m.z();
     if (hand.placing) height_m = hand.placing->HeightOf(height_m);
     if (hand.pressing) command.target.X_WH.p_m += hand.pressing->depth_m * hand.pressing->along_W;

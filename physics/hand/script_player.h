@@ -93,12 +93,20 @@ class ScriptPlayer {
     std::optional<Placing> placing = std::nullopt;
     std::optional<Waiting> waiting = std::nullopt;
     std::optional<Pressing> pressing = std::nullopt;
-    std::int64_t step_ticks = 0;  ///< how long the present step lasts; 0: there is none
-    std::string written_at = {};  ///< the present step
+    std::int64_t step_ticks = 0;    ///< when the present step ends, after its stage began; 0: there
+                                    ///< is none
+    std::int64_t begin_tick = 0;    ///< when its motion began, likewise
+    const Step* delayed = nullptr;  ///< begins at begin_tick
+    std::string written_at = {};    ///< the present step
   };
   class Resolver;
 
   void StartStage(const Snapshot& now);
+  void StartStep(const Step& step, const Snapshot& now);
+  /// Starts the steps whose delay is over.
+  void StartDelayed(const Snapshot& now);
+  /// Since the motion of the hand began.
+  double MotionTime(const HandState& hand) const;
   void Watch(const Snapshot& now);
   bool Waits() const;
   void CheckThatAllStand(const Snapshot& now);

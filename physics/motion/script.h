@@ -83,6 +83,7 @@ struct Step {
   StepAction action;
   double over_s = 0.5;
   std::optional<Until> until = {};
+  double delay_s = 0;           ///< after the begin of its stage; what it says is resolved then
   std::string written_at = {};  ///< "FILE:LINE:COLUMN", for what is said about it; may be empty
 };
 

@@ -45,6 +45,35 @@ TEST(ScriptPlayerTest, MovesAreRelativeAndTriggersLast) {
   EXPECT_EQ(end.v_m_per_s, Eigen::Vector3d::Zero());
 }
 
+TEST(ScriptPlayerTest, ADelayedStepBeginsLaterAndProlongsItsStage) {
+  const Scene scene = MakeScene({});
+  Step step{0, MoveStep{{0.1, 0, 0}}, 0.5};
+  step.delay_s = 0.25;
+  Simulation still(scene, {});
+  ScriptPlayer player(scene, {.stages = {{{step}}}, .settle_s = 0});
+  const Eigen::Vector3d start = scene.hands[0].X_WH.p_m;
+  std::vector<double> moved_m;
+  while (const auto* commands = player.Advance(still.snapshot()))
+    moved_m.push_back(commands->front().target.X_WH.p_m.x() - start.x());
+  ASSERT_EQ(moved_m.size(), 360u) << "0.75 s at 480 Hz";
+  EXPECT_EQ(moved_m[119], 0) << "it rests for 0.25 s";
+  EXPECT_GT(moved_m[125], 0);
+  EXPECT_NEAR(moved_m[239], 0.05, 1e-9) << "half of the way in the middle of the motion";
+  EXPECT_NEAR(moved_m.back(), 0.1, 1e-12);
+}
+
+TEST(ScriptPlayerTest, WhatADelayedStepSaysIsResolvedWhenItBegins) {
+  const Scene scene = MakeScene({});
+  Step reach{0, ReachStep{"nobody"}, 0.5};
+  reach.delay_s = 0.5;
+  Simulation still(scene, {});
+  ScriptPlayer player(scene, {.stages = {{{reach}}}, .settle_s = 0});
+  int ticks = 0;
+  while (player.Advance(still.snapshot())) ++ticks;
+  EXPECT_EQ(ticks, 240);
+  EXPECT_EQ(player.problem(), "reach: there is no entity 'nobody'");
+}
+
 TEST(ScriptPlayerTest, CarryBringsTheObjectsCentreThere) {
   const Scene scene = MakeScene({});
   const ScriptStage reach = One(ReachStep{"object"}, 0.5);
