@@ -43,8 +43,7 @@ std::vector<std::string> Names(const std::vector<std::string>& folders, std::str
     for (std::string& name : NamesIn(folder, ending)) names.push_back(std::move(name));
   }
   std::ranges::sort(names);
-  const auto twice = std::ranges::unique(names);
-  names.erase(twice.begin(), twice.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
 }
 
