@@ -76,7 +76,12 @@ ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) 
   const Tally tally = Count(verdicts);
   context.out << fmt::format("{}: {} episodes, {} passed, {} failed, {} without golden\n", page,
                              verdicts.size(), tally.passed, tally.failed, tally.pending);
-  return ExitCode::kAgrees;
+  // What differs or ended badly is on the page; what cannot be read is not.
+  const auto unread = std::ranges::find(verdicts, ExitCode::kBadInput, &ScenarioVerdict::exit_code);
+  if (unread == verdicts.end()) return ExitCode::kAgrees;
+  context.err << fmt::format("prehend: {}: {}\n{}", unread->scenario, unread->reason,
+                             unread->details);
+  return ExitCode::kBadInput;
 }
 
 }  // namespace

@@ -103,6 +103,7 @@ std::optional<ExitCode> ComplainOf(const sweep::SweepResult& result,
                                    const CommandContext& context) {
   if (request.truth == sweep::Truth::kLabels && !result.left_out.empty())
     return Complain(context, ExitCode::kBadInput, result.left_out.front());
+  if (!result.unread.empty()) return Complain(context, ExitCode::kBadInput, result.unread.front());
   for (const std::string& line : result.left_out)
     context.err << "prehend: left out: " << line << "\n";
   if (result.episodes == 0)

@@ -125,9 +125,12 @@ Json Judged(const grammar::Timeline& truth, grammar::Timeline found, const Sweep
 Json JudgedEpisode(const episodes::EpisodeName& name, const SweepRequest& request,
                    const Programs& programs, episodes::EpisodeLoader& loader) {
   const auto file = episodes::EpisodeFile::Open(name.file);
-  if (!file) return {{"out", file.error().front().message}};
+  const auto unread = [&](const std::string& why) {
+    return Json{{"out", name.file + ": " + why}, {"unread", true}};
+  };
+  if (!file) return unread(file.error().front().message);
   const auto row = std::ranges::find(file->episodes(), name.id, &episodes::EpisodeRow::id);
-  if (row == file->episodes().end()) return {{"out", "it is gone"}};
+  if (row == file->episodes().end()) return unread("it is gone");
   if (row->end.kind != physics::RunStatus::Kind::kCompleted)
     return {{"out", "it did not come to a good end"}};
   const Result<LoadedRun> loaded = loader.Load(*file, *row);
@@ -141,7 +144,7 @@ Json JudgedEpisode(const episodes::EpisodeName& name, const SweepRequest& reques
   const std::string problem =
       frames.Play([&](const physics::Snapshot& snapshot) { run.recording.push_back(snapshot); },
                   [&](std::int64_t tick) { return all || sensing.Due(tick); });
-  if (!problem.empty()) return {{"out", problem}};
+  if (!problem.empty()) return unread(problem);
   const auto truth = TruthOf(request, *file, *row, *loaded, run, *programs.front());
   if (!truth) return {{"out", truth.error()}};
   if (all)
@@ -247,6 +250,7 @@ Result<SweepResult> Sweep(const std::vector<episodes::EpisodeName>& episodes,
       const Json one = k < all.size() ? all[k] : Json{{"out", said[slice].reason}};
       if (one.contains("out")) {
         result.left_out.push_back(episodes[i].scenario + ": " + one["out"].get<std::string>());
+        if (one.contains("unread")) result.unread.push_back(result.left_out.back());
         continue;
       }
       ++result.episodes;

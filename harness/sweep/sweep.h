@@ -58,6 +58,7 @@ struct SweepResult {
   std::vector<SweepPoint> points;  ///< the last axis is the fastest
   int episodes = 0;
   std::vector<std::string> left_out;  ///< "SCENARIO: why"
+  std::vector<std::string> unread;    ///< of these, what cannot be read
 };
 
 /// One point per setting, or why the grammar cannot be compiled with one.

@@ -32,7 +32,9 @@ class HostileFiles {
   HostileFile Next();
 
  private:
-  std::size_t Below(std::size_t limit) { return limit == 0 ? 0 : static_cast<std::size_t>(random_() % limit); }
+  std::size_t Below(std::size_t limit) {
+    return limit == 0 ? 0 : static_cast<std::size_t>(random_() % limit);
+  }
   template <typename T>
   const T& OneOf(const std::vector<T>& from) {
     return from[Below(from.size())];

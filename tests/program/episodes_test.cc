@@ -166,13 +166,24 @@ TEST(Episodes, DamageIsNamedByEveryCommandThatLooksAtFrames) {
   const std::string damage =
       "sqlite3 '" + file + "' \"UPDATE part SET data = substr(data, 1, length(data) / 2)\"";
   ASSERT_EQ(std::system(damage.c_str()), 0);
-  for (const char* command : {"explain", "tracks", "resegment", "poses", "replay"}) {
-    const Said said = Prehend({command, file});
-    EXPECT_EQ(said.exit_code, 2) << command << said.out;
-    EXPECT_NE(said.err.find(file), std::string::npos) << command << ": " << said.err;
+  const std::string svg = file + ".svg", png = file + ".png", page = file + ".html";
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"explain", file},
+           {"tracks", file},
+           {"resegment", file},
+           {"poses", file},
+           {"replay", file},
+           {"figure", "phases", file, "-o", svg},
+           {"render", file, "-o", png},
+           {"report", file, "-o", page},
+           {"sweep", file, "--over", "reach_radius=10cm..20cm:2", "--truth", "recorded"}}) {
+    const Said said = Prehend(words);
+    EXPECT_EQ(said.exit_code, 2) << words[0] << said.out;
+    EXPECT_NE(said.err.find(file), std::string::npos) << words[0] << ": " << said.err;
     EXPECT_NE(said.err.find("the file is damaged: chunk 0"), std::string::npos)
-        << command << ": " << said.err;
+        << words[0] << ": " << said.err;
   }
+  EXPECT_FALSE(std::filesystem::exists(svg) || std::filesystem::exists(png));
 }
 
 TEST(Episodes, AreWholeAfterTheProgramWasKilledAtAnyMoment) {

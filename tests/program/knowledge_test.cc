@@ -208,7 +208,9 @@ TEST(Knowledge, HostileQueriesAreRefusedOrStopped) {
            {"length(L, N), N < 0", "the query"},
            {"X is 7 ** (7 ** 77)", ""}}) {
     const auto begin = std::chrono::steady_clock::now();
-    const Said said = Prehend({"ask", days.kb, query, "--seconds", "2"});
+    // Only an endless query has to reach its limit; the others end before, on a busy machine, too.
+    const bool is_endless = why == "took more than";
+    const Said said = Prehend({"ask", days.kb, query, "--seconds", is_endless ? "2" : "15"});
     EXPECT_EQ(said.exit_code, 2) << query << said.out;
     EXPECT_NE(said.err.find(why), std::string::npos) << query << ": " << said.err;
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20)) << query;
