@@ -10,6 +10,7 @@
 #include "harness/base/atomic_file.h"
 #include "harness/base/default_grammar.h"
 #include "harness/command/command.h"
+#include "harness/command/recorded_episode.h"
 #include "harness/episodes/schema.h"
 #include "harness/labels/read_labels.h"
 #include "harness/labels/take.h"
