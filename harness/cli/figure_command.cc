@@ -264,6 +264,11 @@ ExitCode RunFigure(const ParsedOptions& options, const CommandContext& context) 
   if (std::string_view(kind.name) == "grasps") return DrawGrasps(typed, options, context);
   const auto played = PlayOrRead(typed, options, context);
   if (!played) return played.error();
+  const double from_s = options.NumberOr("--from", 0), end_s = figures::WholeOf(played->run).to_s;
+  if (from_s >= end_s)
+    return Complain(context, ExitCode::kBadInput,
+                    fmt::format("--from: found {:g} s, wanted less than the episode's end, {:g} s",
+                                from_s, end_s));
   return kind.is_chart ? DrawChart(kind, *played, options, context)
                        : DrawKeyFrames(*played, options, context);
 }

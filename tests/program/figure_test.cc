@@ -66,6 +66,8 @@ TEST_F(Figure, WhatCannotBeDrawnIsRefused) {
   refused({"grasps", "-o", Path("a.svg")}, "wanted a file NAME.png");
   refused({"phases", "-o", Path("a.gif")}, "a.gif");
   refused({"plate", "-o", Path("a.svg"), "--from", "3", "--to", "2"}, "wanted less than --to");
+  for (const char* kind : {"phases", "keyframes", "plate", "gaze"})
+    refused({kind, "-o", Path("a.png"), "--from", "1000"}, "found 1000 s, wanted less than the");
   refused({"plate", "-o", Path("a.svg"), "--against", "golden"}, "--against is for phases");
   refused({"phases", "-o", Path("a.svg"), "--against", "nope"}, "no such file");
   const Said alone = Do({"gaze", "milk_carton_wrap", "-o", Path("a.svg")});
