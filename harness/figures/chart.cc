@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "harness/base/markup.h"
 
@@ -19,6 +20,7 @@ constexpr std::array<const char*, 6> kColors = {"#0072B2", "#D55E00", "#009E73",
                                                 "#CC79A7", "#56B4E9", "#000000"};
 constexpr std::array<const char*, 4> kDashes = {"none", "6 3", "2 3", "8 3 2 3"};
 constexpr const char* kInk = "#222222";
+constexpr double kFoot = 5.6;              ///< height of times and legend, in heights of the text
 constexpr std::size_t kMostPoints = 1500;  ///< of a curve; more cannot be seen
 
 std::string Number(double value) { return fmt::format("{:.6g}", value); }
@@ -46,7 +48,7 @@ class Drawing {
     const double rows_px = row_px * static_cast<double>(chart_.rows.size());
     const double height = y + rows_px +
                           (gap_px + panel_px) * static_cast<double>(chart_.panels.size()) +
-                          4 * format_.text_px;
+                          kFoot * format_.text_px;
     svg_ = AddElement(document_, "svg",
                       {{"xmlns", "http://www.w3.org/2000/svg"},
                        {"width", Number(format_.width_px)},
@@ -57,7 +59,7 @@ class Drawing {
     if (!format_.transparent)
       AddElement(svg_, "rect", {{"width", "100%"}, {"height", "100%"}, {"fill", "#FFFFFF"}});
     if (!chart_.title.empty()) Text(left_, 1.4 * format_.text_px, chart_.title, "start", "bold");
-    DrawTimes(y, height - 4 * format_.text_px);
+    DrawTimes(y, height - kFoot * format_.text_px);
     for (const Row& row : chart_.rows) {
       DrawRow(row, y, row_px);
       y += row_px;
@@ -67,6 +69,7 @@ class Drawing {
       DrawPanel(panel, y, panel_px);
       y += panel_px;
     }
+    DrawLegend(height - 0.8 * format_.text_px);
     return ToText(document_, Layout::kIndented);
   }
 
@@ -111,6 +114,8 @@ class Drawing {
       if (0.62 * format_.text_px * static_cast<double>(bar.text.size()) < width - 6)
         Text(x + width / 2, y + 0.5 * height + 0.35 * format_.text_px, bar.text, "middle", "normal",
              IsLight(bar.color) ? "#000000" : "#FFFFFF");
+      else if (!bar.kind.empty())
+        unnamed_[bar.kind] = bar.color;
     }
   }
 
@@ -165,9 +170,15 @@ class Drawing {
     std::string points;
     for (std::size_t i = 0; i < curve.points.size(); i += step) {
       const auto& [time_s, value] = curve.points[i];
+      if (!std::isfinite(value)) DrawLine(points, color, dash);
       if (time_s < chart_.from_s || time_s > chart_.to_s || !std::isfinite(value)) continue;
       points += fmt::format("{:.2f},{:.2f} ", X(time_s), y_of(value));
     }
+    DrawLine(points, color, dash);
+  }
+
+  /// Through these points, which are empty afterwards.
+  void DrawLine(std::string& points, const char* color, const char* dash) {
     if (points.empty()) return;
     points.pop_back();
     AddElement(svg_, "polyline",
@@ -176,6 +187,22 @@ class Drawing {
                 {"stroke", color},
                 {"stroke-width", "1.6"},
                 {"stroke-dasharray", dash}});
+    points.clear();
+  }
+
+  /// What the colours mean whose bars are too short for their texts.
+  void DrawLegend(double y) {
+    double x = left_;
+    for (const auto& [kind, color] : unnamed_) {
+      AddElement(svg_, "rect",
+                 {{"x", Number(x)},
+                  {"y", Number(y - 0.8 * format_.text_px)},
+                  {"width", Number(format_.text_px)},
+                  {"height", Number(0.9 * format_.text_px)},
+                  {"fill", fmt::format("#{:06X}", color)}});
+      Text(x + 1.4 * format_.text_px, y, kind, "start");
+      x += 3 * format_.text_px + 0.62 * format_.text_px * static_cast<double>(kind.size());
+    }
   }
 
   void DrawTimes(double top, double bottom) {
@@ -193,6 +220,7 @@ class Drawing {
   double left_ = 0, right_ = 0;
   pugi::xml_document document_;
   pugi::xml_node svg_;
+  std::map<std::string, std::uint32_t> unnamed_;
 };
 
 }  // namespace

@@ -15,6 +15,7 @@ struct Bar {
   double begin_s = 0, end_s = 0;
   std::string text;  ///< in the bar if it fits
   std::uint32_t color = 0x888888;
+  std::string kind = {};  ///< what the colour means: named below the chart if the text does not fit
 };
 struct Row {
   std::string name;
@@ -22,7 +23,8 @@ struct Row {
 };
 struct Curve {
   std::string name;
-  std::vector<std::pair<double, double>> points;  ///< time in s, value; times increase
+  /// Time in s, value; times increase. A value that is no number interrupts the curve.
+  std::vector<std::pair<double, double>> points;
 };
 struct Panel {
   std::string name;  ///< "height, m"

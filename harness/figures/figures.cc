@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <map>
 #include <set>
 
 #include "harness/timeline/event_text.h"
+#include "physics/scene/geometry.h"
 
 namespace prehend::harness::figures {
 namespace {
@@ -44,7 +46,8 @@ Bar BarOf(const RunResult& run, const NamedEvent& event, std::string text) {
   return {.begin_s = Seconds(run, event.interval.begin),
           .end_s = Seconds(run, event.interval.end),
           .text = std::move(text),
-          .color = run.drawings.Of(event.event).color};
+          .color = run.drawings.Of(event.event).color,
+          .kind = event.event};
 }
 
 /// The phases of each hand, in the order of the hands.
@@ -236,6 +239,8 @@ std::optional<Chart> GazeChart(const Scenario& scenario, const RunResult& run,
           row.bars.push_back({.begin_s = time_s, .end_s = time_s, .text = {}, .color = 0x0072B2});
         row.bars.back().end_s = time_s;
         distance.points.emplace_back(time_s, gaze.distance_m);
+      } else if (!last.empty()) {
+        distance.points.emplace_back(time_s, std::numeric_limits<double>::quiet_NaN());
       }
       last = name;
     }
@@ -267,11 +272,16 @@ std::optional<HeldMoment> LongestGrasp(const Scenario& scenario, const RunResult
   const auto snapshot = std::ranges::find_if(
       run.recording, [&](const physics::Snapshot& one) { return one.tick >= middle; });
   if (hand == scene.hands.end() || snapshot == run.recording.end()) return moment;
+  // Only of what is held: a finger may touch the table, too.
+  const std::size_t role = run.drawings.Of(longest->event).first;
+  const int held =
+      role < longest->roles.size() ? physics::FindBody(scene, longest->roles[role].value) : -1;
   std::set<int> sets;
   const auto index = static_cast<int>(hand - scene.hands.begin());
   for (const physics::ContactPoint& point : snapshot->contacts) {
     for (const physics::ContactSide& side : {point.a, point.b}) {
-      if (side.hand != index) continue;
+      const bool touches_held = point.a.body == held || point.b.body == held;
+      if (side.hand != index || !touches_held) continue;
       sets.insert(side.link < 0
                       ? hand->model.palm_sensor_set
                       : hand->model.links[static_cast<std::size_t>(side.link)].sensor_set);

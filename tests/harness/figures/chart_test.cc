@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <pugixml.hpp>
 
@@ -45,6 +47,14 @@ TEST(Chart, MayHaveNoGround) {
   EXPECT_EQ(ChartSvg(Example(), {.transparent = true}).find("\"100%\""), std::string::npos);
   EXPECT_NE(ChartSvg(Example()).find("\"100%\""), std::string::npos);
   EXPECT_NE(ChartSvg(Example()).find("a &lt; b"), std::string::npos);
+}
+
+TEST(Chart, NamesTheColoursOfShortBarsAndInterruptsCurves) {
+  Chart chart{.to_s = 10, .rows = {{"hand", {{1, 1.01, "fixation", 0x112233, "fixation"}}}}};
+  EXPECT_NE(ChartSvg(chart).find(">fixation<"), std::string::npos);
+  chart.panels = {{"height, m", {{"", {{0, 1}, {1, 1}, {2, NAN}, {3, 1}, {4, 2}}}}}};
+  const std::string svg = ChartSvg(chart);
+  EXPECT_NE(svg.find("<polyline"), svg.rfind("<polyline"));
 }
 
 TEST(Chart, OfNothingIsEmptyButValid) {
