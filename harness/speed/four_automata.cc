@@ -15,7 +15,8 @@ using grammar::Tick;
 constexpr Tick kSupportTicks = FourRules::kSupport_ms * kWorldRate_hz / 1000;
 constexpr Tick kUnansweredTicks = FourRules::kUnanswered_ms * kWorldRate_hz / 1000;
 
-// The four rules for one object, evaluated in each frame.
+// The four rules for one object. To evaluate it again in a frame that says nothing about the object
+// changes nothing.
 struct Automaton {
   // Facts.
   double trigger = 0;
@@ -83,14 +84,59 @@ struct Automaton {
   static constexpr int kNoEntity = grammar::kNoEntity;
 };
 
+class Automata {
+ public:
+  explicit Automata(int objects)
+      : objects_(objects), automata_(static_cast<std::size_t>(objects)) {}
+
+  /// What a frame says; calls changed(object) for each that it says something about, perhaps again.
+  template <typename Changed>
+  void Take(const grammar::FrameChanges& frame, const Changed& changed) {
+    const auto of = [&](int object) -> Automaton& {
+      changed(object);
+      return automata_[static_cast<std::size_t>(object)];
+    };
+    for (const grammar::EntityChange& change : frame.entities)
+      of(change.entity - objects_).p_m = change.look.p_WB_m;
+    for (const grammar::HandSample& hand : frame.hands) of(hand.entity).trigger = hand.trigger;
+    for (const grammar::Touch& touch : frame.touches) {
+      if (touch.a >= objects_) {
+        Automaton& automaton = of(touch.a - objects_);
+        automaton.on_table = true;
+        automaton.up = touch.up_on_a;
+      } else {
+        Automaton& automaton = of(touch.a);
+        automaton.touched = true;
+        automaton.sets = touch.sensor_sets;
+      }
+    }
+    for (const grammar::ContactEnd& contact_end : frame.contact_ends) {
+      if (contact_end.a >= objects_) {
+        of(contact_end.a - objects_).on_table = false;
+      } else {
+        of(contact_end.a).touched = false;
+      }
+    }
+  }
+  void Step(int object, Tick now, Recognised& out) {
+    automata_[static_cast<std::size_t>(object)].Step(object, objects_ + object, now, out);
+  }
+  void Finish(Tick end, Recognised& out) const {
+    for (int k = 0; k < objects_; ++k)
+      automata_[static_cast<std::size_t>(k)].Finish(k, objects_ + k, end, out);
+  }
+
+ private:
+  int objects_ = 0;
+  std::vector<Automaton> automata_;
+};
+
 }  // namespace
 
-Watched WatchByHand(const ChangeLog& log, std::size_t warm_up) {
+Watched WatchByHand(const ChangeLog& log, ByHand by_hand, std::size_t warm_up) {
   const int objects = static_cast<int>(log.entity_table.entities.size() / 2);
-  std::vector<Automaton> automata(static_cast<std::size_t>(objects));
-  const auto of = [&](int entity) -> Automaton& {
-    return automata[static_cast<std::size_t>(entity)];
-  };
+  Automata automata(objects);
+  std::vector<int> changed;
   Watched watched;
   Recognised& recognised = watched.recognised;
   Stopwatch watch;
@@ -101,27 +147,18 @@ Watched WatchByHand(const ChangeLog& log, std::size_t warm_up) {
       watch.Restart();
     }
     const grammar::FrameChanges frame = log[i];
-    for (const grammar::EntityChange& change : frame.entities)
-      of(change.entity - objects).p_m = change.look.p_WB_m;
-    for (const grammar::HandSample& hand : frame.hands) of(hand.entity).trigger = hand.trigger;
-    for (const grammar::Touch& touch : frame.touches) {
-      if (touch.a >= objects) {
-        of(touch.a - objects).on_table = true;
-        of(touch.a - objects).up = touch.up_on_a;
-      } else {
-        of(touch.a).touched = true;
-        of(touch.a).sets = touch.sensor_sets;
-      }
+    if (by_hand == ByHand::kEveryFrame) {
+      automata.Take(frame, [](int) {});
+      for (int k = 0; k < objects; ++k) automata.Step(k, frame.tick, recognised);
+    } else {
+      changed.clear();
+      automata.Take(frame, [&](int object) { changed.push_back(object); });
+      for (const int k : changed) automata.Step(k, frame.tick, recognised);
     }
-    for (const grammar::ContactEnd& contact_end : frame.contact_ends) {
-      (contact_end.a >= objects ? of(contact_end.a - objects).on_table
-                                : of(contact_end.a).touched) = false;
-    }
-    for (int k = 0; k < objects; ++k) of(k).Step(k, objects + k, frame.tick, recognised);
   }
   watched.seconds = watch.seconds();
   watched.events = recognised.events - events_before;
-  for (int k = 0; k < objects; ++k) of(k).Finish(k, objects + k, log.end_tick(), recognised);
+  automata.Finish(log.end_tick(), recognised);
   return watched;
 }
 

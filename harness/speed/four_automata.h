@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The baseline of the speed figures: the four rules as the automata that a careful programmer would
-// write by hand, evaluated for each object in each frame. Tested by
-// tests/harness/speed/workload_test.cc
+// The yardsticks of the speed figures: the four rules as automata that a careful programmer would
+// write by hand, one per object. Tested by tests/harness/speed/workload_test.cc
 #pragma once
 
 #include "harness/speed/workload.h"
 
 namespace prehend::harness {
 
+/// Which automata are evaluated in a frame: of all objects, or of those that it says something
+/// about.
+enum class ByHand { kEveryFrame, kOnChange };
+
 /// Plays a log of harness/speed/worlds.h. The first `warm_up` frames do not count.
-Watched WatchByHand(const ChangeLog& log, std::size_t warm_up = 0);
+Watched WatchByHand(const ChangeLog& log, ByHand by_hand, std::size_t warm_up = 0);
 
 }  // namespace prehend::harness
