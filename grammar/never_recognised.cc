@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "grammar/engine/three_valued.h"
+#include "grammar/base/three_valued.h"
 
 namespace prehend::grammar {
 namespace {

@@ -18,10 +18,10 @@
 #include <vector>
 
 #include "grammar/base/check.h"
+#include "grammar/base/three_valued.h"
 #include "grammar/engine/history.h"
 #include "grammar/engine/instance_index.h"
 #include "grammar/engine/stable_blocks.h"
-#include "grammar/engine/three_valued.h"
 #include "grammar/program/program.h"
 
 namespace prehend::grammar {
