@@ -190,23 +190,31 @@ void Engine::Rest(RuleInstance& instance) {
 void Engine::StepRule(RuleId rule) {
   std::erase_if(awake_[rule], [&](InstanceId index) {
     RuleInstance& instance = instances_[index];
-    if (LooksTheSame(instance)) {
-      Rest(instance);
-      return true;
-    }
-    StepInstance(instance);
-    NotifyIfChanged(instance);
-    if (MayRest(instance)) {
-      Rest(instance);
-      return true;
-    }
-    // When it is known that nothing bridges a gap, values at the frame of the gap may be asked for.
-    const FrameNumber needed = instance.in_gap ? instance.gap.frame : instance.next;
-    past_.Need(needed);
-    for (const Pending& pending : instance.pending) past_.Need(pending.next);
-    if (RuleOf(instance).uses_looks) past_.NeedLooks(needed);
-    return false;
+    const FrameNumber known = instance.known;
+    const bool leaves = StepOrRest(instance);
+    if (instance.awaited && instance.known != known) Tell(instance);
+    return leaves;
   });
+}
+
+// Whether it need not be stepped in the next frame.
+bool Engine::StepOrRest(RuleInstance& instance) {
+  if (LooksTheSame(instance)) {
+    Rest(instance);
+    return true;
+  }
+  StepInstance(instance);
+  NotifyIfChanged(instance);
+  if (MayRest(instance)) {
+    Rest(instance);
+    return true;
+  }
+  if (AwaitOthers(instance)) return true;
+  const FrameNumber needed = OldestNeeded(instance);
+  past_.Need(needed);
+  for (const Pending& pending : instance.pending) past_.Need(pending.next);
+  if (RuleOf(instance).uses_looks) past_.NeedLooks(needed);
+  return false;
 }
 
 }  // namespace prehend::grammar

@@ -6,13 +6,15 @@
 // Program::schedule, each awake instance frame by frame, but only up to the first frame where its
 // condition is not known yet; RuleInstance::known says up to where an instance's own truth is
 // final. So an instance that waits (a gap that may be bridged, an approach that may end in a
-// landing) delays only the instances that ask about just those frames. An instance rests as soon as
-// its newest frame is decided and nothing but a change can decide otherwise: what it asks about
-// wakes it. What time alone changes is either an alarm (the end of a gap, the shortest duration)
-// or, where a value moves by itself (Evaluator::depends_on_time), keeps the instance awake. So a
-// frame costs as much as changes in it. Data structures: grammar/engine/instances.h (state per
-// binding), grammar/engine/history.h (the frames that some instance may still ask for). Tested by
-// tests/grammar/monitor_test.cc and the corpus in tests/grammar/corpus/
+// landing) delays only the instances that ask about just those frames. Those wait, and are stepped
+// again when it tells more; the frames in between are stepped only where something changed
+// (grammar/engine/engine_waiting.cc). An instance rests as soon as its newest frame is decided and
+// nothing but a change can decide otherwise: what it asks about wakes it. What time alone changes
+// is either an alarm (the end of a gap, the shortest duration) or, where a value moves by itself
+// (Evaluator::depends_on_time), keeps the instance awake. So a frame costs as much as changes in
+// it. Data structures: grammar/engine/instances.h (state per binding), grammar/engine/history.h
+// (the frames that some instance may still ask for). Tested by tests/grammar/monitor_test.cc and
+// the corpus in tests/grammar/corpus/
 #pragma once
 
 #include <memory>
@@ -108,6 +110,20 @@ class Engine {
     idle_.Queue(instance);
   }
   void StepRule(RuleId rule);
+  bool StepOrRest(RuleInstance& instance);
+  /// The oldest frame that it may still ask for.
+  FrameNumber OldestNeeded(const RuleInstance& instance) const {
+    // When it is known that nothing bridges a gap, values at the frame of the gap may be asked for.
+    return instance.in_gap ? instance.gap.frame : instance.next;
+  }
+
+  // Waiting for others (grammar/engine/engine_waiting.cc).
+  bool AwaitOthers(RuleInstance& instance);
+  void Tell(RuleInstance& instance);
+  void StopWaiting(RuleInstance& instance);
+  void NeedWhatOthersWaitFor();
+  void SkipUnchanged(RuleInstance& instance) const;
+  FrameNumber NextChange(const RuleInstance& instance, FrameNumber after) const;
 
   // The forms; each looks at one frame and says whether it could decide it.
   void StepInstance(RuleInstance& instance);

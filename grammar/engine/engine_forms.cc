@@ -9,8 +9,7 @@ namespace prehend::grammar {
 
 void Engine::StepInstance(RuleInstance& instance) {
   if (RuleOf(instance).form() == Form::kCompose) return StepCompose(instance);
-  while (instance.next <= history_.now() && StepFrame(instance)) {
-  }
+  while (instance.next <= history_.now() && StepFrame(instance)) SkipUnchanged(instance);
   ResolvePending(instance);
   UpdateKnown(instance);
 }

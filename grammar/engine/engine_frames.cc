@@ -96,6 +96,7 @@ void Engine::EndFrame() {
     if (!awake_[rule].empty()) StepRule(rule);
   }
   if (log_ == nullptr) {
+    NeedWhatOthersWaitFor();
     past_.Forget(history_);
     idle_.FreeOld();
   }
@@ -127,6 +128,7 @@ void Engine::Finish(Tick end, std::vector<Event>& out) {
   // What rests is decided; if it is open, it ends now.
   for (InstanceId i(0); i < instances_.end_id(); ++i) {
     RuleInstance& instance = instances_[i];
+    if (instance.rule != kNone && instance.waits) StopWaiting(instance);
     if (instance.rule == kNone || instance.awake || !instance.open) continue;
     Wake(i);
     instance.next = history_.now() + 1;

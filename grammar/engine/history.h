@@ -4,6 +4,7 @@
 // kept. Tested by tests/grammar/engine/history_test.cc
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -33,6 +34,15 @@ const Sample& SampleAt(const RingBuffer<Sample>& samples, FrameNumber frame) {
     (samples[middle].frame <= frame ? low : high) = middle;
   }
   return samples[low];
+}
+
+/// Of the first sample after `frame`; kNever if there is none.
+template <typename Sample>
+FrameNumber FirstAfter(const RingBuffer<Sample>& samples, FrameNumber frame) {
+  FrameNumber first = kNever;
+  for (std::size_t i = samples.size(); i-- > 0 && samples[i].frame > frame;)
+    first = samples[i].frame;
+  return first;
 }
 
 /// Drops what only frames before `frame` need.
@@ -78,6 +88,12 @@ class History {
   const HandAtFrame* Hand(int entity, FrameNumber frame) const {
     const int index = hand_of_entity_[entity];
     return index < 0 ? nullptr : &SampleAt(hand_samples_[index], frame);
+  }
+  /// The first frame after this one in which the entity looks different; kNever if it does not.
+  FrameNumber NextChange(int entity, FrameNumber after) const {
+    const FrameNumber look = FirstAfter(looks_[entity], after);
+    const int hand = hand_of_entity_[entity];
+    return hand < 0 ? look : std::min(look, FirstAfter(hand_samples_[hand], after));
   }
   bool Shows(int hand) const { return hand_of_entity_[hand] >= 0; }
   double Seconds(Tick ticks) const { return static_cast<double>(ticks) / ticks_per_second_; }

@@ -4,10 +4,12 @@
 // An instance is *awake* while there is something to look at in the next frame; else it rests: its
 // condition is what it was, and it is not looked at until something that it is made of changes. So
 // each instance knows the instances that ask about it (its watchers), and each entity the instances
-// that look at it. An instance exists from when its guard first held, or when another one first
-// asked about it, until nothing about it is true, open, undecided or within the remembered past.
-// Its place is used again, by a rule with the same kind of state, so that memory is used again too.
-// Tested by tests/grammar/monitor_test.cc and tests/grammar/engine/changes_test.cc
+// that look at it. An instance that is awake *waits* if it cannot decide its next frame before one
+// that it asks about can: it is not looked at until that one tells more. An instance exists from
+// when its guard first held, or when another one first asked about it, until nothing about it is
+// true, open, undecided or within the remembered past. Its place is used again, by a rule with the
+// same kind of state, so that memory is used again too. Tested by tests/grammar/monitor_test.cc and
+// tests/grammar/engine/changes_test.cc
 #pragma once
 
 #include <algorithm>
@@ -123,7 +125,9 @@ struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is 
   bool certain = false;              ///< the open run will be an interval whatever comes
   bool in_gap = false;               ///< the run may have ended at `gap`
   bool dependents_made = false;      ///< the instances that this one guards are there
-  bool idle_queued = false;          ///< waits to be freed
+  bool idle_queued : 1 = false;      ///< waits to be freed
+  bool waits : 1 = false;            ///< awake, but not stepped until one it asks about tells more
+  bool awaited = false;              ///< some instance waits for this one to tell more
   Kleene reported = Kleene::kFalse;  ///< the truth at the newest frame, as far as the watchers know
   FrameNumber known = kNever;        ///< truth is final before this frame
   Moment begin;

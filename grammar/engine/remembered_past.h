@@ -28,6 +28,26 @@ class RememberedPast {
   void Need(FrameNumber frame) { ticks_.oldest = std::min(ticks_.oldest, frame); }
   /// Likewise, with the poses, hands and touches of the frame.
   void NeedLooks(FrameNumber frame) { looks_.oldest = std::min(looks_.oldest, frame); }
+  /// In this and all frames to come, as long as NeedHeld() says so.
+  void Hold(FrameNumber frame, bool looks, InstanceId instance) {
+    ticks_.held.push_back({frame, instance});
+    std::ranges::push_heap(ticks_.held, Later);
+    if (!looks) return;
+    looks_.held.push_back({frame, instance});
+    std::ranges::push_heap(looks_.held, Later);
+  }
+  /// still_holds(frame, instance): whether this is still needed.
+  template <typename StillHolds>
+  void NeedHeld(const StillHolds& still_holds) {
+    for (Past* past : {&ticks_, &looks_}) {
+      std::vector<Held>& held = past->held;
+      while (!held.empty() && !still_holds(held.front().frame, held.front().instance)) {
+        std::ranges::pop_heap(held, Later);
+        held.pop_back();
+      }
+      if (!held.empty()) past->oldest = std::min(past->oldest, held.front().frame);
+    }
+  }
 
   /// Drops what is not needed.
   void Forget(History& history) {
@@ -37,11 +57,18 @@ class RememberedPast {
   }
 
  private:
+  struct Held {
+    FrameNumber frame = 0;
+    InstanceId instance;
+  };
+  static bool Later(const Held& a, const Held& b) { return a.frame > b.frame; }
+
   /// What is kept, step by step: none goes back again.
   struct Past {
     FrameNumber oldest = 0;            // that an instance needs
     FrameNumber first = 0;             // that it may ask for, and two more
     std::vector<FrameNumber> windows;  // where a window around that begins, and so on
+    std::vector<Held> held;            // a heap, the oldest first
   };
 
   // Two frames more are kept, for differences between frames: edges and speeds. Time between frames

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Instances that wait for others, and how they catch up.
+//
+// Needs: an instance cannot decide a frame while the truth of another one is unknown there, and the
+// other one need not tell for long: the shortest duration of its interval, a gap that may be
+// bridged. Algorithm: if nothing but others can decide the frame, the instance waits; one that is
+// awaited tells when its truth becomes known further than before. The frames that were missed are
+// then stepped where something changes that the instance asks about; between two changes a step
+// finds what the last one found. That is what lets instances rest, too (Engine::MayRest()).
+// Tested by tests/grammar/monitor_test.cc and tests/grammar/reference/reference_test.cc
+#include <algorithm>
+
+#include "grammar/engine/engine.h"
+
+namespace prehend::grammar {
+namespace {
+
+// Where the truth of an instance changes, or becomes unknown.
+FrameNumber NextEdge(const RuleInstance& instance, FrameNumber after) {
+  FrameNumber next = kNever;
+  const auto consider = [&](FrameNumber frame) {
+    if (frame > after) next = std::min(next, frame);
+  };
+  consider(instance.known);
+  if (instance.open) consider(instance.begin.frame);
+  for (std::size_t i = 0; i < instance.past.size(); ++i) {
+    consider(instance.past[i].begin.frame);
+    consider(instance.past[i].end.frame);
+  }
+  if (const auto* touching = instance.If<TouchingState>()) {
+    consider(FirstAfter(touching->crossings, after));
+    consider(FirstAfter(touching->touches, after));
+  }
+  return next;
+}
+
+template <typename Visit>
+void ForEachReference(const RuleInstance& instance, const Visit& visit) {
+  if (const auto* any = instance.If<AnyState>()) {
+    for (const InstanceId member : any->members) visit(member);
+  }
+  for (const InstanceId reference : instance.references) {
+    if (reference != kNone) visit(reference);
+  }
+}
+
+}  // namespace
+
+// An instance could not decide its next frame. False if time may decide it: frames to come, the
+// confirmation of an interval.
+bool Engine::AwaitOthers(RuleInstance& instance) {
+  if (instance.next > history_.now() || !instance.pending.empty() || evaluator_.depends_on_time() ||
+      RuleOf(instance).form() == Form::kCompose)
+    return false;
+  ForEachReference(instance, [&](InstanceId index) {
+    RuleInstance& other = instances_[index];
+    if (other.known > instance.next) return;
+    other.awaited = instance.waits = true;
+  });
+  if (instance.waits)
+    past_.Hold(OldestNeeded(instance), RuleOf(instance).uses_looks, instance.index);
+  return instance.waits;
+}
+
+void Engine::Tell(RuleInstance& instance) {
+  instance.awaited = false;
+  for (const Watcher& watcher : instance.watchers) {
+    if (instances_[watcher.instance].waits) StopWaiting(instances_[watcher.instance]);
+  }
+}
+
+void Engine::StopWaiting(RuleInstance& instance) {
+  instance.waits = false;
+  awake_[instance.rule].push_back(instance.index);
+}
+
+void Engine::NeedWhatOthersWaitFor() {
+  past_.NeedHeld([this](FrameNumber frame, InstanceId index) {
+    return instances_[index].waits && OldestNeeded(instances_[index]) == frame;
+  });
+}
+
+// A frame was decided. Those that follow are left out as long as they cannot differ from it.
+void Engine::SkipUnchanged(RuleInstance& instance) const {
+  const FrameNumber now = history_.now();
+  if (instance.next >= now || evaluator_.depends_on_time() || !instance.pending.empty() ||
+      instance.in_gap)
+    return;
+  const Form form = RuleOf(instance).form();
+  const bool has_deadline = instance.open && TicksOf(instance).within >= 0;
+  if (form == Form::kUntilSince || has_deadline) return;
+  instance.next = std::clamp(NextChange(instance, instance.next - 1), instance.next, now + 1);
+}
+
+// The first frame after this one where something changes that the instance asks about.
+FrameNumber Engine::NextChange(const RuleInstance& instance, FrameNumber after) const {
+  FrameNumber next = kNever;
+  ForEachReference(instance, [&](InstanceId index) {
+    next = std::min(next, NextEdge(instances_[index], after));
+  });
+  const Rule& rule = RuleOf(instance);
+  for (std::size_t role = 0; role < rule.roles.size(); ++role) {
+    if (rule.watches_pose[role] || rule.watches_grip[role])
+      next = std::min(next, history_.NextChange(instance.entities[role], after));
+  }
+  return next;
+}
+
+}  // namespace prehend::grammar
