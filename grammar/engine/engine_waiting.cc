@@ -50,7 +50,7 @@ void ForEachReference(const RuleInstance& instance, const Visit& visit) {
 // confirmation of an interval.
 bool Engine::AwaitOthers(RuleInstance& instance) {
   if (instance.next > history_.now() || !instance.pending.empty() || evaluator_.depends_on_time() ||
-      RuleOf(instance).form() == Form::kCompose)
+      RuleOf(instance).form() == Form::kCompose || !program_->waits)
     return false;
   ForEachReference(instance, [&](InstanceId index) {
     RuleInstance& other = instances_[index];
@@ -84,7 +84,7 @@ void Engine::NeedWhatOthersWaitFor() {
 void Engine::SkipUnchanged(RuleInstance& instance) const {
   const FrameNumber now = history_.now();
   if (instance.next >= now || evaluator_.depends_on_time() || !instance.pending.empty() ||
-      instance.in_gap)
+      instance.in_gap || !program_->waits)
     return;
   const Form form = RuleOf(instance).form();
   const bool has_deadline = instance.open && TicksOf(instance).within >= 0;

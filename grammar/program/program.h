@@ -362,6 +362,7 @@ struct Program {
       thresholds;  ///< at most kMaxThresholds; what is compared with others counts as kAnyChange
   bool asks_touches = false;     ///< for values of a touch, not only for thresholds it has crossed
   bool recalls_touches = false;  ///< for thresholds that it had crossed in earlier frames
+  bool waits = true;  ///< for what others decide later; false, in tests: steps each frame at once
 };
 
 inline constexpr RuleId kTouchingRule(0);

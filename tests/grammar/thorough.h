@@ -11,8 +11,8 @@
 
 namespace prehend::grammar::testing {
 
-/// The same program, but everybody is woken by everything, and nothing is answered by what was
-/// measured.
+/// The same program, but everybody is woken by everything, nobody waits for others, and nothing is
+/// answered by what was measured.
 inline std::shared_ptr<const Program> Thorough(const Program& program) {
   const auto thorough = std::make_shared<Program>(program);
   for (Rule& rule : thorough->rules) {
@@ -23,6 +23,7 @@ inline std::shared_ptr<const Program> Thorough(const Program& program) {
   }
   for (Node& node : thorough->nodes) node.by_threshold = {};
   thorough->asks_touches = thorough->recalls_touches = true;
+  thorough->waits = false;
   return thorough;
 }
 
