@@ -17,9 +17,12 @@ Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
       thresholds_(program_->thresholds),
       recalls_touches_(program_->recalls_touches || program_->asks_touches),
       keeps_touches_(program_->asks_touches),
+      looks_at_all_(std::ranges::any_of(program_->nodes,
+                                        [](const Node& node) { return node.op == Op::kNearest; })),
       grips_(entity_table_.entities.size(), thresholds_.OfGrip(0)),
       awake_(program_->rules.size()),
-      idle_(*program_, history_, instances_) {
+      idle_(*program_, history_, instances_),
+      past_(entity_table_.entities.size()) {
   for (const Rule& rule : program_->rules) {
     rule_ticks_.push_back(grammar::TicksOf(rule, history_));
     past_.LookBack(rule, history_);
@@ -213,7 +216,7 @@ bool Engine::StepOrRest(RuleInstance& instance) {
   const FrameNumber needed = OldestNeeded(instance);
   past_.Need(needed);
   for (const Pending& pending : instance.pending) past_.Need(pending.next);
-  if (RuleOf(instance).uses_looks) past_.NeedLooks(needed);
+  if (RuleOf(instance).uses_looks && !past_.NeedLooks(needed)) HoldLooks(instance);
   return false;
 }
 

@@ -72,7 +72,7 @@ class Engine {
   void BeginTouch(RuleInstance& touching);
   void Part(InstanceId touching);
   void CloseTouch(RuleInstance& touching, Moment end);
-  void Keep(TouchingState& touching, const Touch& touch, bool swapped);
+  void Keep(RuleInstance& touching, const Touch& touch, bool swapped);
   void NotifyOfThresholds(const RuleInstance& touch, ThresholdSet changed);
   void Measure(RuleInstance& instance, const Watcher& as, const RuleInstance& touch) {
     if (IsMeasured(*as.measured, as.hand, touch, as.swapped) != instance.open) BeginOrEnd(instance);
@@ -121,7 +121,14 @@ class Engine {
   bool AwaitOthers(RuleInstance& instance);
   void Tell(RuleInstance& instance);
   void StopWaiting(RuleInstance& instance);
-  void NeedWhatOthersWaitFor();
+  void HoldLooks(const RuleInstance& instance);
+  bool IsHeld(const RememberedPast::Held& held) const {
+    const RuleInstance& instance = instances_[held.instance];
+    return instance.awake && OldestNeeded(instance) == held.frame;
+  }
+  FrameNumber FirstLook(int entity) {
+    return past_.FirstLook(entity, history_, [this](const auto& held) { return IsHeld(held); });
+  }
   void SkipUnchanged(RuleInstance& instance) const;
   FrameNumber NextChange(const RuleInstance& instance, FrameNumber after) const;
 
@@ -200,6 +207,7 @@ class Engine {
   std::vector<InstanceId> contacts_;  // the instances of the touches of this frame, kNone: none yet
   Alarms alarms_;
   IdleQueue idle_;
+  bool looks_at_all_ = false;        // a rule asks for entities that play none of its roles
   RememberedPast past_;
   std::vector<InstanceId> scratch_;   // instances; kept for its memory
   std::vector<InstanceId> notified_;  // likewise

@@ -96,7 +96,7 @@ void Engine::EndFrame() {
     if (!awake_[rule].empty()) StepRule(rule);
   }
   if (log_ == nullptr) {
-    NeedWhatOthersWaitFor();
+    past_.NeedHeld([this](const RememberedPast::Held& held) { return IsHeld(held); });
     past_.Forget(history_);
     idle_.FreeOld();
   }
@@ -153,7 +153,7 @@ void Engine::NoteUndecidedEnds() {
 }
 
 void Engine::Look(int entity, const EntitySample& look) {
-  history_.SetSample(entity, look);
+  history_.SetSample(entity, look, FirstLook(entity));
   WakeWatchers(instances_.PoseWatchers(entity));
 }
 
@@ -165,7 +165,7 @@ void Engine::Look(const HandSample& hand) {
   const ThresholdSet crossed = thresholds_.OfGrip(hand.trigger);
   const ThresholdSet changed =
       before == nullptr ? ~ThresholdSet{0} : kAnyChange | (crossed ^ before->crossed_thresholds);
-  history_.SetHand(hand, crossed);
+  history_.SetHand(hand, crossed, FirstLook(hand.entity));
   grips_[hand.entity] = crossed;
   for (const Watch& watch : instances_.GripWatchers(hand.entity)) {
     const RuleInstance& instance = instances_[watch.instance];
@@ -197,7 +197,7 @@ void Engine::ApplyContacts(std::span<const Touch> touches) {
         (keeps_touches_ ? Same(touch, swapped, state.touches.back()) : changed == 0))
       continue;
     state.crossed_thresholds = crossed;
-    if (recalls_touches_) Keep(state, touch, swapped);
+    if (recalls_touches_) Keep(instance, touch, swapped);
     if (instance.open) {
       NotifyOfThresholds(instance, changed | kAnyChange);
     } else {
@@ -206,11 +206,14 @@ void Engine::ApplyContacts(std::span<const Touch> touches) {
   }
 }
 
-void Engine::Keep(TouchingState& touching, const Touch& touch, bool swapped) {
-  ForgetSamples(touching.crossings, history_.first_look());
+// Who asks how two touch has both in its roles, and holds the looks of both while it waits.
+void Engine::Keep(RuleInstance& instance, const Touch& touch, bool swapped) {
+  auto& touching = instance.As<TouchingState>();
+  const FrameNumber first = std::max(FirstLook(touch.a), FirstLook(touch.b));
+  ForgetSamples(touching.crossings, first);
   touching.crossings.PushBack() = {history_.now(), touching.crossed_thresholds};
   if (!keeps_touches_) return;
-  ForgetSamples(touching.touches, history_.first_look());
+  ForgetSamples(touching.touches, first);
   TouchSample& sample = touching.touches.PushBack();
   sample.frame = history_.now();
   sample.up =

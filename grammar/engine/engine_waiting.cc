@@ -50,16 +50,26 @@ void ForEachReference(const RuleInstance& instance, const Visit& visit) {
 // confirmation of an interval.
 bool Engine::AwaitOthers(RuleInstance& instance) {
   if (instance.next > history_.now() || !instance.pending.empty() || evaluator_.depends_on_time() ||
-      RuleOf(instance).form() == Form::kCompose || !program_->waits)
+      RuleOf(instance).form() == Form::kCompose || !program_->waits ||
+      (looks_at_all_ && RuleOf(instance).uses_looks))
     return false;
   ForEachReference(instance, [&](InstanceId index) {
     RuleInstance& other = instances_[index];
     if (other.known > instance.next) return;
     other.awaited = instance.waits = true;
   });
-  if (instance.waits)
-    past_.Hold(OldestNeeded(instance), RuleOf(instance).uses_looks, instance.index);
-  return instance.waits;
+  if (!instance.waits) return false;
+  past_.Hold(OldestNeeded(instance), instance.index);
+  if (RuleOf(instance).uses_looks) HoldLooks(instance);
+  return true;
+}
+
+// Of the entities that play its roles: it asks for no others.
+void Engine::HoldLooks(const RuleInstance& instance) {
+  for (std::size_t role = 0; role < RuleOf(instance).roles.size(); ++role) {
+    past_.HoldLooks(instance.entities[role], OldestNeeded(instance), instance.index, history_,
+                    [this](const auto& held) { return IsHeld(held); });
+  }
 }
 
 void Engine::Tell(RuleInstance& instance) {
@@ -72,12 +82,6 @@ void Engine::Tell(RuleInstance& instance) {
 void Engine::StopWaiting(RuleInstance& instance) {
   instance.waits = false;
   awake_[instance.rule].push_back(instance.index);
-}
-
-void Engine::NeedWhatOthersWaitFor() {
-  past_.NeedHeld([this](FrameNumber frame, InstanceId index) {
-    return instances_[index].waits && OldestNeeded(instances_[index]) == frame;
-  });
 }
 
 // A frame was decided. Those that follow are left out as long as they cannot differ from it.

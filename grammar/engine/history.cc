@@ -23,22 +23,22 @@ void History::BeginFrame(Tick tick) {
   ++count_;
 }
 
-void History::SetSample(int entity, const EntitySample& look) {
+void History::SetSample(int entity, const EntitySample& look, FrameNumber first) {
   RingBuffer<PoseAtFrame>& samples = looks_[entity];
-  ForgetSamples(samples, first_look_);
+  ForgetSamples(samples, first);
   if (samples.empty() && now() > 0) samples.PushBack() = {};  // what it was before anybody said
   PoseAtFrame& sample = samples.PushBack();
   sample.frame = now();
   sample.look = look;
 }
 
-void History::SetHand(const HandSample& look, std::uint64_t crossed_thresholds) {
+void History::SetHand(const HandSample& look, std::uint64_t crossed_thresholds, FrameNumber first) {
   int& index = hand_of_entity_[look.entity];
   if (index < 0) {
     index = static_cast<int>(hand_samples_.size());
     hand_samples_.emplace_back();
   }
-  ForgetSamples(hand_samples_[index], first_look_);
+  ForgetSamples(hand_samples_[index], first);
   HandAtFrame& sample = hand_samples_[index].PushBack();
   sample.frame = now();
   sample.look = look;

@@ -57,11 +57,12 @@ class History {
 
   /// A new frame in which everything looks as before, until it is said otherwise.
   void BeginFrame(Tick tick);
-  void SetSample(int entity, const EntitySample& look);
-  void SetHand(const HandSample& look, std::uint64_t crossed_thresholds = 0);
+  /// Forgets what only frames before `first` need.
+  void SetSample(int entity, const EntitySample& look, FrameNumber first);
+  void SetHand(const HandSample& look, std::uint64_t crossed_thresholds, FrameNumber first);
 
-  /// Forgets ticks of frames before `ticks` and looks that only frames before `looks` need; of an
-  /// entity, when its next look comes.
+  /// Forgets ticks of frames before `ticks`. Looks that only frames before `looks` need may be
+  /// forgotten.
   void Forget(FrameNumber ticks, FrameNumber looks);
   FrameNumber first_look() const { return first_look_; }
 

@@ -13,6 +13,14 @@ namespace prehend::grammar {
 
 class RememberedPast {
  public:
+  explicit RememberedPast(std::size_t entities) : entities_(entities) {}
+
+  /// The oldest frame that an instance which waits, or has waited, may ask for.
+  struct Held {
+    FrameNumber frame = 0;
+    InstanceId instance;
+  };
+
   /// A rule looks back so far: to an earlier frame, at the edge of a condition from there to the
   /// frame before, and from that one over windows, one in another.
   void LookBack(const Rule& rule, const History& history) {
@@ -26,41 +34,63 @@ class RememberedPast {
   /// At a new frame nothing older is needed, until an instance needs it.
   void BeginFrame(FrameNumber now) { ticks_.oldest = looks_.oldest = now; }
   void Need(FrameNumber frame) { ticks_.oldest = std::min(ticks_.oldest, frame); }
-  /// Likewise, with the poses, hands and touches of the frame.
-  void NeedLooks(FrameNumber frame) { looks_.oldest = std::min(looks_.oldest, frame); }
-  /// In this and all frames to come, as long as NeedHeld() says so.
-  void Hold(FrameNumber frame, bool looks, InstanceId instance) {
-    ticks_.held.push_back({frame, instance});
-    std::ranges::push_heap(ticks_.held, Later);
-    if (!looks) return;
-    looks_.held.push_back({frame, instance});
-    std::ranges::push_heap(looks_.held, Later);
+  /// Likewise, with the poses, hands and touches of the frame. False if only those that somebody
+  /// holds are there still.
+  bool NeedLooks(FrameNumber frame) {
+    if (frame < passed_looks_) return false;
+    looks_.oldest = std::min(looks_.oldest, frame);
+    return true;
   }
-  /// still_holds(frame, instance): whether this is still needed.
-  template <typename StillHolds>
-  void NeedHeld(const StillHolds& still_holds) {
-    for (Past* past : {&ticks_, &looks_}) {
-      std::vector<Held>& held = past->held;
-      while (!held.empty() && !still_holds(held.front().frame, held.front().instance)) {
-        std::ranges::pop_heap(held, Later);
-        held.pop_back();
-      }
-      if (!held.empty()) past->oldest = std::min(past->oldest, held.front().frame);
+  /// Like Need(), in this and all frames to come, as long as the instance holds it.
+  void Hold(FrameNumber frame, InstanceId instance) {
+    held_.push_back({frame, instance});
+    std::ranges::push_heap(held_, Later);
+  }
+  /// Likewise, with the looks of one entity.
+  template <typename IsHeld>
+  void HoldLooks(int entity, FrameNumber frame, InstanceId instance, const History& history,
+                 const IsHeld& is_held) {
+    if (held_looks_.empty()) held_looks_.resize(entities_);
+    std::vector<HeldLooks>& held = held_looks_[static_cast<std::size_t>(entity)];
+    if (held.size() == held.capacity()) DropReleased(held, is_held);
+    held.push_back({{frame, instance}, FirstToKeep(history, frame)});
+  }
+  /// is_held(held): whether the instance still holds that frame.
+  template <typename IsHeld>
+  void NeedHeld(const IsHeld& is_held) {
+    while (!held_.empty() && !is_held(held_.front())) {
+      std::ranges::pop_heap(held_, Later);
+      held_.pop_back();
     }
+    if (!held_.empty()) Need(held_.front().frame);
+  }
+  /// The first frame whose look of this entity somebody may ask for.
+  template <typename IsHeld>
+  FrameNumber FirstLook(int entity, const History& history, const IsHeld& is_held) {
+    FrameNumber first = history.first_look();
+    if (held_looks_.empty()) return first;
+    std::vector<HeldLooks>& held = held_looks_[static_cast<std::size_t>(entity)];
+    DropReleased(held, is_held);
+    for (const HeldLooks& looks : held) first = std::min(first, looks.first);
+    return first;
   }
 
   /// Drops what is not needed.
   void Forget(History& history) {
+    passed_looks_ = std::max(passed_looks_, looks_.oldest);
     const FrameNumber ticks = FirstToKeep(history, ticks_);
     const bool same = looks_.oldest == ticks_.oldest;
     history.Forget(ticks, same ? ticks : FirstToKeep(history, looks_));
   }
 
  private:
-  struct Held {
-    FrameNumber frame = 0;
-    InstanceId instance;
+  struct HeldLooks : Held {
+    FrameNumber first = 0;  // that may be asked for from there
   };
+  template <typename IsHeld>
+  static void DropReleased(std::vector<HeldLooks>& held, const IsHeld& is_held) {
+    std::erase_if(held, [&](const HeldLooks& looks) { return !is_held(looks); });
+  }
   static bool Later(const Held& a, const Held& b) { return a.frame > b.frame; }
 
   /// What is kept, step by step: none goes back again.
@@ -68,7 +98,6 @@ class RememberedPast {
     FrameNumber oldest = 0;            // that an instance needs
     FrameNumber first = 0;             // that it may ask for, and two more
     std::vector<FrameNumber> windows;  // where a window around that begins, and so on
-    std::vector<Held> held;            // a heap, the oldest first
   };
 
   // Two frames more are kept, for differences between frames: edges and speeds. Time between frames
@@ -89,10 +118,25 @@ class RememberedPast {
     return from;
   }
 
+  // Likewise, what one that waits at `frame` may ask for.
+  FrameNumber FirstToKeep(const History& history, FrameNumber frame) const {
+    const Tick earliest = history.At(frame).tick - longest_look_back_;
+    FrameNumber from = history.FirstNotBefore(earliest) - 2;
+    for (std::size_t i = 0; i < looks_.windows.size(); ++i) {
+      from = std::max(from, history.first());
+      from = history.LastNotAfter(history.At(from).tick - longest_window_);
+    }
+    return from;
+  }
+
+  std::size_t entities_;
   Tick longest_look_back_ = 0;
   Tick longest_window_ = 0;
   Past ticks_;
   Past looks_;
+  FrameNumber passed_looks_ = 0;                    // what only earlier frames need is gone
+  std::vector<Held> held_;                          // a heap, the oldest first
+  std::vector<std::vector<HeldLooks>> held_looks_;  // by entity, once there are any
 };
 
 }  // namespace prehend::grammar

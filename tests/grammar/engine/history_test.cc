@@ -12,9 +12,9 @@ void Push(History& history, const Frame& frame) {
   history.BeginFrame(frame.tick);
   for (std::size_t i = 0; i < frame.entities.size(); ++i) {
     if (i != Scene::kTray || history.now() == 0)
-      history.SetSample(static_cast<int>(i), frame.entities[i]);
+      history.SetSample(static_cast<int>(i), frame.entities[i], history.first_look());
   }
-  for (const HandSample& hand : frame.hands) history.SetHand(hand);
+  for (const HandSample& hand : frame.hands) history.SetHand(hand, 0, history.first_look());
 }
 
 TEST(History, RemembersLooksOfEachFrame) {
