@@ -19,10 +19,12 @@ class Alarms {
     std::ranges::push_heap(heap_, Later);
   }
 
+  bool AnyDue(Tick now) const { return !heap_.empty() && heap_.front().tick <= now; }
+
   /// Calls wake(instance) for each alarm up to `now` and drops it.
   template <typename Wake>
   void Sound(Tick now, const Wake& wake) {
-    while (!heap_.empty() && heap_.front().tick <= now) {
+    while (AnyDue(now)) {
       wake(heap_.front().instance);
       std::ranges::pop_heap(heap_, Later);
       heap_.pop_back();

@@ -42,6 +42,7 @@ void Engine::Wake(InstanceId index) {
   if (!instance.open || (instance.certain && !instance.in_gap) || rested)
     instance.known = instance.next;
   awake_[instance.rule].push_back(index);
+  ++awake_count_;
 }
 
 void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
@@ -191,7 +192,7 @@ void Engine::Rest(RuleInstance& instance) {
 }
 
 void Engine::StepRule(RuleId rule) {
-  std::erase_if(awake_[rule], [&](InstanceId index) {
+  awake_count_ -= std::erase_if(awake_[rule], [&](InstanceId index) {
     RuleInstance& instance = instances_[index];
     const FrameNumber known = instance.known;
     const bool leaves = StepOrRest(instance);

@@ -64,7 +64,13 @@ class Engine {
   void LookUp(std::span<const Touch> touches);
   template <typename AnyFrame>
   bool BeginFrame(const AnyFrame& frame, std::vector<Event>& out);
+  bool BringsNothing(const FrameChanges& changes) const {
+    return awake_count_ == 0 && changes.entities.empty() && changes.hands.empty() &&
+           changes.touches.empty() && changes.contact_ends.empty() && !alarms_.AnyDue(changes.tick);
+  }
+  void PassBy(Tick tick);
   void EndFrame();
+  void Forget();
   void SortNewEvents();
   void Look(int entity, const EntitySample& look);
   void Look(const HandSample& hand);
@@ -201,13 +207,14 @@ class Engine {
   Thresholds thresholds_;
   bool recalls_touches_ = false;     // which thresholds they had crossed
   bool keeps_touches_ = false;       // and all that they measured
+  bool looks_at_all_ = false;        // a rule asks for entities that play none of its roles
   std::vector<ThresholdSet> grips_;  // by entity: what its grip has crossed
-  IdVector<RuleId, std::vector<InstanceId>> awake_;
+  IdVector<RuleId, std::vector<InstanceId>> awake_;  // those to be stepped in this frame
+  std::size_t awake_count_ = 0;       // of all rules; those that wait are not among them
   std::vector<InstanceId> touching_;  // the pairs that touch now
   std::vector<InstanceId> contacts_;  // the instances of the touches of this frame, kNone: none yet
   Alarms alarms_;
   IdleQueue idle_;
-  bool looks_at_all_ = false;        // a rule asks for entities that play none of its roles
   RememberedPast past_;
   std::vector<InstanceId> scratch_;   // instances; kept for its memory
   std::vector<InstanceId> notified_;  // likewise

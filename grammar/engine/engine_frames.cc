@@ -61,6 +61,7 @@ void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
 }
 
 void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
+  if (BringsNothing(changes) && error_.empty() && !finishing_) return PassBy(changes.tick);
   if (!BeginFrame(changes, out)) return;
   for (const EntityChange& change : changes.entities) Look(change.entity, change.look);
   for (const HandSample& hand : changes.hands) Look(hand);
@@ -91,17 +92,33 @@ bool Engine::BeginFrame(const AnyFrame& frame, std::vector<Event>& out) {
   return true;
 }
 
+// Nobody has anything to look at in this frame. It is kept for those who look back over it.
+void Engine::PassBy(Tick tick) {
+  constexpr FrameNumber kFramesBetweenForgetting = 16;
+  if (const std::string_view why_not = WhyNoTick(tick, history_); !why_not.empty()) {
+    error_ = why_not;
+    return;
+  }
+  history_.BeginFrame(tick);
+  if (history_.now() % kFramesBetweenForgetting != 0) return;
+  past_.BeginFrame(history_.now());
+  Forget();
+}
+
 void Engine::EndFrame() {
   for (const RuleId rule : program_->schedule) {
     if (!awake_[rule].empty()) StepRule(rule);
   }
-  if (log_ == nullptr) {
-    past_.NeedHeld([this](const RememberedPast::Held& held) { return IsHeld(held); });
-    past_.Forget(history_);
-    idle_.FreeOld();
-  }
+  Forget();
   if (instances_.TooMany()) error_ = instances_.WhyTooMany();
   SortNewEvents();
+}
+
+void Engine::Forget() {
+  if (log_ != nullptr) return;
+  past_.NeedHeld([this](const RememberedPast::Held& held) { return IsHeld(held); });
+  past_.Forget(history_);
+  idle_.FreeOld();
 }
 
 void Engine::SortNewEvents() {
@@ -137,6 +154,7 @@ void Engine::Finish(Tick end, std::vector<Event>& out) {
     for (const InstanceId instance : awake_[rule]) FinishInstance(instances_[instance], last);
     awake_[rule].clear();
   }
+  awake_count_ = 0;
   NoteUndecidedEnds();
   SortNewEvents();
 }

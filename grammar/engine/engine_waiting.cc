@@ -82,6 +82,7 @@ void Engine::Tell(RuleInstance& instance) {
 void Engine::StopWaiting(RuleInstance& instance) {
   instance.waits = false;
   awake_[instance.rule].push_back(instance.index);
+  ++awake_count_;
 }
 
 // A frame was decided. Those that follow are left out as long as they cannot differ from it.
