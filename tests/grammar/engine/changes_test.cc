@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "grammar/base/timeline.h"
 #include "grammar/monitor.h"
@@ -170,6 +171,64 @@ TEST(Changes, WhatIsDecidedAtOnceNeedsNoPast) {
             5);
   EXPECT_FALSE(compiled.program->recalls_touches);
   EXPECT_GT(CompareWithThorough(compiled.program, 20).events, 10000u);
+}
+
+bool BringsNothing(const FrameChanges& frame) {
+  return frame.entities.empty() && frame.hands.empty() && frame.touches.empty() &&
+         frame.contact_ends.empty();
+}
+
+// What the rules do not ask for is not shown, so most frames bring nothing.
+TEST(Changes, FramesThatBringNothingMayBeLeftOut) {
+  const CompileResult compiled = Compile({"instant", kInstantRules}, nullptr);
+  ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
+  const auto program = compiled.program;
+  std::size_t count = 0, left_out = 0, later = 0;
+  for (int round = 0; round < 20; ++round) {
+    RandomWorld world(4000 + round);
+    Monitor all(program, world.entity_table), some(program, world.entity_table);
+    Differ differ(false);
+    std::map<int, double> grips;
+    std::vector<Event> a, b;
+    for (int i = 0; i < 1500; ++i) {
+      const Frame frame = world.Next();
+      FrameChanges changes = differ(frame);
+      changes.entities = {};
+      std::vector<HandSample> hands;
+      for (const HandSample& hand : frame.hands) {
+        const auto [before, is_new] = grips.try_emplace(hand.entity, hand.trigger);
+        if (is_new || before->second != hand.trigger) hands.push_back(hand);
+        before->second = hand.trigger;
+      }
+      changes.hands = hands;
+      all.AdvanceBy(changes, a);
+      if (BringsNothing(changes)) {
+        ++left_out;
+      } else {
+        some.AdvanceBy(changes, b);
+      }
+    }
+    all.Finish(world.tick + 5, a);
+    some.Finish(world.tick + 5, b);
+    const auto by_interval = [](const Event& x, const Event& y) {
+      return std::tie(x.rule, x.roles, x.interval.begin) <
+             std::tie(y.rule, y.roles, y.interval.begin);
+    };
+    std::ranges::sort(a, by_interval);
+    std::ranges::sort(b, by_interval);
+    ASSERT_EQ(a.size(), b.size()) << "round " << round;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].rule, b[i].rule);
+      EXPECT_EQ(a[i].roles, b[i].roles);
+      EXPECT_EQ(a[i].interval, b[i].interval);
+      EXPECT_LE(a[i].decided, b[i].decided);
+      if (a[i].decided < b[i].decided) ++later;
+    }
+    count += a.size();
+  }
+  EXPECT_GT(count, 5000u);
+  EXPECT_GT(left_out, 1000u);
+  EXPECT_GT(later, 0u) << "a deadline is told when a frame comes";
 }
 
 // A hand feels its way along many things; what it has left behind is forgotten, and found again.

@@ -411,30 +411,33 @@ EntityTable RandomEntityTable() {
   return entity_table;
 }
 
-void EpisodeFeed::Step(bool as_changes, std::vector<Event>& events) {
+void EpisodeFeed::Step(Shown shown, std::vector<Event>& events) {
   const int frame = next_++;
   if (frame == episode_.frames()) return monitor_.Finish(episode_.ticks.back(), events);
   std::vector<ContactEnd> contact_ends;
   touches_.clear();
   for (std::size_t k = 0; k < episode_.touches.size(); ++k) {
     const int whom = static_cast<int>(k) + 1;
-    if (episode_.touches[k][frame]) touches_.push_back({.a = 0, .b = whom});
-    if (!episode_.touches[k][frame] && frame > 0 && episode_.touches[k][frame - 1])
-      contact_ends.push_back({whom, 0});
+    const bool touches = episode_.touches[k][frame];
+    const bool touched = frame > 0 && episode_.touches[k][frame - 1];
+    if (touches && (!touched || shown != Shown::kNew)) touches_.push_back({.a = 0, .b = whom});
+    if (!touches && touched) contact_ends.push_back({whom, 0});
   }
   looks_[0].p_WB_m.z() = episode_.height_m[frame];
   const EntityChange change{.entity = 0, .look = looks_[0]};
   const CollisionSphere surface{.p_W_m = looks_[0].p_WB_m};
   const HandSample hand{.entity = 0, .collision_spheres = {&surface, 1}};
-  if (!as_changes)
+  const bool moves = frame == 0 || episode_.height_m[frame] != episode_.height_m[frame - 1];
+  const std::size_t shows_pose = moves || shown != Shown::kNew ? 1 : 0;
+  if (shown == Shown::kWhole)
     return monitor_.Advance({.tick = episode_.ticks[frame],
                              .entities = looks_,
                              .hands = {&hand, 1},
                              .touches = touches_},
                             events);
   monitor_.AdvanceBy({.tick = episode_.ticks[frame],
-                      .entities = {&change, 1},
-                      .hands = {&hand, 1},
+                      .entities = {&change, shows_pose},
+                      .hands = {&hand, shows_pose},
                       .touches = touches_,
                       .contact_ends = contact_ends},
                      events);

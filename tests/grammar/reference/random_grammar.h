@@ -32,14 +32,18 @@ std::string Drawn(const RandomEpisode& episode);
 
 EntityTable RandomEntityTable();
 
-/// Shows an episode to a monitor, frame by frame, as whole frames or as what is new in them.
+/// How a frame is shown: all of it, as a change of everything, or only what is new in it, which may
+/// be nothing.
+enum class Shown { kWhole, kRepeated, kNew };
+
+/// Shows an episode to a monitor, frame by frame.
 class EpisodeFeed {
  public:
   EpisodeFeed(const RandomEpisode& episode, Monitor& monitor)
       : episode_(episode), monitor_(monitor), looks_(5) {}
   bool done() const { return next_ > episode_.frames(); }
   /// The next frame, or after the last one the end.
-  void Step(bool as_changes, std::vector<Event>& events);
+  void Step(Shown shown, std::vector<Event>& events);
 
  private:
   const RandomEpisode& episode_;

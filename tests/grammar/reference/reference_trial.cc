@@ -2,6 +2,7 @@
 #include "tests/grammar/reference/reference_trial.h"
 
 #include <algorithm>
+#include <array>
 #include <initializer_list>
 
 #include "grammar/program/program.h"
@@ -82,15 +83,17 @@ class Trial {
   // Two monitors at once, one fed with whole frames, one with changes or either, in chunks of any
   // size.
   void Watch(const RandomEpisode& episode) {
+    static constexpr std::array kEachWay = {Shown::kWhole, Shown::kRepeated, Shown::kNew,
+                                            Shown::kNew};
     Monitor plain(program_, RandomEntityTable());
     Monitor mixed(program_, RandomEntityTable());
     EpisodeFeed feed_plain(episode, plain), feed_mixed(episode, mixed);
     std::vector<Event> events_plain, events_mixed;
     while (!feed_plain.done() || !feed_mixed.done()) {
       for (auto chunk = random_() % 8; chunk > 0 && !feed_plain.done(); --chunk)
-        feed_plain.Step(false, events_plain);
+        feed_plain.Step(Shown::kWhole, events_plain);
       for (auto chunk = random_() % 8; chunk > 0 && !feed_mixed.done(); --chunk)
-        feed_mixed.Step(random_() % 4 != 0, events_mixed);
+        feed_mixed.Step(kEachWay[random_() % kEachWay.size()], events_mixed);
     }
     result_.ticks += 2 * episode.frames();
     const Found expected = grammar_->Expected(episode);
@@ -113,7 +116,7 @@ class Trial {
     Monitor thorough(thorough_, RandomEntityTable());
     EpisodeFeed feed(episode, thorough);
     std::vector<Event> events;
-    while (!feed.done()) feed.Step(false, events);
+    while (!feed.done()) feed.Step(Shown::kWhole, events);
     const std::vector<std::string> expected = Lines(events, *program_);
     for (const std::vector<Event>* found : {&plain, &mixed}) {
       const std::vector<std::string> lines = Lines(*found, *program_);
