@@ -24,27 +24,30 @@ void History::BeginFrame(Tick tick) {
 }
 
 void History::SetSample(int entity, const EntitySample& look, FrameNumber first) {
-  RingBuffer<PoseAtFrame>& samples = looks_[entity];
+  RingBuffer<PoseAtFrame>& samples = looks_[entity].samples;
   ForgetSamples(samples, first);
   if (samples.empty() && now() > 0) samples.PushBack() = {};  // what it was before anybody said
   PoseAtFrame& sample = samples.PushBack();
   sample.frame = now();
   sample.look = look;
+  looks_[entity].GiveBack();
 }
 
 void History::SetHand(const HandSample& look, std::uint64_t crossed_thresholds, FrameNumber first) {
   int& index = hand_of_entity_[look.entity];
   if (index < 0) {
-    index = static_cast<int>(hand_samples_.size());
-    hand_samples_.emplace_back();
+    index = static_cast<int>(hands_.size());
+    hands_.emplace_back();
   }
-  ForgetSamples(hand_samples_[index], first);
-  HandAtFrame& sample = hand_samples_[index].PushBack();
+  RingBuffer<HandAtFrame>& samples = hands_[index].samples;
+  ForgetSamples(samples, first);
+  HandAtFrame& sample = samples.PushBack();
   sample.frame = now();
   sample.look = look;
   sample.collision_spheres.assign(look.collision_spheres.begin(), look.collision_spheres.end());
   sample.look.collision_spheres = {};
   sample.crossed_thresholds = crossed_thresholds;
+  hands_[index].GiveBack();
 }
 
 void History::Forget(FrameNumber ticks, FrameNumber looks) {

@@ -51,6 +51,25 @@ void ForgetSamples(RingBuffer<Sample>& samples, FrameNumber frame) {
   while (samples.size() > 1 && samples[1].frame <= frame) samples.PopFront();
 }
 
+/// How something looked, where it changed. A steady load stops allocating; what was needed once is
+/// given back.
+template <typename Sample>
+struct Looks {
+  RingBuffer<Sample> samples;
+  std::uint32_t most = 0;   ///< samples at once
+  std::uint32_t count = 0;  ///< of samples; both since they were looked at last
+
+  /// After each new sample. Halves the memory when a quarter of it was enough for four times as
+  /// many samples as fit into it.
+  void GiveBack() {
+    constexpr std::size_t kSmall = 8;
+    most = std::max(most, static_cast<std::uint32_t>(samples.size()));
+    if (++count < 4 * samples.capacity()) return;
+    if (samples.capacity() > kSmall && most <= samples.capacity() / 4) samples.Halve();
+    most = count = 0;
+  }
+};
+
 class History {
  public:
   explicit History(const EntityTable& entity_table);
@@ -83,18 +102,19 @@ class History {
 
   const EntitySample& Look(int entity, FrameNumber frame) const {
     static const EntitySample kNotSeenYet;
-    return looks_[entity].empty() ? kNotSeenYet : SampleAt(looks_[entity], frame).look;
+    return looks_[entity].samples.empty() ? kNotSeenYet
+                                          : SampleAt(looks_[entity].samples, frame).look;
   }
   /// Null if this entity is no hand.
   const HandAtFrame* Hand(int entity, FrameNumber frame) const {
     const int index = hand_of_entity_[entity];
-    return index < 0 ? nullptr : &SampleAt(hand_samples_[index], frame);
+    return index < 0 ? nullptr : &SampleAt(hands_[index].samples, frame);
   }
   /// The first frame after this one in which the entity looks different; kNever if it does not.
   FrameNumber NextChange(int entity, FrameNumber after) const {
-    const FrameNumber look = FirstAfter(looks_[entity], after);
+    const FrameNumber look = FirstAfter(looks_[entity].samples, after);
     const int hand = hand_of_entity_[entity];
-    return hand < 0 ? look : std::min(look, FirstAfter(hand_samples_[hand], after));
+    return hand < 0 ? look : std::min(look, FirstAfter(hands_[hand].samples, after));
   }
   bool Shows(int hand) const { return hand_of_entity_[hand] >= 0; }
   double Seconds(Tick ticks) const { return static_cast<double>(ticks) / ticks_per_second_; }
@@ -113,9 +133,9 @@ class History {
   FrameNumber first_look_ = 0;
   bool complete_ = false;
   RingBuffer<Tick> ticks_;
-  std::vector<RingBuffer<PoseAtFrame>> looks_;         // by entity
-  std::vector<RingBuffer<HandAtFrame>> hand_samples_;  // by hand, in order of first sight
-  std::vector<int> hand_of_entity_;                    // index into hand_samples_ or -1
+  std::vector<Looks<PoseAtFrame>> looks_;  // by entity
+  std::vector<Looks<HandAtFrame>> hands_;  // by hand, in order of first sight
+  std::vector<int> hand_of_entity_;        // index into hands_ or -1
 };
 
 }  // namespace prehend::grammar

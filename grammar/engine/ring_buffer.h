@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A queue in one block of memory: push at the back, drop at the front, index from the front.
-// It doubles when full and never shrinks, so that a steady load stops allocating.
+// It doubles when full, and shrinks only when told to, so that a steady load stops allocating.
 // Tested by tests/grammar/engine/ring_buffer_test.cc
 #pragma once
 
@@ -18,6 +18,8 @@ class RingBuffer {
  public:
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
+  /// How many elements there is memory for.
+  std::size_t capacity() const { return capacity_; }
 
   T& operator[](std::size_t i) {
     PREHEND_DCHECK(i < size_);
@@ -35,7 +37,7 @@ class RingBuffer {
   /// A new last element. It holds whatever an earlier element left there, so that its memory is
   /// used again.
   T& PushBack() {
-    if (size_ == capacity_) Grow();
+    if (size_ == capacity_) MoveTo(slots_ == nullptr ? 2 : 2 * capacity_);
     ++size_;
     return back();
   }
@@ -49,16 +51,21 @@ class RingBuffer {
   /// Keeps its memory.
   void Clear() { front_ = size_ = 0; }
 
+  /// Gives back half of its memory; the other half suffices.
+  void Halve() {
+    PREHEND_DCHECK(size_ <= capacity_ / 2);
+    MoveTo(capacity_ / 2);
+  }
+
  private:
   std::uint32_t Slot(std::size_t i) const {
     return (front_ + static_cast<std::uint32_t>(i)) & (capacity_ - 1);
   }
 
-  void Grow() {
-    const std::uint32_t capacity = slots_ == nullptr ? 2 : 2 * capacity_;
-    std::unique_ptr<T[]> larger = std::make_unique<T[]>(capacity);
-    for (std::uint32_t i = 0; i < size_; ++i) larger[i] = std::move((*this)[i]);
-    slots_ = std::move(larger);
+  void MoveTo(std::uint32_t capacity) {
+    std::unique_ptr<T[]> slots = std::make_unique<T[]>(capacity);
+    for (std::uint32_t i = 0; i < size_; ++i) slots[i] = std::move((*this)[i]);
+    slots_ = std::move(slots);
     capacity_ = capacity;
     front_ = 0;
   }

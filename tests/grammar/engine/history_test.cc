@@ -51,5 +51,27 @@ TEST(History, ForgetsButKeepsTheLookOfASleeper) {
   EXPECT_EQ(history.Look(Scene::kTray, 80).p_WB_m.x(), 7);
 }
 
+struct Numbered {
+  FrameNumber frame = 0;
+};
+
+TEST(History, GivesBackTheMemoryOfLooksThatWereNeededOnce) {
+  Looks<Numbered> looks;
+  FrameNumber now = 0;
+  const auto show = [&](FrameNumber kept) {
+    ForgetSamples(looks.samples, now - kept);
+    looks.samples.PushBack().frame = now++;
+    looks.GiveBack();
+  };
+  for (int i = 0; i < 1000; ++i) show(400);
+  EXPECT_EQ(looks.samples.capacity(), 512u);
+  // Needed from time to time: a steady load.
+  for (int i = 0; i < 20'000; ++i) show(i % 1000 < 500 ? 400 : 2);
+  EXPECT_EQ(looks.samples.capacity(), 512u);
+  for (int i = 0; i < 10'000; ++i) show(2);
+  EXPECT_EQ(looks.samples.capacity(), 8u);
+  EXPECT_EQ(looks.samples.back().frame, now - 1);
+}
+
 }  // namespace
 }  // namespace prehend::grammar

@@ -30,5 +30,20 @@ TEST(RingBuffer, BehavesAsADeque) {
   }
 }
 
+TEST(RingBuffer, GivesHalfOfItsMemoryBack) {
+  RingBuffer<int> ring;
+  for (int i = 0; i < 20; ++i) ring.PushBack() = i;
+  EXPECT_EQ(ring.capacity(), 32u);
+  for (int i = 0; i < 17; ++i) ring.PopFront();
+  for (int i = 20; i < 33; ++i) ring.PushBack() = i;  // around the end of the block
+  ring.Halve();
+  EXPECT_EQ(ring.capacity(), 16u);
+  ASSERT_EQ(ring.size(), 16u);
+  for (int i = 0; i < 16; ++i) EXPECT_EQ(ring[static_cast<std::size_t>(i)], 17 + i);
+  ring.PushBack() = 33;
+  EXPECT_EQ(ring.capacity(), 32u);
+  EXPECT_EQ(ring.back(), 33);
+}
+
 }  // namespace
 }  // namespace prehend::grammar
