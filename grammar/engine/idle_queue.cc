@@ -7,7 +7,7 @@
 namespace prehend::grammar {
 
 void IdleQueue::FreeOld() {
-  while (!queue_.empty() && queue_.front().since < history_.first()) {
+  while (!queue_.empty() && IsOld(queue_.front())) {
     RuleInstance& instance = instances_[queue_.front().instance];
     queue_.PopFront();
     instance.idle_queued = false;
