@@ -62,6 +62,7 @@ class Engine {
  private:
   // What a frame says (grammar/engine/engine_frames.cc).
   void LookUp(std::span<const Touch> touches);
+  void FetchLooks(std::span<const EntityChange> changes) const;
   template <typename AnyFrame>
   bool BeginFrame(const AnyFrame& frame, std::vector<Event>& out);
   bool BringsNothing(const FrameChanges& changes) const {

@@ -46,6 +46,18 @@ void Engine::LookUp(std::span<const Touch> touches) {
   }
 }
 
+// Likewise.
+void Engine::FetchLooks(std::span<const EntityChange> changes) const {
+  for (const EntityChange& change : changes) {
+    history_.Fetch(change.entity);
+    instances_.FetchWatchers(change.entity);
+  }
+  for (const EntityChange& change : changes) {
+    history_.FetchSamples(change.entity);
+    instances_.FetchWatching(change.entity);
+  }
+}
+
 void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
   if (!BeginFrame(frame, out)) return;
   for (std::size_t i = 0; i < frame.entities.size(); ++i) {
@@ -63,6 +75,7 @@ void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
 void Engine::AdvanceBy(const FrameChanges& changes, std::vector<Event>& out) {
   if (BringsNothing(changes) && error_.empty() && !finishing_) return PassBy(changes.tick);
   if (!BeginFrame(changes, out)) return;
+  FetchLooks(changes.entities);
   for (const EntityChange& change : changes.entities) Look(change.entity, change.look);
   for (const HandSample& hand : changes.hands) Look(hand);
   ApplyContacts(changes.touches);

@@ -105,6 +105,9 @@ class History {
     return looks_[entity].samples.empty() ? kNotSeenYet
                                           : SampleAt(looks_[entity].samples, frame).look;
   }
+  /// Prefetches what SetSample() needs, in two steps.
+  void Fetch(int entity) const { __builtin_prefetch(&looks_[entity]); }
+  void FetchSamples(int entity) const { looks_[entity].samples.FetchNext(); }
   /// Null if this entity is no hand.
   const HandAtFrame* Hand(int entity, FrameNumber frame) const {
     const int index = hand_of_entity_[entity];

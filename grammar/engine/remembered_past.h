@@ -13,7 +13,7 @@ namespace prehend::grammar {
 
 class RememberedPast {
  public:
-  explicit RememberedPast(std::size_t entities) : entities_(entities) {}
+  explicit RememberedPast(std::size_t entities) : is_held_(entities) {}
 
   /// The oldest frame that an instance which waits, or has waited, may ask for.
   struct Held {
@@ -50,7 +50,8 @@ class RememberedPast {
   template <typename IsHeld>
   void HoldLooks(int entity, FrameNumber frame, InstanceId instance, const History& history,
                  const IsHeld& is_held) {
-    if (held_looks_.empty()) held_looks_.resize(entities_);
+    if (held_looks_.empty()) held_looks_.resize(is_held_.size());
+    is_held_[static_cast<std::size_t>(entity)] = 1;
     std::vector<HeldLooks>& held = held_looks_[static_cast<std::size_t>(entity)];
     if (held.size() == held.capacity()) DropReleased(held, is_held);
     held.push_back({{frame, instance}, FirstToKeep(history, frame)});
@@ -68,9 +69,10 @@ class RememberedPast {
   template <typename IsHeld>
   FrameNumber FirstLook(int entity, const History& history, const IsHeld& is_held) {
     FrameNumber first = history.first_look();
-    if (held_looks_.empty()) return first;
+    if (is_held_[static_cast<std::size_t>(entity)] == 0) return first;
     std::vector<HeldLooks>& held = held_looks_[static_cast<std::size_t>(entity)];
     DropReleased(held, is_held);
+    is_held_[static_cast<std::size_t>(entity)] = held.empty() ? 0 : 1;
     for (const HeldLooks& looks : held) first = std::min(first, looks.first);
     return first;
   }
@@ -129,7 +131,6 @@ class RememberedPast {
     return from;
   }
 
-  std::size_t entities_;
   Tick longest_look_back_ = 0;
   Tick longest_window_ = 0;
   Past ticks_;
@@ -137,6 +138,7 @@ class RememberedPast {
   FrameNumber passed_looks_ = 0;                    // what only earlier frames need is gone
   std::vector<Held> held_;                          // a heap, the oldest first
   std::vector<std::vector<HeldLooks>> held_looks_;  // by entity, once there are any
+  std::vector<char> is_held_;                       // by entity: such an instance may be there
 };
 
 }  // namespace prehend::grammar
