@@ -135,6 +135,26 @@ ChangeLog MakeStations(int objects, int frames, double period_s, std::uint64_t s
   return std::move(stations.log);
 }
 
+ChangeLog LeaveOutEmptyFrames(const ChangeLog& log) {
+  ChangeLog rest;
+  rest.entity_table = log.entity_table;
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    const grammar::FrameChanges frame = log[i];
+    const bool brings_nothing = frame.entities.empty() && frame.hands.empty() &&
+                                frame.touches.empty() && frame.contact_ends.empty();
+    if (brings_nothing && i + 1 < log.size()) continue;
+    rest.Begin(frame.tick);
+    const auto add = [&](const auto& changes) {
+      for (const auto& change : changes) rest.Add(change);
+    };
+    add(frame.entities);
+    add(frame.hands);
+    add(frame.touches);
+    add(frame.contact_ends);
+  }
+  return rest;
+}
+
 ChangeLog MakeFlicker(int objects, int frames, int per_frame, Flicker flicker) {
   ChangeLog log;
   log.entity_table = MakeEntityTable(objects);

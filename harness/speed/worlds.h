@@ -15,6 +15,9 @@ inline constexpr grammar::Tick kWorldRate_hz = 240;  ///< a frame is a tick
 /// once per `period_s`; in between, both rest. Entities: hands, objects, the table.
 ChangeLog MakeStations(int objects, int frames, double period_s, std::uint64_t seed = 1);
 
+/// The same without the frames that bring nothing, but with the last one.
+ChangeLog LeaveOutEmptyFrames(const ChangeLog& log);
+
 /// Touches that flicker, `per_frame` a frame, one object after the other.
 enum class Flicker {
   kPressure,  ///< from one sensor set to another one: no rule depends on it

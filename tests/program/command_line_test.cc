@@ -28,9 +28,10 @@ TEST_F(CommandLine, BenchAgreesWithTheAutomataByHand) {
     EXPECT_GT(figure["operations_per_s"], 0) << figure;
     if (!figure.contains("agrees_with_baseline")) continue;
     EXPECT_TRUE(figure["agrees_with_baseline"]) << figure;
+    EXPECT_GT(figure["times_on_change"], 0) << figure;
     ++compared;
   }
-  EXPECT_EQ(compared, 9);
+  EXPECT_EQ(compared, 10);
 }
 
 TEST_F(CommandLine, HelpIsEverywhere) {
