@@ -29,7 +29,9 @@ class Monitor {
   /// rule, roles).
   void Advance(const Frame& frame, std::vector<Event>& out);
   /// The same for a frame that is given by what is new in it; costs time for changes only. Both
-  /// kinds may be mixed.
+  /// kinds may be mixed. Frames that bring nothing may be left out: intervals are the same, but
+  /// what time alone decides is told later, with the next frame. docs/speed.md says for which
+  /// grammars this is not so.
   void AdvanceBy(const FrameChanges& changes, std::vector<Event>& out);
 
   /// The episode ends at `end`, the first tick that no longer belongs to it: closes what is open.
