@@ -59,7 +59,8 @@ bool Engine::AwaitOthers(RuleInstance& instance) {
     other.awaited = instance.waits = true;
   });
   if (!instance.waits) return false;
-  past_.Hold(OldestNeeded(instance), instance.index);
+  past_.Hold(OldestNeeded(instance), instance.index,
+             [this](const auto& held) { return IsHeld(held); });
   if (RuleOf(instance).uses_looks) HoldLooks(instance);
   return true;
 }

@@ -300,7 +300,7 @@ void RuleInstances::Free(InstanceId index, std::vector<InstanceId>& orphans) {
   std::visit([](auto& state) { state.Reset(); }, instance.of_form);
   instance.watchers.clear();
   instance.past.Clear();
-  instance.dependents_made = false;
+  instance.dependents_made = instance.awaited = false;
   instance.reported = Kleene::kFalse;
   instance.moment = kNever;
   instance.style = kNoEntity;

@@ -42,7 +42,12 @@ class RememberedPast {
     return true;
   }
   /// Like Need(), in this and all frames to come, as long as the instance holds it.
-  void Hold(FrameNumber frame, InstanceId instance) {
+  template <typename IsHeld>
+  void Hold(FrameNumber frame, InstanceId instance, const IsHeld& is_held) {
+    if (held_.size() == held_.capacity()) {
+      MakeRoom(held_, is_held);
+      std::ranges::make_heap(held_, Later);
+    }
     held_.push_back({frame, instance});
     std::ranges::push_heap(held_, Later);
   }
@@ -53,7 +58,7 @@ class RememberedPast {
     if (held_looks_.empty()) held_looks_.resize(is_held_.size());
     is_held_[static_cast<std::size_t>(entity)] = 1;
     std::vector<HeldLooks>& held = held_looks_[static_cast<std::size_t>(entity)];
-    if (held.size() == held.capacity()) DropReleased(held, is_held);
+    if (held.size() == held.capacity()) MakeRoom(held, is_held);
     held.push_back({{frame, instance}, FirstToKeep(history, frame)});
   }
   /// is_held(held): whether the instance still holds that frame.
@@ -89,9 +94,16 @@ class RememberedPast {
   struct HeldLooks : Held {
     FrameNumber first = 0;  // that may be asked for from there
   };
-  template <typename IsHeld>
-  static void DropReleased(std::vector<HeldLooks>& held, const IsHeld& is_held) {
-    std::erase_if(held, [&](const HeldLooks& looks) { return !is_held(looks); });
+  template <typename AnyHeld, typename IsHeld>
+  static void DropReleased(std::vector<AnyHeld>& held, const IsHeld& is_held) {
+    std::erase_if(held, [&](const AnyHeld& one) { return !is_held(one); });
+  }
+  // What others hold longer hides what was released long ago. More than half of the room is free
+  // afterwards, so that this is not done again soon.
+  template <typename AnyHeld, typename IsHeld>
+  static void MakeRoom(std::vector<AnyHeld>& held, const IsHeld& is_held) {
+    DropReleased(held, is_held);
+    held.reserve(std::max(held.capacity(), 2 * held.size() + 1));
   }
   static bool Later(const Held& a, const Held& b) { return a.frame > b.frame; }
 
