@@ -49,6 +49,12 @@ Recognised ByAutomata(const ChangeLog& log, benchmark::State&) {
 constexpr auto ByHandInEveryFrame = ByAutomata<ByHand::kEveryFrame>;
 constexpr auto ByHandOnChange = ByAutomata<ByHand::kOnChange>;
 
+/// Numbers of objects.
+void Sizes(benchmark::internal::Benchmark* bench) {
+  for (const int objects : {1, 1024, 4096, 65'536}) bench->Arg(objects);
+  bench->Unit(benchmark::kMillisecond);
+}
+
 template <auto kWatch>
 void FourRules(benchmark::State& state) {
   const int objects = static_cast<int>(state.range(0));
@@ -56,24 +62,9 @@ void FourRules(benchmark::State& state) {
   const ChangeLog log = MakeStations(objects, frames, kPeriod_s);
   Play(state, log, static_cast<double>(harness::FourRules::kCount) * objects * frames, kWatch);
 }
-BENCHMARK(FourRules<ByGrammar>)
-    ->Arg(1)
-    ->Arg(1024)
-    ->Arg(4096)
-    ->Arg(65'536)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(FourRules<ByHandInEveryFrame>)
-    ->Arg(1)
-    ->Arg(1024)
-    ->Arg(4096)
-    ->Arg(65'536)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(FourRules<ByHandOnChange>)
-    ->Arg(1)
-    ->Arg(1024)
-    ->Arg(4096)
-    ->Arg(65'536)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(FourRules<ByGrammar>)->Apply(Sizes);
+BENCHMARK(FourRules<ByHandInEveryFrame>)->Apply(Sizes);
+BENCHMARK(FourRules<ByHandOnChange>)->Apply(Sizes);
 
 // Argument: what a touch changes.
 template <auto kWatch>
