@@ -103,7 +103,7 @@ TEST_F(Runner, AKilledWorkerIsAVerdictOfItsOwn) {
 
 TEST_F(Runner, AScenarioThatNeverEndsIsStopped) {
   Accept();
-  WriteVariant("long/takes_long", "wait_s: 0.2", "wait_s: 600");
+  WriteVariant("long/takes_long", "wait_s: 0.2", "wait_s: 1700");
   const auto verdicts = Check("--time-limit-s 8", 3);
   EXPECT_EQ(verdicts.at("rest/carton_rests").at("verdict"), "passed");
   const std::string reason = verdicts.at("long/takes_long").at("reason");

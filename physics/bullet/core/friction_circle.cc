@@ -4,6 +4,7 @@
 // quotients and roots: the result has the same bits on every processor.
 #include "physics/bullet/core/friction_circle.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace prehend::physics {
@@ -12,54 +13,74 @@ namespace {
 /// Added to the diagonal, relative to it: two rows that push the same way stay solvable.
 constexpr btScalar kRegular = 1e-9;
 constexpr btScalar kAccuracy = 1e-9;  ///< relative, of the length of the impulse
-constexpr int kMostSteps = 30;        ///< Newton's method takes 2 to 5
+constexpr int kMostSteps = 30;        ///< Newton's method takes 1 to 4
 
-RowPair SolveTwo(const PairResponse& k, const RowPair& right) {
-  const btScalar determinant = k.first * k.second - k.coupling * k.coupling;
-  return {(k.second * right.first - k.coupling * right.second) / determinant,
-          (k.first * right.second - k.coupling * right.first) / determinant};
-}
+btScalar SquaredLength(const RowPair& a) { return a.first * a.first + a.second * a.second; }
 
-btScalar Dot(const RowPair& a, const RowPair& b) { return a.first * b.first + a.second * b.second; }
-
-RowPair Apply(const PairResponse& k, const RowPair& x) {
-  return {k.first * x.first + k.coupling * x.second, k.coupling * x.first + k.second * x.second};
-}
-
-}  // namespace
-
-RowPair FrictionWithin(btScalar limit, const PairResponse& response, const RowPair& wanted) {
-  if (limit <= 0) return {};
-  if (Dot(wanted, wanted) <= limit * limit) return wanted;
+/// As FrictionWithin(), in principal directions, of a `wanted` beyond the limit.
+RowPair OnTheCircle(btScalar limit, const PrincipalResponse& response, const RowPair& wanted,
+                    btScalar squared_length) {
   // (K + slip I) x = K wanted, |x| = limit. 1/|x| is nearly linear in `slip`, and Newton's method
-  // on it approaches the solution from below.
-  const RowPair right = Apply(response, wanted);
-  PairResponse damped = response;
-  RowPair x = wanted;
-  btScalar length = std::sqrt(Dot(x, x));
-  for (int step = 0; step < kMostSteps && length > limit * (1 + kAccuracy); ++step) {
-    const btScalar slope = Dot(x, SolveTwo(damped, x));  // of -|x|^2 / 2
-    const btScalar more = (length * length / slope) * ((length - limit) / limit);
-    damped.first += more;
-    damped.second += more;
-    x = SolveTwo(damped, right);
-    length = std::sqrt(Dot(x, x));
+  // on it approaches the solution from below; equal responses are solved by the first guess.
+  const RowPair right{response.first() * wanted.first, response.second() * wanted.second};
+  btScalar slip =
+      std::min(response.first(), response.second()) * (std::sqrt(squared_length) / limit - 1);
+  RowPair x;
+  btScalar length = 0;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const btScalar first = 1 / (response.first() + slip), second = 1 / (response.second() + slip);
+    x = {right.first * first, right.second * second};
+    const btScalar square = SquaredLength(x);
+    length = std::sqrt(square);
+    if (length <= limit * (1 + kAccuracy)) break;
+    const btScalar slope = x.first * x.first * first + x.second * x.second * second;
+    slip += square * (length - limit) / (slope * limit);
   }
   const btScalar scale = limit / length;
   return {x.first * scale, x.second * scale};
 }
 
-RowPair FrictionChange(const RowPair& impulse, btScalar limit, const PairResponse& response,
+}  // namespace
+
+PrincipalResponse::PrincipalResponse(btScalar first, btScalar coupling, btScalar second)
+    : first_(first), second_(second) {
+  if (coupling != 0) {
+    // Jacobi's rotation.
+    const btScalar half = (second - first) / (2 * coupling);
+    const btScalar tangent = (half < 0 ? -1 : 1) / (std::abs(half) + std::sqrt(1 + half * half));
+    cosine_ = 1 / std::sqrt(1 + tangent * tangent);
+    sine_ = tangent * cosine_;
+    first_ -= tangent * coupling;
+    second_ += tangent * coupling;
+  }
+  const btScalar regular = kRegular * (first + second);
+  first_ += regular;
+  second_ += regular;
+  moves_ = first_ > 0 && second_ > 0 && std::isfinite(first_) && std::isfinite(second_);
+}
+
+RowPair FrictionWithin(btScalar limit, const PrincipalResponse& response, const RowPair& wanted) {
+  if (limit <= 0) return {};
+  const btScalar squared_length = SquaredLength(wanted);
+  if (squared_length <= limit * limit) return wanted;
+  return response.ToRows(
+      OnTheCircle(limit, response, response.ToPrincipal(wanted), squared_length));
+}
+
+RowPair FrictionChange(const RowPair& impulse, btScalar limit, const PrincipalResponse& response,
                        const RowPair& speed_errors) {
-  PairResponse k = response;
-  k.first *= 1 + kRegular;
-  k.second *= 1 + kRegular;
-  const btScalar determinant = k.first * k.second - k.coupling * k.coupling;
-  if (!(determinant > 0) || !std::isfinite(determinant)) return {};
-  const RowPair free = SolveTwo(k, speed_errors);
-  const RowPair sum =
-      FrictionWithin(limit, k, {impulse.first + free.first, impulse.second + free.second});
-  return {sum.first - impulse.first, sum.second - impulse.second};
+  if (!response.moves()) return {};
+  if (limit <= 0) return {-impulse.first, -impulse.second};
+  const RowPair errors = response.ToPrincipal(speed_errors);
+  RowPair change{errors.first / response.first(), errors.second / response.second()};
+  const RowPair before = response.ToPrincipal(impulse);
+  const RowPair wanted{before.first + change.first, before.second + change.second};
+  const btScalar squared_length = SquaredLength(wanted);
+  if (squared_length > limit * limit) {
+    const RowPair sum = OnTheCircle(limit, response, wanted, squared_length);
+    change = {sum.first - before.first, sum.second - before.second};
+  }
+  return response.ToRows(change);
 }
 
 }  // namespace prehend::physics

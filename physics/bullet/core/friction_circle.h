@@ -20,15 +20,39 @@ struct PairResponse {
   btScalar first, coupling, second;
 };
 
+/// The same along the two directions that do not act on each other. Computed once per tick.
+class PrincipalResponse {
+ public:
+  PrincipalResponse(btScalar first, btScalar coupling, btScalar second);
+  PrincipalResponse(const PairResponse& response)
+      : PrincipalResponse(response.first, response.coupling, response.second) {}
+
+  /// Whether an impulse changes the speed along both directions by a finite amount.
+  bool moves() const { return moves_; }
+  btScalar first() const { return first_; }
+  btScalar second() const { return second_; }
+  RowPair ToPrincipal(const RowPair& rows) const {
+    return {cosine_ * rows.first - sine_ * rows.second, sine_ * rows.first + cosine_ * rows.second};
+  }
+  RowPair ToRows(const RowPair& principal) const {
+    return {cosine_ * principal.first + sine_ * principal.second,
+            cosine_ * principal.second - sine_ * principal.first};
+  }
+
+ private:
+  btScalar cosine_ = 1, sine_ = 0, first_, second_;
+  bool moves_;
+};
+
 /// The impulse x with |x| <= limit that minimises (x - wanted)' K (x - wanted) / 2, with K =
 /// `response`: `wanted` if it is within the limit, else the impulse on the circle that is opposite
 /// to the remaining sliding velocity. Relative error of |x| at most 1e-9. Zero if limit <= 0.
-RowPair FrictionWithin(btScalar limit, const PairResponse& response, const RowPair& wanted);
+RowPair FrictionWithin(btScalar limit, const PrincipalResponse& response, const RowPair& wanted);
 
 /// Change of the impulse of a contact's friction rows: afterwards its length is at most `limit`,
 /// and it removes as much of `speed_errors` (wanted minus present speed along each row) as that
 /// allows. Zero if a row cannot move (its response is not finite or not positive).
-RowPair FrictionChange(const RowPair& impulse, btScalar limit, const PairResponse& response,
+RowPair FrictionChange(const RowPair& impulse, btScalar limit, const PrincipalResponse& response,
                        const RowPair& speed_errors);
 
 }  // namespace prehend::physics

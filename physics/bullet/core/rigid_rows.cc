@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "physics/bullet/core/friction_circle.h"
-
 namespace prehend::physics {
 namespace {
 
@@ -43,10 +41,8 @@ void RigidRows::Setup(const Pools& pools) {
   Flatten(pools, pools.rolling, kRollingRows, rolling_);
   for (Rows* rows : {&frictions_, &rolling_})
     for (Row& row : *rows) row.pressure = pressures_[At(row.source->m_frictionIndex)];
-  for (std::size_t i = 0; i + 1 < frictions_.size(); i += kFrictionRows)
-    frictions_[i].coupling = Coupling(frictions_[i], frictions_[i + 1]);
-  for (std::size_t i = 0; i + 2 < rolling_.size(); i += kRollingRows)
-    rolling_[i + 1].coupling = Coupling(rolling_[i + 1], rolling_[i + 2]);
+  ComputeResponses(frictions_, kFrictionRows, friction_responses_);
+  ComputeResponses(rolling_, kRollingRows, rolling_responses_);
 }
 
 void RigidRows::Arrange(const btConstraintArray& sources, std::size_t group,
@@ -98,7 +94,6 @@ RigidRows::Row RigidRows::MakeRow(const btSolverConstraint& source, const Pools&
           .friction = source.m_friction,
           .impulse = source.m_appliedImpulse,
           .pressure = nullptr,
-          .coupling = 0,
           .iterations = source.m_overrideNumSolverIterations,
           .source = &source};
   if (side_a.speeds && side_b.speeds) {
@@ -157,10 +152,19 @@ btScalar RigidRows::Coupling(const Row& first, const Row& second) const {
   return first.side.SpeedBy(second.side) + (other ? other->SpeedBy(*seconds_other) : 0);
 }
 
-btScalar RigidRows::SolvePair(Row& first, Row& second, btScalar limit) {
-  const RowPair change = FrictionChange(
-      {first.impulse, second.impulse}, limit, {first.mass, first.coupling, second.mass},
-      {WantedChange(first) * first.mass, WantedChange(second) * second.mass});
+void RigidRows::ComputeResponses(const Rows& rows, std::size_t group, Responses& responses) const {
+  responses.clear();
+  for (std::size_t end = group; end <= rows.size(); end += group) {
+    const Row &first = rows[end - 2], &second = rows[end - 1];
+    responses.emplace_back(first.mass, Coupling(first, second), second.mass);
+  }
+}
+
+btScalar RigidRows::SolvePair(Row& first, Row& second, btScalar limit,
+                              const PrincipalResponse& response) {
+  const RowPair change =
+      FrictionChange({first.impulse, second.impulse}, limit, response,
+                     {WantedChange(first) * first.mass, WantedChange(second) * second.mass});
   first.impulse += change.first;
   second.impulse += change.second;
   Push(first, change.first);
@@ -179,7 +183,8 @@ btScalar RigidRows::Solve(int iteration, int contact_iterations) {
   for (std::size_t i = 0; i + 1 < frictions_.size(); i += kFrictionRows) {
     Row& row = frictions_[i];
     if (*row.pressure > 0)
-      largest = std::max(largest, SolvePair(row, frictions_[i + 1], row.friction * *row.pressure));
+      largest = std::max(largest, SolvePair(row, frictions_[i + 1], row.friction * *row.pressure,
+                                            friction_responses_[i / kFrictionRows]));
   }
   for (std::size_t i = 0; i + 2 < rolling_.size(); i += kRollingRows) {
     Row& spin = rolling_[i];
@@ -191,7 +196,8 @@ btScalar RigidRows::Solve(int iteration, int contact_iterations) {
     spin.least = -spin.most;
     largest = std::max(largest, Solve(spin));
     Row& roll = rolling_[i + 1];
-    largest = std::max(largest, SolvePair(roll, rolling_[i + 2], limit(roll)));
+    largest = std::max(largest, SolvePair(roll, rolling_[i + 2], limit(roll),
+                                          rolling_responses_[i / kRollingRows]));
   }
   return largest;
 }

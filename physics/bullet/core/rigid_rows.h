@@ -9,14 +9,14 @@
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 #include <BulletDynamics/ConstraintSolver/btSolverBody.h>
 
-#include <array>
 #include <vector>
+
+#include "physics/bullet/core/friction_circle.h"
+#include "physics/bullet/core/multibody_inertia.h"
 
 namespace prehend::physics {
 
 /// Linear parts, then angular parts.
-using Six = std::array<btScalar, 6>;
-
 inline Six SixOf(const btVector3& linear, const btVector3& angular) {
   return {linear.x(), linear.y(), linear.z(), angular.x(), angular.y(), angular.z()};
 }
@@ -44,7 +44,9 @@ struct RigidSide {
 
   void Push(btScalar impulse) const {
     if (!speeds) return;
-    for (std::size_t i = 0; i < 6; ++i) (*speeds)[i] += response[i] * impulse;
+    btScalar* const __restrict v = speeds->data();
+    const btScalar* const __restrict r = response.data();
+    for (std::size_t i = 0; i < 6; ++i) v[i] += r[i] * impulse;
   }
 };
 
@@ -92,8 +94,7 @@ class RigidRows {
     btScalar wanted, softness, inverse_mass, mass, least, most, friction;
     btScalar impulse;
     const btScalar* pressure;  ///< of a friction row: impulse of its contact
-    btScalar coupling;  ///< of the first row of a pair, with the second: PairResponse::coupling
-    int iterations;     ///< of a joint: number of iterations
+    int iterations;            ///< of a joint: number of iterations
     const btSolverConstraint* source;
   };
   using Rows = std::vector<Row>;
@@ -112,10 +113,15 @@ class RigidRows {
   btScalar Solve(Row& row);
   btScalar Coupling(const Row& first, const Row& second) const;
   /// Two rows of friction of one contact, whose impulses together are at most `limit`.
-  btScalar SolvePair(Row& first, Row& second, btScalar limit);
+  btScalar SolvePair(Row& first, Row& second, btScalar limit, const PrincipalResponse& response);
 
   std::vector<Six> speeds_, pushes_;  ///< by body
+  using Responses = std::vector<PrincipalResponse>;
+  /// Of the last two of every `group` rows.
+  void ComputeResponses(const Rows& rows, std::size_t group, Responses& responses) const;
+
   Rows joints_, contacts_, frictions_, rolling_, penetrations_;
+  Responses friction_responses_, rolling_responses_;  ///< by pair of rows
   std::vector<RigidSide> others_;
   std::vector<const btScalar*> pressures_;               ///< by index in the pool of contacts
   std::vector<int> order_, level_, next_, bodys_level_;  ///< of Arrange()

@@ -8,16 +8,10 @@
 #include <algorithm>
 #include <tuple>
 
-#include "physics/bullet/core/friction_circle.h"
 #include "physics/bullet/core/restitution.h"
 
 namespace prehend::physics {
 namespace {
-
-void AddScaled(const btScalar* __restrict what, btScalar scale, int count,
-               btScalar* __restrict sum) {
-  for (int i = 0; i < count; ++i) sum[i] += what[i] * scale;
-}
 
 /// Clamps an impulse that changes from `old` by `change` to `sum`.
 void Clamp(btScalar least, btScalar most, btScalar old, btScalar& sum, btScalar& change) {
@@ -53,20 +47,23 @@ btScalar BulletSolver::solveGroupCacheFriendlySetup(
     btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
     int manifold_count, btTypedConstraint** constraints, int constraint_count,
     const btContactSolverInfo& info, btIDebugDraw* drawer) {
+  inertias_.Clear();
+  const MultibodyInertias::Use use(inertias_);
   const btScalar result = btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(
       bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, drawer);
   rigid_.Setup(RigidPools());
   // No row of a multibody is warm-started: its speeds start at zero here, and their final values
   // are added to the multibody.
-  terms_.clear();
+  coefficients_.clear();
   multibodies_.clear();
+  joint_speeds_.clear();
   Flatten(m_multiBodyNonContactConstraints, joints_);
   Flatten(m_multiBodyNormalContactConstraints, normals_);
   Flatten(m_multiBodyFrictionContactConstraints, frictions_);
   Flatten(m_multiBodyTorsionalFrictionContactConstraints, rolling_);
   Flatten(m_multiBodySpinningFrictionContactConstraints, spinning_);
-  ComputeCouplings(frictions_, friction_couplings_);
-  ComputeCouplings(rolling_, rolling_couplings_);
+  ComputeResponses(frictions_, friction_responses_);
+  ComputeResponses(rolling_, rolling_responses_);
   return result;
 }
 
@@ -82,14 +79,16 @@ void BulletSolver::Flatten(btMultiBodyConstraintArray& sources, Rows& rows) {
   rows.clear();
   for (int i = 0; i < sources.size(); ++i) {
     btMultiBodySolverConstraint& source = sources[i];
+    // A row that cannot move has no mass, and its impulse stays as it is.
+    const btScalar mass = source.m_jacDiagABInv > 0 ? 1 / source.m_jacDiagABInv : 0;
     rows.push_back({.a = MakeSide(source.m_multiBodyA, source.m_solverBodyIdA, source.m_jacAindex,
                                   source.m_deltaVelAindex, source.m_contactNormal1,
                                   source.m_relpos1CrossNormal, source.m_angularComponentA),
                     .b = MakeSide(source.m_multiBodyB, source.m_solverBodyIdB, source.m_jacBindex,
                                   source.m_deltaVelBindex, source.m_contactNormal2,
                                   source.m_relpos2CrossNormal, source.m_angularComponentB),
-                    .wanted = source.m_rhs,
-                    .softness = source.m_cfm,
+                    .wanted = source.m_rhs * mass,
+                    .softness = source.m_cfm * mass,
                     .inverse_mass = source.m_jacDiagABInv,
                     .least = source.m_lowerLimit,
                     .most = source.m_upperLimit,
@@ -104,54 +103,75 @@ BulletSolver::Side BulletSolver::MakeSide(btMultiBody* multibody, int solver_bod
                                           int speeds, const btVector3& linear,
                                           const btVector3& angular,
                                           const btVector3& angular_response) {
+  if (multibody) return MakeSide(*multibody, &m_data.m_jacobians[jacobian], speeds);
+  if (solver_body < 0) return {};
+  return {.rigid = MakeRigidSide(m_tmpSolverBodyPool[solver_body], rigid_.SpeedsOf(solver_body),
+                                 linear, angular, angular_response)};
+}
+
+BulletSolver::Side BulletSolver::MakeSide(btMultiBody& multibody, const btScalar* jacobian,
+                                          int speeds) {
+  MultibodyUse& use = UseOf(multibody, speeds);
+  const MultibodyInertia& inertia = *use.inertia;
   Side side;
-  if (multibody) {
-    RegisterMultibody(*multibody, speeds);
-    side.speeds = speeds;
-    side.response = jacobian;
-    side.speed_count = multibody->getNumDofs() + 6;
-    side.first_term = static_cast<int>(terms_.size());
-    for (int i = 0; i < side.speed_count; ++i)
-      if (m_data.m_jacobians[jacobian + i] != 0)
-        terms_.push_back({speeds + i, m_data.m_jacobians[jacobian + i]});
-    side.end_term = static_cast<int>(terms_.size());
-  } else if (solver_body >= 0) {
-    side.rigid = MakeRigidSide(m_tmpSolverBodyPool[solver_body], rigid_.SpeedsOf(solver_body),
-                               linear, angular, angular_response);
-  }
+  side.rigid.speeds = &use.base;
+  side.rigid.jacobian = inertia.OnBase(jacobian);
+  side.rigid.response = inertia.BaseResponse(side.rigid.jacobian);
+  const MultibodyInertia::Places limbs = inertia.LimbsOf(jacobian);
+  side.first_joint = use.first_joint + limbs.first;
+  side.joint_count = limbs.end - limbs.first;
+  side.coefficients = coefficients_.size();
+  for (std::size_t i = limbs.first; i < limbs.end; ++i)
+    coefficients_.push_back(jacobian[6 + inertia.JointAt(i)]);
+  for (std::size_t i = limbs.first; i < limbs.end; ++i)
+    coefficients_.push_back(inertia.JointResponse(i, jacobian));
   return side;
 }
 
 btScalar BulletSolver::Coupling(const Side& first, const Side& second) const {
   btScalar coupling = first.rigid.SpeedBy(second.rigid);
-  for (int i = first.first_term; i < first.end_term; ++i) {
-    const Term& term = terms_[static_cast<std::size_t>(i)];
-    coupling += term.factor *
-                m_data.m_deltaVelocitiesUnitImpulse[second.response + term.speed - first.speeds];
-  }
+  const std::size_t from = std::max(first.first_joint, second.first_joint);
+  const std::size_t to =
+      std::min(first.first_joint + first.joint_count, second.first_joint + second.joint_count);
+  for (std::size_t joint = from; joint < to; ++joint)
+    coupling +=
+        coefficients_[first.coefficients + joint - first.first_joint] *
+        coefficients_[second.coefficients + second.joint_count + joint - second.first_joint];
   return coupling;
 }
 
-void BulletSolver::ComputeCouplings(const Rows& pairs, std::vector<btScalar>& couplings) const {
-  couplings.clear();
-  for (std::size_t i = 0; i + 1 < pairs.size(); i += 2)
-    couplings.push_back(Coupling(pairs[i].a, pairs[i + 1].a) +
-                        Coupling(pairs[i].b, pairs[i + 1].b));
+void BulletSolver::ComputeResponses(const Rows& pairs, Responses& responses) const {
+  responses.clear();
+  for (std::size_t i = 0; i + 1 < pairs.size(); i += 2) {
+    const Row &first = pairs[i], &second = pairs[i + 1];
+    responses.emplace_back(1 / first.inverse_mass,
+                           Coupling(first.a, second.a) + Coupling(first.b, second.b),
+                           1 / second.inverse_mass);
+  }
 }
 
-void BulletSolver::RegisterMultibody(btMultiBody& multibody, int speeds) {
-  const auto known = [&](const MultibodyUse& use) { return use.multibody == &multibody; };
-  if (std::any_of(multibodies_.begin(), multibodies_.end(), known)) return;
+BulletSolver::MultibodyUse& BulletSolver::UseOf(btMultiBody& multibody, int speeds) {
+  for (MultibodyUse& use : multibodies_)
+    if (use.multibody == &multibody) return use;
   multibody.setPosUpdated(false);
-  multibodies_.push_back({&multibody, speeds});
+  const MultibodyInertia& inertia = inertias_.Of(multibody);
+  const std::size_t first_joint = joint_speeds_.size();
+  joint_speeds_.resize(first_joint + inertia.joint_count());
+  return multibodies_.emplace_back(
+      MultibodyUse{&multibody, &inertia, speeds, first_joint, /*base=*/{}});
+}
+
+void BulletSolver::ApplySpeeds(const MultibodyUse& use) {
+  btScalar* const speeds = &m_data.m_deltaVelocities[use.speeds];
+  use.inertia->ToSpeeds(use.base, joint_speeds_.data() + use.first_joint, speeds);
+  use.multibody->applyDeltaVeeMultiDof2(speeds, 1);
 }
 
 btScalar BulletSolver::SpeedAlong(const Side& side) const {
   btScalar speed = side.rigid.SpeedAlong();
-  for (int i = side.first_term; i < side.end_term; ++i) {
-    const Term& term = terms_[static_cast<std::size_t>(i)];
-    speed += term.factor * m_data.m_deltaVelocities[term.speed];
-  }
+  const btScalar* const factors = coefficients_.data() + side.coefficients;
+  const btScalar* const speeds = joint_speeds_.data() + side.first_joint;
+  for (std::size_t i = 0; i < side.joint_count; ++i) speed += factors[i] * speeds[i];
   return speed;
 }
 
@@ -159,18 +179,16 @@ btScalar BulletSolver::Pressure(const Row& friction) const {
   return normals_[static_cast<std::size_t>(friction.normal)].impulse;
 }
 
-btScalar BulletSolver::WantedChange(const Row& row) const {
-  btScalar change = row.wanted - row.impulse * row.softness;
-  change -= SpeedAlong(row.a) * row.inverse_mass;
-  change -= SpeedAlong(row.b) * row.inverse_mass;
-  return change;
+btScalar BulletSolver::SpeedError(const Row& row) const {
+  return row.wanted - row.impulse * row.softness - SpeedAlong(row.a) - SpeedAlong(row.b);
 }
 
 void BulletSolver::Push(const Side& side, btScalar impulse) {
   side.rigid.Push(impulse);
-  if (side.speed_count > 0)
-    AddScaled(&m_data.m_deltaVelocitiesUnitImpulse[side.response], impulse, side.speed_count,
-              &m_data.m_deltaVelocities[side.speeds]);
+  const btScalar* const __restrict responses =
+      coefficients_.data() + side.coefficients + side.joint_count;
+  btScalar* const __restrict speeds = joint_speeds_.data() + side.first_joint;
+  for (std::size_t i = 0; i < side.joint_count; ++i) speeds[i] += responses[i] * impulse;
 }
 
 void BulletSolver::Push(const Row& row, btScalar impulse) {
@@ -180,7 +198,7 @@ void BulletSolver::Push(const Row& row, btScalar impulse) {
 }
 
 btScalar BulletSolver::Solve(Row& row) {
-  btScalar change = WantedChange(row);
+  btScalar change = SpeedError(row) * row.inverse_mass;
   btScalar sum = row.impulse + change;
   Clamp(row.least, row.most, row.impulse, sum, change);
   row.impulse = sum;
@@ -188,13 +206,11 @@ btScalar BulletSolver::Solve(Row& row) {
   return change * change;
 }
 
-btScalar BulletSolver::SolvePair(Row& first, Row& second, btScalar coupling) {
+btScalar BulletSolver::SolvePair(Row& first, Row& second, const PrincipalResponse& response) {
   const btScalar limit = first.friction * Pressure(first);
   if (limit <= 0 && first.impulse == 0 && second.impulse == 0) return 0;
-  const PairResponse response{1 / first.inverse_mass, coupling, 1 / second.inverse_mass};
-  const RowPair errors{WantedChange(first) * response.first,
-                       WantedChange(second) * response.second};
-  const RowPair change = FrictionChange({first.impulse, second.impulse}, limit, response, errors);
+  const RowPair change = FrictionChange({first.impulse, second.impulse}, limit, response,
+                                        {SpeedError(first), SpeedError(second)});
   first.impulse += change.first;
   second.impulse += change.second;
   Push(first, change.first);
@@ -202,12 +218,11 @@ btScalar BulletSolver::SolvePair(Row& first, Row& second, btScalar coupling) {
   return std::max(change.first * change.first, change.second * change.second);
 }
 
-btScalar BulletSolver::SolvePairs(Rows& rows, const std::vector<btScalar>& couplings,
-                                  bool only_pressed) {
+btScalar BulletSolver::SolvePairs(Rows& rows, const Responses& responses, bool only_pressed) {
   btScalar largest = 0;
   for (std::size_t i = 0; i + 1 < rows.size(); i += 2)
     if (!only_pressed || Pressure(rows[i]) > 0)
-      largest = std::max(largest, SolvePair(rows[i], rows[i + 1], couplings[i / 2]));
+      largest = std::max(largest, SolvePair(rows[i], rows[i + 1], responses[i / 2]));
   return largest;
 }
 
@@ -245,8 +260,8 @@ btScalar BulletSolver::solveSingleIteration(int iteration, btCollisionObject**, 
     row.least = -row.most;
     largest = std::max(largest, Solve(row));
   }
-  largest = std::max(largest, SolvePairs(rolling_, rolling_couplings_, /*only_pressed=*/true));
-  return std::max(largest, SolvePairs(frictions_, friction_couplings_, /*only_pressed=*/false));
+  largest = std::max(largest, SolvePairs(rolling_, rolling_responses_, /*only_pressed=*/true));
+  return std::max(largest, SolvePairs(frictions_, friction_responses_, /*only_pressed=*/false));
 }
 
 btScalar BulletSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,
@@ -254,8 +269,7 @@ btScalar BulletSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies,
   for (const Rows* rows : {&joints_, &normals_, &frictions_, &rolling_, &spinning_})
     for (const Row& row : *rows) row.source->m_appliedImpulse = row.impulse;
   rigid_.WriteBack(RigidPools());
-  for (const MultibodyUse& use : multibodies_)
-    use.multibody->applyDeltaVeeMultiDof2(&m_data.m_deltaVelocities[use.speeds], 1);
+  for (const MultibodyUse& use : multibodies_) ApplySpeeds(use);
   return btMultiBodyConstraintSolver::solveGroupCacheFriendlyFinish(bodies, body_count, info);
 }
 

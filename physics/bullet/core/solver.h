@@ -9,8 +9,11 @@
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 
+#include <deque>
 #include <vector>
 
+#include "physics/bullet/core/friction_circle.h"
+#include "physics/bullet/core/multibody_inertia.h"
 #include "physics/bullet/core/rigid_rows.h"
 
 namespace prehend::physics {
@@ -46,22 +49,20 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
                                          const btContactSolverInfo& info) override;
 
  private:
-  /// A non-zero element of a Jacobian.
-  struct Term {
-    int speed;  ///< index into m_data.m_deltaVelocities
-    btScalar factor;
-  };
-  /// One of the two bodies of a row: a multibody, a rigid body, or none.
+  /// One of the two bodies of a row: a rigid body, a multibody (its base, which feels all that it
+  /// carries, and the joints of a limb), or none.
   struct Side {
-    int first_term = 0, end_term = 0;  ///< in terms_
-    int speeds = 0;                    ///< of the multibody, in m_data.m_deltaVelocities
-    int response = 0;     ///< to a unit impulse, in m_data.m_deltaVelocitiesUnitImpulse
-    int speed_count = 0;  ///< degrees of freedom; 0 unless it is a multibody
     RigidSide rigid;
+    std::size_t first_joint = 0, joint_count = 0;  ///< in joint_speeds_
+    /// Of the joints in coefficients_: elements of the Jacobian, then changes of speed by a unit
+    /// impulse.
+    std::size_t coefficients = 0;
   };
   struct Row {
     Side a, b;
-    btScalar wanted, softness, inverse_mass, least, most, friction;
+    btScalar wanted;    ///< speed
+    btScalar softness;  ///< speed by a unit impulse, which the row gives way
+    btScalar inverse_mass, least, most, friction;
     btScalar impulse;
     int normal;  ///< of a friction row: index of its contact row
     btMultiBodySolverConstraint* source;
@@ -73,30 +74,39 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   Side MakeSide(btMultiBody* multibody, int solver_body, int jacobian, int speeds,
                 const btVector3& linear, const btVector3& angular,
                 const btVector3& angular_response);
+  Side MakeSide(btMultiBody& multibody, const btScalar* jacobian, int speeds);
   btScalar SpeedAlong(const Side& side) const;
   /// Impulse of the contact of a friction row.
   btScalar Pressure(const Row& friction) const;
-  btScalar WantedChange(const Row& row) const;
+  /// Wanted minus present speed along the row.
+  btScalar SpeedError(const Row& row) const;
   void Push(const Side& side, btScalar impulse);
   void Push(const Row& row, btScalar impulse);
   btScalar Solve(Row& row);
   /// Change of speed along the row of `first` by a unit impulse along the row of `second`.
   btScalar Coupling(const Side& first, const Side& second) const;
-  void ComputeCouplings(const Rows& pairs, std::vector<btScalar>& couplings) const;
-  btScalar SolvePair(Row& first, Row& second, btScalar coupling);
-  btScalar SolvePairs(Rows& rows, const std::vector<btScalar>& couplings, bool only_pressed);
-  /// Remembers where this multibody's speeds are.
-  void RegisterMultibody(btMultiBody& multibody, int speeds);
+  using Responses = std::vector<PrincipalResponse>;
+  void ComputeResponses(const Rows& pairs, Responses& responses) const;
+  btScalar SolvePair(Row& first, Row& second, const PrincipalResponse& response);
+  btScalar SolvePairs(Rows& rows, const Responses& responses, bool only_pressed);
 
+  /// The solver's change of the speeds of a multibody, in the variables of MultibodyInertia.
   struct MultibodyUse {
     btMultiBody* multibody;
-    int speeds;  ///< index of its first in m_data.m_deltaVelocities
+    const MultibodyInertia* inertia;
+    int speeds;  ///< index of the first in m_data.m_deltaVelocities, where Bullet wants the sum
+    std::size_t first_joint;  ///< in joint_speeds_
+    Six base{};
   };
+  MultibodyUse& UseOf(btMultiBody& multibody, int speeds);
+  void ApplySpeeds(const MultibodyUse& use);
+
   RigidRows rigid_;
   Rows joints_, normals_, frictions_, rolling_, spinning_;
-  std::vector<btScalar> friction_couplings_, rolling_couplings_;  ///< by pair of rows
-  std::vector<Term> terms_;
-  std::vector<MultibodyUse> multibodies_;
+  Responses friction_responses_, rolling_responses_;  ///< by pair of rows
+  MultibodyInertias inertias_;
+  std::deque<MultibodyUse> multibodies_;
+  std::vector<btScalar> joint_speeds_, coefficients_;
 };
 
 }  // namespace prehend::physics

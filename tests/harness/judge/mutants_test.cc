@@ -125,6 +125,7 @@ const char* const kScenarios[] = {
     "support/bounces_are_contacts_of_their_own",
     "support/rolling_over_a_bar_is_no_support",
     "support/tipped_up_at_one_end_it_stands_on_the_other",
+    "sensors/missed_touches_are_bridged",
     "put_down/slow_put_down",
     "pick_up/low_arch_is_a_pick_up",
     "put_down/low_last_approach_is_no_put_down",
