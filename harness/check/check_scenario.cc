@@ -26,9 +26,11 @@
 #include "harness/judge/judge_golden.h"
 #include "harness/judge/judge_invariants.h"
 #include "harness/judge/judge_pictures.h"
+#include "harness/judge/judge_recording.h"
 #include "harness/judge/judge_transforms.h"
 #include "harness/pictures/pictures.h"
 #include "harness/replay/replay_data.h"
+#include "harness/run/open_episode.h"
 #include "harness/run/run_text.h"
 
 namespace prehend::harness {
@@ -363,9 +365,42 @@ ScenarioVerdict VerdictOn(const CheckRequest& request, const CheckedRun& checked
   return verdict;
 }
 
+/// A recording against the golden beside it.
+ScenarioVerdict CheckRecording(const CheckRequest& request) {
+  const std::string& file = request.run.scenario_file;
+  ScenarioVerdict verdict = BlankVerdict(request);
+  verdict.inputs = HashFiles({file, GoldenBeside(file)});
+  Result<JudgedRecording> judged = JudgeRecording(request.run, request.root);
+  if (!judged) {
+    Conclude({{ExitCode::kBadInput, "cannot be read", Format(judged.error())}}, verdict);
+    return verdict;
+  }
+  verdict.ticks = judged->segmented.end;
+  verdict.has_golden = judged->golden.has_value();
+  verdict.drawings = EventDrawings(*judged->segmented.program);
+  Findings findings;
+  if (!judged->golden) {
+    findings.push_back({ExitCode::kPending, "no golden yet", ""});
+    if (AsItsFileSays(request)) verdict.command = Command("review", request.id, {});
+  } else if (!judged->comparison.Agrees()) {
+    findings.push_back(DifferenceFinding(judged->comparison, verdict.explain));
+  }
+  if (!findings.empty()) findings.back().details += judged->segmented.missing.warnings;
+  if (verdict.has_golden) {
+    const Suspects suspects{.other_changes = OptionsOf(request.run)};
+    verdict.attributions = AttributeDifferences(
+        judged->comparison, suspects, [](const auto&) { return std::optional<Comparison>(); });
+  }
+  verdict.comparison = std::move(judged->comparison);
+  Conclude(findings, verdict);
+  return verdict;
+}
+
 }  // namespace
 
 ScenarioVerdict CheckScenario(const CheckRequest& request) {
+  if (request.episode == 0 && IsRecording(request.run.scenario_file))
+    return CheckRecording(request);
   ScenarioVerdict verdict = BlankVerdict(request);
   std::vector<std::string> files;
   std::optional<RunResult> played;

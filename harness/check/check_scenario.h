@@ -35,7 +35,8 @@ struct CheckRequest {
       nullptr;  ///< gets the tick that the run has reached; may be null
 };
 
-/// Never fails: what goes wrong is the verdict.
+/// Never fails: what goes wrong is the verdict. Of a recording of a tracker, which is not
+/// simulated, it judges the events alone, against the golden beside it.
 ScenarioVerdict CheckScenario(const CheckRequest& request);
 
 /// The same of a run that was played already, with its recording. `files`: what it was read from.

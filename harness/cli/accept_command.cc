@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "harness/base/atomic_file.h"
 #include "harness/base/build_text.h"
@@ -21,7 +22,9 @@
 #include "harness/judge/compare_engines.h"
 #include "harness/judge/compare_with_oracle.h"
 #include "harness/judge/judge_claims.h"
+#include "harness/judge/judge_recording.h"
 #include "harness/judge/judge_transforms.h"
+#include "harness/run/open_episode.h"
 #include "harness/run/run_text.h"
 
 namespace prehend::harness {
@@ -236,10 +239,48 @@ ExitCode AcceptEvents(const ParsedOptions& options, const CommandContext& contex
   return ExitCode::kAgrees;
 }
 
+/// The golden of a recording lies beside it; nothing is simulated, so nothing is played elsewhere.
+ExitCode AcceptRecording(const std::string& file, const ParsedOptions& options,
+                         const CommandContext& context) {
+  for (const char* of_play : {"--pictures", "--unsteady"}) {
+    if (options.Has(of_play))
+      return Complain(context, ExitCode::kBadInput,
+                      fmt::format("{} concerns scenarios; {} is a recording", of_play, file));
+  }
+  const FolderLock one_at_a_time(context.root);
+  const Result<JudgedRecording> judged = JudgeRecording({.scenario_file = file}, context.root);
+  if (!judged) return Complain(context, judged.error());
+  const SegmentedRecording& segmented = judged->segmented;
+  context.err << segmented.missing.warnings;
+  if (segmented.missing.nothing_left)
+    return Complain(context, ExitCode::kNothing,
+                    "no event of the grammar can be recognised; nothing was accepted");
+  const std::string now = Fingerprint(judged->proposed), golden_file = GoldenBeside(file);
+  if (options.Has("--reviewed") && options.Text("--reviewed") != now)
+    return Complain(context, ExitCode::kDiffers,
+                    fmt::format("the reviewed golden was {}, but the recording now yields {}; "
+                                "nothing was accepted\n  if that is right: {}",
+                                options.Text("--reviewed"), now, AcceptCommandLine(file, now)));
+  if (judged->Agrees() && !options.Has("--derived")) {
+    context.out << "nothing to accept: the recording agrees with " << golden_file << "\n";
+    return ExitCode::kAgrees;
+  }
+  const Golden golden = AcceptedRecording(*judged, options.All("--derived"),
+                                          {context.today, options.Text("--reason")});
+  const std::string problem = WriteGoldenFile(golden_file, golden);
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  context.out << ReviewText(*judged, ExplainCommand(file, {})) << "accepted: " << golden_file
+              << "\n";
+  return ExitCode::kAgrees;
+}
+
 ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) {
   const std::string refusal = Refusal(options, context);
   if (!refusal.empty()) return Complain(context, ExitCode::kBadInput, refusal);
   const std::string typed = options.Text("scenario");
+  std::error_code error;
+  if (IsRecording(typed) && std::filesystem::exists(typed, error))
+    return AcceptRecording(typed, options, context);
   if (typed.find_first_of("*?[") != std::string::npos)
     return Complain(
         context, ExitCode::kBadInput,
@@ -295,8 +336,11 @@ Command AcceptCommand() {
            "earlier\"",
            "accept milk_carton_wrap --reason \"...\" --derived \"the reach begins with the hand's "
            "first motion\"",
-           "accept milk_carton_wrap --pictures --reason \"the carton is seen in the hand\""},
-      .options = {{.name = "scenario", .help = "a name or skill/name", .required = true},
+           "accept milk_carton_wrap --pictures --reason \"the carton is seen in the hand\"",
+           "accept takes/take1.jsonl --reason \"compared with the video\""},
+      .options = {{.name = "scenario",
+                   .help = "a name, skill/name, or the file of a recording of a tracker",
+                   .required = true},
                   {.name = "--reason",
                    .help = "why this is right; is written into the golden",
                    .placeholder = "TEXT"},

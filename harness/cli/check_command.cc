@@ -18,6 +18,7 @@
 #include "harness/report/junit.h"
 #include "harness/report/page_texts.h"
 #include "harness/report/report.h"
+#include "harness/run/open_episode.h"
 #include "harness/transform/transform.h"
 
 namespace prehend::harness {
@@ -81,7 +82,9 @@ std::vector<Option> SelectionOptions() {
       "Which scenarios",
       {
           {.name = "names",
-           .help = "names, skill/name, globs or files, also episode files; default: all scenarios",
+           .help =
+               "names, skill/name, globs or files, also episode files and recordings of trackers;\n"
+               "default: all scenarios",
            .repeatable = true},
           {.name = "--filter",
            .help = "keep those that match this glob or have the tag; with a leading '!' drop\n"
@@ -332,9 +335,6 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
         context, ExitCode::kBadInput,
         "--changed compares files; it cannot be combined with --transform or --ensemble");
   }
-  for (const std::string& name : options.All("names")) {
-    if (const auto refused = RefuseRecording(name, context)) return *refused;
-  }
   const std::string junit = options.Text("--junit");
   if (junit == "-" && options.Has("--json")) {
     return Complain(context, ExitCode::kBadInput,
@@ -344,12 +344,13 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   auto selection =
       SelectScenarios(options.All("names"), options.All("--filter"), context.root, problem);
   if (!selection) return Complain(context, ExitCode::kNothing, problem);
-  const bool is_played = std::ranges::any_of(
-      selection->scenarios, [](const ScenarioFile& file) { return file.episode != 0; });
+  const auto played = std::ranges::find_if(selection->scenarios, [](const ScenarioFile& file) {
+    return file.episode != 0 || IsRecording(file.path);
+  });
   for (const char* of_play : {"--record", "--transform", "--ensemble", "--repeat"}) {
-    if (is_played && options.Has(of_play))
+    if (played != selection->scenarios.end() && options.Has(of_play))
       return Complain(context, ExitCode::kBadInput,
-                      fmt::format("{} plays scenarios; an episode file was named", of_play));
+                      fmt::format("{} plays scenarios; {} is a recording", of_play, played->path));
   }
   if (options.Has("--shard")) {
     KeepShard(*ParseShard(options.Text("--shard")), *selection);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "grammar/name_events.h"
 #include "harness/base/atomic_file.h"
 #include "harness/command/command.h"
 #include "harness/episodes/resegment_many.h"
@@ -15,48 +14,33 @@
 #include "harness/labels/take.h"
 #include "harness/labels/write_labels.h"
 #include "harness/run/load_grammar.h"
-#include "harness/run/missing_facts.h"
 #include "harness/run/run_text.h"
-#include "harness/sense/episode_file.h"
+#include "harness/run/segment_recording.h"
 
 namespace prehend::harness {
 namespace {
 
 ExitCode ResegmentLines(const std::string& file, const ParsedOptions& options,
                         const CommandContext& context) {
-  Result<Episode> episode = ReadEpisode(file);
-  if (!episode) return Complain(context, episode.error());
-  Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
-  if (!settings) return Complain(context, settings.error());
-  const grammar::CompileResult compiled =
-      LoadGrammar(context.root, options.TextOr("--grammar", episode->header.grammar), *settings);
-  if (!compiled.program) return Complain(context, compiled.diagnostics);
-
-  const grammar::EntityTable& entity_table = episode->header.entity_table;
-  Warn(context, Warnings(*compiled.program, entity_table));
-  const MissingFacts missing = FindMissingFacts(*episode, *compiled.program);
-  context.err << missing.warnings;
-  grammar::Monitor monitor(compiled.program, entity_table);
-  std::vector<grammar::Event> events;
-  for (EpisodeFrame& frame : episode->frames) monitor.Advance(frame.View(), events);
-  monitor.Finish(episode->end_tick, events);
-  if (!monitor.error().empty()) {
-    return Complain(context, ExitCode::kBadInput,
-                    "the grammar cannot segment this recording: " + monitor.error());
-  }
+  const Result<SegmentedRecording> segmented =
+      SegmentRecording(RequestOf(options, file), context.root);
+  if (!segmented) return Complain(context, segmented.error());
+  Warn(context, segmented->warnings);
+  context.err << segmented->missing.warnings;
   RunResult run;
   run.status.kind = physics::RunStatus::Kind::kCompleted;
-  run.ticks = episode->end_tick - 1;
-  run.is_unfinished = !episode->says_its_end;
-  run.timeline = grammar::NameEvents(*compiled.program, entity_table, events);
-  const ExitCode exit_code = missing.nothing_left ? ExitCode::kNothing : ExitCode::kAgrees;
+  run.ticks = segmented->end - 1;
+  run.is_unfinished = !segmented->says_its_end;
+  run.timeline = segmented->timeline;
+  const ExitCode exit_code =
+      segmented->missing.nothing_left ? ExitCode::kNothing : ExitCode::kAgrees;
   if (!options.Has("--json")) {
     context.out << RunTable(run);
     return exit_code;
   }
   Scenario watched;
-  watched.name = episode->header.episode;
-  watched.grammar = GrammarName(*compiled.program);
+  watched.name = segmented->name;
+  watched.grammar = GrammarName(*segmented->program);
   OrderedJson json = RunJson(watched, run);
   json.erase("state_hash");  // nothing was simulated
   context.out << json.dump(2) << "\n";

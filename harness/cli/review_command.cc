@@ -17,10 +17,11 @@
 #include "harness/judge/accept_golden.h"
 #include "harness/judge/compare_engines.h"
 #include "harness/judge/judge_claims.h"
+#include "harness/judge/judge_recording.h"
 #include "harness/judge/unreferenced_goldens.h"
 #include "harness/read/read_scenario.h"
+#include "harness/run/open_episode.h"
 #include "harness/run/project_library.h"
-#include "harness/timeline/event_text.h"
 
 namespace prehend::harness {
 namespace {
@@ -37,19 +38,6 @@ struct Review {
       {};  ///< of a picture: golden, new, difference; of an orphan: what to remove
   std::string contradicts = {};  ///< the claims that the pending golden contradicts, or empty
 };
-
-std::string EventLines(const Golden& golden) {
-  std::vector<std::vector<std::string>> rows;
-  std::size_t role_columns = 1;
-  for (const GoldenEvent& line : golden.events)
-    role_columns = std::max(role_columns, line.event.roles.size());
-  for (const GoldenEvent& line : golden.events) {
-    rows.push_back(EventCells(line.event, golden.ticks_per_second, role_columns));
-  }
-  std::string text;
-  for (const std::string& line : AlignColumns(rows)) text += line + "\n";
-  return text;
-}
 
 /// How it follows from the definitions, where the golden says something else.
 std::string DerivationLines(const Golden& pending, const std::vector<std::string>& before) {
@@ -122,6 +110,22 @@ void AddReviews(const ScenarioFile& file, const std::string& root, bool is_pendi
         {IdOf(file), "orphan", UnrequestedText(picture, asked) + "\n", "", {picture.string()}});
 }
 
+/// A recording, judged now: what it yields is not kept, since judging it again costs little.
+/// Nothing if it agrees with the golden beside it.
+std::optional<Review> ReviewOfRecording(const std::string& file, const std::string& root) {
+  Review review{.id = file, .kind = "unreadable", .text = {}};
+  const Result<JudgedRecording> judged = JudgeRecording({.scenario_file = file}, root);
+  if (!judged) {
+    review.text = Format(judged.error());
+    return review;
+  }
+  if (judged->Agrees()) return std::nullopt;
+  review.kind = judged->golden ? "changed" : "new";
+  review.text = judged->segmented.missing.warnings + ReviewText(*judged, ExplainCommand(file, {}));
+  review.fingerprint = Fingerprint(judged->proposed);
+  return review;
+}
+
 /// Nothing when the selection is wrong, which has been reported then.
 std::optional<std::vector<Review>> Reviews(const ParsedOptions& options,
                                            const CommandContext& context) {
@@ -135,8 +139,14 @@ std::optional<std::vector<Review>> Reviews(const ParsedOptions& options,
   std::vector<std::string> pending = GoldenFiles(context.root).ListPending();
   const std::vector<KeptPicture> pictures = GoldenFiles(context.root).PendingPictures();
   std::vector<Review> reviews;
-  for (const ScenarioFile& file : selection ? selection->scenarios : std::vector<ScenarioFile>())
+  for (const ScenarioFile& file : selection ? selection->scenarios : std::vector<ScenarioFile>()) {
+    if (file.episode == 0 && IsRecording(file.path)) {
+      if (auto review = ReviewOfRecording(file.path, context.root))
+        reviews.push_back(std::move(*review));
+      continue;
+    }
     AddReviews(file, context.root, std::erase(pending, IdOf(file)) > 0, pictures, reviews);
+  }
   if (!patterns.empty()) return reviews;
   for (const std::string& id : pending) {
     const std::string file = GoldenFiles(context.root).PendingPath(id).string();
@@ -206,14 +216,17 @@ ExitCode RunReview(const ParsedOptions& options, const CommandContext& context) 
 }  // namespace
 
 Command ReviewCommand() {
-  return {.name = "review",
-          .summary = "Show what is pending, and how it differs from the goldens",
-          .examples = {"review", "review milk_carton_wrap 'slide/*'"},
-          .options = {{.name = "names",
-                       .help = "names, skill/name or globs; default: all that is pending",
-                       .repeatable = true},
-                      {.name = "--json", .help = "print one JSON object instead of text"}},
-          .run = RunReview};
+  return {
+      .name = "review",
+      .summary = "Show what is pending, and how it differs from the goldens",
+      .examples = {"review", "review milk_carton_wrap 'slide/*'"},
+      .options =
+          {{.name = "names",
+            .help = "names, skill/name, globs, or files of recordings of trackers; default: all\n"
+                    "that is pending",
+            .repeatable = true},
+           {.name = "--json", .help = "print one JSON object instead of text"}},
+      .run = RunReview};
 }
 
 }  // namespace prehend::harness

@@ -114,7 +114,7 @@ std::optional<ExitCode> RefuseRecording(const std::string& typed, const CommandC
   if (!IsRecording(typed) || !std::filesystem::exists(typed, error)) return std::nullopt;
   return Complain(context, ExitCode::kBadInput,
                   typed + " is a recording, not a scenario; use '" + CommandText({"resegment"}) +
-                      "', 'explain' or 'tracks'");
+                      "', 'explain', 'tracks' or 'check'");
 }
 
 tl::expected<ScenarioFile, ExitCode> FindScenarioOrComplain(const std::string& typed,

@@ -18,18 +18,6 @@ namespace {
 constexpr const char* kExtension = ".timeline";
 constexpr const char* kDifference = ".difference.png";
 
-Result<std::optional<Golden>> ReadFrom(const fs::path& path, const std::string& scenario) {
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) return std::nullopt;
-  Result<std::string> text = ReadTextFile(path.string());
-  if (!text) return tl::unexpected(std::move(text.error()));
-  Result<Golden> golden = ReadGolden(path.string(), *text);
-  if (!golden) return tl::unexpected(std::move(golden.error()));
-  grammar::Diagnostics other = OfAnotherScenario(path.string(), *text, *golden, scenario);
-  if (!other.empty()) return tl::unexpected(std::move(other));
-  return std::move(*golden);
-}
-
 /// Ids of all timelines below a folder, sorted.
 std::vector<std::string> IdsBelow(const fs::path& folder) {
   std::vector<std::string> scenarios;
@@ -105,6 +93,31 @@ grammar::Diagnostics OfAnotherScenario(std::string_view file, std::string_view t
                                 "if it was moved here with its scenario, write that name")};
 }
 
+Result<std::optional<Golden>> ReadGoldenFile(const fs::path& path, const std::string& scenario) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return std::nullopt;
+  Result<std::string> text = ReadTextFile(path.string());
+  if (!text) return tl::unexpected(std::move(text.error()));
+  Result<Golden> golden = ReadGolden(path.string(), *text);
+  if (!golden) return tl::unexpected(std::move(golden.error()));
+  grammar::Diagnostics other = OfAnotherScenario(path.string(), *text, *golden, scenario);
+  if (!other.empty()) return tl::unexpected(std::move(other));
+  return std::move(*golden);
+}
+
+std::string WriteGoldenFile(const fs::path& path, const Golden& golden) {
+  const std::string text = WriteGolden(golden);
+  grammar::Diagnostics wrong = CheckText(path.string(), text);
+  if (!wrong.empty())
+    return "the golden would not be readable, and was not written:\n" + Format(wrong);
+  const Result<Golden> read = ReadGolden(path.string(), text);
+  if (!read)
+    return "the golden would not be readable, and was not written:\n" + Format(read.error());
+  if (!(*read == golden))
+    return "the golden would read back otherwise, and was not written; use plain words in reasons";
+  return WriteTextFile(path, text);
+}
+
 fs::path GoldenFiles::GoldenPath(const std::string& scenario) const {
   return root_ / "golden" / (scenario + kExtension);
 }
@@ -114,11 +127,11 @@ fs::path GoldenFiles::PendingPath(const std::string& scenario) const {
 }
 
 Result<std::optional<Golden>> GoldenFiles::ReadGoldenOf(const std::string& scenario) const {
-  return ReadFrom(GoldenPath(scenario), scenario);
+  return ReadGoldenFile(GoldenPath(scenario), scenario);
 }
 
 Result<std::optional<Golden>> GoldenFiles::ReadPendingOf(const std::string& scenario) const {
-  return ReadFrom(PendingPath(scenario), scenario);
+  return ReadGoldenFile(PendingPath(scenario), scenario);
 }
 
 std::string GoldenFiles::WritePending(const Golden& golden) const {
@@ -126,17 +139,7 @@ std::string GoldenFiles::WritePending(const Golden& golden) const {
 }
 
 std::string GoldenFiles::WriteGoldenFile(const Golden& golden) const {
-  const std::string path = GoldenPath(golden.scenario), text = WriteGolden(golden);
-  // A golden that does not read back would lose every reason that the old one held.
-  grammar::Diagnostics wrong = CheckText(path, text);
-  if (!wrong.empty())
-    return "the golden would not be readable, and was not written:\n" + Format(wrong);
-  const Result<Golden> read = ReadGolden(path, text);
-  if (!read)
-    return "the golden would not be readable, and was not written:\n" + Format(read.error());
-  if (!(*read == golden))
-    return "the golden would read back otherwise, and was not written; use plain words in reasons";
-  return WriteTextFile(path, text);
+  return harness::WriteGoldenFile(GoldenPath(golden.scenario), golden);
 }
 
 std::string GoldenFiles::WriteAccepted(const Golden& golden) const {

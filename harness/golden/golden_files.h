@@ -28,6 +28,14 @@ grammar::Diagnostics OfAnotherScenario(std::string_view file, std::string_view t
 /// The place of the name in the line "# scenario: ..".
 grammar::Place ScenarioLine(std::string_view text);
 
+/// The golden in this file, if it is there; an error if its header names another scenario.
+Result<std::optional<Golden>> ReadGoldenFile(const std::filesystem::path& path,
+                                             const std::string& scenario);
+
+/// "" or what went wrong; then the file stays as it was. A golden that would not read back is not
+/// written: it would lose every reason that the old one held.
+std::string WriteGoldenFile(const std::filesystem::path& path, const Golden& golden);
+
 class GoldenFiles {
  public:
   explicit GoldenFiles(std::filesystem::path project_root) : root_(std::move(project_root)) {}

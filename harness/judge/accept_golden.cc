@@ -134,6 +134,19 @@ Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& 
                         .tolerance = truth.tolerance});
 }
 
+std::string EventLines(const Golden& golden) {
+  std::vector<std::vector<std::string>> rows;
+  std::size_t role_columns = 1;
+  for (const GoldenEvent& line : golden.events)
+    role_columns = std::max(role_columns, line.event.roles.size());
+  for (const GoldenEvent& line : golden.events) {
+    rows.push_back(EventCells(line.event, golden.ticks_per_second, role_columns));
+  }
+  std::string text;
+  for (const std::string& line : AlignColumns(rows)) text += line + "\n";
+  return text;
+}
+
 std::string Fingerprint(const Golden& pending) { return ContentHash(WriteGolden(pending)); }
 
 std::string AcceptCommandLine(const std::string& scenario, const std::string& fingerprint) {

@@ -35,6 +35,9 @@ Golden PendingGolden(const std::optional<Golden>& old, const grammar::Timeline& 
                      const std::string& scenario, const std::string& grammar,
                      const OracleComparison& truth);
 
+/// Its events as a table, one line each.
+std::string EventLines(const Golden& golden);
+
 /// Sixteen hexadecimal digits that identify a pending golden.
 std::string Fingerprint(const Golden& pending);
 

@@ -12,19 +12,6 @@
 namespace prehend::harness {
 namespace {
 
-Finding DifferenceFinding(const Comparison& comparison, const CheckedRun& checked,
-                          const std::string& cause) {
-  const std::string context = DifferenceContext(checked.loaded.scenario, checked.result.recording,
-                                                *comparison.FirstDivergence());
-  const auto differing = std::ranges::count_if(comparison.pairings, [](const Pairing& pairing) {
-    return pairing.agreement != LineVerdict::kMatched;
-  });
-  return {.exit_code = ExitCode::kDiffers,
-          .reason = fmt::format("{} of {} events differ from the golden", differing,
-                                comparison.pairings.size()),
-          .details = DifferenceText(comparison, checked.explain, context) + cause};
-}
-
 Finding TruthFinding(const GoldenComparison& compared) {
   std::string reason = DifferingText(compared.truth.Differing());
   if (compared.accepted_differing > 0)
@@ -35,6 +22,17 @@ Finding TruthFinding(const GoldenComparison& compared) {
 }
 
 }  // namespace
+
+Finding DifferenceFinding(const Comparison& comparison, const std::string& explain,
+                          const std::string& facts) {
+  const auto differing = std::ranges::count_if(comparison.pairings, [](const Pairing& pairing) {
+    return pairing.agreement != LineVerdict::kMatched;
+  });
+  return {.exit_code = ExitCode::kDiffers,
+          .reason = fmt::format("{} of {} events differ from the golden", differing,
+                                comparison.pairings.size()),
+          .details = DifferenceText(comparison, explain, facts)};
+}
 
 GoldenComparison CompareWithGolden(const std::optional<Golden>& golden, const CheckedRun& checked) {
   const Scenario& scenario = checked.loaded.scenario;
@@ -58,8 +56,13 @@ Findings JudgeGolden(const GoldenComparison& compared, const CheckedRun& checked
                                           : "no golden: only scenarios below scenarios/ have one",
              .details = GroundTruthText(compared.truth)}};
   Findings findings;
-  if (compared.Differs())
-    findings.push_back(DifferenceFinding(compared.comparison, checked, cause));
+  if (compared.Differs()) {
+    const Comparison& comparison = compared.comparison;
+    const std::string facts = DifferenceContext(checked.loaded.scenario, checked.result.recording,
+                                                *comparison.FirstDivergence());
+    findings.push_back(DifferenceFinding(comparison, checked.explain, facts));
+    findings.back().details += cause;
+  }
   if (!compared.TruthIsAccepted()) findings.push_back(TruthFinding(compared));
   return findings;
 }

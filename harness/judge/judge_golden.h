@@ -26,6 +26,11 @@ struct GoldenComparison {
 
 GoldenComparison CompareWithGolden(const std::optional<Golden>& golden, const CheckedRun& checked);
 
+/// Of a comparison that does not agree. `explain`: the command that asks about the events; `facts`
+/// are shown with the first difference.
+Finding DifferenceFinding(const Comparison& comparison, const std::string& explain,
+                          const std::string& facts = {});
+
 /// `cause` is CauseText() of a run that differs. Without a golden the finding is that there is
 /// none.
 Findings JudgeGolden(const GoldenComparison& compared, const CheckedRun& checked,

@@ -160,14 +160,13 @@ TEST_F(CommandLine, UsageErrorsEndWithASuggestion) {
 TEST_F(CommandLine, ARecordingIsNotAScenario) {
   const std::string file = (root_ / "cup.jsonl").string();
   ASSERT_EQ(Do("run carton_rests --record " + file).exit_code, 0);
-  for (const std::string command :
-       {"run ", "render ", "check ", "score ", "validate ", "new copy --like "}) {
+  for (const std::string command : {"run ", "render ", "score ", "validate ", "new copy --like "}) {
     const Said said = Do(command + file);
     EXPECT_EQ(said.exit_code, 2) << command;
     EXPECT_EQ(said.out, "");
     EXPECT_EQ(said.err, "prehend: " + file +
-                            " is a recording, not a scenario; use 'prehend resegment', 'explain' "
-                            "or 'tracks'\n");
+                            " is a recording, not a scenario; use 'prehend resegment', 'explain', "
+                            "'tracks' or 'check'\n");
   }
 }
 

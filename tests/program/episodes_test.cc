@@ -81,7 +81,7 @@ TEST(Episodes, EveryCommandTakesThem) {
   EXPECT_NE(which.err.find("has 2 such episodes; --episode selects one"), std::string::npos);
   const Said again = Prehend({"check", file, "--ensemble"});
   EXPECT_EQ(again.exit_code, 2);
-  EXPECT_EQ(again.err, "prehend: --ensemble plays scenarios; an episode file was named\n");
+  EXPECT_EQ(again.err, "prehend: --ensemble plays scenarios; " + file + " is a recording\n");
 }
 
 TEST(Episodes, ThePictureOfAnEpisodeIsThatOfItsScenario) {

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/judge/judge_recording.h. Tested by tests/program/golden_of_recording_test.cc
+#include "harness/judge/judge_recording.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "harness/golden/golden_files.h"
+#include "harness/judge/accept_golden.h"
+
+namespace prehend::harness {
+namespace {
+
+constexpr int kToleratedFrames = 2;
+
+grammar::Tick ToleranceOf(const SegmentedRecording& segmented) {
+  return kToleratedFrames * segmented.frame_ticks;
+}
+
+Golden Propose(const JudgedRecording& judged, std::vector<std::string> derived,
+               std::optional<Acceptance> acceptance) {
+  if (derived.empty() && judged.golden) derived = judged.golden->derived;
+  return ProposeGolden(judged.golden, judged.segmented.timeline,
+                       {.scenario = judged.segmented.name,
+                        .grammar = GrammarName(*judged.segmented.program),
+                        .derived = std::move(derived),
+                        .acceptance = std::move(acceptance),
+                        .tolerance = ToleranceOf(judged.segmented)});
+}
+
+}  // namespace
+
+std::string GoldenBeside(const std::string& recording) {
+  return std::filesystem::path(recording).replace_extension(".timeline").string();
+}
+
+Result<JudgedRecording> JudgeRecording(const RunRequest& request, const std::string& root) {
+  Result<SegmentedRecording> segmented = SegmentRecording(request, root);
+  if (!segmented) return tl::unexpected(std::move(segmented.error()));
+  auto golden = ReadGoldenFile(GoldenBeside(request.scenario_file), segmented->name);
+  if (!golden) return tl::unexpected(std::move(golden.error()));
+  JudgedRecording judged{.segmented = std::move(*segmented),
+                         .golden = std::move(*golden),
+                         .comparison = {},
+                         .proposed = {}};
+  const grammar::Timeline& timeline = judged.segmented.timeline;
+  const Golden none{.ticks_per_second = timeline.ticks_per_second};
+  judged.comparison =
+      Compare(judged.golden.value_or(none), timeline, ToleranceOf(judged.segmented));
+  judged.proposed = Propose(judged, {}, std::nullopt);
+  return judged;
+}
+
+std::string ReviewText(const JudgedRecording& judged, const std::string& explain) {
+  return judged.golden ? DifferenceText(judged.comparison, explain) : EventLines(judged.proposed);
+}
+
+Golden AcceptedRecording(const JudgedRecording& judged, const std::vector<std::string>& derived,
+                         Acceptance acceptance) {
+  return Propose(judged, derived, std::move(acceptance));
+}
+
+}  // namespace prehend::harness
