@@ -30,6 +30,12 @@ class GoldenOfARecording : public testing::Test {
     return Prehend(options);
   }
 
+  /// Also where CI is set, and goldens are not accepted otherwise.
+  Said Accept(std::vector<std::string> options) const {
+    options.insert(options.begin(), {"accept", take_});
+    return Prehend(options, {"CI="});
+  }
+
   const fs::path folder_ =
       FreshFolder(testing::UnitTest::GetInstance()->current_test_info()->name());
   const std::string take_ = (folder_ / "milk.jsonl").string();
@@ -49,24 +55,23 @@ TEST_F(GoldenOfARecording, IsReviewedAcceptedAndChecked) {
   EXPECT_TRUE(Has(waiting[0]["text"], "putting_down")) << waiting[0]["text"];
   const std::string seen = waiting[0]["fingerprint"];
 
-  const Said other =
-      Prehend({"accept", take_, "--reviewed", "0123456789abcdef", "--reason", "seen"});
+  const Said other = Accept({"--reviewed", "0123456789abcdef", "--reason", "seen"});
   EXPECT_EQ(other.exit_code, 1);
   EXPECT_TRUE(Has(other.err, "the recording now yields " + seen)) << other.err;
   EXPECT_FALSE(fs::exists(golden_));
-  const Said accepted = Prehend({"accept", take_, "--reviewed", seen, "--reason", "seen"});
+  const Said accepted = Accept({"--reviewed", seen, "--reason", "seen"});
   EXPECT_EQ(accepted.exit_code, 0) << accepted.err;
   EXPECT_TRUE(Has(ReadFile(golden_), "\"seen\"")) << ReadFile(golden_);
   EXPECT_EQ(Check().exit_code, 0);
   EXPECT_EQ(Prehend({"review", take_}).exit_code, 0);
   const std::string before = ReadFile(golden_);
-  const Said again = Prehend({"accept", take_, "--reason", "again"});
+  const Said again = Accept({"--reason", "again"});
   EXPECT_TRUE(Has(again.out, "nothing to accept")) << again.out;
   EXPECT_EQ(ReadFile(golden_), before);
 }
 
 TEST_F(GoldenOfARecording, ADifferenceIsShownWithItsCauseAndKeepsWhatPeopleWrote) {
-  ASSERT_EQ(Prehend({"accept", take_, "--reason", "seen"}).exit_code, 0);
+  ASSERT_EQ(Accept({"--reason", "seen"}).exit_code, 0);
   const Said changed = Check({"--set", "reach_radius=10cm"});
   EXPECT_EQ(changed.exit_code, 1);
   EXPECT_TRUE(Has(changed.out, "shifted reaching(right_hand, milk)")) << changed.out;
@@ -76,7 +81,7 @@ TEST_F(GoldenOfARecording, ADifferenceIsShownWithItsCauseAndKeepsWhatPeopleWrote
   const Said differs = Check();
   EXPECT_EQ(differs.exit_code, 1);
   EXPECT_TRUE(Has(differs.out, "begin +100.0 ms")) << differs.out;
-  EXPECT_EQ(Prehend({"accept", take_, "--reason", "the video has it"}).exit_code, 0);
+  EXPECT_EQ(Accept({"--reason", "the video has it"}).exit_code, 0);
   EXPECT_TRUE(Has(ReadFile(golden_), "# the hand is open\nfixation        0.66250"))
       << ReadFile(golden_);
   EXPECT_EQ(Check().exit_code, 0);
@@ -88,7 +93,7 @@ TEST_F(GoldenOfARecording, WhatIsWrongIsSaidAndNothingIsWritten) {
     EXPECT_EQ(played.exit_code, 2);
     EXPECT_TRUE(Has(played.err, "plays scenarios; " + take_ + " is a recording")) << played.err;
   }
-  const Said unsteady = Prehend({"accept", take_, "--reason", "seen", "--unsteady", "why"});
+  const Said unsteady = Accept({"--reason", "seen", "--unsteady", "why"});
   EXPECT_EQ(unsteady.exit_code, 2);
   EXPECT_FALSE(fs::exists(golden_));
   WriteFile(golden_,
@@ -98,12 +103,12 @@ TEST_F(GoldenOfARecording, WhatIsWrongIsSaidAndNothingIsWritten) {
   EXPECT_EQ(another.exit_code, 2);
   EXPECT_TRUE(Has(another.out, "milk.timeline:1:13: error: this golden says it is of 'another'"))
       << another.out;
-  EXPECT_EQ(Prehend({"accept", take_, "--reason", "seen"}).exit_code, 2);
+  EXPECT_EQ(Accept({"--reason", "seen"}).exit_code, 2);
   EXPECT_TRUE(Has(ReadFile(golden_), "another"));
 }
 
 TEST_F(GoldenOfARecording, RecordingsAndScenariosAreCheckedTogether) {
-  ASSERT_EQ(Prehend({"accept", take_, "--reason", "seen"}).exit_code, 0);
+  ASSERT_EQ(Accept({"--reason", "seen"}).exit_code, 0);
   const Said both = Check({"milk_carton_wrap", "--no-pictures"});
   EXPECT_EQ(both.exit_code, 0) << both.out;
   EXPECT_TRUE(Has(both.out, "2 passed, 0 failed")) << both.out;
