@@ -6,6 +6,7 @@
 #include "physics/box2d/world.h"
 #include "physics/bullet/world.h"
 #include "physics/hand/script_player.h"
+#include "physics/motion/stage_clock.h"
 #include "physics/motion/tracker.h"
 #include "physics/person/person_player.h"
 #include "physics/scene/run_limits.h"
@@ -89,7 +90,8 @@ std::vector<HandCommand> Simulation::State::Tracked(std::vector<HandCommand> com
 
 void Simulation::State::MovePersons() {
   for (PersonPlayer& person : persons) {
-    for (const std::size_t stage : player.begun()) person.Begin(stage, snapshot);
+    for (const BegunSteps& begun : player.begun())
+      person.Begin(begun.stage, begun.steps, begun.person_steps, snapshot);
     person.Advance(snapshot, *world);
   }
 }

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "harness/build/build_script.h"
+#include "physics/motion/stage_clock.h"
 
 namespace prehend::harness {
 namespace {
@@ -16,7 +16,7 @@ class ConditionBuilder {
  public:
   ConditionBuilder(const physics::Scene& scene, const physics::Script& script,
                    DiagnosticList& errors)
-      : scene_(scene), errors_(errors), end_s_(DurationOf(script)) {
+      : scene_(scene), errors_(errors), end_s_(physics::DurationOf(script)) {
     // Every stage ends with a tick.
     latest_s_ = end_s_ + static_cast<double>(script.stages.size() + 1) / scene.world.rate_hz;
     for (const physics::Body& body : scene.bodies) names_.push_back(body.name);

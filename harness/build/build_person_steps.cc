@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "harness/build/step_order.h"
+
 namespace prehend::harness {
 namespace {
 
@@ -115,6 +117,8 @@ physics::PersonStep MakePersonStep(const Named<StepYaml>& step, int person,
   const physics::Person& who = scene.persons[static_cast<std::size_t>(person)];
   physics::PersonStep made = std::visit(PersonStepMaker{step, who, scene, errors}, step.value);
   made.person = person;
+  made.delay_s = TimingOf(step.value).delay_s;
+  made.order = OrderOf(step.value);
   return made;
 }
 

@@ -11,8 +11,10 @@
 
 #include "harness/build/build_abstract.h"
 #include "harness/build/build_person_steps.h"
+#include "harness/build/step_order.h"
 #include "harness/format/limits.h"
 #include "harness/format/scenario_fields.h"
+#include "physics/motion/stage_clock.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/joint.h"
 
@@ -136,16 +138,6 @@ struct StepMaker {
         written.value);
   }
 
-  /// How long the hand waits before it begins.
-  double DelayOf() const {
-    return std::visit(
-        [](const auto& entry) {
-          if constexpr (requires { entry.delay_s; }) return entry.delay_s;
-          return 0.0;
-        },
-        written.value);
-  }
-
  private:
   /// Of a text that its format has accepted: "gap(milk) < 5 mm, or go on".
   physics::Until ParseUntil(const Located<std::string>& text) const {
@@ -236,15 +228,6 @@ struct StepMaker {
   }
 };
 
-double DurationOf(const physics::ScriptStage& stage) {
-  double longest_s = 0;
-  for (const physics::Step& step : stage.steps)
-    longest_s = std::max(longest_s, step.delay_s + step.over_s);
-  for (const physics::PersonStep& step : stage.person_steps)
-    longest_s = std::max(longest_s, step.over_s);
-  return longest_s;
-}
-
 /// Checks the limits of the whole script; the error is at the stage that exceeds them.
 void CheckLength(const ScenarioYaml& entry, const physics::Script& script, DiagnosticList& errors) {
   double total_s = script.settle_s;
@@ -253,7 +236,7 @@ void CheckLength(const ScenarioYaml& entry, const physics::Script& script, Diagn
     for (const Named<StepYaml>& step : entry.script[i]) {
       if (const auto* given = std::get_if<PosesYaml>(&step.value)) poses += given->poses.size();
     }
-    total_s += DurationOf(script.stages[i]);
+    total_s += physics::DurationOf(script.stages[i]);
     const Where where = entry.script[i].front().name_where;
     if (total_s > kMaxDuration_s) {
       return errors.Add(
@@ -271,7 +254,7 @@ struct HandSoFar {
 };
 
 /// Steps that move a held object need a hand that may hold one.
-void CheckOrder(const std::vector<StageYaml>& script, DiagnosticList& errors) {
+void CheckHolding(const std::vector<StageYaml>& script, DiagnosticList& errors) {
   std::map<std::string, HandSoFar> hands;
   const auto check_holds = [&](const std::string& key, const Named<StepYaml>& step,
                                const Where& where) {
@@ -311,12 +294,6 @@ void CheckOrder(const std::vector<StageYaml>& script, DiagnosticList& errors) {
 
 }  // namespace
 
-double DurationOf(const physics::Script& script) {
-  double total_s = script.settle_s;
-  for (const physics::ScriptStage& stage : script.stages) total_s += DurationOf(stage);
-  return total_s;
-}
-
 physics::Pose PoseOf(const PoseYaml& pose) {
   physics::Pose X_WH{pose.at_m};
   if (pose.rpy_deg) X_WH.q = physics::FromRollPitchYaw(*pose.rpy_deg);
@@ -349,13 +326,15 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
       const StepMaker maker{entities, scene, model, named, errors};
       physics::Step step = std::visit(maker, named.value);
       step.until = maker.UntilOf();
-      step.delay_s = maker.DelayOf();
+      step.delay_s = TimingOf(named.value).delay_s;
+      step.order = OrderOf(named.value);
       step.hand = hand;
       step.written_at = errors.PlaceText(named.name_where);
       stage.steps.push_back(std::move(step));
     }
   }
-  CheckOrder(entry.script, errors);
+  CheckHolding(entry.script, errors);
+  CheckStepOrder(entry.script, NamesOf(entry.actors), persons, script, errors);
   CheckLength(entry, script, errors);
   return script;
 }

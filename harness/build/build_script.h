@@ -15,9 +15,6 @@ namespace prehend::harness {
 physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& scene,
                             DiagnosticList& errors);
 
-/// Duration of the script in seconds, including the time simulated after it.
-double DurationOf(const physics::Script& script);
-
 /// A way-point as the hand's pose.
 physics::Pose PoseOf(const PoseYaml& pose);
 

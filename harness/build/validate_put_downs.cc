@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "harness/build/penetration.h"
+#include "harness/build/step_order.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/joint.h"
 #include "physics/scene/landing.h"
@@ -49,23 +51,22 @@ class OnPaper {
 
   void Play() {
     for (const StageYaml& stage : entry_.script) {
-      // All steps of a stage begin together.
+      std::set<std::string> actors;
+      for (const Named<StepYaml>& step : stage) actors.insert(step.name);
+      const bool in_turn =
+          actors.size() < stage.size() || std::ranges::any_of(stage, [](const auto& step) {
+            return TimingOf(step.value).after.has_value();
+          });
+      // When several actors act in turn it is not known here what each finds.
+      const bool unknown = in_turn && actors.size() > 1;
+      if (unknown) LoseAll();
+      for (const Named<StepYaml>& step : stage)
+        if (!in_turn) Check(step);  // they begin together
       for (const Named<StepYaml>& step : stage) {
-        const auto* place = std::get_if<PlaceYaml>(&step.value);
-        if (place) Check(*place, hands_[step.name]);
+        if (in_turn) Check(step);
+        Play(step);
       }
-      for (const Named<StepYaml>& step : stage) {
-        hand_ = &hands_[step.name];
-        std::visit(*this, step.value);
-        const bool is_guarded = std::visit(
-            [](const auto& entry) {
-              if constexpr (requires { entry.until; }) return entry.until.has_value();
-              return false;
-            },
-            step.value);
-        // It ends somewhere on its way.
-        if (is_guarded) LoseAll();
-      }
+      if (unknown) LoseAll();
     }
   }
 
@@ -121,6 +122,23 @@ class OnPaper {
   void operator()(const Other&) {}
 
  private:
+  void Play(const Named<StepYaml>& step) {
+    hand_ = &hands_[step.name];
+    std::visit(*this, step.value);
+    const bool is_guarded = std::visit(
+        [](const auto& entry) {
+          if constexpr (requires { entry.until; }) return entry.until.has_value();
+          return false;
+        },
+        step.value);
+    // It ends somewhere on its way.
+    if (is_guarded) LoseAll();
+  }
+
+  void Check(const Named<StepYaml>& step) {
+    if (const auto* place = std::get_if<PlaceYaml>(&step.value)) Check(*place, hands_[step.name]);
+  }
+
   Whereabouts& At(int body) { return at_[static_cast<std::size_t>(body)]; }
   const physics::Body& BodyOf(int body) const {
     return scene_.bodies[static_cast<std::size_t>(body)];

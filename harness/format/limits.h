@@ -15,6 +15,7 @@ inline constexpr double kMaxDistance_m = physics::kMaxDistance_m;
 inline constexpr std::size_t kMaxEntities = 10'000;
 inline constexpr std::size_t kMaxActors = 16;
 inline constexpr std::size_t kMaxBeats = 1'000;
+inline constexpr std::size_t kMaxStepsInARow = 200;  // of an actor in one stage
 inline constexpr int kMaxRepeats = 100;
 inline constexpr std::size_t kMaxPoses = 10'000;  ///< in all steps together
 inline constexpr std::size_t kMaxPictures = 32;

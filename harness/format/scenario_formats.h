@@ -45,7 +45,7 @@ ValueFormat<ActorYaml> ActorFormat();
 ValueFormat<physics::Eyes> EyesFormat();
 
 // harness/format/step_fields.cc: each step is recognised by its action key.
-ValueFormat<StepYaml> StepFormat();
+ValueFormat<StageYaml> StageFormat();
 
 // harness/format/trial_fields.cc
 ValueFormat<VariationYaml> VariationFormat();

@@ -162,68 +162,65 @@ struct PersonActorYaml {
 };
 using ActorYaml = std::variant<HandActorYaml, PersonActorYaml>;
 
+/// When a step of the script begins; see StepOrder in physics/motion/script.h.
+struct StepTimingYaml {
+  std::optional<Located<std::string>> name, after, with;
+  double delay_s = 0;
+};
+
 // The steps of the script. Default durations are human-like (docs/scenario-format.md).
-struct ReachYaml {
+struct ReachYaml : StepTimingYaml {
   Located<std::string> reach;
   Located<std::string> style{"wrap", {}};
   physics::Approach from = physics::Approach::kAuto;
   Located<Eigen::Vector3d> offset_m{Eigen::Vector3d::Zero(), {}};
   std::optional<Located<Eigen::Vector3d>> point_m;
   double over_s = 0.8;
-  double delay_s = 0;
 };
 /// "touching(milk)", "gap(milk) < 5 mm", either with ", or go on"; see
 /// harness/build/build_script.cc.
 using UntilYaml = std::optional<Located<std::string>>;
-struct CloseYaml {
+struct CloseYaml : StepTimingYaml {
   double close_to = 1;
   double over_s = 0.6;
   UntilYaml until;
-  double delay_s = 0;
 };
-struct OpenYaml {
+struct OpenYaml : StepTimingYaml {
   double open_to = 0;
   double over_s = 0.45;
-  double delay_s = 0;
 };
-struct LiftYaml {
+struct LiftYaml : StepTimingYaml {
   double lift_by_m = 0;
   double over_s = 0.6;
   UntilYaml until;
-  double delay_s = 0;
 };
-struct MoveYaml {
+struct MoveYaml : StepTimingYaml {
   Located<Eigen::Vector3d> move_by_m{Eigen::Vector3d::Zero(), {}};
   double over_s = 0.8;
   UntilYaml until;
-  double delay_s = 0;
 };
-struct CarryYaml {
+struct CarryYaml : StepTimingYaml {
   Where where;
   Located<Eigen::Vector2d> carry_to_m{Eigen::Vector2d::Zero(), {}};
   double over_s = 1.0;
   UntilYaml until;
-  double delay_s = 0;
 };
-struct PlaceYaml {
+struct PlaceYaml : StepTimingYaml {
   Where where;
   Located<std::string> place_on;
   double over_s = 0.6;
-  double delay_s = 0;
 };
-struct RetreatYaml {
+struct RetreatYaml : StepTimingYaml {
   double retreat_by_m = 0;
   double over_s = 0.6;
   UntilYaml until;
-  double delay_s = 0;
 };
-struct FollowJointYaml {
+struct FollowJointYaml : StepTimingYaml {
   Located<std::string> follow_joint;
   double to = 1;
   double over_s = 1.5;
-  double delay_s = 0;
 };
-struct WaitYaml {
+struct WaitYaml : StepTimingYaml {
   double wait_s = 0;
 };
 struct PoseYaml {
@@ -234,11 +231,11 @@ struct PoseYaml {
   std::optional<Eigen::Vector4d> quat_wxyz;
   std::optional<double> trigger;
 };
-struct PosesYaml {
+struct PosesYaml : StepTimingYaml {
   std::vector<PoseYaml> poses;
   Located<std::string> style;  ///< "": stays
 };
-struct RecordingYaml {
+struct RecordingYaml : StepTimingYaml {
   Located<std::string> recording;
   std::optional<Located<std::string>> device;
   std::optional<Located<int>> button;
@@ -259,13 +256,12 @@ struct RecordingYaml {
   std::vector<physics::TimedPose> poses;
   std::vector<physics::TimedPosture> postures;
 };
-struct TurnHandYaml {
+struct TurnHandYaml : StepTimingYaml {
   Located<Eigen::Vector3d> turn_by_deg{Eigen::Vector3d::Zero(), {}};
   bool own_axes = false;
   double over_s = 0.8;
-  double delay_s = 0;
 };
-struct OrbitYaml {
+struct OrbitYaml : StepTimingYaml {
   struct Around {
     Located<std::string> around;
     double by_deg = 90;
@@ -274,45 +270,43 @@ struct OrbitYaml {
   Around orbit;
   double over_s = 1.5;
   UntilYaml until;
-  double delay_s = 0;
 };
-struct PressYaml {
+struct PressYaml : StepTimingYaml {
   double press_n = 0;
   Located<std::string> against;
   Located<Eigen::Vector3d> along{-Eigen::Vector3d::UnitZ(), {}};
   double over_s = 1.0;
-  double delay_s = 0;
 };
 // Steps of persons.
-struct LookAtYaml {
+struct LookAtYaml : StepTimingYaml {
   Located<std::string> look_at;
   double over_s = 0.5;
 };
-struct LookAtPointYaml {
+struct LookAtPointYaml : StepTimingYaml {
   Eigen::Vector3d look_at_m = Eigen::Vector3d::Zero();
   double over_s = 0.5;
 };
-struct EyesYaml {
+struct EyesYaml : StepTimingYaml {
   physics::Eyes eyes = physics::Eyes::kLead;
   double over_s = 0.5;
 };
-struct WalkYaml {
+struct WalkYaml : StepTimingYaml {
   Eigen::Vector2d walk_to_m = Eigen::Vector2d::Zero();
   double over_s = 1.0;
 };
-struct TurnYaml {
+struct TurnYaml : StepTimingYaml {
   double turn_to_deg = 0;
   double over_s = 0.8;
 };
-struct LeanYaml {
+struct LeanYaml : StepTimingYaml {
   double lean_deg = 0;
   double over_s = 0.8;
 };
-struct SwayYaml {
+struct SwayYaml : StepTimingYaml {
   Located<Eigen::Vector2d> sway_by_m{Eigen::Vector2d::Zero(), {}};
   double over_s = 0.8;
 };
-struct MoveLimbYaml {
+struct MoveLimbYaml : StepTimingYaml {
   Located<physics::LimbEnd> move_limb;
   std::optional<Eigen::Vector3d> to_m;
   std::optional<double> max_force_n;
@@ -325,7 +319,8 @@ using StepYaml =
                  PressYaml, LookAtYaml, LookAtPointYaml, EyesYaml, WalkYaml, TurnYaml, LeanYaml,
                  SwayYaml, MoveLimbYaml>;
 
-/// One item of the script: what each named actor does at the same time.
+/// One item of the script: what each named actor does at the same time. The steps of an actor that
+/// does several stand one after another.
 using StageYaml = std::vector<Named<StepYaml>>;
 
 struct WorldYaml {

@@ -20,8 +20,7 @@ constexpr double kMaxStep_s = 600;
 
 ValueFormat<double> Duration() { return Number(kMinStep_s, kMaxStep_s); }
 const std::string kOverDoc = "Duration in seconds.";
-const std::string kDelayDoc =
-    "Seconds that the hand waits first, while others in this stage already act.";
+const std::string kDelayDoc = "Seconds to wait first, while others in this stage already act.";
 const std::string kUntilDoc =
     "Ends the step before its time: 'touching(milk)' or 'gap(milk) < 5 mm'. If that never happens "
     "the run fails; with ', or go on' it goes on.";
@@ -34,11 +33,21 @@ ValueFormat<std::string> UntilFormat() {
 }
 const std::string kStyleDoc = "The grasp style that the hand takes; default: unchanged.";
 
-/// The key of hands' steps by which they begin later than their stage.
+/// The keys that say when a step begins.
 template <class Entry>
-StructFormat<Entry> WithDelay(StructFormat<Entry> format) {
-  if constexpr (requires { &Entry::delay_s; })
-    format.Optional("delay_s", &Entry::delay_s, Number(0, kMaxStep_s), kDelayDoc);
+StructFormat<Entry> WithTiming(StructFormat<Entry> format) {
+  using T = StepTimingYaml;
+  using Name = decltype(T::name) Entry::*;
+  format
+      .Optional("delay_s", static_cast<double Entry::*>(&T::delay_s), Number(0, kMaxStep_s),
+                kDelayDoc)
+      .Optional("name", static_cast<Name>(&T::name), Identifier(),
+                "What other steps of this stage call it.")
+      .Optional("after", static_cast<Name>(&T::after), Identifier(),
+                "It begins when the step of this name, in the same stage, has ended.")
+      .Optional("with", static_cast<Name>(&T::with), Identifier(),
+                "It begins when the step of this name, in the same stage, begins.")
+      .AtMostOneOf({"after", "with"});
   return format;
 }
 
@@ -47,9 +56,9 @@ template <class Entry, class M, class F>
 ValueFormat<StepYaml> TimedStep(const std::string& key, M Entry::*member, ValueFormat<F> format,
                                 const std::string& doc) {
   return AsAlternative<StepYaml>(
-      WithDelay(StructFormat<Entry>("a " + key + " step")
-                    .Required(key, member, std::move(format), doc)
-                    .Optional("over_s", &Entry::over_s, Duration(), kOverDoc))
+      WithTiming(StructFormat<Entry>("a " + key + " step")
+                     .Required(key, member, std::move(format), doc)
+                     .Optional("over_s", &Entry::over_s, Duration(), kOverDoc))
           .format());
 }
 
@@ -58,17 +67,17 @@ template <class Entry, class M, class F>
 ValueFormat<StepYaml> GuardedStep(const std::string& key, M Entry::*member, ValueFormat<F> format,
                                   const std::string& doc) {
   return AsAlternative<StepYaml>(
-      WithDelay(StructFormat<Entry>("a " + key + " step")
-                    .Required(key, member, std::move(format), doc)
-                    .Optional("over_s", &Entry::over_s, Duration(), kOverDoc)
-                    .Optional("until", &Entry::until, UntilFormat(), kUntilDoc))
+      WithTiming(StructFormat<Entry>("a " + key + " step")
+                     .Required(key, member, std::move(format), doc)
+                     .Optional("over_s", &Entry::over_s, Duration(), kOverDoc)
+                     .Optional("until", &Entry::until, UntilFormat(), kUntilDoc))
           .format());
 }
 
 ValueFormat<StepYaml> TurnHandFormat() {
   using T = TurnHandYaml;
   return AsAlternative<StepYaml>(
-      WithDelay(
+      WithTiming(
           StructFormat<T>("a turn_by_deg step")
               .Required(
                   "turn_by_deg", &T::turn_by_deg, Vector<3>(-3600, 3600),
@@ -84,7 +93,7 @@ ValueFormat<StepYaml> OrbitFormat() {
   using O = OrbitYaml;
   using A = OrbitYaml::Around;
   return AsAlternative<StepYaml>(
-      WithDelay(
+      WithTiming(
           StructFormat<O>("an orbit step")
               .Required("orbit", &O::orbit,
                         StructFormat<A>("an orbit")
@@ -104,13 +113,13 @@ ValueFormat<StepYaml> OrbitFormat() {
 ValueFormat<StepYaml> PressFormat() {
   using P = PressYaml;
   return AsAlternative<StepYaml>(
-      WithDelay(StructFormat<P>("a press_n step")
-                    .Required("press_n", &P::press_n, Number(0.1, 200),
-                              "Press with this force, with the hand or with what it holds.")
-                    .Required("against", &P::against, Identifier(), "The entity that is pressed.")
-                    .Optional("along", &P::along, Vector<3>(-1, 1),
-                              "Where to, a direction in world axes; default: down.")
-                    .Optional("over_s", &P::over_s, Duration(), kOverDoc))
+      WithTiming(StructFormat<P>("a press_n step")
+                     .Required("press_n", &P::press_n, Number(0.1, 200),
+                               "Press with this force, with the hand or with what it holds.")
+                     .Required("against", &P::against, Identifier(), "The entity that is pressed.")
+                     .Optional("along", &P::along, Vector<3>(-1, 1),
+                               "Where to, a direction in world axes; default: down.")
+                     .Optional("over_s", &P::over_s, Duration(), kOverDoc))
           .format());
 }
 
@@ -118,7 +127,7 @@ ValueFormat<StepYaml> ReachFormat() {
   using R = ReachYaml;
   using physics::Approach;
   return AsAlternative<StepYaml>(
-      WithDelay(
+      WithTiming(
           StructFormat<R>("a reach step")
               .Required("reach", &R::reach, Identifier(),
                         "The entity to move the hand to, ready to close around it.")
@@ -141,21 +150,22 @@ ValueFormat<StepYaml> ReachFormat() {
 ValueFormat<StepYaml> FollowJointFormat() {
   using F = FollowJointYaml;
   return AsAlternative<StepYaml>(
-      WithDelay(StructFormat<F>("a follow_joint step")
-                    .Required("follow_joint", &F::follow_joint, Identifier(),
-                              "The entity on a slider or hinge whose path the hand follows, with "
-                              "what it holds.")
-                    .Optional("to", &F::to, Number(0, 1),
-                              "Where the joint ends: 0 is the minimum of its range, 1 the maximum.")
-                    .Optional("over_s", &F::over_s, Duration(), kOverDoc))
+      WithTiming(
+          StructFormat<F>("a follow_joint step")
+              .Required("follow_joint", &F::follow_joint, Identifier(),
+                        "The entity on a slider or hinge whose path the hand follows, with "
+                        "what it holds.")
+              .Optional("to", &F::to, Number(0, 1),
+                        "Where the joint ends: 0 is the minimum of its range, 1 the maximum.")
+              .Optional("over_s", &F::over_s, Duration(), kOverDoc))
           .format());
 }
 
 ValueFormat<StepYaml> WaitFormat() {
-  return AsAlternative<StepYaml>(
-      StructFormat<WaitYaml>("a wait step")
-          .Required("wait_s", &WaitYaml::wait_s, Duration(), "Hold still for this long.")
-          .format());
+  return AsAlternative<StepYaml>(WithTiming(StructFormat<WaitYaml>("a wait step")
+                                                .Required("wait_s", &WaitYaml::wait_s, Duration(),
+                                                          "Hold still for this long."))
+                                     .format());
 }
 
 ValueFormat<PoseYaml> PoseFormat() {
@@ -176,22 +186,25 @@ ValueFormat<PoseYaml> PoseFormat() {
 
 ValueFormat<StepYaml> PosesFormat() {
   return AsAlternative<StepYaml>(
-      StructFormat<PosesYaml>("a poses step")
-          .Required("poses", &PosesYaml::poses, ListOf(PoseFormat(), 1, kMaxPoses),
-                    "Way-points of the tracked target, as a tracker would give them; the last one "
-                    "ends the step.")
-          .Optional("style", &PosesYaml::style, Identifier(), kStyleDoc)
-          .Check([](const YamlNode& node, const PosesYaml& step, DiagnosticList& errors) {
-            for (std::size_t i = 1; i < step.poses.size(); ++i) {
-              const double before_s = step.poses[i - 1].t_s, t_s = step.poses[i].t_s;
-              if (t_s > before_s) continue;
-              errors.Add(
-                  node.Find("poses")->children[i].Find("t_s")->where,
-                  fmt::format("t_s: expected more than {}, the time of the previous pose, found {}",
-                              before_s, t_s),
-                  "t_s counts from the beginning of the step, not from the previous pose");
-            }
-          })
+      WithTiming(
+          StructFormat<PosesYaml>("a poses step")
+              .Required(
+                  "poses", &PosesYaml::poses, ListOf(PoseFormat(), 1, kMaxPoses),
+                  "Way-points of the tracked target, as a tracker would give them; the last one "
+                  "ends the step.")
+              .Optional("style", &PosesYaml::style, Identifier(), kStyleDoc)
+              .Check([](const YamlNode& node, const PosesYaml& step, DiagnosticList& errors) {
+                for (std::size_t i = 1; i < step.poses.size(); ++i) {
+                  const double before_s = step.poses[i - 1].t_s, t_s = step.poses[i].t_s;
+                  if (t_s > before_s) continue;
+                  errors.Add(
+                      node.Find("poses")->children[i].Find("t_s")->where,
+                      fmt::format(
+                          "t_s: expected more than {}, the time of the previous pose, found {}",
+                          before_s, t_s),
+                      "t_s counts from the beginning of the step, not from the previous pose");
+                }
+              }))
           .format());
 }
 
@@ -212,38 +225,40 @@ ValueFormat<StepYaml> RecordingFormat() {
   using R = RecordingYaml;
   const auto seconds = Number(0, kMaxDuration_s);
   return AsAlternative<StepYaml>(
-      StructFormat<R>("a recording step")
-          .Required("recording", &R::recording,
-                    Word("[A-Za-z0-9_./-]+\\.(csv|json|bvh)", "a .csv, .json or .bvh file", 255),
-                    "A recorded motion: a CSV file, JSON of aframe-motion-capture-components, or "
-                    "BVH of a whole body.")
-          .Optional("device", &R::device, Word("[A-Za-z0-9_-]+", "a name like 'right'"),
-                    "Which device of a JSON file moves the hand; required there.")
-          .Optional("button", &R::button, Integer<int>(0, 31),
-                    "Which button of that device is the trigger; default 1.")
-          .Optional("press_s", &R::press_s, Number(0, 5),
-                    "Duration of a press, for recordings that only have pressed and released.")
-          .Optional("style", &R::style, Identifier(), kStyleDoc)
-          .Optional("from_s", &R::from_s, seconds, "Samples before this time are left out.")
-          .Optional("to_s", &R::to_s, seconds,
-                    "Samples after this time are left out; default: none.")
-          .Optional("start_at_m", &R::start_at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                    "The motion is shifted so that the palm starts here; default: not shifted.")
-          .Optional("yaw_deg", &R::yaw_deg, Number(-360, 360),
-                    "The motion is turned by this about the vertical, before it is shifted.")
-          .Optional("palm_m", &R::palm_m, Vector<3>(-1, 1),
-                    "The palm's centre, in the device's axes.")
-          .Optional("palm_rpy_deg", &R::palm_rpy_deg, Vector<3>(-360, 360),
-                    "Rotation of the palm relative to the device.")
-          .Optional("join_s", &R::join_s, Number(0, 60),
-                    "Time to get from where the target is to where the recording starts.")
-          .Optional("max_gap_s", &R::max_gap_s, Number(0, 60), "Longer gaps are refused.")
-          .Optional("max_jump_m", &R::max_jump_m, Number(0, 100), "Larger jumps are refused.")
-          .Optional("scale", &R::scale, Number(1e-4, 100),
-                    "Metres per unit of a BVH file; default: scaled to the length of her legs.")
-          .Renamed("most_gap_s", "max_gap_s")
-          .Renamed("most_jump_m", "max_jump_m")
-          .Check(CheckKindOfRecording)
+      WithTiming(
+          StructFormat<R>("a recording step")
+              .Required(
+                  "recording", &R::recording,
+                  Word("[A-Za-z0-9_./-]+\\.(csv|json|bvh)", "a .csv, .json or .bvh file", 255),
+                  "A recorded motion: a CSV file, JSON of aframe-motion-capture-components, or "
+                  "BVH of a whole body.")
+              .Optional("device", &R::device, Word("[A-Za-z0-9_-]+", "a name like 'right'"),
+                        "Which device of a JSON file moves the hand; required there.")
+              .Optional("button", &R::button, Integer<int>(0, 31),
+                        "Which button of that device is the trigger; default 1.")
+              .Optional("press_s", &R::press_s, Number(0, 5),
+                        "Duration of a press, for recordings that only have pressed and released.")
+              .Optional("style", &R::style, Identifier(), kStyleDoc)
+              .Optional("from_s", &R::from_s, seconds, "Samples before this time are left out.")
+              .Optional("to_s", &R::to_s, seconds,
+                        "Samples after this time are left out; default: none.")
+              .Optional("start_at_m", &R::start_at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+                        "The motion is shifted so that the palm starts here; default: not shifted.")
+              .Optional("yaw_deg", &R::yaw_deg, Number(-360, 360),
+                        "The motion is turned by this about the vertical, before it is shifted.")
+              .Optional("palm_m", &R::palm_m, Vector<3>(-1, 1),
+                        "The palm's centre, in the device's axes.")
+              .Optional("palm_rpy_deg", &R::palm_rpy_deg, Vector<3>(-360, 360),
+                        "Rotation of the palm relative to the device.")
+              .Optional("join_s", &R::join_s, Number(0, 60),
+                        "Time to get from where the target is to where the recording starts.")
+              .Optional("max_gap_s", &R::max_gap_s, Number(0, 60), "Longer gaps are refused.")
+              .Optional("max_jump_m", &R::max_jump_m, Number(0, 100), "Larger jumps are refused.")
+              .Optional("scale", &R::scale, Number(1e-4, 100),
+                        "Metres per unit of a BVH file; default: scaled to the length of her legs.")
+              .Renamed("most_gap_s", "max_gap_s")
+              .Renamed("most_jump_m", "max_jump_m")
+              .Check(CheckKindOfRecording))
           .format());
 }
 
@@ -251,21 +266,22 @@ ValueFormat<StepYaml> MoveLimbFormat() {
   using M = MoveLimbYaml;
   using physics::LimbEnd;
   return AsAlternative<StepYaml>(
-      StructFormat<M>("a move_limb step")
-          .Required("move_limb", &M::move_limb,
-                    Choice<LimbEnd>({{"right_elbow", LimbEnd::kRightElbow},
-                                     {"left_elbow", LimbEnd::kLeftElbow},
-                                     {"right_wrist", LimbEnd::kRightWrist},
-                                     {"left_wrist", LimbEnd::kLeftWrist},
-                                     {"right_foot", LimbEnd::kRightFoot},
-                                     {"left_foot", LimbEnd::kLeftFoot}}),
-                    "Which part of a person goes there; the rest of the limb follows.")
-          .Optional("to_m", &M::to_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                    "World coordinates; without it the limb returns to its rest position.")
-          .Optional("max_force_n", &M::max_force_n, Number(1, 10000),
-                    "The limb yields: it slows down so that it pushes with no more than this.")
-          .Optional("over_s", &M::over_s, Duration(), kOverDoc)
-          .Renamed("most_n", "max_force_n")
+      WithTiming(
+          StructFormat<M>("a move_limb step")
+              .Required("move_limb", &M::move_limb,
+                        Choice<LimbEnd>({{"right_elbow", LimbEnd::kRightElbow},
+                                         {"left_elbow", LimbEnd::kLeftElbow},
+                                         {"right_wrist", LimbEnd::kRightWrist},
+                                         {"left_wrist", LimbEnd::kLeftWrist},
+                                         {"right_foot", LimbEnd::kRightFoot},
+                                         {"left_foot", LimbEnd::kLeftFoot}}),
+                        "Which part of a person goes there; the rest of the limb follows.")
+              .Optional("to_m", &M::to_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+                        "World coordinates; without it the limb returns to its rest position.")
+              .Optional("max_force_n", &M::max_force_n, Number(1, 10000),
+                        "The limb yields: it slows down so that it pushes with no more than this.")
+              .Optional("over_s", &M::over_s, Duration(), kOverDoc)
+              .Renamed("most_n", "max_force_n"))
           .format());
 }
 
@@ -302,9 +318,7 @@ Remedies StepRemedies() {
   return remedies;
 }
 
-}  // namespace
-
-ValueFormat<StepYaml> StepFormat() {
+ValueFormat<StepYaml> OneStepFormat() {
   const auto grip = Number(0, 1);
   return ByKey<StepYaml>(
       "a step",
@@ -352,6 +366,41 @@ ValueFormat<StepYaml> StepFormat() {
                   "A person's hips shift this far [ahead, left] from above her feet.")},
        {"move_limb", MoveLimbFormat()}},
       StepRemedies());
+}
+
+/// One step, or a list of them.
+ValueFormat<std::vector<Located<StepYaml>>> StepsFormat() {
+  using Steps = std::vector<Located<StepYaml>>;
+  const auto one = WithPlace(OneStepFormat());
+  const auto several = ListOf(one, 1, kMaxStepsInARow);
+  const auto read = [one, several](const YamlNode& node, DiagnosticList& errors, Steps& steps) {
+    if (node.kind == YamlNode::Kind::kSequence) return several.Read(node, errors, steps);
+    Located<StepYaml> step;
+    if (!one.Read(node, errors, step)) return false;
+    step.where = {};  // it is named by its key
+    steps.push_back(std::move(step));
+    return true;
+  };
+  return ValueFormat<Steps>({{"anyOf", {one.schema(), several.schema()}}}, read);
+}
+
+}  // namespace
+
+ValueFormat<StageYaml> StageFormat() {
+  const auto by_actor = MapOf(Identifier(), StepsFormat(), 1, kMaxActors);
+  return ValueFormat<StageYaml>(
+      by_actor.schema(),
+      [by_actor](const YamlNode& node, DiagnosticList& errors, StageYaml& stage) {
+        std::vector<Named<std::vector<Located<StepYaml>>>> actors;
+        if (!by_actor.Read(node, errors, actors)) return false;
+        for (auto& actor : actors) {
+          for (Located<StepYaml>& step : actor.value) {
+            const Where where = step.where.place.line > 0 ? step.where : actor.name_where;
+            stage.push_back({actor.name, where, std::move(step.value)});
+          }
+        }
+        return true;
+      });
 }
 
 }  // namespace prehend::harness

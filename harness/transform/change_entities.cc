@@ -48,6 +48,14 @@ struct RenameIn {
   void operator()(Other&) const {}
 };
 
+constexpr const char* kOfTheCopy = "_of_the_copy";
+
+/// The steps of the copy wait for each other, not for those of the original.
+void RenameOrder(physics::StepOrder& order) {
+  for (std::string* name : {&order.name, &order.after, &order.with})
+    if (!name->empty()) *name += kOfTheCopy;
+}
+
 }  // namespace
 
 Scenario Reordered(Scenario scenario) {
@@ -122,7 +130,7 @@ Scenario WithBystander(Scenario scenario) {
 
 Scenario WithCopy(Scenario scenario) {
   std::map<std::string, std::string> names = NamesTurnedRound(scenario);
-  for (auto& [written, name] : names) name = written + "_of_the_copy";
+  for (auto& [written, name] : names) name = written + kOfTheCopy;
   const Scenario copy = Renamed(Moved(scenario, {.X = {.p_m = {kToCopy_m, 0, 0}}}), names);
   physics::Scene& scene = scenario.scene;
   const int bodies = static_cast<int>(scene.bodies.size());
@@ -148,10 +156,12 @@ Scenario WithCopy(Scenario scenario) {
     physics::ScriptStage& stage = scenario.script.stages[i];
     for (physics::Step step : copy.script.stages[i].steps) {
       step.hand += hands;
+      RenameOrder(step.order);
       stage.steps.push_back(std::move(step));
     }
     for (physics::PersonStep step : copy.script.stages[i].person_steps) {
       step.person += persons;
+      RenameOrder(step.order);
       stage.person_steps.push_back(std::move(step));
     }
   }

@@ -50,10 +50,9 @@ double ScriptPlayer::GapTo(int hand, int thing, const Snapshot& now) const {
 }
 
 void ScriptPlayer::WatchGuards(const Snapshot& now) {
-  bool changed = false;
   for (std::size_t h = 0; h < hands_.size(); ++h) {
     HandState& hand = hands_[h];
-    if (!hand.waiting || hand.waiting->met || tick_in_stage_ >= hand.step_ticks) continue;
+    if (!hand.waiting || hand.waiting->met || tick_in_stage_ >= clock_.EndOf(*hand.step)) continue;
     const int index = static_cast<int>(h), thing = hand.waiting->thing;
     const std::optional<double>& gap_m = hand.waiting->until.gap_m;
     hand.waiting->met = gap_m ? GapTo(index, thing, now) < *gap_m : IsTouched(index, thing, now);
@@ -67,30 +66,24 @@ void ScriptPlayer::WatchGuards(const Snapshot& now) {
     hand.target.v_m_per_s.setZero();
     hand.target.w_rad_per_s.setZero();
     hand.motion = Trajectory(hand.target);
-    hand.step_ticks = hand.begin_tick = tick_in_stage_;
-    changed = true;
+    hand.begin_tick = tick_in_stage_;
+    clock_.SetEnd(*hand.step, tick_in_stage_);
   }
-  if (!changed) return;
-  planned_ticks_ = std::max(person_ticks_, tick_in_stage_);
-  for (const HandState& hand : hands_) planned_ticks_ = std::max(planned_ticks_, hand.step_ticks);
-  stage_ticks_ = planned_ticks_;
 }
 
-void ScriptPlayer::CheckGuards(const Snapshot& now) {
-  for (std::size_t h = 0; h < hands_.size() && problem_.empty(); ++h) {
-    const std::optional<Waiting>& waiting = hands_[h].waiting;
-    if (!waiting || waiting->met || waiting->until.or_go_on) continue;
-    const int hand = static_cast<int>(h);
-    const double gap_m = GapTo(hand, waiting->thing, now);
-    const std::string away = gap_m >= HandClearance::kFar_m
-                                 ? "more than " + Millimetres(HandClearance::kFar_m)
-                                 : Millimetres(gap_m);
-    const std::string wanted =
-        waiting->until.gap_m ? "come nearer than " + Millimetres(*waiting->until.gap_m) + " to"
-                             : "touched";
-    Fail(hand, "until: the step is over, and '" + scene_.hands[h].name + "' has not " + wanted +
-                   " '" + waiting->until.thing + "': it is " + away + " away from it");
-  }
+void ScriptPlayer::CheckGuard(std::size_t hand, const Snapshot& now) {
+  const std::optional<Waiting>& waiting = hands_[hand].waiting;
+  if (!waiting || waiting->met || waiting->until.or_go_on) return;
+  const int index = static_cast<int>(hand);
+  const double gap_m = GapTo(index, waiting->thing, now);
+  const std::string away = gap_m >= HandClearance::kFar_m
+                               ? "more than " + Millimetres(HandClearance::kFar_m)
+                               : Millimetres(gap_m);
+  const std::string wanted = waiting->until.gap_m
+                                 ? "come nearer than " + Millimetres(*waiting->until.gap_m) + " to"
+                                 : "touched";
+  Fail(index, "until: the step is over, and '" + scene_.hands[hand].name + "' has not " + wanted +
+                  " '" + waiting->until.thing + "': it is " + away + " away from it");
 }
 
 /// Follows the force.
@@ -111,7 +104,7 @@ void ScriptPlayer::Press(const Snapshot& now) {
         std::clamp((pressing.force_n - pressing.present_n) / (stiffness_n_per_m * kPressing_s),
                    -kMaxPressing_m_per_s, kMaxPressing_m_per_s);
     pressing.depth_m = std::max(pressing.depth_m + speed_m_per_s / rate_hz, 0.0);
-    if (tick_in_stage_ + 1 == stage_ticks_ &&
+    if (tick_in_stage_ + 1 == PlannedEnd(hands_[h]) &&
         pressing.present_n < kNotedForceShare * pressing.force_n) {
       const auto body = static_cast<std::size_t>(pressing.against);
       notes_.push_back({now.tick, hand,

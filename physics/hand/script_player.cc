@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "physics/hand/hand_contacts.h"
@@ -41,29 +42,6 @@ constexpr double kNotedWidth_m = 0.0005;
 constexpr int kJointWaypoints = 40;
 /// Likewise of an orbit or a turn, per whole turn.
 constexpr int kTurnWaypoints = 160;
-
-double DurationOf(const Step& step) {
-  const auto* poses = std::get_if<PosesStep>(&step.action);
-  return step.delay_s + (poses && !poses->poses.empty() ? poses->poses.back().t_s : step.over_s);
-}
-
-double DurationOf(const PersonStep& step) {
-  const auto* head = std::get_if<HeadPosesStep>(&step.action);
-  return head && !head->poses.empty() ? head->poses.back().t_s : step.over_s;
-}
-
-/// Of the persons' steps of a stage.
-double PersonDurationOf(const ScriptStage& stage) {
-  double longest = 0;
-  for (const PersonStep& step : stage.person_steps) longest = std::max(longest, DurationOf(step));
-  return longest;
-}
-
-double DurationOf(const ScriptStage& stage) {
-  double longest = PersonDurationOf(stage);
-  for (const Step& step : stage.steps) longest = std::max(longest, DurationOf(step));
-  return longest;
-}
 
 /// Number of hands that touch a body; at least 1.
 int HandsOn(int body, const Snapshot& now) {
@@ -382,44 +360,106 @@ std::vector<int> ScriptPlayer::FirstStyles(const Scene& scene, const Script& scr
   return styles;
 }
 
-void ScriptPlayer::StartStage(const Snapshot& now) {
-  const double rate_hz = scene_.world.rate_hz;
-  for (HandState& hand : hands_) {
-    double& height_m = hand.target.X_WH.p_m.z();
-    if (hand.placing) height_m = hand.placing->HeightOf(height_m);
-    hand.placing.reset();
-    hand.waiting.reset();
-    if (hand.pressing) hand.target.X_WH.p_m += hand.pressing->depth_m * hand.pressing->along_W;
-    hand.pressing.reset();
-    hand.step_ticks = hand.begin_tick = 0;
-    hand.delayed = nullptr;
-    hand.motion = Trajectory(hand.target);
-  }
-  tick_in_stage_ = 0;
-  if (stage_ == script_.stages.size()) {
-    settling_ = true;
-    stage_ticks_ = planned_ticks_ = std::llround(script_.settle_s * rate_hz);
-    return;
-  }
-  begun_.push_back(stage_);
-  const ScriptStage& stage = script_.stages[stage_++];
-  stage_ticks_ = planned_ticks_ = std::llround(DurationOf(stage) * rate_hz);
-  person_ticks_ = std::llround(PersonDurationOf(stage) * rate_hz);
-  for (const Step& step : stage.steps) {
-    HandState& hand = hands_[static_cast<std::size_t>(step.hand)];
-    hand.written_at = step.written_at;
-    hand.step_ticks = std::llround(DurationOf(step) * rate_hz);
-    hand.begin_tick = std::llround(step.delay_s * rate_hz);
-    if (hand.begin_tick > 0)
-      hand.delayed = &step;
-    else
-      StartStep(step, now);
-    if (!problem_.empty()) return;
-  }
+void ScriptPlayer::Settle(HandState& hand) {
+  double& height_m = hand.target.X_WH.p_m.z();
+  if (hand.placing) height_m = hand.placing->HeightOf(height_m);
+  hand.placing.reset();
+  hand.waiting.reset();
+  if (hand.pressing) hand.target.X_WH.p_m += hand.pressing->depth_m * hand.pressing->along_W;
+  hand.pressing.reset();
+  hand.begin_tick = hand.late_ticks = 0;
+  hand.motion = Trajectory(hand.target);
 }
 
-void ScriptPlayer::StartStep(const Step& step, const Snapshot& now) {
+void ScriptPlayer::StartStage() {
+  for (HandState& hand : hands_) {
+    Settle(hand);
+    hand.step.reset();
+  }
+  tick_in_stage_ = late_ticks_ = 0;
+  settling_ = stage_ == script_.stages.size();
+  if (settling_) return;
+  clock_ = StageClock(script_.stages[stage_++], scene_.world.rate_hz);
+}
+
+void ScriptPlayer::Progress(const Snapshot& now) {
+  if (settling_ || stage_ == 0) return;
+  for (bool changed = true; changed && problem_.empty();) {
+    changed = EndSteps(now);
+    changed |= StartSteps(now);
+  }
+  if (problem_.empty() && clock_.IsStuck()) Fail(0, "the steps of a stage wait for each other");
+}
+
+bool ScriptPlayer::StartSteps(const Snapshot& now) {
+  const std::size_t hands_steps = script_.stages[stage_ - 1].steps.size();
+  const std::vector<std::size_t> turns = clock_.TakeTurns(tick_in_stage_);
+  const std::vector<std::size_t> starts = clock_.TakeBegun(tick_in_stage_);
+  BegunSteps begun{.stage = stage_ - 1, .steps = {}, .person_steps = {}};
+  for (const std::size_t step : turns)
+    if (step < hands_steps) begun.steps.push_back(step);
+  for (const std::size_t step : starts) {
+    if (!problem_.empty()) break;
+    if (step < hands_steps)
+      StartStep(step, now);
+    else
+      begun.person_steps.push_back(step - hands_steps);
+  }
+  if (!begun.steps.empty() || !begun.person_steps.empty()) begun_.push_back(std::move(begun));
+  return !turns.empty() || !starts.empty();
+}
+
+/// In an ordered stage steps end one by one.
+bool ScriptPlayer::EndSteps(const Snapshot& now) {
+  if (!clock_.is_ordered()) return false;
+  const ScriptStage& stage = script_.stages[stage_ - 1];
+  bool changed = false;
+  for (std::size_t i = 0; i < stage.steps.size() + stage.person_steps.size(); ++i) {
+    if (!clock_.Plays(i) || tick_in_stage_ < clock_.EndOf(i)) continue;
+    if (i < stage.steps.size()) {
+      const auto h = static_cast<std::size_t>(stage.steps[i].hand);
+      if (Waits(h, hands_[h].late_ticks)) {
+        ++hands_[h].late_ticks;
+        clock_.SetEnd(i, tick_in_stage_ + 1);
+        continue;
+      }
+      CheckThatItStands(h, now);
+      if (problem_.empty()) CheckGuard(h, now);
+      Settle(hands_[h]);
+    }
+    clock_.Finish(i);
+    changed = true;
+  }
+  return changed;
+}
+
+bool ScriptPlayer::EndStage(const Snapshot& now) {
+  if (settling_) return false;
+  const std::optional<std::int64_t> end = clock_.End();
+  if (!end || tick_in_stage_ < *end + late_ticks_) return false;
+  for (std::size_t h = 0; h < hands_.size(); ++h) {
+    if (clock_.is_ordered() || !Waits(h, late_ticks_)) continue;
+    ++late_ticks_;
+    return false;
+  }
+  for (std::size_t h = 0; h < hands_.size() && !clock_.is_ordered() && problem_.empty(); ++h)
+    CheckThatItStands(h, now);
+  for (std::size_t h = 0; h < hands_.size() && !clock_.is_ordered() && problem_.empty(); ++h)
+    CheckGuard(h, now);
+  return problem_.empty();
+}
+
+std::int64_t ScriptPlayer::PlannedEnd(const HandState& hand) const {
+  if (clock_.is_ordered() && hand.step) return clock_.EndOf(*hand.step) - hand.late_ticks;
+  return clock_.End().value_or(std::numeric_limits<std::int64_t>::max());
+}
+
+void ScriptPlayer::StartStep(std::size_t index, const Snapshot& now) {
+  const Step& step = script_.stages[stage_ - 1].steps[index];
   HandState& hand = hands_[static_cast<std::size_t>(step.hand)];
+  hand.step = index;
+  hand.begin_tick = clock_.BeginOf(index);
+  hand.written_at = step.written_at;
   if (step.until) {
     hand.waiting = Waiting{.until = *step.until, .thing = FindBody(scene_, step.until->thing)};
     if (hand.waiting->thing < 0)
@@ -429,15 +469,6 @@ void ScriptPlayer::StartStep(const Step& step, const Snapshot& now) {
   problem_ = resolver.Resolve();
   if (!resolver.note().empty()) notes_.push_back({now.tick, step.hand, resolver.note()});
   if (!problem_.empty()) Fail(step.hand, std::string(problem_));
-}
-
-void ScriptPlayer::StartDelayed(const Snapshot& now) {
-  for (HandState& hand : hands_) {
-    if (!hand.delayed || tick_in_stage_ < hand.begin_tick || !problem_.empty()) continue;
-    const Step& step = *hand.delayed;
-    hand.delayed = nullptr;
-    StartStep(step, now);
-  }
 }
 
 double ScriptPlayer::MotionTime(const HandState& hand) const {
@@ -467,39 +498,33 @@ void ScriptPlayer::Watch(const Snapshot& now) {
       placing.lowest_m = std::min(placing.lowest_m, now.hands[h].palm.X_WB.p_m.z());
     else
       placing.lifted_off |= placing.lowest_m < HUGE_VAL && !TouchesAnything(placing.body, now);
-    if (tick_in_stage_ >= planned_ticks_ && !placing.Stands())
+    if (tick_in_stage_ >= PlannedEnd(hands_[h]) && !placing.Stands())
       placing.lowered_m += kSeek_m_per_s / rate_hz;
   }
 }
 
-/// Whether the stage lasts longer because a thing does not stand yet.
-bool ScriptPlayer::Waits() const {
-  const double late_s = static_cast<double>(stage_ticks_ - planned_ticks_) / scene_.world.rate_hz;
-  for (std::size_t h = 0; h < hands_.size(); ++h) {
-    const std::optional<TrackerSettings>& tracking = scene_.hands[h].tracking;
-    const double longest_s = kSeek_s + (tracking ? tracking->latency_s : 0);
-    if (hands_[h].placing && !hands_[h].placing->Stands() && late_s < longest_s) return true;
-  }
-  return false;
+bool ScriptPlayer::Waits(std::size_t hand, std::int64_t late_ticks) const {
+  const std::optional<TrackerSettings>& tracking = scene_.hands[hand].tracking;
+  const double late_s = static_cast<double>(late_ticks) / scene_.world.rate_hz;
+  const std::optional<Placing>& placing = hands_[hand].placing;
+  return placing && !placing->Stands() && late_s < kSeek_s + (tracking ? tracking->latency_s : 0);
 }
 
 /// What the hand has lost is not its problem.
-void ScriptPlayer::CheckThatAllStand(const Snapshot& now) {
-  for (std::size_t h = 0; h < hands_.size() && problem_.empty(); ++h) {
-    const std::optional<Placing>& placing = hands_[h].placing;
-    const int hand = static_cast<int>(h);
-    if (!placing || placing->Stands() || !Touches(hand, placing->body, now)) continue;
-    const auto body = static_cast<std::size_t>(placing->body);
-    const auto support = static_cast<std::size_t>(placing->support);
-    const std::string &held = scene_.bodies[body].name, &below = scene_.bodies[support].name;
-    problem_ = "place_on: '" + held + "' does not stand on '" + below + "'";
-    if (const auto landing_m = LandingHeight(scene_.bodies[support], now.bodies[support].X_WB,
-                                             scene_.bodies[body], now.bodies[body].X_WB)) {
-      const double low_m = WorldBounds(scene_.bodies[body], now.bodies[body].X_WB).min().z();
-      problem_ += ", but is held " + Millimetres(low_m - *landing_m) + " above it";
-    }
-    Fail(hand, std::string(problem_));
+void ScriptPlayer::CheckThatItStands(std::size_t hand, const Snapshot& now) {
+  const std::optional<Placing>& placing = hands_[hand].placing;
+  const int index = static_cast<int>(hand);
+  if (!placing || placing->Stands() || !Touches(index, placing->body, now)) return;
+  const auto body = static_cast<std::size_t>(placing->body);
+  const auto support = static_cast<std::size_t>(placing->support);
+  const std::string &held = scene_.bodies[body].name, &below = scene_.bodies[support].name;
+  std::string problem = "place_on: '" + held + "' does not stand on '" + below + "'";
+  if (const auto landing_m = LandingHeight(scene_.bodies[support], now.bodies[support].X_WB,
+                                           scene_.bodies[body], now.bodies[body].X_WB)) {
+    const double low_m = WorldBounds(scene_.bodies[body], now.bodies[body].X_WB).min().z();
+    problem += ", but is held " + Millimetres(low_m - *landing_m) + " above it";
   }
+  Fail(index, problem);
 }
 
 const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
@@ -508,17 +533,13 @@ const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
   Watch(now);
   WatchGuards(now);
   Press(now);
-  if (tick_in_stage_ == stage_ticks_) {
-    if (Waits()) {
-      ++stage_ticks_;
-    } else {
-      CheckThatAllStand(now);
-      CheckGuards(now);
-    }
+  Progress(now);
+  while (problem_.empty() && EndStage(now)) {
+    StartStage();
+    Progress(now);
   }
-  while (tick_in_stage_ == stage_ticks_ && !settling_ && problem_.empty()) StartStage(now);
-  StartDelayed(now);
-  if (!problem_.empty() || tick_in_stage_ == stage_ticks_) return nullptr;
+  const std::int64_t settle_ticks = std::llround(script_.settle_s * scene_.world.rate_hz);
+  if (!problem_.empty() || (settling_ && tick_in_stage_ == settle_ticks)) return nullptr;
   ++tick_in_stage_;
   for (const HandState& hand : hands_) {
     HandCommand& command =
@@ -528,12 +549,6 @@ const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
     if (hand.pressing) command.target.X_WH.p_m += hand.pressing->depth_m * hand.pressing->along_W;
   }
   return &commands_;
-}
-
-double DurationOf(const Script& script) {
-  double sum_s = script.settle_s;
-  for (const ScriptStage& stage : script.stages) sum_s += DurationOf(stage);
-  return sum_s;
 }
 
 }  // namespace prehend::physics

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plays a script for the hands. When a stage starts, each of its steps is resolved into a motion of
-// a hand's tracked target, from the state of the world at that time. Hands without a step keep
-// their target. A step that puts a thing down looks at the world until the thing stands: the target
-// goes on down, and the stage lasts longer, if it does not. A guarded step ends when what it waits
-// for happens, and with the last step the stage. Tested by
+// Plays a script for the hands. When a step begins it is resolved into a motion of a hand's tracked
+// target, from the state of the world at that time. Hands without a step keep their target. A step
+// that puts a thing down looks at the world until the thing stands: the target goes on down, and
+// the stage (in an ordered stage: the step) lasts longer, if it does not. A guarded step ends when
+// what it waits for happens, and with the last step the stage. Tested by
 // tests/physics/hand/script_player_test.cc
 #pragma once
 
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "physics/motion/script.h"
+#include "physics/motion/stage_clock.h"
 #include "physics/motion/trajectory.h"
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
@@ -28,6 +29,13 @@ struct ScriptNote {
   std::string text;
 };
 
+/// Steps of a stage whose turn has come.
+struct BegunSteps {
+  std::size_t stage = 0;                  ///< index into Script::stages
+  std::vector<std::size_t> steps;         ///< of hands; those that have a delay begin after it
+  std::vector<std::size_t> person_steps;  ///< that begin now
+};
+
 class ScriptPlayer {
  public:
   /// `scene` must outlive the player.
@@ -40,8 +48,8 @@ class ScriptPlayer {
   /// continue (see problem()).
   const std::vector<HandCommand>* Advance(const Snapshot& now);
 
-  /// The stages that began with the last Advance(), as indices into Script::stages.
-  const std::vector<std::size_t>& begun() const { return begun_; }
+  /// What began with the last Advance().
+  const std::vector<BegunSteps>& begun() const { return begun_; }
   const Script& script() const { return script_; }
 
   /// Why the script cannot continue; empty if it can.
@@ -93,26 +101,35 @@ class ScriptPlayer {
     std::optional<Placing> placing = std::nullopt;
     std::optional<Waiting> waiting = std::nullopt;
     std::optional<Pressing> pressing = std::nullopt;
-    std::int64_t step_ticks = 0;    ///< when the present step ends, after its stage began; 0: there
-                                    ///< is none
-    std::int64_t begin_tick = 0;    ///< when its motion began, likewise
-    const Step* delayed = nullptr;  ///< begins at begin_tick
-    std::string written_at = {};    ///< the present step
+    /// The present step of its stage; none before the first.
+    std::optional<std::size_t> step = std::nullopt;
+    std::int64_t begin_tick = 0;  ///< when its motion began, after its stage began
+    std::int64_t late_ticks = 0;  ///< by which it lasts longer than planned
+    std::string written_at = {};  ///< the present step
   };
   class Resolver;
 
-  void StartStage(const Snapshot& now);
-  void StartStep(const Step& step, const Snapshot& now);
-  /// Starts the steps whose delay is over.
-  void StartDelayed(const Snapshot& now);
+  void StartStage();
+  /// Ends and starts the steps of the present stage for which it is time.
+  void Progress(const Snapshot& now);
+  bool EndSteps(const Snapshot& now);
+  bool StartSteps(const Snapshot& now);
+  void StartStep(std::size_t index, const Snapshot& now);
+  /// The hand rests where its target is.
+  static void Settle(HandState& hand);
+  /// Whether the stage is over; otherwise it may last longer, because of what is put down.
+  bool EndStage(const Snapshot& now);
+  /// When the hand's step should be over: in a plain stage with the stage.
+  std::int64_t PlannedEnd(const HandState& hand) const;
   /// Since the motion of the hand began.
   double MotionTime(const HandState& hand) const;
   void Watch(const Snapshot& now);
-  bool Waits() const;
-  void CheckThatAllStand(const Snapshot& now);
+  /// Whether what the hand puts down does not stand yet, and it is not too late.
+  bool Waits(std::size_t hand, std::int64_t late_ticks) const;
+  void CheckThatItStands(std::size_t hand, const Snapshot& now);
   /// Ends guarded steps, and with them perhaps the stage.
   void WatchGuards(const Snapshot& now);
-  void CheckGuards(const Snapshot& now);
+  void CheckGuard(std::size_t hand, const Snapshot& now);
   void Press(const Snapshot& now);
   bool IsTouched(int hand, int thing, const Snapshot& now) const;
   double GapTo(int hand, int thing, const Snapshot& now) const;
@@ -123,19 +140,14 @@ class ScriptPlayer {
   std::vector<HandState> hands_;
   std::vector<HandCommand> commands_;
   std::size_t stage_ = 0;  ///< the next stage to start
+  StageClock clock_;       ///< of the present one
   std::int64_t tick_in_stage_ = 0;
-  std::int64_t stage_ticks_ = 0;    ///< how long it lasts,
-  std::int64_t planned_ticks_ = 0;  ///< and should
-  std::int64_t person_ticks_ = 0;   ///< how long its persons' steps last
-  std::vector<std::size_t> begun_;
+  std::int64_t late_ticks_ = 0;  ///< by which a plain stage lasts longer than planned
+  std::vector<BegunSteps> begun_;
   bool settling_ = false;
   std::string problem_;
   int problem_hand_ = -1;
   std::vector<ScriptNote> notes_;
 };
-
-/// Simulated length of a script, seconds: all stages and the settling time. A thing that does not
-/// stand when its place step is over prolongs it.
-double DurationOf(const Script& script);
 
 }  // namespace prehend::physics

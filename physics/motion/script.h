@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What hands and persons do: a list of stages. In one stage every named hand performs one step, and
-// the stage ends with its longest step. Steps move the *tracked target* that the hand's PIDs follow
-// (minimum jerk, Flash & Hogan 1985). A step is resolved into way-points when it starts, from the
-// poses in the world at that time. Tested by tests/physics/hand/script_player_test.cc
+// What hands and persons do: a list of stages. In one stage every named actor performs one step, or
+// several one after another, and the stage ends with its last step. Steps move the *tracked target*
+// that the hand's PIDs follow (minimum jerk, Flash & Hogan 1985). A step is resolved into
+// way-points when it starts, from the poses in the world at that time. Tested by
+// tests/physics/hand/script_player_test.cc
 #pragma once
 
 #include <optional>
@@ -78,13 +79,22 @@ struct Until {
   bool or_go_on = false;  ///< the script continues also if it never happens
 };
 
+/// When it is a step's turn: at the begin of its stage, but after the step before it of the same
+/// actor, and as this says. Names are those of steps of the same stage; empty: none.
+struct StepOrder {
+  std::string name = {};   ///< of the step itself
+  std::string after = {};  ///< its turn comes when this one has ended,
+  std::string with = {};   ///< or begins
+};
+
 struct Step {
   int hand = 0;  ///< index into Scene::hands
   StepAction action;
   double over_s = 0.5;
   std::optional<Until> until = {};
-  double delay_s = 0;           ///< after the begin of its stage; what it says is resolved then
+  double delay_s = 0;           ///< after its turn has come; what it says is resolved then
   std::string written_at = {};  ///< "FILE:LINE:COLUMN", for what is said about it; may be empty
+  StepOrder order = {};
 };
 
 struct LookAtStep {
@@ -127,11 +137,13 @@ struct PersonStep {
   int person = 0;  ///< index into Scene::persons
   PersonAction action;
   double over_s = 0.5;
+  double delay_s = 0;  ///< after its turn has come
+  StepOrder order = {};
 };
 
 struct ScriptStage {
-  std::vector<Step> steps;                    ///< at most one per hand
-  std::vector<PersonStep> person_steps = {};  ///< at most one per person
+  std::vector<Step> steps;  ///< of a hand one, or several one after another
+  std::vector<PersonStep> person_steps = {};
 };
 
 struct Script {

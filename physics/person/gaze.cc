@@ -71,12 +71,13 @@ std::optional<TargetSeen> TargetInSight(const Scene& scene, const GazeState& gaz
 GazeLeader::GazeLeader(const Scene& scene, const Script& script, const Person& person)
     : scene_(scene), script_(script), person_(person), reached_(scene.hands.size(), -1) {}
 
-void GazeLeader::Begin(std::size_t stage, const Snapshot& now) {
+void GazeLeader::Begin(std::size_t stage, const std::vector<std::size_t>& steps,
+                       const Snapshot& now) {
   // The right hand first: she looks at one of two hands that do different things.
   for (const int hand : {person_.right_hand, person_.left_hand}) {
-    for (const Step& step : script_.stages[stage].steps) {
-      if (hand < 0 || step.hand != hand) continue;
-      if (const auto target = TargetOf(step, stage, now)) {
+    for (const std::size_t index : steps) {
+      if (hand < 0 || script_.stages[stage].steps[index].hand != hand) continue;
+      if (const auto target = TargetOf(stage, index, now)) {
         target_ = *target;
         return;
       }
@@ -85,18 +86,19 @@ void GazeLeader::Begin(std::size_t stage, const Snapshot& now) {
 }
 
 /// Nullopt if the step gives no target: then the eyes stay.
-std::optional<GazeTarget> GazeLeader::TargetOf(const Step& step, std::size_t stage,
+std::optional<GazeTarget> GazeLeader::TargetOf(std::size_t stage, std::size_t index,
                                                const Snapshot& now) {
+  const Step& step = script_.stages[stage].steps[index];
   int& reached = reached_[static_cast<std::size_t>(step.hand)];
-  const auto body = [](int index) {
-    return GazeTarget{.kind = GazeTarget::Kind::kBody, .index = index};
+  const auto body = [](int target) {
+    return GazeTarget{.kind = GazeTarget::Kind::kBody, .index = target};
   };
   if (const auto* reach = std::get_if<ReachStep>(&step.action)) {
     reached = FindBody(scene_, reach->object);
     return body(reached);
   }
   if (const auto* carry = std::get_if<CarryStep>(&step.action)) {
-    if (const auto place = LandingPlace(*carry, step.hand, stage, now))
+    if (const auto place = LandingPlace(*carry, stage, index, now))
       return GazeTarget{.kind = GazeTarget::Kind::kPoint, .p_W_m = *place};
   }
   if (std::holds_alternative<RetreatStep>(step.action)) return GazeTarget{};
@@ -108,12 +110,14 @@ std::optional<GazeTarget> GazeLeader::TargetOf(const Step& step, std::size_t sta
 }
 
 /// The place on the support of the next put-down; nullopt if none follows.
-std::optional<Vector3d> GazeLeader::LandingPlace(const CarryStep& carry, int hand,
-                                                 std::size_t stage, const Snapshot& now) const {
-  for (std::size_t later = stage + 1; later < script_.stages.size(); ++later) {
-    for (const Step& step : script_.stages[later].steps) {
-      const auto* place = std::get_if<PlaceStep>(&step.action);
-      const int support = place && step.hand == hand ? FindBody(scene_, place->support) : -1;
+std::optional<Vector3d> GazeLeader::LandingPlace(const CarryStep& carry, std::size_t stage,
+                                                 std::size_t index, const Snapshot& now) const {
+  const int hand = script_.stages[stage].steps[index].hand;
+  for (std::size_t later = stage; later < script_.stages.size(); ++later) {
+    const std::vector<Step>& steps = script_.stages[later].steps;
+    for (std::size_t i = later == stage ? index + 1 : 0; i < steps.size(); ++i) {
+      const auto* place = std::get_if<PlaceStep>(&steps[i].action);
+      const int support = place && steps[i].hand == hand ? FindBody(scene_, place->support) : -1;
       if (support < 0) continue;
       const auto s = static_cast<std::size_t>(support);
       const double top = WorldBounds(scene_.bodies[s], now.bodies[s].X_WB).max().z();

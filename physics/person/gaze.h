@@ -43,14 +43,14 @@ class GazeLeader {
   /// `script` and `scene` must outlive it.
   GazeLeader(const Scene& scene, const Script& script, const Person& person);
 
-  /// Chooses the target from the beginning of this stage of the script on.
-  void Begin(std::size_t stage, const Snapshot& now);
+  /// Chooses the target from the beginning of these steps of hands on.
+  void Begin(std::size_t stage, const std::vector<std::size_t>& steps, const Snapshot& now);
   const GazeTarget& target() const { return target_; }
 
  private:
-  std::optional<GazeTarget> TargetOf(const Step& step, std::size_t stage, const Snapshot& now);
-  std::optional<Eigen::Vector3d> LandingPlace(const CarryStep& carry, int hand, std::size_t stage,
-                                              const Snapshot& now) const;
+  std::optional<GazeTarget> TargetOf(std::size_t stage, std::size_t index, const Snapshot& now);
+  std::optional<Eigen::Vector3d> LandingPlace(const CarryStep& carry, std::size_t stage,
+                                              std::size_t index, const Snapshot& now) const;
 
   const Scene& scene_;
   const Script& script_;

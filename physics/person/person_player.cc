@@ -101,9 +101,11 @@ PersonPlayer::PersonPlayer(const Scene& scene, const Script& script, int person)
     limbs_[static_cast<std::size_t>(limb)].end = RestOf(limb, person_, targets_).end;
 }
 
-void PersonPlayer::Begin(std::size_t stage, const Snapshot& now) {
-  leader_.Begin(stage, now);
-  for (const PersonStep& step : script_.stages[stage].person_steps) {
+void PersonPlayer::Begin(std::size_t stage, const std::vector<std::size_t>& hands_steps,
+                         const std::vector<std::size_t>& person_steps, const Snapshot& now) {
+  leader_.Begin(stage, hands_steps, now);
+  for (const std::size_t index : person_steps) {
+    const PersonStep& step = script_.stages[stage].person_steps[index];
     if (step.person != index_) continue;
     head_.reset();
     if (body_) {

@@ -20,8 +20,10 @@ class PersonPlayer {
   /// `scene` and `script` must outlive the player. `person` is an index into Scene::persons.
   PersonPlayer(const Scene& scene, const Script& script, int person);
 
-  /// This stage of the script begins with the tick after `now`.
-  void Begin(std::size_t stage, const Snapshot& now);
+  /// These steps of the script begin with the tick after `now`: what her eyes follow, and those of
+  /// her own.
+  void Begin(std::size_t stage, const std::vector<std::size_t>& hands_steps,
+             const std::vector<std::size_t>& person_steps, const Snapshot& now);
   /// Moves her parts for the tick after `now`.
   void Advance(const Snapshot& now, World& world);
   /// What she sees in a world that has stepped since her last Advance().

@@ -187,7 +187,8 @@ const Case kCases[] = {
       {"two_actions", "close_to: 1.0", "close_to: 1.0, open_to: 0", kRefuses,
        "12:33: a step has one of 'close_to' and 'open_to', not both\n"},
       {"key_of_another_step", "close_to: 1.0", "close_to: 1.0, style: wrap", kRefuses,
-       "12:33: unknown key 'style' in a close_to step | known: close_to, over_s, until, delay_s\n"},
+       "12:33: unknown key 'style' in a close_to step | known: close_to, over_s, until, delay_s, "
+        "name, after, with\n"},
       {"renamed_key_of_a_limb", "close_to: 1.0", "move_limb: right_elbow, to_m: [0, 0, 1], most_n: 40", kRefuses,
        "12:59: unknown key 'most_n' in a move_limb step | it is called 'max_force_n' now\n"},
       {"renamed_keys_of_a_recording", "close_to: 1.0", "recording: a.csv, most_gap_s: 0.1, most_jump_m: 0.2", kRefuses,

@@ -58,6 +58,20 @@ std::vector<std::string> YamlBlocks(const std::string& markdown) {
   return blocks;
 }
 
+/// The probe with what else an example of the document speaks of.
+std::string ProbeFor(const std::string& example) {
+  std::string text = kProbe;
+  const auto add = [&](const std::string& section, const std::string& name,
+                       const std::string& what) {
+    if (example.find(name) == std::string::npos) return;
+    text.insert(text.find(section) + section.size(), "  " + name + ": " + what + "\n");
+  };
+  add("entities:\n", "cup",
+      "{cylinder: {radius_m: 0.035, length_m: 0.1}, mass_kg: 0.25, at_m: [0.1, -0.3, 0.81]}");
+  add("actors:\n", "left_hand", "{hand: human_left, at_m: [-0.2, 0.3, 1.05]}");
+  return text;
+}
+
 TEST(ScenarioFormatDocument, ItsExamplesAreReadAndValid) {
   PythonValidator validator;
   int scenarios = 0;
@@ -66,7 +80,7 @@ TEST(ScenarioFormatDocument, ItsExamplesAreReadAndValid) {
     std::string text = block;
     if (!block.starts_with("scenario:")) {
       const std::string key = block.substr(0, block.find(':') + 1);
-      text = kProbe;
+      text = ProbeFor(block);
       const std::size_t at = text.find("\n" + key);
       if (at != std::string::npos) {
         std::size_t end = at + 1;
