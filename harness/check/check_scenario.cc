@@ -297,10 +297,14 @@ std::vector<DisputedMoment> DrawDisputed(const CheckRequest& request, const Chec
   return {};
 }
 
+bool WantsReplay(const CheckRequest& request, const ScenarioVerdict& verdict) {
+  return request.replays == Replays::kAll ||
+         (request.replays == Replays::kFailures && verdict.verdict != Verdict::kPassed);
+}
+
 void AddReplay(const CheckRequest& request, const CheckedRun& checked, ScenarioVerdict& verdict) {
-  const bool wanted = request.replays == Replays::kAll || (request.replays == Replays::kFailures &&
-                                                           verdict.verdict != Verdict::kPassed);
-  if (wanted) verdict.replay = ReplayData(checked.loaded.scenario, checked.result);
+  if (WantsReplay(request, verdict))
+    verdict.replay = ReplayData(checked.loaded.scenario, checked.result);
 }
 
 ScenarioVerdict BlankVerdict(const CheckRequest& request) {
@@ -365,12 +369,11 @@ ScenarioVerdict VerdictOn(const CheckRequest& request, const CheckedRun& checked
   return verdict;
 }
 
-/// A recording against the golden beside it.
-ScenarioVerdict CheckRecording(const CheckRequest& request) {
-  const std::string& file = request.run.scenario_file;
+/// A recording against its golden.
+ScenarioVerdict CheckRecording(const CheckRequest& request, const std::string& golden_file,
+                               Result<JudgedRecording> judged) {
   ScenarioVerdict verdict = BlankVerdict(request);
-  verdict.inputs = HashFiles({file, GoldenBeside(file)});
-  Result<JudgedRecording> judged = JudgeRecording(request.run, request.root);
+  verdict.inputs = HashFiles({request.run.scenario_file, golden_file});
   if (!judged) {
     Conclude({{ExitCode::kBadInput, "cannot be read", Format(judged.error())}}, verdict);
     return verdict;
@@ -396,11 +399,41 @@ ScenarioVerdict CheckRecording(const CheckRequest& request) {
   return verdict;
 }
 
+/// An episode that was imported from a recording, against the golden beside that; nothing if the
+/// episode was simulated.
+std::optional<ScenarioVerdict> CheckImported(const CheckRequest& request) {
+  if (request.episode == 0) return std::nullopt;
+  const auto file = episodes::EpisodeFile::Open(request.run.scenario_file);
+  if (!file) return std::nullopt;  // ReadPlayed() says why
+  const auto row = std::ranges::find(file->episodes(), request.episode, &episodes::EpisodeRow::id);
+  if (row == file->episodes().end() || row->simulated) return std::nullopt;
+  const auto unread = [&](const grammar::Diagnostics& why) {
+    return CheckRecording(request, "", tl::unexpected(why));
+  };
+  const Result<LoadedRun> loaded =
+      episodes::EpisodeLoader(request.root)
+          .Load(*file, *row, {request.run.grammar, request.run.settings});
+  if (!loaded) return unread(loaded.error());
+  const Result<RunResult> run = episodes::Replay(*file, *row, *loaded);
+  if (!run) return unread(run.error());
+  Result<SegmentedRecording> segmented = episodes::SegmentRecorded(*file, *row, *loaded);
+  if (!segmented) return unread(segmented.error());
+  const std::string golden =
+      (fs::path(request.root) / GoldenBeside(loaded->scenario.file)).string();
+  ScenarioVerdict verdict =
+      CheckRecording(request, golden, JudgeSegmented(std::move(*segmented), golden));
+  verdict.state_hash = row->state_hash;
+  if (WantsReplay(request, verdict)) verdict.replay = ReplayData(loaded->scenario, *run);
+  return verdict;
+}
+
 }  // namespace
 
 ScenarioVerdict CheckScenario(const CheckRequest& request) {
   if (request.episode == 0 && IsRecording(request.run.scenario_file))
-    return CheckRecording(request);
+    return CheckRecording(request, GoldenBeside(request.run.scenario_file),
+                          JudgeRecording(request.run, request.root));
+  if (auto verdict = CheckImported(request)) return std::move(*verdict);
   ScenarioVerdict verdict = BlankVerdict(request);
   std::vector<std::string> files;
   std::optional<RunResult> played;

@@ -196,6 +196,10 @@ tl::expected<RunResult, ExitCode> OtherView(const PlayedRun& played, const std::
     other.drawings = played.run.drawings;
     return other;
   }
+  if (!played.simulated)
+    return tl::unexpected(Complain(context, ExitCode::kBadInput,
+                                   "--against: of a recording that was imported, only one grammar "
+                                   "can be shown; resegment --grammar shows the other"));
   const grammar::CompileResult compiled = LoadGrammar(context.root, view);
   if (!compiled.program) return tl::unexpected(Complain(context, compiled.diagnostics));
   std::vector<physics::Snapshot> sensed;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend import: poses of a tracker become a recording.
+// prehend import: poses of a tracker become a recording, recordings become episodes.
 // Tested by tests/program/import_test.cc
 #include <fmt/format.h>
 
-#include "harness/base/atomic_file.h"
 #include "harness/command/command.h"
+#include "harness/command/write_recording.h"
+#include "harness/episodes/schema.h"
 #include "harness/import/import_poses.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/missing_facts.h"
@@ -23,18 +24,42 @@ ExitCode LookWith(const std::string& grammar_name, Episode& episode,
   return missing.nothing_left ? ExitCode::kNothing : ExitCode::kAgrees;
 }
 
+/// A recording becomes an episode, without a map.
+ExitCode ImportLines(const std::string& file, const ParsedOptions& options,
+                     const CommandContext& context) {
+  const std::string& output = options.Text("--output");
+  if (options.Has("--map"))
+    return Complain(context, ExitCode::kBadInput,
+                    "--map is for poses; " + file + " is a recording, which says what it means");
+  if (!options.Has("--check") && !episodes::IsEpisodeFile(output))
+    return Complain(context, ExitCode::kBadInput,
+                    file + " is a recording already; -o NAME.episodes keeps it as an episode");
+  Result<Episode> recording = ReadEpisode(file);
+  if (!recording) return Complain(context, recording.error());
+  const std::string grammar = options.Text("--grammar");
+  const ExitCode exit_code =
+      LookWith(grammar.empty() ? recording->header.grammar : grammar, *recording, context);
+  if (exit_code == ExitCode::kBadInput || options.Has("--check")) return exit_code;
+  const ExitCode written = WriteRecording(*recording, output, file, grammar, context);
+  if (written != ExitCode::kAgrees) return written;
+  context.out << fmt::format("{}: {}, {} frames\n", output, recording->header.episode,
+                             recording->frames.size());
+  return exit_code;
+}
+
 ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) {
-  const std::string output = options.Text("--output");
+  const std::string output = options.Text("--output"), poses = options.Text("poses");
   const bool check = options.Has("--check");
   if (check == !output.empty())
     return Complain(context, ExitCode::kBadInput,
                     "expected either -o, the recording to write, or --check, to write nothing");
-  if (output.ends_with(".episodes"))
-    return Complain(
-        context, ExitCode::kBadInput,
-        "poses become a recording as JSON Lines: NAME.jsonl; an episode file holds what "
-        "was simulated");
-  auto imported = import::ImportPoses(options.Text("poses"), options.Text("--map"));
+  if (IsRecording(poses)) return ImportLines(poses, options, context);
+  if (!options.Has("--map"))
+    return Complain(context, ExitCode::kBadInput,
+                    poses +
+                        " needs --map, a file that says what it means "
+                        "(docs/motion-capture.md)");
+  auto imported = import::ImportPoses(poses, options.Text("--map"));
   if (!imported) return Complain(context, imported.error());
   Episode& episode = imported->episode;
   for (const std::string& warning : imported->warnings)
@@ -45,13 +70,9 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
     if (exit_code == ExitCode::kBadInput) return exit_code;
   }
   if (!check) {
-    AtomicFile file(output);
-    if (!file.problem().empty()) return Complain(context, ExitCode::kBadInput, file.problem());
-    EpisodeWriter writer(file.stream(), episode.header);
-    for (EpisodeFrame& frame : episode.frames) writer.Write(frame.View());
-    writer.Finish(episode.end_tick);
-    if (const std::string problem = file.Commit(); !problem.empty())
-      return Complain(context, ExitCode::kFailure, problem);
+    const ExitCode written =
+        WriteRecording(episode, output, poses, options.Text("--grammar"), context);
+    if (written != ExitCode::kAgrees) return written;
   }
   if (output != "-") context.out << import::ImportTable(*imported);
   return exit_code;
@@ -62,19 +83,22 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
 Command ImportCommand() {
   return {
       .name = "import",
-      .summary = "Make a recording of a tracker's poses",
+      .summary = "Make a recording of a tracker's poses, or an episode of a recording",
       .examples = {"import poses.csv --map bodies.yaml --check",
-                   "import poses.csv --map bodies.yaml -o take.jsonl", "resegment take.jsonl"},
+                   "import poses.csv --map bodies.yaml -o take.jsonl", "resegment take.jsonl",
+                   "import take.jsonl -o takes.episodes"},
       .options = {{.name = "poses",
-                   .help = "a CSV file with poses of hands and things (docs/motion-capture.md)",
+                   .help =
+                       "a CSV file with poses of hands and things (docs/motion-capture.md), or\n"
+                       "a recording (docs/recording-format.md)",
                    .required = true},
                   {.name = "--map",
-                   .help = "what the file means: unit, axes, times, columns, bodies",
-                   .placeholder = "MAP.yaml",
-                   .required = true},
+                   .help = "of poses, what the file means: unit, axes, times, columns, bodies",
+                   .placeholder = "MAP.yaml"},
                   {.name = "--output",
-                   .help = "the recording (docs/recording-format.md); -: standard output",
-                   .placeholder = "FILE.jsonl",
+                   .help = "the recording (docs/recording-format.md), -: standard output; or an\n"
+                           "episode file, NAME.episodes, to which it is added (docs/episodes.md)",
+                   .placeholder = "FILE",
                    .other_name = "-o",
                    .is_output = true},
                   {.name = "--check",

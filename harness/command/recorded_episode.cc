@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "harness/base/shell_quote.h"
+#include "harness/episodes/recordings.h"
 #include "harness/episodes/resegment_many.h"
 #include "harness/episodes/schema.h"
 #include "harness/run/run_text.h"
@@ -57,7 +58,7 @@ tl::expected<PlayedRun, ExitCode> PlayOrReplay(const std::string& typed,
     if (!opened) return tl::unexpected(opened.error());
     Result<RunResult> run = episodes::Replay(opened->file, opened->row, opened->loaded);
     if (!run) return tl::unexpected(Complain(context, run.error()));
-    return PlayedRun{std::move(opened->loaded), std::move(*run)};
+    return PlayedRun{std::move(opened->loaded), std::move(*run), opened->row.simulated};
   }
   const auto file = FindScenarioOrComplain(typed, context);
   if (!file) return tl::unexpected(file.error());
@@ -70,13 +71,23 @@ tl::expected<PlayedRun, ExitCode> PlayOrReplay(const std::string& typed,
 namespace {
 
 /// The same as a source of frames.
-EpisodeSource SourceOf(RecordedEpisode episode) {
+Result<EpisodeSource> SourceOf(RecordedEpisode episode) {
   const auto shared = std::make_shared<const RecordedEpisode>(std::move(episode));
   const Scenario& scenario = shared->loaded.scenario;
   EpisodeSource source{.name = scenario.name,
                        .program = shared->loaded.program,
                        .entity_table = MakeEntityTable(scenario),
                        .play = {}};
+  if (!shared->row.simulated) {
+    auto recording = episodes::ReadRecording(shared->file, shared->row);
+    if (!recording) return tl::unexpected(std::move(recording.error()));
+    source.entity_table = recording->header.entity_table;
+    source.play = [read = std::move(*recording)](const EpisodeSource::Watcher& watch) {
+      for (EpisodeFrame frame : read.frames) watch(frame.View());
+      return EpisodeSource::Played{read.end_tick, ""};
+    };
+    return source;
+  }
   source.play = [shared](const EpisodeSource::Watcher& watch) {
     const Scenario& played = shared->loaded.scenario;
     Sensing sensing(played.scene, played.sensing);
@@ -109,7 +120,7 @@ tl::expected<EpisodeSource, ExitCode> OpenEpisodeOrComplain(const ParsedOptions&
   if (episodes::IsEpisodeFile(typed)) {
     auto recorded = OpenRecordedOrComplain(typed, options, context);
     if (!recorded) return tl::unexpected(recorded.error());
-    return SourceOf(std::move(*recorded));
+    return SourceOf(std::move(*recorded)).map_error(reported);
   }
   if (IsRecording(typed)) {
     return OpenRecording(typed, request.grammar, request.settings, context.root)

@@ -28,6 +28,7 @@ tl::expected<RecordedEpisode, ExitCode> OpenRecordedOrComplain(const std::string
 struct PlayedRun {
   LoadedRun loaded;
   RunResult run;
+  bool simulated = true;  ///< otherwise the frames are those of a stand-in, not to be sensed
 };
 
 /// The scenario that was typed, simulated with the grammar and the settings of the command line; or

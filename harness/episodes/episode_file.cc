@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/episodes/record_episode.h"
 #include "harness/episodes/schema.h"
+#include "harness/episodes/write_rows.h"
 
 namespace prehend::harness::episodes {
 namespace {
@@ -20,7 +20,8 @@ grammar::Diagnostics Damage(const std::string& file, const std::string& message)
 
 physics::RunStatus EndOf(const EpisodeRow& row, const Statement& found) {
   using Kind = physics::RunStatus::Kind;
-  if (row.status == kCompleted) return {.kind = Kind::kCompleted, .tick = row.ticks};
+  if (row.status == kCompleted || row.status == kUnfinished)
+    return {.kind = Kind::kCompleted, .tick = row.ticks};
   if (row.status == kFailed) {
     return {.kind = Kind::kFailed,
             .tick = row.ticks,
@@ -53,7 +54,7 @@ Result<EpisodeFile> EpisodeFile::Open(const std::string& path) {
         "SELECT episode.id, episode.uuid, scenario, status, grammar, ticks_per_second,"
         " CASE status WHEN 'recording' THEN coalesce((SELECT max(last_tick) FROM chunk WHERE"
         " chunk.episode = episode.id), 0) ELSE ticks END, state_hash, outcome, recorded_on,"
-        " failure_entity, failure_reason, failure_advice"
+        " failure_entity, failure_reason, failure_advice, engine"
         " FROM episode JOIN task ON task.id = episode.task ORDER BY episode.id");
     while (find.Step()) {
       EpisodeRow& row = file.episodes_.emplace_back();
@@ -61,6 +62,7 @@ Result<EpisodeFile> EpisodeFile::Open(const std::string& path) {
              .uuid = find.Text(1),
              .scenario = find.Text(2),
              .status = find.Text(3),
+             .simulated = find.Text(13) != kNoEngine,
              .grammar = find.Text(4),
              .ticks_per_second = std::max<std::int64_t>(find.Integer(5), 1),
              .ticks = find.Integer(6),
@@ -200,6 +202,24 @@ Result<std::vector<physics::ScriptNote>> EpisodeFile::NotesOf(const EpisodeRow& 
   } catch (const DatabaseError& error) {
     return tl::unexpected(Damage(path_, error.what()));
   }
+}
+
+std::string EpisodeFile::EachPart(const EpisodeRow& episode, std::size_t part,
+                                  const std::function<bool(std::string_view)>& look) const {
+  try {
+    Statement find = state_->database.Prepare(
+        "SELECT number, data FROM chunk LEFT JOIN part ON part.id = chunk.id * ? + ?"
+        " WHERE episode = ? ORDER BY number");
+    find.Bind(kPartsPerChunk).Bind(static_cast<std::int64_t>(part)).Bind(episode.id);
+    for (std::int64_t expected = 0; find.Step(); ++expected) {
+      const std::int64_t number = find.Integer(0);
+      if (number != expected || find.IsNothing(1) || !look(find.Bytes(1)))
+        return fmt::format("the file is damaged: chunk {} of an episode", expected);
+    }
+  } catch (const DatabaseError& error) {
+    return error.what();
+  }
+  return "";
 }
 
 struct EpisodeFrames::State {

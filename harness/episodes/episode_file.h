@@ -9,12 +9,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "grammar/base/timeline.h"
 #include "harness/base/result.h"
-#include "harness/episodes/frame_player.h"
 #include "harness/episodes/task_files.h"
+#include "harness/frames/frame_player.h"
 #include "physics/simulation.h"
 
 namespace prehend::harness::episodes {
@@ -22,8 +23,9 @@ namespace prehend::harness::episodes {
 struct EpisodeRow {
   std::int64_t id = 0;
   std::string uuid;
-  std::string scenario;  ///< skill/name
-  std::string status;    ///< recording (not finished), completed, failed
+  std::string scenario;   ///< skill/name
+  std::string status;     ///< recording (not finished), completed, failed, unfinished
+  bool simulated = true;  ///< otherwise a recording: frames as a grammar sees them
   std::string grammar;
   grammar::Tick ticks_per_second = 480;
   grammar::Tick ticks = 0;  ///< of one that is not finished: those that can be read
@@ -71,6 +73,11 @@ class EpisodeFile {
   /// In the order of their numbers.
   Result<std::vector<KeptEntity>> EntitiesOf(const EpisodeRow& episode) const;
   Result<std::vector<physics::ScriptNote>> NotesOf(const EpisodeRow& episode) const;
+
+  /// Calls `look` with this part of each chunk, in their order. Returns "", or what is damaged: a
+  /// part that is missing, or for which `look` says false.
+  std::string EachPart(const EpisodeRow& episode, std::size_t part,
+                       const std::function<bool(std::string_view)>& look) const;
 
  private:
   friend class EpisodeFrames;

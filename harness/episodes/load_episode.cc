@@ -6,6 +6,9 @@
 
 #include "grammar/contents.h"
 #include "grammar/name_events.h"
+#include "harness/episodes/recordings.h"
+#include "harness/episodes/stand_in.h"
+#include "harness/episodes/write_rows.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/project_library.h"
 #include "harness/run/run_text.h"
@@ -57,12 +60,13 @@ RunResult BlankResult(const EpisodeRow& episode, const LoadedRun& loaded) {
   RunResult run;
   run.status = episode.end;
   run.ticks = episode.ticks;
+  run.is_unfinished = episode.status == kUnfinished;
   run.outcome = episode.outcome;
   run.drawings = EventDrawings(*loaded.program);
   return run;
 }
 
-std::uint64_t HashOf(const std::string& text) {
+std::uint64_t HashOfText(const std::string& text) {
   std::uint64_t hash = 0;
   for (const char c : text.substr(std::min<std::size_t>(2, text.size()))) {
     const bool is_digit = c >= '0' && c <= '9';
@@ -73,12 +77,70 @@ std::uint64_t HashOf(const std::string& text) {
 
 }  // namespace
 
+namespace {
+
+/// The recording, if its frames are those that were recorded.
+Result<Episode> ReadWhole(const EpisodeFile& file, const EpisodeRow& episode) {
+  Result<Episode> recording = ReadRecording(file, episode);
+  if (!recording) return recording;
+  const std::string hash = HashText(HashOfFrames(*recording));
+  if (hash == episode.state_hash) return recording;
+  return Failure(file, episode,
+                 fmt::format("the file is damaged: its frames have the hash {}, recorded was {}",
+                             hash, episode.state_hash));
+}
+
+/// Of a recording: what the grammar recognises, and with `frames` the scene that stands in for it.
+Result<RunResult> ResegmentRecording(const EpisodeFile& file, const EpisodeRow& episode,
+                                     const LoadedRun& loaded, bool frames) {
+  Result<Episode> recording = ReadWhole(file, episode);
+  if (!recording) return tl::unexpected(std::move(recording.error()));
+  auto segmented = SegmentEpisode(*recording, loaded.program, file.path());
+  if (!segmented) return tl::unexpected(std::move(segmented.error()));
+  RunResult run = BlankResult(episode, loaded);
+  run.timeline = std::move(segmented->timeline);
+  run.state_hash = HashOfText(episode.state_hash);
+  for (std::size_t i = 0; frames && i < recording->frames.size(); ++i)
+    run.recording.push_back(StandInAt(recording->header, recording->frames[i]));
+  return run;
+}
+
+}  // namespace
+
+Result<SegmentedRecording> SegmentRecorded(const EpisodeFile& file, const EpisodeRow& episode,
+                                           const LoadedRun& loaded) {
+  Result<Episode> recording = ReadWhole(file, episode);
+  if (!recording) return tl::unexpected(std::move(recording.error()));
+  return SegmentEpisode(*recording, loaded.program, file.path());
+}
+
+Result<LoadedRun> EpisodeLoader::LoadRecording(const EpisodeFile& file, const EpisodeRow& episode,
+                                               const TaskFiles& task, const GrammarChoice& choice) {
+  Result<EpisodeHeader> header = ReadRecordingHeader(file, episode);
+  if (!header) return tl::unexpected(std::move(header.error()));
+  Result<grammar::Overrides> overrides = ParameterSettings(choice.settings);
+  if (!overrides) return tl::unexpected(std::move(overrides.error()));
+  const bool is_own = choice.grammar.empty();
+  const std::string asked = tasks_.RequestOf(task).grammar;
+  const std::string own = asked.empty() ? header->grammar : asked;
+  grammar::CompileResult compiled =
+      LoadGrammar(is_own ? tasks_.root() : root_, is_own ? own : choice.grammar, *overrides);
+  if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
+  LoadedRun loaded{.scenario = StandInFor(*header), .program = std::move(compiled.program)};
+  loaded.scenario.file = task.run.scenario_file;
+  loaded.scenario.grammar = GrammarName(*loaded.program);
+  if (!is_own || !choice.settings.empty())
+    loaded.warnings = Warnings(*loaded.program, header->entity_table);
+  return loaded;
+}
+
 Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow& episode,
                                       const GrammarChoice& choice) {
   const Result<TaskFiles> task = file.TaskOf(episode);
   if (!task) return tl::unexpected(task.error());
   if (const std::string problem = tasks_.Unpack(*task); !problem.empty())
     return Failure(file, episode, problem);
+  if (!episode.simulated) return LoadRecording(file, episode, *task, choice);
   if (!library_.read_hand || library_writes_ != tasks_.writes())
     library_ = ProjectLibrary(tasks_.root());
   library_writes_ = tasks_.writes();
@@ -109,6 +171,7 @@ Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow&
 
 Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
                             const LoadedRun& loaded) {
+  if (!episode.simulated) return ResegmentRecording(file, episode, loaded, false);
   RunResult run = BlankResult(episode, loaded);
   Segmenter segmenter(loaded);
   if (segmenter.error().empty()) {
@@ -121,7 +184,7 @@ Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
   run.timeline = segmenter.Finish(run.ticks + 1);
   if (!segmenter.error().empty())
     return Failure(file, episode, "the grammar cannot segment it: " + segmenter.error());
-  run.state_hash = HashOf(episode.state_hash);
+  run.state_hash = HashOfText(episode.state_hash);
   Result<std::vector<physics::ScriptNote>> notes = file.NotesOf(episode);
   if (!notes) return tl::unexpected(std::move(notes.error()));
   run.notes = std::move(*notes);
@@ -130,6 +193,7 @@ Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
 
 Result<RunResult> Replay(const EpisodeFile& file, const EpisodeRow& episode,
                          const LoadedRun& loaded) {
+  if (!episode.simulated) return ResegmentRecording(file, episode, loaded, true);
   Result<RunResult> run = Resegment(file, episode, loaded);
   if (!run) return run;
   physics::StateHash hash;

@@ -11,6 +11,7 @@
 #include "harness/episodes/episode_file.h"
 #include "harness/read/scenario_library.h"
 #include "harness/run/run_scenario.h"
+#include "harness/run/segment_recording.h"
 
 namespace prehend::harness::episodes {
 
@@ -25,11 +26,15 @@ class EpisodeLoader {
  public:
   explicit EpisodeLoader(std::string root) : root_(std::move(root)) {}
 
-  /// Its scenario and the grammar.
+  /// Its scenario and the grammar. Of a recording the scenario has the scene that stands in for it,
+  /// and nothing that is judged.
   Result<LoadedRun> Load(const EpisodeFile& file, const EpisodeRow& episode,
                          const GrammarChoice& choice = {});
 
  private:
+  Result<LoadedRun> LoadRecording(const EpisodeFile& file, const EpisodeRow& episode,
+                                  const TaskFiles& task, const GrammarChoice& choice);
+
   std::string root_;
   UnpackedTasks tasks_;
   ScenarioLibrary library_;  ///< what was read of the tasks' hands
@@ -41,8 +46,13 @@ class EpisodeLoader {
 Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
                             const LoadedRun& loaded);
 
-/// The same, with every frame: as RunScenario() with RunOptions::record returned it.
+/// The same, with every frame: as RunScenario() with RunOptions::record returned it. Of a recording
+/// the frames are those of its stand-in: for pictures, not to be sensed.
 Result<RunResult> Replay(const EpisodeFile& file, const EpisodeRow& episode,
                          const LoadedRun& loaded);
+
+/// Of a recording: what the grammar recognises, and what it misses.
+Result<SegmentedRecording> SegmentRecorded(const EpisodeFile& file, const EpisodeRow& episode,
+                                           const LoadedRun& loaded);
 
 }  // namespace prehend::harness::episodes

@@ -10,16 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "harness/episodes/frame_layout.h"
+#include "harness/frames/frame_layout.h"
 #include "harness/run/load_run.h"
 #include "harness/run/run_scenario.h"
 
 namespace prehend::harness::episodes {
-
-/// `recording` until it is finished.
-inline constexpr const char* kRecording = "recording";
-inline constexpr const char* kCompleted = "completed";
-inline constexpr const char* kFailed = "failed";
 
 struct RecordRequest {
   std::string file;

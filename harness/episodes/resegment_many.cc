@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "harness/episodes/record_episode.h"
+#include "harness/episodes/write_rows.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/run_text.h"
 
@@ -83,11 +83,16 @@ class Worker {
     const Result<RunResult> run =
         request_.replay ? Replay(*file_, *row, *loaded) : Resegment(*file_, *row, *loaded);
     if (!run) return {{"problem", grammar::Format(run.error())}};
+    std::string warnings = grammar::Format(loaded->warnings);
+    if (!row->simulated && !request_.replay) {
+      const auto segmented = SegmentRecorded(*file_, *row, *loaded);
+      if (segmented) warnings += segmented->missing.warnings;
+    }
     Json said = {{"table", RunTable(*run)},
                  {"json", RunJson(loaded->scenario, *run).dump()},
                  {"completed", run->status.kind == physics::RunStatus::Kind::kCompleted},
                  {"finished", row->status != kRecording},
-                 {"warnings", grammar::Format(loaded->warnings)}};
+                 {"warnings", warnings}};
     if (!request_.compare || row->status == kRecording) return said;
     const Result<grammar::Timeline> recorded = file_->TimelineOf(*row);
     if (!recorded) return {{"problem", grammar::Format(recorded.error())}};

@@ -37,9 +37,14 @@ std::string GoldenBeside(const std::string& recording) {
 Result<JudgedRecording> JudgeRecording(const RunRequest& request, const std::string& root) {
   Result<SegmentedRecording> segmented = SegmentRecording(request, root);
   if (!segmented) return tl::unexpected(std::move(segmented.error()));
-  auto golden = ReadGoldenFile(GoldenBeside(request.scenario_file), segmented->name);
+  return JudgeSegmented(std::move(*segmented), GoldenBeside(request.scenario_file));
+}
+
+Result<JudgedRecording> JudgeSegmented(SegmentedRecording segmented,
+                                       const std::string& golden_file) {
+  auto golden = ReadGoldenFile(golden_file, segmented.name);
   if (!golden) return tl::unexpected(std::move(golden.error()));
-  JudgedRecording judged{.segmented = std::move(*segmented),
+  JudgedRecording judged{.segmented = std::move(segmented),
                          .golden = std::move(*golden),
                          .comparison = {},
                          .proposed = {}};

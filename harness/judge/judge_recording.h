@@ -29,6 +29,9 @@ std::string GoldenBeside(const std::string& recording);
 /// `request.scenario_file` is the recording. A line of the golden without a tolerance of its own
 /// has that of two frames.
 Result<JudgedRecording> JudgeRecording(const RunRequest& request, const std::string& root);
+/// The same of one that is segmented, with this golden.
+Result<JudgedRecording> JudgeSegmented(SegmentedRecording segmented,
+                                       const std::string& golden_file);
 
 /// What there is to accept: all events where there is no golden, else how they differ from it.
 /// `explain`: the command that asks about them.

@@ -58,6 +58,10 @@ class KnowledgeWriter {
     if (row == file_->episodes().end()) return Problem(name.file, "the episode is gone");
     EpisodeOfTask episode{
         .row = *row, .file = fs::absolute(name.file).string(), .timeline = {}, .composed = {}};
+    if (!row->simulated)
+      return Problem(name.file, row->scenario +
+                                    ": it is a recording; knowledge is written of what "
+                                    "was simulated");
     auto loaded = loader_.Load(*file_, *row);
     if (!loaded) return loaded.error();
     auto timeline = file_->TimelineOf(*row);

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "grammar/name_events.h"
+#include "harness/episodes/recordings.h"
 #include "harness/episodes/schema.h"
 #include "harness/labels/read_labels.h"
 #include "harness/sense/episode_file.h"
@@ -19,10 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<Take> OpenLines(const std::string& file) {
-  Result<Episode> read = ReadEpisode(file);
-  if (!read) return tl::unexpected(std::move(read.error()));
-  const auto episode = std::make_shared<Episode>(std::move(*read));
+Result<Take> TakeOf(Episode read, const std::string& file) {
+  const auto episode = std::make_shared<Episode>(std::move(read));
   const grammar::EntityTable& table = episode->header.entity_table;
   Take take{.entities = {},
             .grammar = episode->header.grammar,
@@ -47,6 +46,12 @@ Result<Take> OpenLines(const std::string& file) {
   return take;
 }
 
+Result<Take> OpenLines(const std::string& file) {
+  Result<Episode> read = ReadEpisode(file);
+  if (!read) return tl::unexpected(std::move(read.error()));
+  return TakeOf(std::move(*read), file);
+}
+
 Result<Take> OpenEpisode(const TakeName& name, const std::string& root) {
   const auto file = episodes::EpisodeFile::Open(name.file);
   if (!file) return tl::unexpected(file.error());
@@ -58,6 +63,12 @@ Result<Take> OpenEpisode(const TakeName& name, const std::string& root) {
   if (row == file->episodes().end()) return failed("the episode is gone");
   if (row->end.kind != physics::RunStatus::Kind::kCompleted)
     return failed("the episode did not come to a good end");
+  if (!row->simulated) {
+    Result<Episode> recording = episodes::ReadRecording(*file, *row);
+    if (!recording) return tl::unexpected(std::move(recording.error()));
+    recording->header.grammar = row->grammar;
+    return TakeOf(std::move(*recording), name.file);
+  }
   Result<LoadedRun> loaded = episodes::EpisodeLoader(root).Load(*file, *row);
   if (!loaded) return tl::unexpected(std::move(loaded.error()));
   const auto scenario = std::make_shared<const Scenario>(std::move(loaded->scenario));

@@ -28,34 +28,38 @@ Result<SegmentedRecording> SegmentRecording(const RunRequest& request, const std
   if (!episode) return tl::unexpected(std::move(episode.error()));
   const Result<grammar::Overrides> parameters = ParameterSettings(request.settings);
   if (!parameters) return tl::unexpected(parameters.error());
-  const EpisodeHeader& header = episode->header;
+  const std::string& own = episode->header.grammar;
   grammar::CompileResult compiled =
-      LoadGrammar(root, request.grammar.empty() ? header.grammar : request.grammar, *parameters);
+      LoadGrammar(root, request.grammar.empty() ? own : request.grammar, *parameters);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
+  return SegmentEpisode(*episode, std::move(compiled.program), request.scenario_file);
+}
 
-  SegmentedRecording segmented{.name = header.episode,
-                               .program = std::move(compiled.program),
+Result<SegmentedRecording> SegmentEpisode(Episode& episode,
+                                          std::shared_ptr<const grammar::Program> program,
+                                          const std::string& file) {
+  const grammar::EntityTable& entities = episode.header.entity_table;
+  SegmentedRecording segmented{.name = episode.header.episode,
+                               .program = program,
                                .timeline = {},
-                               .end = episode->end_tick,
-                               .frame_ticks = MedianStep(episode->frames),
-                               .says_its_end = episode->says_its_end,
-                               .warnings = {},
-                               .missing = {}};
-  const grammar::Program& program = *segmented.program;
-  segmented.warnings = Warnings(program, header.entity_table);
-  segmented.missing = FindMissingFacts(*episode, program);
-  grammar::Monitor monitor(segmented.program, header.entity_table);
+                               .end = episode.end_tick,
+                               .frame_ticks = MedianStep(episode.frames),
+                               .says_its_end = episode.says_its_end,
+                               .warnings = Warnings(*program, entities),
+                               .missing = FindMissingFacts(episode, *program)};
+  grammar::Monitor monitor(program, entities);
   std::vector<grammar::Event> events;
-  for (EpisodeFrame& frame : episode->frames) monitor.Advance(frame.View(), events);
-  monitor.Finish(episode->end_tick, events);
+  for (EpisodeFrame& frame : episode.frames) monitor.Advance(frame.View(), events);
+  monitor.Finish(episode.end_tick, events);
   if (!monitor.error().empty()) {
-    grammar::Diagnostic problem;
-    problem.file = request.scenario_file;
-    problem.message = "the grammar cannot segment this recording: ";
-    problem.message.append(monitor.error());
-    return tl::unexpected(grammar::Diagnostics{std::move(problem)});
+    return tl::unexpected(grammar::Diagnostics{
+        {.file = file,
+         .place = {},
+         .message = "the grammar cannot segment this recording: " + monitor.error(),
+         .source_line = {},
+         .hint = {}}});
   }
-  segmented.timeline = grammar::NameEvents(program, header.entity_table, events);
+  segmented.timeline = grammar::NameEvents(*program, entities, events);
   return segmented;
 }
 

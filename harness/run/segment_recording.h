@@ -25,4 +25,9 @@ struct SegmentedRecording {
 /// `request.scenario_file` is the recording; its settings are parameters of the grammar.
 Result<SegmentedRecording> SegmentRecording(const RunRequest& request, const std::string& root);
 
+/// The same of a recording that has been read, and a grammar. `file` is for messages.
+Result<SegmentedRecording> SegmentEpisode(Episode& episode,
+                                          std::shared_ptr<const grammar::Program> program,
+                                          const std::string& file);
+
 }  // namespace prehend::harness

@@ -55,6 +55,13 @@ Result<Played> PlayOrRead(const ScoreRequest& request) {
   if (!file) return tl::unexpected(file.error());
   const auto row = std::ranges::find(file->episodes(), request.episode, &episodes::EpisodeRow::id);
   PREHEND_CHECK(row != file->episodes().end());
+  if (!row->simulated)
+    return tl::unexpected(grammar::Diagnostics{
+        {.file = request.scenario_file,
+         .place = {},
+         .message = row->scenario + " was not simulated, so its physical truth is not known",
+         .source_line = {},
+         .hint = "score it against labels by people: --truth (docs/labels.md)"}});
   Result<LoadedRun> loaded =
       episodes::EpisodeLoader(request.root).Load(*file, *row, {request.grammars.front(), {}});
   if (!loaded) return tl::unexpected(std::move(loaded.error()));

@@ -121,6 +121,25 @@ Json Judged(const grammar::Timeline& truth, grammar::Timeline found, const Sweep
           {"b", begins},       {"f", ends},       {"l", latencies}};
 }
 
+/// A recording under all settings; it has no physical truth, and its golden lies elsewhere.
+Json JudgedRecording(const episodes::EpisodeName& name, const episodes::EpisodeFile& file,
+                     const episodes::EpisodeRow& row, const SweepRequest& request,
+                     const Programs& programs) {
+  if (request.truth != Truth::kRecorded)
+    return {{"out", "nothing was simulated; '--truth recorded' or labels fit a recording"}};
+  const Result<labels::Take> take = labels::OpenTake(name, request.root);
+  if (!take) return {{"out", grammar::Format(take.error().front())}, {"unread", true}};
+  const auto truth = TruthOf(request, file, row, {}, {}, *programs.front());
+  if (!truth) return {{"out", truth.error()}};
+  Json points = Json::array();
+  for (const auto& program : programs) {
+    Result<grammar::Timeline> found = take->segment(program);
+    if (!found) return {{"out", grammar::Format(found.error().front())}};
+    points.push_back(Judged(*truth, std::move(*found), request, take->end));
+  }
+  return {{"points", std::move(points)}};
+}
+
 /// One episode under all settings.
 Json JudgedEpisode(const episodes::EpisodeName& name, const SweepRequest& request,
                    const Programs& programs, episodes::EpisodeLoader& loader) {
@@ -133,6 +152,7 @@ Json JudgedEpisode(const episodes::EpisodeName& name, const SweepRequest& reques
   if (row == file->episodes().end()) return unread("it is gone");
   if (row->end.kind != physics::RunStatus::Kind::kCompleted)
     return {{"out", "it did not come to a good end"}};
+  if (!row->simulated) return JudgedRecording(name, *file, *row, request, programs);
   const Result<LoadedRun> loaded = loader.Load(*file, *row);
   if (!loaded) return {{"out", loaded.error().front().message}};
   RunResult run;

@@ -58,7 +58,7 @@ const std::vector<LibraryRule>& LibraryRules() {
       {"SLEEF", std::regex("sleef\\.h"), std::regex("physics/portable_math\\.cc")},
       {"xxHash", std::regex("xxhash\\.h"), std::regex("harness/(.*/)?content_hash\\.cc")},
       {"SQLite", std::regex("sqlite3\\.h"), std::regex("(harness/episodes|bench)/.*")},
-      {"zstd", std::regex("zstd\\.h"), std::regex("harness/episodes/columns\\.cc")},
+      {"zstd", std::regex("zstd\\.h"), std::regex("harness/frames/columns\\.cc")},
       {"zlib", std::regex("zlib\\.h"), std::regex("harness/replay/replay_data\\.cc")},
       {"OpenGL and OSMesa", std::regex("(GL/.*|GLES.*|EGL/.*)"), std::regex("render/.*")},
       {"libpng", std::regex("png\\.h"), std::regex("(render|tests/render)/.*")},

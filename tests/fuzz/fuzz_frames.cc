@@ -8,7 +8,7 @@
 #include <map>
 #include <string>
 
-#include "harness/episodes/frame_player.h"
+#include "harness/frames/frame_player.h"
 #include "tests/fuzz/recorded_story.h"
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "harness/episodes/chunk.h"
+#include "harness/frames/chunk.h"
 #include "harness/run/load_run.h"
 #include "harness/run/run_scenario.h"
 

@@ -304,5 +304,59 @@ TEST(Import, TheSchemaOfMapsIsJson) {
   EXPECT_NE(said.out.find("\"quaternion_order\""), std::string::npos);
 }
 
+TEST(Import, EpisodeFilesTakePosesAndRecordings) {
+  const auto folder = FreshFolder("import");
+  const std::string takes = (folder / "takes.episodes").string(),
+                    lines = (folder / "take.jsonl").string();
+  ASSERT_EQ(Import(folder, Csv(), kMap).exit_code, 0);
+  EXPECT_EQ(Import(folder, Csv(), kMap, {"-o", takes}).exit_code, 0);
+  const Said said = Prehend({"import", lines, "-o", takes});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(said.out, takes + ": a_cup_is_carried, 301 frames\n");
+
+  EXPECT_EQ(Prehend({"replay", takes}).out,
+            "2 of 2 episodes have the frames and events that were recorded\n");
+  for (const char* which : {"1", "2"})
+    EXPECT_EQ(Prehend({"resegment", takes, "--episode", which}).out, Events(folder)) << which;
+  EXPECT_EQ(Prehend({"tracks", takes, "--episode", "2"}).out, Prehend({"tracks", lines}).out);
+  EXPECT_EQ(Prehend({"explain", takes, "--episode", "2", "--event", "transporting"}).out,
+            Prehend({"explain", lines, "--event", "transporting"}).out);
+  const Said asked = Prehend({"query", takes, "--event", "transporting", "--csv"});
+  EXPECT_NE(asked.out.find("a_cup_is_carried"), std::string::npos) << asked.out;
+}
+
+TEST(Import, EpisodesOfRecordingsAreCheckedAgainstTheGoldenBesideTheirSource) {
+  const auto folder = FreshFolder("import");
+  const std::string takes = (folder / "takes.episodes").string(),
+                    lines = (folder / "take.jsonl").string();
+  ASSERT_EQ(Import(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(Prehend({"import", lines, "-o", takes}).exit_code, 0);
+  EXPECT_EQ(Prehend({"check", takes}).exit_code, 5) << "no golden yet";
+  ASSERT_EQ(Prehend({"accept", lines, "--reason", "looked at"}, {"CI="}).exit_code, 0);
+  EXPECT_EQ(Prehend({"check", takes}).exit_code, 0);
+  EXPECT_EQ(Prehend({"check", takes, "--grammar", "contact"}).exit_code, 1);
+}
+
+TEST(Import, WhatARecordingDoesNotHaveIsSaid) {
+  const auto folder = FreshFolder("import");
+  const std::string takes = (folder / "takes.episodes").string(),
+                    lines = (folder / "take.jsonl").string();
+  ASSERT_EQ(Import(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(Prehend({"import", lines, "-o", takes}).exit_code, 0);
+  const Said score = Prehend({"score", takes});
+  EXPECT_EQ(score.exit_code, 2);
+  EXPECT_NE(
+      score.err.find("a_cup_is_carried was not simulated, so its physical truth is not known"),
+      std::string::npos)
+      << score.err;
+  EXPECT_EQ(
+      Prehend({"import", lines, "-o", (folder / "b.jsonl").string()}).err,
+      "prehend: " + lines + " is a recording already; -o NAME.episodes keeps it as an episode\n");
+  EXPECT_EQ(Prehend({"import", (folder / "poses.csv").string(), "-o", takes}).err,
+            "prehend: " + (folder / "poses.csv").string() +
+                " needs --map, a file that says what it means (docs/motion-capture.md)\n");
+  EXPECT_EQ(Prehend({"import", lines, "-o", "/nowhere/takes.episodes"}).exit_code, 2);
+}
+
 }  // namespace
 }  // namespace prehend::house

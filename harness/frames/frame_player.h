@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chunks -> snapshots, frame after frame or at any place. Where its chunks come from is not its
-// business. Tested by tests/harness/episodes/frames_test.cc
+// business. Tested by tests/harness/frames/frames_test.cc
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/episodes/chunk.h"
+#include "harness/frames/chunk.h"
 
 namespace prehend::harness::episodes {
 

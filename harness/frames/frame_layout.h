@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a frame of an episode consists of, and in which numbered part of a chunk each of it is kept.
 // A track is what changes together: a body, the grains of a body, all joints, a hand, all gazes.
-// Tested by tests/harness/episodes/frames_test.cc
+// Tested by tests/harness/frames/frames_test.cc
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "harness/episodes/columns.h"
+#include "harness/frames/columns.h"
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
 

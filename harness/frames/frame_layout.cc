@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episodes/frame_layout.h. Tested by tests/harness/episodes/frames_test.cc
-#include "harness/episodes/frame_layout.h"
+// See harness/frames/frame_layout.h. Tested by tests/harness/frames/frames_test.cc
+#include "harness/frames/frame_layout.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How an engine moves rigid bodies from tick to tick, in its order of operations: what a recording
 // can guess, it need not keep. A wrong guess costs bytes and nothing else. Tested by
-// tests/harness/episodes/columns_test.cc
+// tests/harness/frames/columns_test.cc
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episodes/contact_coding.h. Tested by tests/harness/episodes/frames_test.cc
-#include "harness/episodes/contact_coding.h"
+// See harness/frames/contact_coding.h. Tested by tests/harness/frames/frames_test.cc
+#include "harness/frames/contact_coding.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A chunk: the frames of about a second as compressed parts, one per track that changed, so that
 // one track or one frame can be read without the others. Tested by
-// tests/harness/episodes/frames_test.cc
+// tests/harness/frames/frames_test.cc
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "harness/episodes/frame_layout.h"
-#include "harness/episodes/rigid_motion.h"
+#include "harness/frames/frame_layout.h"
+#include "harness/frames/rigid_motion.h"
 
 namespace prehend::harness::episodes {
 

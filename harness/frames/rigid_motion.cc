@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episodes/rigid_motion.h. The formulas and their order are those of Bullet
+// See harness/frames/rigid_motion.h. The formulas and their order are those of Bullet
 // (btTransformUtil::integrateTransform, btMultiBody::forwardKinematics), so that the last bits
-// agree. Tested by tests/harness/episodes/columns_test.cc
-#include "harness/episodes/rigid_motion.h"
+// agree. Tested by tests/harness/frames/columns_test.cc
+#include "harness/frames/rigid_motion.h"
 
 #include <algorithm>
 #include <array>

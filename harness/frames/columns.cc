@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episodes/columns.h. Tested by tests/harness/episodes/columns_test.cc
-#include "harness/episodes/columns.h"
+// See harness/frames/columns.h. Tested by tests/harness/frames/columns_test.cc
+#include "harness/frames/columns.h"
 
 #include <zstd.h>
 
@@ -9,7 +9,7 @@
 #include <bit>
 #include <cmath>
 
-#include "harness/episodes/rigid_motion.h"
+#include "harness/frames/rigid_motion.h"
 
 namespace prehend::harness::episodes {
 namespace {

@@ -5,9 +5,9 @@
 #include <map>
 #include <random>
 
-#include "harness/episodes/chunk.h"
-#include "harness/episodes/contact_coding.h"
-#include "harness/episodes/frame_player.h"
+#include "harness/frames/chunk.h"
+#include "harness/frames/contact_coding.h"
+#include "harness/frames/frame_player.h"
 
 namespace prehend::harness::episodes {
 namespace {

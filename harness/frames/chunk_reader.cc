@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episodes/chunk.h. Tested by tests/harness/episodes/frames_test.cc
+// See harness/frames/chunk.h. Tested by tests/harness/frames/frames_test.cc
 #include <algorithm>
 
-#include "harness/episodes/chunk.h"
-#include "harness/episodes/contact_coding.h"
+#include "harness/frames/chunk.h"
+#include "harness/frames/contact_coding.h"
 
 namespace prehend::harness::episodes {
 namespace {

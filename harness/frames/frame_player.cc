@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episodes/frame_player.h. Tested by tests/harness/episodes/frames_test.cc
-#include "harness/episodes/frame_player.h"
+// See harness/frames/frame_player.h. Tested by tests/harness/frames/frames_test.cc
+#include "harness/frames/frame_player.h"
 
 namespace prehend::harness::episodes {
 

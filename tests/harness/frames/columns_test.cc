@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/episodes/columns.h"
+#include "harness/frames/columns.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "harness/episodes/rigid_motion.h"
+#include "harness/frames/rigid_motion.h"
 
 namespace prehend::harness::episodes {
 namespace {

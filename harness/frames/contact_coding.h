@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contact points of consecutive frames as few bytes, without loss: a point continues the one of the
 // same two sides in the frame before. Also numbers that are nearly always small. Tested by
-// tests/harness/episodes/frames_test.cc
+// tests/harness/frames/frames_test.cc
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/episodes/columns.h"
+#include "harness/frames/columns.h"
 #include "physics/scene/snapshot.h"
 
 namespace prehend::harness::episodes {

@@ -2,7 +2,7 @@
 // Columns of 64-bit words (the bits of doubles, or integers) as few bytes, without loss. Each word
 // is guessed from those before it; what is kept is by how many representable numbers the guess is
 // off. Bytes of equal weight stand together, so that a general compressor finds the zeros. The
-// layout of the bytes: docs/episodes.md. Tested by tests/harness/episodes/columns_test.cc
+// layout of the bytes: docs/episodes.md. Tested by tests/harness/frames/columns_test.cc
 #pragma once
 
 #include <cstdint>
