@@ -31,7 +31,7 @@ struct PersonStepMaker {
     return {0, physics::EyesStep{e.eyes}, e.over_s};
   }
   physics::PersonStep operator()(const WalkYaml& e) const {
-    return {0, physics::WalkStep{e.walk_to_m}, e.over_s};
+    return {0, physics::WalkStep{e.walk_to_m, e.max_force_n}, e.over_s};
   }
   physics::PersonStep operator()(const TurnYaml& e) const {
     return {0, physics::TurnStep{e.turn_to_deg * physics::kRadPerDeg}, e.over_s};

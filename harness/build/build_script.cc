@@ -23,6 +23,9 @@ namespace {
 
 /// Hands look no farther for what they come near to (physics/hand/hand_clearance.h).
 constexpr double kMaxGap_m = 0.09;
+/// The words of relative_to.
+constexpr const char* kWorldFrame = "world";
+constexpr const char* kHandFrame = "hand";
 /// How far outside an entity a point to grasp may be, since written numbers are rounded.
 constexpr double kMaxOutside_m = 0.005;
 
@@ -96,6 +99,7 @@ struct StepMaker {
   physics::Step operator()(const PosesYaml& e) const {
     physics::PosesStep step;
     for (const PoseYaml& pose : e.poses) step.poses.push_back(TimedPoseOf(pose));
+    step.frames = FramesOf(e);
     return Follow(std::move(step), e.style);
   }
   physics::Step operator()(const RecordingYaml& e) const {
@@ -139,6 +143,47 @@ struct StepMaker {
   }
 
  private:
+  /// What each way-point is relative to; none if all are in the world.
+  std::vector<physics::PoseFrame> FramesOf(const PosesYaml& e) const {
+    std::vector<physics::PoseFrame> frames;
+    bool all_in_world = true;
+    if (e.relative_to.where.place.line > 0) FrameOf(e.relative_to);  // reports it once
+    for (const PoseYaml& pose : e.poses) {
+      frames.push_back(pose.relative_to ? FrameOf(*pose.relative_to) : NamedFrame(e.relative_to));
+      frames.back().world_axes = e.world_axes;
+      all_in_world &= !frames.back().own_hand && frames.back().name.empty();
+    }
+    if (all_in_world) frames.clear();
+    return frames;
+  }
+
+  static physics::PoseFrame NamedFrame(const Located<std::string>& name) {
+    if (name.value == kHandFrame) return {.own_hand = true};
+    return {.name = name.value == kWorldFrame ? "" : name.value};
+  }
+
+  /// Reports what has no coordinate frame.
+  physics::PoseFrame FrameOf(const Located<std::string>& name) const {
+    std::vector<std::string> known{kWorldFrame, kHandFrame};
+    known.insert(known.end(), entities.begin(), entities.end());
+    for (const physics::Hand& hand : scene.hands)
+      if (hand.name != written.name) known.push_back(hand.name);
+    if (std::ranges::count(known, name.value) > 1)
+      errors.Add(name.where,
+                 fmt::format("relative_to: '{}' is a word of its own here, and something is called "
+                             "so, too",
+                             name.value),
+                 "call that something else");
+    else if (name.value == written.name && name.value != kHandFrame)
+      errors.Add(name.where, fmt::format("relative_to: '{}' is this hand itself", name.value),
+                 "write 'relative_to: hand'");
+    else if (std::ranges::count(known, name.value) == 0)
+      errors.AddUnknownName(
+          name.where, fmt::format("relative_to: no entity or hand is called '{}'", name.value),
+          name.value, known);
+    return NamedFrame(name);
+  }
+
   /// Of a text that its format has accepted: "gap(milk) < 5 mm, or go on".
   physics::Until ParseUntil(const Located<std::string>& text) const {
     const std::size_t open = text.value.find('('), close = text.value.find(')');

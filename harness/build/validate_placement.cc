@@ -99,10 +99,11 @@ void Complain(const Occupant& later, const Occupant& earlier, double depth_m,
         fmt::format("'{}' starts inside '{}', {:.0f} mm deep", later.name, earlier.name, depth_mm),
         "move the person");
   } else if (later.hand) {
-    errors.Add(later.where,
-               fmt::format("actor '{}' starts inside '{}', {:.0f} mm deep", later.name,
-                           earlier.name, depth_mm),
-               "start the hand in free space");
+    errors.Add(
+        later.where,
+        fmt::format("actor '{}' starts inside '{}', {:.0f} mm deep", later.name, earlier.name,
+                    depth_mm),
+        "start the hand in free space; the thumb of an open hand hangs 10 cm below its palm");
   } else if (earlier.grains || later.grains) {
     errors.Add(later.where,
                fmt::format("'{}' overlaps '{}' by {:.0f} mm", later.name, earlier.name, depth_mm),

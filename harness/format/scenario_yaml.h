@@ -230,10 +230,13 @@ struct PoseYaml {
   std::optional<Eigen::Vector3d> rpy_deg;
   std::optional<Eigen::Vector4d> quat_wxyz;
   std::optional<double> trigger;
+  std::optional<Located<std::string>> relative_to;  ///< else that of the step
 };
 struct PosesYaml : StepTimingYaml {
   std::vector<PoseYaml> poses;
-  Located<std::string> style;  ///< "": stays
+  Located<std::string> style;                     ///< "": stays
+  bool world_axes = false;
+  Located<std::string> relative_to{"world", {}};  ///< "world", "hand", an entity or another hand
 };
 struct RecordingYaml : StepTimingYaml {
   Located<std::string> recording;
@@ -292,6 +295,7 @@ struct EyesYaml : StepTimingYaml {
 };
 struct WalkYaml : StepTimingYaml {
   Eigen::Vector2d walk_to_m = Eigen::Vector2d::Zero();
+  std::optional<double> max_force_n;
   double over_s = 1.0;
 };
 struct TurnYaml : StepTimingYaml {

@@ -31,6 +31,11 @@ ValueFormat<std::string> UntilFormat() {
       "on)?",
       "'touching(milk)' or 'gap(milk) < 5 mm', perhaps with ', or go on'", 120);
 }
+const std::string kForceDoc =
+    "Yields: slows down so that it pushes with no more than this, newtons.";
+const std::string kRelativeDoc =
+    "Whose coordinate frame at_m and rpy_deg are in, as it is when the step begins: 'world', "
+    "'hand' (this hand itself), an entity or another hand.";
 const std::string kStyleDoc = "The grasp style that the hand takes; default: unchanged.";
 
 /// The keys that say when a step begins.
@@ -51,12 +56,31 @@ StructFormat<Entry> WithTiming(StructFormat<Entry> format) {
   return format;
 }
 
+/// A point [x, y]; whoever gives a height is told why it has none.
+ValueFormat<Eigen::Vector2d> GroundPoint(const std::string& why) {
+  const auto point = Vector<2>(-kMaxDistance_m, kMaxDistance_m);
+  return ValueFormat<Eigen::Vector2d>(
+      point.schema(),
+      [point, why](const YamlNode& node, DiagnosticList& errors, Eigen::Vector2d& value) {
+        if (node.kind != YamlNode::Kind::kSequence || node.children.size() != 3)
+          return point.Read(node, errors, value);
+        errors.Add(node.where, fmt::format("{}: expected [x, y], found 3 numbers", node.key), why);
+        return false;
+      });
+}
+
+/// "a wait_s step".
+std::string StepNoun(const std::string& key) {
+  return (std::string("aeiou").find(key.front()) == std::string::npos ? "a " : "an ") + key +
+         " step";
+}
+
 /// A step with one value and a duration; most steps are of this kind.
 template <class Entry, class M, class F>
 ValueFormat<StepYaml> TimedStep(const std::string& key, M Entry::*member, ValueFormat<F> format,
                                 const std::string& doc) {
   return AsAlternative<StepYaml>(
-      WithTiming(StructFormat<Entry>("a " + key + " step")
+      WithTiming(StructFormat<Entry>(StepNoun(key))
                      .Required(key, member, std::move(format), doc)
                      .Optional("over_s", &Entry::over_s, Duration(), kOverDoc))
           .format());
@@ -67,7 +91,7 @@ template <class Entry, class M, class F>
 ValueFormat<StepYaml> GuardedStep(const std::string& key, M Entry::*member, ValueFormat<F> format,
                                   const std::string& doc) {
   return AsAlternative<StepYaml>(
-      WithTiming(StructFormat<Entry>("a " + key + " step")
+      WithTiming(StructFormat<Entry>(StepNoun(key))
                      .Required(key, member, std::move(format), doc)
                      .Optional("over_s", &Entry::over_s, Duration(), kOverDoc)
                      .Optional("until", &Entry::until, UntilFormat(), kUntilDoc))
@@ -174,12 +198,14 @@ ValueFormat<PoseYaml> PoseFormat() {
       .Required("t_s", &P::t_s, Number(0, kMaxDuration_s),
                 "When, since the start of the step; increasing.")
       .Required("at_m", &P::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                "World coordinates of the palm's centre.")
+                "The palm's centre, in world coordinates or as 'relative_to' says.")
       .Optional("rpy_deg", &P::rpy_deg, Vector<3>(-360, 360),
                 "Roll, pitch and yaw; default is no rotation.")
       .Optional("quat_wxyz", &P::quat_wxyz, UnitQuaternion(),
                 "Unit quaternion [w, x, y, z], instead of rpy_deg.")
       .Optional("trigger", &P::trigger, Number(0, 1), "Grip at that time; default: stays.")
+      .Optional("relative_to", &P::relative_to, Identifier(),
+                "As that of the step, for this way-point alone.")
       .AtMostOneOf({"rpy_deg", "quat_wxyz"})
       .format();
 }
@@ -193,6 +219,10 @@ ValueFormat<StepYaml> PosesFormat() {
                   "Way-points of the tracked target, as a tracker would give them; the last one "
                   "ends the step.")
               .Optional("style", &PosesYaml::style, Identifier(), kStyleDoc)
+              .Optional("relative_to", &PosesYaml::relative_to, Identifier(), kRelativeDoc)
+              .Optional("axes", &PosesYaml::world_axes,
+                        Choice<bool>({{"own", false}, {"world", true}}),
+                        "Whose axes relative way-points are in: its own, or the world's.")
               .Check([](const YamlNode& node, const PosesYaml& step, DiagnosticList& errors) {
                 for (std::size_t i = 1; i < step.poses.size(); ++i) {
                   const double before_s = step.poses[i - 1].t_s, t_s = step.poses[i].t_s;
@@ -278,10 +308,20 @@ ValueFormat<StepYaml> MoveLimbFormat() {
                         "Which part of a person goes there; the rest of the limb follows.")
               .Optional("to_m", &M::to_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                         "World coordinates; without it the limb returns to its rest position.")
-              .Optional("max_force_n", &M::max_force_n, Number(1, 10000),
-                        "The limb yields: it slows down so that it pushes with no more than this.")
+              .Optional("max_force_n", &M::max_force_n, Number(1, 10000), kForceDoc)
               .Optional("over_s", &M::over_s, Duration(), kOverDoc)
               .Renamed("most_n", "max_force_n"))
+          .format());
+}
+
+ValueFormat<StepYaml> WalkFormat() {
+  using W = WalkYaml;
+  return AsAlternative<StepYaml>(
+      WithTiming(StructFormat<W>("a walk_to_m step")
+                     .Required("walk_to_m", &W::walk_to_m, GroundPoint("she stays on the floor"),
+                               "The point between a person's feet goes to this [x, y].")
+                     .Optional("max_force_n", &W::max_force_n, Number(1, 10000), kForceDoc)
+                     .Optional("over_s", &W::over_s, Duration(), kOverDoc))
           .format());
 }
 
@@ -304,13 +344,21 @@ Remedies StepRemedies() {
       {"wait pause hold sleep delay_s", "to hold still is 'wait_s: 1'"},
       {"turn rotate twist", "to turn the hand is 'turn_by_deg: [0, 0, 90]'"},
       {"place put put_down put_on set_down", "to set down is 'place_on: table'"},
-      {"push slide", "a hand that moves pushes: 'close_to: 0.8', then 'move_by_m: [0.1, 0, 0]'"},
+      {"push slide drag",
+       "a hand that moves pushes: 'close_to: 0.8', then 'move_by_m: [0.1, 0, 0]'"},
       {"pour", "'lift_by_m', 'carry_to_m' above the vessel, then 'turn_by_deg: [120, 0, 0]'"},
       {"retreat", "'retreat_by_m: 0.2' goes back the way the hand came"},
       {"press", "'press_n: 5, against: table' presses with 5 N"},
+      {"shake stir wipe",
+       "'repeat: 3' with 'steps: [..]' plays steps several times; "
+       "docs/script-cookbook.md has a script"},
+      {"hand_over give stack throw",
+       "it takes several steps; docs/script-cookbook.md and 'prehend new NAME' have scripts"},
       {"look", "a person looks by 'look_at: milk'"},
       {"walk walk_to", "a person walks by 'walk_to_m: [x, y]'"}};
-  Remedies remedies;
+  Remedies remedies = {
+      {"",
+       "steps that follow each other are a list: 'right_hand: [{reach: milk}, {close_to: 1}]'"}};
   for (const auto& [words, remedy] : groups) {
     std::istringstream each(words);
     for (std::string word; each >> word;) remedies.emplace_back(word, remedy);
@@ -333,7 +381,7 @@ ValueFormat<StepYaml> OneStepFormat() {
         GuardedStep("move_by_m", &MoveYaml::move_by_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
                     "Straight by [x, y, z], world axes.")},
        {"carry_to_m", GuardedStep("carry_to_m", &CarryYaml::carry_to_m,
-                                  Vector<2>(-kMaxDistance_m, kMaxDistance_m),
+                                  GroundPoint("the height is kept; 'lift_by_m' changes it"),
                                   "The held object's centre goes to this [x, y], height kept.")},
        {"place_on", TimedStep("place_on", &PlaceYaml::place_on, Identifier(),
                               "Lower until the held object stands on this entity.")},
@@ -354,9 +402,7 @@ ValueFormat<StepYaml> OneStepFormat() {
                                "The point that a person looks at from now on.")},
        {"eyes", TimedStep("eyes", &EyesYaml::eyes, EyesFormat(),
                           "A person's eyes lead her hands again, or look ahead.")},
-       {"walk_to_m",
-        TimedStep("walk_to_m", &WalkYaml::walk_to_m, Vector<2>(-kMaxDistance_m, kMaxDistance_m),
-                  "The point between a person's feet goes to this [x, y].")},
+       {"walk_to_m", WalkFormat()},
        {"turn_to_deg", TimedStep("turn_to_deg", &TurnYaml::turn_to_deg, Number(-360, 360),
                                  "A person turns to this yaw.")},
        {"lean_deg", TimedStep("lean_deg", &LeanYaml::lean_deg, Number(-30, 90),
@@ -391,6 +437,15 @@ ValueFormat<StageYaml> StageFormat() {
   return ValueFormat<StageYaml>(
       by_actor.schema(),
       [by_actor](const YamlNode& node, DiagnosticList& errors, StageYaml& stage) {
+        for (const YamlNode& child : node.children) {
+          if (node.kind != YamlNode::Kind::kMapping || child.kind != YamlNode::Kind::kScalar)
+            continue;
+          errors.Add(child.where,
+                     fmt::format("{}: expected a mapping with the fields of a step, found '{}'",
+                                 child.key, child.text),
+                     "write who does what: 'right_hand: {close_to: 1}'");
+          return false;
+        }
         std::vector<Named<std::vector<Located<StepYaml>>>> actors;
         if (!by_actor.Read(node, errors, actors)) return false;
         for (auto& actor : actors) {

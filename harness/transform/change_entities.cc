@@ -41,6 +41,9 @@ struct RenameIn {
   void operator()(physics::FollowJointStep& step) const { (*this)(step.entity); }
   void operator()(physics::OrbitStep& step) const { (*this)(step.around); }
   void operator()(physics::PressStep& step) const { (*this)(step.against); }
+  void operator()(physics::PosesStep& step) const {
+    for (physics::PoseFrame& frame : step.frames) (*this)(frame.name);
+  }
   void operator()(physics::LookAtStep& step) const {
     if (auto* const name = std::get_if<std::string>(&step.target)) (*this)(*name);
   }

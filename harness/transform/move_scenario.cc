@@ -27,6 +27,10 @@ Pose InMirror(const Pose& X) {
 struct Mover : WorldMotion {
   Vector3d Direction(const Vector3d& v) const { return X.q * (mirrors ? InMirror(v) : v); }
   Vector3d Axis(const Vector3d& v) const { return X.q * (mirrors ? AxisInMirror(v) : v); }
+  /// Of a rotation about the world's axes.
+  Eigen::Quaterniond Turn(const Eigen::Quaterniond& q) const {
+    return X.q * (mirrors ? InMirror(Pose{{0, 0, 0}, q}).q : q) * X.q.conjugate();
+  }
   Vector3d Point(const Vector3d& p) const { return X.p_m + Direction(p); }
   Pose Of(const Pose& X_WB) const { return X * (mirrors ? InMirror(X_WB) : X_WB); }
   /// In a body's own frame.
@@ -81,7 +85,18 @@ struct MoveStep {
   }
   void operator()(physics::PressStep& step) const { step.along_W = motion.Direction(step.along_W); }
   void operator()(physics::CarryStep& step) const { step.to_m = motion.Ground(step.to_m); }
-  void operator()(physics::PosesStep& step) const { Move(motion, step.poses); }
+  void operator()(physics::PosesStep& step) const {
+    for (std::size_t i = 0; i < step.poses.size(); ++i) {
+      Pose& X = step.poses[i].X_WH;
+      const physics::PoseFrame frame = step.frames.empty() ? physics::PoseFrame{} : step.frames[i];
+      if (!frame.own_hand && frame.name.empty())
+        X = motion.Of(X);
+      else if (frame.world_axes)
+        X = {motion.Direction(X.p_m), frame.own_hand ? motion.Turn(X.q) : motion.Of(X).q};
+      else if (motion.mirrors)
+        X = InMirror(X);
+    }
+  }
   void operator()(physics::LookAtStep& step) const {
     if (auto* const point_m = std::get_if<Vector3d>(&step.target))
       *point_m = motion.Point(*point_m);

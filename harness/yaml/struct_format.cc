@@ -87,8 +87,10 @@ std::optional<std::size_t> FindCase(const YamlNode& node, const std::string& nou
                                     cases.begin());
   }
   if (present.size() > 1) {
+    const auto both = std::ranges::find(remedies, "", &Remedies::value_type::first);
     errors.Add(node.Find(present[1])->key_where,
-               fmt::format("{} has one of '{}' and '{}', not both", noun, present[0], present[1]));
+               fmt::format("{} has one of '{}' and '{}', not both", noun, present[0], present[1]),
+               both == remedies.end() ? "" : both->second);
     return std::nullopt;
   }
   for (const YamlNode& child : node.children) {

@@ -175,7 +175,7 @@ class StructFormat {
   StructRules rules_;
 };
 
-/// Keys that people try, and what is written instead.
+/// Keys that people try, and what is written instead; with the key "" what to do with two actions.
 using Remedies = std::vector<std::pair<std::string, std::string>>;
 
 /// One of several structs, told apart by a key that only that one has. `cases` are formats of the

@@ -203,9 +203,27 @@ ValueFormat<std::string> Text(std::size_t max_length) {
        .show = ShowString});
 }
 
+namespace {
+
+/// The text in small letters with '_' for what separates, or with a capital at its begin, if that
+/// matches; else "".
+std::string WithOtherLetters(const regex_t* matcher, std::string text) {
+  for (char& letter : text) {
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    if (letter == '-' || letter == ' ') letter = '_';
+  }
+  if (text.empty() || Matches(matcher, text)) return text;
+  if (text.front() >= 'a' && text.front() <= 'z')
+    text.front() = static_cast<char>(text.front() - 'a' + 'A');
+  return Matches(matcher, text) ? text : "";
+}
+
+}  // namespace
+
 ValueFormat<std::string> Word(const std::string& pattern, const std::string& wanted,
                               std::size_t max_length) {
   const std::string whole = "^(" + pattern + ")$";
+  const bool is_name = pattern.starts_with("[a-z]") || pattern.starts_with("[A-Z]");
   return ValueFormat<std::string>(
       {.schema = {{"type", "string"}, {"pattern", whole}, {"maxLength", max_length}},
        .read =
@@ -217,7 +235,18 @@ ValueFormat<std::string> Word(const std::string& pattern, const std::string& wan
                return ReportExpected(node, errors,
                                      fmt::format("{} of at most {} bytes", wanted, max_length));
              }
-             if (!Matches(matcher.get(), *text)) return ReportExpected(node, errors, wanted);
+             if (!Matches(matcher.get(), *text)) {
+               const std::string fitting =
+                   is_name ? WithOtherLetters(matcher.get(), *text) : std::string();
+               if (fitting.empty()) return ReportExpected(node, errors, wanted);
+               errors.Add(
+                   node.where,
+                   fmt::format("{}expected {}, found {}", LabelOf(node), wanted, Describe(node)),
+                   fmt::format("write '{}': {}", fitting,
+                               fitting.front() >= 'a' ? "small letters, digits and '_'"
+                                                      : "it begins with a capital letter"));
+               return false;
+             }
              StringAt(value) = std::move(*text);
              return true;
            },

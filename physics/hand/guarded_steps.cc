@@ -7,6 +7,7 @@
 #include "physics/hand/hand_clearance.h"
 #include "physics/hand/hand_contacts.h"
 #include "physics/hand/script_player.h"
+#include "physics/hand/step_notes.h"
 
 namespace prehend::physics {
 namespace {
@@ -18,6 +19,15 @@ constexpr double kForce_s = 0.02;
 constexpr double kPressing_s = 0.1;
 /// but not faster.
 constexpr double kMaxPressing_m_per_s = 0.05;
+/// A hand that is to stop at a gap brakes with this, where the gap shrinks faster than it could
+/// stop in time,
+constexpr double kBraking_m_per_s2 = 2;
+/// but it goes on at this speed.
+constexpr double kCreep_m_per_s = 0.04;
+/// The rate at which the gap shrinks is that of the target within this time.
+constexpr double kAhead_s = 0.01;
+/// A grip from here on is meant to hold something.
+constexpr double kClosed = 0.5;
 /// A hand that reaches less than this share of the force is noted.
 constexpr double kNotedForceShare = 0.8;
 
@@ -56,9 +66,12 @@ void ScriptPlayer::WatchGuards(const Snapshot& now) {
     const int index = static_cast<int>(h), thing = hand.waiting->thing;
     const std::optional<double>& gap_m = hand.waiting->until.gap_m;
     hand.waiting->met = gap_m ? GapTo(index, thing, now) < *gap_m : IsTouched(index, thing, now);
-    if (!hand.waiting->met) continue;
+    if (!hand.waiting->met) {
+      if (gap_m) Brake(h, now);
+      continue;
+    }
     // It stays where it is: the target is ahead of the hand, which would go on to it.
-    hand.target = hand.motion.At(MotionTime(hand));
+    hand.target = TargetOf(hand);
     if (const Eigen::Vector3d ahead_W = hand.target.v_m_per_s.normalized(); !ahead_W.isZero()) {
       const double ahead_m = ahead_W.dot(hand.target.X_WH.p_m - now.hands[h].palm.X_WB.p_m);
       hand.target.X_WH.p_m -= std::max(ahead_m, 0.0) * ahead_W;
@@ -67,8 +80,29 @@ void ScriptPlayer::WatchGuards(const Snapshot& now) {
     hand.target.w_rad_per_s.setZero();
     hand.motion = Trajectory(hand.target);
     hand.begin_tick = tick_in_stage_;
+    hand.pace = 1;
+    hand.behind_s = 0;
     clock_.SetEnd(*hand.step, tick_in_stage_);
   }
+}
+
+void ScriptPlayer::Brake(std::size_t hand, const Snapshot& now) {
+  HandState& state = hands_[hand];
+  const double rate_hz = scene_.world.rate_hz, t_s = MotionTime(state);
+  const HandClearance clearance(scene_, static_cast<int>(hand), now.hands[hand].joints);
+  const auto gap_m = [&](double at_s) {
+    return clearance.To(state.waiting->thing, state.motion.At(at_s).X_WH, now);
+  };
+  const double here_m = gap_m(t_s);
+  const double shrinks_m_per_s = (here_m - gap_m(t_s + kAhead_s)) / kAhead_s;
+  const double left_m = std::max(here_m - *state.waiting->until.gap_m, 0.0);
+  const double most_m_per_s = std::max(std::sqrt(2 * kBraking_m_per_s2 * left_m), kCreep_m_per_s);
+  state.pace = shrinks_m_per_s > most_m_per_s ? most_m_per_s / shrinks_m_per_s : 1;
+  const double before_s = state.behind_s;
+  state.behind_s += (1 - state.pace) / rate_hz;
+  const auto later = static_cast<std::int64_t>(std::ceil(state.behind_s * rate_hz) -
+                                               std::ceil(before_s * rate_hz));
+  clock_.SetEnd(*state.step, clock_.EndOf(*state.step) + later);
 }
 
 void ScriptPlayer::CheckGuard(std::size_t hand, const Snapshot& now) {
@@ -84,6 +118,17 @@ void ScriptPlayer::CheckGuard(std::size_t hand, const Snapshot& now) {
                                  : "touched";
   Fail(index, "until: the step is over, and '" + scene_.hands[hand].name + "' has not " + wanted +
                   " '" + waiting->until.thing + "': it is " + away + " away from it");
+}
+
+void ScriptPlayer::NoteTheGrip(std::size_t hand, const Snapshot& now) {
+  const HandState& state = hands_[hand];
+  if (!state.step || state.object < 0) return;
+  const Step& step = script_.stages[stage_ - 1].steps[*state.step];
+  const auto* grip = std::get_if<TriggerStep>(&step.action);
+  const bool met = state.waiting && state.waiting->met;
+  if (!grip || grip->trigger < kClosed || met || !state.closes) return;
+  std::string note = NoteAboutGrip(scene_, now, static_cast<int>(hand), state.object);
+  if (!note.empty()) notes_.push_back({now.tick, static_cast<int>(hand), std::move(note)});
 }
 
 /// Follows the force.

@@ -92,6 +92,21 @@ double HandClearance::LessTo(std::size_t body, const Pose& X_WH, const Snapshot&
   return least;
 }
 
+HandClearance::Nearest HandClearance::NearestAlong(const Segment& segment,
+                                                   const Snapshot& now) const {
+  Trajectory trajectory({});
+  trajectory.Append(segment);
+  Nearest nearest;
+  for (int i = 1; i <= kLooks; ++i) {
+    const Pose X_WH = trajectory.At(segment.duration_s * i / kLooks).X_WH;
+    for (const std::size_t body : obstacles_) {
+      const double distance_m = LessTo(body, X_WH, now, nearest.distance_m);
+      if (distance_m < nearest.distance_m) nearest = {distance_m, static_cast<int>(body)};
+    }
+  }
+  return nearest;
+}
+
 double HandClearance::Along(const Segment& segment, const Snapshot& now) const {
   Trajectory trajectory({});
   trajectory.Append(segment);

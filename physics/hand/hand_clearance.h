@@ -27,6 +27,12 @@ class HandClearance {
   static constexpr double kFar_m = 0.1;
   /// The smallest distance along a motion, sampled at even time steps.
   double Along(const Segment& segment, const Snapshot& now) const;
+  /// The same, and to which body: an index into Scene::bodies; -1 if all are far.
+  struct Nearest {
+    double distance_m = kFar_m;
+    int body = -1;
+  };
+  Nearest NearestAlong(const Segment& segment, const Snapshot& now) const;
 
  private:
   /// The distance to this body, if it is less than `least`.

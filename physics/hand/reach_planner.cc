@@ -48,7 +48,8 @@ struct Candidate {
   double cost = 0;
   double beside_m =
       0;  ///< distance of the grip from the point to grasp, other than along the grip axis
-  double too_wide_m = 0;  ///< object width along the grip axis minus opening, if positive
+  double too_wide_m = 0;  ///< width of the object's box along the grip axis minus opening, if > 0
+  double width_m = 0;     ///< of the object itself along the grip axis
 };
 
 /// The rotation that takes the orthonormal pair (a_H, b_H) to (a_W, b_W).
@@ -206,6 +207,7 @@ Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quater
   candidate.cost = RotationVector(q * query_.from.X_WH.q.conjugate()).norm();
   candidate.too_wide_m = std::max(0.0, 2 * half_grip - style_.opening_m);
   if (candidate.too_wide_m > 0) candidate.cost += kTooWide;
+  candidate.width_m = WidthAlong(target_.body, target_.X_WB, grip_W);
   return candidate;
 }
 
@@ -329,7 +331,7 @@ ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& q
       ReachPlan plan{.segment = Way(query, candidate, bend),
                      .toward_W = candidate.toward_W,
                      .beside_m = query.point_m ? candidate.beside_m : 0,
-                     .too_wide_m = candidate.too_wide_m};
+                     .width_m = candidate.width_m};
       plan.clearance_m = clearance.Along(plan.segment, now);
       plan.found = fits && plan.clearance_m >= clear_enough_m;
       if (plan.found) return plan;

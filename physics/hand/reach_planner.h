@@ -22,7 +22,7 @@ struct ReachPlan {
       0;                ///< smallest distance of the open hand to any body; negative: it will touch
   bool found = false;   ///< false: no path is clear, and this is the best of them
   double beside_m = 0;  ///< distance of the grip from the requested point
-  double too_wide_m = 0;  ///< object width at the grip minus opening, if positive
+  double width_m = 0;   ///< of the object along the grip, measured on its shape
 };
 
 struct ReachQuery {

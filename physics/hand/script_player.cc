@@ -10,6 +10,7 @@
 
 #include "physics/hand/hand_contacts.h"
 #include "physics/hand/reach_planner.h"
+#include "physics/hand/step_notes.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/joint.h"
 #include "physics/scene/landing.h"
@@ -33,10 +34,6 @@ constexpr double kBearing_s = 0.02;
 constexpr double kSeek_m_per_s = 0.02;
 /// and the stage lasts at most so much longer.
 constexpr double kSeek_s = 1;
-/// The open hand is approximated by spheres, which protrude by less than this.
-constexpr double kNotedTouch_m = 0.005;
-/// An excess width below this is ignored, because notes round lengths to millimetres.
-constexpr double kNotedWidth_m = 0.0005;
 /// Number of way-points on the arc of a joint: between two of them the arc deviates from a straight
 /// line by 0.1 mm at most.
 constexpr int kJointWaypoints = 40;
@@ -79,23 +76,6 @@ bool TouchesAnything(int body, const Snapshot& now) {
   return false;
 }
 
-/// Remarks on a reach that is executed in spite of problems; empty if there are none.
-std::string NoteAbout(const ReachPlan& plan, const ReachStep& reach, const GraspStyle& style) {
-  std::string notes;
-  const auto add = [&](const std::string& note) { notes += (notes.empty() ? "" : "; ") + note; };
-  if (plan.beside_m > kAtPoint_m)
-    add("no grip of " + reach.object + " in style " + style.name +
-        " is at point_m: the nearest is " + Millimetres(plan.beside_m) + " beside it");
-  if (plan.too_wide_m > kNotedWidth_m && reach.offset_m.isZero())
-    add("style " + style.name + " opens " + Millimetres(style.opening_m) + ", and " + reach.object +
-        " is " + Millimetres(style.opening_m + plan.too_wide_m) +
-        " wide there: the hand will not close around it");
-  else if (!plan.found && plan.clearance_m < -kNotedTouch_m)
-    add("no way to grasp " + reach.object +
-        " keeps clear of everything: the open hand will push against something");
-  return notes;
-}
-
 }  // namespace
 
 /// Turns one step into a motion. An empty `problem` afterwards means success.
@@ -129,6 +109,9 @@ class ScriptPlayer::Resolver {
   void Follow(const Segment& segment);
   void Follow(const std::vector<TimedPose>& poses);
   int HeldBody() const;
+  /// Where it is; a problem if there is no such thing.
+  Pose PoseOf(const PoseFrame& frame);
+  Pose InWorld(const Pose& X_FH, const PoseFrame& frame);
 
   const Scene& scene_;
   const Snapshot& now_;
@@ -163,19 +146,19 @@ void ScriptPlayer::Resolver::operator()(const ReachStep& reach) {
   } else if (style < 0) {
     problem_ = "reach: hand '" + model.name + "' has no style '" + reach.style + "'";
   } else {
-    const ReachPlan plan = PlanReach(scene_, now_,
-                                     {.hand = step_.hand,
-                                      .object = object,
-                                      .style = style,
-                                      .approach = reach.approach,
-                                      .offset_m = reach.offset_m,
-                                      .point_m = reach.point_m,
-                                      .from = hand_.target,
-                                      .over_s = step_.over_s});
+    const ReachQuery query{.hand = step_.hand,
+                           .object = object,
+                           .style = style,
+                           .approach = reach.approach,
+                           .offset_m = reach.offset_m,
+                           .point_m = reach.point_m,
+                           .from = hand_.target,
+                           .over_s = step_.over_s};
+    const ReachPlan plan = PlanReach(scene_, now_, query);
     hand_.style = style;
     hand_.object = object;
     hand_.came_along_W = plan.toward_W;
-    note_ = NoteAbout(plan, reach, model.styles[static_cast<std::size_t>(style)]);
+    note_ = NoteAboutReach(scene_, now_, query, plan);
     Follow(plan.segment);
   }
 }
@@ -183,6 +166,7 @@ void ScriptPlayer::Resolver::operator()(const ReachStep& reach) {
 void ScriptPlayer::Resolver::operator()(const TriggerStep& trigger) {
   Segment segment = StraightSegment(hand_.target, hand_.target.X_WH, step_.over_s);
   segment.trigger_end = trigger.trigger;
+  hand_.closes = trigger.trigger > hand_.target.trigger;
   Follow(segment);
 }
 
@@ -251,7 +235,28 @@ void ScriptPlayer::Resolver::operator()(const PosesStep& poses) {
     if (hand_.style < 0)
       problem_ = "poses: hand '" + model.name + "' has no style '" + poses.style + "'";
   }
-  if (problem_.empty() && !poses.poses.empty()) Follow(poses.poses);
+  std::vector<TimedPose> in_world = poses.poses;
+  for (std::size_t i = 0; i < poses.frames.size(); ++i)
+    in_world[i].X_WH = InWorld(in_world[i].X_WH, poses.frames[i]);
+  if (problem_.empty() && !in_world.empty()) Follow(in_world);
+}
+
+Pose ScriptPlayer::Resolver::InWorld(const Pose& X_FH, const PoseFrame& frame) {
+  const Pose X_WF = PoseOf(frame);
+  if (!frame.world_axes) return X_WF * X_FH;
+  const Eigen::Quaterniond q = frame.own_hand ? X_FH.q * X_WF.q : X_FH.q;
+  return {X_WF.p_m + X_FH.p_m, q.normalized()};
+}
+
+Pose ScriptPlayer::Resolver::PoseOf(const PoseFrame& frame) {
+  if (frame.own_hand) return hand_.target.X_WH;
+  if (frame.name.empty()) return {};
+  if (const int body = FindBody(scene_, frame.name); body >= 0)
+    return now_.bodies[static_cast<std::size_t>(body)].X_WB;
+  for (std::size_t i = 0; i < scene_.hands.size(); ++i)
+    if (scene_.hands[i].name == frame.name) return now_.hands[i].palm.X_WB;
+  problem_ = "relative_to: there is no entity '" + frame.name + "'";
+  return {};
 }
 
 void ScriptPlayer::Resolver::operator()(const FollowJointStep& follow) {
@@ -368,6 +373,8 @@ void ScriptPlayer::Settle(HandState& hand) {
   if (hand.pressing) hand.target.X_WH.p_m += hand.pressing->depth_m * hand.pressing->along_W;
   hand.pressing.reset();
   hand.begin_tick = hand.late_ticks = 0;
+  hand.pace = 1;
+  hand.behind_s = 0;
   hand.motion = Trajectory(hand.target);
 }
 
@@ -425,6 +432,7 @@ bool ScriptPlayer::EndSteps(const Snapshot& now) {
       }
       CheckThatItStands(h, now);
       if (problem_.empty()) CheckGuard(h, now);
+      NoteTheGrip(h, now);
       Settle(hands_[h]);
     }
     clock_.Finish(i);
@@ -446,6 +454,7 @@ bool ScriptPlayer::EndStage(const Snapshot& now) {
     CheckThatItStands(h, now);
   for (std::size_t h = 0; h < hands_.size() && !clock_.is_ordered() && problem_.empty(); ++h)
     CheckGuard(h, now);
+  for (std::size_t h = 0; h < hands_.size() && !clock_.is_ordered(); ++h) NoteTheGrip(h, now);
   return problem_.empty();
 }
 
@@ -472,7 +481,15 @@ void ScriptPlayer::StartStep(std::size_t index, const Snapshot& now) {
 }
 
 double ScriptPlayer::MotionTime(const HandState& hand) const {
-  return static_cast<double>(tick_in_stage_ - hand.begin_tick) / scene_.world.rate_hz;
+  return static_cast<double>(tick_in_stage_ - hand.begin_tick) / scene_.world.rate_hz -
+         hand.behind_s;
+}
+
+TargetState ScriptPlayer::TargetOf(const HandState& hand) const {
+  TargetState target = hand.motion.At(MotionTime(hand));
+  target.v_m_per_s *= hand.pace;
+  target.w_rad_per_s *= hand.pace;
+  return target;
 }
 
 void ScriptPlayer::Fail(int hand, const std::string& problem) {
@@ -542,8 +559,7 @@ const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
   if (!problem_.empty() || (settling_ && tick_in_stage_ == settle_ticks)) return nullptr;
   ++tick_in_stage_;
   for (const HandState& hand : hands_) {
-    HandCommand& command =
-        commands_.emplace_back(HandCommand{hand.motion.At(MotionTime(hand)), hand.style});
+    HandCommand& command = commands_.emplace_back(HandCommand{TargetOf(hand), hand.style});
     double& height_m = command.target.X_WH.p_m.z();
     if (hand.placing) height_m = hand.placing->HeightOf(height_m);
     if (hand.pressing) command.target.X_WH.p_m += hand.pressing->depth_m * hand.pressing->along_W;

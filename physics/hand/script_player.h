@@ -58,6 +58,7 @@ class ScriptPlayer {
   int problem_hand() const { return problem_hand_; }
   /// Remarks on all steps so far.
   const std::vector<ScriptNote>& notes() const { return notes_; }
+  void AddNote(ScriptNote note) { notes_.push_back(std::move(note)); }
 
  private:
   /// A thing that is put down.
@@ -104,8 +105,11 @@ class ScriptPlayer {
     /// The present step of its stage; none before the first.
     std::optional<std::size_t> step = std::nullopt;
     std::int64_t begin_tick = 0;  ///< when its motion began, after its stage began
+    double pace = 1;              ///< share of its full speed; less where a guarded step brakes
+    double behind_s = 0;          ///< delay that braking has caused
     std::int64_t late_ticks = 0;  ///< by which it lasts longer than planned
     std::string written_at = {};  ///< the present step
+    bool closes = false;          ///< with the present step the trigger rises
   };
   class Resolver;
 
@@ -129,10 +133,16 @@ class ScriptPlayer {
   void CheckThatItStands(std::size_t hand, const Snapshot& now);
   /// Ends guarded steps, and with them perhaps the stage.
   void WatchGuards(const Snapshot& now);
+  /// Slows a hand down that could not stop at its gap otherwise.
+  void Brake(std::size_t hand, const Snapshot& now);
   void CheckGuard(std::size_t hand, const Snapshot& now);
+  /// Notes that a hand has closed beside what it reached for.
+  void NoteTheGrip(std::size_t hand, const Snapshot& now);
   void Press(const Snapshot& now);
   bool IsTouched(int hand, int thing, const Snapshot& now) const;
   double GapTo(int hand, int thing, const Snapshot& now) const;
+  /// Where the hand's target is and how it moves.
+  TargetState TargetOf(const HandState& hand) const;
   void Fail(int hand, const std::string& problem);
 
   const Scene& scene_;

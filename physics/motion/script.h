@@ -48,9 +48,18 @@ struct FollowJointStep {  ///< the target moves along the free axis of the entit
   double to = 1;  ///< to this fraction of the joint's range
 };
 struct WaitStep {};
+/// What a way-point is relative to, as it is when the step begins.
+struct PoseFrame {
+  bool own_hand = false;  ///< the hand's own tracked target
+  std::string name = {};  ///< else this body, or the palm of this hand; empty: the world
+  /// Only its place counts: way-points are added to it along the world's axes. The hand's own
+  /// orientation is then turned by theirs about these axes.
+  bool world_axes = false;
+};
 struct PosesStep {  ///< 6D way-points
   std::vector<TimedPose> poses;
-  std::string style = {};  ///< new grasp style; empty: unchanged
+  std::string style = {};              ///< new grasp style; empty: unchanged
+  std::vector<PoseFrame> frames = {};  ///< of each way-point; empty: all in the world
 };
 struct TurnHandStep {                                ///< turn_by_deg: about the palm's centre
   Eigen::Vector3d by_rad = Eigen::Vector3d::Zero();  ///< about this axis, by its length
@@ -105,6 +114,8 @@ struct EyesStep {  ///< ends a LookAtStep
 };
 struct WalkStep {  ///< her stance moves there
   Eigen::Vector2d to_m = Eigen::Vector2d::Zero();
+  /// If set, she slows down so that her body pushes with no more than this force, newtons.
+  std::optional<double> max_force_n = std::nullopt;
 };
 struct TurnStep {
   double to_rad = 0;  ///< yaw of her stance

@@ -41,8 +41,9 @@ class PersonPlayer::Resolver {
     player_.told_ = std::nullopt;
   }
   void operator()(const WalkStep& walk) {
-    Start(player_.x_, walk.to_m.x());
-    Start(player_.y_, walk.to_m.y());
+    Start(player_.x_, walk.to_m.x(), player_.walk_.behind_s);
+    Start(player_.y_, walk.to_m.y(), player_.walk_.behind_s);
+    player_.walk_ = {.max_force_n = walk.max_force_n};
   }
   void operator()(const TurnStep& turn) { Start(player_.yaw_, turn.to_rad); }
   void operator()(const LeanStep& lean) { Start(player_.lean_, lean.to_rad); }
@@ -60,9 +61,7 @@ class PersonPlayer::Resolver {
     limb.to_rest = !move.to_m;
     if (move.to_m) limb.to_S_m = X_SW * *move.to_m;
     limb.progress = {0, 1, player_.t_s_, over_s_};
-    limb.max_force_n = move.max_force_n;
-    limb.pace = 1;
-    limb.behind_s = 0;
+    limb.yielding = {.max_force_n = move.max_force_n};
   }
   void operator()(const HeadPosesStep& head) {
     const TargetState from{.X_WH = player_.targets_.X_WHead};
@@ -75,8 +74,8 @@ class PersonPlayer::Resolver {
   }
 
  private:
-  void Start(Motion& motion, double to) {
-    motion = {motion.At(player_.t_s_), to, player_.t_s_, over_s_};
+  void Start(Motion& motion, double to, double behind_s = 0) {
+    motion = {motion.At(player_.t_s_ - behind_s), to, player_.t_s_, over_s_};
   }
 
   PersonPlayer& player_;
@@ -126,7 +125,7 @@ BodyTargets::Limb PersonPlayer::LimbAt(int limb, const Snapshot& now) const {
   }
   const LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
   const double progress =
-      motion.progress.duration_s > 0 ? motion.progress.At(t_s_ - motion.behind_s) : 1;
+      motion.progress.duration_s > 0 ? motion.progress.At(t_s_ - motion.yielding.behind_s) : 1;
   if (motion.to_rest && progress == 1) return rest;
   Vector3d to_W = targets_.X_WS * motion.to_S_m;
   Vector3d forearm_W = FoldedForearm(motion.end, targets_.X_WS);
@@ -145,11 +144,21 @@ BodyTargets::Limb PersonPlayer::LimbAt(int limb, const Snapshot& now) const {
 
 double PersonPlayer::ResistanceTo(int limb, const Snapshot& now) const {
   const LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
-  const Vector3d way = targets_.X_WS * motion.to_S_m - targets_.X_WS * motion.from_S_m;
-  if (way.norm() < 1e-6) return 0;
   const PartRange parts = PartsOfLimb(person_, limb);
+  return ResistanceTo(parts.begin, parts.end,
+                      targets_.X_WS * motion.to_S_m - targets_.X_WS * motion.from_S_m, now);
+}
+
+double PersonPlayer::ResistanceToWalk(const Snapshot& now) const {
+  return ResistanceTo(0, static_cast<int>(places_.size()), {x_.to - x_.from, y_.to - y_.from, 0},
+                      now);
+}
+
+double PersonPlayer::ResistanceTo(int begin, int end, const Vector3d& way,
+                                  const Snapshot& now) const {
+  if (way.norm() < 1e-6) return 0;
   const auto is_part = [&](const ContactSide& side) {
-    return side.body >= person_.head + parts.begin && side.body < person_.head + parts.end;
+    return side.body >= person_.head + begin && side.body < person_.head + end;
   };
   double against_n_s = 0;
   for (const ContactPoint& contact : now.contacts) {
@@ -159,15 +168,13 @@ double PersonPlayer::ResistanceTo(int limb, const Snapshot& now) const {
   return std::max(0.0, against_n_s) * scene_.world.rate_hz;
 }
 
-void PersonPlayer::Yield(int limb, const Snapshot& now) {
+void PersonPlayer::Yield(Yielding& motion, double resistance_n) const {
   // Resistance in the solver grows with speed, so the pace is divided by the excess. It then grows
   // back exponentially from where it was: a resistance that was met at a slow pace is met at a slow
   // pace again.
   constexpr double kGrow_s = 0.1, kMinPace = 0.01;
   const double dt_s = 1.0 / scene_.world.rate_hz;
-  LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
   if (!motion.max_force_n) return;
-  const double resistance_n = ResistanceTo(limb, now);
   motion.pace = resistance_n > *motion.max_force_n
                     ? motion.pace * *motion.max_force_n / resistance_n
                     : std::min(1.0, std::max(motion.pace, kMinPace) * (1 + dt_s / kGrow_s));
@@ -224,12 +231,15 @@ void PersonPlayer::TurnHead(const Snapshot& now) {
 void PersonPlayer::Advance(const Snapshot& now, World& world) {
   t_s_ = static_cast<double>(++tick_) / scene_.world.rate_hz;
   targets_.posture.reset();
-  targets_.X_WS = {{x_.At(t_s_), y_.At(t_s_), person_.X_WS.p_m.z()},
+  if (walk_.max_force_n) Yield(walk_, ResistanceToWalk(now));
+  const double walk_s = t_s_ - walk_.behind_s;
+  targets_.X_WS = {{x_.At(walk_s), y_.At(walk_s), person_.X_WS.p_m.z()},
                    Eigen::Quaterniond(Eigen::AngleAxisd(yaw_.At(t_s_), Vector3d::UnitZ()))};
   targets_.lean_rad = lean_.At(t_s_);
   targets_.sway_m = {sway_ahead_.At(t_s_), sway_left_.At(t_s_)};
   for (int limb = 0; limb < 4; ++limb) {
-    Yield(limb, now);
+    Yielding& yielding = limbs_[static_cast<std::size_t>(limb)].yielding;
+    if (yielding.max_force_n) Yield(yielding, ResistanceTo(limb, now));
     targets_.limbs[static_cast<std::size_t>(limb)] = LimbAt(limb, now);
   }
   HoldPosture();
@@ -237,6 +247,13 @@ void PersonPlayer::Advance(const Snapshot& now, World& world) {
   places_ = PlacesOf(person_, targets_, places_);
   for (std::size_t i = 0; i < places_.size(); ++i)
     world.MoveKinematic(person_.head + static_cast<int>(i), places_[i]);
+}
+
+double PersonPlayer::ArmIsShortBy(bool right) const {
+  const int hand = right ? person_.right_hand : person_.left_hand;
+  if (!person_.has_body || hand < 0) return 0;
+  const BodyTargets::Limb& arm = targets_.limbs[right ? 0 : 1];
+  return (arm.p_W_m - PlaceOf(arm.end, person_, targets_)).norm();
 }
 
 GazeState PersonPlayer::See(const World& world) const {

@@ -30,6 +30,9 @@ class PersonPlayer {
   GazeState See(const World& world) const;
 
   const BodyTargets& targets() const { return targets_; }
+  /// Distance by which her arm ends before a hand of the scene that it follows, metres; 0 if it
+  /// follows none. `right`: the right arm.
+  double ArmIsShortBy(bool right) const;
 
  private:
   /// A minimum-jerk motion of one quantity.
@@ -38,6 +41,12 @@ class PersonPlayer {
     double begin_s = 0, duration_s = 0;
     double At(double t_s) const;
   };
+  /// How a motion gives way to resistance.
+  struct Yielding {
+    std::optional<double> max_force_n;  ///< force above which it yields
+    double pace = 1;                    ///< share of the full speed, less than 1 under resistance
+    double behind_s = 0;                ///< delay that yielding has caused
+  };
   struct LimbMotion {
     LimbEnd end = LimbEnd::kRightWrist;
     Eigen::Vector3d from_S_m = Eigen::Vector3d::Zero();  ///< in the frame of her stance
@@ -45,9 +54,7 @@ class PersonPlayer {
     Eigen::Vector3d forearm_S = Eigen::Vector3d::UnitZ();  ///< when the step began
     bool to_rest = true;
     Motion progress;
-    std::optional<double> max_force_n;  ///< force above which the limb yields
-    double pace = 1;                    ///< share of the full speed, less than 1 under resistance
-    double behind_s = 0;                ///< delay that yielding has caused
+    Yielding yielding;
   };
   struct RecordedBody {
     PostureTrack track;
@@ -60,9 +67,13 @@ class PersonPlayer {
   class Resolver;
 
   BodyTargets::Limb LimbAt(int limb, const Snapshot& now) const;
-  /// Slows a limb down that meets too much resistance, and speeds it up again afterwards.
-  void Yield(int limb, const Snapshot& now);
+  /// Slows a motion down that meets too much resistance, and speeds it up again afterwards.
+  void Yield(Yielding& motion, double resistance_n) const;
+  /// Force of contacts against the motion of a limb, or of her walk, newtons.
   double ResistanceTo(int limb, const Snapshot& now) const;
+  double ResistanceToWalk(const Snapshot& now) const;
+  /// Force of contacts of her parts from `begin` to before `end` against a way.
+  double ResistanceTo(int begin, int end, const Eigen::Vector3d& way, const Snapshot& now) const;
   void HoldPosture();
   void StandBelow(const Posture& posture);
   void TurnHead(const Snapshot& now);
@@ -74,6 +85,7 @@ class PersonPlayer {
   double t_s_ = 0;  ///< since the first tick
   std::int64_t tick_ = 0;
   Motion x_, y_, yaw_, lean_, sway_ahead_, sway_left_;
+  Yielding walk_;  ///< of x_ and y_
   std::array<LimbMotion, 4> limbs_;
   BodyTargets targets_;
   std::vector<Pose> places_;

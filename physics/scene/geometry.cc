@@ -134,6 +134,18 @@ Eigen::Vector3d FarthestAlong(const Shape& shape, const Eigen::Vector3d& n_S) {
   return std::visit(FarthestPoint{n_S}, shape);
 }
 
+double WidthAlong(const Body& body, const Pose& X_WB, const Eigen::Vector3d& direction_W) {
+  if (body.shapes.empty()) return 0;
+  double least_m = HUGE_VAL, most_m = -HUGE_VAL;
+  for (const PlacedShape& placed : body.shapes) {
+    const Pose X_WS = X_WB * placed.X_BS;
+    const Eigen::Vector3d n_S = X_WS.q.conjugate() * direction_W;
+    most_m = std::max(most_m, direction_W.dot(X_WS * FarthestAlong(placed.shape, n_S)));
+    least_m = std::min(least_m, direction_W.dot(X_WS * FarthestAlong(placed.shape, -n_S)));
+  }
+  return most_m - least_m;
+}
+
 double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_S) {
   return std::visit(DistanceOf{p_S}, shape);
 }

@@ -15,6 +15,9 @@ int FindBody(const Scene& scene, const std::string& name);
 /// Extent of the body from the centre of its bounding box in a world direction (unit), metres.
 double HalfWidthAlong(const LocalBox& box, const Pose& X_WB, const Eigen::Vector3d& direction_W);
 
+/// Width of the body itself in a world direction (unit), metres.
+double WidthAlong(const Body& body, const Pose& X_WB, const Eigen::Vector3d& direction_W);
+
 /// Whether the point is inside a body at X_WB: inside its bounding box, or for a region inside the
 /// region itself.
 bool IsInside(const Body& body, const Pose& X_WB, const Eigen::Vector3d& p_W_m);

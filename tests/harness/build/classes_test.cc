@@ -41,7 +41,8 @@ TEST(Kinds, MistakesHaveTheirPlace) {
             "6:16: classes: 'Movable' is a built-in class | declare your own classes, for example "
             "'Cup: Container'\n");
   EXPECT_EQ(Brief(ErrorsOf(ReadClasses("{Mug: cup}"))),
-            "6:16: Mug: expected a class name like 'MilkCarton', found 'cup'\n");
+            "6:16: Mug: expected a class name like 'MilkCarton', found 'cup' | write 'Cup': it "
+            "begins with a capital letter\n");
 }
 
 }  // namespace

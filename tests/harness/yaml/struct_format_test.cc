@@ -87,7 +87,8 @@ TEST(FieldTable, CollectsAllComplaintsSortedByPlace) {
       "3:7: axis: expected 3 items, found 2\n"
       "4:1: unknown key 'weight' in a wheel | known: radius_m, spokes, material, spins, label, "
       "axis, hub, loads_kg\n"
-      "5:12: expected a name like 'milk_carton', found 'A'\n"
+      "5:12: expected a name like 'milk_carton', found 'A' | write 'a': small letters, digits and "
+      "'_'\n"
       "5:15: A: expected a number from 0 to 9, found '10'\n");
 }
 

@@ -64,6 +64,23 @@ TEST(GuardedMotion, StopsAtAGap) {
   EXPECT_NEAR(clearance.To(kTable, now.hands[0].palm.X_WB, now), 0.02, 0.003);
 }
 
+TEST(GuardedMotion, AFastHandBrakesBeforeItsGap) {
+  // 0.35 m in a second: 0.66 m/s in the middle.
+  const Scene scene = MakeScene({.hand_at_m = {-0.3, -0.2, 1.05}});
+  Script script;
+  script.stages = {{{Guarded(MoveStep{{0, 0, -0.35}}, 1, {.thing = "table", .gap_m = 0.005})}}};
+  script.settle_s = 0.5;
+  Simulation simulation(scene, script);
+  double least_m = 1;
+  while (simulation.Step()) {
+    const Snapshot& now = simulation.snapshot();
+    const HandClearance clearance(scene, 0, now.hands[0].joints);
+    least_m = std::min(least_m, clearance.To(kTable, now.hands[0].palm.X_WB, now));
+  }
+  EXPECT_EQ(simulation.status().kind, RunStatus::Kind::kCompleted) << simulation.status().reason;
+  EXPECT_NEAR(least_m, 0.005, 0.0015);
+}
+
 TEST(GuardedMotion, AHeldThingTouchesToo) {
   const Scene scene = MakeScene({});
   Script script = MakeScript({});
@@ -97,6 +114,40 @@ TEST(GuardedMotion, AnOrbitEndsAtItsAngleAndDistance) {
   EXPECT_GT(from.x() * to.y() - from.y() * to.x(), 0) << "counter-clockwise";
   EXPECT_NEAR(end.p_m.z(), begin.p_m.z(), 1e-12);
   EXPECT_NEAR(end.q.angularDistance(begin.q), M_PI / 2, 1e-9) << "the hand turns with it";
+}
+
+/// A hand that is turned to the left, beside an object that is turned by half a turn.
+Scene TurnedScene() {
+  Scene scene = MakeScene({.yaw_rad = M_PI});
+  scene.hands[0].X_WH.q = Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
+  return scene;
+}
+
+PosesStep OneWaypoint(const Eigen::Vector3d& at_m, PoseFrame frame) {
+  return {.poses = {{.t_s = 0.5, .X_WH = {at_m}, .trigger = {}}}, .frames = {std::move(frame)}};
+}
+
+TEST(GuardedMotion, WayPointsAreRelativeToTheHandOrToAThing) {
+  const Scene scene = TurnedScene();
+  const Pose& hand = scene.hands[0].X_WH;
+  const Pose& object = scene.bodies[kObject].X_WB;
+  const Eigen::Vector3d ahead(0.1, 0, 0.02);
+  const Pose own = EndOf(scene, OneWaypoint(ahead, {.own_hand = true}));
+  EXPECT_TRUE(own.p_m.isApprox(hand.p_m + Eigen::Vector3d(0, 0.1, 0.02), 1e-9)) << own.p_m;
+  EXPECT_LT(own.q.angularDistance(hand.q), 1e-6);
+  const Pose along_world = EndOf(scene, OneWaypoint(ahead, {.own_hand = true, .world_axes = true}));
+  EXPECT_TRUE(along_world.p_m.isApprox(hand.p_m + ahead, 1e-9)) << along_world.p_m;
+  EXPECT_LT(along_world.q.angularDistance(hand.q), 1e-6);
+  const Pose at_object = EndOf(scene, OneWaypoint(ahead, {.name = "object"}));
+  EXPECT_TRUE(at_object.p_m.isApprox(object.p_m + Eigen::Vector3d(-0.1, 0, 0.02), 1e-9));
+  EXPECT_LT(at_object.q.angularDistance(object.q), 1e-6);
+  const Pose beside = EndOf(scene, OneWaypoint(ahead, {.name = "object", .world_axes = true}));
+  EXPECT_TRUE(beside.p_m.isApprox(object.p_m + ahead, 1e-9));
+  EXPECT_LT(beside.q.angularDistance(Eigen::Quaterniond::Identity()), 1e-6);
+  Scene two = TurnedScene();
+  two.hands.push_back({"other", LibraryHand("human_left"), {{0.3, 0.5, 1.1}}});
+  const Pose at_other = EndOf(two, OneWaypoint(ahead, {.name = "other"}));
+  EXPECT_TRUE(at_other.p_m.isApprox(Eigen::Vector3d(0.4, 0.5, 1.12), 1e-3)) << at_other.p_m;
 }
 
 TEST(GuardedMotion, ATurnIsAboutTheWorldsAxesOrTheHands) {

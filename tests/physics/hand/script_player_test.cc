@@ -109,23 +109,67 @@ TEST(ScriptPlayerTest, NotesAReachThatCannotKeepClear) {
   Body roof{.name = "roof", .shapes = {{Box{{1, 1, 0.02}}, {}}}, .fixed = true};
   roof.X_WB.p_m = {0.2, 0.1, 1.05};
   scene.bodies.push_back(roof);
-  EXPECT_EQ(NotesOf(scene, from_above),
-            Texts{"no way to grasp object keeps clear of everything: the open hand will "
-                  "push against something"});
+  EXPECT_EQ(
+      NotesOf(scene, from_above),
+      Texts{"no way to grasp object keeps clear of everything: the open hand will push 22 mm "
+            "into roof; try 'from: above' or 'from: side', another style or 'point_m', or make "
+            "room"});
 }
 
 TEST(ScriptPlayerTest, NotesAThingThatIsTooWideForTheStyle) {
   Scene scene = MakeScene({});
   scene.bodies[1].shapes = {{Box{{0.14, 0.20, 0.10}}, {}}};
   ReachStep reach{"object", "wrap", Approach::kAbove};
-  EXPECT_EQ(NotesOf(scene, One(reach, 0.5)),
-            Texts{"style wrap opens 85 mm, and object is 140 mm wide there: the hand will "
-                  "not close around it"});
+  EXPECT_EQ(
+      NotesOf(scene, One(reach, 0.5)),
+      Texts{"style wrap opens 85 mm, and object is 140 mm wide there: the hand will not close "
+            "around it; take it at a narrower part with 'point_m', in another style, or with "
+            "two hands"});
   Scene as_wide = MakeScene({});
   as_wide.bodies[1].shapes = {{Box{{0.0852, 0.20, 0.10}}, {}}};  // within a rounding of 85 mm
   EXPECT_EQ(NotesOf(as_wide, One(reach, 0.5)), Texts{});
   reach.offset_m = {-0.1, 0, 0.1};  // to miss on purpose
   EXPECT_EQ(NotesOf(scene, One(reach, 0.5)), Texts{});
+}
+
+TEST(ScriptPlayerTest, AWidthIsThatOfTheShapeNotOfItsTurnedBox) {
+  Scene scene = MakeScene({.shape = Sphere{0.12}, .yaw_rad = M_PI / 4});
+  EXPECT_EQ(
+      NotesOf(scene, One(ReachStep{"object", "wrap", Approach::kAbove}, 0.5)),
+      Texts{"style wrap opens 85 mm, and object is 240 mm wide there: the hand will not close "
+            "around it; take it at a narrower part with 'point_m', in another style, or with "
+            "two hands"});
+}
+
+/// The notes of a whole run in which the hand reaches, then closes.
+Texts NotesOfGrasp(const Scene& scene, const ReachStep& reach, double grip_before) {
+  Script script{.stages = {One(reach, 0.6), One(TriggerStep{1}, 0.4)}};
+  if (grip_before > 0)
+    script.stages.insert(script.stages.begin(), One(TriggerStep{grip_before}, 0.2));
+  Simulation simulation(scene, script);
+  while (simulation.Step()) {
+  }
+  Texts texts;
+  for (const auto& note : simulation.notes()) texts.push_back(note.text);
+  return texts;
+}
+
+TEST(ScriptPlayerTest, NotesAHandThatComesHalfClosed) {
+  const Scene scene = MakeScene({});
+  EXPECT_EQ(NotesOfGrasp(scene, {"object"}, 0), Texts{});
+  const Texts said = NotesOfGrasp(scene, {"object"}, 0.7);
+  ASSERT_FALSE(said.empty());
+  EXPECT_EQ(
+      said[0],
+      "it comes with its grip at 0.70, so its fingers push 13 mm into object on the way: write "
+      "'open_to: 0' before the reach");
+}
+
+TEST(ScriptPlayerTest, NotesAHandThatClosesBesideItsThing) {
+  const ReachStep above{"object", "wrap", Approach::kAbove, {0, 0, 0.15}};
+  EXPECT_EQ(NotesOfGrasp(MakeScene({}), above, 0),
+            Texts{"it has closed and does not hold object, which is 68 mm away: is the reach's "
+                  "'offset_m' too large, has object moved, or is it too thin for this style?"});
 }
 
 TEST(ScriptPlayerTest, ABeatLastsAsLongAsItsLongestStep) {

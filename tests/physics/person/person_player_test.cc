@@ -150,6 +150,21 @@ TEST(PersonPlayerTest, ALimbThatMayYieldStillPushesWhatIsLight) {
   EXPECT_GT(Play(scene, steps).end.bodies[kBlock].X_WB.p_m.x(), 0.52);
 }
 
+TEST(PersonPlayerTest, AWalkYieldsToWhatResistsMoreThanItMayPush) {
+  // A block as high as her hips, in front of them.
+  Scene scene = Before({0.4, 0, 0.9});
+  scene.bodies[kBlock].mass_kg = 60;
+  scene.bodies[kBlock].friction = 2;
+  const auto walk = [&](std::optional<double> max_force_n) {
+    return Play(scene, {{0, WalkStep{{0.4, 0}, max_force_n}, 1.5}}).end.bodies[kBlock].X_WB.p_m.x();
+  };
+  EXPECT_LT(walk(60) - 0.4, 0.03) << "the first blow has her speed";
+  EXPECT_GT(walk(std::nullopt) - 0.4, 0.1);
+  scene.bodies[kBlock].mass_kg = 1;
+  scene.bodies[kBlock].friction = 0.3;
+  EXPECT_GT(walk(60) - 0.4, 0.1) << "what is light is pushed";
+}
+
 TEST(PersonPlayerTest, ARecordedPostureIsTakenAndLeft) {
   const Scene scene = Before({2, 2, 0.4});
   const Person& anna = scene.persons.front();

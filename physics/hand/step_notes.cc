@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/physics/hand/script_player_test.cc
+#include "physics/hand/step_notes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "physics/hand/hand_clearance.h"
+#include "physics/hand/hand_contacts.h"
+
+namespace prehend::physics {
+namespace {
+
+/// The open hand is approximated by spheres, which protrude by less than this.
+constexpr double kNotedTouch_m = 0.005;
+/// An excess width below this is ignored, because notes round lengths to millimetres.
+constexpr double kNotedWidth_m = 0.0005;
+
+/// A thing that is nearer to a half closed hand would be held by a closed one.
+constexpr double kNearlyThere_m = 0.02;
+
+/// "0.50".
+std::string TwoDigits(double share) {
+  const long hundredths = std::lround(100 * share);
+  return std::to_string(hundredths / 100) + "." + std::to_string(hundredths % 100 / 10) +
+         std::to_string(hundredths % 10);
+}
+
+/// The sensor sets of a hand that touch a body.
+std::set<std::string> SidesThatTouch(const Scene& scene, const Snapshot& now, int hand,
+                                     int object) {
+  const HandModel& model = scene.hands[static_cast<std::size_t>(hand)].model;
+  std::set<std::string> sides;
+  ForEachContact(hand, -1, object, now, [&](const ContactPoint& contact) {
+    const int link = contact.a.hand == hand ? contact.a.link : contact.b.link;
+    const int set =
+        link < 0 ? model.palm_sensor_set : model.links[static_cast<std::size_t>(link)].sensor_set;
+    sides.insert(model.sensor_sets[static_cast<std::size_t>(set)]);
+  });
+  return sides;
+}
+
+std::string NoteAboutObstacle(const Scene& scene, const Snapshot& now, const ReachQuery& query,
+                              const ReachPlan& plan) {
+  const HandModel& model = scene.hands[static_cast<std::size_t>(query.hand)].model;
+  const GraspStyle& style = model.styles[static_cast<std::size_t>(query.style)];
+  const std::string& object = scene.bodies[static_cast<std::size_t>(query.object)].name;
+  const auto nearest_at = [&](double trigger) {
+    return HandClearance(scene, query.hand, JointTargets(style, trigger))
+        .NearestAlong(plan.segment, now);
+  };
+  const HandClearance::Nearest worst = nearest_at(query.from.trigger);
+  const std::string& obstacle = scene.bodies[static_cast<std::size_t>(worst.body)].name;
+  if (query.from.trigger > 0 && nearest_at(0).distance_m >= -kNotedTouch_m)
+    return "it comes with its grip at " + TwoDigits(query.from.trigger) + ", so its fingers push " +
+           Millimetres(-worst.distance_m) + " into " + obstacle +
+           " on the way: write 'open_to: 0' before the reach";
+  return "no way to grasp " + object + " keeps clear of everything: the open hand will push " +
+         Millimetres(-worst.distance_m) + " into " + obstacle +
+         "; try 'from: above' or 'from: side', another style or 'point_m', or make room";
+}
+
+}  // namespace
+
+std::string NoteAboutReach(const Scene& scene, const Snapshot& now, const ReachQuery& query,
+                           const ReachPlan& plan) {
+  const HandModel& model = scene.hands[static_cast<std::size_t>(query.hand)].model;
+  const GraspStyle& style = model.styles[static_cast<std::size_t>(query.style)];
+  const std::string& object = scene.bodies[static_cast<std::size_t>(query.object)].name;
+  std::string notes;
+  const auto add = [&](const std::string& note) { notes += (notes.empty() ? "" : "; ") + note; };
+  if (plan.beside_m > kAtPoint_m)
+    add("no grip of " + object + " in style " + style.name + " is at point_m: the nearest is " +
+        Millimetres(plan.beside_m) + " beside it");
+  if (plan.width_m > style.opening_m + kNotedWidth_m && query.offset_m.isZero())
+    add("style " + style.name + " opens " + Millimetres(style.opening_m) + ", and " + object +
+        " is " + Millimetres(plan.width_m) + " wide there: the hand will not close around it; " +
+        "take it at a narrower part with 'point_m', in another style, or with two hands");
+  else if (!plan.found && plan.clearance_m < -kNotedTouch_m)
+    add(NoteAboutObstacle(scene, now, query, plan));
+  return notes;
+}
+
+std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, int hand, int object) {
+  const std::set<std::string> sides = SidesThatTouch(scene, now, hand, object);
+  if (sides.size() >= 2) return "";
+  if (sides.size() == 1)
+    return "it has closed and touches " + scene.bodies[static_cast<std::size_t>(object)].name +
+           " with its " + *sides.begin() +
+           " only, which is no grasp: close it farther ('close_to: 1'), or reach for it from "
+           "another "
+           "side";
+  const auto h = static_cast<std::size_t>(hand), o = static_cast<std::size_t>(object);
+  const HandClearance clearance(scene, hand, now.hands[h].joints);
+  const double away_m = clearance.To(object, now.hands[h].palm.X_WB, now);
+  const std::string& name = scene.bodies[o].name;
+  const double grip = now.hands[h].trigger;
+  if (grip < 1 && away_m < kNearlyThere_m)
+    return "it has closed to " + TwoDigits(grip) + " and does not touch " + name + ", which is " +
+           Millimetres(std::max(away_m, 0.0)) + " away: close it farther";
+  const std::string how_far = away_m >= HandClearance::kFar_m
+                                  ? "more than " + Millimetres(HandClearance::kFar_m)
+                                  : Millimetres(std::max(away_m, 0.0));
+  return "it has closed and does not hold " + name + ", which is " + how_far +
+         " away: is the reach's 'offset_m' too large, has " + name +
+         " moved, or is it too thin for this style?";
+}
+
+}  // namespace prehend::physics

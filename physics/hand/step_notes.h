@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Remarks on steps that are played although they cannot do what they say: each with what was
+// measured and with a remedy. Tested by tests/physics/hand/script_player_test.cc
+#pragma once
+
+#include <string>
+
+#include "physics/hand/reach_planner.h"
+#include "physics/scene/scene.h"
+#include "physics/scene/snapshot.h"
+
+namespace prehend::physics {
+
+/// About a reach that was planned like this: the thing is too wide there, the grip is beside the
+/// point, the hand comes half closed, or it will push against something. "" if there is nothing to
+/// say.
+std::string NoteAboutReach(const Scene& scene, const Snapshot& now, const ReachQuery& query,
+                           const ReachPlan& plan);
+
+/// About a hand that has closed, at the end of the step: that it touches `object`, an index into
+/// Scene::bodies, with one side only or not at all.
+std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, int hand, int object);
+
+}  // namespace prehend::physics
