@@ -72,6 +72,14 @@ bool IsOwnProject(const std::string& root) {
   return !fs::is_directory(fs::path(root) / kLibrary, error);
 }
 
+bool IsCalledIn(const std::string& root) {
+  if (const char* home = std::getenv("PREHEND_HOME"); home && *home) return true;
+  std::error_code error;
+  const fs::path here = fs::current_path(error), folder = fs::weakly_canonical(root, error);
+  return std::mismatch(folder.begin(), folder.end(), here.begin(), here.end()).first ==
+         folder.end();
+}
+
 std::vector<std::string> GrammarFolders(const std::string& root) {
   return Folders(root, "grammars", kLibrary);
 }

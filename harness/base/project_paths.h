@@ -28,6 +28,9 @@ std::string ShippedRoot();
 /// Whether `root` is a project of one's own, which uses what ships.
 bool IsOwnProject(const std::string& root);
 
+/// Whether the program is called in `root` or below it, or was told by $PREHEND_HOME to work there.
+bool IsCalledIn(const std::string& root);
+
 /// Where grammars are: root/grammars and root/grammar/library, those that exist, and for a project
 /// without the latter what ships. Likewise hands: root/hands and root/physics/library.
 std::vector<std::string> GrammarFolders(const std::string& root);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend new: a commented scenario to start from, or a project of one's own. Tested by
 // tests/program/command_line_test.cc and tests/program/project_test.cc
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "harness/base/atomic_file.h"
@@ -13,57 +15,22 @@
 #include "harness/format/scenario_fields.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/project_library.h"
+#include "harness/templates/new_scenario.h"
 
 namespace prehend::harness {
 namespace {
 
 constexpr const char* kDefaultSkill = kDefaultGrammar;
 
-constexpr const char* kTemplate = R"(# yaml-language-server: $schema=../scenario.schema.json
-# Every key is explained in docs/scenario-format.md. Units are the last word of a key; z is up.
-scenario: name
-shows: a carton is picked up with a wrap grasp and put down further to the right   # what it proves, as a sentence
-grammar: pick_and_place            # a file of grammar/library/, without ".grammar"
-tags: []
-
-# What must be recognised if the sentence is true. Write it before the first run: afterwards it is easy to expect
-# whatever came out. `any` fits everybody. `check` fails on what contradicts a line, and `accept` refuses it.
-expects:
-  - one pick_and_place(right_hand, carton)
-  - reaching(right_hand, carton) then grasping(right_hand, carton, style=wrap)
-  - no sliding
-
-# Things. `on` puts one onto another; then at_m gives x and y only.
-entities:
-  table: {class: Table, fixed: true, box: {size_m: [1.2, 0.8, 0.04]}, at_m: [0, 0, 0.74]}
-  carton: {class: MilkCarton, box: {size_m: [0.07, 0.07, 0.20]}, mass_kg: 0.4, friction: 0.8, on: table, at_m: [0.2, 0.1]}
-
-# Hands, and where they start.
-actors:
-  right_hand: {hand: human_right, at_m: [-0.2, -0.2, 1.05]}
-
-# One step after another. Hands named in one entry act at the same time.
-script:
-  - right_hand: {reach: carton, style: wrap, over_s: 0.8}
-  - right_hand: {close_to: 1.0, over_s: 0.6}
-  - right_hand: {lift_by_m: 0.25, over_s: 0.6}
-  - right_hand: {carry_to_m: [0.2, -0.3], over_s: 1.0}
-  - right_hand: {place_on: table, over_s: 0.6}
-  - right_hand: {open_to: 0.0, over_s: 0.45}
-  - right_hand: {retreat_by_m: 0.2, over_s: 0.6}
-
-# Pictures for the report: at an event's begin or end, or at a time in seconds.
-pictures:
-  - {at: transporting.begin, camera: three_quarter}
-)";
-
 constexpr std::string_view kModeline = "# yaml-language-server: $schema=../scenario.schema.json\n";
 
 /// The text that a new scenario starts from.
 struct Model {
   std::string path;  ///< of the template: where it would stand in the default folder
-  std::string text = kTemplate;
-  std::string skill = kDefaultSkill;
+  std::string text;
+  std::string skill;
+  std::string what;  ///< in words; empty if that is not known
+  std::string note;  ///< what the name left open
 };
 
 /// The text of the scenario for `path`, with the line that editors look for. Errors of the model
@@ -133,17 +100,17 @@ constexpr const char* kEditorSettings = R"({
 }
 )";
 
-/// The template as the scenario of a project with rules of its own.
+/// A scenario of a project with rules of its own.
 std::string FirstScenario() {
-  std::string text = kTemplate;
+  std::string text = ComposeScenario("carton_is_carried", "").text;
   const auto replace = [&](std::string_view from, std::string_view to) {
     text.replace(text.find(from), from.size(), to);
   };
   replace("scenario: name", "scenario: carton_is_held_still");
-  replace("a carton is picked up with a wrap grasp and put down further to the right",
-          "a carton is picked up, held still for a moment and put down further to the right");
-  replace("grammar: pick_and_place            # a file of grammar/library/, without \".grammar\"",
-          "grammar: my_rules                  # grammars/my_rules.grammar");
+  replace("a carton is picked up, carried",
+          "a carton is picked up, held still for a moment, carried");
+  replace("grammar: pick_and_place   # a file of grammar/library/, without \".grammar\"",
+          "grammar: my_rules   # grammars/my_rules.grammar");
   replace("  - no sliding\n", "  - no sliding\n  - one held_still(right_hand, carton)\n");
   replace("  - right_hand: {carry_to_m",
           "  - right_hand: {wait_s: 0.5}\n  - right_hand: {carry_to_m");
@@ -190,9 +157,108 @@ bool IsName(std::string_view word) {
          word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == word.npos;
 }
 
+/// `word` as a name, if it becomes one by small letters and '_'; else "".
+std::string AsName(std::string word) {
+  for (char& letter : word) {
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    if (letter == '-' || letter == ' ') letter = '_';
+  }
+  return IsName(word) ? word : "";
+}
+
+/// "SKILL/NAME" or "NAME" as typed.
+struct TypedName {
+  std::string skill, name;
+};
+
+tl::expected<TypedName, ExitCode> ReadName(const std::string& typed,
+                                           const CommandContext& context) {
+  const std::size_t slash = typed.find('/');
+  TypedName words{.skill = slash == typed.npos ? "" : typed.substr(0, slash),
+                  .name = slash == typed.npos ? typed : typed.substr(slash + 1)};
+  if (IsName(words.name) && (slash == typed.npos || IsName(words.skill))) return words;
+  const std::string fitting = slash == typed.npos ? AsName(words.name) : "";
+  return tl::unexpected(Complain(
+      context, ExitCode::kBadInput,
+      "'" + typed +
+          "' is not a scenario name; wanted a small letter, then small letters, digits and '_', at "
+          "most 64 in all, like " +
+          (fitting.empty() ? "slide_then_transport" : fitting) +
+          "; a folder may precede it, like slide/slide_then_transport"));
+}
+
+/// What the new scenario starts from: another one, or a template by its name.
+tl::expected<Model, ExitCode> ModelFor(const std::string& name, const ParsedOptions& options,
+                                       const CommandContext& context) {
+  if (options.Has("--like")) {
+    if (options.Has("--verb"))
+      return tl::unexpected(Complain(context, ExitCode::kBadInput,
+                                     "--like starts from a scenario, --verb from a template: give "
+                                     "one of them"));
+    const auto like = FindScenarioOrComplain(options.Text("--like"), context);
+    if (!like) return tl::unexpected(like.error());
+    Result<std::string> read = ReadTextFile(like->path);
+    if (!read) return tl::unexpected(Complain(context, read.error()));
+    return Model{.path = like->path,
+                 .text = std::move(*read),
+                 .skill = like->skill.empty() ? kDefaultSkill : like->skill,
+                 .what = {},
+                 .note = {}};
+  }
+  const std::string verb = options.Has("--verb") ? options.Text("--verb") : "";
+  if (const std::string problem = WhyNoVerb(verb); !problem.empty())
+    return tl::unexpected(Complain(context, ExitCode::kBadInput, "--verb: " + problem));
+  NewScenario made = ComposeScenario(name, verb);
+  const auto path = std::filesystem::path(context.root) / "scenarios" / kDefaultSkill / "name.yaml";
+  return Model{.path = path.string(),
+               .text = std::move(made.text),
+               .skill = kDefaultSkill,
+               .what = std::move(made.what),
+               .note = std::move(made.note)};
+}
+
+/// Says what was written, and what comes next; `id` is what commands call it.
+void SayWhatIsNext(const Model& model, const std::string& path, const std::string& id,
+                   bool in_project, const CommandContext& context) {
+  if (!model.note.empty()) context.err << "note: " << model.note << "\n";
+  context.out << path << "\n";
+  if (!model.what.empty()) context.out << "shows: " << model.what << "\n";
+  context.out << "next: edit it; write what it shows into 'shows' and 'expects' before its first "
+                 "run; then\n";
+  for (const char* command : {"validate", "run", "render"})
+    context.out << "  " << CommandText({command, id}) << "\n";
+  if (!in_project) {
+    context.out
+        << "this folder is in no project, so the file stands alone; a project keeps goldens: "
+        << CommandText({"new", "--project", "DIR"}) << "\n";
+    return;
+  }
+  for (const char* command : {"check", "review"})
+    context.out << "  " << CommandText({command, id}) << "\n";
+  context.out << "  " << CommandText({"accept", id}) << " --reason \"...\"\n";
+}
+
+/// In a folder that is in no project: a file there. It cannot go among the scenarios that ship.
+ExitCode WriteHere(const Model& model, const std::string& name, const CommandContext& context) {
+  namespace fs = std::filesystem;
+  const fs::path path = fs::current_path() / (name + ".yaml");
+  std::error_code error;
+  if (fs::symlink_status(path, error).type() != fs::file_type::not_found)
+    return Complain(context, ExitCode::kBadInput, "this file exists: " + path.string());
+  auto text = Composed(model, path, context);
+  if (!text) return ExitCode::kBadInput;
+  const std::string schema = (fs::path(context.root) / "scenarios/scenario.schema.json").string();
+  if (text->starts_with(kModeline))
+    text->replace(0, kModeline.size(), "# yaml-language-server: $schema=" + schema + "\n");
+  const std::string problem = WriteTextFile(path, *text);
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  SayWhatIsNext(model, path.string(), name + ".yaml", false, context);
+  return ExitCode::kAgrees;
+}
+
 ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--project")) {
-    if (options.Has("name") || options.Has("--like"))
+    if (options.Has("name") || options.Has("--like") || options.Has("--verb"))
       return Complain(context, ExitCode::kBadInput,
                       "--project makes a project, not a scenario: leave out the other words");
     return MakeProject(options.Text("--project"), context);
@@ -201,75 +267,59 @@ ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
     return Complain(context, ExitCode::kBadInput,
                     "the name of the scenario is missing, like 'new cup_is_lifted'; for a project "
                     "of your own: --project DIR");
-  const std::string typed = options.Text("name");
-  const std::size_t slash = typed.find('/');
-  const std::string name = slash == std::string::npos ? typed : typed.substr(slash + 1);
-  const bool has_folder = slash != std::string::npos;
-  if (!IsName(name) || (has_folder && !IsName(typed.substr(0, slash)))) {
-    return Complain(
-        context, ExitCode::kBadInput,
-        "'" + typed +
-            "' is not a scenario name; wanted a small letter, then small letters, digits and '_', "
-            "at most 64 in all, like slide_then_transport; a folder may precede it, like "
-            "slide/slide_then_transport");
-  }
-  namespace fs = std::filesystem;
-  const fs::path scenarios = fs::path(context.root) / "scenarios";
-  Model model{.path = (scenarios / kDefaultSkill / "name.yaml").string()};
-  if (options.Has("--like")) {
-    const auto like = FindScenarioOrComplain(options.Text("--like"), context);
-    if (!like) return like.error();
-    Result<std::string> read = ReadTextFile(like->path);
-    if (!read) return Complain(context, read.error());
-    model = {.path = like->path,
-             .text = std::move(*read),
-             .skill = like->skill.empty() ? kDefaultSkill : like->skill};
-  }
-  const std::string skill = has_folder ? typed.substr(0, slash) : model.skill;
+  const auto typed = ReadName(options.Text("name"), context);
+  if (!typed) return typed.error();
+  const std::string& name = typed->name;
+  const auto model = ModelFor(name, options, context);
+  if (!model) return model.error();
+  const std::string skill = typed->skill.empty() ? model->skill : typed->skill;
   if (skill == kShowsErrors) {
     return Complain(context, ExitCode::kBadInput,
                     "scenarios/invalid/ holds examples of errors, which no command reads as "
                     "scenarios; choose another folder, like " +
                         std::string(kDefaultSkill) + "/" + name);
   }
+  if (!IsOwnProject(context.root) && !IsCalledIn(context.root))
+    return WriteHere(*model, name, context);
   for (const ScenarioFile& scenario : ListScenarios(context.root)) {
     if (scenario.name == name)
       return Complain(context, ExitCode::kBadInput,
                       "a scenario of this name exists: " + scenario.path);
   }
-  const fs::path path = scenarios / skill / (name + ".yaml");
-  const auto text = Composed(model, path, context);
+  const auto path = std::filesystem::path(context.root) / "scenarios" / skill / (name + ".yaml");
+  const auto text = Composed(*model, path, context);
   if (!text) return ExitCode::kBadInput;
   const std::string problem = WriteTextFile(path, *text);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
-  const std::string id = ScenarioId(skill, name);
-  context.out << path.string()
-              << "\nnext: edit it; write what it shows into 'shows' and 'expects' before its "
-                 "first run; then\n";
-  for (const char* command : {"validate", "run", "render", "check", "review"})
-    context.out << "  " << CommandText({command, id}) << "\n";
-  context.out << "  " << CommandText({"accept", id}) << " --reason \"...\"\n";
+  SayWhatIsNext(*model, path.string(), ScenarioId(skill, name), true, context);
   return ExitCode::kAgrees;
 }
 
 }  // namespace
 
 Command NewCommand() {
-  return {.name = "new",
-          .summary = "Write a commented, runnable scenario to start from, or a project",
-          .examples = {"new carton_is_lifted",
-                       "new slide/carton_slides_far --like carton_slides_then_is_transported",
-                       "new --project my_kitchen"},
-          .options = {{.name = "name",
-                       .help = "what the scenario claims, like carton_slides_then_is_lifted; or "
-                               "skill/name"},
-                      {.name = "--like",
-                       .help = "start from this scenario instead of the template",
-                       .placeholder = "SCENARIO"},
-                      {.name = "--project",
-                       .help = "make a project of your own in this new folder (docs/projects.md)",
-                       .placeholder = "DIR"}},
-          .run = RunNew};
+  return {
+      .name = "new",
+      .summary = "Write a commented scenario that does what its name says, or a project",
+      .examples = {"new bottle_is_shaken", "new first_try --verb pour",
+                   "new slide/carton_slides_far --like carton_slides_then_is_transported",
+                   "new --project my_kitchen"},
+      .options = {{.name = "name",
+                   .help =
+                       "what the scenario claims, like bottle_is_shaken; or skill/name. The verb "
+                       "and the thing are taken from it. In a folder of no project the file is "
+                       "written there"},
+                  {.name = "--verb",
+                   .help = fmt::format("what happens, if the name does not say so: {}",
+                                       fmt::join(VerbNames(), ", ")),
+                   .placeholder = "VERB"},
+                  {.name = "--like",
+                   .help = "start from this scenario instead of a template",
+                   .placeholder = "SCENARIO"},
+                  {.name = "--project",
+                   .help = "make a project of your own in this new folder (docs/projects.md)",
+                   .placeholder = "DIR"}},
+      .run = RunNew};
 }
 
 }  // namespace prehend::harness

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// `new NAME` writes a scenario that does what its name says: each verb is played, and its claims
+// hold.
+#include <gtest/gtest.h>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool Has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class New : public testing::Test {
+ protected:
+  New() { WriteFile(folder_ / "prehend.yaml", ""); }
+  ~New() override { fs::remove_all(folder_); }
+
+  static Said In(const fs::path& folder, const std::vector<std::string>& words) {
+    return Prehend(words, {"CI="}, "unset PREHEND_HOME && cd '" + folder.string() + "'");
+  }
+  Said Do(const std::vector<std::string>& words) const { return In(folder_, words); }
+  std::string TextOf(const std::string& name) const {
+    return ReadFile(folder_ / "scenarios/pick_and_place" / (name + ".yaml"));
+  }
+
+  const fs::path folder_ =
+      FreshFolder(testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+/// A name, and what its file must say.
+struct Named {
+  std::string name;
+  std::vector<std::string> says;
+};
+
+TEST_F(New, DoesWhatTheNameSays) {
+  const std::vector<Named> all = {
+      {"cup_is_lifted", {"cup: {class: Cup, mug: ", "no putting_down", "reach: cup}"}},
+      {"carton_is_moved", {"pick_and_place(right_hand, carton)"}},
+      {"red_apple_is_carried", {"red_apple: {class: Apple, sphere: ", "a red apple is picked up"}},
+      {"can_is_slid", {"one sliding(right_hand, can)"}},
+      {"box_is_pushed", {"contact(right_hand, box)", "until: touching(box)"}},
+      {"mug_is_pressed", {"box is pressed"}},
+      {"cup_is_put_onto_a_tray", {"place_on: tray", "supported_by(cup, tray)"}},
+      {"ball_is_put_into_a_bowl", {"place_on: bowl", "supported_by(ball, bowl)"}},
+      {"cubes_are_stacked", {"place_on: second_cube"}},
+      {"beans_are_poured_from_a_mug", {"pouring(right_hand, mug, bowl)"}},
+      {"bottle_is_handed_over", {"grasping(left_hand, bottle)"}},
+      {"drawer_is_opened", {"opened_by(drawer, right_hand)"}},
+      {"drawer_is_shut", {"closed_by(drawer, right_hand)"}},
+      {"door_is_opened", {"opened_by(door, right_hand)"}},
+      {"door_is_closed", {"closed_by(door, right_hand)"}},
+      {"table_is_wiped_with_a_sponge", {"sponge: {class: Sponge"}},
+      {"bottle_is_shaken", {"bottle: {class: Bottle", "repeat: 3"}},
+      {"soup_is_stirred", {"stirring(right_hand, spoon, pot)"}},
+      {"carton_is_turned", {"turn_by_deg: [0, 0, 90]"}},
+      {"can_is_dropped", {"no putting_down"}},
+      {"ball_is_thrown", {"relative_to: hand"}},
+  };
+  for (const Named& named : all) {
+    const Said made = Do({"new", named.name});
+    ASSERT_EQ(made.exit_code, 0) << named.name << "\n" << made.err;
+    for (const std::string& part : named.says)
+      EXPECT_TRUE(Has(TextOf(named.name), part)) << named.name << ": " << part;
+  }
+  const Said checked = Do({"check", "--no-pictures"});
+  EXPECT_EQ(checked.exit_code, 5) << "pending, and no claim is wrong\n" << checked.out;
+  EXPECT_FALSE(Has(checked.out, "failed  ")) << checked.out;
+}
+
+TEST_F(New, SaysWhatTheNameLeftOpen) {
+  const Said no_verb = Do({"new", "first_try"});
+  EXPECT_TRUE(Has(no_verb.err,
+                  "note: the name has no verb that 'new' knows, so this is 'carry'; "
+                  "choose by --verb: carry, drop, hand_over, lift, "))
+      << no_verb.err;
+  EXPECT_EQ(Do({"new", "second_try", "--verb", "shake"}).err,
+            "note: the name has no thing that 'new' knows, so this is about a bottle; known: "
+            "bottle, carton, milk, can, jar, box\n");
+  EXPECT_EQ(Do({"new", "ball_is_shaken"}).err,
+            "note: 'shake' is written for bottle, carton, milk, can, jar, box only, so this is "
+            "about a bottle\n");
+  EXPECT_EQ(Do({"new", "cup_is_lifted"}).err, "");
+  const Said wrong = Do({"new", "third_try", "--verb", "shakes"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_TRUE(wrong.err.starts_with(
+      "prehend: --verb: no verb is called 'shakes'; did you mean 'shake'? known: carry, drop, "))
+      << wrong.err;
+  EXPECT_EQ(Do({"new", "Cup_is-Lifted"}).err,
+            "prehend: 'Cup_is-Lifted' is not a scenario name; wanted a small letter, then small "
+            "letters, digits and '_', at most 64 in all, like cup_is_lifted; a folder may precede "
+            "it, like slide/slide_then_transport\n");
+  EXPECT_EQ(Do({"new", "a", "--verb", "shake", "--like", "milk_carton_wrap"}).err,
+            "prehend: --like starts from a scenario, --verb from a template: give one of them\n");
+}
+
+TEST_F(New, WritesIntoThePresentFolderOutsideOfAProject) {
+  fs::remove(folder_ / "prehend.yaml");
+  const fs::path shipped =
+      fs::path(PREHEND_SOURCE_DIR) / "scenarios/pick_and_place/jar_of_a_stranger_is_lifted.yaml";
+  const Said made = Do({"new", "jar_of_a_stranger_is_lifted"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_FALSE(fs::exists(shipped));
+  EXPECT_TRUE(fs::exists(folder_ / "jar_of_a_stranger_is_lifted.yaml"));
+  EXPECT_TRUE(Has(made.out,
+                  "this folder is in no project, so the file stands alone; a project keeps "
+                  "goldens: prehend new --project DIR\n"))
+      << made.out;
+  EXPECT_TRUE(Has(made.out, "  prehend run jar_of_a_stranger_is_lifted.yaml\n")) << made.out;
+  const Said run = Do({"run", "jar_of_a_stranger_is_lifted.yaml"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Has(run.out, "picking_up")) << run.out;
+  const Said again = Do({"new", "jar_of_a_stranger_is_lifted"});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_TRUE(Has(again.err, "prehend: this file exists: ")) << again.err;
+}
+
+}  // namespace
+}  // namespace prehend::house
