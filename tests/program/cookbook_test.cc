@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// docs/script-cookbook.md: each scenario on the page is read and played, and its claims hold.
+#include <gtest/gtest.h>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The YAML blocks of a page that are whole scenarios, by name.
+std::vector<std::pair<std::string, std::string>> ScenariosOn(const fs::path& page) {
+  constexpr std::string_view kBegin = "```yaml\nscenario: ", kEnd = "\n```";
+  const std::string text = ReadFile(page);
+  std::vector<std::pair<std::string, std::string>> found;
+  for (std::size_t at = text.find(kBegin); at != std::string::npos; at = text.find(kBegin, at)) {
+    const std::size_t begin = at + std::string_view("```yaml\n").size();
+    at = text.find(kEnd, begin);
+    const std::string block = text.substr(begin, at - begin + 1);
+    const std::size_t name = std::string_view("scenario: ").size();
+    found.emplace_back(block.substr(name, block.find('\n') - name), block);
+  }
+  return found;
+}
+
+TEST(Cookbook, EachScenarioShowsWhatItClaims) {
+  const fs::path folder = FreshFolder("cookbook");
+  WriteFile(folder / "prehend.yaml", "");
+  const auto scenarios = ScenariosOn(fs::path(PREHEND_SOURCE_DIR) / "docs/script-cookbook.md");
+  EXPECT_GE(scenarios.size(), 10u);
+  for (const auto& [name, text] : scenarios)
+    WriteFile(folder / "scenarios/cookbook" / (name + ".yaml"), text);
+  const Said checked = Prehend({"check", "--no-pictures", "--time-limit-s", "600"}, {"CI="},
+                               "unset PREHEND_HOME && cd '" + folder.string() + "'");
+  EXPECT_EQ(checked.exit_code, 5) << "pending, and no claim is wrong\n"
+                                  << checked.out << checked.err;
+  EXPECT_EQ(checked.out.find("failed  "), std::string::npos) << checked.out;
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace prehend::house
