@@ -41,6 +41,7 @@ std::vector<Command> Commands() {
           Limited(ExplainCommand(), kOne_s),
           Limited(TracksCommand(), kOne_s),
           Limited(EpisodesCommand(), kMany_s),
+          Limited(MigrateCommand(), kMany_s),
           Limited(ReplayCommand(), kMany_s),
           Limited(ReportCommand(), kMany_s),
           Limited(SweepCommand(), kMany_s),

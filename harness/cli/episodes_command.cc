@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend episodes: what episode files hold. prehend replay: their frames, checked against their
-// state hashes. Tested by tests/program/episodes_test.cc
+// state hashes. prehend migrate: files of an older version. Tested by
+// tests/program/episodes_test.cc and tests/harness/episodes/migrate_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 
 #include "harness/command/command.h"
 #include "harness/episodes/episode_file.h"
+#include "harness/episodes/migrate.h"
 #include "harness/episodes/resegment_many.h"
 #include "harness/timeline/event_text.h"
 
@@ -135,6 +137,36 @@ Command ReplayCommand() {
                        .rule = IntegersFrom(1, kMaxJobs)},
                       {.name = "--json", .help = "print a JSON array instead of text"}},
           .run = RunReplay};
+}
+
+namespace {
+
+ExitCode RunMigrate(const ParsedOptions& options, const CommandContext& context) {
+  const std::string& output = options.Text("--output");
+  const auto migrated = episodes::MigrateFile(options.Text("file"), output, context.root);
+  if (!migrated) return Complain(context, migrated.error());
+  context.out << fmt::format("{}: {} episode{}, {} bytes ({} before)\n", output, migrated->episodes,
+                             migrated->episodes == 1 ? "" : "s", migrated->to_bytes,
+                             migrated->from_bytes);
+  return ExitCode::kAgrees;
+}
+
+}  // namespace
+
+Command MigrateCommand() {
+  return {.name = "migrate",
+          .summary = "Write an episode file of an older version as one of this version",
+          .examples = {"migrate old.episodes -o new.episodes"},
+          .options = {{.name = "file",
+                       .help = "an episode file that other commands refuse as too old",
+                       .required = true},
+                      {.name = "--output",
+                       .help = "the new file; the old one stays as it is",
+                       .placeholder = "FILE.episodes",
+                       .other_name = "-o",
+                       .required = true,
+                       .is_output = true}},
+          .run = RunMigrate};
 }
 
 }  // namespace prehend::harness

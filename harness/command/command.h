@@ -58,6 +58,7 @@ Command ScoreCommand();
 Command ExplainCommand();
 Command TracksCommand();
 Command EpisodesCommand();
+Command MigrateCommand();
 Command ReplayCommand();
 Command ReportCommand();
 Command QueryCommand();

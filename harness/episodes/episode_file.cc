@@ -48,8 +48,16 @@ EpisodeFile::~EpisodeFile() = default;
 EpisodeFile::EpisodeFile(EpisodeFile&&) noexcept = default;
 
 Result<EpisodeFile> EpisodeFile::Open(const std::string& path) {
+  return OpenVersion(path, kSchemaVersion);
+}
+
+Result<EpisodeFile> EpisodeFile::OpenOld(const std::string& path) {
+  return OpenVersion(path, kOldestVersion);
+}
+
+Result<EpisodeFile> EpisodeFile::OpenVersion(const std::string& path, std::int64_t version) {
   try {
-    EpisodeFile file(path, std::make_unique<State>(State{OpenToRead(path)}));
+    EpisodeFile file(path, std::make_unique<State>(State{OpenToRead(path, version)}));
     Statement find = file.state_->database.Prepare(
         "SELECT episode.id, episode.uuid, scenario, status, grammar, ticks_per_second,"
         " CASE status WHEN 'recording' THEN coalesce((SELECT max(last_tick) FROM chunk WHERE"

@@ -58,6 +58,8 @@ struct KeptTask {
 class EpisodeFile {
  public:
   static Result<EpisodeFile> Open(const std::string& path);
+  /// A file of version 1, to be migrated.
+  static Result<EpisodeFile> OpenOld(const std::string& path);
   ~EpisodeFile();
   EpisodeFile(EpisodeFile&&) noexcept;
 
@@ -83,6 +85,7 @@ class EpisodeFile {
   friend class EpisodeFrames;
   struct State;
   EpisodeFile(std::string path, std::unique_ptr<State> state);
+  static Result<EpisodeFile> OpenVersion(const std::string& path, std::int64_t version);
 
   std::string path_;
   std::unique_ptr<State> state_;

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "harness/base/content_hash.h"
+#include "harness/base/shell_quote.h"
 
 namespace prehend::harness::episodes {
 namespace {
@@ -135,17 +136,25 @@ bool IsEpisodeFile(const std::string& path) {
 
 namespace {
 
-void RefuseOthers(const Database& database) {
+void RefuseOthers(const Database& database, const std::string& path, std::int64_t supported) {
   const std::int64_t application = database.Number("PRAGMA application_id");
   if (application != kApplicationId)
     throw DatabaseError("is an SQLite database of another program, not an episode file");
   const std::int64_t version = database.Number("PRAGMA user_version");
   if (version > kSchemaVersion) {
     throw DatabaseError(fmt::format(
-        "has version {} of the format; this program reads versions up to {}, a newer one is needed",
+        "has version {} of the format; this program reads version {}, a newer one is needed",
         version, kSchemaVersion));
   }
   if (version < 1) throw DatabaseError("is damaged: its format has no version");
+  if (version > supported)
+    throw DatabaseError(fmt::format("has version {} of the format already", version));
+  if (version < supported) {
+    throw DatabaseError(
+        fmt::format("has version {} of the format, this program reads version {}; '{}' writes a "
+                    "file of it that can be read",
+                    version, supported, CommandText({"migrate", path, "-o", "NEW.episodes"})));
+  }
   // Tables and columns that a program reads must be there; what others added is left alone.
   constexpr const char* kColumns =
       "SELECT tables.name, columns.name FROM sqlite_master AS tables,"
@@ -184,11 +193,11 @@ Database OpenToWrite(const std::string& path) {
                                  kSchemaVersion));
   }
   transaction.Commit();
-  RefuseOthers(database);
+  RefuseOthers(database, path, kSchemaVersion);
   return database;
 }
 
-Database OpenToRead(const std::string& path) {
+Database OpenToRead(const std::string& path, std::int64_t wanted) {
   if (const std::string why = WhyNotEpisodes(path); !why.empty()) throw DatabaseError(why);
   std::error_code error;
   if (fs::exists(path + "-journal", error)) {
@@ -203,7 +212,7 @@ Database OpenToRead(const std::string& path) {
     }
   }
   Database database(path, Database::Mode::kRead);
-  RefuseOthers(database);
+  RefuseOthers(database, path, wanted);
   return database;
 }
 

@@ -11,7 +11,8 @@
 namespace prehend::harness::episodes {
 
 inline constexpr std::int64_t kApplicationId = 0x70726568;  ///< "preh"
-inline constexpr std::int64_t kSchemaVersion = 1;
+inline constexpr std::int64_t kSchemaVersion = 2;
+inline constexpr std::int64_t kOldestVersion = 1;  ///< that can be migrated
 /// A part's row is its chunk's times this, plus the number of the part.
 inline constexpr std::int64_t kPartsPerChunk = 1 << 20;
 
@@ -23,7 +24,7 @@ bool IsEpisodeFile(const std::string& path);
 Database OpenToWrite(const std::string& path);
 
 /// Opens a file of this version for reading. Throws DatabaseError with the reason why it is none.
-Database OpenToRead(const std::string& path);
+Database OpenToRead(const std::string& path, std::int64_t version = kSchemaVersion);
 
 /// A random one (version 4, RFC 9562).
 std::string NewUuid();

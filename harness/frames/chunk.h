@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -65,7 +66,7 @@ class ChunkWriter {
   void AddLinks(const physics::Snapshot& snapshot);
   void AddResting(const physics::Snapshot& snapshot);
   std::string PackedTrack(std::size_t number);
-  std::string PackedContacts(const std::vector<Word>& counts, const ContactPoints& points);
+  std::string PackedContacts();
   std::string PackedResting();
   std::string PackedLinks(std::size_t hand);
   std::string PackedHead(const std::vector<bool>& has_links);
@@ -81,6 +82,7 @@ class ChunkWriter {
   std::vector<Word> row_;
   std::vector<Word> contact_counts_;
   ContactPoints contacts_;
+  std::vector<physics::Pose> owners_;  ///< of the contact points, see OwnerOf()
 
   std::shared_ptr<const ContactPoints> resting_;
   bool has_resting_ = false;
@@ -106,7 +108,10 @@ class PartReader {
     std::vector<std::size_t> begins;  ///< per frame, and the end
     ContactPoints points;
   };
-  std::optional<Contacts> ContactsOf(std::string_view packed);
+  /// `pose`: of a side in a frame of the chunk that has `frames` of them.
+  std::optional<Contacts> ContactsOf(
+      std::string_view packed, std::size_t frames,
+      const std::function<physics::Pose(std::size_t frame, const physics::ContactSide&)>& pose);
   struct RestingFrom {
     std::size_t frame = 0;
     std::shared_ptr<const ContactPoints> points;

@@ -17,12 +17,6 @@ bool IsSide(const FrameLayout& layout, const physics::ContactSide& side) {
          static_cast<int>(layout.hands[static_cast<std::size_t>(side.hand)].links.size());
 }
 
-bool AreSides(const FrameLayout& layout, const ContactPoints& points) {
-  return std::ranges::all_of(points, [&](const physics::ContactPoint& point) {
-    return IsSide(layout, point.a) && IsSide(layout, point.b);
-  });
-}
-
 /// Takes the number of a chunk's frames.
 std::optional<std::size_t> TakeFrames(std::string_view& bytes) {
   const std::optional<Word> frames = TakeVarint(bytes);
@@ -71,11 +65,19 @@ std::optional<Columns> PartReader::Track(std::size_t track, std::string_view pac
                 {.dt_s = IsRigid(layout_, track) ? 1.0 / layout_.rate_hz : 0});
 }
 
-std::optional<PartReader::Contacts> PartReader::ContactsOf(std::string_view packed) {
+std::optional<PartReader::Contacts> PartReader::ContactsOf(
+    std::string_view packed, std::size_t frames,
+    const std::function<physics::Pose(std::size_t frame, const physics::ContactSide&)>& pose) {
   auto bytes = compressor_.Unpack(packed, kMostPartBytes);
   if (!bytes) return std::nullopt;
-  auto decoded = DecodeContacts(*bytes);
-  if (!decoded || !AreSides(layout_, decoded->points)) return std::nullopt;
+  auto decoded = DecodeContacts(
+      *bytes, {.version = layout_.version,
+               .has = [&](const physics::ContactSide& side) { return IsSide(layout_, side); },
+               .pose =
+                   [&](std::size_t frame, const physics::ContactSide& side) {
+                     return frame < frames ? pose(frame, side) : physics::Pose();
+                   }});
+  if (!decoded || decoded->counts.size() != frames) return std::nullopt;
   Contacts contacts{.begins = {0}, .points = std::move(decoded->points)};
   for (const Word count : decoded->counts)
     contacts.begins.push_back(contacts.begins.back() + static_cast<std::size_t>(count));
@@ -94,8 +96,11 @@ std::optional<std::vector<PartReader::RestingFrom>> PartReader::Resting(std::str
     RestingFrom& from = all.emplace_back();
     from.frame = static_cast<std::size_t>(*frame);
     if (*has == 0) continue;
-    auto decoded = DecodeContacts(*bytes);
-    if (!decoded || !AreSides(layout_, decoded->points)) return std::nullopt;
+    auto decoded = DecodeContacts(
+        *bytes, {.version = layout_.version,
+                 .has = [&](const physics::ContactSide& side) { return IsSide(layout_, side); },
+                 .pose = [](std::size_t, const physics::ContactSide&) { return physics::Pose(); }});
+    if (!decoded) return std::nullopt;
     from.points = std::make_shared<const ContactPoints>(std::move(decoded->points));
   }
   return all;

@@ -31,6 +31,12 @@ bool SamePoints(const ContactPoints* a, const ContactPoints* b) {
   return true;
 }
 
+const physics::Pose& PoseOf(const physics::Snapshot& snapshot, const physics::ContactSide& side) {
+  if (side.hand < 0) return snapshot.bodies[static_cast<std::size_t>(side.body)].X_WB;
+  const physics::HandState& hand = snapshot.hands[static_cast<std::size_t>(side.hand)];
+  return side.link < 0 ? hand.palm.X_WB : hand.X_WL[static_cast<std::size_t>(side.link)];
+}
+
 }  // namespace
 
 ChunkWriter::ChunkWriter(FrameLayout layout)
@@ -52,6 +58,8 @@ void ChunkWriter::Add(const physics::Snapshot& snapshot) {
   AddResting(snapshot);
   contact_counts_.push_back(snapshot.contacts.size());
   contacts_.insert(contacts_.end(), snapshot.contacts.begin(), snapshot.contacts.end());
+  for (const physics::ContactPoint& point : snapshot.contacts)
+    owners_.push_back(PoseOf(snapshot, OwnerOf(point)));
   words_ += 8 * snapshot.contacts.size();
   ticks_.push_back(snapshot.tick);
   last_tick_ = snapshot.tick;
@@ -84,13 +92,14 @@ void ChunkWriter::AddLinks(const physics::Snapshot& snapshot) {
   for (std::size_t h = 0; h < links_.size(); ++h) {
     Links& links = links_[h];
     const physics::HandState& hand = snapshot.hands[h];
-    links.guess.Guess(hand.palm.X_WB, hand.joints, links.guessed);
-    for (std::size_t i = 0; i < links.guessed.size(); ++i) {
-      const physics::Pose &guessed = links.guessed[i], &found = hand.X_WL[i];
+    const auto correct = [&](std::size_t link, physics::Pose& guessed) {
+      const physics::Pose& found = hand.X_WL[link];
       for (int k = 0; k < 3; ++k) links.off.push_back(OffBy(found.p_m[k], guessed.p_m[k]));
       for (int k = 0; k < 4; ++k)
         links.off.push_back(OffBy(found.q.coeffs()[k], guessed.q.coeffs()[k]));
-    }
+      guessed = found;
+    };
+    links.guess.Guess(hand.palm.X_WB, hand.joints, links.guessed, correct);
   }
 }
 
@@ -119,8 +128,7 @@ Chunk ChunkWriter::Take() {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (tracks_[i].active) chunk.parts.push_back({FrameLayout::PartOfTrack(i), PackedTrack(i)});
   }
-  if (!contacts_.empty())
-    chunk.parts.push_back({layout_.Contacts(), PackedContacts(contact_counts_, contacts_)});
+  if (!contacts_.empty()) chunk.parts.push_back({layout_.Contacts(), PackedContacts()});
   if (!new_resting_.empty()) chunk.parts.push_back({layout_.Resting(), PackedResting()});
   for (std::size_t h = 0; h < links_.size(); ++h) {
     if (has_links[h]) chunk.parts.push_back({layout_.PartOfLinks(h), PackedLinks(h)});
@@ -133,6 +141,7 @@ Chunk ChunkWriter::Take() {
   ticks_.clear();
   contact_counts_.clear();
   contacts_.clear();
+  owners_.clear();
   new_resting_.clear();
   words_ = 0;
   ++number_;
@@ -160,10 +169,9 @@ std::string ChunkWriter::PackedTrack(std::size_t number) {
   return std::string(compressor_.Pack(bytes));
 }
 
-std::string ChunkWriter::PackedContacts(const std::vector<Word>& counts,
-                                        const ContactPoints& points) {
+std::string ChunkWriter::PackedContacts() {
   std::string bytes;
-  EncodeContacts(counts, points, bytes);
+  EncodeContacts(contact_counts_, contacts_, owners_, bytes);
   return std::string(compressor_.Pack(bytes));
 }
 
@@ -173,7 +181,7 @@ std::string ChunkWriter::PackedResting() {
   for (const auto& [frame, points] : new_resting_) {
     AppendVarint(frame, bytes);
     AppendVarint(points ? 1 : 0, bytes);
-    if (points) EncodeContacts({points->size()}, *points, bytes);
+    if (points) EncodeContacts({points->size()}, *points, {}, bytes);
   }
   return std::string(compressor_.Pack(bytes));
 }

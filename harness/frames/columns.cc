@@ -35,16 +35,6 @@ Word AsWord(double value) { return std::bit_cast<Word>(value); }
 Word Ordered(Word word) { return word & kSignBit ? ~word : word | kSignBit; }
 Word FromOrdered(Word word) { return word & kSignBit ? word & ~kSignBit : ~word; }
 
-/// Signed distances near 0, of either sign, become small numbers.
-Word Distance(Word word, Word guess) {
-  const Word difference = Ordered(word) - Ordered(guess);
-  return (difference << 1) ^ (difference & kSignBit ? ~Word{0} : Word{0});
-}
-Word AtDistance(Word guess, Word distance) {
-  const Word difference = (distance >> 1) ^ (distance & 1 ? ~Word{0} : Word{0});
-  return FromOrdered(Ordered(guess) + difference);
-}
-
 /// Of each row the one that it continues, or -1.
 class Order {
  public:
@@ -394,6 +384,15 @@ class Decoder {
 };
 
 }  // namespace
+
+Word Distance(Word word, Word guess) {
+  const Word difference = Ordered(word) - Ordered(guess);
+  return (difference << 1) ^ (difference & kSignBit ? ~Word{0} : Word{0});
+}
+Word AtDistance(Word guess, Word distance) {
+  const Word difference = (distance >> 1) ^ (distance & 1 ? ~Word{0} : Word{0});
+  return FromOrdered(Ordered(guess) + difference);
+}
 
 void Encode(const Columns& columns, const Guesses& guesses, std::string& bytes) {
   if (columns.rows == 0) return;

@@ -36,6 +36,11 @@ struct Columns {
   }
 };
 
+/// How many representable doubles lie between a word and its guess, small for both signs.
+Word Distance(Word word, Word guess);
+/// The word again.
+Word AtDistance(Word guess, Word distance);
+
 /// What is known of the columns before they are decoded.
 struct Guesses {
   /// Per row the earlier row that it continues, or -1. Empty: the row before it.

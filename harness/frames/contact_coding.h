@@ -4,6 +4,7 @@
 // tests/harness/frames/frames_test.cc
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,16 +18,30 @@ namespace prehend::harness::episodes {
 /// Bit by bit.
 bool SamePoint(const physics::ContactPoint& a, const physics::ContactPoint& b);
 
-/// `counts`: of each frame, the number of its points.
+/// The side with which a point is guessed to move.
+const physics::ContactSide& OwnerOf(const physics::ContactPoint& point);
+
+/// `counts`: of each frame, the number of its points. `owners`: of each point, the pose of its
+/// owner in its frame; for a single frame, nothing.
 void EncodeContacts(const std::vector<Word>& counts,
-                    const std::vector<physics::ContactPoint>& points, std::string& bytes);
+                    const std::vector<physics::ContactPoint>& points,
+                    const std::vector<physics::Pose>& owners, std::string& bytes);
 
 struct DecodedContacts {
   std::vector<Word> counts;
   std::vector<physics::ContactPoint> points;
 };
-/// Takes them off the front of `bytes`; nothing if those are damaged. Indices are not checked.
-std::optional<DecodedContacts> DecodeContacts(std::string_view& bytes);
+
+/// What has to be known to decode them.
+struct ContactWorld {
+  int version = 2;  ///< of the coding
+  std::function<bool(const physics::ContactSide&)> has = {};
+  /// Of a side that is there, in a frame that was counted.
+  std::function<physics::Pose(std::size_t frame, const physics::ContactSide&)> pose = {};
+};
+
+/// Takes them off the front of `bytes`; nothing if those are damaged.
+std::optional<DecodedContacts> DecodeContacts(std::string_view& bytes, const ContactWorld& world);
 
 /// How many representable numbers lie between a value and its guess, small for both signs; and the
 /// value again.

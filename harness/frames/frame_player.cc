@@ -2,6 +2,8 @@
 // See harness/frames/frame_player.h. Tested by tests/harness/frames/frames_test.cc
 #include "harness/frames/frame_player.h"
 
+#include <algorithm>
+
 namespace prehend::harness::episodes {
 
 FramePlayer::FramePlayer(FrameLayout layout)
@@ -9,7 +11,9 @@ FramePlayer::FramePlayer(FrameLayout layout)
       parts_(layout_),
       tracks_(layout_.tracks()),
       links_(layout_.hands.size()),
-      now_(BlankSnapshot(layout_)) {
+      hand_poses_(layout_.hands.size()),
+      now_(BlankSnapshot(layout_)),
+      aside_(now_) {
   for (const physics::HandModel& model : layout_.hands) guesses_.emplace_back(model);
 }
 
@@ -39,6 +43,7 @@ bool FramePlayer::Open(const FetchPart& fetch, bool follows) {
     links_[hand] = parts_.Links(hand, *bytes);
     if (!links_[hand] || links_[hand]->rows != head_.ticks.size()) return false;
   }
+  for (HandPoses& hand : hand_poses_) hand.known.assign(head_.ticks.size(), false);
   return OpenContacts(fetch) && OpenResting(fetch, follows);
 }
 
@@ -65,8 +70,19 @@ bool FramePlayer::OpenContacts(const FetchPart& fetch) {
   if (!head_.has_contacts) return true;
   const auto bytes = fetch(0, layout_.Contacts());
   if (!bytes) return false;
-  contacts_ = parts_.ContactsOf(*bytes);
-  return contacts_ && contacts_->begins.size() == head_.ticks.size() + 1;
+  contacts_ = parts_.ContactsOf(
+      *bytes, head_.ticks.size(),
+      [&](std::size_t frame, const physics::ContactSide& side) { return PoseOf(frame, side); });
+  return contacts_.has_value();
+}
+
+physics::Pose FramePlayer::PoseOf(std::size_t frame, const physics::ContactSide& side) {
+  if (side.hand >= 0)
+    return PosesOf(static_cast<std::size_t>(side.hand),
+                   frame)[static_cast<std::size_t>(side.link < 0 ? 0 : side.link + 1)];
+  const auto body = static_cast<std::size_t>(side.body);
+  if (tracks_[body]) WriteRow(layout_, body, *tracks_[body], frame, aside_);
+  return (tracks_[body] ? aside_ : now_).bodies[body].X_WB;
 }
 
 bool FramePlayer::OpenResting(const FetchPart& fetch, bool follows) {
@@ -108,18 +124,31 @@ const physics::Snapshot* FramePlayer::Show(std::size_t frame, bool links) {
     if (from.frame <= frame) now_.resting = from.points;
   }
   for (std::size_t hand = 0; links && hand < layout_.hands.size(); ++hand) {
-    if (!ShowLinks(hand, frame)) return nullptr;
+    const auto poses = PosesOf(hand, frame).subspan(1);
+    now_.hands[hand].X_WL.assign(poses.begin(), poses.end());
   }
   return &now_;
 }
 
-bool FramePlayer::ShowLinks(std::size_t hand, std::size_t frame) {
-  physics::HandState& state = now_.hands[hand];
-  guesses_[hand].Guess(state.palm.X_WB, state.joints, state.X_WL);
-  if (!links_[hand]) return true;
-  for (std::size_t link = 0; link < state.X_WL.size(); ++link)
-    AddOff(*links_[hand], frame, link, state.X_WL[link]);
-  return true;
+std::span<const physics::Pose> FramePlayer::PosesOf(std::size_t hand, std::size_t frame) {
+  HandPoses& kept = hand_poses_[hand];
+  const std::size_t width = 1 + guesses_[hand].size();
+  kept.poses.resize(std::max(kept.poses.size(), width * kept.known.size()));
+  const std::span<physics::Pose> poses = std::span(kept.poses).subspan(width * frame, width);
+  if (kept.known[frame]) return poses;
+  kept.known[frame] = true;
+  const std::size_t track = layout_.FirstHand() + hand;
+  if (tracks_[track]) WriteRow(layout_, track, *tracks_[track], frame, aside_);
+  const physics::HandState& state = (tracks_[track] ? aside_ : now_).hands[hand];
+  poses.front() = state.palm.X_WB;
+  const auto correct = [&](std::size_t link, physics::Pose& pose) {
+    if (links_[hand]) AddOff(*links_[hand], frame, link, pose);
+  };
+  const bool old = layout_.version == 1;
+  guesses_[hand].Guess(state.palm.X_WB, state.joints, poses.subspan(1),
+                       old ? LinkGuess::Correction() : correct);
+  for (std::size_t link = 0; old && link + 1 < width; ++link) correct(link, poses[link + 1]);
+  return poses;
 }
 
 }  // namespace prehend::harness::episodes

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,7 +40,9 @@ class FramePlayer {
   bool OpenTrack(const FetchPart& fetch, std::size_t track, bool follows);
   bool OpenContacts(const FetchPart& fetch);
   bool OpenResting(const FetchPart& fetch, bool follows);
-  bool ShowLinks(std::size_t hand, std::size_t frame);
+  /// The palm and the links of a hand in a frame, computed once.
+  std::span<const physics::Pose> PosesOf(std::size_t hand, std::size_t frame);
+  physics::Pose PoseOf(std::size_t frame, const physics::ContactSide& side);
 
   FrameLayout layout_;
   PartReader parts_;
@@ -50,7 +53,13 @@ class FramePlayer {
   std::vector<PartReader::RestingFrom> resting_;
   std::vector<std::optional<Columns>> links_;
   std::vector<LinkGuess> guesses_;
+  struct HandPoses {
+    std::vector<bool> known;           ///< by frame
+    std::vector<physics::Pose> poses;  ///< frame after frame
+  };
+  std::vector<HandPoses> hand_poses_;
   physics::Snapshot now_;
+  physics::Snapshot aside_;  ///< for hands at other frames
 };
 
 }  // namespace prehend::harness::episodes

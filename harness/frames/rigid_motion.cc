@@ -18,15 +18,6 @@ Turn Product(const Turn& a, const Turn& b) {
       a.w * b.z + a.z * b.w + a.x * b.y - a.y * b.x, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
 }
 
-Turn Inverse(const Turn& q) { return {-q.x, -q.y, -q.z, q.w}; }
-
-Vector3 Rotated(const Turn& q, const Vector3& v) {
-  const Turn half = {q.w * v.x + q.y * v.z - q.z * v.y, q.w * v.y + q.z * v.x - q.x * v.z,
-                     q.w * v.z + q.x * v.y - q.y * v.x, -q.x * v.x - q.y * v.y - q.z * v.z};
-  const Turn all = Product(half, Inverse(q));
-  return {all.x, all.y, all.z};
-}
-
 Vector3 Sum(const Vector3& a, const Vector3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 
 Turn AroundAxis(const Vector3& axis, double angle) {
@@ -63,10 +54,19 @@ Turn ThroughMatrix(const Turn& q) {
   return {values[0], values[1], values[2], values[3]};
 }
 
+}  // namespace
+
 Turn ToTurn(const Eigen::Quaterniond& q) { return {q.x(), q.y(), q.z(), q.w()}; }
 Vector3 ToVector3(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-}  // namespace
+Turn Inverse(const Turn& q) { return {-q.x, -q.y, -q.z, q.w}; }
+
+Vector3 Rotated(const Turn& q, const Vector3& v) {
+  const Turn half = {q.w * v.x + q.y * v.z - q.z * v.y, q.w * v.y + q.z * v.x - q.x * v.z,
+                     q.w * v.z + q.x * v.y - q.y * v.x, -q.x * v.x - q.y * v.y - q.z * v.z};
+  const Turn all = Product(half, Inverse(q));
+  return {all.x, all.y, all.z};
+}
 
 Turn Turned(const Turn& before, const Vector3& w_rad_per_s, double dt_s) {
   const Vector3& w = w_rad_per_s;
@@ -102,7 +102,7 @@ LinkGuess::LinkGuess(const physics::HandModel& model) : turns_(model.links.size(
 }
 
 void LinkGuess::Guess(const physics::Pose& X_WPalm, const std::vector<double>& joints,
-                      std::vector<physics::Pose>& X_WL) {
+                      std::span<physics::Pose> X_WL, const Correction& correct) {
   const Turn palm = Inverse(ToTurn(X_WPalm.q));
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
@@ -121,6 +121,7 @@ void LinkGuess::Guess(const physics::Pose& X_WPalm, const std::vector<double>& j
     X_WL[i].p_m = {from.x() + step.x, from.y() + step.y, from.z() + step.z};
     const Turn shown = ThroughMatrix(world);
     X_WL[i].q = Eigen::Quaterniond(shown.w, shown.x, shown.y, shown.z);
+    if (correct) correct(i, X_WL[i]);
   }
 }
 

@@ -4,6 +4,8 @@
 // tests/harness/frames/columns_test.cc
 #pragma once
 
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "physics/scene/hand_model.h"
@@ -20,6 +22,11 @@ struct Turn {
   double x = 0, y = 0, z = 0, w = 1;
 };
 
+Turn ToTurn(const Eigen::Quaterniond& q);
+Vector3 ToVector3(const Eigen::Vector3d& v);
+Turn Inverse(const Turn& q);
+Vector3 Rotated(const Turn& q, const Vector3& v);
+
 /// The rotation after one more `dt_s` at this angular velocity (the exponential map).
 Turn Turned(const Turn& before, const Vector3& w_rad_per_s, double dt_s);
 
@@ -28,9 +35,11 @@ class LinkGuess {
  public:
   explicit LinkGuess(const physics::HandModel& model);
   std::size_t size() const { return links_.size(); }
+  /// What is known of a link's pose after all, once it is guessed; the links on it follow that.
+  using Correction = std::function<void(std::size_t link, physics::Pose& X_WL)>;
   /// `joints`: one per link. `X_WL`: as many poses.
   void Guess(const physics::Pose& X_WPalm, const std::vector<double>& joints,
-             std::vector<physics::Pose>& X_WL);
+             std::span<physics::Pose> X_WL, const Correction& correct = {});
 
  private:
   struct Link {
