@@ -18,6 +18,10 @@ void BulletDynamics::updateAabbs() {
   }
 }
 
+void BulletDynamics::predictUnconstraintMotion(btScalar dt_s) {
+  btDiscreteDynamicsWorld::predictUnconstraintMotion(dt_s);
+}
+
 void BulletDynamics::SetTightBox(btCollisionObject& object) {
   btVector3 least, most;
   object.getCollisionShape()->getAabb(object.getWorldTransform(), least, most);

@@ -21,6 +21,8 @@ class BulletDynamics final : public btMultiBodyDynamicsWorld {
   using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
 
   void updateAabbs() override;
+  /// Without Bullet's prediction of multibodies, which only continuous collision detection reads.
+  void predictUnconstraintMotion(btScalar dt_s) override;
   /// Whether the last step woke a body.
   bool woke_any() const { return woke_any_; }
 

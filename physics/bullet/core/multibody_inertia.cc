@@ -57,14 +57,24 @@ void Invert(btScalar* matrix, const int* parents, std::size_t n, btScalar* inver
 }  // namespace
 
 void MultibodyInertia::Compute(const btMultiBody& multibody) {
-  ArrangeJoints(multibody);
+  if (!IsArranged(multibody)) ArrangeJoints(multibody);
   ComputeMotions(multibody);
   ComputeInertias(multibody);
   Factorise(multibody.hasFixedBase());
 }
 
+bool MultibodyInertia::IsArranged(const btMultiBody& multibody) const {
+  if (arranged_.size() != At(multibody.getNumLinks())) return false;
+  for (std::size_t i = 0; i < arranged_.size(); ++i)
+    if (arranged_[i] != multibody.getLink(static_cast<int>(i)).m_parent) return false;
+  return true;
+}
+
 void MultibodyInertia::ArrangeJoints(const btMultiBody& multibody) {
   const std::size_t count = At(multibody.getNumLinks());
+  arranged_.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+    arranged_[i] = multibody.getLink(static_cast<int>(i)).m_parent;
   joint_at_.resize(count);
   place_of_.resize(count);
   parents_.resize(count);
@@ -73,14 +83,14 @@ void MultibodyInertia::ArrangeJoints(const btMultiBody& multibody) {
   // The first joint of a limb, which moves against the base, names it.
   const auto limb = [&](std::size_t joint) {
     int root = static_cast<int>(joint);
-    while (multibody.getParent(root) >= 0) root = multibody.getParent(root);
+    while (arranged_[At(root)] >= 0) root = arranged_[At(root)];
     return root;
   };
   std::stable_sort(joint_at_.begin(), joint_at_.end(),
                    [&](std::size_t a, std::size_t b) { return limb(a) < limb(b); });
   for (std::size_t i = 0; i < count; ++i) place_of_[joint_at_[i]] = i;
   for (std::size_t i = 0; i < count; ++i) {
-    const int parent = multibody.getParent(static_cast<int>(joint_at_[i]));
+    const int parent = arranged_[joint_at_[i]];
     parents_[i] = parent < 0 ? -1 : static_cast<int>(place_of_[At(parent)]);
   }
   for (std::size_t first = 0, end; first < count; first = end) {
@@ -144,11 +154,11 @@ void MultibodyInertia::Factorise(bool fixed_base) {
   joints_response_.resize(count * count);
   scratch_.resize(std::max<std::size_t>(count, 6));
   Invert(joints_.data(), parents_.data(), count, joints_response_.data(), scratch_.data());
-  carried_.assign(6 * count, 0);
+  carried_.assign(count, Six{});
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = limbs_[i].first; j < limbs_[i].end; ++j)
       for (std::size_t k = 0; k < 6; ++k)
-        carried_[k * count + i] += joints_response_[i * count + j] * by_joints_[j][k];
+        carried_[i][k] += joints_response_[i * count + j] * by_joints_[j][k];
   base_response_.fill(0);
   if (fixed_base) return;
 
@@ -167,7 +177,7 @@ void MultibodyInertia::Factorise(bool fixed_base) {
   for (std::size_t place = 0; place < count; ++place)
     for (std::size_t i = 0; i < 6; ++i)
       for (std::size_t j = 0; j < 6; ++j)
-        base[i * 6 + j] -= by_joints_[place][i] * carried_[j * count + place];
+        base[i * 6 + j] -= by_joints_[place][i] * carried_[place][j];
   constexpr std::array<int, 6> kChain{-1, 0, 1, 2, 3, 4};
   Invert(base.data(), kChain.data(), 6, base_response_.data(), scratch_.data());
 }
@@ -197,7 +207,7 @@ Six MultibodyInertia::OnBase(const btScalar* impulse) const {
   for (std::size_t place = 0; place < joint_count(); ++place) {
     const btScalar scale = impulse[joint(place)];
     if (scale == 0) continue;
-    for (std::size_t k = 0; k < 6; ++k) sum[k] -= scale * carried_[k * joint_count() + place];
+    for (std::size_t k = 0; k < 6; ++k) sum[k] -= scale * carried_[place][k];
   }
   return sum;
 }
@@ -210,19 +220,36 @@ Six MultibodyInertia::BaseResponse(const Six& impulse) const {
 }
 
 void MultibodyInertia::ToSpeeds(const Six& base, const btScalar* u, btScalar* speeds) const {
+  ToSpeeds(base, u, {0, joint_count()}, speeds);
+}
+
+void MultibodyInertia::ToSpeeds(const Six& base, const btScalar* u, Places places,
+                                btScalar* speeds) const {
   std::copy(base.begin(), base.end(), speeds);
-  for (std::size_t i = 0; i < joint_count(); ++i) {
+  for (std::size_t i = places.first; i < places.end; ++i) {
     btScalar speed = u[i];
-    for (std::size_t k = 0; k < 6; ++k) speed -= carried_[k * joint_count() + i] * base[k];
+    for (std::size_t k = 0; k < 6; ++k) speed -= carried_[i][k] * base[k];
     speeds[joint(i)] = speed;
   }
 }
 
 void MultibodyInertia::Respond(const btScalar* impulse, btScalar* change) {
   scratch_.assign(scratch_.size(), 0);
+  Respond(impulse, LimbsOf(impulse), {0, joint_count()}, change);
+}
+
+void MultibodyInertia::RespondWhereItActs(const btScalar* impulse, btScalar* change) {
+  std::fill(change, change + 6 + joint_count(), btScalar(0));
   const Places limbs = LimbsOf(impulse);
+  const bool acts = limbs.end > 0 || std::any_of(impulse, impulse + 6,
+                                                 [](btScalar element) { return element != 0; });
+  if (acts) Respond(impulse, limbs, limbs, change);
+}
+
+void MultibodyInertia::Respond(const btScalar* impulse, Places limbs, Places wanted,
+                               btScalar* change) {
   for (std::size_t i = limbs.first; i < limbs.end; ++i) scratch_[i] = JointResponse(i, impulse);
-  ToSpeeds(BaseResponse(OnBase(impulse)), scratch_.data(), change);
+  ToSpeeds(BaseResponse(OnBase(impulse)), scratch_.data(), wanted, change);
 }
 
 namespace {
@@ -270,7 +297,7 @@ void btMultiBody::calcAccelerationDeltasMultiDof(const btScalar* force, btScalar
                                                  btAlignedObjectArray<btScalar>& scratch_r,
                                                  btAlignedObjectArray<btVector3>& scratch_v) const {
   if (prehend::physics::in_use)
-    prehend::physics::in_use->Of(*this).Respond(force, output);
+    prehend::physics::in_use->Of(*this).RespondWhereItActs(force, output);
   else
     prehend::physics::BulletsOwn(*this, force, output, scratch_r, scratch_v);
 }

@@ -49,12 +49,19 @@ class MultibodyInertia {
   void ToSpeeds(const Six& base, const btScalar* u, btScalar* speeds) const;
   /// Change of the 6 + n speeds by an impulse of 6 + n elements.
   void Respond(const btScalar* impulse, btScalar* change);
+  /// The same for the base and the limbs on which the impulse acts; zero for all other joints. It
+  /// is what the change of speed along the impulse itself needs.
+  void RespondWhereItActs(const btScalar* impulse, btScalar* change);
 
  private:
   void ArrangeJoints(const btMultiBody& multibody);
+  bool IsArranged(const btMultiBody& multibody) const;
   void ComputeMotions(const btMultiBody& multibody);
   void ComputeInertias(const btMultiBody& multibody);
   void Factorise(bool fixed_base);
+  /// The same as the public one for some places; the others stay as they are.
+  void ToSpeeds(const Six& base, const btScalar* u, Places places, btScalar* speeds) const;
+  void Respond(const btScalar* impulse, Places limbs, Places wanted, btScalar* change);
 
   struct Link {
     btVector3 turn, shift;  ///< velocity of the link by a unit speed of its joint, at the origin
@@ -69,18 +76,20 @@ class MultibodyInertia {
 
   std::vector<std::size_t> joint_at_, place_of_;
   std::vector<int> parents_;   ///< place of the parent, -1: the base
+  std::vector<int> arranged_;  ///< by joint: its parent, when places were given
   std::vector<Places> limbs_;  ///< by place: those of its limb
   std::vector<Link> links_;    ///< by place
   Link base_;
   std::vector<Six> by_joints_;                      ///< C', n x 6
-  std::vector<btScalar> carried_;                   ///< W', 6 x n, row by row
+  std::vector<Six> carried_;                        ///< W', column by column
   std::vector<btScalar> joints_, joints_response_;  ///< D and D^-1, n x n, row by row
   std::array<btScalar, 36> base_response_;          ///< (B - C W)^-1, row by row
   std::vector<btScalar> scratch_;
 };
 
 /// The inertias of the multibodies of one tick. While an object of type `Use` lives, Bullet's
-/// btMultiBody::calcAccelerationDeltasMultiDof(), which this file replaces, answers from them.
+/// btMultiBody::calcAccelerationDeltasMultiDof(), which this file replaces, answers from them, and
+/// only where the impulse acts: Bullet's rows need the change of speed along the impulse, no more.
 class MultibodyInertias {
  public:
   /// Forgets all. Call it whenever multibodies have moved.

@@ -58,6 +58,7 @@ btScalar BulletSolver::solveGroupCacheFriendlySetup(
   multibodies_.clear();
   joint_speeds_.clear();
   Flatten(m_multiBodyNonContactConstraints, joints_);
+  if (multibodies_.size() > 1) Interleave(joints_);
   Flatten(m_multiBodyNormalContactConstraints, normals_);
   Flatten(m_multiBodyFrictionContactConstraints, frictions_);
   Flatten(m_multiBodyTorsionalFrictionContactConstraints, rolling_);
@@ -99,6 +100,27 @@ void BulletSolver::Flatten(btMultiBodyConstraintArray& sources, Rows& rows) {
   }
 }
 
+void BulletSolver::Interleave(Rows& rows) {
+  // The level of a row is one above the highest of the earlier rows that have a body in common.
+  std::vector<std::pair<const Six*, std::size_t>> next_level;
+  std::vector<std::size_t> level(rows.size()), order(rows.size());
+  const auto next_of = [&](const Six* body) -> std::size_t& {
+    const auto it = std::ranges::find(next_level, body, &std::pair<const Six*, std::size_t>::first);
+    return it != next_level.end() ? it->second : next_level.emplace_back(body, 0).second;
+  };
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (const Side* side : {&rows[i].a, &rows[i].b})
+      if (side->rigid.speeds) level[i] = std::max(level[i], next_of(side->rigid.speeds));
+    for (const Side* side : {&rows[i].a, &rows[i].b})
+      if (side->rigid.speeds) next_of(side->rigid.speeds) = level[i] + 1;
+    order[i] = i;
+  }
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return level[i]; });
+  interleaved_.clear();
+  for (const std::size_t i : order) interleaved_.push_back(rows[i]);
+  rows.swap(interleaved_);
+}
+
 BulletSolver::Side BulletSolver::MakeSide(btMultiBody* multibody, int solver_body, int jacobian,
                                           int speeds, const btVector3& linear,
                                           const btVector3& angular,
@@ -114,10 +136,12 @@ BulletSolver::Side BulletSolver::MakeSide(btMultiBody& multibody, const btScalar
   MultibodyUse& use = UseOf(multibody, speeds);
   const MultibodyInertia& inertia = *use.inertia;
   Side side;
-  side.rigid.speeds = &use.base;
-  side.rigid.jacobian = inertia.OnBase(jacobian);
-  side.rigid.response = inertia.BaseResponse(side.rigid.jacobian);
   const MultibodyInertia::Places limbs = inertia.LimbsOf(jacobian);
+  side.rigid.jacobian = inertia.OnBase(jacobian);
+  // Bullet gives a joint motor a second side without effect.
+  if (limbs.end == 0 && side.rigid.jacobian == Six{}) return {};
+  side.rigid.speeds = &use.base;
+  side.rigid.response = inertia.BaseResponse(side.rigid.jacobian);
   side.first_joint = use.first_joint + limbs.first;
   side.joint_count = limbs.end - limbs.first;
   side.coefficients = coefficients_.size();

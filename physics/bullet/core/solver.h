@@ -70,6 +70,9 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   using Rows = std::vector<Row>;
 
   RigidRows::Pools RigidPools();
+  /// Makes rows without a common body neighbours, so that none waits for its neighbour's result.
+  /// Rows with a common body keep their order, and with it every bit of the results.
+  void Interleave(Rows& rows);
   void Flatten(btMultiBodyConstraintArray& sources, Rows& rows);
   Side MakeSide(btMultiBody* multibody, int solver_body, int jacobian, int speeds,
                 const btVector3& linear, const btVector3& angular,
@@ -102,6 +105,7 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   void ApplySpeeds(const MultibodyUse& use);
 
   RigidRows rigid_;
+  Rows interleaved_;
   Rows joints_, normals_, frictions_, rolling_, spinning_;
   Responses friction_responses_, rolling_responses_;  ///< by pair of rows
   MultibodyInertias inertias_;
