@@ -13,8 +13,8 @@
 #include "physics/bullet/body.h"
 #include "physics/bullet/contacts.h"
 #include "physics/bullet/convert.h"
-#include "physics/bullet/core/dynamics_world.h"
 #include "physics/bullet/core/flat_impacts.h"
+#include "physics/bullet/core/grain_contacts.h"
 #include "physics/bullet/core/parts.h"
 #include "physics/bullet/grains.h"
 #include "physics/bullet/hand.h"
@@ -150,7 +150,7 @@ void BulletWorld::AddGrains(std::size_t body) {
   const BulletGrains& grains = grains_.try_emplace(body, scene_.bodies[body]).first->second;
   for (const auto& grain : grains.rigids()) {
     grain->setUserIndex(static_cast<int>(sides_.size()));
-    grain->setUserIndex2(kTightBox);
+    grain->setUserIndex2(kGrain);
     world_.addRigidBody(grain.get(), kMovingGroup, -1);
   }
   sides_.push_back({{.body = static_cast<int>(body)}});

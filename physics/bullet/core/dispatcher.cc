@@ -7,7 +7,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include <algorithm>
-#include <utility>
+#include <functional>
 
 namespace prehend::physics {
 namespace {
@@ -18,8 +18,9 @@ const btCollisionObject& BodyOf(const btBroadphaseProxy& proxy) {
 
 bool Active(const btBroadphaseProxy& proxy) { return BodyOf(proxy).isActive(); }
 
-std::pair<int, int> Ids(const btBroadphasePair* pair) {
-  return {pair->m_pProxy0->m_uniqueId, pair->m_pProxy1->m_uniqueId};
+std::uint64_t Ids(const btBroadphasePair& pair) {
+  return static_cast<std::uint64_t>(pair.m_pProxy0->m_uniqueId) << 32 |
+         static_cast<std::uint32_t>(pair.m_pProxy1->m_uniqueId);
 }
 
 }  // namespace
@@ -29,28 +30,19 @@ void BulletDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cache,
   awake_.clear();
   btBroadphasePairArray& pairs = cache->getOverlappingPairArray();
   for (int i = 0; i < pairs.size(); ++i) {
-    if (Active(*pairs[i].m_pProxy0) || Active(*pairs[i].m_pProxy1)) awake_.push_back(&pairs[i]);
+    if (Active(*pairs[i].m_pProxy0) || Active(*pairs[i].m_pProxy1))
+      awake_.push_back({Ids(pairs[i]), &pairs[i]});
   }
-  std::ranges::sort(awake_, std::greater<>(), Ids);
-  for (btBroadphasePair* pair : awake_) getNearCallback()(*pair, *this, info);
-  const btManifoldArray& manifolds = AwakeManifolds();
-  for (int i = 0; i < manifolds.size(); ++i) normals_.Carry(*manifolds[i]);
-  for (const btBroadphasePair* pair : awake_) {
-    normals_.Remember(BodyOf(*pair->m_pProxy0));
-    normals_.Remember(BodyOf(*pair->m_pProxy1));
+  std::ranges::sort(awake_, std::greater<>(), &AwakePair::ids);
+  for (const AwakePair& awake : awake_) getNearCallback()(*awake.pair, *this, info);
+  awake_manifolds_.resize(0);
+  for (const AwakePair& awake : awake_)
+    if (awake.pair->m_algorithm) awake.pair->m_algorithm->getAllContactManifolds(awake_manifolds_);
+  for (int i = 0; i < awake_manifolds_.size(); ++i) normals_.Carry(*awake_manifolds_[i]);
+  for (const AwakePair& awake : awake_) {
+    normals_.Remember(BodyOf(*awake.pair->m_pProxy0));
+    normals_.Remember(BodyOf(*awake.pair->m_pProxy1));
   }
-}
-
-const btManifoldArray& BulletDispatcher::AwakeManifolds() {
-  manifolds_.resize(0);
-  for (const btBroadphasePair* pair : awake_)
-    if (pair->m_algorithm) pair->m_algorithm->getAllContactManifolds(manifolds_);
-  return manifolds_;
-}
-
-const btManifoldArray& BulletDispatcher::AllManifolds() {
-  manifolds_ = m_manifoldsPtr;
-  return manifolds_;
 }
 
 }  // namespace prehend::physics

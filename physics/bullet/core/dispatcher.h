@@ -8,6 +8,7 @@
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
+#include <cstdint>
 #include <vector>
 
 #include "physics/bullet/core/contact_normals.h"
@@ -25,14 +26,18 @@ class BulletDispatcher final : public btCollisionDispatcher {
 
   /// Contacts of pairs with a body that was awake when the last step began. Valid until the next
   /// step.
-  const btManifoldArray& AwakeManifolds();
+  const btManifoldArray& AwakeManifolds() const { return awake_manifolds_; }
   /// Contacts of all pairs. Valid until the next step.
-  const btManifoldArray& AllManifolds();
+  const btManifoldArray& AllManifolds() const { return m_manifoldsPtr; }
 
  private:
-  std::vector<btBroadphasePair*> awake_;  ///< pairs of the present tick
+  struct AwakePair {
+    std::uint64_t ids;  ///< of its proxies, the first one higher: pairs are sorted by it
+    btBroadphasePair* pair;
+  };
+  std::vector<AwakePair> awake_;  ///< pairs of the present tick
   CarriedNormals normals_;
-  btManifoldArray manifolds_;
+  btManifoldArray awake_manifolds_;
 };
 
 }  // namespace prehend::physics

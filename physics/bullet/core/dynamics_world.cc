@@ -3,15 +3,52 @@
 // tests/physics/world/world_test.cc
 #include "physics/bullet/core/dynamics_world.h"
 
+#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <btBulletCollisionCommon.h>
 
+#include <new>
+
 namespace prehend::physics {
+namespace {
+
+/// Bullet's search for islands, which grains that touch belong to as well.
+class IslandsWithGrains final : public btSimulationIslandManager {
+ public:
+  explicit IslandsWithGrains(GrainContacts& grains) : grains_(grains) {}
+
+  void updateActivationState(btCollisionWorld* world, btDispatcher* dispatcher) override {
+    btSimulationIslandManager::updateActivationState(world, dispatcher);
+    for (const GrainContact& contact : grains_.contacts())
+      getUnionFind().unite(contact.a->getIslandTag(), contact.b->getIslandTag());
+  }
+
+ private:
+  GrainContacts& grains_;
+};
+
+}  // namespace
+
+BulletDynamics::BulletDynamics(btDispatcher& dispatcher, btDbvtBroadphase& broadphase,
+                               btMultiBodyConstraintSolver& solver,
+                               btCollisionConfiguration& configuration, GrainContacts& grains)
+    : btMultiBodyDynamicsWorld(&dispatcher, &broadphase, &solver, &configuration), grains_(grains) {
+  getPairCache()->setOverlapFilterCallback(&filter_);
+  // Bullet made one, and destroys this one, in the same way.
+  m_islandManager->~btSimulationIslandManager();
+  btAlignedFree(m_islandManager);
+  m_islandManager = new (btAlignedAlloc(sizeof(IslandsWithGrains), 16)) IslandsWithGrains(grains);
+}
+
+void BulletDynamics::performDiscreteCollisionDetection() {
+  btMultiBodyDynamicsWorld::performDiscreteCollisionDetection();
+  grains_.Find();
+}
 
 void BulletDynamics::updateAabbs() {
   for (int i = 0; i < m_collisionObjects.size(); ++i) {
     btCollisionObject& object = *m_collisionObjects[i];
     if (!object.isActive()) continue;
-    if (object.getUserIndex2() == kTightBox)
+    if (object.getUserIndex2() == kGrain)
       SetTightBox(object);
     else
       updateSingleAabb(&object);
@@ -30,8 +67,10 @@ void BulletDynamics::SetTightBox(btCollisionObject& object) {
 
 void BulletDynamics::internalSingleStepSimulation(btScalar dt_s) {
   if (moving_.empty())
-    for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i)
+    for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
       moving_.push_back(m_nonStaticRigidBodies[i]);
+      grains_.Add(*m_nonStaticRigidBodies[i]);
+    }
   stepped_.assign(moving_.size(), 0);
   m_nonStaticRigidBodies.resize(0);
   for (std::size_t i = 0; i < moving_.size(); ++i) {
@@ -39,7 +78,12 @@ void BulletDynamics::internalSingleStepSimulation(btScalar dt_s) {
     stepped_[i] = 1;
     m_nonStaticRigidBodies.push_back(moving_[i]);
   }
-  btMultiBodyDynamicsWorld::internalSingleStepSimulation(dt_s);
+  // Hands and persons never sleep; neither is among `moving_`.
+  any_awake_ = false;
+  for (int i = 0; i < m_collisionObjects.size() && !any_awake_; ++i)
+    any_awake_ = m_collisionObjects[i]->isActive();
+  woke_any_ = false;
+  if (any_awake_) btMultiBodyDynamicsWorld::internalSingleStepSimulation(dt_s);
 }
 
 void BulletDynamics::solveConstraints(btContactSolverInfo& info) {

@@ -4,35 +4,44 @@
 // tests/physics/world/world_test.cc
 #pragma once
 
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 
 #include <vector>
 
-namespace prehend::physics {
+#include "physics/bullet/core/grain_contacts.h"
 
-/// Second user index of a body with a tight bounding box in the broad phase. Bullet enlarges the
-/// boxes of moving bodies by 20 mm. With these boxes every grain is paired with all others of its
-/// vessel: 200 grains took 6 ms per tick, and take 2 ms with tight boxes.
-constexpr int kTightBox = 1;
+namespace prehend::physics {
 
 /// All bodies must be added before the first step.
 class BulletDynamics final : public btMultiBodyDynamicsWorld {
  public:
-  using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
+  BulletDynamics(btDispatcher& dispatcher, btDbvtBroadphase& broadphase,
+                 btMultiBodyConstraintSolver& solver, btCollisionConfiguration& configuration,
+                 GrainContacts& grains);
 
+  /// Also finds the contacts between grains.
+  void performDiscreteCollisionDetection() override;
   void updateAabbs() override;
   /// Without Bullet's prediction of multibodies, which only continuous collision detection reads.
   void predictUnconstraintMotion(btScalar dt_s) override;
+  /// Whether a body was awake in the last step. If not, it was skipped as a whole.
+  bool any_awake() const { return any_awake_; }
   /// Whether the last step woke a body.
   bool woke_any() const { return woke_any_; }
 
  private:
   void internalSingleStepSimulation(btScalar dt_s) override;
   void solveConstraints(btContactSolverInfo& info) override;
+  /// Bullet enlarges the boxes of moving bodies by 20 mm: every grain would be paired with the
+  /// whole vessel.
   void SetTightBox(btCollisionObject& object);
 
+  GrainContacts& grains_;
+  GrainFilter filter_;
   std::vector<btRigidBody*> moving_;  ///< all bodies that are not static, in order of insertion
   std::vector<char> stepped_;         ///< by index in moving_: in Bullet's list of this step
+  bool any_awake_ = false;
   bool woke_any_ = false;
 };
 

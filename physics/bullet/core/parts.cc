@@ -24,6 +24,7 @@ class ReplacedParts final : public BulletEngine {
   btMultiBodyDynamicsWorld& world() override { return world_; }
   btMultiBodyConstraintSolver& solver() override { return solver_; }
   const btManifoldArray& ChangedManifolds() override {
+    if (!world_.any_awake()) return none_;
     // A body that is woken in a step keeps the contacts that it had when it fell asleep.
     return world_.woke_any() ? dispatcher_.AllManifolds() : dispatcher_.AwakeManifolds();
   }
@@ -32,8 +33,10 @@ class ReplacedParts final : public BulletEngine {
   ImpactConfiguration configuration_;
   BulletDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_;
-  BulletSolver solver_;
-  BulletDynamics world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+  GrainContacts grains_;
+  BulletSolver solver_{grains_};
+  BulletDynamics world_{dispatcher_, broadphase_, solver_, configuration_, grains_};
+  const btManifoldArray none_;
 };
 
 class StockParts final : public BulletEngine {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "physics/bullet/core/grain_contacts.h"
+
 namespace prehend::physics {
 namespace {
 
@@ -17,9 +19,14 @@ constexpr std::size_t kRollingRows = 3;   // spinning, then two directions of ro
 
 std::size_t At(int index) { return static_cast<std::size_t>(index); }
 
+bool IsGrain(const btSolverBody& body) {
+  return body.m_originalBody && body.m_originalBody->getUserIndex2() == kGrain;
+}
+
 }  // namespace
 
 void RigidRows::Setup(const Pools& pools) {
+  grains_change_ = 0;
   const std::size_t body_count = At(pools.bodies.size());
   speeds_.resize(body_count);
   pushes_.resize(body_count);
@@ -95,6 +102,7 @@ RigidRows::Row RigidRows::MakeRow(const btSolverConstraint& source, const Pools&
           .impulse = source.m_appliedImpulse,
           .pressure = nullptr,
           .iterations = source.m_overrideNumSolverIterations,
+          .grain = IsGrain(pools.bodies[a]) || IsGrain(pools.bodies[b]),
           .source = &source};
   if (side_a.speeds && side_b.speeds) {
     row.other = static_cast<int>(others_.size());
@@ -179,27 +187,35 @@ btScalar RigidRows::Solve(int iteration, int contact_iterations) {
   for (Row& row : joints_)
     if (iteration < row.iterations) largest = std::max(largest, Solve(row));
   if (iteration >= contact_iterations) return largest;
-  for (Row& row : contacts_) largest = std::max(largest, Solve(row));
+  const bool with_grains = iteration % kGrainPeriod == 0;
+  if (with_grains) grains_change_ = 0;
+  const auto changed = [&](const Row& row, btScalar change) {
+    btScalar& most = row.grain ? grains_change_ : largest;
+    most = std::max(most, change);
+  };
+  const auto waits = [&](const Row& row) { return row.grain && !with_grains; };
+  for (Row& row : contacts_)
+    if (!waits(row)) changed(row, Solve(row));
   for (std::size_t i = 0; i + 1 < frictions_.size(); i += kFrictionRows) {
     Row& row = frictions_[i];
-    if (*row.pressure > 0)
-      largest = std::max(largest, SolvePair(row, frictions_[i + 1], row.friction * *row.pressure,
-                                            friction_responses_[i / kFrictionRows]));
+    if (*row.pressure > 0 && !waits(row))
+      changed(row, SolvePair(row, frictions_[i + 1], row.friction * *row.pressure,
+                             friction_responses_[i / kFrictionRows]));
   }
   for (std::size_t i = 0; i + 2 < rolling_.size(); i += kRollingRows) {
     Row& spin = rolling_[i];
-    if (*spin.pressure <= 0) continue;
+    if (*spin.pressure <= 0 || waits(spin)) continue;
     const auto limit = [&](const Row& row) {
       return std::min(row.friction * *row.pressure, row.friction);
     };
     spin.most = limit(spin);
     spin.least = -spin.most;
-    largest = std::max(largest, Solve(spin));
+    changed(spin, Solve(spin));
     Row& roll = rolling_[i + 1];
-    largest = std::max(largest, SolvePair(roll, rolling_[i + 2], limit(roll),
-                                          rolling_responses_[i / kRollingRows]));
+    changed(roll,
+            SolvePair(roll, rolling_[i + 2], limit(roll), rolling_responses_[i / kRollingRows]));
   }
-  return largest;
+  return std::max(largest, grains_change_);
 }
 
 btScalar RigidRows::SolvePenetrations() {

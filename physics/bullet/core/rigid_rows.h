@@ -78,8 +78,12 @@ class RigidRows {
   /// The solver's change of the speeds of a body, by its index in Pools::bodies.
   Six& SpeedsOf(int body) { return speeds_[static_cast<std::size_t>(body)]; }
 
+  /// The same of what only corrects penetration.
+  Six& PushesOf(int body) { return pushes_[static_cast<std::size_t>(body)]; }
+
   /// Solves each row once. Rows that are not joints take part in the first `contact_iterations`
-  /// iterations. Returns the largest squared change of a speed.
+  /// iterations, rows of grains in every kGrainPeriod-th. Returns the largest squared change of a
+  /// speed.
   btScalar Solve(int iteration, int contact_iterations);
   /// The same for rows that only correct penetration ("split impulse").
   btScalar SolvePenetrations();
@@ -95,6 +99,7 @@ class RigidRows {
     btScalar impulse;
     const btScalar* pressure;  ///< of a friction row: impulse of its contact
     int iterations;            ///< of a joint: number of iterations
+    bool grain;                ///< one of the bodies is a grain
     const btSolverConstraint* source;
   };
   using Rows = std::vector<Row>;
@@ -122,6 +127,7 @@ class RigidRows {
 
   Rows joints_, contacts_, frictions_, rolling_, penetrations_;
   Responses friction_responses_, rolling_responses_;  ///< by pair of rows
+  btScalar grains_change_ = 0;  ///< largest squared change of a speed, when they were last solved
   std::vector<RigidSide> others_;
   std::vector<const btScalar*> pressures_;               ///< by index in the pool of contacts
   std::vector<int> order_, level_, next_, bodys_level_;  ///< of Arrange()

@@ -52,6 +52,9 @@ btScalar BulletSolver::solveGroupCacheFriendlySetup(
   const btScalar result = btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(
       bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, drawer);
   rigid_.Setup(RigidPools());
+  if (grain_contacts_)
+    grains_.Setup(grain_contacts_->contacts(), m_tmpSolverBodyPool, rigid_, info);
+  grains_change_ = 0;
   // No row of a multibody is warm-started: its speeds start at zero here, and their final values
   // are added to the multibody.
   coefficients_.clear();
@@ -265,13 +268,16 @@ void BulletSolver::solveGroupCacheFriendlySplitImpulseIterations(btCollisionObje
                                                                  btIDebugDraw*) {
   if (!info.m_splitImpulse) return;
   for (int i = 0; i < info.m_numIterations; ++i)
-    if (rigid_.SolvePenetrations() <= info.m_leastSquaresResidualThreshold) return;
+    if (std::max(rigid_.SolvePenetrations(), grains_.SolvePenetrations()) <=
+        info.m_leastSquaresResidualThreshold)
+      return;
 }
 
 btScalar BulletSolver::solveSingleIteration(int iteration, btCollisionObject**, int,
                                             btPersistentManifold**, int, btTypedConstraint**, int,
                                             const btContactSolverInfo& info, btIDebugDraw*) {
-  btScalar largest = rigid_.Solve(iteration, info.m_numIterations);
+  if (iteration % kGrainPeriod == 0) grains_change_ = grains_.Solve();
+  btScalar largest = std::max(rigid_.Solve(iteration, info.m_numIterations), grains_change_);
   // Joints are solved forwards and backwards in turn, as in Bullet.
   const std::size_t joint_count = joints_.size();
   for (std::size_t i = 0; i < joint_count; ++i)
@@ -293,6 +299,7 @@ btScalar BulletSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies,
   for (const Rows* rows : {&joints_, &normals_, &frictions_, &rolling_, &spinning_})
     for (const Row& row : *rows) row.source->m_appliedImpulse = row.impulse;
   rigid_.WriteBack(RigidPools());
+  grains_.WriteBack();
   for (const MultibodyUse& use : multibodies_) ApplySpeeds(use);
   return btMultiBodyConstraintSolver::solveGroupCacheFriendlyFinish(bodies, body_count, info);
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "physics/bullet/core/friction_circle.h"
+#include "physics/bullet/core/grain_rows.h"
 #include "physics/bullet/core/multibody_inertia.h"
 #include "physics/bullet/core/rigid_rows.h"
 
@@ -27,6 +28,10 @@ void PlaceInOrder(btPersistentManifold** manifolds, int count);
 /// for every row.
 class BulletSolver final : public btMultiBodyConstraintSolver {
  public:
+  BulletSolver() = default;
+  /// Also solves these contacts, those of each group of islands with it; they must outlive this.
+  explicit BulletSolver(GrainContacts& grains) : grain_contacts_(&grains) {}
+
   btScalar solveGroupCacheFriendlySetup(btCollisionObject** bodies, int body_count,
                                         btPersistentManifold** manifolds, int manifold_count,
                                         btTypedConstraint** constraints, int constraint_count,
@@ -105,6 +110,9 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   void ApplySpeeds(const MultibodyUse& use);
 
   RigidRows rigid_;
+  GrainContacts* grain_contacts_ = nullptr;
+  GrainRows grains_;
+  btScalar grains_change_ = 0;  ///< largest squared change of a speed, of the last time
   Rows interleaved_;
   Rows joints_, normals_, frictions_, rolling_, spinning_;
   Responses friction_responses_, rolling_responses_;  ///< by pair of rows
