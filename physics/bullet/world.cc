@@ -16,6 +16,7 @@
 #include "physics/bullet/core/flat_impacts.h"
 #include "physics/bullet/core/grain_contacts.h"
 #include "physics/bullet/core/parts.h"
+#include "physics/bullet/first_rest.h"
 #include "physics/bullet/grains.h"
 #include "physics/bullet/hand.h"
 #include "physics/bullet/joint.h"
@@ -85,6 +86,7 @@ class BulletWorld final : public World {
   std::map<std::size_t, BulletGrains> grains_;  ///< by index of the body
   std::vector<BulletJoint> joints_;
   std::vector<std::unique_ptr<BulletHand>> hands_;
+  FirstRest first_rest_;
   ContactSides sides_;
   Stillness stillness_;
   TouchingPairs touching_;
@@ -176,6 +178,8 @@ void BulletWorld::AddRigid(const std::vector<std::size_t>& group) {
     world_.addRigidBody(&made->rigid(), kFixedGroup, ~kFixedGroup);
   else
     world_.addRigidBody(&made->rigid(), kMovingGroup, -1);
+  if (scene_.world.engine != Engine::kBulletStock && !made->rigid().isStaticOrKinematicObject())
+    first_rest_.Add(made->rigid());
   rigids_.push_back(std::move(made));
 }
 
@@ -208,6 +212,7 @@ void BulletWorld::Step(const std::vector<HandCommand>& commands) {
   for (BulletJoint& joint : joints_) joint.Prepare(dt_s_);
   for (BulletJoint& joint : joints_) joint.Pull();
   world_.stepSimulation(dt_s_, 0);
+  first_rest_.Watch(dt_s_);
   for (auto& [body, grains] : grains_) grains.StopLost();
   stillness_.Update(++tick_, [this](std::size_t i) {
     return scene_.bodies[i].grains ? grains_.at(i).rests() : rigids_[places_[i].rigid]->rests();
