@@ -44,7 +44,7 @@ TEST_F(New, DoesWhatTheNameSays) {
       {"red_apple_is_carried", {"red_apple: {class: Apple, sphere: ", "a red apple is picked up"}},
       {"can_is_slid", {"one sliding(right_hand, can)"}},
       {"box_is_pushed", {"contact(right_hand, box)", "until: touching(box)"}},
-      {"mug_is_pressed", {"box is pressed"}},
+      {"mug_is_pressed", {"presses a box onto the table"}},
       {"cup_is_put_onto_a_tray", {"place_on: tray", "supported_by(cup, tray)"}},
       {"ball_is_put_into_a_bowl", {"place_on: bowl", "supported_by(ball, bowl)"}},
       {"cubes_are_stacked", {"place_on: second_cube"}},

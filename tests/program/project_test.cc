@@ -79,7 +79,7 @@ TEST_F(OwnProject, ItsHandsAreFound) {
   WriteFile(kitchen_ / "hands/my_gripper.hand.yaml", hand);
   const fs::path scenario = kitchen_ / "scenarios/pick_and_place/carton_is_held_still.yaml";
   std::string text = Replaced(ReadFile(scenario), "hand: human_right", "hand: my_gripper");
-  text = Replaced(Replaced(text, "style: wrap", "style: parallel"), "style=wrap", "style=parallel");
+  text = Replaced(text, "{reach: carton}", "{reach: carton, style: parallel}");
   WriteFile(scenario, text);
   const Said said = Do({"validate", "carton_is_held_still"});
   EXPECT_EQ(said.exit_code, 0) << said.err;
