@@ -234,7 +234,7 @@ struct PoseYaml {
 };
 struct PosesYaml : StepTimingYaml {
   std::vector<PoseYaml> poses;
-  Located<std::string> style;                     ///< "": stays
+  Located<std::string> style;  ///< "": stays
   bool world_axes = false;
   Located<std::string> relative_to{"world", {}};  ///< "world", "hand", an entity or another hand
 };
