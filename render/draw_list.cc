@@ -119,14 +119,18 @@ void AddGrains(const physics::Grains& grains, const physics::Snapshot& snapshot,
   }
 }
 
+/// `colors`: of palm and links; of the others the colour is that of `look`.
 void AddHand(const physics::HandModel& model, const physics::HandState& state,
-             const Appearance& look, std::vector<Item>* items, DrawList* list) {
+             const Appearance& look, const std::vector<Color>& colors, std::vector<Item>* items,
+             DrawList* list) {
   Item palm = MakeItem(ToAffine(state.palm.X_WB), look);
+  if (!colors.empty()) palm.color = colors.front();
   SetRoundedBox(model.palm_size_m.cast<float>() / 2, 0.012f, &palm);
   AddItem(palm, items, list);
   for (std::size_t i = 0; i < std::min(model.links.size(), state.X_WL.size()); ++i) {
     const physics::HandLink& link = model.links[i];
     Item item = MakeItem(ToAffine(state.X_WL[i]), look);
+    if (i + 1 < colors.size()) item.color = colors[i + 1];
     const Vector3f half(link.length_m / 2, link.half_width_m, link.half_thickness_m);
     const float rounding = 0.95f * std::min(half.y(), half.z());
     // Round ends would leave notches at the joints, so links are lengthened and overlap.
@@ -255,7 +259,9 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
                           .gloss = 0.15f,
                           .object = AddObject("hand:" + scene.hands[i].name, list)};
     if (i >= picture.snapshot.hands.size()) continue;
-    AddHand(scene.hands[i].model, picture.snapshot.hands[i], look, &list->solids, list);
+    const bool has_colors = i < picture.hand_colors.size();
+    AddHand(scene.hands[i].model, picture.snapshot.hands[i], look,
+            has_colors ? picture.hand_colors[i] : std::vector<Color>(), &list->solids, list);
   }
   for (std::size_t i = 0; i < std::min(scene.hands.size(), picture.snapshot.hands.size()); ++i) {
     const Appearance look{.color = kSkinColor,
@@ -280,7 +286,7 @@ void AddGhost(const Picture& picture, std::size_t number, DrawList* list) {
   std::vector<Item> items;
   if (has_hand) {
     look.color = 0.6f * ghost.tint + 0.4f * kSkinColor;
-    AddHand(scene.hands[hand].model, ghost.snapshot.hands[hand], look, &items, list);
+    AddHand(scene.hands[hand].model, ghost.snapshot.hands[hand], look, {}, &items, list);
   }
   for (const int body : ghost.bodies) {
     const auto i = static_cast<std::size_t>(body);
@@ -363,6 +369,7 @@ DrawList MakeDrawList(const Picture& picture) {
   for (const Prop& prop : picture.props) AddProp(prop, &list);
   for (std::size_t i = 0; i < picture.gazes.size(); ++i) AddGaze(picture.gazes[i], i, scale, &list);
   list.theme = picture.theme;
+  list.paper = picture.paper;
   return list;
 }
 

@@ -53,6 +53,7 @@ struct DrawList {
   Eigen::Vector3f to_light = Eigen::Vector3f::UnitZ();  ///< unit
 
   Theme theme = Theme::kLight;
+  Color paper = {1, 1, 1};
 
   int first_body = 2, first_hand = 2;  ///< first body and first hand in `objects`
 };

@@ -92,12 +92,15 @@ struct Picture {
   std::vector<float> body_alphas;        ///< one per scene body; missing ones: 1
   std::vector<std::string> body_labels;  ///< one per scene body, empty: none
   std::vector<std::string> hand_labels;  ///< one per scene hand, empty: none
+  /// Per scene hand the colours of palm and links, in this order; missing ones: skin.
+  std::vector<std::vector<Color>> hand_colors;
   std::vector<PathStretch> path;
   std::vector<Ghost> ghosts;
   std::vector<Marker> markers;
   std::vector<Prop> props;
   std::vector<GazeRay> gazes;
   Theme theme = Theme::kLight;
+  Color paper = {1, 1, 1};  ///< of Theme::kPrint
   float text_scale = 1;
   Camera camera;
   Eigen::Vector3f to_light = {0.38f, -0.42f, 0.82f};  ///< direction of the distant light
@@ -107,7 +110,8 @@ struct Picture {
 
 struct Image {
   int width_px = 0, height_px = 0;
-  std::vector<std::uint8_t> rgb;  ///< rows from top, 3 bytes a pixel
+  std::vector<std::uint8_t> rgb = {};    ///< rows from top, 3 bytes a pixel
+  std::vector<std::uint8_t> alpha = {};  ///< a byte a pixel, 255 is opaque; empty: all opaque
 };
 
 /// The object that is visible at each pixel, exact and without anti-aliasing, for comparing
@@ -148,10 +152,14 @@ class Painter {
   std::unique_ptr<State> state_;
 };
 
+/// The bytes of a PNG file; none of an image that is empty.
+std::string EncodePng(const Image& image);
 /// False if the file could not be written.
 bool WritePng(const Image& image, const std::string& path);
 /// An empty image if the file is missing, damaged or larger than a picture may be.
 Image ReadPng(const std::string& path);
+/// The same of the bytes of a file.
+Image DecodePng(const std::string& bytes);
 /// FNV-1a hash of size and pixels.
 std::uint64_t PixelHash(const Image& image);
 

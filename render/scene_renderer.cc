@@ -251,6 +251,7 @@ void SceneRenderer::DrawSolids(const Frame& frame) const {
   gl_.Disable(GL_DEPTH_TEST);
   backdrop_->Use();
   backdrop_->Set("plain", frame.list.theme == Theme::kPrint ? 1.0f : 0.0f);
+  backdrop_->Set("paper", frame.list.paper);
   DrawScreen();
   gl_.Enable(GL_DEPTH_TEST);
 

@@ -121,10 +121,11 @@ void main() {
 const char* const kBackdropFragmentShader = R"(#version 330 core
 in vec2 uv;
 out vec4 pixel;
-uniform float plain;  // 1: white paper
+uniform float plain;  // 1: paper
+uniform vec3 paper;
 void main() {
   vec3 c = mix(vec3(.80, .83, .87), vec3(.95, .965, .98), smoothstep(.3, 1., uv.y));
-  pixel = vec4(pow(mix(c, vec3(1), plain), vec3(1. / 2.2)), 1);
+  pixel = vec4(pow(mix(c, paper, plain), vec3(1. / 2.2)), 1);
 }
 )";
 

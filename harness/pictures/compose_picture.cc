@@ -340,6 +340,7 @@ Selection SelectionOf(const PictureFormat& format, const RunResult& run, grammar
   const bool is_long = !is_given && end_s > kLong_s;
   selection.path_from_s = is_long ? now_s - kBefore_s : selection.from_s;
   selection.path_to_s = is_long ? now_s + kAfter_s : selection.to_s;
+  if (format.path_so_far) selection.path_to_s = std::min(selection.path_to_s, now_s);
   return selection;
 }
 
@@ -379,7 +380,8 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
   picture.props = LegsOf(scenario, picture.body_colors, picture.snapshot);
   if (format.gaze) picture.gazes = GazesOf(scene, picture.snapshot);
   if (format.strip) picture.strip = ComposeStrip(scene, run, selection, moment.tick);
-  picture.camera = CameraFor(scenario, run, picture, entry.camera.value);
+  picture.hand_colors = SensorColors(scene, format.sensor_colors);
+  picture.camera = CameraFor(scenario, run, picture, entry.camera.value, format);
   picture.body_alphas = BodyAlphas(scene, picture.snapshot, picture.camera.eye_m);
   if (!format.title) return picture;
   const auto name = ParseEventTime(entry.at.value);

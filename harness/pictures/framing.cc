@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "harness/pictures/scenery.h"
+#include "harness/scenario/own_camera.h"
 
 namespace prehend::harness {
 namespace {
@@ -20,7 +21,19 @@ constexpr std::size_t kLooks = 400;
 
 class Framing {
  public:
-  Framing(const Scenario& scenario, const RunResult& run) : scenario_(scenario), run_(run) {}
+  Framing(const Scenario& scenario, const RunResult& run, const PictureFormat& format)
+      : scenario_(scenario), run_(run) {
+    const double rate_hz = static_cast<double>(run.timeline.ticks_per_second);
+    const auto index_of = [&](double time_s) {
+      const auto tick = static_cast<grammar::Tick>(time_s * rate_hz);
+      const auto at = std::ranges::lower_bound(run.recording, tick, {}, &physics::Snapshot::tick);
+      return std::min(run.recording.size() - 1,
+                      static_cast<std::size_t>(at - run.recording.begin()));
+    };
+    if (format.framed_from_s) first_ = index_of(*format.framed_from_s);
+    last_ = format.framed_to_s ? std::max(first_, index_of(*format.framed_to_s))
+                               : run.recording.size() - 1;
+  }
 
   void AddBody(std::size_t body, const physics::Snapshot& now) {
     const physics::LocalBox local = physics::BoundingBox(scenario_.scene.bodies[body]);
@@ -30,15 +43,16 @@ class Framing {
     box_.extend(Eigen::Vector3d(p_W_m.array() - radius_m));
     box_.extend(Eigen::Vector3d(p_W_m.array() + radius_m));
   }
+  void AddHand(const physics::HandState& hand) { AddBall(hand.palm.X_WB.p_m, kPalmReach_m); }
   void AddHands(const physics::Snapshot& now) {
-    for (const physics::HandState& hand : now.hands) AddBall(hand.palm.X_WB.p_m, kPalmReach_m);
+    for (const physics::HandState& hand : now.hands) AddHand(hand);
   }
-  /// Of the whole recording, evenly.
+  /// Of the time that is framed, evenly.
   template <class Visit>
   void ForEachLook(const Visit& visit) const {
-    const std::size_t step = std::max<std::size_t>(1, run_.recording.size() / kLooks);
-    for (std::size_t i = 0; i < run_.recording.size(); i += step) visit(run_.recording[i]);
-    visit(run_.recording.back());
+    const std::size_t step = std::max<std::size_t>(1, (last_ - first_ + 1) / kLooks);
+    for (std::size_t i = first_; i <= last_; i += step) visit(run_.recording[i]);
+    visit(run_.recording[last_]);
   }
   bool Moves(std::size_t body) const {
     double most_m = 0;
@@ -57,18 +71,28 @@ class Framing {
  private:
   const Scenario& scenario_;
   const RunResult& run_;
+  std::size_t first_ = 0, last_ = 0;  ///< in the recording
   Eigen::AlignedBox3d box_;
 };
 
-void FrameHands(const Scenario& scenario, const physics::Snapshot& now, Framing& framing) {
-  framing.AddHands(now);
-  for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
-    const physics::Body& body = scenario.scene.bodies[i];
-    if (!physics::IsThing(body) || !framing.IsSmall(i)) continue;
-    for (const physics::HandState& hand : now.hands) {
-      if ((now.bodies[i].X_WB.p_m - hand.palm.X_WB.p_m).norm() < kNearHand_m)
-        framing.AddBody(i, now);
-    }
+void FrameHands(const Scenario& scenario, const physics::Snapshot& now,
+                const std::vector<std::string>& framed, Framing& framing) {
+  const physics::Scene& scene = scenario.scene;
+  const auto is_named = [&](const auto& entity) {
+    return std::ranges::find(framed, entity.name) != framed.end();
+  };
+  const bool names_hands = std::ranges::any_of(scene.hands, is_named);
+  std::vector<physics::HandState> hands;
+  for (std::size_t i = 0; i < now.hands.size(); ++i) {
+    if (!names_hands || is_named(scene.hands[i])) hands.push_back(now.hands[i]);
+  }
+  for (const physics::HandState& hand : hands) framing.AddHand(hand);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (!physics::IsThing(scene.bodies[i]) || !framing.IsSmall(i)) continue;
+    const bool is_near = std::ranges::any_of(hands, [&](const physics::HandState& hand) {
+      return (now.bodies[i].X_WB.p_m - hand.palm.X_WB.p_m).norm() < kNearHand_m;
+    });
+    if (is_near || is_named(scene.bodies[i])) framing.AddBody(i, now);
   }
 }
 
@@ -85,7 +109,13 @@ bool IsFramed(const Scenario& scenario, std::size_t body, const std::string& cam
 }  // namespace
 
 render::Camera CameraFor(const Scenario& scenario, const RunResult& run,
-                         const render::Picture& picture, const std::string& name) {
+                         const render::Picture& picture, const std::string& name,
+                         const PictureFormat& format) {
+  if (const auto own = ParseOwnCamera(name)) {
+    return {.eye_m = own->eye_m.cast<float>(),
+            .look_at_m = own->look_at_m.cast<float>(),
+            .vertical_field_of_view_deg = static_cast<float>(own->view_deg)};
+  }
   for (const physics::Body& body : scenario.scene.bodies) {
     if (body.name != name || body.abstract != physics::Abstract::kCamera) continue;
     const Eigen::Vector3d ahead_m = body.X_WB * Eigen::Vector3d::UnitX();
@@ -93,14 +123,16 @@ render::Camera CameraFor(const Scenario& scenario, const RunResult& run,
             .look_at_m = ahead_m.cast<float>(),
             .vertical_field_of_view_deg = static_cast<float>(body.view_deg)};
   }
-  Framing framing(scenario, run);
+  Framing framing(scenario, run, format);
   if (name == "hand" && !scenario.scene.hands.empty()) {
-    FrameHands(scenario, picture.snapshot, framing);
+    FrameHands(scenario, picture.snapshot, format.framed, framing);
   } else {
     framing.ForEachLook([&](const physics::Snapshot& now) { framing.AddHands(now); });
     for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
       if (!framing.IsSmall(i) || !IsFramed(scenario, i, name)) continue;
-      if (framing.Moves(i))
+      const bool is_named =
+          std::ranges::find(format.framed, scenario.scene.bodies[i].name) != format.framed.end();
+      if (is_named || framing.Moves(i))
         framing.ForEachLook([&](const physics::Snapshot& now) { framing.AddBody(i, now); });
       else if (name != "action")
         framing.AddBody(i, run.recording.front());

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "harness/pictures/pictures.h"
 #include "harness/run/run_scenario.h"
 #include "harness/scenario/scenario.h"
 #include "render/picture.h"
@@ -16,8 +17,12 @@ namespace prehend::harness {
 ///  - front, left, right, top, three_quarter: hands, small things and what moves, all the time;
 ///  - action: hands, and small things that move, all the time;
 ///  - body: persons, too;
-///  - hand: the hands as they are in the picture's snapshot, and what is near them.
+///  - hand: the hands as they are in the picture's snapshot, what is near them, and
+///  `format.framed`.
+///    Where that names hands, other hands are left out;
+///  - a place and where it looks (harness/scenario/own_camera.h).
 render::Camera CameraFor(const Scenario& scenario, const RunResult& run,
-                         const render::Picture& picture, const std::string& name);
+                         const render::Picture& picture, const std::string& name,
+                         const PictureFormat& format = {});
 
 }  // namespace prehend::harness

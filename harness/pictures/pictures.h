@@ -4,6 +4,8 @@
 // (harness/pictures/pictures_without_render.cc). Tested by tests/program/acceptance_test.cc
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,10 +26,17 @@ struct PictureFormat {
   int width_px = 1280, height_px = 720;
   double text_scale = 1;
   bool print = false;                  ///< on white paper
+  bool transparent = false;            ///< without paper
   std::optional<double> from_s, to_s;  ///< the strip, paths and ghosts of this part of the episode
   std::string only;                    ///< this hand's paths, ghosts and rows; empty: all
   std::string of;  ///< the path of this entity, and events with it in a role; empty: all events
   std::vector<std::string> marked;  ///< things that get a bubble around them
+  std::vector<std::string> framed;  ///< the camera shows these things, too, wherever they are
+  /// All cameras but `hand`: what happens between these times. Empty: in the whole episode.
+  std::optional<double> framed_from_s, framed_to_s;
+  /// 0xRRGGBB of the parts of hands with sensors of the set of this name; others look like skin.
+  std::map<std::string, std::uint32_t> sensor_colors = {};
+  bool path_so_far = false;  ///< paths end at the moment, as in a film
   bool title = true, labels = true, strip = true, ghosts = true, paths = true, gaze = true;
 };
 

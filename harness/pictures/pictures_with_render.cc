@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "harness/pictures/compose_picture.h"
+#include "harness/pictures/draw_image.h"
 #include "harness/pictures/pictures.h"
 #include "harness/run/event_time.h"
 
@@ -39,7 +40,7 @@ std::string DrawOne(render::Painter& painter, const Scenario& scenario, const Ru
   if (!painter.error().empty()) return painter.error();
   if (run.recording.empty()) return "the run recorded nothing to draw";
   const render::Picture picture = ComposePicture(scenario, run, entry, format);
-  const render::Image image = painter.Draw(picture);
+  const render::Image image = DrawImage(painter, picture, format);
   if (image.rgb.empty()) return painter.error();
   if (!render::WritePng(image, file)) return "cannot write " + file;
   written.push_back({file, CaptionOf(picture, run), FindEventTime(entry.at.value, run).missed});
@@ -138,17 +139,9 @@ PictureDifference ComparePicture(const std::string& golden_file, const std::stri
 
 bool WritePictureDifference(const std::string& golden_file, const std::string& drawn_file,
                             const std::string& file) {
-  render::Image golden = render::ReadPng(golden_file);
-  const render::Image drawn = render::ReadPng(drawn_file);
+  const render::Image golden = render::ReadPng(golden_file), drawn = render::ReadPng(drawn_file);
   if (golden.rgb.empty() || !render::CompareImages(golden, drawn).same_size) return false;
-  for (std::size_t i = 0; i < golden.rgb.size(); i += 3) {
-    const bool differs = render::PixelDiffers(golden, drawn, i);
-    const int grey = (golden.rgb[i] + golden.rgb[i + 1] + golden.rgb[i + 2]) / 3;
-    const auto pale = static_cast<std::uint8_t>(160 + grey * 3 / 8);
-    golden.rgb[i] = differs ? 220 : pale;
-    golden.rgb[i + 1] = golden.rgb[i + 2] = differs ? 20 : pale;
-  }
-  return render::WritePng(golden, file);
+  return render::WritePng(PaleWithRed(golden, drawn), file);
 }
 
 }  // namespace prehend::harness

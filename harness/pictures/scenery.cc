@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint32_t kWood = 0xC8A27C, kPerson = 0xB4A99C;
+constexpr std::uint32_t kWood = 0xC8A27C, kPerson = 0xB4A99C, kSkin = 0xE0AC86;
 constexpr std::uint32_t kRegionRgb = 0x6BA8FF, kGazeTargetRgb = 0xF273BF;
 /// A board is at most this thick, and at least this long and wide.
 constexpr double kBoardThick_m = 0.12, kBoardWide_m = 0.25;
@@ -85,6 +85,26 @@ std::vector<render::Color> BodyColors(const Scenario& scenario) {
     if (!rgb && is_thing) rgb = ColorInName(body.name);
     if (!rgb && is_thing) rgb = ColorOfClass(scenario.body_classes[i]);
     colors.push_back(ColorOf(rgb.value_or(PaletteColor(body, i))));
+  }
+  return colors;
+}
+
+std::vector<std::vector<render::Color>> SensorColors(
+    const physics::Scene& scene, const std::map<std::string, std::uint32_t>& color_of_set) {
+  if (color_of_set.empty()) return {};
+  std::vector<std::vector<render::Color>> colors;
+  for (const physics::Hand& hand : scene.hands) {
+    const auto color_of = [&](int set) {
+      const bool is_set = set >= 0 && set < static_cast<int>(hand.model.sensor_sets.size());
+      const auto color =
+          is_set ? color_of_set.find(hand.model.sensor_sets[static_cast<std::size_t>(set)])
+                 : color_of_set.end();
+      return color == color_of_set.end() ? ColorOf(kSkin) : ColorOf(color->second);
+    };
+    std::vector<render::Color> parts = {color_of(hand.model.palm_sensor_set)};
+    for (const physics::HandLink& link : hand.model.links)
+      parts.push_back(color_of(link.sensor_set));
+    colors.push_back(std::move(parts));
   }
   return colors;
 }

@@ -4,7 +4,9 @@
 // tests/harness/pictures/scenery_test.cc
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "harness/scenario/scenario.h"
@@ -21,6 +23,11 @@ bool IsSeen(const physics::Body& body);
 /// One per scene body: what `color` says, else a colour word in the name, else the class, else one
 /// of a palette by index.
 std::vector<render::Color> BodyColors(const Scenario& scenario);
+
+/// Per scene hand the colours of its palm and links by the sets of their sensors; empty without
+/// any.
+std::vector<std::vector<render::Color>> SensorColors(
+    const physics::Scene& scene, const std::map<std::string, std::uint32_t>& color_of_set);
 
 /// Legs of fixed boards that nothing below carries, down to the floor at z = 0.
 std::vector<render::Prop> LegsOf(const Scenario& scenario, const std::vector<render::Color>& colors,

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "harness/scenario/own_camera.h"
+
 namespace prehend::harness {
 
 grammar::Tick DefaultTolerance(const Scenario& scenario) {
@@ -31,8 +33,10 @@ std::vector<std::string> CamerasOf(const Scenario& scenario) {
 
 std::optional<std::string> WhyNoCamera(const Scenario& scenario, const std::string& camera) {
   const std::vector<std::string> cameras = CamerasOf(scenario);
-  if (std::ranges::find(cameras, camera) != cameras.end()) return std::nullopt;
-  return fmt::format("camera: expected one of {}, found '{}'", fmt::join(cameras, ", "), camera);
+  if (std::ranges::find(cameras, camera) != cameras.end() || ParseOwnCamera(camera))
+    return std::nullopt;
+  return fmt::format("camera: expected one of {}, or {}, found '{}'", fmt::join(cameras, ", "),
+                     kOwnCameraForm, camera);
 }
 
 }  // namespace prehend::harness
