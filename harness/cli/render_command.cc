@@ -5,13 +5,23 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "harness/base/atomic_file.h"
 #include "harness/command/command.h"
+#include "harness/command/other_view.h"
+#include "harness/command/picture_options.h"
 #include "harness/command/recorded_episode.h"
 #include "harness/episodes/schema.h"
+#include "harness/figures/comparison_sheet.h"
+#include "harness/golden/golden_files.h"
+#include "harness/judge/accept_golden.h"
+#include "harness/judge/compare_engines.h"
+#include "harness/pictures/film.h"
 #include "harness/pictures/pictures.h"
+#include "harness/pictures/svg_file.h"
 #include "harness/run/event_time.h"
 #include "harness/run/run_text.h"
 
@@ -23,6 +33,7 @@ namespace fs = std::filesystem;
 constexpr int kLeastSide_px = 64, kMostSide_px = 4096, kMostSheetSide_px = 8192;
 constexpr int kMostColumns = 8;
 constexpr std::size_t kMostPictures = 64;
+constexpr double kComparisonWidth_px = 900;
 
 struct Size {
   int width_px = 0, height_px = 0;
@@ -58,20 +69,9 @@ constexpr Part kParts[] = {{"title", &PictureFormat::title}, {"labels", &Picture
                            {"strip", &PictureFormat::strip}, {"ghosts", &PictureFormat::ghosts},
                            {"paths", &PictureFormat::paths}, {"gaze", &PictureFormat::gaze}};
 
-/// The words between commas.
-std::vector<std::string> Split(const std::string& text) {
-  std::vector<std::string> words;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    words.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return words;
-}
-
 ValueRule PartsOfPicture() {
   return {"title, labels, strip, ghosts, paths, gaze", [](const std::string& value) {
-            for (const std::string& word : Split(value)) {
+            for (const std::string& word : WordsOf(value)) {
               const auto is = [&](const Part& part) { return word == part.name; };
               if (std::ranges::none_of(kParts, is))
                 return fmt::format(
@@ -83,49 +83,18 @@ ValueRule PartsOfPicture() {
           }};
 }
 
-ValueRule Themes() {
-  return {"light or print", [](const std::string& value) {
-            return value == "light" || value == "print"
-                       ? std::string()
-                       : fmt::format("expected light or print, found '{}'", value);
-          }};
-}
-
 PictureFormat FormatOf(const ParsedOptions& options) {
-  PictureFormat format{.text_scale = options.NumberOr("--text", 1),
-                       .print = options.Text("--theme") == "print",
-                       .only = options.Text("--only"),
-                       .of = options.Text("--of")};
+  PictureFormat format = FormatOfOptions(options);
   if (const auto size = SizeOf(options.Text("--size"))) {
     format.width_px = size->width_px;
     format.height_px = size->height_px;
   }
-  if (options.Has("--from")) format.from_s = options.NumberOr("--from", 0);
-  if (options.Has("--to")) format.to_s = options.NumberOr("--to", 0);
   for (const std::string& words : options.All("--without")) {
-    for (const std::string& word : Split(words))
+    for (const std::string& word : WordsOf(words))
       for (const Part& part : kParts)
         if (word == part.name) format.*part.shown = false;
   }
   return format;
-}
-
-/// What is wrong with the window, the hand or the thing, or "".
-std::string WhyNotDrawn(const PictureFormat& format, const Scenario& scenario) {
-  if (format.from_s.value_or(0) >= format.to_s.value_or(1e9))
-    return fmt::format("--from: found {:g} s, wanted less than --to, {:g} s",
-                       format.from_s.value_or(0), format.to_s.value_or(0));
-  const auto unknown = [](const char* option, const std::string& name,
-                          const std::vector<std::string>& known) -> std::string {
-    if (name.empty() || std::ranges::find(known, name) != known.end()) return "";
-    return fmt::format("{}: found '{}', wanted one of {}", option, name, fmt::join(known, ", "));
-  };
-  std::vector<std::string> hands, all;
-  for (const physics::Hand& hand : scenario.scene.hands) hands.push_back(hand.name);
-  for (const physics::Body& body : scenario.scene.bodies) all.push_back(body.name);
-  all.insert(all.end(), hands.begin(), hands.end());
-  const std::string why = unknown("--only", format.only, hands);
-  return why.empty() ? unknown("--of", format.of, all) : why;
 }
 
 /// The pictures that the command line asks for instead of the scenario's own; none when it asks
@@ -140,7 +109,7 @@ std::vector<PictureYaml> AskedPictures(const ParsedOptions& options, const Scena
     return {entry};
   }
   std::vector<PictureYaml> entries;
-  for (const std::string& at : Split(options.Text("--at"))) {
+  for (const std::string& at : WordsOf(options.Text("--at"))) {
     entries.push_back(entry);
     entries.back().at.value = at;
   }
@@ -184,7 +153,157 @@ PictureResult Draw(const ParsedOptions& options, const LoadedRun& loaded, const 
   return DrawPictures(loaded.scenario, run, folder.string(), format);
 }
 
-ExitCode RunRender(const ParsedOptions& options, const CommandContext& context) {
+/// What is made instead of pictures, and which options it has no use for.
+struct Product {
+  const char* option;
+  std::vector<const char*> unused;
+};
+const Product kProducts[] = {
+    {"--strip", {"--at", "--sheet", "--json", "--size", "--camera", "--theme"}},
+    {"--against", {"--at", "--sheet", "--json", "--size", "--without"}},
+    {"--film", {"--at", "--sheet", "--json", "--output"}}};
+
+/// Why these options do not go together, or "".
+std::string WhyNotTogether(const ParsedOptions& options) {
+  const char* asked = nullptr;
+  for (const Product& product : kProducts) {
+    if (!options.Has(product.option)) continue;
+    if (asked) return fmt::format("{} and {} exclude each other", asked, product.option);
+    asked = product.option;
+    for (const char* option : product.unused) {
+      if (options.Has(option)) return fmt::format("{} does not go with {}", option, asked);
+    }
+  }
+  for (const char* of_film : {"--fps", "--speed"}) {
+    if (options.Has(of_film) && !options.Has("--film"))
+      return fmt::format("{} is for --film", of_film);
+  }
+  return "";
+}
+
+/// The run of a scenario or of an episode, with every frame.
+tl::expected<PlayedRun, ExitCode> Play(const ParsedOptions& options,
+                                       const CommandContext& context) {
+  auto played = PlayOrReplay(options.Text("scenario"), options, context);
+  if (!played) return played;
+  if (played->run.recording.empty())
+    return tl::unexpected(Complain(context, ExitCode::kFailure, StatusText(played->run)));
+  const std::string why = WhyNotShown(options, played->loaded.scenario, played->run);
+  if (!why.empty()) return tl::unexpected(Complain(context, ExitCode::kBadInput, why));
+  return played;
+}
+
+/// Writes it where the command line says, or below build/pictures.
+ExitCode WriteOut(const std::string& svg, const ParsedOptions& options, const Scenario& scenario,
+                  const std::string& ending, const CommandContext& context) {
+  const fs::path file = options.TextOr("--output", (fs::path(context.root) / "build" / "pictures" /
+                                                    scenario.skill / (scenario.name + ending))
+                                                       .string());
+  const std::string problem = WriteDrawing(file, svg);
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  context.out << file.string() << "\n";
+  return ExitCode::kAgrees;
+}
+
+ExitCode RenderStrip(const ParsedOptions& options, const CommandContext& context) {
+  const auto played = Play(options, context);
+  if (!played) return played.error();
+  const LoadedRun& loaded = played->loaded;
+  const RunResult& run = played->run;
+  figures::Chart chart = figures::PhasesChart(loaded.scenario, run, WindowOf(options, run));
+  for (const std::string& words : options.All("--without")) {
+    if (std::ranges::count(WordsOf(words), "title") > 0) chart.title.clear();
+  }
+  return WriteOut(figures::ChartSvg(chart, SceneFormatOf(options, "", kComparisonWidth_px).chart),
+                  options, loaded.scenario, ".strip.svg", context);
+}
+
+/// Golden pictures, the same as they are now, and what differs.
+ExitCode ComparePictures(const PlayedRun& played, const ParsedOptions& options,
+                         const CommandContext& context) {
+  const Scenario& scenario = played.loaded.scenario;
+  const std::string id = ScenarioId(scenario.skill, scenario.name);
+  figures::Sheet sheet{.title = id + ": golden pictures and those of now"};
+  ScenePainter painter;
+  for (const KeptPicture& golden : GoldenFiles(context.root).PicturesOf(id)) {
+    const auto index = static_cast<std::size_t>(golden.number) - 1;
+    if (index >= scenario.pictures.size()) continue;
+    std::ifstream file(golden.path, std::ios::binary);
+    const std::string kept{std::istreambuf_iterator<char>(file), {}};
+    const PictureYaml& entry = scenario.pictures[index];
+    const DrawnScene now = painter.Draw(scenario, played.run, entry, {});
+    const SceneDifference difference = DifferenceOf(kept, now.png);
+    sheet.rows.push_back(
+        {.heading = fmt::format("picture {}: {}", golden.number, entry.at.value),
+         .tiles = {{kept, "golden"},
+                   {now.png, "now"},
+                   {difference.png,
+                    fmt::format("difference: {:.2g} % of the pixels", 100 * difference.share)}},
+         .columns = 3,
+         .height_share = 9.0 / 16});
+  }
+  if (sheet.rows.empty())
+    return Complain(context, ExitCode::kNothing,
+                    "--against: " + id + " has no golden pictures; " + AcceptPicturesCommand(id) +
+                        " keeps those of now");
+  if (!painter.error().empty())
+    return Complain(context, ExitCode::kFailure, "no picture: " + painter.error());
+  return WriteOut(SheetSvg(sheet, SceneFormatOf(options, "", kComparisonWidth_px).chart), options,
+                  scenario, ".against-pictures.png", context);
+}
+
+ExitCode RenderComparison(const ParsedOptions& options, const CommandContext& context) {
+  const auto played = Play(options, context);
+  if (!played) return played.error();
+  const std::string against = options.Text("--against");
+  if (against == "pictures") return ComparePictures(*played, options, context);
+  const auto other = OtherViewOrComplain(*played, against, context);
+  if (!other) return other.error();
+  const LoadedRun& loaded = played->loaded;
+  const RunResult& run = played->run;
+  const bool in_other_engine = !other->run.recording.empty();
+  const figures::Side first{
+      .name = other->name, .events = &other->run, .scenes = in_other_engine ? &other->run : &run},
+      second{.name = in_other_engine ? NameOf(loaded.scenario.scene.world.engine)
+                                     : loaded.scenario.grammar,
+             .events = &run,
+             .scenes = &run};
+  const figures::SceneFormat format = SceneFormatOf(options, "action", kComparisonWidth_px);
+  ScenePainter painter;
+  const figures::Sheet sheet = ComparisonSheet(loaded.scenario, first, second, other->comparison,
+                                               WindowOf(options, run), format, painter);
+  if (!painter.error().empty())
+    return Complain(context, ExitCode::kFailure, "no picture: " + painter.error());
+  return WriteOut(SheetSvg(sheet, format.chart), options, loaded.scenario,
+                  ".against-" + other->name + ".png", context);
+}
+
+ExitCode RenderFilm(const ParsedOptions& options, const CommandContext& context) {
+  const std::string path = options.Text("--film");
+  if (const std::string why = WhyNoFilm(path); !why.empty())
+    return Complain(context, ExitCode::kBadInput, "--film: " + why);
+  const auto played = Play(options, context);
+  if (!played) return played.error();
+  const LoadedRun& loaded = played->loaded;
+  const RunResult& run = played->run;
+  const figures::Window window = WindowOf(options, run);
+  const FilmFormat film{.from_s = window.from_s,
+                        .to_s = window.to_s,
+                        .frames_per_s = options.NumberOr("--fps", 30),
+                        .speed = options.NumberOr("--speed", 1)};
+  if (const std::string why = WhyTooLong(film); !why.empty())
+    return Complain(context, ExitCode::kBadInput, "--film: " + why);
+  PictureFormat format = FormatOf(options);
+  if (!options.Has("--size")) format.width_px = 960, format.height_px = 540;
+  format.ghosts = false;
+  const std::string why =
+      DrawFilm(loaded.scenario, run, options.TextOr("--camera", "action"), film, format, path);
+  if (!why.empty()) return Complain(context, ExitCode::kFailure, "no film: " + why);
+  context.out << path << "\n";
+  return ExitCode::kAgrees;
+}
+
+ExitCode RenderPictures(const ParsedOptions& options, const CommandContext& context) {
   const std::string typed = options.Text("scenario");
   std::optional<RecordedEpisode> recorded;
   Result<LoadedRun> loaded;
@@ -210,20 +329,13 @@ ExitCode RunRender(const ParsedOptions& options, const CommandContext& context) 
       return Complain(context, ExitCode::kBadInput, "--" + *why);
   }
   for (const std::string& why :
-       {WhyNotDrawn(FormatOf(options), loaded->scenario), WhyNoSheet(options, asked.size())}) {
+       {WhyNoPart(FormatOf(options), loaded->scenario), WhyNoSheet(options, asked.size())}) {
     if (!why.empty()) return Complain(context, ExitCode::kBadInput, why);
   }
   if (!asked.empty()) loaded->scenario.pictures = std::move(asked);
   if (loaded->scenario.pictures.empty()) {
     return Complain(context, ExitCode::kNothing,
                     "the scenario defines no pictures; --at asks for one");
-  }
-
-  if (options.Has("--output")) {
-    const std::string output = options.Text("--output");
-    const std::string why = output == "-" ? "found '-', wanted a file; pictures are not printed"
-                                          : AtomicFile(output).problem();
-    if (!why.empty()) return Complain(context, ExitCode::kBadInput, "--output: " + why);
   }
 
   const Result<RunResult> played =
@@ -257,21 +369,53 @@ ExitCode RunRender(const ParsedOptions& options, const CommandContext& context) 
   return Complain(context, ExitCode::kFailure, StatusText(run));
 }
 
+/// Why there can be no such file, or "".
+std::string WhyNoOutput(const ParsedOptions& options) {
+  if (!options.Has("--output")) return "";
+  const std::string output = options.Text("--output");
+  std::string why;
+  if (output == "-")
+    why = "found '-', wanted a file; pictures are not printed";
+  else if (options.Has("--strip") || options.Has("--against"))
+    why = WhyNoDrawingFile(output);
+  else if (output.ends_with(".svg") || output.ends_with(".pdf"))
+    why = fmt::format(
+        "found '{}', wanted a file NAME.png; scenes are drawn in pixels, --strip is "
+        "the timeline alone",
+        output);
+  if (why.empty()) why = WhyNotWritable(output);
+  return why.empty() ? "" : "--output: " + why;
+}
+
+ExitCode RunRender(const ParsedOptions& options, const CommandContext& context) {
+  for (const std::string& why : {WhyNotTogether(options), WhyNoOutput(options)})
+    if (!why.empty()) return Complain(context, ExitCode::kBadInput, why);
+  if (options.Has("--strip")) return RenderStrip(options, context);
+  if (options.Has("--against")) return RenderComparison(options, context);
+  if (options.Has("--film")) return RenderFilm(options, context);
+  return RenderPictures(options, context);
+}
+
 }  // namespace
 
 Command RenderCommand() {
   return {
       .name = "render",
-      .summary = "Draw a scenario's pictures, or one of your own",
+      .summary = "Draw a scenario's pictures, one of your own, a comparison, a film",
       .examples = {"render milk_carton_wrap", "render milk_carton_wrap -o milk.png",
                    "render suite.episodes --episode slide/hop_divides_a_slide -o hop.png",
                    "render milk_carton_wrap --at transporting.begin --camera left -o left.png",
                    "render milk_carton_wrap --at reaching.begin,grasping.begin,putting_down.end "
-                   "--sheet 3 --size 640x480 --theme print -o sheet.png"},
-      .options = {EpisodeArgument(),
+                   "--sheet 3 --size 640x480 --theme print -o sheet.png",
+                   "render milk_carton_wrap --strip -o strip.pdf",
+                   "render milk_carton_wrap --against original_2020 -o two_grammars.png",
+                   "render milk_carton_wrap --film milk.webp --speed 0.5"},
+      .options = Joined(
+          Joined({EpisodeArgument(),
                   EpisodeOption(),
                   {.name = "--output",
-                   .help = "the PNG file; default: build/pictures/SKILL/NAME.png",
+                   .help = "the PNG file; default: build/pictures/SKILL/NAME.png. --strip and\n"
+                           "--against also write .svg and .pdf",
                    .placeholder = "FILE",
                    .other_name = "-o",
                    .is_output = true},
@@ -279,41 +423,36 @@ Command RenderCommand() {
                    .help = "when: EVENT.begin, EVENT.end, or seconds; for a sheet several,\n"
                            "with commas between them",
                    .placeholder = "TIME"},
-                  {.name = "--camera",
-                   .help = "from where: front, left, right, top, three_quarter; hand, action or\n"
-                           "body, which are nearer to what they name; or a camera of the scenario",
-                   .placeholder = "CAMERA"},
                   {.name = "--sheet",
                    .help = "all pictures in one file, with so many columns",
                    .placeholder = "N",
-                   .rule = IntegersFrom(1, kMostColumns)},
-                  {.name = "--size",
+                   .rule = IntegersFrom(1, kMostColumns)}},
+                 InGroup("Instead of pictures",
+                         {{.name = "--strip", .help = "the timeline alone"},
+                          {.name = "--against",
+                           .help = "compare with the golden, another grammar, the other engine\n"
+                                   "(bullet, box2d): both timelines, and the scenes at each\n"
+                                   "boundary that differs. 'pictures': golden pictures, those of\n"
+                                   "now, and what differs",
+                           .placeholder = "golden|pictures|GRAMMAR|ENGINE"},
+                          {.name = "--film",
+                           .help = "a film: NAME.webp (img2webp), NAME.mp4 (ffmpeg), or a folder\n"
+                                   "of frames; 960x540 unless --size says otherwise",
+                           .placeholder = "FILE|FOLDER",
+                           .is_output = true},
+                          {.name = "--fps",
+                           .help = "frames in a second of the film; default: 30",
+                           .placeholder = "N",
+                           .rule = NumbersFrom(1, 120)},
+                          {.name = "--speed",
+                           .help = "seconds of the episode in a second of the film; default: 1",
+                           .placeholder = "N",
+                           .rule = NumbersFrom(0.01, 100)}})),
+          Joined(Joined(LookOptions(), PartOptions()),
+                 {{.name = "--size",
                    .help = "pixels of a picture; default: 1280x720",
                    .placeholder = "WxH",
                    .rule = Sizes()},
-                  {.name = "--text",
-                   .help = "scale of all text; default: 1",
-                   .placeholder = "SCALE",
-                   .rule = NumbersFrom(0.3, 5)},
-                  {.name = "--theme",
-                   .help = "light, or print: on white paper",
-                   .placeholder = "THEME",
-                   .rule = Themes()},
-                  {.name = "--from",
-                   .help = "begin of the part whose events, paths and ghosts are shown, seconds",
-                   .placeholder = "S",
-                   .rule = NumbersFrom(0, 1e6)},
-                  {.name = "--to",
-                   .help = "end of that part; default: all, but paths and ghosts of an episode of\n"
-                           "more than 15 s only around the moment",
-                   .placeholder = "S",
-                   .rule = NumbersFrom(0, 1e6)},
-                  {.name = "--only",
-                   .help = "paths, ghosts and rows of this hand only",
-                   .placeholder = "HAND"},
-                  {.name = "--of",
-                   .help = "the path of this thing, and only events that it takes part in",
-                   .placeholder = "NAME"},
                   {.name = "--without",
                    .help = "leave these out",
                    .placeholder = "PART,..",
@@ -322,7 +461,7 @@ Command RenderCommand() {
                   GrammarOption(),
                   SettingsOption(),
                   {.name = "--json",
-                   .help = "print the run as one JSON object, with the files of its pictures"}},
+                   .help = "print the run as one JSON object, with the files of its pictures"}})),
       .run = RunRender};
 }
 

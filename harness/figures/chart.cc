@@ -10,8 +10,6 @@
 #include <limits>
 #include <map>
 
-#include "harness/base/markup.h"
-
 namespace prehend::harness::figures {
 namespace {
 
@@ -19,11 +17,10 @@ namespace {
 constexpr std::array<const char*, 6> kColors = {"#0072B2", "#D55E00", "#009E73",
                                                 "#CC79A7", "#56B4E9", "#000000"};
 constexpr std::array<const char*, 4> kDashes = {"none", "6 3", "2 3", "8 3 2 3"};
-constexpr const char* kInk = "#222222";
 constexpr double kFoot = 5.6;              ///< height of times and legend, in heights of the text
 constexpr std::size_t kMostPoints = 1500;  ///< of a curve; more cannot be seen
 
-std::string Number(double value) { return fmt::format("{:.6g}", value); }
+std::string Number(double value) { return SvgNumber(value); }
 
 /// Whether dark text can be read on it: its luminance (ITU-R BT.709).
 bool IsLight(std::uint32_t color) {
@@ -41,39 +38,39 @@ class Drawing {
     right_ = format.width_px - 14;
   }
 
-  std::string Run() {
-    const double row_px = 1.9 * format_.text_px, panel_px = 9 * format_.text_px,
-                 gap_px = 1.6 * format_.text_px;
-    double y = chart_.title.empty() ? 8 : 2.4 * format_.text_px;
-    const double rows_px = row_px * static_cast<double>(chart_.rows.size());
-    const double height = y + rows_px +
-                          (gap_px + panel_px) * static_cast<double>(chart_.panels.size()) +
-                          kFoot * format_.text_px;
-    svg_ = AddElement(document_, "svg",
-                      {{"xmlns", "http://www.w3.org/2000/svg"},
-                       {"width", Number(format_.width_px)},
-                       {"height", Number(height)},
-                       {"viewBox", "0 0 " + Number(format_.width_px) + " " + Number(height)},
-                       {"font-family", "DejaVu Sans, Arial, sans-serif"},
-                       {"font-size", Number(format_.text_px)}});
-    if (!format_.transparent)
-      AddElement(svg_, "rect", {{"width", "100%"}, {"height", "100%"}, {"fill", "#FFFFFF"}});
+  double Height() const {
+    const double panels = static_cast<double>(chart_.panels.size());
+    return Top() + RowPx() * static_cast<double>(chart_.rows.size()) +
+           (GapPx() + PanelPx()) * panels + kFoot * format_.text_px;
+  }
+
+  void AddTo(pugi::xml_node svg) {
+    svg_ = svg;
     if (!chart_.title.empty()) Text(left_, 1.4 * format_.text_px, chart_.title, "start", "bold");
-    DrawTimes(y, height - kFoot * format_.text_px);
+    double y = Top();
+    DrawTimes(y, Height() - kFoot * format_.text_px);
+    DrawMarks(Height() - kFoot * format_.text_px);
     for (const Row& row : chart_.rows) {
-      DrawRow(row, y, row_px);
-      y += row_px;
+      DrawRow(row, y, RowPx());
+      y += RowPx();
     }
     for (const Panel& panel : chart_.panels) {
-      y += gap_px;
-      DrawPanel(panel, y, panel_px);
-      y += panel_px;
+      y += GapPx();
+      DrawPanel(panel, y, PanelPx());
+      y += PanelPx();
     }
-    DrawLegend(height - 0.8 * format_.text_px);
-    return ToText(document_, Layout::kIndented);
+    DrawLegend(Height() - 0.8 * format_.text_px);
   }
 
  private:
+  double RowPx() const { return 1.9 * format_.text_px; }
+  double PanelPx() const { return 9 * format_.text_px; }
+  double GapPx() const { return 1.6 * format_.text_px; }
+  double Top() const {
+    return (chart_.title.empty() ? 8 : 2.4 * format_.text_px) +
+           (chart_.marks.empty() ? 0 : 1.3 * format_.text_px);
+  }
+
   double X(double time_s) const {
     const double share = (time_s - chart_.from_s) / (chart_.to_s - chart_.from_s);
     return left_ + std::clamp(share, 0.0, 1.0) * (right_ - left_);
@@ -116,6 +113,46 @@ class Drawing {
              IsLight(bar.color) ? "#000000" : "#FFFFFF");
       else if (!bar.kind.empty())
         unnamed_[bar.kind] = bar.color;
+    }
+    for (const Hatch& hatch : row.hatches) DrawHatch(hatch, y, height);
+  }
+
+  /// Slanted lines in a frame: readable in print and on any colour.
+  void DrawHatch(const Hatch& hatch, double y, double height) {
+    if (hatch.end_s <= chart_.from_s || hatch.begin_s >= chart_.to_s) return;
+    const double step_px = 5, x = X(hatch.begin_s), top = y + 2, tall = height - 4,
+                 width = std::max(3.0, X(hatch.end_s) - x);
+    std::string path =
+        fmt::format("M{:.2f},{:.2f}h{:.2f}v{:.2f}h{:.2f}z", x, top, width, tall, -width);
+    // Each line leaves the frame where it meets its right or upper side.
+    for (double from = x - tall + step_px; from < x + width; from += step_px) {
+      const double first = std::max(from, x), last = std::min(from + tall, x + width);
+      path += fmt::format("M{:.2f},{:.2f}L{:.2f},{:.2f}", first, top + tall - (first - from), last,
+                          top + tall - (last - from));
+    }
+    AddElement(svg_, "path",
+               {{"d", path}, {"fill", "none"}, {"stroke", kInk}, {"stroke-width", "1"}});
+  }
+
+  /// A dashed line behind everything, with its letter above. Letters at one place are one text.
+  void DrawMarks(double bottom) {
+    const double top = Top();
+    double right_end = 0;
+    for (const Mark& mark : chart_.marks) {
+      if (mark.time_s < chart_.from_s || mark.time_s > chart_.to_s) continue;
+      const double x = X(mark.time_s);
+      AddElement(svg_, "line",
+                 {{"x1", Number(x)},
+                  {"y1", Number(top - 2)},
+                  {"x2", Number(x)},
+                  {"y2", Number(bottom)},
+                  {"stroke", kInk},
+                  {"stroke-width", "1"},
+                  {"stroke-dasharray", "4 3"}});
+      const double letter_px = 0.75 * format_.text_px * static_cast<double>(mark.letter.size());
+      const double letter_x = std::max(x, right_end + letter_px / 2);
+      Text(letter_x, top - 0.35 * format_.text_px, mark.letter, "middle", "bold");
+      right_end = letter_x + letter_px / 2 + 1;
     }
   }
 
@@ -218,7 +255,6 @@ class Drawing {
   const Chart& chart_;
   const ChartFormat& format_;
   double left_ = 0, right_ = 0;
-  pugi::xml_document document_;
   pugi::xml_node svg_;
   std::map<std::string, std::uint32_t> unnamed_;
 };
@@ -241,8 +277,35 @@ std::vector<double> RoundTicks(double from, double to, int most) {
   return ticks;
 }
 
+std::string SvgNumber(double value) { return fmt::format("{:.6g}", value); }
+
+pugi::xml_node AddDrawing(pugi::xml_document& document, const ChartFormat& format,
+                          double height_px) {
+  const pugi::xml_node svg =
+      AddElement(document, "svg",
+                 {{"xmlns", "http://www.w3.org/2000/svg"},
+                  {"xmlns:xlink", "http://www.w3.org/1999/xlink"},
+                  {"width", SvgNumber(format.width_px)},
+                  {"height", SvgNumber(height_px)},
+                  {"viewBox", "0 0 " + SvgNumber(format.width_px) + " " + SvgNumber(height_px)},
+                  {"font-family", "DejaVu Sans, Arial, sans-serif"},
+                  {"font-size", SvgNumber(format.text_px)}});
+  if (!format.transparent)
+    AddElement(svg, "rect", {{"width", "100%"}, {"height", "100%"}, {"fill", "#FFFFFF"}});
+  return svg;
+}
+
+double AddChart(pugi::xml_node svg, const Chart& chart, const ChartFormat& format, double top_px) {
+  Drawing drawing(chart, format);
+  drawing.AddTo(AddElement(svg, "g", {{"transform", "translate(0 " + SvgNumber(top_px) + ")"}}));
+  return drawing.Height();
+}
+
 std::string ChartSvg(const Chart& chart, const ChartFormat& format) {
-  return Drawing(chart, format).Run();
+  pugi::xml_document document;
+  Drawing drawing(chart, format);
+  drawing.AddTo(AddDrawing(document, format, drawing.Height()));
+  return ToText(document, Layout::kIndented);
 }
 
 }  // namespace prehend::harness::figures

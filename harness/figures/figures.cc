@@ -5,11 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <map>
-#include <set>
 
+#include "harness/figures/moments.h"
 #include "harness/timeline/event_text.h"
 #include "physics/scene/geometry.h"
 
@@ -21,15 +20,6 @@ using grammar::NamedEvent;
 
 constexpr double kForceWindow_s = 0.05;  ///< forces are means over so long
 constexpr double kMoves_m = 0.01;        ///< what rises or sinks less has no curve
-
-double Seconds(const RunResult& run, grammar::Tick tick) {
-  return static_cast<double>(tick) / static_cast<double>(run.timeline.ticks_per_second);
-}
-
-std::string HandOf(const RunResult& run, const NamedEvent& event) {
-  const EventDrawing& drawing = run.drawings.Of(event.event);
-  return drawing.hand < event.roles.size() ? event.roles[drawing.hand].value : std::string();
-}
 
 /// The roles but that of the hand: "milk".
 std::string OthersOf(const RunResult& run, const NamedEvent& event) {
@@ -43,20 +33,21 @@ std::string OthersOf(const RunResult& run, const NamedEvent& event) {
 }
 
 Bar BarOf(const RunResult& run, const NamedEvent& event, std::string text) {
-  return {.begin_s = Seconds(run, event.interval.begin),
-          .end_s = Seconds(run, event.interval.end),
+  return {.begin_s = SecondsOf(run, event.interval.begin),
+          .end_s = SecondsOf(run, event.interval.end),
           .text = std::move(text),
           .color = run.drawings.Of(event.event).color,
           .kind = event.event};
 }
 
 /// The phases of each hand, in the order of the hands.
-std::vector<Row> PhaseRows(const Scenario& scenario, const RunResult& run) {
+std::vector<Row> PhaseRows(const Scenario& scenario, const RunResult& run, const Window& window) {
   std::vector<Row> rows;
   for (const physics::Hand& hand : scenario.scene.hands) {
     Row row{.name = hand.name, .bars = {}};
     for (const NamedEvent& event : run.timeline.events) {
-      if (run.drawings.Of(event.event).as == DrawnAs::kPhase && HandOf(run, event) == hand.name)
+      if (run.drawings.Of(event.event).as == DrawnAs::kPhase && HandOf(run, event) == hand.name &&
+          window.Shows(scenario, event))
         row.bars.push_back(BarOf(run, event, event.event));
     }
     if (!row.bars.empty()) rows.push_back(std::move(row));
@@ -66,57 +57,24 @@ std::vector<Row> PhaseRows(const Scenario& scenario, const RunResult& run) {
 
 }  // namespace
 
-Window WholeOf(const RunResult& run) { return {0, Seconds(run, run.ticks)}; }
-
-std::vector<KeyMoment> KeyMoments(const RunResult& run, const Window& window, std::size_t most) {
-  struct Phase {
-    double begin_s, end_s;
-    std::string name;
-  };
-  std::vector<Phase> phases;
-  for (const NamedEvent& event : run.timeline.events) {
-    const Phase phase{Seconds(run, event.interval.begin), Seconds(run, event.interval.end),
-                      event.event};
-    const bool is_phase = run.drawings.Of(event.event).as == DrawnAs::kPhase;
-    if (is_phase && phase.begin_s >= window.from_s && phase.begin_s <= window.to_s)
-      phases.push_back(phase);
-  }
-  std::map<double, std::string> moments;
-  const auto add = [&](double time_s, const std::string& caption) {
-    if (moments.size() < most && time_s <= window.to_s) moments.try_emplace(time_s, caption);
-  };
-  add(window.from_s, "begin");
-  add(window.to_s, "end");
-  for (const Phase& phase : phases) add(phase.begin_s, phase.name + " begins");
-  if (!phases.empty()) {
-    const Phase& last = *std::ranges::max_element(phases, {}, &Phase::end_s);
-    add(last.end_s, last.name + " ends");
-  }
-  std::ranges::sort(phases, std::greater<>(),
-                    [](const Phase& phase) { return phase.end_s - phase.begin_s; });
-  for (const Phase& phase : phases) add((phase.begin_s + phase.end_s) / 2, phase.name);
-  std::vector<KeyMoment> found;
-  for (const auto& [time_s, caption] : moments) found.push_back({time_s, caption});
-  return found;
-}
-
 Chart PhasesChart(const Scenario& scenario, const RunResult& run, const Window& window) {
   Chart chart{.title = scenario.name + ", " + scenario.grammar,
               .from_s = window.from_s,
               .to_s = window.to_s,
-              .rows = PhaseRows(scenario, run),
+              .rows = PhaseRows(scenario, run, window),
               .panels = {}};
   std::vector<Row> others;
   for (const NamedEvent& event : run.timeline.events) {
     const EventDrawing& drawing = run.drawings.Of(event.event);
     if (drawing.as == DrawnAs::kPhase || drawing.as == DrawnAs::kNothing) continue;
+    if (!window.Shows(scenario, event)) continue;
     const bool of_hand = drawing.as == DrawnAs::kGrasp;
     const std::string name = of_hand ? HandOf(run, event) + ": " + event.event : event.event;
     auto row = std::ranges::find(others, name, &Row::name);
     // Events of one row that overlap need rows of their own.
     int copy = 1;
     while (row != others.end() &&
-           row->bars.back().end_s > Seconds(run, event.interval.begin) + 1e-9) {
+           row->bars.back().end_s > SecondsOf(run, event.interval.begin) + 1e-9) {
       row = std::ranges::find(others, fmt::format("{} {}", name, ++copy), &Row::name);
     }
     if (row == others.end()) {
@@ -140,7 +98,7 @@ Chart SideBySide(Chart chart, const std::string& here, const Chart& other,
   std::vector<Row> rows;
   std::vector<bool> taken(other.rows.size(), false);
   const auto add = [&](const Row& row, const std::string& whose) {
-    rows.push_back({fmt::format("{} ({})", row.name, whose), row.bars});
+    rows.push_back({fmt::format("{} ({})", row.name, whose), row.bars, row.hatches});
   };
   for (const Row& row : chart.rows) {
     add(row, here);
@@ -161,7 +119,7 @@ Chart SeriesChart(const Scenario& scenario, const RunResult& run, const Window& 
   Chart chart{.title = scenario.name + ", " + scenario.grammar,
               .from_s = window.from_s,
               .to_s = window.to_s,
-              .rows = PhaseRows(scenario, run),
+              .rows = PhaseRows(scenario, run, window),
               .panels = {}};
   const physics::Scene& scene = scenario.scene;
   Panel heights{"height, m", {}}, triggers{"trigger", {}}, forces{"force of touch, N", {}};
@@ -172,7 +130,7 @@ Chart SeriesChart(const Scenario& scenario, const RunResult& run, const Window& 
     double least = 1e9, most = -1e9;
     for (const physics::Snapshot& snapshot : run.recording) {
       const double height_m = snapshot.bodies[i].X_WB.p_m.z();
-      curve.points.emplace_back(Seconds(run, snapshot.tick), height_m);
+      curve.points.emplace_back(SecondsOf(run, snapshot.tick), height_m);
       least = std::min(least, height_m);
       most = std::max(most, height_m);
     }
@@ -183,7 +141,7 @@ Chart SeriesChart(const Scenario& scenario, const RunResult& run, const Window& 
     Curve trigger{scene.hands[h].name, {}}, force{scene.hands[h].name, {}};
     double mean_n = 0;
     for (const physics::Snapshot& snapshot : run.recording) {
-      const double time_s = Seconds(run, snapshot.tick);
+      const double time_s = SecondsOf(run, snapshot.tick);
       trigger.points.emplace_back(time_s, snapshot.hands[h].trigger);
       double impulse_n_s = 0;
       for (const auto& part : snapshot.AllContacts()) {
@@ -211,7 +169,7 @@ std::optional<Chart> GazeChart(const Scenario& scenario, const RunResult& run,
   Chart chart{.title = scenario.name + ", " + scenario.grammar,
               .from_s = window.from_s,
               .to_s = window.to_s,
-              .rows = PhaseRows(scenario, run),
+              .rows = PhaseRows(scenario, run, window),
               .panels = {}};
   for (const NamedEvent& event : run.timeline.events) {
     if (run.drawings.Of(event.event).as != DrawnAs::kGrasp) continue;
@@ -220,78 +178,31 @@ std::optional<Chart> GazeChart(const Scenario& scenario, const RunResult& run,
     if (row == chart.rows.end()) row = chart.rows.insert(chart.rows.end(), {name, {}});
     row->bars.push_back(BarOf(run, event, OthersOf(run, event)));
   }
+  // Rows in the order of the names; what a person looks at.
+  std::map<std::string, Row> rows;
+  for (const Look& look : Looks(scenario, run, window)) {
+    const std::string name = look.person + " sees " + look.seen;
+    Row& row = rows.try_emplace(name, Row{name, {}}).first->second;
+    row.bars.push_back({.begin_s = look.begin_s,
+                        .end_s = look.end_s,
+                        .text = fmt::format("{:.2f} s", look.Dwell_s()),
+                        .color = 0x0072B2});
+  }
+  for (auto& [name, row] : rows) chart.rows.push_back(std::move(row));
   Panel distances{"distance to what is seen, m", {}};
   for (std::size_t p = 0; p < scene.persons.size(); ++p) {
-    std::map<std::string, Row> seen;
-    std::string last;
     Curve distance{scene.persons[p].name, {}};
     for (const physics::Snapshot& snapshot : run.recording) {
       const physics::GazeState& gaze = snapshot.gazes[p];
-      const double time_s = Seconds(run, snapshot.tick);
-      const std::string name =
-          gaze.body >= 0   ? scene.bodies[static_cast<std::size_t>(gaze.body)].name
-          : gaze.hand >= 0 ? scene.hands[static_cast<std::size_t>(gaze.hand)].name
-                           : std::string();
-      if (!name.empty()) {
-        Row& row = seen[name];
-        row.name = scene.persons[p].name + " sees " + name;
-        if (name != last || row.bars.empty())
-          row.bars.push_back({.begin_s = time_s, .end_s = time_s, .text = {}, .color = 0x0072B2});
-        row.bars.back().end_s = time_s;
-        distance.points.emplace_back(time_s, gaze.distance_m);
-      } else if (!last.empty()) {
-        distance.points.emplace_back(time_s, std::numeric_limits<double>::quiet_NaN());
-      }
-      last = name;
-    }
-    for (auto& [name, row] : seen) {
-      for (Bar& bar : row.bars) bar.text = fmt::format("{:.2f} s", bar.end_s - bar.begin_s);
-      chart.rows.push_back(std::move(row));
+      const bool sees = gaze.body >= 0 || gaze.hand >= 0;
+      distance.points.emplace_back(
+          SecondsOf(run, snapshot.tick),
+          sees ? gaze.distance_m : std::numeric_limits<double>::quiet_NaN());
     }
     distances.curves.push_back(std::move(distance));
   }
   chart.panels.push_back(std::move(distances));
   return chart;
-}
-
-std::optional<HeldMoment> LongestGrasp(const Scenario& scenario, const RunResult& run) {
-  const NamedEvent* longest = nullptr;
-  for (const NamedEvent& event : run.timeline.events) {
-    if (run.drawings.Of(event.event).as != DrawnAs::kGrasp || RoleValue(event, "style").empty())
-      continue;
-    if (!longest ||
-        event.interval.end - event.interval.begin > longest->interval.end - longest->interval.begin)
-      longest = &event;
-  }
-  if (!longest) return std::nullopt;
-  const grammar::Tick middle = (longest->interval.begin + longest->interval.end) / 2;
-  HeldMoment moment{
-      .time_s = Seconds(run, middle), .style = RoleValue(*longest, "style"), .sensor_sets = {}};
-  const physics::Scene& scene = scenario.scene;
-  const auto hand = std::ranges::find(scene.hands, HandOf(run, *longest), &physics::Hand::name);
-  const auto snapshot = std::ranges::find_if(
-      run.recording, [&](const physics::Snapshot& one) { return one.tick >= middle; });
-  if (hand == scene.hands.end() || snapshot == run.recording.end()) return moment;
-  // Only of what is held: a finger may touch the table, too.
-  const std::size_t role = run.drawings.Of(longest->event).first;
-  const int held =
-      role < longest->roles.size() ? physics::FindBody(scene, longest->roles[role].value) : -1;
-  std::set<int> sets;
-  const auto index = static_cast<int>(hand - scene.hands.begin());
-  for (const physics::ContactPoint& point : snapshot->contacts) {
-    for (const physics::ContactSide& side : {point.a, point.b}) {
-      const bool touches_held = point.a.body == held || point.b.body == held;
-      if (side.hand != index || !touches_held) continue;
-      sets.insert(side.link < 0
-                      ? hand->model.palm_sensor_set
-                      : hand->model.links[static_cast<std::size_t>(side.link)].sensor_set);
-    }
-  }
-  for (const int set : sets) {
-    if (set >= 0 && set < static_cast<int>(hand->model.sensor_sets.size()))
-      moment.sensor_sets.push_back(hand->model.sensor_sets[static_cast<std::size_t>(set)]);
-  }
-  return moment;
 }
 
 }  // namespace prehend::harness::figures

@@ -2,6 +2,8 @@
 // The figures of docs/figures.md, as a person asks for them.
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "tests/program/program.h"
 
 namespace prehend::house {
@@ -63,7 +65,11 @@ TEST_F(Figure, WhatCannotBeDrawnIsRefused) {
     EXPECT_TRUE(Has(said.err, why)) << said.err;
   };
   refused({"plates", "-o", Path("a.svg")}, "found 'plates', wanted keyframes, phases, grasps");
-  refused({"grasps", "-o", Path("a.svg")}, "wanted a file NAME.png");
+  refused({"grasps", "-o", Path("a.gif")}, "wanted a file NAME.svg, NAME.png or NAME.pdf");
+  refused({"grasps", "-o", Path("a.png"), "--scenes", "2"}, "--scenes is for charts");
+  refused({"phases", "-o", Path("a.png"), "--scenes", "2", "--at", "1"}, "exclude each other");
+  refused({"phases", "-o", Path("a.png"), "--at", "nothing.begin"}, "--at: ");
+  refused({"phases", "-o", Path("a.png"), "--of", "cup"}, "--of: found 'cup', wanted one of ");
   refused({"phases", "-o", Path("a.gif")}, "a.gif");
   refused({"plate", "-o", Path("a.svg"), "--from", "3", "--to", "2"}, "wanted less than --to");
   for (const char* kind : {"phases", "keyframes", "plate", "gaze"})
@@ -82,6 +88,63 @@ TEST_F(Figure, ScenesAreSheets) {
   EXPECT_EQ(ReadFile(Path("a.png")).substr(1, 3), "PNG");
   ASSERT_EQ(Do({"grasps", "styles/pinch*", "-o", Path("b.png")}).exit_code, 0);
   EXPECT_EQ(Do({"keyframes", "--camera", "nowhere", "-o", Path("c.png")}).exit_code, 2);
+}
+
+int Count(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+    ++count;
+  return count;
+}
+
+TEST_F(Figure, ScenesAreAboveAChart) {
+  const Said said = Do({"phases", "-o", Path("a.svg")});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  if (Has(said.err, "draws no scenes")) GTEST_SKIP() << said.err;
+  const std::string svg = ReadFile(Path("a.svg"));
+  EXPECT_EQ(Count(svg, "data:image/png;base64,"), 5);
+  EXPECT_TRUE(Has(svg, ">(a) reaching begins<"));
+  ASSERT_EQ(Do({"phases", "--at", "grasping.begin,2", "-o", Path("b.svg")}).exit_code, 0);
+  EXPECT_EQ(Count(ReadFile(Path("b.svg")), "data:image/png;base64,"), 2);
+  ASSERT_EQ(Do({"phases", "--scenes", "0", "-o", Path("c.svg")}).exit_code, 0);
+  EXPECT_EQ(Count(ReadFile(Path("c.svg")), "data:image/png;base64,"), 0);
+  ASSERT_EQ(Do({"gaze", "-o", Path("d.svg")}).exit_code, 0);
+  EXPECT_TRUE(Has(ReadFile(Path("d.svg")), ">(a) anna sees milk for "));
+}
+
+/// The commands of the page's blocks of shell.
+std::vector<std::string> DocumentedCommands() {
+  std::vector<std::string> commands;
+  std::istringstream page(ReadFile(PREHEND_SOURCE_DIR "/docs/figures.md"));
+  bool in_shell = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("```")) in_shell = line == "```sh";
+    if (in_shell && line.starts_with("prehend ")) commands.push_back(line.substr(8));
+  }
+  return commands;
+}
+
+TEST_F(Figure, TheCommandsOfThePageRun) {
+  const std::vector<std::string> commands = DocumentedCommands();
+  EXPECT_EQ(commands.size(), 15u);
+  for (const std::string& command : commands) {
+    // Words as a shell splits them; what is written goes to this test's folder.
+    std::vector<std::string> words;
+    std::istringstream text(command);
+    std::string file;
+    for (std::string word; text >> word;) {
+      std::erase(word, '\'');
+      const bool is_file = !words.empty() && (words.back() == "-o" || words.back() == "--film");
+      if (is_file) file = word = Path(word);
+      words.push_back(word);
+    }
+    const Said said = Prehend(words);
+    if (Has(said.err, "is not installed") || Has(said.err, "PREHEND_RENDER=OFF")) continue;
+    EXPECT_EQ(said.exit_code, 0) << command << "\n" << said.err;
+    EXPECT_EQ(said.err, "") << command;
+    EXPECT_TRUE(fs::exists(file)) << command;
+    fs::remove_all(file);  // two commands write a file of this name
+  }
 }
 
 }  // namespace

@@ -5,41 +5,10 @@
 
 #include <algorithm>
 
+#include "tests/harness/figures/played.h"
+
 namespace prehend::harness::figures {
 namespace {
-
-struct Played {
-  LoadedRun loaded;
-  RunResult run;
-};
-
-const Played& Of(const std::string& scenario) {
-  static std::map<std::string, Played> played;
-  const auto [found, is_new] = played.try_emplace(scenario);
-  if (is_new) {
-    const std::string root = PREHEND_SOURCE_DIR;
-    Result<LoadedRun> loaded =
-        LoadRun({.scenario_file = root + "/scenarios/" + scenario + ".yaml"}, root);
-    EXPECT_TRUE(loaded) << scenario;
-    found->second.loaded = *loaded;
-    found->second.run = RunScenario(loaded->scenario, loaded->program, {.record = true});
-  }
-  return found->second;
-}
-
-TEST(Figures, KeyMomentsAreInOrderAndNoMoreThanAskedFor) {
-  const RunResult& run = Of("pick_and_place/milk_carton_wrap").run;
-  const auto moments = KeyMoments(run, WholeOf(run), 10);
-  ASSERT_EQ(moments.size(), 10u);
-  EXPECT_TRUE(std::ranges::is_sorted(moments, {}, &KeyMoment::time_s));
-  EXPECT_EQ(moments.front().caption, "begin");
-  EXPECT_EQ(moments.back().caption, "end");
-  EXPECT_EQ(std::ranges::count(moments, "picking_up begins", &KeyMoment::caption), 1);
-  EXPECT_EQ(KeyMoments(run, WholeOf(run), 3).size(), 3u);
-  const auto part = KeyMoments(run, {1.2, 2}, 10);
-  EXPECT_EQ(part.front().time_s, 1.2);
-  EXPECT_LE(part.back().time_s, 2);
-}
 
 TEST(Figures, PhasesHaveARowPerHandAndEvent) {
   const auto& [loaded, run] = Of("pick_and_place/milk_carton_wrap");
@@ -80,12 +49,18 @@ TEST(Figures, GazeIsWhatPersonsSee) {
   EXPECT_FALSE(GazeChart(alone.scenario, its_run, WholeOf(its_run)));
 }
 
-TEST(Figures, AGraspHasItsSensors) {
-  const auto& [loaded, run] = Of("pick_and_place/milk_carton_wrap");
-  const auto held = LongestGrasp(loaded.scenario, run);
-  ASSERT_TRUE(held);
-  EXPECT_EQ(held->style, "wrap");
-  EXPECT_EQ(held->sensor_sets, (std::vector<std::string>{"fingers", "thumb"}));
+TEST(Figures, AWindowLeavesOtherHandsAndThingsOut) {
+  const auto& [loaded, run] = Of("bimanual/two_hands_carry_a_plate_of_a_kilogram");
+  Window window = WholeOf(run);
+  const std::size_t all = PhasesChart(loaded.scenario, run, window).rows.size();
+  window.hand = "left_hand";
+  const Chart chart = PhasesChart(loaded.scenario, run, window);
+  EXPECT_LT(chart.rows.size(), all);
+  EXPECT_TRUE(std::ranges::none_of(
+      chart.rows, [](const Row& row) { return row.name.starts_with("right_hand"); }));
+  window = WholeOf(run);
+  window.entity = "nothing";
+  EXPECT_TRUE(PhasesChart(loaded.scenario, run, window).rows.empty());
 }
 
 }  // namespace

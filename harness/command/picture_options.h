@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options of all commands that draw: what of an episode, from where, how. Tested by
+// tests/program/render_test.cc and tests/program/figure_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/command/command.h"
+#include "harness/figures/scene_tiles.h"
+#include "harness/pictures/pictures.h"
+
+namespace prehend::harness {
+
+/// --from, --to, --only, --of.
+std::vector<Option> PartOptions();
+/// --camera, --text, --theme, --transparent.
+std::vector<Option> LookOptions();
+
+/// What these options say; the rest is as of a picture.
+PictureFormat FormatOfOptions(const ParsedOptions& options);
+
+/// What is wrong with the part, or "": an empty time, a hand or a thing that the scenario does not
+/// have.
+std::string WhyNoPart(const PictureFormat& format, const Scenario& scenario);
+
+/// The same for figures, and what is wrong with a window that begins after the run, or with
+/// --camera.
+std::string WhyNotShown(const ParsedOptions& options, const Scenario& scenario,
+                        const RunResult& run);
+figures::Window WindowOf(const ParsedOptions& options, const RunResult& run);
+/// `camera`: unless another one is asked for; `width_px`: of the drawing.
+figures::SceneFormat SceneFormatOf(const ParsedOptions& options, const std::string& camera,
+                                   double width_px);
+
+/// The words between commas.
+std::vector<std::string> WordsOf(const std::string& text);
+
+}  // namespace prehend::harness
