@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
+#include <utility>
 
 #include "grammar/base/check.h"
 #include "harness/base/build_text.h"
@@ -252,49 +254,64 @@ void Conclude(const Findings& findings, ScenarioVerdict& verdict) {
   verdict.reason = first.reason;
 }
 
-/// The first boundary that is out of its tolerance, as the scene at both of its times, in the same
-/// view. Empty if there is none, or nothing can be drawn.
+/// The first boundaries that are out of their tolerance, as the scene at both of their times, in
+/// one view, which is near to what happens in between. Empty if there are none, or nothing can be
+/// drawn.
 std::vector<DisputedMoment> DrawDisputed(const CheckRequest& request, const CheckedRun& checked,
                                          const Comparison& comparison) {
+  constexpr double kAround_s = 0.15;
   if (!request.pictures || !CanDrawPictures()) return {};
+  const auto seconds = [&](grammar::Tick tick) {
+    return static_cast<double>(tick) / static_cast<double>(comparison.ticks_per_second);
+  };
+  const fs::path folder =
+      fs::path("pictures") / checked.loaded.scenario.skill / checked.loaded.scenario.name;
+  std::error_code error;
+  fs::create_directories((fs::path(request.report_folder) / folder).parent_path(), error);
+  std::vector<DisputedMoment> moments;
+  std::set<std::pair<grammar::Tick, grammar::Tick>> drawn;  // several events may share a boundary
   for (const Pairing* pairing : comparison.Differing()) {
-    if (!pairing->expected || !pairing->actual) continue;
+    if (!pairing->expected || !pairing->actual || moments.size() == kMostDisputed) continue;
     const bool at_begin = std::abs(pairing->begin_offset) > pairing->tolerance;
     if (!at_begin && std::abs(pairing->end_offset) <= pairing->tolerance) continue;
     const auto boundary = [&](const grammar::NamedEvent& event) {
       return at_begin ? event.interval.begin : event.interval.end;
     };
-    const fs::path folder =
-        fs::path("pictures") / checked.loaded.scenario.skill / checked.loaded.scenario.name;
+    const auto [first, last] =
+        std::minmax({boundary(*pairing->expected), boundary(*pairing->actual)});
+    if (!drawn.emplace(first, last).second) continue;
+    std::vector<std::string> involved;
+    for (const grammar::Role& role : pairing->event().roles) involved.push_back(role.value);
     const PictureFormat format{.width_px = 480,
                                .height_px = 270,
+                               .framed = involved,
+                               .framed_from_s = seconds(first) - kAround_s,
+                               .framed_to_s = seconds(last) + kAround_s,
                                .title = false,
                                .labels = false,
                                .strip = false,
                                .ghosts = false,
                                .paths = false};
-    bool drawn = true;
+    bool is_drawn = true;
     const auto draw = [&](const char* side, grammar::Tick tick) {
-      const double time_s =
-          static_cast<double>(tick) / static_cast<double>(comparison.ticks_per_second);
       PictureYaml entry;
-      entry.at.value = fmt::format("{:.6f}", time_s);
-      const std::string file = folder.generic_string() + "." + side + ".png";
+      entry.at.value = fmt::format("{:.6f}", seconds(tick));
+      entry.camera.value = "action";
+      const std::string file =
+          fmt::format("{}.{}{}.png", folder.generic_string(), side, moments.size() + 1);
       const PictureResult result =
           DrawPicture(checked.loaded.scenario, checked.result, entry,
                       (fs::path(request.report_folder) / file).string(), format);
-      drawn = drawn && result.error.empty();
-      return ReportedPicture{file, fmt::format("{}: {:.4f} s", side, time_s)};
+      is_drawn = is_drawn && result.error.empty();
+      return ReportedPicture{file, fmt::format("{}: {:.4f} s", side, seconds(tick))};
     };
-    std::error_code error;
-    fs::create_directories((fs::path(request.report_folder) / folder).parent_path(), error);
     DisputedMoment moment{.what = (at_begin ? "begin of " : "end of ") + pairing->event().Label(),
                           .expected = draw("golden", boundary(*pairing->expected)),
                           .recognised = draw("recognised", boundary(*pairing->actual))};
-    if (!drawn) return {};
-    return {std::move(moment)};
+    if (!is_drawn) return {};
+    moments.push_back(std::move(moment));
   }
-  return {};
+  return moments;
 }
 
 bool WantsReplay(const CheckRequest& request, const ScenarioVerdict& verdict) {

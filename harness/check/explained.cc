@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "harness/explain/explain.h"
@@ -14,7 +15,8 @@
 namespace prehend::harness {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExplainedEvent, event, begin, end, began, ended)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DecidingSignal, clause, how, unit, tick, ticks, values, limits)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DecidingSignal, clause, how, unit, tick, golden_tick, ticks,
+                                   values, limits)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExplainedDifference, what, text, signals)
 
 void to_json(nlohmann::json& packed, const Explained& explained) {
@@ -43,7 +45,9 @@ EpisodeSource SourceOf(const Scenario& scenario, const RunResult& run,
   return source;
 }
 
-void AddSignals(const explain::Reasons& reasons, std::vector<DecidingSignal>& signals) {
+/// `golden_tick` as of a signal.
+void AddSignals(const explain::Reasons& reasons, grammar::Tick golden_tick,
+                std::vector<DecidingSignal>& signals) {
   for (const explain::Reason& reason : reasons) {
     if (signals.size() >= kMostSignals) return;
     if (reason.reading && reason.tick && reason.reading->course.size() > 1) {
@@ -51,6 +55,7 @@ void AddSignals(const explain::Reasons& reasons, std::vector<DecidingSignal>& si
                             .how = reason.how,
                             .unit = reason.reading->unit,
                             .tick = *reason.tick,
+                            .golden_tick = golden_tick,
                             .ticks = {},
                             .values = {},
                             .limits = {}};
@@ -61,7 +66,7 @@ void AddSignals(const explain::Reasons& reasons, std::vector<DecidingSignal>& si
       }
       signals.push_back(std::move(signal));
     }
-    AddSignals(reason.because, signals);
+    AddSignals(reason.because, golden_tick, signals);
   }
 }
 
@@ -84,12 +89,22 @@ ExplainedDifference ExplainDifference(const Pairing& pairing, grammar::ReplayMon
   if (there.empty()) {
     const explain::WhyMissing why = explain::ExplainMissing(past, *ask);
     difference.text = explain::Text(why, per_second);
-    AddSignals(why.reasons, difference.signals);
+    AddSignals(why.reasons, -1, difference.signals);
   }
+  const bool has_both = pairing.expected && pairing.actual;
+  const auto golden_tick = [&](grammar::Tick offset, grammar::Tick tick) {
+    return std::abs(offset) > pairing.tolerance ? tick : -1;
+  };
+  const grammar::Tick begin = has_both ? golden_tick(pairing.begin_offset,
+                                                     pairing.expected->interval.begin)
+                                       : -1,
+                      end = has_both
+                                ? golden_tick(pairing.end_offset, pairing.expected->interval.end)
+                                : -1;
   for (const explain::WhyEvent& why : there) {
     difference.text += explain::Text(why, per_second);
-    AddSignals(why.began, difference.signals);
-    AddSignals(why.ended, difference.signals);
+    AddSignals(why.began, begin, difference.signals);
+    AddSignals(why.ended, end, difference.signals);
   }
   return difference;
 }

@@ -25,6 +25,7 @@ struct ExplainedEvent {
 struct DecidingSignal {
   std::string clause, how, unit;
   grammar::Tick tick = 0;
+  grammar::Tick golden_tick = -1;  ///< when the golden has the boundary that it decided; -1: then
   std::vector<grammar::Tick> ticks;
   std::vector<double> values, limits;  ///< one for each of `ticks`
 };

@@ -43,6 +43,9 @@ struct DisputedMoment {
   ReportedPicture expected, recognised;
 };
 
+/// Of one scenario.
+inline constexpr std::size_t kMostDisputed = 3;
+
 struct ScenarioVerdict {
   std::string scenario;  ///< skill/name
   std::string shows;
@@ -66,7 +69,7 @@ struct ScenarioVerdict {
   std::int64_t peak_memory_kib = 0;  ///< of its worker
   FileHashes inputs;  ///< every file that decides what the verdict is, as it was before the run
   std::vector<ReportedPicture> pictures;
-  std::vector<DisputedMoment> disputed;  ///< the first one, if pictures are drawn
+  std::vector<DisputedMoment> disputed;  ///< the first kMostDisputed, if pictures are drawn
   Explained explained;                   ///< of what has a golden and did not pass
   std::string replay;                    ///< ReplayData() (harness/replay/replay_data.h), or empty
   std::string

@@ -379,11 +379,9 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   const std::string stopped = StoppedText(request, verdicts, interrupt);
   if (context.progress && !stopped.empty()) context.err << "\r\033[K";
 
-  problem =
-      WriteTextFile(page, ReportHtml(verdicts, {.command = CommandText(context.words) + stopped,
-                                                .program = "prehend",
-                                                .date = context.today,
-                                                .folder = request.report_folder}));
+  ReportHeader header = HeaderOf(CommandText(context.words) + stopped, context.root, context.today);
+  header.folder = request.report_folder;
+  problem = WriteTextFile(page, ReportHtml(verdicts, header));
   if (problem.empty() && options.Has("--junit")) problem = WriteTextFile(junit, JunitXml(verdicts));
   if (options.Has("--json")) {
     nlohmann::ordered_json summary = SummaryJson(verdicts, problem.empty() ? page : "");

@@ -68,10 +68,9 @@ ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) 
   std::vector<ScenarioVerdict> verdicts = RunSuite(request, {});
   // An episode of no scenario of the project is known by its file; on the page by what it is.
   for (std::size_t i = 0; i < chosen->size(); ++i) verdicts[i].scenario = (*chosen)[i].scenario;
-  problem = WriteTextFile(page, ReportHtml(verdicts, {.command = CommandText(context.words),
-                                                      .program = "prehend",
-                                                      .date = context.today,
-                                                      .title = "Recorded episodes"}));
+  ReportHeader header = HeaderOf(CommandText(context.words), context.root, context.today);
+  header.title = "Recorded episodes";
+  problem = WriteTextFile(page, ReportHtml(verdicts, header));
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   const Tally tally = Count(verdicts);
   context.out << fmt::format("{}: {} episodes, {} passed, {} failed, {} without golden\n", page,

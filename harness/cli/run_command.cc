@@ -128,11 +128,9 @@ std::string WriteReport(const ParsedOptions& options, const CommandContext& cont
                            .today = context.today,
                            .program = ProgramHash()};
   const ScenarioVerdict verdict = JudgeRun(check, loaded, run, files);
-  return WriteTextFile(options.Text("--report"),
-                       ReportHtml({verdict}, {.command = CommandText(context.words),
-                                              .program = "prehend",
-                                              .date = context.today,
-                                              .title = "Run of " + verdict.scenario}));
+  ReportHeader header = HeaderOf(CommandText(context.words), context.root, context.today);
+  header.title = "Run of " + verdict.scenario;
+  return WriteTextFile(options.Text("--report"), ReportHtml({verdict}, header));
 }
 
 ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {

@@ -33,6 +33,8 @@ constexpr std::string_view kHatch =
     R"=(patternTransform="rotate(45)"><line class="hatch" x1="0" y1="0" x2="0" y2="6"/>)="
     R"=(</pattern></defs></svg>)=";
 
+constexpr std::size_t kMostEffects = 6;  // of a cause
+
 constexpr const char* kNewLine = "\n";  // between blocks, where a browser shows none
 
 void AddSummary(pugi::xml_node body, const Tally& tally) {
@@ -170,14 +172,25 @@ void AddSentence(pugi::xml_node parent, std::string_view text) {
   }
 }
 
+/// With an arrow that reads as one.
+std::string WithArrows(std::string text) {
+  constexpr std::string_view kArrow = " -> ";
+  for (std::size_t at = text.find(kArrow); at != std::string::npos; at = text.find(kArrow, at + 1))
+    text.replace(at, kArrow.size(), " \u2192 ");
+  return text;
+}
+
 /// The causes of one scenario's differences as sentences.
 void AddReasons(pugi::xml_node section, const ScenarioVerdict& verdict) {
   for (const Cause& cause : CausesOf({verdict})) {
     if (cause.because.empty()) continue;
     std::string effects;
     for (const Effect& effect : cause.effects)
-      effects += (effects.empty() ? "" : ", ") + effect.event + " " + effect.what;
-    AddSentence(AddElement(section, "p"), "Because of " + cause.because + ": " + effects + ".");
+      effects += (effects.empty() ? "" : "; ") + EffectText(effect);
+    const pugi::xml_node sentence = AddElement(section, "p", {{"class", "because"}});
+    AddText(sentence, "Because of ");
+    AddSentence(AddElement(sentence, "strong"), WithArrows(cause.because));
+    AddText(sentence, ": " + effects + ".");
   }
 }
 
@@ -214,7 +227,9 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, bool open,
     AddExplanations(fold, verdict.explained, verdict.comparison->ticks_per_second);
   for (const DisputedMoment& moment : verdict.disputed) {
     const pugi::xml_node pair = AddElement(fold, "div", {{"class", "disputed"}});
-    AddElement(pair, "p", {}, "The scene at the disputed " + moment.what);
+    AddElement(pair, "p", {},
+               "The scene at the disputed " + moment.what +
+                   ": when it should be, when it was recognised, and what moved in between");
     pictures.Add(pair, moment.expected);
     pictures.Add(pair, moment.recognised);
   }
@@ -246,16 +261,25 @@ void AddCauses(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts
   const std::vector<Cause> causes = CausesOf(verdicts);
   const std::vector<Brittle> brittle = BrittlePasses(verdicts);
   if (!causes.empty()) {
-    AddElement(body, "h2", {}, "Causes");
+    AddElement(body, "h2", {},
+               causes.size() == 1 ? "1 cause" : fmt::format("{} causes", causes.size()));
+    AddElement(body, "p", {{"class", "soft"}},
+               "What is not as it was when these scenarios last passed (it was \u2192 it is), and "
+               "what that changes.");
     const pugi::xml_node list = AddElement(body, "ol", {{"class", "causes"}});
     for (const Cause& cause : causes) {
       const pugi::xml_node item = AddElement(list, "li");
       AddSentence(AddElement(item, "strong"),
-                  cause.because.empty() ? "nothing known has changed" : cause.because);
-      AddText(item, fmt::format(": {} scenario{}, for example ", cause.scenarios.size(),
-                                cause.scenarios.size() == 1 ? "" : "s"));
+                  cause.because.empty() ? "nothing known has changed" : WithArrows(cause.because));
+      AddText(item, cause.scenarios.size() == 1
+                        ? ": "
+                        : fmt::format(": {} scenarios, for example ", cause.scenarios.size()));
       AddElement(item, "a", {{"href", "#" + cause.scenarios.front()}}, cause.scenarios.front());
-      for (const Effect& effect : cause.effects) AddElement(item, "div", {}, EffectText(effect));
+      for (std::size_t i = 0; i < std::min(kMostEffects, cause.effects.size()); ++i)
+        AddElement(item, "div", {}, EffectText(cause.effects[i]));
+      if (cause.effects.size() > kMostEffects)
+        AddElement(item, "div", {},
+                   fmt::format("and {} more", cause.effects.size() - kMostEffects));
       AddElement(item, "code", {}, cause.effects.front().command);
     }
   }
@@ -287,8 +311,11 @@ void AddTools(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts)
 
 void AddHeader(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts,
                const ReportHeader& header) {
-  AddElement(body, "p", {{"class", "soft"}},
-             fmt::format("{}, {}, by {}", header.date, header.program, header.command));
+  const pugi::xml_node made = AddElement(body, "p", {{"class", "soft"}});
+  AddText(made, header.date + ", by ");
+  AddElement(made, "code", {}, header.command);
+  if (!header.commit.empty()) AddText(made, ", of commit " + header.commit);
+  if (!header.machine.empty()) AddText(made, ", on " + header.machine);
   Settings parameters;
   for (const ScenarioVerdict& verdict : verdicts) {
     for (const auto& [file, values] : verdict.settings) {

@@ -13,12 +13,16 @@
 namespace prehend::harness {
 
 struct ReportHeader {
-  std::string command;  ///< that made the page
-  std::string program;  ///< "prehend 0.1.0"
-  std::string date;     ///< YYYY-MM-DD
-  std::string folder;   ///< what the files of pictures are relative to
+  std::string command;      ///< that made the page
+  std::string date;         ///< YYYY-MM-DD
+  std::string commit = {};  ///< of the project: "1a2b3c4d5e, with changes"; "": it is not known
+  std::string machine = {};
+  std::string folder = {};  ///< what the files of pictures are relative to
   std::string title = "Regression suite";
 };
+
+/// With the commit that `root` is at, and this machine.
+ReportHeader HeaderOf(const std::string& command, const std::string& root, const std::string& date);
 
 /// Pictures are in the page, those of failures first, up to this size (as text) in all; of the
 /// others the page says that they lie beside it.

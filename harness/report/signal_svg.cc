@@ -49,6 +49,7 @@ class Plot {
              Seconds(signal_.ticks.front()));
     AddLabel("axis", X(signal_.ticks.back()), kHeight - 8, "end", Seconds(signal_.ticks.back()));
     AddLine("grid", signal_.tick, least_, most_);
+    AddGolden();
     AddCurve("limit", signal_.limits);
     AddCurve("value", signal_.values);
     const auto at = std::ranges::find(signal_.ticks, signal_.tick);
@@ -82,6 +83,19 @@ class Plot {
   }
   std::string Seconds(grammar::Tick tick) const {
     return fmt::format("{:.3f} s", static_cast<double>(tick) / per_second_);
+  }
+
+  /// Where the golden has the boundary, and what the value was then: perhaps an older limit.
+  void AddGolden() {
+    const auto at = std::ranges::lower_bound(signal_.ticks, signal_.golden_tick);
+    if (signal_.golden_tick < signal_.ticks.front() || at == signal_.ticks.end()) return;
+    const double value = signal_.values[static_cast<std::size_t>(at - signal_.ticks.begin())];
+    AddLine("golden", *at, least_, most_);
+    if (!std::isfinite(value)) return;
+    const double x = std::clamp(X(*at), kLeft + 120, kWidth - 130);
+    AddLabel(
+        "axis", x, kHeight - 8, "middle",
+        fmt::format("golden: {:.3g}{}{}", value, signal_.unit.empty() ? "" : " ", signal_.unit));
   }
 
   void AddLabel(const char* style, double x, double y, const char* anchor,

@@ -133,8 +133,8 @@ test('a click on a boundary says which condition turned there', async () => {
 
 test('the disputed moment is shown as golden, recognised, difference, and with a slider', async (context) => {
   const {page, seen, close} = await opened({hash: '#' + FAILS});
-  const pair = page.locator('section[id="' + FAILS + '"] .disputed');
-  if (await pair.count() === 0) return context.skip('this build draws no pictures');
+  const all = page.locator('section[id="' + FAILS + '"] .disputed'), pair = all.first();
+  if (await all.count() === 0) return context.skip('this build draws no pictures');
   assert.match(await pair.locator('p').textContent(), /begin of (reaching|pick_and_place)\(right_hand, milk\)/);
   const captions = await pair.locator('figcaption').allTextContents();
   assert.deepEqual(captions.map((each) => each.split(/[: ]/)[0]), ['golden', 'recognised', 'difference', 'golden']);
@@ -143,6 +143,14 @@ test('the disputed moment is shown as golden, recognised, difference, and with a
   await pair.getByRole('slider').fill('80');
   assert.equal(await pair.locator('img').last().evaluate((image) => image.style.clipPath), 'inset(0px 0px 0px 80%)');
   assert.deepEqual(seen.complaints, []);
+  await close();
+});
+
+test('each signal says what it was where the golden has the boundary', async () => {
+  const {page, close} = await opened({hash: '#' + FAILS});
+  const signal = page.locator('section[id="' + FAILS + '"] svg.signal').first();
+  assert.equal(await signal.locator('line.golden').count(), 1);
+  assert.match(await signal.textContent(), /golden: 0\.\d+ m/);
   await close();
 });
 

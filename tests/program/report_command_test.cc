@@ -54,6 +54,9 @@ TEST_F(ReportCommand, ARunIsAPage) {
   const std::string page = PageAfter("run carton_rests --report " + Path("page.html"));
   EXPECT_TRUE(Has(said_, "supported_by")) << "the table is printed as always: " << said_;
   EXPECT_TRUE(Has(page, "<h1>Run of rest/carton_rests</h1>"));
+  EXPECT_TRUE(Has(page, ", by <code>prehend run carton_rests --report "));
+  EXPECT_TRUE(Has(page, ", on Linux ") && Has(page, " processor")) << "the machine";
+  EXPECT_FALSE(Has(page, "of commit")) << "this project is in no repository";
   EXPECT_TRUE(Has(page, "<details open=\"open\">")) << "what is alone is open";
   EXPECT_FALSE(Has(page, "class=\"hatch\" x=")) << "without a golden nothing differs";
   EXPECT_FALSE(std::filesystem::exists(Pending())) << "a run proposes no golden";

@@ -50,8 +50,7 @@ int CountOf(const std::string& text, const std::string& part) {
 }
 
 TEST(Report, HasVerdictsTimelinesPicturesDifferencesAndCommands) {
-  const std::string html =
-      ReportHtml(Verdicts(), {.command = "prehend check", .program = {}, .date = {}, .folder = {}});
+  const std::string html = ReportHtml(Verdicts(), {.command = "prehend check", .date = {}});
   for (const char* part :
        {"1 passed", "1 failed", "1 pending", "href=\"#slide/good\"", "<section id=\"slide/bad\"",
         "picture, not in this page: pictures/slide/good.png (sliding.begin)",
@@ -69,7 +68,7 @@ TEST(Report, WhatFailedIsFirstAndCausesAreAbove) {
   const std::string html = ReportHtml(Verdicts(), {});
   const auto at = [&](const std::string& part) { return html.find(part); };
   ASSERT_NE(at("<section id=\"slide/good\""), std::string::npos);
-  EXPECT_LT(at(">Causes<"), at("<table"));
+  EXPECT_LT(at(">1 cause<"), at("<table"));
   EXPECT_LT(at("<section id=\"slide/bad\""), at("<section id=\"slide/new\""));
   EXPECT_LT(at("<section id=\"slide/new\""), at("<section id=\"slide/good\""));
 }
@@ -78,15 +77,19 @@ TEST(Report, WhatStandsBetweenBackticksIsCode) {
   std::vector<ScenarioVerdict> verdicts = Verdicts();
   Attribution shifted;
   shifted.event = "sliding";
+  shifted.what = "begins later";
+  shifted.shift_ms = 20;
   shifted.because = "`reach_radius` 30 cm -> 20 cm";
   verdicts[1].comparison = Compared();
   verdicts[1].comparison->pairings[0].agreement = LineVerdict::kShifted;
   verdicts[1].has_golden = true;
   verdicts[1].attributions = {shifted};
   const std::string html = ReportHtml(verdicts, {});
-  EXPECT_NE(html.find("<strong><code>reach_radius</code> 30 cm -&gt; 20 cm</strong>"),
-            std::string::npos)
-      << html.substr(html.find("Causes"), 400);
+  const std::string cause = "<strong><code>reach_radius</code> 30 cm \u2192 20 cm</strong>: ";
+  EXPECT_NE(html.find(cause + "<a href=\"#slide/bad\">slide/bad</a>"), std::string::npos)
+      << html.substr(html.find("1 cause"), 400);
+  EXPECT_NE(html.find("Because of " + cause + "sliding begins later, +20.0 ms.</p>"),
+            std::string::npos);
 }
 
 TEST(Report, ReplaysAreInThePageOfABuildThatHasThem) {
@@ -146,8 +149,7 @@ TEST(Report, PicturesAreInThePage) {
   std::ofstream(folder + "/a.png") << "Mano";
   std::vector<ScenarioVerdict> verdicts = Verdicts();
   verdicts[0].pictures[0].file = "a.png";
-  const std::string html =
-      ReportHtml(verdicts, {.command = {}, .program = {}, .date = {}, .folder = folder});
+  const std::string html = ReportHtml(verdicts, {.command = {}, .date = {}, .folder = folder});
   EXPECT_NE(html.find("src=\"data:image/png;base64,TWFubw==\""), std::string::npos);
 }
 

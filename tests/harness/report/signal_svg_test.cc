@@ -35,6 +35,17 @@ TEST(SignalSvg, ShowsValueLimitAndCrossing) {
   EXPECT_EQ(std::ranges::count(points, ','), 2) << "a straight line has two ends: " << points;
 }
 
+TEST(SignalSvg, ShowsWhatItWasWhereTheGoldenHasTheBoundary) {
+  EXPECT_FALSE(Has(SignalSvg(Falling(), 480), "golden"));
+  DecidingSignal signal = Falling();
+  signal.golden_tick = 2;
+  const std::string svg = SignalSvg(signal, 480);
+  EXPECT_TRUE(Has(svg, "<line class=\"golden\"")) << svg;
+  EXPECT_TRUE(Has(svg, ">golden: 0.04 m</text>")) << svg;
+  signal.golden_tick = 100;
+  EXPECT_FALSE(Has(SignalSvg(signal, 480), "golden")) << "beyond what is drawn";
+}
+
 TEST(SignalSvg, WhatIsNotFiniteIsLeftOut) {
   DecidingSignal signal = Falling();
   signal.values[1] = std::numeric_limits<double>::infinity();
