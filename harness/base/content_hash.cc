@@ -9,7 +9,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 namespace prehend::harness {
 namespace {
@@ -33,10 +32,13 @@ std::string ContentHash(std::string_view bytes) {
 std::string FileHash(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return kNoFile;
+  const auto size = std::filesystem::file_size(path, error);
+  if (error) return kNoFile;
   std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  return file.is_open() && !file.bad() ? ContentHash(bytes.view()) : kNoFile;
+  std::string bytes(size, '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return file.is_open() && !file.bad() ? ContentHash(bytes) : kNoFile;
 }
 
 FileHashes HashFiles(const std::vector<std::string>& paths) {

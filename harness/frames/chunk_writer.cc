@@ -92,11 +92,13 @@ void ChunkWriter::AddLinks(const physics::Snapshot& snapshot) {
   for (std::size_t h = 0; h < links_.size(); ++h) {
     Links& links = links_[h];
     const physics::HandState& hand = snapshot.hands[h];
+    const std::size_t begin = links.off.size();
+    links.off.resize(begin + 7 * links.guessed.size());
+    Word* off = links.off.data() + begin;
     const auto correct = [&](std::size_t link, physics::Pose& guessed) {
       const physics::Pose& found = hand.X_WL[link];
-      for (int k = 0; k < 3; ++k) links.off.push_back(OffBy(found.p_m[k], guessed.p_m[k]));
-      for (int k = 0; k < 4; ++k)
-        links.off.push_back(OffBy(found.q.coeffs()[k], guessed.q.coeffs()[k]));
+      for (int k = 0; k < 3; ++k) *off++ = OffBy(found.p_m[k], guessed.p_m[k]);
+      for (int k = 0; k < 4; ++k) *off++ = OffBy(found.q.coeffs()[k], guessed.q.coeffs()[k]);
       guessed = found;
     };
     links.guess.Guess(hand.palm.X_WB, hand.joints, links.guessed, correct);

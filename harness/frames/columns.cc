@@ -177,9 +177,13 @@ class Encoder {
       best_bits = bits;
     }
     distances_.clear();
-    for (std::size_t row = 0; row < words.size(); ++row) {
-      if (order_.Before(row) >= 0)
-        distances_.push_back(Distance(words[row], GuessOf(best, column, row)));
+    if (best != Guess::kMotion && !order_.IsGiven()) {
+      AddDistances(words, best);
+    } else {
+      for (std::size_t row = 0; row < words.size(); ++row) {
+        if (order_.Before(row) >= 0)
+          distances_.push_back(Distance(words[row], GuessOf(best, column, row)));
+      }
     }
     AppendCoded(best, words, bytes);
   }
@@ -189,6 +193,26 @@ class Encoder {
     if (guess != Guess::kMotion) return GuessAt(guess, columns_.Column(column), order_, row);
     return column < kRotation ? MovedGuess(columns_, row, column, dt_s_)
                               : turned_[row][column - kRotation];
+  }
+
+  /// The same as GuessAt() for rows that each continue the one above.
+  void AddDistances(std::span<const Word> words, Guess guess) {
+    distances_.resize(words.size() - 1);
+    const std::size_t values = guess == Guess::kBefore   ? 1
+                               : guess == Guess::kLinear ? 2
+                               : guess == Guess::kSquare ? 3
+                                                         : 4;
+    double x[4] = {};  // the last values, the latest first
+    for (std::size_t row = 1; row < words.size(); ++row) {
+      const Word before = words[row - 1];
+      x[3] = x[2];
+      x[2] = x[1];
+      x[1] = x[0];
+      x[0] = AsDouble(before);
+      const double next = values == 1 ? 0 : Polynomial(x, std::min(values, row));
+      distances_[row - 1] =
+          Distance(words[row], values > 1 && std::isfinite(next) ? AsWord(next) : before);
+    }
   }
 
   /// How many bits the distances have, of some rows.

@@ -346,9 +346,12 @@ void EncodeSmall(const Columns& columns, std::string& bytes) {
     for (const Word word : columns.Column(column)) all |= word;
     const int planes = (std::bit_width(all) + 7) / 8;
     bytes += static_cast<char>(planes);
+    const std::size_t begin = bytes.size();
+    bytes.resize(begin + static_cast<std::size_t>(planes) * columns.rows);
+    char* out = bytes.data() + begin;
     for (int plane = 0; plane < planes; ++plane) {
       for (const Word word : columns.Column(column))
-        bytes += static_cast<char>(word >> (8 * plane));
+        *out++ = static_cast<char>(word >> (8 * plane));
     }
   }
 }
