@@ -17,6 +17,7 @@
 #include "grammar/engine/backward_walk.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace prehend::grammar {
 namespace {
@@ -43,6 +44,7 @@ class BackwardWalk {
     if (rule_.approach) {
       const std::optional<double> at_end = Signal(end_), level = Level(end_);
       if (!at_end || !level) return kNotKnownYet;
+      if (std::isnan(*at_end) || std::isnan(*level)) return {end_, Stop::kSince, end_};
       so_far_.after = *at_end;
       so_far_.farthest = *level;
       if (rule_.approach->over_s > 0) memory_.levels.push_back(*level);
@@ -80,6 +82,8 @@ class BackwardWalk {
     const grammar::Approach& approach = *rule_.approach;
     const std::optional<double> here = Signal(frame), level = Level(frame);
     if (!here || !level) return kNotKnownYet;
+    if (std::isnan(*here) || std::isnan(*level))  // not tracked: nothing leads back over it
+      return WalkBack{MovementFrom(so_far_.begin, frame + 1), Stop::kSince, frame};
     if (*level < so_far_.farthest - approach.slack)
       return WalkBack{AfterTurn(frame), Stop::kReceding, frame};
     const std::optional<double> speed = Speed(frame, *here - so_far_.after);
@@ -157,7 +161,7 @@ class BackwardWalk {
     values.clear();
     for (FrameNumber i = history_.FirstNotBefore(now - limits_.over); i <= last; ++i) {
       const std::optional<double> value = Signal(i);
-      if (!value) return value;
+      if (!value || std::isnan(*value)) return value;
       values.push_back(*value);
     }
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -12,6 +12,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 bool IsPosition(const Program& program, NodeId node) {
   switch (program.nodes[node].op) {
@@ -50,8 +51,11 @@ Kleene Evaluator::Truth(NodeId index, const View& view) const {
       const Kleene left = Truth(node.args[0], view);
       return left == Kleene::kTrue ? left : Or(left, Truth(node.args[1], view));
     }
-    case Op::kNot:
-      return Not(Truth(node.args[0], view));
+    case Op::kNot: {
+      View inner = view;
+      inner.negated = !view.negated;
+      return Not(Truth(node.args[0], inner));
+    }
     case Op::kHolds:
       return Holds(node.slot, view);
     case Op::kBegins:
@@ -61,15 +65,21 @@ Kleene Evaluator::Truth(NodeId index, const View& view) const {
     case Op::kSolidInSphere:
     case Op::kInCylinder: {
       const std::optional<Reach> reach = ReachOf(node, view);
-      return reach ? Known(reach->IsInside()) : Kleene::kUnknown;
+      if (!reach) return Kleene::kUnknown;
+      if (std::isnan(reach->distance_m + reach->radius_m + reach->height_m + reach->most_height_m))
+        return Known(view.negated);
+      return Known(reach->IsInside());
     }
     case Op::kInside:
-      return Known(IsInside(node, view));
     case Op::kNearest:
-      return Known(IsNearest(node, view));
+      if (!IsTracked(Entity(node, view, 0), view.frame) ||
+          !IsTracked(Entity(node, view, 1), view.frame))
+        return Known(view.negated);
+      return Known(node.op == Op::kInside ? IsInside(node, view) : IsNearest(node, view));
     case Op::kPartOf:
       return Known(IsPartOf(entity_table_, Entity(node, view, 0), Entity(node, view, 1)));
     case Op::kGazed:
+      if (!IsTracked(Entity(node, view, 0), view.frame)) return Known(view.negated);
       return Known(history_.Look(Entity(node, view, 0), view.frame).gazes_at ==
                    Entity(node, view, 1));
     case Op::kSensorSet:
@@ -105,7 +115,9 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
     return AtAnInstant(begins ? instances_.BeginsAt(instance, view.frame)
                               : instances_.EndsAt(instance, view.frame));
   }
-  const Kleene now = Truth(node.args[0], view);
+  View changing = view;
+  changing.negated = false;  // what is lost ends, and is no longer
+  const Kleene now = Truth(node.args[0], changing);
   const Kleene wanted = begins ? now : Not(now);
   if (wanted == Kleene::kFalse) return wanted;
   depends_on_time_ =
@@ -113,7 +125,7 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
       now == Kleene::kUnknown;  // even if there is no change here, the next frame looks back at it
   const bool is_first = view.frame == 0;
   Kleene before = Kleene::kFalse;
-  if (!is_first) before = Truth(node.args[0], view.At(view.frame - 1));
+  if (!is_first) before = Truth(node.args[0], changing.At(view.frame - 1));
   return AtAnInstant(And(wanted, begins ? Not(before) : before));
 }
 
@@ -142,6 +154,7 @@ Kleene Evaluator::Compare(const Node& node, const View& view) const {
   if (!left) return Kleene::kUnknown;
   const std::optional<double> right = Number(node.args[1], view);
   if (!right) return Kleene::kUnknown;
+  if (std::isnan(*left) || std::isnan(*right)) return Known(view.negated);
   switch (node.op) {
     case Op::kLess:
       return Known(*left < *right);
@@ -165,6 +178,7 @@ std::optional<Reach> Evaluator::ReachOf(const Node& node, const View& view) cons
   if (!centre || !radius) return std::nullopt;
   if (solid) {
     const int entity = Entity(node, view, 0);
+    if (!IsTracked(entity, view.frame)) return Reach{.distance_m = kNotKnown};
     const double distance = DistanceToSurface_m(*centre, entity_table_.entities[entity],
                                                 history_.Look(entity, view.frame));
     return Reach{.distance_m = distance, .radius_m = *radius};
@@ -360,6 +374,7 @@ bool Evaluator::SensorSet(const Node& node, const View& view) const {
 double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
   const HandAtFrame* sample = history_.Hand(hand, frame);
   if (sample == nullptr) return 0;
+  if (!IsTracked(hand, frame) || !IsTracked(object, frame)) return kNotKnown;
   const EntitySample& look = history_.Look(object, frame);
   double gap = kBoundless;
   for (const CollisionSphere& sphere : sample->collision_spheres) {
@@ -387,6 +402,7 @@ double Evaluator::Apart_m(int hand, FrameNumber frame, FrameNumber other) const 
   const HandAtFrame* here = history_.Hand(hand, frame);
   const HandAtFrame* there = history_.Hand(hand, other);
   if (here == nullptr || there == nullptr) return 0;
+  if (!IsTracked(hand, frame) || !IsTracked(hand, other)) return kNotKnown;
   double farthest_m = 0;
   for (std::size_t i = 0;
        i < std::min(here->collision_spheres.size(), there->collision_spheres.size()); ++i) {
@@ -401,9 +417,9 @@ bool Evaluator::StaysWithin(double still_m, Tick ticks, int hand, FrameNumber fr
                             FrameNumber last) const {
   const Tick now = history_.At(frame).tick;
   for (FrameNumber early = history_.FirstNotBefore(now - ticks); early < frame; ++early)
-    if (Apart_m(hand, frame, early) > still_m) return false;
+    if (!(Apart_m(hand, frame, early) <= still_m)) return false;
   for (FrameNumber late = std::min(history_.LastNotAfter(now + ticks), last); late > frame; --late)
-    if (Apart_m(hand, frame, late) > still_m) return false;
+    if (!(Apart_m(hand, frame, late) <= still_m)) return false;
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "grammar/base/reach.h"
+#include "grammar/base/tracking.h"
 #include "grammar/engine/instances.h"
 
 namespace prehend::grammar {
@@ -32,14 +33,16 @@ class Evaluator {
     FrameNumber frame = 0;
     std::optional<FrameNumber> end = std::nullopt;
     bool begin_known = true;  ///< values at the interval's begin, that is
-    View At(FrameNumber other) const { return {instance, other, end, begin_known}; }
+    bool negated = false;     ///< below a `not`: there, what nobody knows must not be false
+    View At(FrameNumber other) const { return {instance, other, end, begin_known, negated}; }
   };
 
   /// kUnknown while it depends on truths that are not final, on a begin or an end that is not
-  /// known, or on frames to come.
+  /// known, or on frames to come. Of what is not tracked, neither a condition nor its opposite
+  /// holds.
   Kleene Truth(NodeId node, const View& view) const;
   /// nullopt only for values at a begin or an end that is not known, or that depend on frames to
-  /// come.
+  /// come. Of what is not tracked it is no number (NaN).
   std::optional<double> Number(NodeId node, const View& view) const;
   std::optional<Eigen::Vector3d> Position(NodeId node, const View& view) const;
 
@@ -77,6 +80,9 @@ class Evaluator {
   Kleene AtAnInstant(Kleene truth) const;
   Kleene Edge(const Node& node, const View& view) const;
   Kleene Compare(const Node& node, const View& view) const;
+  bool IsTracked(int entity, FrameNumber frame) const {
+    return grammar::IsTracked(history_.Look(entity, frame));
+  }
   Kleene CompareMeasured(const ByThreshold& by, const View& view) const;
   std::optional<double> Arithmetic(const Node& node, const View& view) const;
   double SignalOf(const Node& node, const View& view) const;

@@ -73,7 +73,7 @@ std::optional<double> Evaluator::OfWindow(const Node& node, const View& view) co
   for (FrameNumber frame = history_.FirstNotBefore(now - half);
        frame <= std::min(history_.LastNotAfter(now + half), history_.now()); ++frame) {
     const std::optional<double> value = Number(node.args[0], view.At(frame));
-    if (!value) return value;
+    if (!value || std::isnan(*value)) return value;
     values.push_back(*value);
   }
   switch (node.op) {

@@ -47,6 +47,7 @@ bool Evaluator::IsNearest(const Node& node, const View& view) const {
   const double here_m = away_m(who);
   for (int other = 0; other < static_cast<int>(entity_table_.entities.size()); ++other) {
     if (other == who || other == whom || !instances_.IsA(other, of_class)) continue;
+    if (!IsTracked(other, view.frame)) continue;
     const double there_m = away_m(other);
     if (there_m < here_m || (there_m == here_m && other < who)) return false;
   }
@@ -103,6 +104,7 @@ Extent ExtentOf(std::span<const SolidPart> parts, const Vector3d& n) {
 // The top of a part is the side of its own box that looks up most. Of the parts of b below which or
 // above which a is, the one counts whose top is nearest to a's lowest point.
 double Evaluator::Clearance_m(int a, int b, FrameNumber frame) const {
+  if (!IsTracked(a, frame) || !IsTracked(b, frame)) return std::numeric_limits<double>::quiet_NaN();
   SolidPart box_a, box_b;
   const auto upper = PartsOf(entity_table_.entities[static_cast<std::size_t>(a)], box_a);
   const auto lower = PartsOf(entity_table_.entities[static_cast<std::size_t>(b)], box_b);

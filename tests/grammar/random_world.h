@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Worlds in which anything may happen: two hands, some objects, two places to put them. Seeded, so
-// it is always the same.
+// Worlds in which anything may happen: two hands, some objects, two places to put them, and now and
+// then one of them is not tracked. Seeded, so it is always the same.
 #pragma once
 
 #include <map>
@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "grammar/base/tracking.h"
 #include "grammar/monitor.h"
 
 namespace prehend::grammar::testing {
@@ -17,7 +18,8 @@ class RandomWorld {
  public:
   static constexpr int kHands = 2, kObjects = 5, kPlaces = 2;
 
-  explicit RandomWorld(std::uint64_t seed) : random_(seed), looks(kHands + kObjects + kPlaces) {
+  explicit RandomWorld(std::uint64_t seed)
+      : random_(seed), lost_(kHands + kObjects + kPlaces), looks(kHands + kObjects + kPlaces) {
     entity_table.ticks_per_second = 1000;
     entity_table.styles = {"wrap", "pinch"};
     for (int i = 0; i < kHands; ++i) {
@@ -42,7 +44,14 @@ class RandomWorld {
   /// The next frame; lives until the next call.
   Frame Next() {
     tick += uneven_ ? 1 + static_cast<Tick>(random_() % 20) : 10;
-    for (std::size_t i = 0; i < looks.size() - kPlaces; ++i) Move(looks[i]);
+    for (std::size_t i = 0; i < looks.size() - kPlaces; ++i) {
+      Move(looks[i]);
+      lost_[i] = lost_[i] ? random_() % 8 != 0 : random_() % 16 == 0 && Sometimes();
+    }
+    shown_ = looks;
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      if (lost_[i]) shown_[i] = NotTracked();
+    }
     for (int i = 0; i < kHands; ++i) {
       if (Sometimes()) hands[i].trigger = Choose({0, 0.2, 0.3, 1});
       if (Sometimes()) hands[i].style = static_cast<int>(random_() % 2);
@@ -58,7 +67,7 @@ class RandomWorld {
     }
     touches.clear();
     for (const auto& [pair, touch] : touching_) touches.push_back(touch);
-    return {.tick = tick, .entities = looks, .hands = hands, .touches = touches};
+    return {.tick = tick, .entities = shown_, .hands = hands, .touches = touches};
   }
 
  private:
@@ -105,11 +114,13 @@ class RandomWorld {
   std::uint64_t calm_ = 1;
   bool uneven_ = false;
   std::map<std::pair<int, int>, Touch> touching_;
+  std::vector<bool> lost_;
+  std::vector<EntitySample> shown_;
 
  public:
   EntityTable entity_table;
   Tick tick = 0;
-  std::vector<EntitySample> looks;
+  std::vector<EntitySample> looks;  ///< of all, tracked or not
   std::vector<HandSample> hands;
   std::vector<std::vector<CollisionSphere>> collision_spheres;
   std::vector<Touch> touches;
