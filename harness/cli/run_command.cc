@@ -180,8 +180,9 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
     if (!record->problem().empty())
       return Complain(context, ExitCode::kBadInput, "--record: " + record->problem());
     const Scenario& scenario = loaded->scenario;
-    recorder.emplace(record->stream(),
-                     EpisodeHeader{scenario.name, scenario.grammar, MakeEntityTable(scenario)});
+    recorder.emplace(record->stream(), EpisodeHeader{.episode = scenario.name,
+                                                     .grammar = scenario.grammar,
+                                                     .entity_table = MakeEntityTable(scenario)});
   }
   const RunResult run = Play(*loaded, {.record = options.Has("--report"), .measure = measure},
                              {recorder ? &*recorder : nullptr, episode ? &*episode : nullptr});

@@ -110,6 +110,7 @@ class Watcher {
                       NameOf(options_) + " ended before its first frame");
     monitor_->Finish(stream_.end_tick(), events_);
     Print();
+    context_.err << stream_.gaps();
     if (!stream_.says_its_end())
       context_.err << fmt::format(
           "prehend: {} ended after line {} without 'end_tick': what was open ends there\n",

@@ -59,12 +59,12 @@ std::optional<Clauses::Measured> Clauses::Measure(grammar::NodeId node, const Mo
   if (IsComparison(n.op)) {
     const auto value = past_.Number(n.args[0], at);
     const auto limit = past_.Number(n.args[1], at);
-    if (!value || !limit) return std::nullopt;
+    if (!value || !limit || std::isnan(*value) || std::isnan(*limit)) return std::nullopt;
     return Measured{*value, *limit, NoteOf(past_.program(), n.args[0]).dimension, ""};
   }
   if (!IsRegion(n.op)) return std::nullopt;
   const auto reach = past_.ReachOf(node, at);
-  if (!reach) return std::nullopt;
+  if (!reach || std::isnan(reach->distance_m + reach->radius_m)) return std::nullopt;
   const Measured across{reach->distance_m, reach->radius_m, grammar::kMetres, " from the centre"};
   const Measured upright{reach->height_m, reach->most_height_m, grammar::kMetres,
                          " above or below the centre"};
@@ -72,6 +72,17 @@ std::optional<Clauses::Measured> Clauses::Measure(grammar::NodeId node, const Mo
   // The side of the cylinder that is nearest to being crossed, or is crossed most.
   return reach->distance_m - reach->radius_m >= reach->height_m - reach->most_height_m ? across
                                                                                        : upright;
+}
+
+bool Clauses::IsNotTracked(grammar::NodeId node, const Moment& at) {
+  const Node& n = NodeAt(node);
+  if (IsRegion(n.op)) {
+    const auto reach = past_.ReachOf(node, at);
+    return reach && std::isnan(reach->distance_m + reach->radius_m);
+  }
+  if (!IsComparison(n.op)) return false;
+  return std::isnan(past_.Number(n.args[0], at).value_or(0)) ||
+         std::isnan(past_.Number(n.args[1], at).value_or(0));
 }
 
 Reason Clauses::Measurement(const Clause& clause, const Moment& at,
@@ -84,6 +95,8 @@ Reason Clauses::Measurement(const Clause& clause, const Moment& at,
                 .reading = {},
                 .because = {}};
   const std::optional<Measured> now = Measure(clause.node, at);
+  if (!now && IsNotTracked(clause.node, at))
+    reason.how = "is unknown: what it measures is not tracked";
   if (!now) return reason;
   const std::string unit =
       now->dimension == grammar::kPlain ? "" : grammar::DimensionText(now->dimension);

@@ -63,6 +63,8 @@ class Clauses {
     grammar::Dimension dimension;
     std::string of;  ///< " from the centre"
   };
+  /// Nobody knows the value, as something in it is not tracked.
+  bool IsNotTracked(grammar::NodeId node, const Moment& at);
   std::optional<Measured> Measure(grammar::NodeId node, const Moment& at);
   std::vector<Reading::Sample> Course(grammar::NodeId node, const Moment& at);
   Reason Boundary(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome, bool end,

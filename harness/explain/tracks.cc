@@ -167,6 +167,7 @@ class Collector {
         values[at.frame] =
             signal.what == Signal::What::kDistance ? reach->distance_m : reach->height_m;
       }
+      if (values[at.frame] && std::isnan(*values[at.frame])) values[at.frame].reset();  // lost
     }
   }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "grammar/base/allen.h"
 #include "harness/explain/bindings.h"
@@ -249,9 +250,13 @@ Reason MissingReasons::ClosestApproach(InstanceId instance, const Window& window
     const double value =
         past_.Number(signal, {.instance = instance, .frame = frame, .end = window.last})
             .value_or(0);
-    if (reason.tick && value >= smallest) continue;
+    if (std::isnan(value) || (reason.tick && value >= smallest)) continue;
     smallest = value;
     reason.tick = past_.TickOf(frame);
+  }
+  if (!reason.tick) {
+    reason.how = "is unknown: what it measures is not tracked";
+    return reason;
   }
   reason.how = "was smallest at " + At(*reason.tick, past_.entity_table().ticks_per_second) + ": " +
                QuantityText(smallest, NoteOf(past_.program(), signal).dimension);

@@ -13,6 +13,18 @@
 #include "harness/base/text_file.h"
 
 namespace prehend::harness {
+namespace {
+
+/// What is not tracked for a while; of what never is, there is a warning of its own.
+std::string GapsOfPlaced(const Episode& episode, const std::vector<bool>& placed) {
+  std::vector<LookGaps> gaps = episode.gaps;
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    if (!placed[i]) gaps[i] = {};
+  }
+  return GapsText(episode.header.entity_table, gaps);
+}
+
+}  // namespace
 
 MissingFacts FindMissingFacts(Episode& episode, const grammar::Program& program) {
   MissingFacts missing;
@@ -24,10 +36,11 @@ MissingFacts FindMissingFacts(Episode& episode, const grammar::Program& program)
   for (std::size_t i = 0; i < entities.size(); ++i) {
     if (placed[i]) continue;
     missing.warnings += fmt::format(
-        "warning: no frame says where '{}' is, so it stands at the world's origin\n"
+        "warning: no frame says where '{}' is, so no condition on its pose ever holds\n"
         "  hint: give it a sample in the first frame, or leave it out of 'entities'\n",
         entities[i].name);
   }
+  missing.warnings += GapsOfPlaced(episode, placed);
   const auto never = grammar::FindNeverRecognised(program, facts);
   std::map<std::string_view, std::vector<std::string>> events;
   for (const grammar::NeverRecognised& one : never) events[one.fact].push_back(one.event);

@@ -11,6 +11,7 @@
 
 #include "grammar/base/frame.h"
 #include "harness/base/result.h"
+#include "harness/sense/look_bridge.h"
 
 namespace prehend::harness {
 
@@ -18,11 +19,13 @@ inline constexpr int kEpisodeVersion = 1;
 inline constexpr std::size_t kMaxEpisodeFrames = 1'000'000;
 inline constexpr std::size_t kMaxEpisodeBytes = std::size_t{1} << 30;
 inline constexpr std::size_t kMaxEpisodeLineBytes = 1 << 20;
+inline constexpr double kBridge_s = 0.1;
 
 /// The first line.
 struct EpisodeHeader {
-  std::string episode;  ///< its name: of the scenario that was recorded
-  std::string grammar;  ///< which grammar segments it unless another one is asked for
+  std::string episode;          ///< its name: of the scenario that was recorded
+  std::string grammar;          ///< which grammar segments it unless another one is asked for
+  double bridge_s = kBridge_s;  ///< for so long a missing look is as the last one
   grammar::EntityTable entity_table;
 };
 
@@ -43,8 +46,13 @@ struct Episode {
   std::vector<EpisodeFrame> frames;
   grammar::Tick end_tick = 0;  ///< the first tick after the episode
   std::vector<bool> placed;    ///< by entity: some frame says where it is
+  std::vector<LookGaps> gaps;  ///< by entity: how long it is not tracked
   bool says_its_end = false;   ///< it has a line with 'end_tick'; otherwise it may be cut off
 };
+
+/// For frames that were not read from a file: what is not tracked for a short time is as it was
+/// seen last.
+void BridgeLooks(Episode& episode);
 
 /// Reports errors with file, line and column. The limits are those above.
 Result<Episode> ReadEpisode(const std::string& path);

@@ -38,6 +38,16 @@ ValueFormat<T> Halved(const ValueFormat<T>& whole) {
                         });
 }
 
+/// A sample, or null where the entity is not tracked.
+ValueFormat<SampleEntry> OrNull(const ValueFormat<SampleEntry>& sample) {
+  return ValueFormat<SampleEntry>(
+      {{"anyOf", {sample.schema(), {{"type", "null"}}}}},
+      [sample](const YamlNode& node, DiagnosticList& errors, SampleEntry& entry) {
+        entry.not_tracked = node.kind == YamlNode::Kind::kNull;
+        return entry.not_tracked || sample.Read(node, errors, entry);
+      });
+}
+
 template <class Round>
 ValueFormat<Round> RoundFormat(const std::string& noun) {
   return StructFormat<Round>(noun)
@@ -104,6 +114,7 @@ ValueFormat<HeaderEntry> HeaderFormat() {
       .Required("episode", &H::episode, Name(), "")
       .Optional("grammar", &H::grammar, Name(), "")
       .Required("ticks_per_second", &H::ticks_per_second, Integer<std::int64_t>(1, 1'000'000), "")
+      .Optional("bridge_s", &H::bridge_s, Number(0, 60), "")
       .Optional("styles", &H::styles, ListOf(Name(), 0, 1000), "")
       .Required("entities", &H::entities, MapOf(Name(), member, 1, kMaxMembers), "")
       .format();
@@ -151,14 +162,15 @@ ValueFormat<LineEntry> LineFormat() {
   const auto tick = Integer<std::int64_t>(-kLatestTick, kLatestTick);
   return ByKey<LineEntry>(
       "a line",
-      {{"tick", AsAlternative<LineEntry>(
-                    StructFormat<F>("a frame")
-                        .Required("tick", &F::tick, tick, "")
-                        .Optional("samples", &F::samples, MapOf(Name(), sample, 0, kMaxMembers), "")
-                        .Renamed("looks", "samples")
-                        .Optional("hands", &F::hands, MapOf(Name(), hand, 0, kMaxMembers), "")
-                        .Optional("touches", &F::touches, ListOf(touch, 0, 100'000), "")
-                        .format())},
+      {{"tick",
+        AsAlternative<LineEntry>(
+            StructFormat<F>("a frame")
+                .Required("tick", &F::tick, tick, "")
+                .Optional("samples", &F::samples, MapOf(Name(), OrNull(sample), 0, kMaxMembers), "")
+                .Renamed("looks", "samples")
+                .Optional("hands", &F::hands, MapOf(Name(), hand, 0, kMaxMembers), "")
+                .Optional("touches", &F::touches, ListOf(touch, 0, 100'000), "")
+                .format())},
        {"end_tick",
         AsAlternative<LineEntry>(StructFormat<EndEntry>("the last line")
                                      .Required("end_tick", &EndEntry::end_tick, tick, "")

@@ -53,12 +53,14 @@ struct HeaderEntry {
   std::string episode;
   std::string grammar = kDefaultGrammar;
   std::int64_t ticks_per_second = 0;
+  double bridge_s = kBridge_s;
   std::vector<std::string> styles;
   std::vector<Named<MemberEntry>> entities;
 };
 
 /// How an entity is, in a frame.
 struct SampleEntry {
+  bool not_tracked = false;  ///< null
   Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
   std::optional<Located<Eigen::Vector4d>> quat_wxyz;
   std::optional<Eigen::Vector3d> v_m_per_s, w_rad_per_s;

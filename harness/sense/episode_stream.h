@@ -25,6 +25,8 @@ class EpisodeStream {
   const EpisodeHeader& header() const;
   /// The frame that the last line held, until the next line; null if it held none.
   EpisodeFrame* frame() { return frame_; }
+  /// What was not tracked so far, and for how long: lines for people.
+  std::string gaps() const;
   /// A line has said where the episode ends.
   bool says_its_end() const;
   /// The first tick after the episode, as far as it is known; 0 without any frame.

@@ -11,6 +11,7 @@
 #include <optional>
 #include <variant>
 
+#include "grammar/base/tracking.h"
 #include "harness/base/text_file.h"
 #include "harness/scenario/classes.h"
 #include "harness/sense/episode_file.h"
@@ -19,6 +20,15 @@
 #include "harness/yaml/located_json.h"
 
 namespace prehend::harness {
+namespace {
+
+LookBridge BridgeOf(const EpisodeHeader& header) {
+  const double most = header.bridge_s * static_cast<double>(header.entity_table.ticks_per_second);
+  return {header.entity_table.entities.size(), static_cast<grammar::Tick>(most)};
+}
+
+}  // namespace
+
 namespace episode {
 
 /// Reads line after line into an episode. The first line with an error ends it.
@@ -54,6 +64,7 @@ class EpisodeReader {
   grammar::Diagnostics TakeLineOrNothing(const std::string& text) {
     const EpisodeFrame now = now_;
     const std::vector<bool> has_ahead = has_ahead_, has_spheres = has_spheres_;
+    const LookBridge bridge = bridge_;
     const std::size_t frames = episode.frames.size();
     const bool said_its_end = episode.says_its_end;
     const grammar::Tick end_tick = episode.end_tick;
@@ -64,6 +75,7 @@ class EpisodeReader {
       now_ = now;
       has_ahead_ = has_ahead;
       has_spheres_ = has_spheres;
+      bridge_ = bridge;
       episode.frames.resize(frames);
       episode.says_its_end = said_its_end;
       episode.end_tick = end_tick;
@@ -81,7 +93,10 @@ class EpisodeReader {
       return Report("the recording has no frames",
                     "each line after the first is one: {\"tick\": 0, ...}");
     if (!episode.says_its_end) episode.end_tick = episode.frames.back().tick + 1;
+    episode.gaps = Gaps();
   }
+
+  std::vector<LookGaps> Gaps() const { return bridge_.Gaps(); }
 
   void Report(std::string message, std::string hint) {
     diagnostics.push_back({.file = file_,
@@ -125,7 +140,9 @@ class EpisodeReader {
       CheckMember(entry, errors);
     }
     CheckParts(header, errors);
-    now_.entities.resize(names_.size());
+    episode.header.bridge_s = header.bridge_s;
+    now_.entities.resize(names_.size(), grammar::NotTracked());
+    bridge_ = BridgeOf(episode.header);
     for (const int hand : hands_) now_.hands.push_back({.entity = hand, .collision_spheres = {}});
     now_.collision_spheres.resize(hands_.size());
     has_ahead_.resize(hands_.size());
@@ -236,14 +253,21 @@ class EpisodeReader {
     const double dt_s = static_cast<double>(tick - before) /
                         static_cast<double>(episode.header.entity_table.ticks_per_second);
     now_.tick = tick;
-    for (grammar::EntitySample& look : now_.entities)
-      look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
+    for (grammar::EntitySample& look : now_.entities) {
+      if (IsTracked(look)) look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
+    }
     for (const Named<SampleEntry>& sample : entry.samples) {
       const int index = IndexOf(sample.name, sample.name_where, errors);
       if (index == grammar::kNoEntity) continue;
+      const auto entity = static_cast<std::size_t>(index);
+      if (sample.value.not_tracked) {
+        now_.entities[entity] = grammar::NotTracked();
+        continue;
+      }
       episode.placed.resize(now_.entities.size());
-      episode.placed[static_cast<std::size_t>(index)] = true;
-      TakeSample(sample.value, first ? 0 : dt_s, now_.entities[index]);
+      episode.placed[entity] = true;
+      const double since_s = SinceLastLook_s(entity, dt_s);
+      TakeSample(sample.value, first ? 0 : since_s, now_.entities[entity]);
       if (const auto& gazes_at = sample.value.gazes_at) {
         now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, errors);
       }
@@ -256,13 +280,26 @@ class EpisodeReader {
       return std::pair(a.a, a.b) < std::pair(b.a, b.b);
     });
     episode.frames.push_back(now_);
+    bridge_.Fill(tick, episode.frames.back().entities);
     if (episode.frames.size() > kMaxEpisodeFrames)
       errors.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
+  }
+
+  /// The time since the look that its velocity follows from, which `now_` holds then; 0 if how it
+  /// came here is not known.
+  double SinceLastLook_s(std::size_t entity, double dt_s) {
+    if (IsTracked(now_.entities[entity])) return dt_s;
+    const LookBridge::Seen* last = bridge_.LastOf(entity, now_.tick);
+    now_.entities[entity] = last ? last->look : grammar::EntitySample();
+    return last ? static_cast<double>(now_.tick - last->tick) /
+                      static_cast<double>(episode.header.entity_table.ticks_per_second)
+                : 0;
   }
 
   /// Velocities that are not given are computed from the previous sample and this one.
   static void TakeSample(const SampleEntry& entry, double dt_s, grammar::EntitySample& look) {
     const grammar::EntitySample before = look;
+    look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
     look.p_WB_m = entry.at_m;
     if (entry.quat_wxyz) {
       const Eigen::Vector4d& q = entry.quat_wxyz->value;
@@ -321,6 +358,11 @@ class EpisodeReader {
   void FollowTheirSamples() {
     for (std::size_t slot = 0; slot < hands_.size(); ++slot) {
       const grammar::EntitySample& look = now_.entities[static_cast<std::size_t>(hands_[slot])];
+      if (!IsTracked(look)) {
+        now_.collision_spheres[slot].resize(
+            std::max<std::size_t>(now_.collision_spheres[slot].size(), 1));
+        continue;
+      }
       if (!has_ahead_[slot]) now_.hands[slot].ahead_W = look.q_WB * Eigen::Vector3d::UnitX();
       if (!has_spheres_[slot]) now_.collision_spheres[slot].assign(1, {look.p_WB_m, 0});
     }
@@ -362,6 +404,7 @@ class EpisodeReader {
   double SpeedAtTheUpper(const grammar::Touch& touch) const {
     const grammar::EntitySample &a = now_.entities[static_cast<std::size_t>(touch.a)],
                                 &b = now_.entities[static_cast<std::size_t>(touch.b)];
+    if (!IsTracked(a) || !IsTracked(b)) return 0;
     return grammar::VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
   }
 
@@ -385,7 +428,8 @@ class EpisodeReader {
   std::vector<std::string> names_;
   std::vector<int> hands_;
   std::vector<bool> has_ahead_, has_spheres_;  ///< of each hand: its last mention gave them
-  EpisodeFrame now_;
+  EpisodeFrame now_;                           ///< what is not tracked is not, however short
+  LookBridge bridge_;
 };
 
 }  // namespace episode
@@ -393,6 +437,12 @@ class EpisodeReader {
 grammar::Frame EpisodeFrame::View() {
   for (std::size_t i = 0; i < hands.size(); ++i) hands[i].collision_spheres = collision_spheres[i];
   return {tick, entities, hands, touches};
+}
+
+void BridgeLooks(Episode& episode) {
+  LookBridge bridge = BridgeOf(episode.header);
+  for (EpisodeFrame& frame : episode.frames) bridge.Fill(frame.tick, frame.entities);
+  episode.gaps = bridge.Gaps();
 }
 
 struct EpisodeStream::Reader {
@@ -415,6 +465,9 @@ grammar::Diagnostics EpisodeStream::Take(const std::string& line) {
 
 bool EpisodeStream::has_header() const { return reader_->lines.has_header(); }
 const EpisodeHeader& EpisodeStream::header() const { return reader_->lines.episode.header; }
+std::string EpisodeStream::gaps() const {
+  return has_header() ? GapsText(header().entity_table, reader_->lines.Gaps()) : "";
+}
 bool EpisodeStream::says_its_end() const { return reader_->lines.episode.says_its_end; }
 grammar::Tick EpisodeStream::end_tick() const {
   const Episode& episode = reader_->lines.episode;

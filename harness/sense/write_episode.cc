@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "grammar/base/tracking.h"
 #include "harness/scenario/classes.h"
 #include "harness/sense/episode_file.h"
 
@@ -84,6 +85,7 @@ Json MemberJson(const grammar::EntityInfo& member, const grammar::EntityTable& e
 }
 
 Json SampleJson(const grammar::EntitySample& look, const grammar::EntityTable& entity_table) {
+  if (!grammar::IsTracked(look)) return nullptr;
   Json json = {{"at_m", ToJson(look.p_WB_m)},
                {"quat_wxyz", ToJson(look.q_WB)},
                {"v_m_per_s", ToJson(look.v_WB_m_per_s)},
@@ -138,14 +140,14 @@ EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header)
   Json entities = Json::object();
   for (const grammar::EntityInfo& member : entity_table_.entities)
     entities[member.name] = MemberJson(member, entity_table_);
-  out_ << Json{{"recording", kEpisodeVersion},
-               {"episode", header.episode},
-               {"grammar", header.grammar},
-               {"ticks_per_second", entity_table_.ticks_per_second},
-               {"styles", entity_table_.styles},
-               {"entities", std::move(entities)}}
-              .dump()
-       << "\n";
+  Json first = {{"recording", kEpisodeVersion},
+                {"episode", header.episode},
+                {"grammar", header.grammar},
+                {"ticks_per_second", entity_table_.ticks_per_second}};
+  if (header.bridge_s != kBridge_s) first["bridge_s"] = header.bridge_s;
+  first["styles"] = entity_table_.styles;
+  first["entities"] = std::move(entities);
+  out_ << first.dump() << "\n";
 }
 
 void EpisodeWriter::Write(const grammar::Frame& frame) {

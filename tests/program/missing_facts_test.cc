@@ -20,7 +20,7 @@ TEST(MissingFacts, AreNamedAndNothingRecognisedIsExitCodeFour) {
   const Said said = Prehend({"resegment", file.string(), "--grammar", "pick_and_place"});
   EXPECT_EQ(said.exit_code, 4);
   EXPECT_TRUE(said.err.starts_with(
-      "warning: no frame says where 'table' is, so it stands at the world's origin\n"))
+      "warning: no frame says where 'table' is, so no condition on its pose ever holds\n"))
       << said.err;
   EXPECT_NE(said.err.find("contact.grammar:10:17: warning: this recording has no touches, so "
                           "'contact' is never recognised, nor supported_by, grasping, "),

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// A look that is missing is a value of recordings: null. For a stated time the last one counts,
+// then nobody knows.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+/// Two seconds in frames of 20 ms. The cup, 1 cm from the hand, is not tracked from `lost` to
+/// `found`, frames.
+std::string Recording(int lost, int found, const std::string& header = "") {
+  std::string text =
+      "{\"recording\": 1, \"episode\": \"e\", \"ticks_per_second\": 1000, " + header +
+      "\"entities\": {\"cup\": {\"class\": \"Cup\", \"size_m\": [0.1, 0.1, 0.1]}, \"hand\": "
+      "{\"hand\": true, \"size_m\": [0, 0, 0]}}}\n";
+  for (int i = 0; i < 100; ++i) {
+    char line[300];
+    const std::string cup =
+        i >= lost && i < found ? "null" : "{\"at_m\": [" + std::to_string(0.001 * i) + ", 0, 0.8]}";
+    std::snprintf(
+        line, sizeof line,
+        "{\"tick\": %d, \"samples\": {\"cup\": %s, \"hand\": {\"at_m\": [%g, 0, 0.81]}}}\n", 20 * i,
+        cup.c_str(), 0.001 * i);
+    text += line;
+  }
+  return text + "{\"end_tick\": 2000}\n";
+}
+
+class NotTracked : public testing::Test {
+ protected:
+  NotTracked() {
+    WriteFile(folder_ / "g.grammar",
+              "grammar g\nevent near(hand: Hand, cup: Cup) while distance(hand, cup) < 5 cm\n"
+              "event moving(cup: Cup) while speed(cup) > 1 cm/s\n"
+              "event far(hand: Hand, cup: Cup) while not (distance(hand, cup) < 4 cm)\n");
+  }
+  Said Segment(const std::string& recording, const std::string& command = "resegment") const {
+    WriteFile(folder_ / "take.jsonl", recording);
+    return Prehend({command, (folder_ / "take.jsonl").string(), "--grammar",
+                    (folder_ / "g.grammar").string()});
+  }
+  const std::filesystem::path folder_ = FreshFolder("not_tracked");
+};
+
+TEST_F(NotTracked, AShortGapIsBridgedAndTheReportSaysSo) {
+  const Said whole = Segment(Recording(0, 0)), gap = Segment(Recording(40, 44));
+  EXPECT_EQ(gap.exit_code, 0) << gap.err;
+  EXPECT_EQ(gap.out, whole.out);
+  EXPECT_EQ(whole.err, "");
+  EXPECT_EQ(
+      gap.err,
+      "warning: 'cup' is not tracked in 1 gap: 0.080 s are bridged, in 0.000 s it is unknown\n");
+}
+
+TEST_F(NotTracked, WhatALongGapLeavesUnknownEndsAndNeitherDoesItsOppositeHold) {
+  const Said said = Segment(Recording(40, 60));
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  // Seen last at 0.780 s; frames up to 0.880 s are bridged, the cup is found again at 1.200 s.
+  EXPECT_EQ(said.out,
+            "event   begin_s  end_s   roles\n"
+            "near    0.0000   0.9000  hand=hand  cup=cup\n"
+            "moving  0.0200   0.9000  cup=cup\n"
+            "near    1.2000   2.0000  hand=hand  cup=cup  open_end\n"
+            "moving  1.2200   2.0000  cup=cup             open_end\n"
+            "completed: 1.9990 s, 1999 ticks\n");
+  EXPECT_EQ(
+      said.err,
+      "warning: 'cup' is not tracked in 1 gap: 0.100 s are bridged, in 0.300 s it is unknown\n");
+  const Said longer = Segment(Recording(40, 60, "\"bridge_s\": 0.5, "));
+  EXPECT_EQ(longer.out, Segment(Recording(0, 0)).out);
+  const Said never = Segment(Recording(40, 44, "\"bridge_s\": 0, "));
+  EXPECT_NE(never.out.find("near    0.0000   0.8000"), std::string::npos) << never.out;
+}
+
+TEST_F(NotTracked, WatchSaysTheSame) {
+  const Said said = Segment(Recording(40, 60), "watch");
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.out.find("0.9000  near  0.0000  0.9000"), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find("2.0000  near  1.2000  2.0000"), std::string::npos) << said.out;
+  EXPECT_NE(said.err.find("0.100 s are bridged, in 0.300 s it is unknown"), std::string::npos)
+      << said.err;
+}
+
+TEST_F(NotTracked, WhatIsNeverSeenIsToldAndTakesPartInNothing) {
+  const Said said = Segment(Recording(0, 100));
+  EXPECT_NE(said.err.find("warning: no frame says where 'cup' is, so no condition on its pose ever "
+                          "holds\n"),
+            std::string::npos)
+      << said.err;
+  EXPECT_EQ(said.out.find("near"), std::string::npos) << said.out;
+  EXPECT_EQ(said.out.find("far"), std::string::npos) << said.out;
+}
+
+TEST_F(NotTracked, WhatIsSeenLaterHasThePoseOfItsFirstSample) {
+  // The samples have no orientation; it is not turned.
+  WriteFile(folder_ / "g.grammar",
+            "grammar g\nevent so(cup: Cup) while tilt(cup) < 0.1 rad and speed(cup) < 1 m/s\n");
+  for (const int found : {0, 30}) {
+    const Said said = Segment(Recording(0, found));
+    EXPECT_NE(said.out.find(found == 0 ? "so     0.0000   2.0000" : "so     0.6000   2.0000"),
+              std::string::npos)
+        << said.out;
+  }
+}
+
+TEST_F(NotTracked, ExplainAndTracksSayIt) {
+  WriteFile(folder_ / "take.jsonl", Recording(40, 60));
+  const Said tracks = Prehend(
+      {"tracks", (folder_ / "take.jsonl").string(), "--grammar", (folder_ / "g.grammar").string()});
+  EXPECT_EQ(tracks.exit_code, 0) << tracks.err;
+  EXPECT_EQ(tracks.out.find("nan"), std::string::npos) << tracks.out;
+  const Said explain = Prehend({"explain", (folder_ / "take.jsonl").string(), "--grammar",
+                                (folder_ / "g.grammar").string(), "--event", "near"});
+  EXPECT_EQ(explain.exit_code, 0) << explain.err;
+  EXPECT_EQ(explain.out.find("nan"), std::string::npos) << explain.out;
+}
+
+}  // namespace
+}  // namespace prehend::house
