@@ -110,7 +110,7 @@ std::string WithUnixLineEnds(std::string text) {
 }
 
 /// Why the file at `path` cannot be read as text, found without opening it; empty when it can.
-std::string WhyNotReadable(const std::string& path) {
+std::string WhyNotReadable(const std::string& path, std::uintmax_t most_bytes) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status))
@@ -121,9 +121,9 @@ std::string WhyNotReadable(const std::string& path) {
   if (!std::filesystem::is_regular_file(status)) return "is not a regular file";
   const auto size = std::filesystem::file_size(path, error);
   if (error) return "cannot be read: " + error.message();
-  if (size > kMaxTextFileBytes) {
+  if (size > most_bytes) {
     return fmt::format("is too large: {:.1f} MiB, at most {} MiB are read",
-                       static_cast<double>(size) / (1 << 20), kMaxTextFileBytes >> 20);
+                       static_cast<double>(size) / (1 << 20), most_bytes >> 20);
   }
   return {};
 }
@@ -176,7 +176,7 @@ Diagnostics CheckText(const std::string& file, std::string_view text) {
   return {};
 }
 
-Result<std::string> ReadTextFile(const std::string& path) {
+Result<std::string> ReadTextFile(const std::string& path, std::uintmax_t most_bytes) {
   const auto refuse = [&](std::string why) {
     Diagnostic diagnostic;
     diagnostic.file = ReadableName(path);
@@ -185,7 +185,7 @@ Result<std::string> ReadTextFile(const std::string& path) {
   };
   if (ReadableName(path) != path)
     return refuse("the name of this file holds what is no printable text; rename it");
-  if (auto why = WhyNotReadable(path); !why.empty()) return refuse(std::move(why));
+  if (auto why = WhyNotReadable(path, most_bytes); !why.empty()) return refuse(std::move(why));
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return refuse(std::string("cannot be read: ") + std::strerror(errno));
   std::string text = WithUnixLineEnds({std::istreambuf_iterator<char>(stream), {}});

@@ -14,10 +14,12 @@ namespace prehend::harness {
 /// Enough for 10,000 entities on a line each; a larger file is a mistake and would only cost time.
 inline constexpr std::uintmax_t kMaxTextFileBytes = 4u << 20;
 
-/// The text, without a byte order mark and with CR LF turned into LF. Reports a file whose name is
+/// The text, without a byte order mark and with CR LF turned into LF; at most `most_bytes` are
+/// read. Reports a file whose name is
 /// not a ReadableName() (and names it so), that is missing, unreadable or too large (by its size,
 /// without reading it), a directory or device, and what CheckText() reports.
-Result<std::string> ReadTextFile(const std::string& path);
+Result<std::string> ReadTextFile(const std::string& path,
+                                 std::uintmax_t most_bytes = kMaxTextFileBytes);
 
 /// Reports a text that is empty, is not UTF-8, or holds control characters (a binary file): those
 /// of ASCII and U+0080 to U+009F, which terminals obey; what turns the direction of writing (U+202A

@@ -68,11 +68,6 @@ Vector3d ToOurAxes(const Vector3d& p) { return {p.z(), p.x(), p.y()}; }
 constexpr const char* kNamesHint =
     "like RightUpLeg, rThigh, thigh.R or mixamorig:RightUpLeg; see docs/recorded-input.md";
 
-struct JointPose {
-  Vector3d p = Vector3d::Zero();  ///< in the file's axes and units
-  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
-};
-
 class TrackMaker {
  public:
   explicit TrackMaker(const BvhFile& bvh) : bvh_(bvh) {}
@@ -157,31 +152,8 @@ class TrackMaker {
     ahead_ = left.normalized().cross(Vector3d::UnitY());
   }
 
-  /// All joints at a frame. Channels that move replace the offset along their axis.
-  std::vector<JointPose> PosesAt(std::size_t frame) const {
-    const std::vector<double>& row = bvh_.rows[frame];
-    std::vector<JointPose> poses;
-    for (const BvhJoint& joint : bvh_.joints) {
-      JointPose parent;
-      if (joint.parent >= 0) parent = poses[static_cast<std::size_t>(joint.parent)];
-      Vector3d offset = joint.offset;
-      Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
-      for (std::size_t i = 0; i < joint.channels.size(); ++i) {
-        const double value = row[joint.first_value + i];
-        const int axis = joint.channels[i].axis;
-        if (joint.channels[i].turns) {
-          turn = turn * Eigen::AngleAxisd(value * physics::kRadPerDeg, Vector3d::Unit(axis));
-        } else {
-          offset[axis] = value;
-        }
-      }
-      poses.push_back({parent.p + parent.q * offset, (parent.q * turn).normalized()});
-    }
-    return poses;
-  }
-
   BodySample SampleOf(std::size_t frame) const {
-    const std::vector<JointPose> poses = PosesAt(frame);
+    const std::vector<JointPose> poses = JointPosesAt(bvh_, frame);
     const auto pose = [&](int role) -> const JointPose& {
       return poses[static_cast<std::size_t>(roles_[static_cast<std::size_t>(role)])];
     };

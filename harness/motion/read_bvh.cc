@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "harness/base/text_file.h"
+#include "physics/scene/pose.h"
 
 namespace prehend::harness {
 namespace {
@@ -47,14 +48,14 @@ const std::vector<std::string>& ChannelNames() {
 /// could be misread; of the errors in rows twenty are shown.
 class BvhReader {
  public:
-  BvhReader(const std::string& path, std::string text) {
+  BvhReader(const std::string& path, std::string text, const BvhLimits& limits) : limits_(limits) {
     bvh.file = path;
     bvh.text = std::move(text);
   }
 
   void Read() {
-    if (!Expect("HIERARCHY") || !ReadHierarchy() || !Expect("MOTION")) return;
-    const auto frames = HeaderNumber("Frames:", 2, static_cast<double>(kMaxBvhFrames));
+    if (!Expect("HIERARCHY") || !ReadHierarchy()) return;
+    const auto frames = HeaderNumber("Frames:", 2, static_cast<double>(limits_.frames));
     if (!frames) return;
     const Place counted = at_;
     if (*frames != std::floor(*frames))
@@ -139,15 +140,25 @@ class BvhReader {
     return Number(words_.back(), least, most);
   }
 
-  /// From ROOT to its closing brace.
+  /// The roots, each from ROOT to its closing brace, and the line MOTION.
   bool ReadHierarchy() {
-    if (!NextLine() || words_.front().text != "ROOT" || !OpenJoint())
-      return diagnostics.empty() ? Wrong("'ROOT' and a name") : false;
-    while (!open_.empty()) {
-      if (!NextLine()) return Wrong("'}'");
-      if (!TakeHierarchyLine()) return false;
-    }
-    return true;
+    do {
+      if (!NextLine() || words_.front().text != "ROOT" || !OpenJoint())
+        return diagnostics.empty() ? Wrong("'ROOT' and a name") : false;
+      while (!open_.empty()) {
+        if (!NextLine()) return Wrong("'}'");
+        if (!TakeHierarchyLine()) return false;
+      }
+    } while (IsNext("ROOT"));
+    return Expect("MOTION");
+  }
+
+  /// Whether the next line with words begins with this one. Advances to nothing.
+  bool IsNext(std::string_view word) const {
+    const std::string_view rest =
+        std::string_view(bvh.text).substr(std::min(next_, bvh.text.size()));
+    const std::size_t begin = rest.find_first_not_of(" \t\n");
+    return begin != std::string_view::npos && rest.substr(begin).starts_with(word);
   }
 
   bool TakeHierarchyLine() {
@@ -251,8 +262,8 @@ class BvhReader {
                                   bvh.values_per_row, words_.size()),
                       "every frame is one line");
     }
-    if (bvh.rows.size() == kMaxBvhFrames)
-      return Complain(at_, fmt::format("more than {} frames", kMaxBvhFrames));
+    if (bvh.rows.size() == limits_.frames)
+      return Complain(at_, fmt::format("more than {} frames", limits_.frames));
     std::vector<double> row;
     for (const Word& word : words_) {
       const auto value = Number(word, -kMaxBvhValue, kMaxBvhValue);
@@ -263,6 +274,7 @@ class BvhReader {
     bvh.places.push_back(at_);
   }
 
+  const BvhLimits limits_;
   std::size_t next_ = 0;  ///< where the next line begins
   int line_ = 0;
   Place at_{1, 1};
@@ -273,13 +285,36 @@ class BvhReader {
 
 }  // namespace
 
-Result<BvhFile> ReadBvh(const std::string& path) {
-  Result<std::string> text = ReadTextFile(path);
+Result<BvhFile> ReadBvh(const std::string& path, const BvhLimits& limits) {
+  Result<std::string> text = ReadTextFile(path, limits.bytes);
   if (!text) return tl::unexpected(std::move(text.error()));
-  BvhReader reader(path, std::move(*text));
+  BvhReader reader(path, std::move(*text), limits);
   reader.Read();
   if (!reader.diagnostics.empty()) return tl::unexpected(std::move(reader.diagnostics));
   return std::move(reader.bvh);
+}
+
+std::vector<JointPose> JointPosesAt(const BvhFile& bvh, std::size_t frame) {
+  const std::vector<double>& row = bvh.rows[frame];
+  std::vector<JointPose> poses;
+  poses.reserve(bvh.joints.size());
+  for (const BvhJoint& joint : bvh.joints) {
+    JointPose parent;
+    if (joint.parent >= 0) parent = poses[static_cast<std::size_t>(joint.parent)];
+    Eigen::Vector3d offset = joint.offset;
+    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+    for (std::size_t i = 0; i < joint.channels.size(); ++i) {
+      const double value = row[joint.first_value + i];
+      const int axis = joint.channels[i].axis;
+      if (joint.channels[i].turns) {
+        turn = turn * Eigen::AngleAxisd(value * physics::kRadPerDeg, Eigen::Vector3d::Unit(axis));
+      } else {
+        offset[axis] = value;
+      }
+    }
+    poses.push_back({parent.p + parent.q * offset, (parent.q * turn).normalized()});
+  }
+  return poses;
 }
 
 }  // namespace prehend::harness

@@ -5,7 +5,7 @@
 // the line and column of an error. Tested by tests/harness/motion/read_bvh_test.cc
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 
@@ -18,6 +18,12 @@ inline constexpr std::size_t kMaxBvhDepth = 64;
 inline constexpr std::size_t kMaxBvhFrames = 20'000;
 inline constexpr double kMaxBvhValue = 1e6;  ///< units or degrees
 
+/// How much may be read: of a file that drives a person (the default), or of one that is imported.
+struct BvhLimits {
+  std::size_t frames = kMaxBvhFrames;
+  std::size_t bytes = std::size_t{4} << 20;
+};
+
 struct BvhChannel {
   bool turns = false;  ///< about the axis, in degrees; else moves along it, in units of the file
   int axis = 0;        ///< x, y, z of the file
@@ -25,7 +31,7 @@ struct BvhChannel {
 
 struct BvhJoint {
   std::string name;                                  ///< as written; "" for an end site
-  int parent = -1;                                   ///< index of a joint before it; -1: the root
+  int parent = -1;                                   ///< index of a joint before it; -1: a root
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< from the parent, units of the file
   std::vector<BvhChannel> channels;                  ///< in the order in which turns are applied
   std::size_t first_value = 0;                       ///< of its channels in every row
@@ -42,6 +48,16 @@ struct BvhFile {
   std::string text;  ///< of the file, for messages
 };
 
-Result<BvhFile> ReadBvh(const std::string& path);
+/// A file may have several roots: persons, and things beside them.
+Result<BvhFile> ReadBvh(const std::string& path, const BvhLimits& limits = {});
+
+struct JointPose {
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< in the file's axes and units
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+};
+
+/// Forward kinematics: all joints at a frame. Channels that move replace the offset along their
+/// axis.
+std::vector<JointPose> JointPosesAt(const BvhFile& bvh, std::size_t frame);
 
 }  // namespace prehend::harness
