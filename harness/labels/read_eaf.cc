@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <pugixml.hpp>
+#include <set>
 
 #include "harness/labels/read_labels.h"
 
@@ -63,6 +64,7 @@ class EafReader {
 
   void ReadSlots(pugi::xml_node order) {
     std::vector<std::pair<std::string, std::optional<double>>> slots;
+    std::set<std::string> ids;
     for (const pugi::xml_node slot : order.children("TIME_SLOT")) {
       std::optional<double> time_s;
       if (const pugi::xml_attribute value = slot.attribute("TIME_VALUE")) {
@@ -74,6 +76,8 @@ class EafReader {
         time_s = milliseconds / 1000;
       }
       slots.emplace_back(slot.attribute("TIME_SLOT_ID").as_string(), time_s);
+      if (!ids.insert(slots.back().first).second)
+        Complain(slot, fmt::format("TIME_SLOT_ID: '{}' is given twice", slots.back().first));
     }
     for (std::size_t i = 0; i < slots.size();) {
       if (slots[i].second) {

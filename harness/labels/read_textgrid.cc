@@ -13,6 +13,7 @@ namespace {
 using grammar::Diagnostics;
 using grammar::Place;
 
+constexpr double kOverlap_s = 1e-3;  ///< less is rounding
 constexpr double kMostTiers = 10'000, kMostIntervals = 1'000'000;
 
 /// The free-standing numbers, texts and flags of a file; all else in it is for people.
@@ -44,12 +45,18 @@ class Reader {
       return Fail(place_,
                   fmt::format("found a tier of class '{}', wanted IntervalTier or TextTier", kind));
     const double rows = Count("the number of labels of a tier", kMostIntervals);
+    double last_s = 0;
     for (double i = 0; i < rows && problem_.empty(); ++i) {
       Label label{.tier = name};
       label.begin_s = Number("the begin of a label");
       label.end_s = has_intervals ? Number("the end of a label") : label.begin_s;
       label.text = Text("the text of a label");
       label.place = place_;
+      if (problem_.empty() && i > 0 && label.begin_s < last_s - kOverlap_s)
+        Fail(place_, fmt::format("a label of '{}' begins at {:g} s, before the one before it ends, "
+                                 "at {:g} s",
+                                 name, label.begin_s, last_s));
+      last_s = label.end_s;
       if (label.text.find_first_not_of(" \t\n") != std::string::npos && problem_.empty())
         file_.labels.push_back(std::move(label));
     }

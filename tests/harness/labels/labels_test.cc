@@ -6,6 +6,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <pugixml.hpp>
+#include <regex>
+#include <set>
 
 #include "harness/labels/label_map.h"
 #include "harness/labels/read_labels.h"
@@ -134,6 +137,8 @@ TEST_F(Labels, FaultyEafIsNamed) {
             "a.eaf:5:6: error: TIME_VALUE: found '0.5 s', wanted milliseconds");
   EXPECT_EQ(Problem("a.eaf", With(kEaf, "\"500\"", "\"-5\"")),
             "a.eaf:5:6: error: TIME_VALUE: found '-5', wanted milliseconds");
+  EXPECT_EQ(Problem("a.eaf", With(kEaf, "\"ts3\" TIME", "\"ts1\" TIME")),
+            "a.eaf:7:6: error: TIME_SLOT_ID: 'ts1' is given twice");
   EXPECT_EQ(Problem("a.eaf", With(kEaf, "REF1=\"ts1\"", "REF1=\"ts9\"")),
             "a.eaf:10:18: error: TIME_SLOT_REF1: there is no time slot 'ts9' with a time");
   EXPECT_EQ(Problem("a.eaf", With(kEaf, " TIME_VALUE=\"1500\"", "")),
@@ -142,6 +147,53 @@ TEST_F(Labels, FaultyEafIsNamed) {
             "a.eaf:16:18: error: ANNOTATION_REF: there is no annotation 'a7' before it");
   EXPECT_EQ(Problem("a.eaf", With(kEaf, "\"1500\"", "\"100\"")).substr(0, 12), "a.eaf:10:18:");
   EXPECT_EQ(Problem("a.eaf", "<ANNOTATION_DOCUMENT/>"), "a.eaf: error: it has no labels");
+}
+
+// What EAFv3.0.xsd asks of the elements that are written, in their order.
+TEST_F(Labels, EafHasTheStructureOfItsSchema) {
+  grammar::Timeline timeline{.ticks_per_second = 100, .events = {}};
+  for (const grammar::Tick begin : {10, 40, 20})
+    timeline.events.push_back({.event = "grasping",
+                               .roles = {{"hand", "right_hand"}, {"object", "cup"}},
+                               .interval = {begin, begin + 30}});
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_string(LabelsText(".eaf", timeline, 100, "2026-01-02").c_str()));
+  const pugi::xml_node root = document.child("ANNOTATION_DOCUMENT");
+  for (const char* attribute : {"DATE", "AUTHOR", "VERSION"})
+    EXPECT_TRUE(root.attribute(attribute)) << attribute;
+  EXPECT_STREQ(root.attribute("DATE").as_string(), "2026-01-02T00:00:00+00:00");
+  std::string order;
+  std::set<std::string> ids, slots, tiers, types;
+  for (const pugi::xml_node child : root.children()) {
+    order += std::string(child.name()) + " ";
+    if (child.attribute("LINGUISTIC_TYPE_ID"))
+      types.insert(child.attribute("LINGUISTIC_TYPE_ID").as_string());
+  }
+  EXPECT_EQ(order, "HEADER TIME_ORDER TIER TIER LINGUISTIC_TYPE ");
+  int last = -1;
+  for (const pugi::xml_node slot : root.child("TIME_ORDER").children()) {
+    EXPECT_STREQ(slot.name(), "TIME_SLOT");
+    EXPECT_TRUE(slots.insert(slot.attribute("TIME_SLOT_ID").as_string()).second);
+    EXPECT_GE(slot.attribute("TIME_VALUE").as_int(-1), last);
+    last = slot.attribute("TIME_VALUE").as_int(-1);
+  }
+  ids = slots;
+  for (const pugi::xml_node tier : root.children("TIER")) {
+    EXPECT_TRUE(tiers.insert(tier.attribute("TIER_ID").as_string()).second);
+    EXPECT_TRUE(types.contains(tier.attribute("LINGUISTIC_TYPE_REF").as_string()));
+    for (const pugi::xml_node annotation : tier.children()) {
+      const pugi::xml_node aligned = annotation.first_child();
+      EXPECT_STREQ(annotation.name(), "ANNOTATION");
+      EXPECT_STREQ(aligned.name(), "ALIGNABLE_ANNOTATION");
+      EXPECT_TRUE(ids.insert(aligned.attribute("ANNOTATION_ID").as_string()).second);
+      EXPECT_TRUE(slots.contains(aligned.attribute("TIME_SLOT_REF1").as_string()));
+      EXPECT_TRUE(slots.contains(aligned.attribute("TIME_SLOT_REF2").as_string()));
+      EXPECT_STREQ(aligned.first_child().name(), "ANNOTATION_VALUE");
+      EXPECT_FALSE(aligned.first_child().next_sibling());
+    }
+  }
+  for (const std::string& id : ids)  // xsd:ID
+    EXPECT_TRUE(std::regex_match(id, std::regex("[A-Za-z_][A-Za-z0-9._-]*"))) << id;
 }
 
 const std::string kShort = R"(File type = "ooTextFile"
@@ -228,6 +280,10 @@ TEST_F(Labels, FaultyTextGridsAreNamed) {
   EXPECT_EQ(problem("size = 1\nitem", "size = 1.5\nitem"),
             "a.TextGrid:7:8: error: the number of tiers: found 1.5, wanted a whole number up to "
             "10000");
+  EXPECT_EQ(
+      Problem("a.TextGrid", With(kShort, "\n1.5\n3\n", "\n1\n3\n")),
+      "a.TextGrid:18:1: error: a label of 'right' begins at 1 s, before the one before it ends, "
+      "at 1.5 s");
   EXPECT_EQ(problem("\"hold\"", "\"hold"), "a.TextGrid:18:20: error: the quote is not closed");
   EXPECT_EQ(problem("xmin = 0.5", "xmin = 5"),
             "a.TextGrid:18:20: error: 'hold' ends before it begins: 5 s to 3 s");
