@@ -70,6 +70,7 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
     if (exit_code == ExitCode::kBadInput) return exit_code;
   }
   if (!check) {
+    if (episodes::IsEpisodeFile(output)) BridgeLooks(episode);
     const ExitCode written =
         WriteRecording(episode, output, poses, options.Text("--grammar"), context);
     if (written != ExitCode::kAgrees) return written;
@@ -88,9 +89,8 @@ Command ImportCommand() {
                    "import poses.csv --map bodies.yaml -o take.jsonl", "resegment take.jsonl",
                    "import take.jsonl -o takes.episodes"},
       .options = {{.name = "poses",
-                   .help =
-                       "a CSV file with poses of hands and things (docs/motion-capture.md), or\n"
-                       "a recording (docs/recording-format.md)",
+                   .help = "a file with poses of hands and things, CSV, BVH or MCAP\n"
+                           "(docs/motion-capture.md), or a recording (docs/recording-format.md)",
                    .required = true},
                   {.name = "--map",
                    .help = "of poses, what the file means: unit, axes, times, columns, bodies",

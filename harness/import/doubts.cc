@@ -12,8 +12,9 @@ namespace prehend::harness::import {
 namespace {
 
 // What a room is like.
-constexpr double kFarFromOrigin_m = 30;   ///< median distance of all poses
-constexpr double kNothingMoves_m = 0.03;  ///< extent of all poses together
+constexpr double kFarFromOrigin_m = 30;                        ///< median distance of all poses
+constexpr double kLeastStature_m = 0.5, kMostStature_m = 2.3;  ///< from feet to head
+constexpr double kNothingMoves_m = 0.03;                       ///< extent of all poses together
 constexpr double kLeastRate_hz = 2, kMostRate_hz = 2500;
 constexpr double kLift_m = 0.05;  ///< what is lifted gets so far up, and comes down again
 constexpr double kDip_m = 0.02;   ///< and does not get lower than where it stood
@@ -24,10 +25,7 @@ constexpr const char* kAxes = "xyz";
 class DoubtFinder {
  public:
   DoubtFinder(const PoseFile& poses, const MapFile& map)
-      : poses_(poses),
-        map_(map.map),
-        errors_(map.document),
-        scale_(MetresPerUnit(map.map.unit.value)) {}
+      : poses_(poses), map_(map.map), errors_(map.document), scale_(map.map.MetresPerUnit()) {}
 
   grammar::Diagnostics Find() {
     if (Asks(Doubt::kZero) && !map_.zero_is_missing) Zeros();
@@ -36,7 +34,7 @@ class DoubtFinder {
     // With a wrong unit, lengths mean nothing.
     if (errors_.empty() && Asks(Doubt::kUp)) Up();
     if (errors_.empty() && Asks(Doubt::kPlace)) Near();
-    if (Asks(Doubt::kQuaternionOrder) && map_.quaternion_order) Order();
+    if (Asks(Doubt::kQuaternionOrder) && poses_.quaternion_order) Order();
     return errors_.Sorted();
   }
 
@@ -75,7 +73,7 @@ class DoubtFinder {
                       step_s, rate_hz),
           "correct rate_hz or time_unit");
     } else if (rate_hz < kLeastRate_hz || rate_hz > kMostRate_hz) {
-      Add(map_.time_unit.where, Doubt::kTime,
+      Add(TimeWhere(), Doubt::kTime,
           fmt::format("poses are {:.4g} s apart: {:.4g} Hz{}", step_s, rate_hz,
                       Plausible(rate_hz * 1e3)   ? "; the times look like milliseconds"
                       : Plausible(rate_hz * 1e6) ? "; the times look like microseconds"
@@ -86,9 +84,30 @@ class DoubtFinder {
     }
   }
 
+  /// Where the map says what the times are, or else what is read.
+  Where TimeWhere() const {
+    if (map_.time_unit) return map_.time_unit->where;
+    return map_.rate_hz ? map_.rate_hz->where : FirstBodyWhere();
+  }
+  Where FirstBodyWhere() const {
+    return std::ranges::find_if(map_.entities,
+                                [](const auto& entity) { return entity.value.from.has_value(); })
+        ->value.from->where;
+  }
+
   static bool Plausible(double rate_hz) { return rate_hz >= 10 && rate_hz <= 1000; }
 
   void Unit() {
+    if (poses_.stature) {
+      const double height_m = poses_.stature->norm() * scale_;
+      if (height_m < kLeastStature_m || height_m > kMostStature_m)
+        Add(map_.UnitWhere(), Doubt::kUnit,
+            fmt::format("from feet to head the skeleton is {:.3g} m ({:.4g} in the file)", height_m,
+                        poses_.stature->norm()),
+            fmt::format("correct unit, or metres_per_unit: {:.3g}, if it is 1.6 m",
+                        1.6 / poses_.stature->norm()));
+      return;
+    }
     std::vector<double> distances;
     Eigen::AlignedBox3d extent;
     for (const PoseBody& body : poses_.bodies) {
@@ -99,19 +118,18 @@ class DoubtFinder {
     }
     const double median_m = Median(std::move(distances)), span_m = extent.diagonal().norm();
     if (median_m > kFarFromOrigin_m) {
-      Add(map_.unit.where, Doubt::kUnit,
+      Add(map_.UnitWhere(), Doubt::kUnit,
           fmt::format("the poses are {:.4g} m from the origin (median){}", median_m,
-                      map_.unit.value != LengthUnit::kMetre ? ""
-                      : median_m > 150                      ? "; they look like millimetres"
+                      scale_ != 1      ? ""
+                      : median_m > 150 ? "; they look like millimetres"
                                        : "; they look like centimetres or millimetres"),
           "correct unit");
     } else if (span_m < kNothingMoves_m) {
-      Add(map_.unit.where, Doubt::kUnit,
-          fmt::format(
-              "all poses are within {:.3g} mm{}", span_m * 1e3,
-              map_.unit.value == LengthUnit::kMetre
-                  ? ""
-                  : fmt::format("; as metres they would be within {:.3g} m", span_m / scale_)),
+      Add(map_.UnitWhere(), Doubt::kUnit,
+          fmt::format("all poses are within {:.3g} mm{}", span_m * 1e3,
+                      scale_ == 1 ? ""
+                                  : fmt::format("; as metres they would be within {:.3g} m",
+                                                span_m / scale_)),
           "correct unit");
     }
   }
@@ -146,6 +164,18 @@ class DoubtFinder {
 
   void Up() {
     const int up = map_.up.value;
+    if (poses_.stature) {
+      int tallest = 0;
+      poses_.stature->maxCoeff(&tallest);
+      if (tallest != up)
+        Add(map_.up.where, Doubt::kUp,
+            fmt::format("the head is {:.2f} m from the feet along {}, and {:.2f} m along {}: {} "
+                        "looks up",
+                        (*poses_.stature)[tallest] * scale_, kAxes[tallest],
+                        (*poses_.stature)[up] * scale_, kAxes[up], kAxes[tallest]),
+            fmt::format("axes: {}_up", kAxes[tallest]));
+      return;
+    }
     const Lifts stated = LiftsAlong(up);
     if (stated.moving == 0 || stated.lifted > 0) return;
     for (const int axis : {1, 2, 0}) {
@@ -196,7 +226,7 @@ class DoubtFinder {
   /// A body that stands as when it was defined has w near 1.
   void Order() {
     std::vector<double> as_read, other;
-    const bool w_first = map_.quaternion_order->value == QuaternionOrder::kWxyz;
+    const bool w_first = poses_.quaternion_order == QuaternionOrder::kWxyz;
     for (const PoseBody& body : poses_.bodies) {
       for (const PoseSample& sample : body.samples) {
         as_read.push_back(std::abs(sample.q.w()));
@@ -205,7 +235,8 @@ class DoubtFinder {
     }
     const double w = Median(std::move(as_read)), other_w = Median(std::move(other));
     if (w > 0.5 || other_w < 0.85) return;
-    Add(map_.quaternion_order->where, Doubt::kQuaternionOrder,
+    Add(map_.quaternion_order ? map_.quaternion_order->where : FirstBodyWhere(),
+        Doubt::kQuaternionOrder,
         fmt::format("the {} of four numbers, as w, is {:.2f} (median, without its sign), the {} is "
                     "{:.2f}: this looks like {}",
                     w_first ? "first" : "last", w, w_first ? "last" : "first", other_w,
@@ -227,10 +258,6 @@ class DoubtFinder {
 
 grammar::Diagnostics FindDoubts(const PoseFile& poses, const MapFile& map) {
   return DoubtFinder(poses, map).Find();
-}
-
-double MetresPerUnit(LengthUnit unit) {
-  return unit == LengthUnit::kMetre ? 1 : unit == LengthUnit::kCentimetre ? 1e-2 : 1e-3;
 }
 
 double Median(std::vector<double> values) {

@@ -11,9 +11,6 @@ namespace prehend::harness::import {
 /// that the map is sure about.
 grammar::Diagnostics FindDoubts(const PoseFile& poses, const MapFile& map);
 
-/// Metres per unit of the file.
-double MetresPerUnit(LengthUnit unit);
-
 /// The middle one, of an even number the upper; 0 of none.
 double Median(std::vector<double> values);
 

@@ -5,6 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <map>
+
+#include "harness/base/text_file.h"
 
 namespace prehend::harness::import {
 namespace {
@@ -22,6 +28,18 @@ ValueFormat<Columns> ColumnsFormat() {
                 "The columns of x, y and z. '{}' stands for the body's name.")
       .Optional("quaternion", &Columns::quaternion, ListOf(name, 4, 4),
                 "The columns of the orientation, in the order of quaternion_order.")
+      .format();
+}
+
+ValueFormat<McapKeys> McapFormat() {
+  return StructFormat<McapKeys>("mcap")
+      .Optional("world", &McapKeys::world, Text(200),
+                "The coordinate frame of the recording. Default: the root of the tree of frames.")
+      .Optional(
+          "clock", &McapKeys::clock,
+          Choice<Clock>(
+              {{"header", Clock::kHeader}, {"log", Clock::kLog}, {"publish", Clock::kPublish}}),
+          "Which time of a message counts: when it was measured, logged or published.")
       .format();
 }
 
@@ -43,6 +61,8 @@ ValueFormat<MappedEntity> EntityFormat() {
                 "From the origin of its markers to its centre, in the body's frame, z up.")
       .Optional("upright_at_s", &E::upright_at_s, Number(0, 1e6),
                 "A time at which it stands upright: its orientation there counts as not turned.")
+      .Optional("ahead", &E::ahead, Vector<3>(-1, 1),
+                "Where a hand reaches, in its own frame, z up.")
       .ExactlyOneOf({"from", "at_m"})
       .format();
 }
@@ -57,24 +77,29 @@ ValueFormat<ImportMap> MapFormat() {
       .Required("import", &M::version, Integer<int>(1, 1), "The version of this format.")
       .Optional("episode", &M::episode, name, "The recording's name.")
       .Optional("grammar", &M::grammar, name, "The grammar that segments it.")
-      .Required("unit", &M::unit,
+      .Optional("unit", &M::unit,
                 Choice<LengthUnit>({{"m", LengthUnit::kMetre},
                                     {"cm", LengthUnit::kCentimetre},
-                                    {"mm", LengthUnit::kMillimetre}}),
+                                    {"mm", LengthUnit::kMillimetre},
+                                    {"inch", LengthUnit::kInch}}),
                 "The unit of positions in the file.")
+      .Optional("metres_per_unit", &M::metres_per_unit, Number(1e-6, 1e3),
+                "The same as a number, where it is none of these.")
+      .ExactlyOneOf({"unit", "metres_per_unit"})
       .Required("axes", &M::up, Choice<int>({{"x_up", 0}, {"y_up", 1}, {"z_up", 2}}),
                 "Which axis of the file points up.")
-      .Optional("quaternion_order", &M::quaternion_order,
-                Choice<QuaternionOrder>(
-                    {{"wxyz", QuaternionOrder::kWxyz}, {"xyzw", QuaternionOrder::kXyzw}}),
-                "The order of the four columns of columns.quaternion.")
-      .Required("time_unit", &M::time_unit,
+      .Optional(
+          "quaternion_order", &M::quaternion_order,
+          Choice<QuaternionOrder>(
+              {{"wxyz", QuaternionOrder::kWxyz}, {"xyzw", QuaternionOrder::kXyzw}}),
+          "The order of the four columns of columns.quaternion; of MCAP, of the fields x, y, z, w.")
+      .Optional("time_unit", &M::time_unit,
                 Choice<TimeUnit>({{"s", TimeUnit::kSecond},
                                   {"ms", TimeUnit::kMillisecond},
                                   {"us", TimeUnit::kMicrosecond},
                                   {"ns", TimeUnit::kNanosecond},
                                   {"frame", TimeUnit::kFrame}}),
-                "The unit of the time column; frame: a number, rate_hz per second.")
+                "Of CSV: the unit of the time column; frame: a number, rate_hz per second.")
       .Optional("rate_hz", &M::rate_hz, Number(0.1, 10'000),
                 "Frames per second. It is compared with the times.")
       .Optional("separator", &M::separator,
@@ -90,22 +115,36 @@ ValueFormat<ImportMap> MapFormat() {
                 "A body at exactly 0, 0, 0 is not tracked.")
       .Optional("bridge_s", &M::bridge_s, Number(0, 60),
                 "The longest time without a pose that is filled with a straight line.")
-      .Optional("lost", &M::lost, Choice<Lost>({{"refuse", Lost::kRefuse}, {"hold", Lost::kHold}}),
-                "What is done where a body is not tracked for longer: nothing is imported, or it "
-                "stays where it was.")
+      .Optional(
+          "lost", &M::lost,
+          Choice<Lost>(
+              {{"refuse", Lost::kRefuse}, {"hold", Lost::kHold}, {"unknown", Lost::kUnknown}}),
+          "What is done where a body is not tracked for longer: nothing is imported, it "
+          "stays where it was, or nobody knows where it is.")
       .Optional("sure", &M::sure, ListOf(Choice<Doubt>(doubts), 0, kDoubtNames.size()),
                 "Looks wrong, but is right.")
       .Optional("ticks_per_second", &M::ticks_per_second, Integer<std::int64_t>(100, 1'000'000),
                 "The recording's unit of time.")
-      .Required("columns", &M::columns, ColumnsFormat(), "Where the values stand.")
+      .Optional("columns", &M::columns, ColumnsFormat(), "Of CSV: where the values stand.")
+      .Optional("mcap", &M::mcap, McapFormat(), "Of MCAP: frame and clock.")
       .Required("entities", &M::entities, MapOf(name, EntityFormat(), 1, 1000),
                 "What the bodies are, and what no tracker sees.")
       .format();
 }
 
-/// Rules across keys.
-void CheckMap(const ImportMap& map, DiagnosticList& errors) {
+/// What only files of comma-separated values have.
+void CheckColumns(const ImportMap& map, const YamlNode& root, DiagnosticList& errors) {
   const Columns& columns = map.columns;
+  if (columns.position.empty()) {
+    errors.Add(root.where, "'columns' is missing: a CSV file needs it",
+               "columns: {time: t, position: [\"{}_x\", \"{}_y\", \"{}_z\"]}");
+    return;
+  }
+  if (!map.time_unit) {
+    errors.Add(root.where, "'time_unit' is missing: a CSV file needs it",
+               "time_unit: s, ms, us, ns or frame");
+    return;
+  }
   for (const auto* list : {&columns.position, &columns.quaternion}) {
     for (const Located<std::string>& column : *list) {
       const bool names_body = column.value.find("{}") != std::string::npos;
@@ -127,8 +166,26 @@ void CheckMap(const ImportMap& map, DiagnosticList& errors) {
     errors.Add(columns.where, "neither columns.time nor rate_hz says when a row is");
   if (!columns.time && columns.body)
     errors.Add(columns.where, "a file with one body per row needs columns.time");
-  if (map.time_unit.value == TimeUnit::kFrame && !map.rate_hz)
-    errors.Add(map.time_unit.where, "time_unit: frame needs rate_hz");
+  if (map.time_unit->value == TimeUnit::kFrame && !map.rate_hz)
+    errors.Add(map.time_unit->where, "time_unit: frame needs rate_hz");
+}
+
+/// Rules across keys.
+void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
+              DiagnosticList& errors) {
+  const bool is_csv = format == PoseFormat::kCsv;
+  if (is_csv) {
+    CheckColumns(map, root, errors);
+  } else {
+    if (!map.columns.position.empty())
+      errors.Add(map.columns.where, "'columns' are those of CSV files; this one has names");
+    if (map.time_unit)
+      errors.Add(map.time_unit->where, "'time_unit' is that of CSV files; this one has its own");
+  }
+  if (format == PoseFormat::kBvh && map.quaternion_order)
+    errors.Add(map.quaternion_order->where, "BVH has angles, and no quaternions");
+  if (format != PoseFormat::kMcap && map.mcap.where.place.line > 0)
+    errors.Add(map.mcap.where, "'mcap' says something of MCAP files; this is none");
   bool tracked = false;
   for (const Named<MappedEntity>& entity : map.entities) {
     const MappedEntity& e = entity.value;
@@ -136,8 +193,11 @@ void CheckMap(const ImportMap& map, DiagnosticList& errors) {
     if (e.hand && (e.fixed || e.class_name != "Object"))
       errors.Add(entity.name_where,
                  fmt::format("'{}': a hand has no class and is not fixed", entity.name));
-    if (e.upright_at_s && (e.at_m || columns.quaternion.empty()))
+    if (e.upright_at_s && (e.at_m || (is_csv && map.columns.quaternion.empty())))
       errors.Add(e.upright_at_s->where, "upright_at_s needs a body with orientations");
+    if (e.ahead && !e.hand) errors.Add(e.ahead->where, "only a hand reaches 'ahead'");
+    if (e.ahead && e.ahead->value.norm() < 0.1)
+      errors.Add(e.ahead->where, "expected a direction, found one of length below 0.1");
   }
   if (!tracked && !map.entities.empty())
     errors.Add(map.entities.front().name_where, "no entity is 'from' a body of the file");
@@ -147,12 +207,41 @@ void CheckMap(const ImportMap& map, DiagnosticList& errors) {
 
 bool ImportMap::IsSure(Doubt doubt) const { return std::ranges::find(sure, doubt) != sure.end(); }
 
-Result<MapFile> ReadImportMap(const std::string& path) {
+double ImportMap::MetresPerUnit() const {
+  if (metres_per_unit) return metres_per_unit->value;
+  constexpr std::array kMetres = {1.0, 1e-2, 1e-3, 0.0254};
+  return kMetres[static_cast<std::size_t>(unit->value)];
+}
+
+Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
+  std::string ending = std::filesystem::path(poses_path).extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (ending == ".bvh") return PoseFormat::kBvh;
+  if (ending == ".mcap") return PoseFormat::kMcap;
+  static const std::map<std::string, std::string> kOthers = {
+      {".bag", "convert it, with the program that comes with MCAP: mcap convert IN.bag OUT.mcap"},
+      {".db3", "convert it, with the program that comes with MCAP: mcap convert IN.db3 OUT.mcap"},
+      {".c3d", "export poses of rigid bodies as CSV; C3D mostly holds single markers"},
+      {".fbx", "export it as BVH"},
+      {".trc", "export poses of rigid bodies as CSV; TRC holds single markers"}};
+  const auto other = kOthers.find(ending);
+  if (other == kOthers.end()) return PoseFormat::kCsv;
+  return tl::unexpected(grammar::Diagnostics{
+      {.file = ReadableName(poses_path),
+       .place = {},
+       .message = fmt::format("files {} are not read; CSV, BVH and MCAP are", ending),
+       .source_line = {},
+       .hint = other->second}});
+}
+
+Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format) {
   Result<YamlDocument> document = ReadYamlFile(path);
   if (!document) return tl::unexpected(std::move(document.error()));
   MapFile file{.document = std::move(*document), .map = {}};
   DiagnosticList errors(file.document);
-  if (MapFormat().Read(file.document.root, errors, file.map)) CheckMap(file.map, errors);
+  if (MapFormat().Read(file.document.root, errors, file.map))
+    CheckMap(file.map, format, file.document.root, errors);
   if (!errors.empty()) return tl::unexpected(errors.Sorted());
   return file;
 }

@@ -14,11 +14,14 @@
 
 namespace prehend::harness::import {
 
-enum class LengthUnit { kMetre, kCentimetre, kMillimetre };
+/// What is imported, by the ending of its name.
+enum class PoseFormat { kCsv, kBvh, kMcap };
+enum class LengthUnit { kMetre, kCentimetre, kMillimetre, kInch };
 enum class TimeUnit { kSecond, kMillisecond, kMicrosecond, kNanosecond, kFrame };
 enum class QuaternionOrder { kWxyz, kXyzw };
 enum class Separator { kComma, kSemicolon, kTab };
-enum class Lost { kRefuse, kHold };
+enum class Lost { kRefuse, kHold, kUnknown };
+enum class Clock { kHeader, kLog, kPublish };
 /// What looks wrong, and is accepted because the map says that it is right.
 enum class Doubt { kUnit, kUp, kQuaternionOrder, kTime, kPlace, kZero };
 
@@ -34,6 +37,13 @@ struct Columns {
   std::vector<Located<std::string>> quaternion;  ///< four in `quaternion_order`, or none
 };
 
+/// Of MCAP files.
+struct McapKeys {
+  Where where;
+  std::optional<Located<std::string>> world;  ///< the coordinate frame that is the recording's
+  Clock clock = Clock::kHeader;               ///< which of a message's times counts
+};
+
 /// One entity of the recording.
 struct MappedEntity {
   std::optional<Located<std::string>> from;  ///< the body in the file
@@ -45,7 +55,8 @@ struct MappedEntity {
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
   /// From the markers' origin to the entity's, in the body's frame, z up, metres.
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
-  std::optional<Located<double>> upright_at_s;  ///< when it stands as it is described, not turned
+  std::optional<Located<double>> upright_at_s;    ///< when it stands as it is described, not turned
+  std::optional<Located<Eigen::Vector3d>> ahead;  ///< of a hand: where it reaches, likewise; x
 };
 
 /// The whole file.
@@ -53,10 +64,11 @@ struct ImportMap {
   int version = 1;
   std::string episode;  ///< "": as the file of poses is called
   std::string grammar = "pick_and_place_from_motion";
-  Located<LengthUnit> unit;
-  Located<int> up;  ///< an axis of the file: 0 x, 1 y, 2 z
+  std::optional<Located<LengthUnit>> unit;         ///< this, or
+  std::optional<Located<double>> metres_per_unit;  ///< this
+  Located<int> up;                                 ///< an axis of the file: 0 x, 1 y, 2 z
   std::optional<Located<QuaternionOrder>> quaternion_order;
-  Located<TimeUnit> time_unit;
+  std::optional<Located<TimeUnit>> time_unit;  ///< of CSV only
   std::optional<Located<double>> rate_hz;
   Separator separator = Separator::kComma;
   int header_line = 1;
@@ -66,10 +78,14 @@ struct ImportMap {
   Lost lost = Lost::kRefuse;
   std::vector<Doubt> sure;
   std::int64_t ticks_per_second = 10'000;
-  Columns columns;
+  Columns columns;  ///< of CSV only
+  McapKeys mcap;
   std::vector<Named<MappedEntity>> entities;
 
   bool IsSure(Doubt doubt) const;
+  double MetresPerUnit() const;
+  /// Where the map says it.
+  const Where& UnitWhere() const { return unit ? unit->where : metres_per_unit->where; }
 };
 
 /// The map with the document that its places refer to.
@@ -78,8 +94,11 @@ struct MapFile {
   ImportMap map;
 };
 
-/// Errors have their places.
-Result<MapFile> ReadImportMap(const std::string& path);
+/// A kind of file that is not read is an error that says what helps.
+Result<PoseFormat> PoseFormatOf(const std::string& poses_path);
+
+/// For a file of this format. Errors have their places.
+Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format);
 
 /// The JSON Schema of maps, as text.
 std::string ImportMapSchema();

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "grammar/base/tracking.h"
 #include "harness/import/doubts.h"
 
 namespace prehend::harness::import {
@@ -48,6 +49,7 @@ struct Pose {
 /// An entity over time.
 struct Track {
   std::vector<Pose> poses;
+  bool lost_before = false, lost_after = false;  ///< before its first and after its last pose
   std::size_t next = 0;  ///< the first one that is later than the present time
 
   Pose At(double t_s) {
@@ -63,6 +65,13 @@ struct Track {
             .q = before.q.slerp(part, after.q)};
   }
 };
+
+/// Whether nobody knows where it was at the time of the last At().
+bool IsLost(const Track& track, double t_s) {
+  if (track.next == 0) return track.lost_before;
+  if (track.poses[track.next - 1].t_s >= t_s) return false;
+  return track.next == track.poses.size() ? track.lost_after : track.poses[track.next].after_loss;
+}
 
 class Importer {
  public:
@@ -90,6 +99,7 @@ class Importer {
     EpisodeHeader& header = imported_.episode.header;
     header.episode = EpisodeName(map_, file_.file);
     header.grammar = map_.grammar;
+    header.bridge_s = map_.bridge_s;
     header.entity_table.ticks_per_second = map_.ticks_per_second;
     for (const Named<MappedEntity>& entity : map_.entities) {
       const MappedEntity& e = entity.value;
@@ -116,7 +126,7 @@ class Importer {
       report.from = e.from->value;
       const PoseBody& body = *std::ranges::find(file_.bodies, report.from, &PoseBody::name);
       track.poses = Converted(body, e);
-      MarkGaps(body, e, track.poses, report);
+      MarkGaps(body, e, track, report);
       WarnOfMotion(body, entity, track.poses, report);
     }
     for (const Pose& pose : track.poses) report.extent.extend(pose.p);
@@ -130,7 +140,7 @@ class Importer {
 
   std::vector<Pose> Converted(const PoseBody& body, const MappedEntity& entity) const {
     const Eigen::Quaterniond turn = TurnOf(map_.up.value);
-    const double scale = MetresPerUnit(map_.unit.value);
+    const double scale = map_.MetresPerUnit();
     const auto upright = [&](const Eigen::Quaterniond& q) { return turn * q * turn.conjugate(); };
     Eigen::Quaterniond rest = Eigen::Quaterniond::Identity();
     if (entity.upright_at_s) {
@@ -148,8 +158,9 @@ class Importer {
     return poses;
   }
 
-  void MarkGaps(const PoseBody& body, const MappedEntity& entity, std::vector<Pose>& poses,
+  void MarkGaps(const PoseBody& body, const MappedEntity& entity, Track& track,
                 EntityReport& report) {
+    std::vector<Pose>& poses = track.poses;
     const double usual_s = UsualStep_s(body);
     report.poses = poses.size();
     report.rate_hz = usual_s > 0 ? 1 / usual_s : 0;
@@ -166,18 +177,19 @@ class Importer {
       }
       return lost;
     };
-    take(0, poses.front().t_s, false);
+    track.lost_before = take(0, poses.front().t_s, false);
     for (std::size_t i = 1; i < poses.size(); ++i)
       poses[i].after_loss = take(poses[i - 1].t_s, poses[i].t_s, true);
-    take(poses.back().t_s, file_.last_s, false);
+    track.lost_after = take(poses.back().t_s, file_.last_s, false);
     if (report.lost == 0) return;
     const std::string text = fmt::format(
         "'{}' is not tracked for {:.3f} s from {:.3f} s on; in all {} such times, {:.3f} s",
         report.from, longest_s, longest_from_s, report.lost, report.lost_s);
     if (map_.lost == Lost::kHold) return Warn(text + ": it is held where it was, at rest");
+    if (map_.lost == Lost::kUnknown) return Warn(text + ": nobody knows where it is");
     errors_.Add(entity.from->where, text,
                 fmt::format("bridge_s is {:g}: a longer one fills it with a straight line; lost: "
-                            "hold keeps it where it was",
+                            "unknown says that nobody knows; lost: hold keeps it where it was",
                             map_.bridge_s));
   }
 
@@ -200,9 +212,11 @@ class Importer {
       worst = i;
     }
     if (jumps > 0)
-      Warn(fmt::format("{}:{}: '{}' jumps {} times, here {:.3f} m in {:.4f} s ({:.0f} m/s)",
-                       file_.file, body.samples[worst].line, report.from, jumps,
-                       (poses[worst].p - poses[worst - 1].p).norm(),
+      Warn(fmt::format("{}: '{}' jumps {} times, here {:.3f} m in {:.4f} s ({:.0f} m/s)",
+                       body.samples[worst].line > 0
+                           ? fmt::format("{}:{}", file_.file, body.samples[worst].line)
+                           : fmt::format("{}, {:.3f} s", file_.file, poses[worst].t_s),
+                       report.from, jumps, (poses[worst].p - poses[worst - 1].p).norm(),
                        poses[worst].t_s - poses[worst - 1].t_s, fastest));
     if (uneven * 10 > poses.size())
       Warn(fmt::format("'{}': {} of {} steps are more than 20 % off the usual {:.4f} s",
@@ -249,11 +263,13 @@ class Importer {
         grammar::EntitySample& sample = frame.entities.emplace_back();
         sample.p_WB_m = pose.p;
         sample.q_WB = pose.q;
-        if (!before.entities.empty() && !Found(tracks_[i], passed))
+        if (!before.entities.empty() && !Found(tracks_[i], passed) &&
+            grammar::IsTracked(before.entities[i]))
           SetVelocity(before.entities[i], t_s - before_s, sample);
+        if (map_.lost == Lost::kUnknown && IsLost(tracks_[i], t_s)) sample = grammar::NotTracked();
         if (map_.entities[i].value.hand) {
           frame.hands.push_back({.entity = static_cast<int>(i),
-                                 .ahead_W = pose.q * Eigen::Vector3d::UnitX(),
+                                 .ahead_W = pose.q * AheadOf(map_.entities[i].value),
                                  .collision_spheres = {}});
           frame.collision_spheres.push_back({{pose.p, 0}});
         }
@@ -265,6 +281,10 @@ class Importer {
     episode.placed.assign(tracks_.size(), true);
     episode.says_its_end = true;
     episode.end_tick = episode.frames.back().tick + 1;
+  }
+
+  static Eigen::Vector3d AheadOf(const MappedEntity& hand) {
+    return hand.ahead ? Eigen::Vector3d(hand.ahead->value.normalized()) : Eigen::Vector3d::UnitX();
   }
 
   /// Whether it was found again since `passed` poses had been passed: then its way is not known.
@@ -293,9 +313,12 @@ class Importer {
 }  // namespace
 
 Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path) {
-  const Result<MapFile> map = ReadImportMap(map_path);
+  const Result<PoseFormat> format = PoseFormatOf(poses_path);
+  if (!format) return tl::unexpected(format.error());
+  const Result<MapFile> map = ReadImportMap(map_path, *format);
   if (!map) return tl::unexpected(map.error());
-  const Result<PoseFile> poses = ReadCsvPoses(poses_path, *map);
+  constexpr std::array kReaders = {ReadCsvPoses, ReadBvhPoses, ReadMcapPoses};
+  const Result<PoseFile> poses = kReaders[static_cast<std::size_t>(*format)](poses_path, *map);
   if (!poses) return tl::unexpected(poses.error());
   if (grammar::Diagnostics doubts = FindDoubts(*poses, *map); !doubts.empty())
     return tl::unexpected(std::move(doubts));

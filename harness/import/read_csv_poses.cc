@@ -6,11 +6,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <optional>
-#include <sstream>
 
 #include "harness/base/csv_cells.h"
 #include "harness/base/text_file.h"
@@ -23,10 +20,9 @@ using grammar::Diagnostics;
 using grammar::Place;
 
 constexpr std::size_t kMostComplaints = 12;
-constexpr double kUnitTolerance = 0.01;
 
 double SecondsPer(const ImportMap& map) {
-  switch (map.time_unit.value) {
+  switch (map.time_unit->value) {
     case TimeUnit::kSecond:
       return 1;
     case TimeUnit::kMillisecond:
@@ -59,14 +55,9 @@ class CsvPoseReader {
     poses.text = std::move(text);
     constexpr std::array kSeparators = {',', ';', '\t'};
     separator_ = kSeparators[static_cast<std::size_t>(map_.separator)];
-    for (const Named<MappedEntity>& entity : map_.entities) {
-      if (!entity.value.from) continue;
-      const std::string& name = entity.value.from->value;
-      if (!index_.try_emplace(name, poses.bodies.size()).second)
-        map_errors_.Add(entity.value.from->where, fmt::format("'{}' is two entities", name));
-      else
-        poses.bodies.push_back({.name = name, .samples = {}});
-    }
+    poses.bodies = BodiesOf(map_, map_errors_);
+    for (std::size_t i = 0; i < poses.bodies.size(); ++i) index_.emplace(poses.bodies[i].name, i);
+    if (!map_.columns.quaternion.empty()) poses.quaternion_order = map_.quaternion_order->value;
   }
 
   void Read() {
@@ -89,7 +80,7 @@ class CsvPoseReader {
     if (!problems_.empty()) return;
     if (poses.rows < 2)
       return Complain({line_, 1}, fmt::format("{} rows; a recording has at least 2", poses.rows));
-    RefuseAbsentBodies();
+    RefuseAbsentBodies(poses, map_, map_errors_);
   }
 
   Diagnostics Problems() const {
@@ -260,19 +251,6 @@ class CsvPoseReader {
     return std::nullopt;
   }
 
-  void RefuseAbsentBodies() {
-    for (const Named<MappedEntity>& entity : map_.entities) {
-      if (!entity.value.from) continue;
-      const Located<std::string>& from = *entity.value.from;
-      const PoseBody& body = poses.bodies[index_.at(from.value)];
-      if (body.samples.size() >= 2) continue;
-      map_errors_.AddUnknownName(from.where,
-                                 fmt::format("'{}' has {} poses in the file; at least 2 are needed",
-                                             from.value, body.samples.size()),
-                                 from.value, poses.unused);
-    }
-  }
-
   const ImportMap& map_;
   DiagnosticList map_errors_;
   Diagnostics problems_;
@@ -288,31 +266,10 @@ class CsvPoseReader {
   std::vector<Seats> wide_;
 };
 
-Result<std::string> ReadLargeText(const std::string& path) {
-  std::error_code error;
-  const auto size = std::filesystem::file_size(path, error);
-  if (!error && size <= kMaxTextFileBytes) return ReadTextFile(path);
-  const auto refuse = [&](const std::string& message) {
-    return tl::unexpected(Diagnostics{
-        {.file = path, .place = {}, .message = message, .source_line = {}, .hint = {}}});
-  };
-  if (error) return ReadTextFile(path);  // says why not
-  if (size > kMaxPoseFileBytes)
-    return refuse(fmt::format("is larger than {} MiB", kMaxPoseFileBytes >> 20));
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream content;
-  content << stream.rdbuf();
-  if (!stream) return refuse("cannot be read");
-  std::string text = std::move(content).str();
-  if (Diagnostics strange = CheckText(path, text); !strange.empty())
-    return tl::unexpected(std::move(strange));
-  return text;
-}
-
 }  // namespace
 
 Result<PoseFile> ReadCsvPoses(const std::string& path, const MapFile& map) {
-  Result<std::string> text = ReadLargeText(path);
+  Result<std::string> text = ReadTextFile(path, kMaxPoseFileBytes);
   if (!text) return tl::unexpected(std::move(text.error()));
   CsvPoseReader reader(path, std::move(*text), map);
   reader.Read();

@@ -15,6 +15,7 @@
 #include <map>
 
 #include "tests/fuzz/hostile_files.h"
+#include "tests/program/mcap_writer.h"
 
 namespace {
 
@@ -95,6 +96,33 @@ script:
   - right_hand: {wait_s: 0.1}
 )";
 
+/// A second of the bodies of docs/motion_capture/mcap_bodies.yaml, not compressed.
+std::string Transforms() {
+  using prehend::house::Cdr;
+  prehend::house::McapWriter writer;
+  const auto tf = writer.Channel("/tf", "cdr", "tf2_msgs/msg/TFMessage");
+  const auto json = writer.Channel("/more", "json", "foxglove.PoseInFrame");
+  for (int i = 0; i <= 60; ++i) {
+    const std::uint64_t ns = 1'000'000'000 + static_cast<std::uint64_t>(i) * 16'666'667;
+    const double lift = 0.01 * std::min(i, 60 - i);
+    writer.Message(tf, ns,
+                   Cdr()
+                       .U32(2)
+                       .Header(ns, "map")
+                       .Text("carton")
+                       .Pose({0.1, 0, 0.86 + lift})
+                       .Header(ns, "map")
+                       .Text("glove")
+                       .Pose({0, 0, 0.86 + lift})
+                       .Bytes());
+    writer.Message(json, ns,
+                   "{\"timestamp\": {\"sec\": 1, \"nsec\": " + std::to_string(i) +
+                       "}, \"frame_id\": \"map\", \"pose\": {\"position\": {\"x\": 0, \"y\": 0, "
+                       "\"z\": 1}, \"orientation\": {\"x\": 0, \"y\": 0, \"z\": 0, \"w\": 1}}}");
+  }
+  return writer.Bytes();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -117,7 +145,19 @@ int main(int argc, char** argv) {
     std::printf("the seed was not recorded:\n%s", recorded.said.c_str());
     return 1;
   }
-  prehend::fuzz::HostileFiles hostile(source, {lines, lines.substr(0, lines.size() / 3)}, seed);
+  std::map<Kind, std::vector<std::string>> made = {
+      {Kind::kRecording, {lines, lines.substr(0, lines.size() / 3)}},
+      {Kind::kMcap, {Transforms()}}};
+  for (const auto& [kind, file] : {std::pair(Kind::kEaf, folder / "seed.eaf"),
+                                   std::pair(Kind::kTextGrid, folder / "seed.TextGrid")}) {
+    Run({program, "resegment", recording.string(), "--labels", file.string()}, folder);
+    made[kind] = {ReadFile(file)};
+    if (made[kind].front().empty()) {
+      std::printf("no labels were written to %s\n", file.c_str());
+      return 1;
+    }
+  }
+  prehend::fuzz::HostileFiles hostile(source, std::move(made), seed);
   std::map<int, long> codes;
   long wrong = 0;
   double longest_s = 0;
@@ -134,6 +174,21 @@ int main(int argc, char** argv) {
       words = {program, "run", path.string(), "--time-limit-s", "4", "--memory-limit-mb", "250"};
     } else if (file.kind == Kind::kGrammar && i % 3 == 0) {
       words = {program, "resegment", recording.string(), "--grammar", path.string()};
+    } else if (file.kind == Kind::kPoses || file.kind == Kind::kBvh || file.kind == Kind::kMcap) {
+      constexpr const char* kMaps[] = {"bodies", "bvh_bodies", "mcap_bodies"};
+      const int of = static_cast<int>(file.kind) - static_cast<int>(Kind::kPoses);
+      words = {program,
+               "import",
+               path.string(),
+               "--map",
+               source + "/docs/motion_capture/" + kMaps[of] + ".yaml",
+               "--check"};
+    } else if (file.kind == Kind::kPosesMap) {
+      constexpr const char* kPoses[] = {"poses.csv", "take.bvh", "run.mcap"};
+      words = {program, "import",      source + "/docs/motion_capture/" + kPoses[i % 3],
+               "--map", path.string(), "--check"};
+    } else if (file.kind == Kind::kEaf || file.kind == Kind::kTextGrid) {
+      words = {program, "score", recording.string(), "--truth", path.string()};
     }
     const Ended ended = Run(words, folder);
     const std::string why = WhatIsWrong(ended, words[1] == "run");

@@ -106,17 +106,25 @@ std::pair<std::size_t, std::size_t> RunAround(const std::string& text, std::size
 }  // namespace
 
 std::string EndingOf(Kind kind) {
-  constexpr const char* kEndings[] = {".yaml", ".grammar", ".timeline", ".jsonl"};
+  constexpr const char* kEndings[] = {".yaml", ".grammar", ".timeline", ".jsonl", ".csv",
+                                      ".bvh",  ".mcap",    ".yaml",     ".eaf",   ".TextGrid"};
   return kEndings[static_cast<int>(kind)];
 }
 
-HostileFiles::HostileFiles(const fs::path& source, std::vector<std::string> recordings,
+HostileFiles::HostileFiles(const fs::path& source, std::map<Kind, std::vector<std::string>> made,
                            std::uint64_t seed)
     : random_(seed) {
   seeds_[0] = TextsBelow(source / "scenarios", ".yaml");
   seeds_[1] = TextsBelow(source / "grammar/library", ".grammar");
   seeds_[2] = TextsBelow(source / "golden", ".timeline");
-  seeds_[3] = std::move(recordings);
+  const fs::path poses = source / "docs/motion_capture";
+  seeds_[static_cast<int>(Kind::kPoses)] = TextsBelow(poses, ".csv");
+  seeds_[static_cast<int>(Kind::kBvh)] = TextsBelow(poses, ".bvh");
+  seeds_[static_cast<int>(Kind::kMcap)] = TextsBelow(poses, ".mcap");
+  seeds_[static_cast<int>(Kind::kPosesMap)] = TextsBelow(poses, ".yaml");
+  for (auto& [kind, texts] : made) {
+    for (std::string& text : texts) seeds_[static_cast<int>(kind)].push_back(std::move(text));
+  }
 }
 
 HostileFile HostileFiles::Next() {
@@ -281,6 +289,26 @@ HostileFile HostileFiles::Flood(Kind kind) {
       }
     case Kind::kRecording:
       break;
+    case Kind::kPoses:
+      return list("time,Carton_x,Carton_y,Carton_z,Glove_x,Glove_y,Glove_z\n", "",
+                  [](S i) { return i + ",0,0,0,1,1,1\n"; });
+    case Kind::kBvh:
+      return Below(2) == 0 ? list("HIERARCHY\n", "",
+                                  [](S i) { return "ROOT r" + i + " {\nOFFSET 0 0 0\n}\n"; })
+                           : list("HIERARCHY\n", "", [](S i) {
+                               return (i == "0" ? "ROOT r" : "JOINT j") + i + " {\n";
+                             });
+    case Kind::kMcap:
+      return list("\x89MCAP0\r\n", "", [](S) { return std::string("\x01\0\0\0\0\0\0\0\0", 9); });
+    case Kind::kPosesMap:
+      return list("import: 1\nunit: m\naxes: y_up\nentities:\n", "",
+                  [](S i) { return "  e" + i + ": {from: b" + i + ", size_m: [1, 1, 1]}\n"; });
+    case Kind::kEaf:
+      return list("<ANNOTATION_DOCUMENT><TIME_ORDER>", "</TIME_ORDER></ANNOTATION_DOCUMENT>",
+                  [](S i) { return "<TIME_SLOT TIME_SLOT_ID=\"" + i + "\"/>"; });
+    case Kind::kTextGrid:
+      return list("\"ooTextFile\" \"TextGrid\" 0 3 <exists> 9999 ", "",
+                  [](S) { return std::string("\"IntervalTier\" \"t\" 0 3 0 "); });
   }
   const std::string& recording = OneOf(seeds_[3]);
   const std::size_t end = recording.find('\n');

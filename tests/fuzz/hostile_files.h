@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <random>
 #include <string>
 #include <string_view>
@@ -11,8 +12,19 @@
 namespace prehend::fuzz {
 
 /// What a file pretends to be; each has a command that reads it.
-enum class Kind { kScenario, kGrammar, kGolden, kRecording };
-inline constexpr int kKinds = 4;
+enum class Kind {
+  kScenario,
+  kGrammar,
+  kGolden,
+  kRecording,
+  kPoses,  ///< of a tracker, as comma-separated values
+  kBvh,
+  kMcap,
+  kPosesMap,  ///< what a file of poses means
+  kEaf,
+  kTextGrid
+};
+inline constexpr int kKinds = 10;
 
 /// With the dot: ".yaml".
 std::string EndingOf(Kind kind);
@@ -25,8 +37,8 @@ struct HostileFile {
 
 class HostileFiles {
  public:
-  /// `recordings` are texts; all else is taken from the source tree.
-  HostileFiles(const std::filesystem::path& source, std::vector<std::string> recordings,
+  /// `made` has texts of the kinds that are not in the source tree: recordings, MCAP, labels.
+  HostileFiles(const std::filesystem::path& source, std::map<Kind, std::vector<std::string>> made,
                std::uint64_t seed);
 
   HostileFile Next();

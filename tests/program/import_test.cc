@@ -6,8 +6,11 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <iomanip>
+#include <map>
 #include <sstream>
 
+#include "tests/program/carried_cup.h"
 #include "tests/program/program.h"
 
 namespace prehend::house {
@@ -29,31 +32,6 @@ entities:
   cup: {from: Mug, class: Cup, size_m: [0.08, 0.08, 0.1]}
   hand: {from: Glove, hand: true, size_m: [0, 0, 0]}
 )";
-
-struct Row {
-  double t_s, x, y, z;
-};
-
-/// Between points in time, straight lines.
-double Along(const std::vector<std::pair<double, double>>& points, double t) {
-  if (t <= points.front().first) return points.front().second;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const auto [t0, v0] = points[i - 1];
-    const auto [t1, v1] = points[i];
-    if (t < t1) return v0 + (v1 - v0) * (t - t0) / (t1 - t0);
-  }
-  return points.back().second;
-}
-
-Row CupAt(double t) {
-  return {t, Along({{2, 0}, {3, 0.4}}, t), 0,
-          0.77 + Along({{1.3, 0}, {2, 0.215}, {3, 0.215}, {3.5, 0}}, t)};
-}
-Row HandAt(double t) {
-  const Row cup = CupAt(t);
-  const double away = Along({{0.2, 0.4}, {1, 0}, {3.7, 0}, {4.3, 0.4}}, t);
-  return {t, cup.x - 0.08 - away, 0, cup.z + away / 2};
-}
 
 using Writer = std::function<std::string(const char* name, Row row)>;
 
@@ -296,6 +274,69 @@ TEST(Import, TheDocumentedRecordingIsSegmentedAsThePageSays) {
   EXPECT_NE(page.find(said.out), std::string::npos) << said.out;
   const std::string events = Prehend({"resegment", file.string()}).out;
   EXPECT_NE(page.find(events), std::string::npos) << events;
+}
+
+/// In their order; what they write lies in a folder of its own.
+TEST(Import, EachCommandOfThePageRuns) {
+  const auto folder = FreshFolder("import_page");
+  std::istringstream page(
+      ReadFile(std::filesystem::path(PREHEND_SOURCE_DIR) / "docs" / "motion-capture.md"));
+  bool shell = false;
+  int commands = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("```")) shell = line == "```sh";
+    if (!shell || !line.starts_with("prehend ")) continue;
+    std::vector<std::string> words;
+    std::istringstream in(line.substr(std::string("prehend ").size()));
+    for (std::string word; in >> std::quoted(word);)
+      words.push_back(word == "milk.jsonl" ? (folder / word).string() : word);
+    const Said said = Prehend(words, {"CI="});
+    const bool is_pending = words.front() == "review" && said.exit_code == 5;
+    EXPECT_TRUE(said.exit_code == 0 || is_pending) << line << "\n" << said.exit_code << said.err;
+    ++commands;
+  }
+  EXPECT_GE(commands, 9);
+}
+
+/// The same five seconds as joints and as transforms, which have fewer digits.
+TEST(Import, TheOtherDocumentedFilesHaveTheSameEvents) {
+  const std::filesystem::path docs =
+      std::filesystem::path(PREHEND_SOURCE_DIR) / "docs" / "motion_capture";
+  const auto folder = FreshFolder("import");
+  const auto events = [&](const char* poses, const char* map) {
+    const Said said = Prehend({"import", (docs / poses).string(), "--map", (docs / map).string(),
+                               "-o", (folder / "take.jsonl").string()});
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    EXPECT_EQ(said.err, "") << poses;
+    std::map<std::string, std::pair<double, double>> found;
+    std::istringstream table(Events(folder));
+    std::string line;
+    std::getline(table, line);  // the heading
+    while (std::getline(table, line)) {
+      std::istringstream cells(line);
+      std::string event;
+      double begin = 0, end = 0;
+      if (!(cells >> event >> begin >> end)) continue;
+      while (found.contains(event)) event += "'";
+      found[event] = {begin, end};
+    }
+    return found;
+  };
+  const auto csv = events("poses.csv", "bodies.yaml");
+  EXPECT_GE(csv.size(), 12u);
+  for (const auto& [poses, map] :
+       {std::pair("take.bvh", "bvh_bodies.yaml"), std::pair("run.mcap", "mcap_bodies.yaml")}) {
+    const auto other = events(poses, map);
+    EXPECT_EQ(other.size(), csv.size()) << poses;
+    for (const auto& [event, interval] : csv) {
+      if (!other.contains(event)) {
+        ADD_FAILURE() << poses << " has no " << event;
+        continue;
+      }
+      EXPECT_NEAR(other.at(event).first, interval.first, 0.04) << poses << " " << event;
+      EXPECT_NEAR(other.at(event).second, interval.second, 0.04) << poses << " " << event;
+    }
+  }
 }
 
 TEST(Import, TheSchemaOfMapsIsJson) {
