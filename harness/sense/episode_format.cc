@@ -5,11 +5,7 @@
 namespace prehend::harness::episode {
 namespace {
 
-constexpr double kMaxPosition_m = 1e4;
-constexpr double kMaxVelocity = 1e4;
-constexpr std::int64_t kLatestTick = 1'000'000'000'000;
 constexpr std::size_t kMaxMembers = 10'000;
-constexpr std::size_t kMaxCollisionSpheres = 1000;
 constexpr std::size_t kMaxSets = 32;
 constexpr std::size_t kMaxClasses = 100;
 constexpr std::size_t kMaxParts = 256;

@@ -16,6 +16,11 @@
 
 namespace prehend::harness::episode {
 
+inline constexpr double kMaxPosition_m = 1e4;
+inline constexpr double kMaxVelocity = 1e4;  ///< m/s, rad/s
+inline constexpr std::int64_t kLatestTick = 1'000'000'000'000;
+inline constexpr std::size_t kMaxCollisionSpheres = 1000;
+
 /// A convex piece of an entity, in the first line.
 struct PartEntry {
   std::optional<grammar::Box> box;

@@ -11,12 +11,14 @@
 #include <optional>
 #include <variant>
 
+#include "grammar/base/check.h"
 #include "grammar/base/tracking.h"
 #include "harness/base/text_file.h"
 #include "harness/scenario/classes.h"
 #include "harness/sense/episode_file.h"
 #include "harness/sense/episode_format.h"
 #include "harness/sense/episode_stream.h"
+#include "harness/sense/scan_frame.h"
 #include "harness/yaml/located_json.h"
 
 namespace prehend::harness {
@@ -42,6 +44,7 @@ class EpisodeReader {
 
   void TakeLine(const std::string& text) {
     ++line_;
+    if (TakeUsualFrame(text)) return;
     if (text.find_first_not_of(" \r") == std::string::npos) return;
     auto document = ParseJson(file_, text);
     if (!document) return Report(std::move(document.error()));
@@ -107,6 +110,26 @@ class EpisodeReader {
   }
 
  private:
+  /// False, with nothing changed, if it is something else, or if there is anything to say about it.
+  bool TakeUsualFrame(const std::string& text) {
+    if (!header_ || !ScanFrame(text, scanned_) || episode.says_its_end) return false;
+    if (!episode.frames.empty() && scanned_.tick.value <= now_.tick) return false;
+    const auto known = [&](const auto& entry) {
+      return std::find(names_.begin(), names_.end(), entry.name) != names_.end();
+    };
+    const auto known_hand = [&](const auto& entry) {
+      return std::ranges::any_of(hands_, [&](int hand) { return names_[hand] == entry.name; });
+    };
+    if (!std::ranges::all_of(scanned_.samples, known) ||
+        !std::ranges::all_of(scanned_.hands, known_hand) ||
+        episode.frames.size() >= kMaxEpisodeFrames)
+      return false;
+    DiagnosticList errors(no_document_);
+    Take(scanned_, errors);
+    PREHEND_CHECK(errors.empty());
+    return true;
+  }
+
   void Report(grammar::Diagnostics found) {
     for (grammar::Diagnostic& diagnostic : found) diagnostic.place.line = line_;
     diagnostics = std::move(found);
@@ -428,6 +451,8 @@ class EpisodeReader {
   std::vector<std::string> names_;
   std::vector<int> hands_;
   std::vector<bool> has_ahead_, has_spheres_;  ///< of each hand: its last mention gave them
+  FrameEntry scanned_;                         ///< of TakeUsualFrame(); kept for its memory
+  YamlDocument no_document_;
   EpisodeFrame now_;                           ///< what is not tracked is not, however short
   LookBridge bridge_;
 };
