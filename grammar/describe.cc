@@ -116,7 +116,9 @@ class Waits {
       if (composes) wait.until_end_of.insert(program_.rules[reference.rule].name);
     }
     const auto* holds = rule.If<WhileRule>();
-    wait.seconds += (holds != nullptr ? holds->bridging_s : 0) + rule.looks_around_s;
+    const auto* any = rule.If<AnyRule>();
+    wait.seconds += (holds != nullptr ? holds->bridging_s : 0) +
+                    (any != nullptr ? any->within_s : 0) + rule.looks_around_s;
     return wait;
   }
 
@@ -134,6 +136,7 @@ std::string Watched(const Program& program, const Rule& rule) {
     return text;
   }
   const Rule& guard = program.rules[rule.references[rule.guard].rule];
+  if (guard.name == rule.name) return "candidates";
   return guard.form() == Form::kTouching ? "pairs that touch" : "while " + guard.name;
 }
 

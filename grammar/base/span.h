@@ -25,6 +25,7 @@ struct Span {
   Moment begin;
   Moment end;
   bool open_end = false;
+  int owner = -1;         ///< of `one .. per`: the entity whose it is
   Moment completed = {};  ///< of a composition: where its last part ends, if that is later
 
   /// From here on it is known.

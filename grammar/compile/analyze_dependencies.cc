@@ -10,6 +10,7 @@
 
 #include "grammar/compile/builtins.h"
 #include "grammar/compile/contradictions.h"
+#include "grammar/compile/share_values.h"
 
 namespace prehend::grammar {
 namespace {
@@ -340,6 +341,7 @@ void WatchEntities(const Program& program, Rule& rule) {
 }  // namespace
 
 void ChooseGuards(Program& program) {
+  ShareValues(program);
   for (Node& node : program.nodes) FindThreshold(program, node);
   for (const RuleId rule : IdsOf(program.rules)) MarkReferenced(program, rule);
   for (Rule& rule : program.rules) {
@@ -352,9 +354,10 @@ void ChooseGuards(Program& program) {
     const Approach* const approach = ApproachOf(rule);
     std::vector<NodeId> nodes = ConditionsOf(rule);
     nodes.push_back(rule.requirement);
+    const auto* any = rule.If<AnyRule>();
     rule.uses_looks =
-        rule.style_role != kNone || approach != nullptr || !rule.anchors.empty() ||
-        !rule.attributes.empty() ||
+        (any != nullptr && any->one != kNone) || rule.style_role != kNone || approach != nullptr ||
+        !rule.anchors.empty() || !rule.attributes.empty() ||
         std::ranges::any_of(nodes, [&](NodeId node) { return UsesLooks(program, node); });
     nodes.insert(nodes.end(), rule.anchors.begin(), rule.anchors.end());
     for (const RuleAttribute& attribute : rule.attributes) nodes.push_back(attribute.node);

@@ -97,6 +97,8 @@ class Lowering {
   /// A constant time of more than 0 s.
   double Span(const ast::Expr& expr, std::string_view what);
   int HandRole(const ast::Expr& expr);
+  /// Makes what the rule, a `while`, says so far the candidates of `one .. per`.
+  void LowerOnePer(const ast::OnePer& one_per);
   /// The body of a definition for itself: only for its mistakes.
   void Check(const DefineSource& define);
 
@@ -144,6 +146,8 @@ class Lowering {
   Typed Lower(const ast::Expr& expr);
   Typed LowerKind(const ast::Expr& expr);
   void Note(const ast::Expr& expr, const Typed& typed);
+  void NoteText(NodeId node, std::string text, Place place);
+  std::vector<int> SharingRoles(const ast::OnePer& one_per, int one);
   std::string TextOf(const ast::Expr& expr);
   std::string Bracketed(const ast::Expr& expr);
   std::string TextOfName(const ast::Expr& expr);

@@ -412,6 +412,7 @@ class DefinitionLowering {
       const double bridging_s = lowering_.Constant(*d_.bridging, kSeconds, "'bridging'");
       if (d_.form == Definition::Form::kWhile) As<WhileRule>().bridging_s = bridging_s;
     }
+    if (d_.one_per) ShareOut(*d_.one_per);
     if (d_.lasting) {
       const double lasting_s = lowering_.Constant(*d_.lasting, kSeconds, "'lasting'");
       Here().lasting_s = lasting_s;
@@ -449,6 +450,13 @@ class DefinitionLowering {
       Here().style_role = role;
     }
     LowerAttributes();
+  }
+
+  void ShareOut(const ast::OnePer& one_per) {
+    if (d_.form == Definition::Form::kWhile) return lowering_.LowerOnePer(one_per);
+    lowering_.Complain(one_per.place, "'one .. per' goes with 'while' only",
+                       "make this a condition, and share that out: while C(hand, object) one hand "
+                       "per object");
   }
 
   void CheckDrawn(const ast::Drawn& drawn) {

@@ -35,6 +35,12 @@ void Lowering::Note(const Expr& expr, const Typed& typed) {
           .place = expr.place};
 }
 
+void Lowering::NoteText(NodeId node, std::string text, Place place) {
+  symbols_.program.notes.resize(symbols_.program.nodes.size());
+  symbols_.program.notes[node] = {
+      .text = std::move(text), .dimension = {}, .file = source_->file, .place = place};
+}
+
 std::string Lowering::TextOfName(const Expr& expr) {
   if (scope_ != nullptr) {
     if (const auto value = scope_->values.find(expr.text);

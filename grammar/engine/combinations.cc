@@ -149,7 +149,8 @@ std::optional<Span> Combinations::Best() const {
   const Span& last =
       ChooseLeast(choices, count_ - 1, [](const Span& span) { return span.end.tick; });
   const Span& first = ChooseLeast(choices, 0, [](const Span& span) { return -span.begin.tick; });
-  return Span{first.begin, last.end, last.open_end, completed};
+  return Span{
+      .begin = first.begin, .end = last.end, .open_end = last.open_end, .completed = completed};
 }
 
 }  // namespace prehend::grammar

@@ -17,8 +17,9 @@ Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
       thresholds_(program_->thresholds),
       recalls_touches_(program_->recalls_touches || program_->asks_touches),
       keeps_touches_(program_->asks_touches),
-      looks_at_all_(std::ranges::any_of(program_->nodes,
-                                        [](const Node& node) { return node.op == Op::kNearest; })),
+      looks_at_all_(std::ranges::any_of(
+          program_->nodes,
+          [](const Node& node) { return node.op == Op::kNearest || node.op == Op::kOwns; })),
       grips_(entity_table_.entities.size(), thresholds_.OfGrip(0)),
       awake_(program_->rules.size()),
       idle_(*program_, history_, instances_),

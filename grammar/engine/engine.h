@@ -146,6 +146,9 @@ class Engine {
   bool StepWhile(RuleInstance& instance, FrameNumber frame);
   bool StepRepeat(RuleInstance& instance, FrameNumber frame);
   bool StepAny(RuleInstance& instance, FrameNumber frame);
+  bool StepOwners(RuleInstance& instance, FrameNumber frame);
+  Kleene GoesOn(const RuleInstance& owners, FrameNumber frame) const;
+  bool ChooseOwner(RuleInstance& owners, FrameNumber frame);
   bool StepRun(RuleInstance& instance, FrameNumber frame, Kleene truth);
   bool StepRest(RuleInstance& instance, FrameNumber frame);
   bool StepFromTo(RuleInstance& instance, FrameNumber frame);

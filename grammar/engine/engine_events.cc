@@ -119,6 +119,7 @@ void Engine::Keep(RuleInstance& instance, const Span& span) {
   while (!instance.past.empty() && instance.past.front().end.frame < history_.first())
     instance.past.PopFront();
   instance.past.PushBack() = span;
+  if (const auto* owners = instance.If<AnyState>()) instance.past.back().owner = owners->owner;
 }
 
 // A deadline between two frames decides at its own tick: the later frame only shows that time went

@@ -2,6 +2,8 @@
 // How each form of rule looks at one frame. The meaning of the forms is the table in
 // docs/grammar-language.md.
 #include <algorithm>
+#include <limits>
+#include <map>
 
 #include "grammar/engine/engine.h"
 
@@ -115,12 +117,89 @@ bool Engine::StepRepeat(RuleInstance& instance, FrameNumber frame) {
 }
 
 bool Engine::StepAny(RuleInstance& instance, FrameNumber frame) {
+  if (RuleOf(instance).As<AnyRule>().one != kNone) return StepOwners(instance, frame);
   Kleene truth = Kleene::kFalse;
   for (const InstanceId member : instance.As<AnyState>().members) {
     truth = Or(truth, instances_.TruthAt(member, frame));
     if (truth == Kleene::kTrue) break;
   }
   return StepRun(instance, frame, truth);
+}
+
+// `one hand per object`: who has it keeps it as long as one of its candidates holds. When it is
+// free, the first candidate opens a window of time, and of those that hold at some frame in it, the
+// nearest at its first one gets it from there on. So a decision takes as long as the window, and is
+// never taken back.
+
+// True if a candidate of the owner holds.
+Kleene Engine::GoesOn(const RuleInstance& owners, FrameNumber frame) const {
+  const auto one = static_cast<std::size_t>(RuleOf(owners).As<AnyRule>().one);
+  const auto& state = owners.As<AnyState>();
+  Kleene truth = Kleene::kFalse;
+  for (const InstanceId member : state.members) {
+    if (instances_[member].entities[one] == state.owner)
+      truth = Or(truth, instances_.TruthAt(member, frame));
+  }
+  return truth;
+}
+
+// From a frame on that is free. False while that cannot be decided.
+bool Engine::ChooseOwner(RuleInstance& owners, FrameNumber frame) {
+  auto& state = owners.As<AnyState>();
+  bool some = false, unknown = false;
+  for (const InstanceId member : state.members) {
+    const Kleene holds = instances_.TruthAt(member, frame);
+    some = some || holds == Kleene::kTrue;
+    unknown = unknown || holds == Kleene::kUnknown;
+  }
+  if (unknown || !some) return !unknown;
+  const Tick last = history_.At(frame).tick + TicksOf(owners).nearest;
+  if (!finishing_ && history_.At(history_.now()).tick < last) {
+    evaluator_.MarkTimeDependent();
+    return false;
+  }
+  // Where each holds first, in the order of the cast.
+  std::map<int, FrameNumber> begins;
+  for (const InstanceId member : state.members) {
+    FrameNumber first = frame;
+    Kleene holds = instances_.TruthAt(member, first);
+    while (holds == Kleene::kFalse && first < history_.now() &&
+           history_.At(first + 1).tick <= last) {
+      holds = instances_.TruthAt(member, ++first);
+    }
+    if (holds == Kleene::kUnknown) {
+      evaluator_.MarkTimeDependent();
+      return false;
+    }
+    if (holds == Kleene::kFalse) continue;
+    const int who =
+        instances_[member].entities[static_cast<std::size_t>(RuleOf(owners).As<AnyRule>().one)];
+    const auto [begin, is_new] = begins.try_emplace(who, first);
+    if (!is_new) begin->second = std::min(begin->second, first);
+  }
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const auto& [who, first] : begins) {
+    const double away_m = evaluator_.AwayFrom_m(who, owners.entities[0], first);
+    if (state.owner != kNoEntity && !(away_m < nearest_m)) continue;
+    nearest_m = away_m;
+    state.owner = who;
+    state.owned_from = first;
+  }
+  return true;
+}
+
+bool Engine::StepOwners(RuleInstance& instance, FrameNumber frame) {
+  auto& state = instance.As<AnyState>();
+  if (instance.open) {
+    const Kleene goes_on = GoesOn(instance, frame);
+    if (goes_on == Kleene::kUnknown) return false;
+    if (goes_on == Kleene::kTrue) return true;
+    if (!Close(instance, history_.At(frame))) return false;
+    state.owner = kNoEntity;
+  }
+  if (state.owner == kNoEntity && !ChooseOwner(instance, frame)) return false;
+  if (state.owner == kNoEntity || frame < state.owned_from) return true;
+  return Open(instance, frame);
 }
 
 bool Engine::StepRun(RuleInstance& instance, FrameNumber frame, Kleene truth) {

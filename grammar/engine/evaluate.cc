@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace prehend::grammar {
 namespace {
@@ -76,6 +77,8 @@ Kleene Evaluator::Truth(NodeId index, const View& view) const {
           !IsTracked(Entity(node, view, 1), view.frame))
         return Known(view.negated);
       return Known(node.op == Op::kInside ? IsInside(node, view) : IsNearest(node, view));
+    case Op::kOwns:
+      return Owns(node, view);
     case Op::kPartOf:
       return Known(IsPartOf(entity_table_, Entity(node, view, 0), Entity(node, view, 1)));
     case Op::kGazed:
@@ -93,6 +96,13 @@ Kleene Evaluator::Truth(NodeId index, const View& view) const {
 
 Kleene Evaluator::Holds(int slot, const View& view) const {
   return instances_.TruthAt(instances_.Resolve(view.instance, slot), view.frame);
+}
+
+Kleene Evaluator::Owns(const Node& node, const View& view) const {
+  const InstanceId owners = instances_.Resolve(view.instance, node.slot);
+  const Kleene owned = instances_.TruthAt(owners, view.frame);
+  if (owned != Kleene::kTrue) return owned;
+  return Known(instances_.OwnerAt(owners, view.frame) == Entity(node, view, 0));
 }
 
 Kleene Evaluator::Begins(int slot, const View& view) const {
@@ -218,6 +228,33 @@ bool Evaluator::TooFarApart(NodeId index, RuleInstance& instance, FrameNumber ea
 
 std::optional<double> Evaluator::Number(NodeId index, const View& view) const {
   const Node& node = program_.nodes[index];
+  return node.shared == kNone ? Compute(node, view) : Shared(node, view);
+}
+
+// Other rules ask for it, too. What is known of a frame does not change any more.
+std::optional<double> Evaluator::Shared(const Node& node, const View& view) const {
+  const int a = view.instance.entities[static_cast<std::size_t>(node.shared_roles[0])];
+  const int b = node.shared_roles[1] == kNone
+                    ? kNoEntity
+                    : view.instance.entities[static_cast<std::size_t>(node.shared_roles[1])];
+  const auto place = static_cast<std::size_t>(view.frame) + 7 * static_cast<std::size_t>(a) +
+                     61 * static_cast<std::size_t>(b + 1) +
+                     509 * static_cast<std::size_t>(node.shared);
+  Computed& computed = computed_[place % computed_.size()];
+  const bool known = computed.frame == view.frame && computed.shared == node.shared &&
+                     computed.a == a && computed.b == b;
+  if (!known) {
+    const bool depended_on_time = std::exchange(depends_on_time_, false);
+    const std::optional<double> value = Compute(node, view);
+    if (value) computed = {view.frame, node.shared, a, b, depends_on_time_, *value};
+    depends_on_time_ = depends_on_time_ || depended_on_time;
+    return value;
+  }
+  depends_on_time_ = depends_on_time_ || computed.depends_on_time;
+  return computed.value;
+}
+
+std::optional<double> Evaluator::Compute(const Node& node, const View& view) const {
   switch (node.op) {
     case Op::kNumber:
       return node.number;

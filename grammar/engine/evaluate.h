@@ -3,6 +3,7 @@
 // Tested by tests/grammar/engine/signals_test.cc
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 
@@ -72,11 +73,15 @@ class Evaluator {
   void ResetTimeDependence() { depends_on_time_ = false; }
   void MarkTimeDependent() { depends_on_time_ = true; }
 
+  /// From the origin of `whom` to the surface of `who`, as `nearest` measures it.
+  double AwayFrom_m(int who, int whom, FrameNumber frame) const;
+
   /// Keeps the values of all anchors of the instance's rule at this frame. False while one is not
   /// known.
   [[nodiscard]] bool CaptureAnchors(RuleInstance& instance, FrameNumber frame) const;
 
  private:
+  Kleene Owns(const Node& node, const View& view) const;
   Kleene AtAnInstant(Kleene truth) const;
   Kleene Edge(const Node& node, const View& view) const;
   Kleene Compare(const Node& node, const View& view) const;
@@ -84,6 +89,8 @@ class Evaluator {
     return grammar::IsTracked(history_.Look(entity, frame));
   }
   Kleene CompareMeasured(const ByThreshold& by, const View& view) const;
+  std::optional<double> Shared(const Node& node, const View& view) const;
+  std::optional<double> Compute(const Node& node, const View& view) const;
   std::optional<double> Arithmetic(const Node& node, const View& view) const;
   double SignalOf(const Node& node, const View& view) const;
   double Clearance_m(int a, int b, FrameNumber frame) const;
@@ -130,6 +137,14 @@ class Evaluator {
   RuleInstances& instances_;
   Thresholds thresholds_;
   mutable bool depends_on_time_ = false;
+  /// The last values that rules share.
+  struct Computed {
+    FrameNumber frame = -1;
+    int shared = kNone, a = kNoEntity, b = kNoEntity;
+    bool depends_on_time = false;
+    double value = 0;
+  };
+  mutable std::array<Computed, 1024> computed_;
 };
 
 }  // namespace prehend::grammar

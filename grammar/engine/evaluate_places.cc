@@ -31,6 +31,12 @@ bool Evaluator::IsInside(const Node& node, const View& view) const {
   return (away_m.cwiseAbs().array() <= of.half_size_m.array()).all();
 }
 
+double Evaluator::AwayFrom_m(int who, int whom, FrameNumber frame) const {
+  return DistanceToSurface_m(history_.Look(whom, frame).p_WB_m,
+                             entity_table_.entities[static_cast<std::size_t>(who)],
+                             history_.Look(who, frame));
+}
+
 // Others of the class move, too, and nobody watches them. Of two that are equally near, the first
 // in the cast is.
 bool Evaluator::IsNearest(const Node& node, const View& view) const {
@@ -39,11 +45,7 @@ bool Evaluator::IsNearest(const Node& node, const View& view) const {
   const int whom = Entity(node, view, 1);
   const std::string& of_class =
       program_.rules[view.instance.rule].roles[static_cast<std::size_t>(node.roles[0])].class_name;
-  const Vector3d& place_W_m = history_.Look(whom, view.frame).p_WB_m;
-  const auto away_m = [&](int entity) {
-    return DistanceToSurface_m(place_W_m, entity_table_.entities[static_cast<std::size_t>(entity)],
-                               history_.Look(entity, view.frame));
-  };
+  const auto away_m = [&](int entity) { return AwayFrom_m(entity, whom, view.frame); };
   const double here_m = away_m(who);
   for (int other = 0; other < static_cast<int>(entity_table_.entities.size()); ++other) {
     if (other == who || other == whom || !instances_.IsA(other, of_class)) continue;

@@ -26,8 +26,12 @@ struct HandAtFrame {
 /// are sorted by frame, and there is one.
 template <typename Sample>
 const Sample& SampleAt(const RingBuffer<Sample>& samples, FrameNumber frame) {
-  if (samples.back().frame <= frame) return samples.back();
-  std::size_t low = 0;
+  const FrameNumber newest = samples.back().frame;
+  if (newest <= frame) return samples.back();
+  // One sample per frame at most: what changes all the time is so far before the newest.
+  const std::size_t before = static_cast<std::size_t>(newest - frame) + 1;
+  std::size_t low = samples.size() > before ? samples.size() - before : 0;
+  if (samples[low].frame == frame) return samples[low];
   std::size_t high = samples.size();
   while (high - low > 1) {
     const std::size_t middle = low + (high - low) / 2;

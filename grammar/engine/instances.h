@@ -92,7 +92,12 @@ struct TouchingState {
 /// An instance made for an `any`.
 struct AnyState {
   std::vector<InstanceId> members;  ///< the instances of which one must hold
-  void Reset() { members.clear(); }
+  int owner = kNoEntity;            ///< AnyRule::one: whose turn it is, or is next
+  FrameNumber owned_from = 0;
+  void Reset() {
+    members.clear();
+    owner = kNoEntity;
+  }
 };
 
 /// An instance of `until .. since`.
@@ -248,6 +253,16 @@ class RuleInstances {
     return AnyPast(instance, [frame](const Span& past) {
       return frame >= past.begin.frame && frame < past.end.frame;
     });
+  }
+  /// Of an instance with AnyRule::one that holds at this frame: whose turn it is.
+  int OwnerAt(InstanceId index, FrameNumber frame) const {
+    const RuleInstance& instance = instances_[index];
+    if (instance.open && frame >= instance.begin.frame) return instance.As<AnyState>().owner;
+    for (std::size_t i = instance.past.size(); i-- > 0;) {
+      const Span& past = instance.past[i];
+      if (frame >= past.begin.frame && frame < past.end.frame) return past.owner;
+    }
+    return kNoEntity;
   }
   Kleene BeginsAt(InstanceId index, FrameNumber frame) const {
     if (index == kNone) return Kleene::kFalse;

@@ -11,6 +11,7 @@ RuleTicks TicksOf(const Rule& rule, const History& history) {
     for (const ComposeRule::Clause& clause : composition->clauses)
       ticks.gaps.push_back(clause.within_s < 0 ? -1 : history.AtMostTicks(clause.within_s));
   }
+  if (const auto* any = rule.If<AnyRule>()) ticks.nearest = history.AtMostTicks(any->within_s);
   if (const auto* holds = rule.If<WhileRule>())
     ticks.bridging = history.AtMostTicks(holds->bridging_s);
   if (const auto* from_to = rule.If<FromToRule>(); from_to != nullptr && from_to->within_s >= 0) {

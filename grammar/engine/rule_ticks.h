@@ -18,6 +18,7 @@ struct RuleTicks {
   Tick still = 0;  ///< half of Approach::still_s
   Tick back = 0;
   Tick within = -1;        ///< the deadline; negative: there is none
+  Tick nearest = 0;        ///< AnyRule::within_s
   Tick in_time = 0;        ///< what comes at most so late is still in time
   std::vector<Tick> gaps;  ///< of the clauses of a composition; negative: any
 

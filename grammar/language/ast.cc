@@ -99,6 +99,10 @@ std::string DumpDefinition(const Definition& d) {
   std::string text = d.symmetric ? "symmetric event " : d.is_event ? "event " : "condition ";
   text += DumpHead(d.name, d.roles) + DumpForm(d);
   if (d.bridging) text += " bridging " + Dump(*d.bridging);
+  if (d.one_per) {
+    text += " one " + Dump(d.one_per->one) + " per " + Joined(d.one_per->per, " and ");
+    if (d.one_per->within) text += ", nearest within " + Dump(*d.one_per->within);
+  }
   if (d.lasting) text += " lasting " + Dump(*d.lasting);
   if (d.lasting_to) text += " to " + Dump(*d.lasting_to);
   if (d.requirement) text += " requires " + Dump(*d.requirement);

@@ -54,6 +54,14 @@ struct Approach {
 };
 
 /// `with name = value`
+/// `one hand per object, nearest within t`
+struct OnePer {
+  Place place;
+  Expr one;               ///< the role of which there is one at a time
+  std::vector<Expr> per;  ///< the roles that share it
+  std::optional<Expr> within;
+};
+
 struct Attribute {
   std::string name;
   Place place;
@@ -113,6 +121,7 @@ struct Definition {
   std::vector<Relation> relations;
 
   std::optional<Expr> bridging;
+  std::optional<OnePer> one_per;
   std::optional<Expr> lasting;
   std::optional<Expr> lasting_to;  ///< lasting t1 to t2
   std::optional<Expr> requirement;

@@ -306,6 +306,8 @@ class Parser : public LawParser {
     const Token word = Peek();
     if (Accept("bridging")) {
       Once(definition.bridging, ParseSum(), word);
+    } else if (At("one") && Peek(1).kind == Token::Kind::kName) {
+      Once(definition.one_per, ParseOnePer(), word);
     } else if (Accept("lasting")) {
       Once(definition.lasting, ParseSum(), word);
       if (Accept("to")) definition.lasting_to = ParseSum();
@@ -328,6 +330,25 @@ class Parser : public LawParser {
       return false;
     }
     return true;
+  }
+
+  // `one` and `per` are no keywords: nothing else begins with a name here.
+  ast::OnePer ParseOnePer() {
+    static const std::string kExample =
+        "one hand per object; or: one object per hand, nearest within 100 ms";
+    ast::OnePer one_per{.place = Peek().place, .one = {}, .per = {}, .within = {}};
+    SkipOne();
+    one_per.one = ParsePrimary();
+    Expect("per", kExample);
+    do {
+      one_per.per.push_back(ParsePrimary());
+    } while (Accept("and"));
+    if (Accept(",")) {
+      Expect("nearest", kExample);
+      Expect("within", kExample);
+      one_per.within = ParseSum();
+    }
+    return one_per;
   }
 
   // `with name = value` may follow, so `with ghost` alone is not enough.

@@ -57,7 +57,10 @@ class RuleCheck {
   }
 
   void RunForm() const {
-    if (rule_.form() == Form::kAny) IsReference(0);
+    if (const auto* any = rule_.If<AnyRule>()) {
+      IsReference(0);
+      PREHEND_CHECK(IsNoneOrBelow(any->one, program_.rules[rule_.references[0].rule].roles.size()));
+    }
     if (const auto* holds = rule_.If<WhileRule>()) {
       for (const int counted : holds->counted) IsReference(counted);
     }

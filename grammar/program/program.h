@@ -42,6 +42,7 @@ enum class Op : std::uint8_t {
   kInCylinder,
   kInside,
   kNearest,
+  kOwns,  ///< reference `slot`, to a rule with AnyRule::one, is true, and for roles[0]
   kPartOf,
   kIsA,
   kGazed,
@@ -117,6 +118,8 @@ struct Node {
   double number = 0;  ///< kNumber, kSensorSet, kTouchIn, kNormalIn, and the windows of kDriftAlong,
                       ///< kTurnRate, kRate .. kMedian
   ByThreshold by_threshold = {};
+  int shared = kNone;  ///< nodes with the same number have the same value for the same entities ..
+  std::array<int, 2> shared_roles = {kNone, kNone};  ///< .. in these roles
 };
 
 /// Thresholds that something measured must have crossed, and such that it must not have.
@@ -173,8 +176,12 @@ enum class Form : std::uint8_t {
 /// `touching`: the fact itself, as frames give it.
 struct TouchingRule {};
 
-/// Made for an `any`: some binding of the rule of references[0] holds.
-struct AnyRule {};
+/// Made for an `any`: some binding of the rule of references[0] holds. With `one`, made for `one ..
+/// per`: one of these bindings at a time, with the entity that it has in that role.
+struct AnyRule {
+  int one = kNone;      ///< role of the rule of references[0]
+  double within_s = 0;  ///< of those that begin so soon after the first, the nearest
+};
 
 /// `while condition until until`; or `repeat`, whose condition is that one of `counted` holds.
 struct WhileRule {

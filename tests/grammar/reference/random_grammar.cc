@@ -71,6 +71,9 @@ class Maker {
       rule.has_second = Sometimes();
       if (rule.has_second) rule.second = Condition(2, Sometimes() ? "begin" : "");
       if (Sometimes()) rule.bridging = 1 + static_cast<Tick>(Below(4));
+      const unsigned roles = RolesOf(rule.first) | RolesOf(rule.second);
+      rule.one_per = (roles & kP) != 0 && Below(2) == 0;
+      if (rule.one_per && Sometimes()) rule.nearest_within = static_cast<Tick>(Below(6));
       return;
     }
     rule.first = Moment("");
@@ -319,6 +322,8 @@ class Writer {
     }
     if (rule.bridging > 0 && rule.form != Form::kRepeat)
       text += " bridging " + at_most(rule.bridging);
+    if (rule.one_per) text += " one p per x";
+    if (rule.nearest_within > 0) text += ", nearest within " + at_most(rule.nearest_within);
     if (rule.lasting > 0) text += " lasting " + at_least(rule.lasting);
     if (rule.lasting_most > 0) text += " to " + at_most(rule.lasting_most);
     if (rule.has_requirement) text += " requires " + TermText(rule.requirement);
@@ -424,7 +429,9 @@ void EpisodeFeed::Step(Shown shown, std::vector<Event>& events) {
     if (!touches && touched) contact_ends.push_back({whom, 0});
   }
   looks_[0].p_WB_m.z() = episode_.height_m[frame];
-  const EntityChange change{.entity = 0, .look = looks_[0]};
+  looks_[2].p_WB_m.z() = kHeightOfP2_m;
+  const std::array changes = {EntityChange{.entity = 2, .look = looks_[2]},
+                              EntityChange{.entity = 0, .look = looks_[0]}};
   const CollisionSphere surface{.p_W_m = looks_[0].p_WB_m};
   const HandSample hand{.entity = 0, .collision_spheres = {&surface, 1}};
   const bool moves = frame == 0 || episode_.height_m[frame] != episode_.height_m[frame - 1];
@@ -435,12 +442,13 @@ void EpisodeFeed::Step(Shown shown, std::vector<Event>& events) {
                              .hands = {&hand, 1},
                              .touches = touches_},
                             events);
-  monitor_.AdvanceBy({.tick = episode_.ticks[frame],
-                      .entities = {&change, shows_pose},
-                      .hands = {&hand, shows_pose},
-                      .touches = touches_,
-                      .contact_ends = contact_ends},
-                     events);
+  monitor_.AdvanceBy(
+      {.tick = episode_.ticks[frame],
+       .entities = std::span(changes).subspan(frame == 0 ? 0 : 1, frame == 0 ? 2 : shows_pose),
+       .hands = {&hand, shows_pose},
+       .touches = touches_,
+       .contact_ends = contact_ends},
+      events);
 }
 
 RandomGrammar::RandomGrammar(std::mt19937_64& random, int rules) {

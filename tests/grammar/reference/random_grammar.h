@@ -57,6 +57,9 @@ class EpisodeFeed {
 inline constexpr std::array<const char*, 5> kOverWindow = {"mean", "min", "max", "median", "speed"};
 inline constexpr int kSpeed = 4;
 
+/// How high the second p is; all others but x are on the floor.
+inline constexpr int kHeightOfP2_m = 3;
+
 /// A role that two entities can play.
 inline constexpr unsigned kP = 1;
 
@@ -91,6 +94,8 @@ struct RandomRule {
   double speed_m_per_s = 0;
   double onset_m_per_s = 0;  ///< 120 where the text says it, a tenth of the speed where it does not
   int at_least = 0;          ///< kRepeat, whose gap is `bridging`
+  bool one_per = false;  ///< kWhile: one p per x, of which p1 is on the floor and p2 is 3 m high
+  Tick nearest_within = 0;
   Tick bridging = 0, lasting = 0, lasting_most = 0, within = -1, back = 0, idle = 0;
   bool halves = false;      ///< its durations are half a tick off what they are in whole ticks
   std::vector<Term> calls;  ///< kRest: the whole and the others; kCompose: the parts; kRepeat: whom

@@ -127,7 +127,20 @@ class Meaning {
         std::function<Stream(int)>([this, &term, p](int frame) { return Truth(term, p, frame); }));
   }
 
+  // Of p1 and p2, the one whose turn it is.
   Found FindForm(const RandomRule& rule, int p) const {
+    if (!rule.one_per) return FindAnyForm(rule, p);
+    std::vector<Runs> candidates;
+    std::vector<std::vector<double>> away(2);
+    for (int candidate = 0; candidate < 2; ++candidate) {
+      candidates.push_back(reference::RunsOf(FindAnyForm(rule, candidate)));
+      for (const int height : e_.height_m)
+        away[candidate].push_back(std::abs(height - candidate * kHeightOfP2_m));
+    }
+    return InTicks(reference::OnePer(candidates, away, e_.ticks, rule.nearest_within)[p]);
+  }
+
+  Found FindAnyForm(const RandomRule& rule, int p) const {
     const Anchored during =
         rule.has_during ? AnchoredTruth(rule.during, p) : Anchored(Stream(n_, true));
     switch (rule.form) {

@@ -242,6 +242,34 @@ Runs Repeat(Runs runs, const Ticks& ticks, int at_least, Tick gap) {
   return series;
 }
 
+std::vector<Runs> OnePer(const std::vector<Runs>& candidates,
+                         const std::vector<std::vector<double>>& away, const Ticks& ticks,
+                         Tick within) {
+  const int frames = static_cast<int>(ticks.size()) - 1;
+  std::vector<Stream> hold;
+  for (const Runs& runs : candidates) hold.push_back(Truth(runs, frames));
+  std::vector<Stream> own(candidates.size(), Stream(frames, false));
+  for (int free = 0; free < frames;) {
+    const bool somebody = std::ranges::any_of(hold, [&](const Stream& h) { return h[free]; });
+    std::size_t best = candidates.size();
+    int from = free;
+    for (std::size_t c = 0; somebody && c < candidates.size(); ++c) {
+      int first = free;
+      while (first < frames && ticks[first] - ticks[free] <= within && !hold[c][first]) ++first;
+      const bool in_time = first < frames && ticks[first] - ticks[free] <= within;
+      if (!in_time || (best < candidates.size() && away[c][first] >= away[best][from])) continue;
+      best = c;
+      from = first;
+    }
+    free = from + 1;
+    if (!somebody) continue;
+    for (int i = from; i < frames && hold[best][i]; free = ++i) own[best][i] = true;
+  }
+  std::vector<Runs> runs;
+  for (const Stream& one : own) runs.push_back(While(one, ticks, 0));
+  return runs;
+}
+
 std::vector<Timed> InTicks(const Runs& runs, const Ticks& ticks) {
   std::vector<Timed> timed;
   for (const Run& run : runs) timed.push_back({run, {ticks[run.begin], ticks[run.end]}});

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds signals that several rules ask for, so that the engine computes them once per frame.
+#pragma once
+
+#include "grammar/program/program.h"
+
+namespace prehend::grammar {
+
+/// Gives nodes that have the same value for the same entities the same Node::shared. Only those
+/// that cost time: windows, clearances, gaps. After lowering.
+void ShareValues(Program& program);
+
+}  // namespace prehend::grammar
