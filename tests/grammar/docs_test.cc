@@ -58,9 +58,9 @@ int RunExamples(const std::string& page) {
 
 TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
   EXPECT_EQ(RunExamples("grammar-tutorial.md"), 23);
-  EXPECT_EQ(RunExamples("cookbook.md"), 8);
+  EXPECT_EQ(RunExamples("cookbook.md"), 9);
   EXPECT_EQ(RunExamples("drawings.md"), 1);
-  EXPECT_EQ(RunExamples("grammar-language.md"), 5);
+  EXPECT_EQ(RunExamples("grammar-language.md"), 6);
 }
 
 }  // namespace
