@@ -49,8 +49,8 @@ void Canvas::Blend(int x, int y, const Color& color, float alpha) {
   std::uint8_t* pixel = &image_.rgb[(static_cast<std::size_t>(y) * image_.width_px + x) * 3];
   for (int k = 0; k < 3; ++k) {
     const float before = pixel[k];
-    pixel[k] = static_cast<std::uint8_t>(
-        std::lround(std::clamp(before + (color[k] * 255 - before) * alpha, 0.f, 255.f)));
+    const float after = std::clamp(before + (color[k] * 255 - before) * alpha, 0.0f, 255.0f);
+    pixel[k] = static_cast<std::uint8_t>(after + 0.5f);
   }
 }
 
@@ -64,8 +64,8 @@ void Canvas::FillRounded(const Rect& rect, float radius, const Color& color, flo
       const float px = static_cast<float>(i) + 0.5f, py = static_cast<float>(j) + 0.5f;
       const float dx = std::max(rect.x + r - px, px - (rect.right() - r));
       const float dy = std::max(rect.y + r - py, py - (rect.bottom() - r));
-      const float outside =
-          std::hypot(std::max(dx, 0.0f), std::max(dy, 0.0f)) + std::min(std::max(dx, dy), 0.0f) - r;
+      const float outside = Vector2f(std::max(dx, 0.0f), std::max(dy, 0.0f)).norm() +
+                            std::min(std::max(dx, dy), 0.0f) - r;
       const float coverage = std::clamp(0.5f - outside, 0.0f, 1.0f);
       if (coverage > 0) Blend(i, j, color, alpha * coverage);
     }

@@ -171,31 +171,6 @@ bool HasArm(const physics::Scene& scene, int hand) {
   });
 }
 
-/// Two eyes and a nose on a head, whose x axis points ahead.
-void AddFace(const Picture& picture, const physics::Person& person, DrawList* list) {
-  const auto head = static_cast<std::size_t>(person.head);
-  if (person.head < 0 || head >= picture.scene->bodies.size()) return;
-  const physics::Body& body = picture.scene->bodies[head];
-  const auto* skull =
-      body.shapes.empty() ? nullptr : std::get_if<physics::Capsule>(&body.shapes.front().shape);
-  if (!skull) return;
-  const auto r = static_cast<float>(skull->radius_m);
-  const Affine3f X_WHead = ToAffine(BodyPose(*picture.scene, picture.snapshot, head));
-  const Appearance dark{
-      .color = {0.15f, 0.16f, 0.18f}, .gloss = 0.6f, .object = list->first_body + person.head};
-  Appearance skin = dark;
-  skin.color = 0.92f * BodyColor(picture, head);
-  const auto ball = [&](const Vector3f& p, const Vector3f& half_m, const Appearance& look) {
-    Item item = MakeItem(X_WHead * Eigen::Translation3f(p) * Eigen::Scaling(half_m), look);
-    item.primitive = Primitive::kBall;
-    item.rounding_m = 1;
-    AddItem(item, &list->solids, list);
-  };
-  for (const float side : {-1.0f, 1.0f})
-    ball(r * Vector3f(0.90f, 0.36f * side, 0.12f), r * Vector3f(0.10f, 0.13f, 0.13f), dark);
-  ball(r * Vector3f(1.0f, 0, -0.18f), r * Vector3f(0.20f, 0.11f, 0.20f), skin);
-}
-
 void AddProp(const Prop& prop, DrawList* list) {
   Item item = MakeItem(Affine3f(Eigen::Translation3f(prop.center_m)),
                        {.color = prop.color, .object = AddObject(prop.name, list)});
@@ -232,6 +207,7 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
   list->first_body = static_cast<int>(list->objects.size());
   std::size_t first_grain = 0;
   std::vector<Item> translucent;
+  const std::vector<bool> is_person = DrawnAsMannequin(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Appearance look{.color = BodyColor(picture, i),
                           .object = AddObject("body:" + scene.bodies[i].name, list)};
@@ -239,6 +215,7 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
       AddAbstract(scene.bodies[i], look.object, list);
       continue;
     }
+    if (is_person[i]) continue;
     if (i < picture.body_alphas.size() && picture.body_alphas[i] < 1) {
       Appearance pale = look;
       pale.alpha = picture.body_alphas[i];
@@ -252,7 +229,7 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
     }
   }
   if (!translucent.empty()) list->ghosts.push_back(std::move(translucent));
-  for (const physics::Person& person : scene.persons) AddFace(picture, person, list);
+  AddPersons(picture, list);
   list->first_hand = static_cast<int>(list->objects.size());
   for (std::size_t i = 0; i < scene.hands.size(); ++i) {
     const Appearance look{.color = kSkinColor,
@@ -338,7 +315,12 @@ void AddItem(const Item& item, std::vector<Item>* items, DrawList* list) {
     bounds.Add(Vector3f(item.X_WI.translation() - reach));
     bounds.Add(Vector3f(item.X_WI.translation() + reach));
   }
-  list->objects[item.object].bounds.Add(bounds);
+  DrawnObject& object = list->objects[item.object];
+  object.bounds.Add(bounds);
+  if (!object.color) {
+    object.color = item.color;
+    object.alpha = item.alpha;
+  }
   list->bounds.Add(bounds);
   items->push_back(item);
 }

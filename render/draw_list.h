@@ -5,10 +5,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "render/mesh.h"
+#include "render/gl/mesh.h"
 #include "render/picture.h"
 #include "render/view.h"
 
@@ -39,6 +40,9 @@ struct Item {
 struct DrawnObject {
   std::string name;
   Bounds bounds;
+  std::optional<Color> color = std::nullopt;  ///< of its first item
+  float alpha = 1;
+  std::string note = "";  ///< what else an inventory says of it
 };
 
 struct DrawList {
@@ -63,6 +67,13 @@ DrawList MakeDrawList(const Picture& picture);
 
 /// Adds tubes, beads and arrows of a path. `scale` widens them for distant cameras.
 void AddPath(const std::vector<PathStretch>& path, float scale, DrawList* list);
+
+/// One per scene body: whether it is a part of a person, which AddPersons() draws.
+std::vector<bool> DrawnAsMannequin(const physics::Scene& scene);
+
+/// Adds persons as artists' mannequins (render/draw_person.cc). The objects of all bodies have been
+/// added. Parts that are translucent in the picture are drawn together, after what is solid.
+void AddPersons(const Picture& picture, DrawList* list);
 
 /// Adds the item to its list, and to the bounds of its object and of the picture. Ignores an item
 /// that is not finite.

@@ -5,9 +5,10 @@
 // Tested by tests/render/draw_list_test.cc
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "render/draw_list.h"
-#include "render/mesh.h"
+#include "render/gl/mesh.h"
 
 namespace prehend::render {
 namespace {
@@ -39,6 +40,12 @@ std::vector<Vector3f> Thinned(const std::vector<Vector3f>& points, float spacing
     if (kept.empty() || (p - kept.back()).norm() >= spacing_m) kept.push_back(p);
   }
   return kept;
+}
+
+std::string PlaceText(const Vector3f& p_W_m) {
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.3f, %.3f, %.3f)", p_W_m.x(), p_W_m.y(), p_W_m.z());
+  return text;
 }
 
 float Length(const std::vector<Vector3f>& points) {
@@ -105,6 +112,8 @@ void AddPath(const std::vector<PathStretch>& path, float scale, DrawList* list) 
     const std::vector<Vector3f> points = FinitePoints(stretch);
     list->objects.push_back({"path:" + std::to_string(i) + ":" + stretch.label, {}});
     if (points.empty()) continue;
+    list->objects.back().note =
+        PlaceText(points.front()) + " to " + PlaceText(points.back()) + " m";
 
     const bool idle = stretch.label.empty();
     const float radius = (idle ? kIdleRadius_m : kTubeRadius_m) * scale;

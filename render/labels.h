@@ -16,6 +16,7 @@ struct LabelRequest {
   Color color;             ///< of the small bar beside the text
   Eigen::Vector2f anchor;  ///< centre of the object, pixels
   Rect extent;             ///< approximate area of the object in the picture
+  std::string of = "";     ///< the object's name in the scene
 };
 
 struct PlacedLabel {

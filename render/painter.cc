@@ -1,26 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Composes a picture: strip layout, camera, scene, then flat elements on top.
 // Tested by tests/render/painter_test.cc
-#include <algorithm>
-#include <cmath>
-
 #include "render/draw_list.h"
-#include "render/gl_functions.h"
-#include "render/labels.h"
-#include "render/osmesa_context.h"
+#include "render/gl/gl_functions.h"
+#include "render/gl/osmesa_context.h"
+#include "render/gl/shaders.h"
+#include "render/inventory.h"
+#include "render/list_things.h"
+#include "render/overlay.h"
 #include "render/picture.h"
 #include "render/scene_renderer.h"
-#include "render/shaders.h"
-#include "render/timeline_strip.h"
 
 namespace prehend::render {
 namespace {
-
-using Eigen::Vector2f;
-using Eigen::Vector3f;
-
-constexpr float kTitleSize = 19;
-constexpr int kMinSideWithText_px = 120;  // text would hide a smaller picture
 
 // The processor feature that pixels depend on.
 const char* FusedMultiplyAdd() {
@@ -41,108 +33,19 @@ std::string SizeError(const Picture& picture) {
 
 // Everything that is computed from a picture before drawing.
 struct Plan {
-  StripLayout strip;
   DrawList list;
   View view;
+  Overlay overlay;
 };
-
-float TextScale(const Picture& picture) {
-  return std::isfinite(picture.text_scale) ? std::clamp(picture.text_scale, 0.3f, 5.0f) : 1;
-}
 
 Plan MakePlan(const Picture& picture, const Font& font) {
   Plan plan;
-  plan.strip =
-      LayOutStrip(picture.strip, font, picture.width_px, picture.height_px, TextScale(picture));
   plan.list = MakeDrawList(picture);
+  plan.overlay.strip = LayOutStripOf(picture, font);
   plan.view = MakeView(picture.camera, picture.width_px, picture.height_px,
-                       plan.strip.reserved_px(), plan.list.bounds);
+                       plan.overlay.strip.reserved_px(), plan.list.bounds);
+  AddTitleAndLabels(picture, plan.list, plan.view, font, &plan.overlay);
   return plan;
-}
-
-// Large objects (tables) would leave no free place; for labels they count as scenery.
-constexpr float kMaxExtentShare = 0.10f;  // of the picture's area
-
-LabelRequest RequestLabel(const std::string& text, const Color& color, const Bounds& bounds,
-                          const View& view) {
-  LabelRequest request{text, color, Vector2f::Constant(std::nanf("")), {}};
-  const std::optional<Vector2f> middle = ToPixel(view, bounds.center_m());
-  if (bounds.empty() || !middle.has_value()) return request;
-  request.anchor = *middle;
-  Vector2f low = *middle, high = *middle;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Array3f far_side(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-    const Vector3f p = bounds.low_m.array() + far_side * (bounds.high_m - bounds.low_m).array();
-    const std::optional<Vector2f> pixel = ToPixel(view, p);
-    if (!pixel.has_value()) return request;
-    low = low.cwiseMin(*pixel);
-    high = high.cwiseMax(*pixel);
-  }
-  const Vector2f size = high - low;
-  const float area = static_cast<float>(view.width_px) * static_cast<float>(view.height_px);
-  if (size.x() * size.y() < kMaxExtentShare * area)
-    request.extent = {low.x(), low.y(), size.x(), size.y()};
-  return request;
-}
-
-std::vector<LabelRequest> RequestLabels(const Picture& picture, const Plan& plan) {
-  std::vector<LabelRequest> requests;
-  // Labels beyond `count` name objects that the scene does not have.
-  const auto request = [&](const std::vector<std::string>& labels, std::size_t count,
-                           int first_object, const auto& color_of) {
-    for (std::size_t i = 0; i < std::min(labels.size(), count); ++i) {
-      if (labels[i].empty()) continue;
-      const Bounds& bounds = plan.list.objects[first_object + i].bounds;
-      requests.push_back(RequestLabel(labels[i], color_of(i), bounds, plan.view));
-    }
-  };
-  if (picture.scene == nullptr) return requests;
-  request(picture.body_labels, picture.scene->bodies.size(), plan.list.first_body,
-          [&](std::size_t i) { return BodyColor(picture, i); });
-  request(picture.hand_labels, picture.scene->hands.size(), plan.list.first_hand,
-          [](std::size_t) { return kSkinColor; });
-  return requests;
-}
-
-// Points along paths, so dense that no label fits between two.
-std::vector<Vector2f> PathPixels(const Plan& plan) {
-  std::vector<Vector2f> pixels;
-  for (const Item& item : plan.list.paths) {
-    if (item.primitive != Primitive::kMesh) continue;
-    const Mesh& tube = plan.list.meshes[static_cast<std::size_t>(item.mesh)];
-    for (std::size_t i = 0; i < tube.vertices.size(); i += 13) {
-      const std::optional<Vector2f> p = ToPixel(plan.view, tube.vertices[i].corner);
-      if (p.has_value()) pixels.push_back(*p);
-    }
-  }
-  return pixels;
-}
-
-Rect DrawTitle(const std::string& title, float scale, float width, Canvas* canvas) {
-  if (title.empty()) return {};
-  const float size = std::max(11.0f, kTitleSize * scale);
-  const std::string text = canvas->font().Shortened(title, size, width - 56 * scale);
-  if (text.empty()) return {};
-  const Rect box = {12 * scale, 12 * scale, canvas->font().Width(text, size) + 24 * scale,
-                    size + 12 * scale};
-  canvas->FillRounded(box, 7 * scale, Hex(0xFFFFFF), 0.86f);
-  canvas->DrawText(box.x + 12 * scale, box.y + 6 * scale, text, size, Hex(0x1B1F24));
-  return box;
-}
-
-void DrawOverlay(const Picture& picture, const Plan& plan, Canvas* canvas) {
-  if (std::min(picture.width_px, picture.height_px) < kMinSideWithText_px) return;
-  const float scale = OverlayScale(picture.height_px) * TextScale(picture);
-  const auto width = static_cast<float>(picture.width_px),
-             height = static_cast<float>(picture.height_px);
-  const Rect title = DrawTitle(picture.title, scale, width, canvas);
-  const float free_height = height - static_cast<float>(plan.strip.reserved_px());
-  const LabelObstacles obstacles{.area = Rect{0, 0, width, free_height}.Grown(-5 * scale),
-                                 .forbidden = {title.Grown(4 * scale)},
-                                 .avoid = PathPixels(plan)};
-  DrawLabels(PlaceLabels(RequestLabels(picture, plan), obstacles, canvas->font(), scale), scale,
-             canvas);
-  DrawStrip(plan.strip, canvas);
 }
 
 }  // namespace
@@ -200,7 +103,7 @@ Image Painter::Draw(const Picture& picture) {
     return {};
   }
   Canvas canvas(*state_->font, &image);
-  DrawOverlay(picture, plan, &canvas);
+  DrawOverlay(plan.overlay, &canvas);
   return image;
 }
 
@@ -215,6 +118,21 @@ IdImage Painter::DrawIds(const Picture& picture) {
   }
   for (const DrawnObject& object : plan.list.objects) image.names.push_back(object.name);
   return image;
+}
+
+ListedPicture Painter::DrawListed(const Picture& picture) {
+  ListedPicture listed{.image = Draw(picture), .inventory = {}, .things = {}};
+  if (listed.image.rgb.empty()) return listed;
+  const Plan plan = MakePlan(picture, *state_->font);
+  listed.things = state_->renderer->RenderIds(plan.list, plan.view);
+  if (listed.things.empty()) {
+    state_->error = "OpenGL has no memory for a picture of this size";
+    return {};
+  }
+  listed.inventory.drawn_by = Fingerprint();
+  listed.inventory.pixels = PixelHash(listed.image);
+  ListThings(plan.list, plan.overlay, &listed);
+  return listed;
 }
 
 std::string Painter::Fingerprint() const {

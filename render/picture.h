@@ -123,6 +123,8 @@ struct IdImage {
       names;  ///< "background", "ground", "body:milk", "hand:right_hand", "path:0:reaching", ...
 };
 
+struct ListedPicture;  // render/inventory.h
+
 inline constexpr const char* kDefaultFontFile = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 
 /// Owns an off-screen context. Make one per process and draw many pictures with it: the first one
@@ -142,8 +144,10 @@ class Painter {
   const std::string& error() const;
   /// An empty image on failure; error() then has the reason.
   Image Draw(const Picture& picture);
-  /// Object numbers of the same scene from the same camera, without labels, strip and markers.
+  /// Object numbers of the same scene from the same camera, without labels, strip and regions.
   IdImage DrawIds(const Picture& picture);
+  /// The picture with its inventory; an empty image on failure.
+  ListedPicture DrawListed(const Picture& picture);
   /// Everything that pixels depend on: "Mesa 22.3.6 llvmpipe ... renderer 1".
   std::string Fingerprint() const;
 
@@ -152,15 +156,20 @@ class Painter {
   std::unique_ptr<State> state_;
 };
 
+enum class PngKind {
+  kExact,
+  kSmall  ///< colours rounded to multiples of 4, which nobody sees: half as many bytes
+};
+
 /// The bytes of a PNG file; none of an image that is empty.
-std::string EncodePng(const Image& image);
+std::string EncodePng(const Image& image, PngKind kind = PngKind::kExact);
 /// False if the file could not be written.
-bool WritePng(const Image& image, const std::string& path);
+bool WritePng(const Image& image, const std::string& path, PngKind kind = PngKind::kExact);
 /// An empty image if the file is missing, damaged or larger than a picture may be.
 Image ReadPng(const std::string& path);
 /// The same of the bytes of a file.
 Image DecodePng(const std::string& bytes);
-/// FNV-1a hash of size and pixels.
+/// A hash of size and pixels, in the manner of FNV-1a but of eight bytes at a time.
 std::uint64_t PixelHash(const Image& image);
 
 // Whether two images show the same. Differences are counted, not averaged: a mean hides a small

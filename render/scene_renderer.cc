@@ -15,7 +15,7 @@
 #include <cmath>
 #include <string>
 
-#include "render/shaders.h"
+#include "render/gl/shaders.h"
 
 namespace prehend::render {
 
@@ -32,6 +32,7 @@ using Eigen::Vector3f;
 
 constexpr int kSamples = 4;  // the most that llvmpipe has
 constexpr int kShadowSize_px = 2048;
+constexpr float kRegionAlpha = 0.5f;  // regions are fainter than marks of contact
 constexpr float kHiddenAlpha = 0.16f;
 constexpr float kOcclusionRadius_m = 0.09f;
 constexpr int kOcclusionTaps = 8;
@@ -50,6 +51,29 @@ Focus FocusOf(const DrawList& list, const View& view) {
 
 float DistanceTo(const View& view, const Item& item) {
   return (item.X_WI.translation() - view.eye_m).norm();
+}
+
+Eigen::Vector4f LinearColor(const Item& item) {
+  const auto linear = [](float c) { return std::pow(std::max(c, 0.0f), 2.2f); };
+  return {linear(item.color.x()), linear(item.color.y()), linear(item.color.z()), item.alpha};
+}
+
+/// Near ones first, so that what they hide is not shaded.
+std::vector<Item> NearFirst(std::vector<Item> items, const View& view) {
+  std::stable_sort(items.begin(), items.end(), [&](const Item& a, const Item& b) {
+    return DistanceTo(view, a) < DistanceTo(view, b);
+  });
+  return items;
+}
+
+/// A ball of fewer pixels has fewer triangles: hundreds of grains would cost more than the picture.
+constexpr float kSmallBall_px = 9;
+
+bool IsSmallBall(const View& view, const Item& item) {
+  const float px_per_m = 0.5f * static_cast<float>(view.height_px) * view.view_to_clip(1, 1);
+  return item.primitive == Primitive::kBall && item.half_size_m.isZero() &&
+         item.rounding_m * item.X_WI.linear().colwise().norm().maxCoeff() * px_per_m <
+             kSmallBall_px * DistanceTo(view, item);
 }
 
 std::string SurfaceShader(Finish finish, bool shadows) {
@@ -80,6 +104,7 @@ std::unique_ptr<SceneRenderer> SceneRenderer::Create(const GlFunctions& gl, std:
   if (!made->CompilePrograms(error)) return nullptr;
   made->box_ = std::make_unique<GpuMesh>(gl, RoundedBoxMesh(4));
   made->ball_ = std::make_unique<GpuMesh>(gl, RoundedBoxMesh(10));
+  made->small_ball_ = std::make_unique<GpuMesh>(gl, RoundedBoxMesh(3));
   made->cylinder_ = std::make_unique<GpuMesh>(gl, RoundedCylinderMesh(5));
   made->cone_ = std::make_unique<GpuMesh>(gl, ConeMesh(6));
   made->shadow_map_ = Framebuffer::Create(gl, kShadowSize_px, kShadowSize_px, 0,
@@ -222,6 +247,9 @@ std::vector<std::uint32_t> SceneRenderer::RenderIds(const DrawList& list, const 
   draw(list.solids);
   draw(list.paths);
   for (const auto& ghost : list.ghosts) draw(ghost);
+  for (const Item& marker : list.markers) {
+    if (marker.alpha > kRegionAlpha) DrawItem(*ids_, frame, marker);
+  }
 
   const std::size_t row = static_cast<std::size_t>(view.width_px);
   std::vector<std::uint32_t> ids(row * view.height_px);
@@ -256,7 +284,7 @@ void SceneRenderer::DrawSolids(const Frame& frame) const {
   gl_.Enable(GL_DEPTH_TEST);
 
   const Program& surface = UseSurface(frame, solid_);
-  for (const Item& item : frame.list.solids) DrawItem(surface, frame, item);
+  for (const Item& item : NearFirst(frame.list.solids, frame.view)) DrawItem(surface, frame, item);
   for (const Item& item : frame.list.paths) DrawItem(surface, frame, item);
   if (frame.list.theme == Theme::kLight) DrawGround(frame);
 }
@@ -389,14 +417,14 @@ void SceneRenderer::DrawItem(const Program& program, const Frame& frame, const I
   program.Set("model_normal", Eigen::Matrix3f(item.X_WI.linear().inverse().transpose()));
   program.Set("half_size", item.half_size_m);
   program.Set("rounding", item.rounding_m);
-  program.Set("color", Eigen::Vector4f(item.color.x(), item.color.y(), item.color.z(), item.alpha));
+  program.Set("color", LinearColor(item));
   program.Set("gloss", item.gloss);
   program.SetUnsigned("object", static_cast<unsigned>(item.object));
   switch (item.primitive) {
     case Primitive::kBox:
       return box_->Draw();
     case Primitive::kBall:
-      return ball_->Draw();
+      return (IsSmallBall(frame.view, item) ? small_ball_ : ball_)->Draw();
     case Primitive::kCylinder:
       return cylinder_->Draw();
     case Primitive::kCone:

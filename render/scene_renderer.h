@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "render/draw_list.h"
-#include "render/gl_objects.h"
+#include "render/gl/gl_objects.h"
 #include "render/view.h"
 
 namespace prehend::render {
@@ -49,7 +49,7 @@ class SceneRenderer {
   const GlFunctions& gl_;
   std::unique_ptr<Program> solid_, ground_, ghost_, region_, flat_;  // surfaces
   std::unique_ptr<Program> depth_only_, ids_, backdrop_, occlusion_, occlusion_blur_, darken_;
-  std::unique_ptr<GpuMesh> box_, ball_, cylinder_, cone_;
+  std::unique_ptr<GpuMesh> box_, ball_, small_ball_, cylinder_, cone_;
   std::unique_ptr<Framebuffer> shadow_map_;
   std::unique_ptr<Targets> targets_;
 };

@@ -20,10 +20,12 @@ constexpr float kBarHeight = 18;
 constexpr float kLanePitch = 23;
 constexpr float kNameHeight = 15;  // room for names above the bars of a lane
 constexpr float kAxisHeight = 20;
+constexpr float kLegendHeight = 20;
 constexpr float kRowText = 15, kBarText = 14, kSmallText = 12;
 constexpr float kMinStripText_px = 9;
 constexpr float kMaxHeightShare = 0.42f;
 constexpr std::size_t kMaxLanes = 4;
+constexpr float kMaxDrift = 0.3f;  // of a name above its bar, as a share of its width
 
 struct TimeAxis {
   double begin_s = 0, end_s = 1;
@@ -77,8 +79,10 @@ void PlaceName(const StripSegment& segment, const Font& font, const TimeAxis& ax
   }
   const float width = font.Width(segment.label, small);
   const float middle = bar->rect.x + bar->rect.width / 2;
-  const float left = std::max(*above_taken, std::min(middle - width / 2, axis.right - width));
-  if (left <= middle && left + width <= axis.right + 1) {
+  const float wanted = middle - width / 2;
+  const float left = std::max(*above_taken, std::min(wanted, axis.right - width));
+  // A name beside its bar would be read as that of the next one.
+  if (std::abs(left - wanted) <= kMaxDrift * width && left + width <= axis.right + 1) {
     bar->name_place = NamePlace::kAbove;
     bar->name_size_px = small;
     bar->name_left = left;
@@ -92,14 +96,16 @@ void PlaceName(const StripSegment& segment, const Font& font, const TimeAxis& ax
   bar->name_left = bar->rect.x + (bar->rect.width - font.Width(bar->name, small)) / 2;
 }
 
-StripLane MakeLane(const std::vector<StripSegment>& segments, const Font& font,
-                   const TimeAxis& axis, float scale) {
+StripLane MakeLane(const std::string& row, const std::vector<StripSegment>& segments,
+                   const Font& font, const TimeAxis& axis, float scale) {
   StripLane lane;
   lane.track = {axis.left, 0, axis.right - axis.left, kBarHeight * scale};
   float above_taken = axis.left;
   for (const StripSegment& segment : segments) {
     const float begin = axis.At(segment.begin_s), end = axis.At(segment.end_s);
-    StripBar bar{.rect = {begin, 0, std::max(2.0f, end - begin), kBarHeight * scale},
+    StripBar bar{.row = row,
+                 .segment = segment,
+                 .rect = {begin, 0, std::max(2.0f, end - begin), kBarHeight * scale},
                  .color = segment.color};
     if (bar.rect.width > 6) bar.rect = {begin + 0.5f, 0, bar.rect.width - 1, bar.rect.height};
     PlaceName(segment, font, axis, scale, &above_taken, &bar);
@@ -165,6 +171,47 @@ std::vector<StripTick> MakeTicks(const TimeAxis& axis, float scale) {
   return ticks;
 }
 
+bool LacksItsName(const StripBar& bar) {
+  return bar.name_place == NamePlace::kNone || bar.name != bar.segment.label;
+}
+
+// What a colour means, for names that have no room at some bar, if the colour means one thing only.
+void AddLegend(const TimelineStrip& strip, const Font& font, float scale, StripLayout* layout) {
+  std::vector<StripKey> keys;
+  for (const StripLane& lane : layout->lanes) {
+    for (const StripBar& bar : lane.bars) {
+      const auto same = std::ranges::find(keys, bar.segment.label, &StripKey::name);
+      if (LacksItsName(bar) && same == keys.end())
+        keys.push_back({.name = bar.segment.label, .color = bar.color, .box = {}});
+    }
+  }
+  std::erase_if(keys, [&](const StripKey& key) {
+    return key.name.empty() || std::ranges::any_of(strip.rows, [&](const StripRow& row) {
+             return std::ranges::any_of(row.segments, [&](const StripSegment& segment) {
+               return segment.color == key.color && segment.label != key.name;
+             });
+           });
+  });
+  const float size = std::max(kMinStripText_px, kSmallText * scale);
+  float left = layout->lanes.front().track.x;
+  for (StripKey& key : keys) {
+    const float width = size + 5 * scale + font.Width(key.name, size);
+    if (left + width > layout->lanes.front().track.right()) break;
+    key.box = {left, 0, width, size};
+    left += width + 14 * scale;
+    layout->legend.push_back(key);
+  }
+  // Where the legend says it, a crowd of names above bars only confuses.
+  for (StripLane& lane : layout->lanes) {
+    for (StripBar& bar : lane.bars) {
+      const bool is_crowded = bar.name_place == NamePlace::kAbove || LacksItsName(bar);
+      if (is_crowded && std::ranges::find(layout->legend, bar.segment.label, &StripKey::name) !=
+                            layout->legend.end())
+        bar.name_place = NamePlace::kNone;
+    }
+  }
+}
+
 float WidestLabel(const TimelineStrip& strip, const Font& font, float size_px) {
   float widest = 0;
   for (const StripRow& row : strip.rows) widest = std::max(widest, font.Width(row.label, size_px));
@@ -206,7 +253,7 @@ StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_
     std::vector<StripLane> lanes;
     float row_height = 0;
     for (const auto& segments : SplitIntoLanes(row, strip)) {
-      lanes.push_back(MakeLane(segments, font, axis, scale));
+      lanes.push_back(MakeLane(row.label, segments, font, axis, scale));
       row_height += LaneHeight(lanes.back(), scale);
     }
     if (used + row_height > kMaxHeightShare * height) break;
@@ -219,9 +266,15 @@ StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_
   const std::size_t left_out = strip.rows.size() - shown + std::max(strip.rows_left_out, 0);
   if (left_out > 0) layout.note = "+ " + std::to_string(left_out) + " more";
 
+  AddLegend(strip, font, scale, &layout);
+  const float legend_height = layout.legend.empty() ? 0 : kLegendHeight * scale;
+  used = frame_height + legend_height;
+  for (const StripLane& lane : layout.lanes) used += LaneHeight(lane, scale);
   layout.panel = {kMargin * scale, height - used, width - 2 * kMargin * scale,
                   used - kMargin * scale};
-  layout.axis_top = StackLanes(layout.panel.y + kPadding * scale, scale, font, &layout.lanes);
+  const float top = layout.panel.y + kPadding * scale;
+  for (StripKey& key : layout.legend) key.box.y = top;
+  layout.axis_top = StackLanes(top + legend_height, scale, font, &layout.lanes);
   layout.ticks = MakeTicks(axis, scale);
   const bool inside = strip.playhead_s >= strip.begin_s && strip.playhead_s <= strip.end_s;
   layout.playhead_x = inside ? axis.At(strip.playhead_s) : std::numeric_limits<float>::quiet_NaN();
@@ -268,6 +321,11 @@ void DrawStrip(const StripLayout& layout, Canvas* canvas) {
   if (!(layout.panel.height > 0)) return;
   const float s = layout.scale, size = std::max(kMinStripText_px, kSmallText * s);
   canvas->FillRounded(layout.panel, 8 * s, Hex(0xFFFFFF), 0.86f);
+  for (const StripKey& key : layout.legend) {
+    const Rect swatch = {key.box.x, key.box.y + 1.5f * s, key.box.height, key.box.height};
+    canvas->FillRounded(swatch, 2 * s, key.color);
+    canvas->DrawText(key.box.x + size + 5 * s, key.box.y, key.name, size, Hex(0x1B1F24));
+  }
   for (const StripLane& lane : layout.lanes) DrawLane(layout, lane, canvas);
 
   const float width = canvas->font().Width(layout.playhead_label, size) + 10 * s;

@@ -14,6 +14,8 @@ namespace prehend::render {
 enum class NamePlace { kNone, kInside, kAbove };
 
 struct StripBar {
+  std::string row;       ///< its label
+  StripSegment segment;  ///< as in the row
   Rect rect;
   Color color;
   NamePlace name_place = NamePlace::kNone;
@@ -34,12 +36,20 @@ struct StripTick {
   std::string label;  ///< empty: a minor tick
 };
 
+/// What a colour means, above the lanes.
+struct StripKey {
+  std::string name;
+  Color color;
+  Rect box;  ///< around swatch and name
+};
+
 struct StripLayout {
   float scale = 1;  ///< scale of all sizes; 1 at 720 pixel rows
   Rect panel;       ///< empty height: no strip
   float label_left = 0;
   float axis_top = 0;
   std::vector<StripLane> lanes;
+  std::vector<StripKey> legend;  ///< of names that have no room at their bars
   std::vector<StripTick> ticks;
   float playhead_x = 0;  ///< NaN: outside
   std::string playhead_label;

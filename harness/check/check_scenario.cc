@@ -64,11 +64,15 @@ std::vector<std::string> FilesOfGolden(const CheckRequest& request, const Scenar
   if (!request.in_project) return {};
   const GoldenFiles goldens(request.root);
   std::vector<std::string> files = {goldens.GoldenPath(request.id).string()};
-  for (const KeptPicture& picture : goldens.PicturesOf(request.id))
+  for (const KeptPicture& picture : goldens.PicturesOf(request.id)) {
     files.push_back(picture.path.string());
+    files.push_back(ThingsFile(picture.path.string()));
+  }
   for (std::size_t i = 1; scenario && i <= scenario->pictures.size() + 1; ++i) {
     const std::string file = scenario->name + (i == 1 ? "" : "-" + std::to_string(i)) + ".png";
-    files.push_back(goldens.PicturePath(request.id, file).string());
+    const std::string picture = goldens.PicturePath(request.id, file).string();
+    files.push_back(picture);
+    files.push_back(ThingsFile(picture));
   }
   return files;
 }
@@ -100,15 +104,19 @@ Result<std::pair<LoadedRun, RunResult>> ReadPlayed(const CheckRequest& request) 
   return std::pair(std::move(*loaded), std::move(*run));
 }
 
-/// Draws into the folder of the report.
+/// Draws into the folder of the report, and compares with the goldens of pictures.
 Findings Draw(const CheckRequest& request, const CheckedRun& checked,
-              std::vector<ReportedPicture>& pictures) {
+              std::vector<ReportedPicture>& pictures, std::vector<PictureComparison>& compared) {
   if (!request.pictures || !CanDrawPictures()) return {};
   const Scenario& scenario = checked.loaded.scenario;
   const fs::path folder = fs::path(request.report_folder) / "pictures" / scenario.skill;
   std::error_code error;
   fs::create_directories(folder, error);
-  const PictureResult drawn = DrawPictures(scenario, checked.result, folder.string());
+  const GoldenOf none = [](const std::string&) { return std::string(); };
+  const PictureResult drawn =
+      DrawAndCompare(scenario, checked.result, folder.string(),
+                     request.in_project ? GoldensOf(request.id, request.root) : none);
+  compared = ComparisonsOf(request.id, drawn.pictures, request.root, !request.leave_nothing_behind);
   for (const WrittenPicture& picture : drawn.pictures) {
     const fs::path file = fs::path(picture.file).lexically_relative(request.report_folder);
     pictures.push_back({.file = file.generic_string(), .caption = picture.caption});
@@ -211,15 +219,8 @@ void JudgeAgainstGolden(const CheckRequest& request, const CheckedRun& checked,
   Append(judgement.findings, JudgeGolden(*judgement.golden, checked, judgement.blame.text));
 }
 
-void JudgePictures(const CheckRequest& request, const CheckedRun& checked,
-                   const std::vector<ReportedPicture>& drawn, Judgement& judgement) {
-  if (!request.in_project) return;
-  std::vector<fs::path> files;
-  for (const ReportedPicture& picture : drawn)
-    files.push_back(fs::path(request.report_folder) / picture.file);
-  judgement.pictures =
-      ComparePictures(request.id, files, request.root, !request.leave_nothing_behind);
-  if (!AsItsFileSays(request)) return;
+void JudgePictures(const CheckRequest& request, const CheckedRun& checked, Judgement& judgement) {
+  if (!request.in_project || !AsItsFileSays(request)) return;
   Append(judgement.findings,
          JudgeUnrequestedPictures(request.id, checked.loaded.scenario.pictures.size(), request.root,
                                   AcceptPicturesCommand(request.id)));
@@ -338,7 +339,8 @@ ScenarioVerdict VerdictOn(const CheckRequest& request, const CheckedRun& checked
   verdict.shows = checked.loaded.scenario.shows;
   verdict.state_hash = HashText(checked.result.state_hash);
   verdict.ticks = checked.result.ticks;
-  Judgement judgement{.findings = Draw(request, checked, verdict.pictures)};
+  Judgement judgement;
+  judgement.findings = Draw(request, checked, verdict.pictures, judgement.pictures);
   if (checked.result.status.kind != physics::RunStatus::Kind::kCompleted) {
     Append(judgement.findings,
            {{ExitCode::kFailure, "the simulation failed", StatusText(checked.result) + "\n"}});
@@ -355,7 +357,7 @@ ScenarioVerdict VerdictOn(const CheckRequest& request, const CheckedRun& checked
   JudgeAgainstGolden(request, checked, verdict, judgement);
   if (request.episode == 0)
     Append(judgement.findings, JudgeOtherEngine(checked, judgement.engine_difference));
-  JudgePictures(request, checked, verdict.pictures, judgement);
+  JudgePictures(request, checked, judgement);
   if (judgement.golden) {
     TransformJudgement elsewhere =
         JudgeTransforms(checked, judgement.golden->pending, request.transforms);

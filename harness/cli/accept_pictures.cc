@@ -30,23 +30,27 @@ int RemoveUnrequested(const CommandContext& context, const std::string& id,
   for (const fs::path& picture : UnrequestedPictures(id, scenario.pictures.size(), context.root)) {
     std::error_code error;
     if (!fs::remove(picture, error)) continue;
+    fs::remove(ThingsFile(picture.string()), error);
     context.out << "removed: " << picture.string() << "\n";
     ++removed;
   }
   return removed;
 }
 
-/// Makes `drawn` the golden picture. Returns whether that changes a byte; nothing when it cannot be
-/// moved.
+/// Makes `drawn`, with what it shows, the golden picture. Returns whether that changes a byte;
+/// nothing when it cannot be moved.
 std::optional<bool> Keep(const CommandContext& context, const std::string& id,
                          const fs::path& drawn) {
   const GoldenFiles files(context.root);
   const fs::path golden = files.PicturePath(id, drawn.filename().string());
   files.RemovePendingPicture(id, golden.filename().string());
-  if (FileHash(golden.string()) == FileHash(drawn.string())) return false;
+  const std::string things = ThingsFile(golden.string()), shown = ThingsFile(drawn.string());
+  if (FileHash(golden.string()) == FileHash(drawn.string()) && FileHash(things) == FileHash(shown))
+    return false;
   std::error_code error;
   fs::create_directories(golden.parent_path(), error);
-  fs::rename(drawn, golden, error);
+  fs::rename(shown, things, error);
+  if (!error) fs::rename(drawn, golden, error);
   if (error) return std::nullopt;
   context.out << "accepted: " << golden.string() << "\n";
   return true;
@@ -61,7 +65,7 @@ ExitCode AcceptPictures(const CommandContext& context, const std::string& reason
   const fs::path folder = fs::path(context.root) / "build/pending-pictures" / scenario.skill;
   std::error_code error;
   fs::create_directories(folder, error);
-  const PictureResult drawn = DrawPictures(scenario, run, folder.string());
+  const PictureResult drawn = DrawGoldens(scenario, run, folder.string());
   if (!drawn.error.empty())
     return Complain(context, ExitCode::kFailure, "no picture: " + drawn.error);
   for (const WrittenPicture& picture : drawn.pictures) {

@@ -6,27 +6,32 @@
 
 #include "harness/golden/golden_files.h"
 #include "harness/judge/unreferenced_goldens.h"
-#include "harness/pictures/pictures.h"
 
 namespace prehend::harness {
 
 namespace fs = std::filesystem;
 
-std::vector<PictureComparison> ComparePictures(const std::string& id,
-                                               const std::vector<fs::path>& drawn,
-                                               const std::string& root, bool shown) {
-  const GoldenFiles files(root);
-  std::vector<PictureComparison> compared;
-  for (const fs::path& picture : drawn) {
-    const std::string name = picture.filename().string();
+GoldenOf GoldensOf(const std::string& id, const std::string& root) {
+  return [files = GoldenFiles(root), id](const std::string& name) {
     const fs::path golden = files.PicturePath(id, name);
     std::error_code ignored;
-    if (!fs::exists(golden, ignored)) continue;
-    const PictureDifference difference = ComparePicture(golden.string(), picture.string());
-    const bool can_be_shown = shown && difference.same_size && !difference.text.empty();
-    compared.push_back({.golden = golden,
-                        .drawn = picture,
-                        .difference = difference.text,
+    return fs::exists(golden, ignored) ? golden.string() : "";
+  };
+}
+
+std::vector<PictureComparison> ComparisonsOf(const std::string& id,
+                                             const std::vector<WrittenPicture>& drawn,
+                                             const std::string& root, bool shown) {
+  const GoldenFiles files(root);
+  std::vector<PictureComparison> compared;
+  for (const WrittenPicture& picture : drawn) {
+    if (picture.golden.empty()) continue;
+    const bool can_be_shown =
+        shown && picture.difference.same_size && !picture.difference.told.empty();
+    const std::string name = fs::path(picture.file).filename().string();
+    compared.push_back({.golden = picture.golden,
+                        .drawn = picture.file,
+                        .told = picture.difference.told,
                         .shown_in = can_be_shown ? files.DifferencePath(id, name) : fs::path()});
   }
   return compared;
@@ -36,9 +41,10 @@ std::string PictureDifferencesText(const std::vector<PictureComparison>& compare
                                    const std::string& accept) {
   std::string text;
   for (const PictureComparison& picture : compared) {
-    if (picture.difference.empty()) continue;
-    text += fmt::format("picture {}: {}\n  expected {}\n", picture.drawn.string(),
-                        picture.difference, picture.golden.string());
+    if (picture.told.empty()) continue;
+    text += fmt::format("picture {}:\n", picture.drawn.string());
+    for (const std::string& told : picture.told) text += "  " + told + "\n";
+    text += fmt::format("  expected {}\n", picture.golden.string());
     if (!picture.shown_in.empty())
       text += fmt::format("  difference {}\n", picture.shown_in.string());
     if (!accept.empty()) text += fmt::format("  accept it with: {}\n", accept);
@@ -64,7 +70,7 @@ void StorePictures(const std::string& id, const std::vector<PictureComparison>& 
   for (const PictureComparison& picture : compared) {
     const std::string name = picture.drawn.filename().string();
     files.RemovePendingPicture(id, name);
-    if (picture.difference.empty()) continue;
+    if (picture.told.empty()) continue;
     const fs::path pending = files.PendingPicturePath(id, name);
     std::error_code ignored;  // `accept` draws the picture again, and reports what it cannot write
     fs::create_directories(pending.parent_path(), ignored);

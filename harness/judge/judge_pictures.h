@@ -8,21 +8,25 @@
 #include <vector>
 
 #include "harness/judge/judge.h"
+#include "harness/pictures/pictures.h"
 
 namespace prehend::harness {
 
 /// A drawn picture that has a golden.
 struct PictureComparison {
   std::filesystem::path golden, drawn;
-  std::string difference;          ///< "812 of its pixels differ, .."; empty: none
+  std::vector<std::string> told;   ///< what tells it from its golden; empty: nothing
   std::filesystem::path shown_in;  ///< where StorePictures() shows what differs; or empty
 };
 
-/// `drawn` are the files of pictures that were drawn; those without a golden are left out. `root`
-/// is the project's. With `shown` what differs is to be shown in a picture of its own.
-std::vector<PictureComparison> ComparePictures(const std::string& id,
-                                               const std::vector<std::filesystem::path>& drawn,
-                                               const std::string& root, bool shown);
+/// The goldens of a scenario's pictures, those that exist.
+GoldenOf GoldensOf(const std::string& id, const std::string& root);
+
+/// Drawn pictures without a golden are left out. `root` is the project's. With `shown` what differs
+/// is to be shown in a picture of its own.
+std::vector<PictureComparison> ComparisonsOf(const std::string& id,
+                                             const std::vector<WrittenPicture>& drawn,
+                                             const std::string& root, bool shown);
 
 /// Several lines, or empty. `accept` is the command that accepts the pictures, or empty.
 std::string PictureDifferencesText(const std::vector<PictureComparison>& compared,

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "harness/pictures/framing.h"
@@ -24,9 +25,12 @@ constexpr double kPathPoints_per_s = 60;
 /// Rows of the strip; more would hide the picture.
 constexpr std::size_t kMaxRows = 6;
 
-/// Of a longer episode a picture shows the paths and ghosts around its moment.
-constexpr double kLong_s = 15;
+/// Of a longer episode a picture shows the paths and ghosts of what hands do at its moment, without
+/// a pause longer than this; of empty hands those around the moment.
+constexpr double kLong_s = 15, kPause_s = 0.5;
 constexpr double kBefore_s = 4, kAfter_s = 3;
+/// A scene with more things has the names of those only with which hands deal.
+constexpr std::size_t kFewThings = 8;
 
 /// Which part of an episode, and which of its events, a picture shows.
 struct Selection {
@@ -102,10 +106,10 @@ void AppendPath(const physics::Scene& scene, const RunResult& run, const Selecti
   double next_point_s = 0;
   bool first = true;
   for (const physics::Snapshot& snapshot : run.recording) {
-    const grammar::NamedEvent* now = PhaseOf(run, selection, name, snapshot.tick);
-    const bool change = first || now != phase;
     const double t_s = Seconds(snapshot.tick, run);
     if (!selection.IsIn(t_s)) continue;
+    const grammar::NamedEvent* now = PhaseOf(run, selection, name, snapshot.tick);
+    const bool change = first || now != phase;
     if (!change && t_s < next_point_s) continue;
     const Eigen::Vector3f point = snapshot.hands[hand].palm.X_WB.p_m.cast<float>();
     if (change) {
@@ -330,7 +334,60 @@ render::TimelineStrip ComposeStrip(const physics::Scene& scene, const RunResult&
   return composer.strip();
 }
 
-Selection SelectionOf(const PictureFormat& format, const RunResult& run, grammar::Tick moment) {
+struct Span_s {
+  double from = 0, to = 0;
+};
+
+/// From when to when a hand does what it does at a moment: its phases and grasps that share an
+/// entity with the one that holds then, or comes next, and follow one another without a pause.
+std::optional<Span_s> ActionOf(const RunResult& run, const std::string& hand, double now_s) {
+  std::vector<const grammar::NamedEvent*> events;
+  for (const grammar::NamedEvent& event : run.timeline.events) {
+    if (IsOfHand(run, event, DrawnAs::kPhase, hand) || IsOfHand(run, event, DrawnAs::kGrasp, hand))
+      events.push_back(&event);
+  }
+  const auto begin_s = [&](const auto* event) { return Seconds(event->interval.begin, run); };
+  const auto end_s = [&](const auto* event) { return Seconds(event->interval.end, run); };
+  // Events are sorted by their begin.
+  const auto first =
+      std::ranges::find_if(events, [&](const auto* event) { return end_s(event) > now_s; });
+  if (first == events.end() || begin_s(*first) > now_s + kAfter_s) return std::nullopt;
+  const auto shares = [&](const auto* event) {
+    return std::ranges::any_of(event->roles, [&](const grammar::Role& role) {
+      return role.value != hand &&
+             std::ranges::find(first[0]->roles, role.value, &grammar::Role::value) !=
+                 first[0]->roles.end();
+    });
+  };
+  Span_s span{begin_s(*first), end_s(*first)};
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (const auto* event : events) {
+      if (!shares(event) || begin_s(event) > span.to + kPause_s ||
+          end_s(event) < span.from - kPause_s)
+        continue;
+      grows = grows || begin_s(event) < span.from || end_s(event) > span.to;
+      span = {std::min(span.from, begin_s(event)), std::max(span.to, end_s(event))};
+    }
+  }
+  return span;
+}
+
+/// Of all hands that are selected.
+Span_s ActionAt(const RunResult& run, const physics::Scene& scene, const PictureFormat& format,
+                double now_s) {
+  std::optional<Span_s> all;
+  for (const physics::Hand& hand : scene.hands) {
+    if (!format.only.empty() && format.only != hand.name) continue;
+    const std::optional<Span_s> span = ActionOf(run, hand.name, now_s);
+    if (!span) continue;
+    all = all ? Span_s{std::min(all->from, span->from), std::max(all->to, span->to)} : *span;
+  }
+  return all.value_or(Span_s{now_s - kBefore_s, now_s + kAfter_s});
+}
+
+Selection SelectionOf(const PictureFormat& format, const physics::Scene& scene,
+                      const RunResult& run, grammar::Tick moment) {
   const double end_s = std::max(Seconds(run.ticks, run), 0.1), now_s = Seconds(moment, run);
   Selection selection{.from_s = format.from_s.value_or(0),
                       .to_s = format.to_s.value_or(end_s),
@@ -338,10 +395,45 @@ Selection SelectionOf(const PictureFormat& format, const RunResult& run, grammar
                       .entity = format.of};
   const bool is_given = format.from_s || format.to_s;
   const bool is_long = !is_given && end_s > kLong_s;
-  selection.path_from_s = is_long ? now_s - kBefore_s : selection.from_s;
-  selection.path_to_s = is_long ? now_s + kAfter_s : selection.to_s;
+  const Span_s shown =
+      is_long ? ActionAt(run, scene, format, now_s) : Span_s{selection.from_s, selection.to_s};
+  selection.path_from_s = shown.from;
+  selection.path_to_s = shown.to;
   if (format.path_so_far) selection.path_to_s = std::min(selection.path_to_s, now_s);
   return selection;
+}
+
+/// Whether a hand deals with the thing in what the picture shows.
+bool IsDealtWith(const RunResult& run, const Selection& selection, const std::string& thing) {
+  return std::ranges::any_of(run.timeline.events, [&](const grammar::NamedEvent& event) {
+    const bool of_hand =
+        IsDrawnAs(run, event, DrawnAs::kPhase) || IsDrawnAs(run, event, DrawnAs::kGrasp);
+    return of_hand && Seconds(event.interval.end, run) > selection.path_from_s &&
+           Seconds(event.interval.begin, run) < selection.path_to_s && selection.Has(event) &&
+           std::ranges::find(event.roles, thing, &grammar::Role::value) != event.roles.end();
+  });
+}
+
+/// One per scene body; "" has no label. A person has one, at her head: labels of eighteen parts
+/// would hide her. The only piece of furniture needs none.
+std::vector<std::string> BodyLabels(const Scenario& scenario, const RunResult& run,
+                                    const Selection& selection) {
+  const std::vector<physics::Body>& bodies = scenario.scene.bodies;
+  const auto things = static_cast<std::size_t>(std::ranges::count_if(
+      bodies, [](const physics::Body& body) { return physics::IsThing(body) && !body.kinematic; }));
+  const auto fixed = std::ranges::count_if(
+      bodies, [](const physics::Body& body) { return physics::IsThing(body) && body.fixed; });
+  std::vector<std::string> labels;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const physics::Body& body = bodies[i];
+    const bool is_part = body.kinematic && scenario.body_classes[i] != "Person";
+    const bool is_only_furniture = body.fixed && physics::IsThing(body) && fixed == 1 && things > 1;
+    const bool is_beside = things > kFewThings && physics::IsThing(body) && !body.kinematic &&
+                           !IsDealtWith(run, selection, body.name);
+    const bool is_named = !is_part && !is_only_furniture && !is_beside && IsSeen(body);
+    labels.push_back(is_named ? body.name : "");
+  }
+  return labels;
 }
 
 }  // namespace
@@ -350,19 +442,18 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
                                const PictureYaml& entry, const PictureFormat& format) {
   const physics::Scene& scene = scenario.scene;
   const FoundTime moment = FindEventTime(entry.at.value, run);
-  const Selection selection = SelectionOf(format, run, moment.tick);
+  const Selection selection = SelectionOf(format, scene, run, moment.tick);
   render::Picture picture{.width_px = format.width_px, .height_px = format.height_px};
   picture.text_scale = static_cast<float>(format.text_scale);
   picture.theme = format.print ? render::Theme::kPrint : render::Theme::kLight;
   picture.scene = &scene;
   picture.snapshot = SnapshotAt(run, moment.tick);
   picture.body_colors = BodyColors(scenario);
-  for (std::size_t i = 0; i < scene.bodies.size() && format.labels; ++i) {
-    // A person has one label, at her head: labels of eighteen parts would hide her.
-    const bool is_part = scene.bodies[i].kinematic && scenario.body_classes[i] != "Person";
-    const bool is_named = !is_part && IsSeen(scene.bodies[i]);
-    picture.body_labels.push_back(is_named ? scene.bodies[i].name : "");
-  }
+  if (format.labels) picture.body_labels = BodyLabels(scenario, run, selection);
+  // The one hand is the hand.
+  for (std::size_t h = 0; h < scene.hands.size() && format.labels && scene.hands.size() > 1; ++h)
+    picture.hand_labels.push_back(selection.HasHand(scene.hands[h].name) ? scene.hands[h].name
+                                                                         : "");
   if (const auto to_light = ToLight(scene)) picture.to_light = *to_light;
   for (std::size_t h = 0; h < scene.hands.size() && format.paths; ++h) {
     if (selection.HasHand(scene.hands[h].name))

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,10 +17,18 @@
 
 namespace prehend::harness {
 
+/// What tells a picture from its golden.
+struct PictureDifference {
+  std::vector<std::string> told;  ///< "thing `cup` is missing, ..", most telling first; empty: same
+  bool same_size = false;         ///< both could be read and have the same size
+};
+
 struct WrittenPicture {
   std::string file;     ///< path as written
   std::string caption;  ///< "reaching.begin, 0.412 s"
   std::string missed;   ///< empty, or why the end is shown instead of the moment that was asked for
+  std::string golden = "";            ///< path of the golden that it was compared with; empty: none
+  PictureDifference difference = {};  ///< from it
 };
 
 /// How pictures are drawn, whatever they show.
@@ -56,6 +66,26 @@ void PrepareToDraw();
 PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
                            const std::string& directory, const PictureFormat& format = {});
 
+/// The format of the suite's pictures, and so of golden ones: a smaller one shows a boundary that
+/// is off by 20 ms in too few pixels.
+inline const PictureFormat kGoldenFormat = {.width_px = 960, .height_px = 540};
+
+/// What a picture shows, thing by thing, is kept beside it: NAME.png, NAME.things.
+inline std::string ThingsFile(const std::string& picture_file) {
+  return std::filesystem::path(picture_file).replace_extension(".things").string();
+}
+
+/// The golden of a picture with this file name, or "" if there is none.
+using GoldenOf = std::function<std::string(const std::string& file_name)>;
+
+/// DrawPictures() in the golden format; each picture that has a golden is compared with it.
+PictureResult DrawAndCompare(const Scenario& scenario, const RunResult& run,
+                             const std::string& directory, const GoldenOf& golden_of);
+
+/// DrawPictures() in the golden format, with a THINGS file beside each: what a golden consists of.
+PictureResult DrawGoldens(const Scenario& scenario, const RunResult& run,
+                          const std::string& directory);
+
 /// One picture into one file.
 PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureYaml& entry,
                           const std::string& file, const PictureFormat& format = {});
@@ -77,14 +107,6 @@ struct SheetEntry {
 /// The same of several runs.
 PictureResult DrawSheet(const std::vector<SheetEntry>& entries, int columns,
                         const std::string& file, const PictureFormat& format = {});
-
-struct PictureDifference {
-  std::string text;        ///< "812 of its pixels differ, .."; empty: none
-  bool same_size = false;  ///< both could be read and have the same size
-};
-
-/// Compares a picture with its golden (render/compare_images.cc).
-PictureDifference ComparePicture(const std::string& golden_file, const std::string& drawn_file);
 
 /// Writes the golden in pale grey with every pixel that differs in red; both must have one size.
 /// False when it cannot.

@@ -4,15 +4,21 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 
+#include "harness/base/atomic_file.h"
+#include "harness/base/text_file.h"
 #include "harness/pictures/compose_picture.h"
 #include "harness/pictures/draw_image.h"
 #include "harness/pictures/pictures.h"
 #include "harness/run/event_time.h"
+#include "render/inventory.h"
 
 namespace prehend::harness {
 
 namespace {
+
+constexpr render::PngKind kSmall = render::PngKind::kSmall;
 
 double SecondsOf(const render::Picture& picture, const RunResult& run) {
   return static_cast<double>(picture.snapshot.tick) /
@@ -33,18 +39,65 @@ void Paste(const render::Image& image, int left, int top, render::Image& onto) {
   }
 }
 
-/// Draws one entry; returns an error text or "".
-std::string DrawOne(render::Painter& painter, const Scenario& scenario, const RunResult& run,
+/// What is done with a drawn picture; returns an error text or "".
+using Keep = std::function<std::string(const render::Picture&, WrittenPicture& as)>;
+
+/// Composes one entry and hands it on; returns an error text or "".
+std::string DrawOne(const render::Painter& painter, const Scenario& scenario, const RunResult& run,
                     const PictureYaml& entry, const PictureFormat& format, const std::string& file,
-                    std::vector<WrittenPicture>& written) {
+                    const Keep& keep, std::vector<WrittenPicture>& written) {
   if (!painter.error().empty()) return painter.error();
   if (run.recording.empty()) return "the run recorded nothing to draw";
   const render::Picture picture = ComposePicture(scenario, run, entry, format);
-  const render::Image image = DrawImage(painter, picture, format);
+  WrittenPicture drawn{file, CaptionOf(picture, run), FindEventTime(entry.at.value, run).missed};
+  const std::string error = keep(picture, drawn);
+  if (error.empty()) written.push_back(std::move(drawn));
+  return error;
+}
+
+std::string WriteImage(const render::Painter& painter, const render::Image& image,
+                       const std::string& file, render::PngKind kind = render::PngKind::kExact) {
   if (image.rgb.empty()) return painter.error();
-  if (!render::WritePng(image, file)) return "cannot write " + file;
-  written.push_back({file, CaptionOf(picture, run), FindEventTime(entry.at.value, run).missed});
-  return "";
+  return render::WritePng(image, file, kind) ? "" : "cannot write " + file;
+}
+
+PictureResult DrawEach(const render::Painter& painter, const Scenario& scenario,
+                       const RunResult& run, const std::string& directory,
+                       const PictureFormat& format, const Keep& keep) {
+  PictureResult result;
+  for (std::size_t i = 0; i < scenario.pictures.size(); ++i) {
+    const std::string suffix = i == 0 ? "" : fmt::format("-{}", i + 1);
+    const std::string file = fmt::format("{}/{}{}.png", directory, scenario.name, suffix);
+    const std::string error =
+        DrawOne(painter, scenario, run, scenario.pictures[i], format, file, keep, result.pictures);
+    if (!error.empty() && result.error.empty()) result.error = error;
+  }
+  return result;
+}
+
+/// Against a golden and, if it was kept, its inventory.
+PictureDifference CompareWith(const std::string& golden_file, const render::ListedPicture& drawn) {
+  const std::string things_file = ThingsFile(golden_file);
+  std::optional<render::Inventory> golden;
+  std::error_code ignored;
+  if (std::filesystem::exists(things_file, ignored)) {
+    const auto text = ReadTextFile(things_file);
+    if (text) golden = render::ReadInventory(*text);
+    if (!golden) return {.told = {things_file + " cannot be read"}};
+  }
+  const auto read = [&] { return render::ReadPng(golden_file); };
+  if (golden) {
+    return {.told = render::TellApart(*golden, read, drawn),
+            .same_size = golden->width_px == drawn.image.width_px &&
+                         golden->height_px == drawn.image.height_px};
+  }
+  const render::Image image = read();
+  if (image.rgb.empty()) return {.told = {golden_file + " cannot be read"}};
+  const std::string text = render::PixelsText(image, drawn.image);
+  PictureDifference difference{.told = {},
+                               .same_size = render::CompareImages(image, drawn.image).same_size};
+  if (!text.empty()) difference.told.push_back(text);
+  return difference;
 }
 
 }  // namespace
@@ -55,24 +108,54 @@ void PrepareToDraw() { render::Painter::LoadLibrary(); }
 
 PictureResult DrawPictures(const Scenario& scenario, const RunResult& run,
                            const std::string& directory, const PictureFormat& format) {
-  PictureResult result;
-  if (scenario.pictures.empty()) return result;
+  if (scenario.pictures.empty()) return {};
   render::Painter painter;
-  for (std::size_t i = 0; i < scenario.pictures.size(); ++i) {
-    const std::string suffix = i == 0 ? "" : fmt::format("-{}", i + 1);
-    const std::string file = fmt::format("{}/{}{}.png", directory, scenario.name, suffix);
-    const std::string error =
-        DrawOne(painter, scenario, run, scenario.pictures[i], format, file, result.pictures);
-    if (!error.empty() && result.error.empty()) result.error = error;
-  }
-  return result;
+  return DrawEach(painter, scenario, run, directory, format,
+                  [&](const render::Picture& picture, const WrittenPicture& as) {
+                    return WriteImage(painter, DrawImage(painter, picture, format), as.file);
+                  });
+}
+
+PictureResult DrawAndCompare(const Scenario& scenario, const RunResult& run,
+                             const std::string& directory, const GoldenOf& golden_of) {
+  if (scenario.pictures.empty()) return {};
+  render::Painter painter;
+  return DrawEach(painter, scenario, run, directory, kGoldenFormat,
+                  [&](const render::Picture& picture, WrittenPicture& as) {
+                    as.golden = golden_of(std::filesystem::path(as.file).filename().string());
+                    if (as.golden.empty())
+                      return WriteImage(painter, painter.Draw(picture), as.file, kSmall);
+                    const render::ListedPicture drawn = painter.DrawListed(picture);
+                    if (!drawn.image.rgb.empty()) as.difference = CompareWith(as.golden, drawn);
+                    return WriteImage(painter, drawn.image, as.file, kSmall);
+                  });
+}
+
+PictureResult DrawGoldens(const Scenario& scenario, const RunResult& run,
+                          const std::string& directory) {
+  if (scenario.pictures.empty()) return {};
+  render::Painter painter;
+  return DrawEach(painter, scenario, run, directory, kGoldenFormat,
+                  [&](const render::Picture& picture, const WrittenPicture& as) {
+                    const render::ListedPicture drawn = painter.DrawListed(picture);
+                    std::string error = WriteImage(painter, drawn.image, as.file, kSmall);
+                    if (error.empty())
+                      error = WriteTextFile(ThingsFile(as.file),
+                                            render::InventoryText(drawn.inventory));
+                    return error;
+                  });
 }
 
 PictureResult DrawPicture(const Scenario& scenario, const RunResult& run, const PictureYaml& entry,
                           const std::string& file, const PictureFormat& format) {
   PictureResult result;
   render::Painter painter;
-  result.error = DrawOne(painter, scenario, run, entry, format, file, result.pictures);
+  result.error = DrawOne(
+      painter, scenario, run, entry, format, file,
+      [&](const render::Picture& picture, const WrittenPicture& as) {
+        return WriteImage(painter, DrawImage(painter, picture, format), as.file);
+      },
+      result.pictures);
   return result;
 }
 
@@ -118,23 +201,6 @@ PictureResult DrawSheet(const std::vector<SheetEntry>& entries, int columns,
   }
   if (!render::WritePng(sheet, file)) result.error = "cannot write " + file;
   return result;
-}
-
-PictureDifference ComparePicture(const std::string& golden_file, const std::string& drawn_file) {
-  const render::Image golden = render::ReadPng(golden_file), drawn = render::ReadPng(drawn_file);
-  if (golden.rgb.empty()) return {golden_file + " cannot be read"};
-  const render::ImageDifference found = render::CompareImages(golden, drawn);
-  if (!found.same_size) {
-    return {fmt::format("it has {} x {} pixels, its golden {} x {}", drawn.width_px,
-                        drawn.height_px, golden.width_px, golden.height_px)};
-  }
-  if (found.AreEqual()) return {.text = "", .same_size = true};
-  return {.text = fmt::format(
-              "{} of its pixels differ ({:.2g} %), at most {} may; they lie between ({}, {}) and "
-              "({}, {})",
-              found.pixels, 300.0 * found.pixels / golden.rgb.size(), render::kMaxDifferingPixels,
-              found.left, found.top, found.right, found.bottom),
-          .same_size = true};
 }
 
 bool WritePictureDifference(const std::string& golden_file, const std::string& drawn_file,

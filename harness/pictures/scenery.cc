@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint32_t kWood = 0xC8A27C, kPerson = 0xB4A99C, kSkin = 0xE0AC86;
+constexpr std::uint32_t kWood = 0xC8A27C, kPerson = 0xC6BCB0, kSkin = 0xE0AC86;
 constexpr std::uint32_t kRegionRgb = 0x6BA8FF, kGazeTargetRgb = 0xF273BF;
 /// A board is at most this thick, and at least this long and wide.
 constexpr double kBoardThick_m = 0.12, kBoardWide_m = 0.25;

@@ -30,7 +30,8 @@ const Arrows& ProjectArrows() {
        {"physics/box2d", "physics/bullet", "physics/hand", "physics/motion", "physics/person",
         "physics/scene"}},
 
-      {"render", {"physics/scene"}},
+      {"render/gl", {"physics/scene"}},
+      {"render", {"physics/scene", "render/gl"}},
 
       {"harness/base", {"grammar/base"}},
       {"harness/process", {}},

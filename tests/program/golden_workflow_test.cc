@@ -172,6 +172,8 @@ TEST_F(GoldenWorkflow, PicturesHaveAGateOfTheirOwn) {
     GTEST_SKIP() << "a build without OSMesa draws nothing: " << accepted.err;
   ASSERT_EQ(accepted.exit_code, 0) << accepted.err;
   ASSERT_TRUE(fs::exists(golden));
+  EXPECT_NE(ReadFile(root_ / "golden/rest/carton_rests.things").find("\nlabel:carton "),
+            std::string::npos);
   EXPECT_EQ(Do("check").exit_code, 0);
   const std::string timeline = ReadFile(Golden());
   EXPECT_TRUE(Do("accept carton_rests --pictures --reason again").out.starts_with("nothing to"));
@@ -181,8 +183,10 @@ TEST_F(GoldenWorkflow, PicturesHaveAGateOfTheirOwn) {
                             "pictures: [{at: 0.1, camera: top}]\n");
   const Said differs = Do("check");
   EXPECT_EQ(differs.exit_code, 1) << differs.out;
-  EXPECT_TRUE(SaysIn(
-      differs, "picture .*carton_rests.png: [0-9]+ of its pixels differ .*, at most 20 may; .*\n"))
+  EXPECT_TRUE(SaysIn(differs,
+                     "picture .*carton_rests.png:\n(  .*\n)*  thing `carton` is elsewhere, .*\n"
+                     "(  .*\n)*  [0-9]+ of its pixels differ .*, at most 20 may; .*\n"
+                     "  expected .*golden/rest/carton_rests.png\n"))
       << differs.out;
   EXPECT_TRUE(SaysIn(differs, "  accept it with: prehend accept rest/carton_rests --pictures "));
   EXPECT_FALSE(SaysIn(Do("check --set settle_s=0.2"), "accept it"))

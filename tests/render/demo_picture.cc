@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "render/mesh.h"
+#include "render/gl/mesh.h"
 
 namespace prehend::render {
 namespace {

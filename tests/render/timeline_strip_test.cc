@@ -47,6 +47,24 @@ TEST_F(TimelineStripTest, ItSaysHowManyRowsAreLeftOut) {
   EXPECT_EQ(layout.note, "+ " + std::to_string(48 - layout.lanes.size()) + " more");
 }
 
+TEST_F(TimelineStripTest, NamesWithoutRoomAreInALegend) {
+  const Color red = {1, 0, 0}, blue = {0, 0, 1}, brown = {0.5f, 0.3f, 0.2f};
+  StripRow phases{"phase", {}}, grasps{"grasp", {}};
+  for (int i = 0; i < 40; ++i) {
+    phases.segments.push_back({"reaching", 1.0 * i, i + 0.4, red});
+    phases.segments.push_back({"transporting", i + 0.4, i + 0.9, blue});
+    grasps.segments.push_back({i % 2 ? "red_cup" : "blue_cup", i + 0.3, i + 0.9, brown});
+  }
+  const StripLayout layout = Layout({.end_s = 40, .rows = {phases, grasps}});
+  ASSERT_EQ(layout.legend.size(), 2u) << "brown means two things";
+  EXPECT_EQ(layout.legend[0].name, "reaching");
+  EXPECT_EQ(layout.legend[1].color, blue);
+  EXPECT_LT(layout.legend[1].box.bottom(), layout.lanes[0].track.y);
+  for (const StripBar& bar : layout.lanes[0].bars)
+    EXPECT_EQ(bar.name_place, NamePlace::kNone) << bar.name;
+  EXPECT_TRUE(Layout({.end_s = 4, .rows = {{"row", {{"a", 0, 3, red}}}}}).legend.empty());
+}
+
 TEST_F(TimelineStripTest, TextAndBarsGrowTogether) {
   const TimelineStrip strip{.end_s = 4, .rows = {{"row", {{"a", 0, 1}}}}};
   const StripLayout usual = LayOutStrip(strip, *font_, 1280, 720),

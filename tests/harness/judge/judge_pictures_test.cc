@@ -14,31 +14,39 @@ namespace fs = std::filesystem;
 using JudgePicturesTest = CheckedScenario;
 
 TEST_F(JudgePicturesTest, OnlyPicturesWithAGoldenAreCompared) {
-  const fs::path first = Write("report/x.png", "no picture"),
-                 second = Write("report/x-2.png", "no picture");
-  const fs::path golden = Write("golden/rest/x.png", "no picture either");
-  const auto compared = ComparePictures("rest/x", {first, second}, root_.string(), true);
+  const fs::path golden = Write("golden/rest/x.png", "no picture");
+  const GoldenOf golden_of = GoldensOf("rest/x", root_.string());
+  EXPECT_EQ(golden_of("x.png"), golden);
+  EXPECT_EQ(golden_of("x-2.png"), "");
+  WrittenPicture with{"report/x.png", "", ""}, without{"report/x-2.png", "", ""};
+  with.golden = golden.string();
+  with.difference = {.told = {"the title is missing"}, .same_size = true};
+  auto compared = ComparisonsOf("rest/x", {with, without}, root_.string(), true);
   ASSERT_EQ(compared.size(), 1u);
   EXPECT_EQ(compared[0].golden, golden);
-  EXPECT_EQ(compared[0].drawn, first);
-  EXPECT_EQ(compared[0].shown_in, "") << "there are no pixels to show";
-  if (CanDrawPictures()) {
-    EXPECT_EQ(compared[0].difference, golden.string() + " cannot be read");
-  }
+  EXPECT_EQ(compared[0].drawn, "report/x.png");
+  EXPECT_EQ(compared[0].told, with.difference.told);
+  EXPECT_EQ(compared[0].shown_in.filename(), "x.difference.png");
+  with.difference.same_size = false;
+  compared = ComparisonsOf("rest/x", {with}, root_.string(), true);
+  EXPECT_EQ(compared.at(0).shown_in, "") << "there are no pixels to show";
 }
 
-TEST_F(JudgePicturesTest, TheTextSaysWhereEverythingIs) {
+TEST_F(JudgePicturesTest, TheTextSaysWhatDiffersAndWhereEverythingIs) {
   const std::vector<PictureComparison> compared = {
-      {.golden = "g/same.png", .drawn = "r/same.png", .difference = "", .shown_in = ""},
-      {.golden = "g/x.png", .drawn = "r/x.png", .difference = "5 % differ", .shown_in = "d.png"},
-      {.golden = "g/y.png", .drawn = "r/y.png", .difference = "other size", .shown_in = ""}};
+      {.golden = "g/same.png", .drawn = "r/same.png", .told = {}, .shown_in = ""},
+      {.golden = "g/x.png",
+       .drawn = "r/x.png",
+       .told = {"the title is missing", "5 % differ"},
+       .shown_in = "d.png"},
+      {.golden = "g/y.png", .drawn = "r/y.png", .told = {"other size"}, .shown_in = ""}};
   EXPECT_EQ(PictureDifferencesText(compared, "prehend accept x --pictures"),
-            "picture r/x.png: 5 % differ\n  expected g/x.png\n  difference d.png\n"
-            "  accept it with: prehend accept x --pictures\n"
-            "picture r/y.png: other size\n  expected g/y.png\n"
+            "picture r/x.png:\n  the title is missing\n  5 % differ\n  expected g/x.png\n"
+            "  difference d.png\n  accept it with: prehend accept x --pictures\n"
+            "picture r/y.png:\n  other size\n  expected g/y.png\n"
             "  accept it with: prehend accept x --pictures\n");
   EXPECT_EQ(PictureDifferencesText({compared[2]}, ""),
-            "picture r/y.png: other size\n  expected g/y.png\n");
+            "picture r/y.png:\n  other size\n  expected g/y.png\n");
 }
 
 TEST_F(JudgePicturesTest, GoldensThatTheScenarioDoesNotAskForAreFindings) {
@@ -55,12 +63,12 @@ TEST_F(JudgePicturesTest, GoldensThatTheScenarioDoesNotAskForAreFindings) {
 TEST_F(JudgePicturesTest, WhatDiffersIsKeptForReviewUntilItDoesNot) {
   const fs::path drawn = Write("report/x.png", "new"), golden = Write("golden/rest/x.png", "old");
   const fs::path pending = root_ / "build/pending/rest/x.png";
-  PictureComparison compared{.golden = golden, .drawn = drawn, .difference = "5 %", .shown_in = {}};
+  PictureComparison compared{.golden = golden, .drawn = drawn, .told = {"5 %"}, .shown_in = {}};
   StorePictures("rest/x", {compared}, root_.string());
   EXPECT_TRUE(fs::exists(pending));
   StorePictures("rest/x", {compared}, root_.string());
   EXPECT_TRUE(fs::exists(pending)) << "it takes the place of the one before";
-  compared.difference = "";
+  compared.told.clear();
   StorePictures("rest/x", {compared}, root_.string());
   EXPECT_FALSE(fs::exists(pending));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Solids of revolution from a profile and a list of meridians, and tubes by parallel transport.
-// Tested by tests/render/mesh_test.cc
-#include "render/mesh.h"
+// Tested by tests/render/gl/mesh_test.cc
+#include "render/gl/mesh.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -2,7 +2,7 @@
 // Triangle meshes. A vertex is a corner and an outward direction; a mesh is drawn as
 //   position = corner * half_size + direction * rounding
 // (the Minkowski sum of a solid and a ball), so one unit mesh gives every rounded box, ball,
-// capsule or cylinder without distorted bevels. Tested by tests/render/mesh_test.cc
+// capsule or cylinder without distorted bevels. Tested by tests/render/gl/mesh_test.cc
 #pragma once
 
 #include <Eigen/Geometry>

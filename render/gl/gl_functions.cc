@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Looks up the function table.
 // Tested by tests/render/painter_test.cc
-#include "render/gl_functions.h"
+#include "render/gl/gl_functions.h"
 
 namespace prehend::render {
 

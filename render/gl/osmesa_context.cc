@@ -4,7 +4,7 @@
 // osmesa.h includes the system's gl.h, which conflicts with the core profile header; defining
 // gl.h's include guard avoids that.
 // Tested by tests/render/painter_test.cc
-#include "render/osmesa_context.h"
+#include "render/gl/osmesa_context.h"
 
 #include <GL/glcorearb.h>
 #include <dlfcn.h>

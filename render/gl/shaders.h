@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shader sources (GLSL 3.30). render/shaders.cc describes what each computes.
+// The shader sources (GLSL 3.30). render/gl/shaders.cc describes what each computes.
 // Tested by tests/render/painter_test.cc
 #pragma once
 
 namespace prehend::render {
 
 /// Version of the pixels: raise it whenever they change on purpose. Part of the fingerprint.
-inline constexpr int kRendererVersion = 2;
+inline constexpr int kRendererVersion = 3;
 
 extern const char* const
     kSolidVertexShader;  ///< corner * half_size + direction * rounding, to world and clip

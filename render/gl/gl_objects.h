@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "render/gl_functions.h"
-#include "render/mesh.h"
+#include "render/gl/gl_functions.h"
+#include "render/gl/mesh.h"
 
 namespace prehend::render {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Programs, meshes and framebuffers.
 // Tested by tests/render/painter_test.cc
-#include "render/gl_objects.h"
+#include "render/gl/gl_objects.h"
 
 #include <array>
 #include <cstddef>

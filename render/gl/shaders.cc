@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shader sources. Colours are given in sRGB, light is computed in linear space, and a soft tone map
-// converts back to sRGB.
+// Shader sources. Light is computed in linear space, and a soft tone map converts to sRGB.
 // Tested by tests/render/painter_test.cc
-#include "render/shaders.h"
+#include "render/gl/shaders.h"
 
 namespace prehend::render {
 
@@ -32,7 +31,7 @@ const char* const kSurfaceFragmentShader = R"(
 in vec3 p_W, n_W;
 in vec4 p_light;
 out vec4 pixel;
-uniform vec4 color;
+uniform vec4 color;  // linear
 uniform vec3 to_light, eye;
 uniform float gloss, shadow_texel;
 uniform vec3 ground;  // centre x and y, radius where it starts to fade
@@ -69,8 +68,15 @@ vec3 ToDisplay(vec3 c) {
   return pow(clamp(c, 0., 1.), vec3(1. / 2.2));
 }
 
+// Powers by products: a rasteriser in software pays for pow() at every pixel.
+float Squared(float x) { return x * x; }
+float ToThe48th(float x) {
+  float to_16 = Squared(Squared(Squared(Squared(x))));
+  return to_16 * to_16 * to_16;
+}
+
 void main() {
-  vec3 albedo = pow(color.rgb, vec3(2.2));
+  vec3 albedo = color.rgb;
   float alpha = color.a;
 #if FINISH == 3
   pixel = vec4(ToDisplay(albedo), alpha);
@@ -79,7 +85,7 @@ void main() {
   if (!gl_FrontFacing) n = -n;
   vec3 v = normalize(eye - p_W);
 #if FINISH == 2
-  float rim = pow(1. - abs(dot(n, v)), 2.);
+  float rim = Squared(1. - abs(dot(n, v)));
   pixel = vec4(ToDisplay(albedo * (.75 + .5 * rim)), alpha * (.35 + 2.2 * rim));
 #else
 #if FINISH == 1
@@ -93,8 +99,8 @@ void main() {
   float facing = max(dot(n, to_light), 0.);
   float lit = facing > 0. ? Shadow(n) : 0.;
   vec3 ambient = mix(vec3(.20, .19, .18), vec3(.42, .45, .50), .5 + .5 * n.z);
-  float highlight = gloss * pow(max(dot(n, normalize(to_light + v)), 0.), 48.) * lit;
-  float rim = pow(1. - max(dot(n, v), 0.), 4.) * .10;
+  float highlight = gloss * ToThe48th(max(dot(n, normalize(to_light + v)), 0.)) * lit;
+  float rim = Squared(Squared(1. - max(dot(n, v), 0.))) * .10;
   vec3 c = albedo * (ambient + vec3(1.05, 1., .93) * .85 * facing * lit) + highlight + rim * vec3(.8, .9, 1.);
   pixel = vec4(ToDisplay(c), alpha);
 #endif

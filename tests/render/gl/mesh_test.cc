@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/mesh.h"
+#include "render/gl/mesh.h"
 
 #include <gtest/gtest.h>
 
