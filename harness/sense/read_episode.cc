@@ -453,7 +453,7 @@ class EpisodeReader {
   std::vector<bool> has_ahead_, has_spheres_;  ///< of each hand: its last mention gave them
   FrameEntry scanned_;                         ///< of TakeUsualFrame(); kept for its memory
   YamlDocument no_document_;
-  EpisodeFrame now_;                           ///< what is not tracked is not, however short
+  EpisodeFrame now_;  ///< what is not tracked is not, however short
   LookBridge bridge_;
 };
 

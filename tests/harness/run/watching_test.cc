@@ -35,7 +35,9 @@ class Watching : public testing::TestWithParam<int> {
   RunResult PlayWatched(const LoadedRun& loaded) {
     const Scenario& scenario = loaded.scenario;
     std::ostringstream episode;
-    EpisodeWriter writer(episode, {scenario.name, scenario.grammar, MakeEntityTable(scenario)});
+    EpisodeWriter writer(episode, {.episode = scenario.name,
+                                   .grammar = scenario.grammar,
+                                   .entity_table = MakeEntityTable(scenario)});
     OutcomeWatch outcomes(scenario.scene, scenario.outcomes);
     ScenarioRun playing(scenario, loaded.program, {.record = true, .measure = true});
     while (playing.Step()) {
