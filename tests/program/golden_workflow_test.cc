@@ -184,9 +184,9 @@ TEST_F(GoldenWorkflow, PicturesHaveAGateOfTheirOwn) {
   const Said differs = Do("check");
   EXPECT_EQ(differs.exit_code, 1) << differs.out;
   EXPECT_TRUE(SaysIn(differs,
-                     "picture .*carton_rests.png:\n(  .*\n)*  thing `carton` is elsewhere, .*\n"
-                     "(  .*\n)*  [0-9]+ of its pixels differ .*, at most 20 may; .*\n"
-                     "  expected .*golden/rest/carton_rests.png\n"))
+                     "picture .*carton_rests.png:\n(  .*\n)* +thing `carton` is elsewhere, .*\n"
+                     "(  .*\n)* +[0-9]+ of its pixels differ .*, at most 20 may; .*\n"
+                     " +expected .*golden/rest/carton_rests.png\n"))
       << differs.out;
   EXPECT_TRUE(SaysIn(differs, "  accept it with: prehend accept rest/carton_rests --pictures "));
   EXPECT_FALSE(SaysIn(Do("check --set settle_s=0.2"), "accept it"))
