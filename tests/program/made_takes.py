@@ -21,7 +21,7 @@ class Person:
         self.any_axes = any_axes  # trackers give rigid bodies any axes
 
 
-# The definitions were tried on the first, and never on the second.
+# The definitions were worked out on the first. Only totals of the second, of other seeds, were looked at meanwhile.
 PEOPLE = {
     "first": Person((0.06, 0.12), 0.74, (0.9, 1.2), (0.12, 0.2), 6, 60, 0.0005, 0.0, False),
     "second": Person((0.10, 0.22), 0.92, (0.6, 1.5), (0.08, 0.3), 10, 53, 0.001, 0.006, True),
