@@ -3,9 +3,10 @@
 // Tested by tests/grammar/engine/signals_test.cc
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "grammar/base/reach.h"
 #include "grammar/base/tracking.h"
@@ -26,7 +27,8 @@ class Evaluator {
         entity_table_(entity_table),
         history_(history),
         instances_(instances),
-        thresholds_(program.thresholds) {}
+        thresholds_(program.thresholds),
+        computed_(SharesValues(program) ? 1024 : 0) {}
 
   /// Whose roles, at which frame, and at which frame the interval ends, if that is known.
   struct View {
@@ -131,6 +133,11 @@ class Evaluator {
     return view.instance.entities[node.roles[i]];
   }
 
+  static bool SharesValues(const Program& program) {
+    return std::ranges::any_of(program.nodes,
+                               [](const Node& node) { return node.shared != kNone; });
+  }
+
   const Program& program_;
   const EntityTable& entity_table_;
   const History& history_;
@@ -144,7 +151,7 @@ class Evaluator {
     bool depends_on_time = false;
     double value = 0;
   };
-  mutable std::array<Computed, 1024> computed_;
+  mutable std::vector<Computed> computed_;  ///< empty if they share none
 };
 
 }  // namespace prehend::grammar

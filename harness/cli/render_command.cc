@@ -383,7 +383,7 @@ std::string WhyNoOutput(const ParsedOptions& options) {
         "found '{}', wanted a file NAME.png; scenes are drawn in pixels, --strip is "
         "the timeline alone",
         output);
-  if (why.empty()) why = WhyNotWritable(output);
+  if (why.empty()) why = AtomicFile(output).problem();
   return why.empty() ? "" : "--output: " + why;
 }
 

@@ -28,8 +28,10 @@ const std::set<std::string> kExceptedGrammars = {
     // more: judged by tests/grammar/motion_test.cc and tests/program/facts_from_motion.py.
     "contact_from_motion",
     "grasp_from_motion",
-    "reach_from_motion",
 };
+
+/// Grammars that define no event: others use what they define.
+const std::set<std::string> kDefinitionsAlone = {"reach", "reach_from_motion"};
 
 /// A grammar of the library.
 struct Shipped {
@@ -43,6 +45,7 @@ std::map<std::string, Shipped> Library() {
   for (const auto& file : std::filesystem::directory_iterator(root / "grammar/library")) {
     if (file.path().extension() != ".grammar") continue;
     Shipped& shipped = library[file.path().stem().string()];
+    if (kDefinitionsAlone.contains(file.path().stem().string())) continue;
     std::vector<std::string> files;
     const grammar::CompileResult compiled =
         LoadGrammar(PREHEND_SOURCE_DIR, file.path().stem().string(), {}, &files);

@@ -7,6 +7,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <string>
 
 #include "grammar/program/program.h"
 
@@ -135,8 +137,15 @@ TEST_F(LoadGrammarFiles, WarnsOfNumbersOfSensorSetsThatNoHandHas) {
 }
 
 TEST_F(LoadGrammarFiles, LibraryGrammarsGiveNoWarnings) {
+  // These have definitions alone, for `contact_from_motion` and `pick_and_place`, which use them.
+  const std::set<std::string> without_events = {"reach", "reach_from_motion"};
   for (const auto& entry : fs::directory_iterator(PREHEND_SOURCE_DIR "/grammar/library")) {
     const auto loaded = Load(entry.path().string());
+    if (without_events.contains(entry.path().stem().string())) {
+      ASSERT_EQ(loaded.diagnostics.size(), 1u) << entry.path();
+      EXPECT_EQ(loaded.diagnostics.front().message, "the grammar defines no event");
+      continue;
+    }
     EXPECT_TRUE(loaded.program) << Format(loaded.diagnostics);
     EXPECT_EQ(Format(loaded.warnings), "") << entry.path();
   }
