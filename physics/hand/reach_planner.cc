@@ -33,6 +33,10 @@ constexpr double kTooWide = 100;
 /// be gripped upright.
 constexpr double kRolled = 20;
 
+/// Share of a turn that counts if another candidate turns as much the other way round: then the
+/// hand turns inward, a right hand to the left.
+constexpr double kInward = 1e-6;
+
 /// Bends of the path, in the order in which they are tried: how long the last part follows the
 /// direction of arrival, and how much the path rises first.
 struct Bend {
@@ -152,8 +156,8 @@ class CandidateList {
   CandidateList(const Scene& scene, const Snapshot& now, const ReachQuery& query)
       : query_(query),
         planar_(scene.world.planar),
-        style_(scene.hands[static_cast<std::size_t>(query.hand)]
-                   .model.styles[static_cast<std::size_t>(query.style)]),
+        hand_(scene.hands[static_cast<std::size_t>(query.hand)].model),
+        style_(hand_.styles[static_cast<std::size_t>(query.style)]),
         target_(scene.bodies[static_cast<std::size_t>(query.object)],
                 now.bodies[static_cast<std::size_t>(query.object)].X_WB, query.point_m),
         ground_(scene, now, query.object),
@@ -172,6 +176,7 @@ class CandidateList {
 
   const ReachQuery& query_;
   const bool planar_;
+  const HandModel& hand_;
   const GraspStyle& style_;
   const Target target_;
   const Ground ground_;
@@ -204,7 +209,8 @@ Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quater
   candidate.beside_m =
       (raised_m * Eigen::Vector3d::UnitZ() - (depth - approach.pads_m) * toward_W).norm();
   candidate.X_WH.p_m += query_.offset_m;
-  candidate.cost = RotationVector(q * query_.from.X_WH.q.conjugate()).norm();
+  const Eigen::Vector3d turn = RotationVector(q * query_.from.X_WH.q.conjugate());
+  candidate.cost = turn.norm() - kInward * (hand_.left ? -turn.z() : turn.z());
   candidate.too_wide_m = std::max(0.0, 2 * half_grip - style_.opening_m);
   if (candidate.too_wide_m > 0) candidate.cost += kTooWide;
   candidate.width_m = WidthAlong(target_.body, target_.X_WB, grip_W);

@@ -55,6 +55,21 @@ TEST(ReachPlannerTest, TheGripIsSquareToATurnedBox) {
   }
 }
 
+TEST(ReachPlannerTest, OfTwoEqualTurnsAHandTakesTheOneInward) {
+  // From the half between two faces both are 45 degrees away.
+  for (const std::string hand : {"human_right", "human_left"}) {
+    Scene scene = MakeScene({.shape = Box{{0.06, 0.06, 0.06}}, .hand = hand});
+    Eigen::Quaterniond& from = scene.hands[0].X_WH.q;
+    for (const double yaw : {0.25, 0.75, -0.25, -0.75}) {
+      from = Eigen::AngleAxisd(yaw * std::numbers::pi, Vector3d::UnitZ());
+      const ReachPlan plan = Plan(scene, "wrap", Approach::kAbove);
+      const Eigen::AngleAxisd turn(plan.segment.q_end * from.conjugate());
+      EXPECT_NEAR(turn.angle(), std::numbers::pi / 4, 1e-9) << hand << yaw;
+      EXPECT_NEAR(turn.axis().z(), hand == "human_right" ? 1 : -1, 1e-9) << hand << yaw;
+    }
+  }
+}
+
 TEST(ReachPlannerTest, ALongBoxIsGrippedAcross) {
   const Scene scene = MakeScene({.shape = Box{{0.15, 0.06, 0.06}}});
   const ReachPlan plan = Plan(scene, "wrap", Approach::kAbove);
