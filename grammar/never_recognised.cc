@@ -135,6 +135,8 @@ class Judge {
         if (!facts_.touches) return Missing{-1, "touches"};
         break;
       case Op::kForceBetween:
+        if (!facts_.forces) return Missing{0, "forces"};
+        break;
       case Op::kTouchSpeed:
         if (!facts_.touches) return Missing{0, "touches"};
         break;
@@ -170,7 +172,10 @@ class Judge {
 
 void FactsOfEpisode::Add(const Frame& frame) {
   touches = touches || !frame.touches.empty();
-  for (const Touch& touch : frame.touches) sensor_sets = sensor_sets || touch.sensor_sets != 0;
+  for (const Touch& touch : frame.touches) {
+    sensor_sets = sensor_sets || touch.sensor_sets != 0;
+    forces = forces || touch.normal_force_n != 0;
+  }
   for (const HandSample& hand : frame.hands) grips = grips || hand.trigger > 0;
   for (const EntitySample& look : frame.entities) gazes = gazes || look.gazes_at != kNoEntity;
 }

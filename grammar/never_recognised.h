@@ -18,6 +18,7 @@ struct FactsOfEpisode {
   bool sensor_sets = false;
   bool grips = false;
   bool gazes = false;
+  bool forces = false;
 
   void Add(const Frame& frame);
 };
@@ -27,7 +28,7 @@ struct NeverRecognised {
   std::string event;
   std::string file;
   Place place;
-  std::string_view fact;  ///< "touches", "sensor sets", "grips", "gazes"
+  std::string_view fact;  ///< "touches", "sensor sets", "grips", "gazes", "forces"
 };
 
 /// In the order of the grammar. An event that is not among them may be recognised, or may not.

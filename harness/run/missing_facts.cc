@@ -24,6 +24,14 @@ std::string GapsOfPlaced(const Episode& episode, const std::vector<bool>& placed
   return GapsText(episode.header.entity_table, gaps);
 }
 
+std::string_view RemedyFor(std::string_view fact) {
+  if (fact == "gazes") return "give persons or heads 'gazes_at' in their samples";
+  if (fact == "forces")
+    return "motion does not show forces: give touches 'force_n', or leave these events out";
+  return "make these facts of motion, 'use contact from motion' above the other lines, or "
+         "pick_and_place_from_motion; docs/facts-from-motion.md";
+}
+
 }  // namespace
 
 MissingFacts FindMissingFacts(Episode& episode, const grammar::Program& program) {
@@ -53,9 +61,7 @@ MissingFacts FindMissingFacts(Episode& episode, const grammar::Program& program)
         names.size() == 1
             ? std::string()
             : fmt::format(", nor {}", fmt::join(names.begin() + 1, names.end(), ", ")),
-        fact == "gazes" ? "give persons or heads 'gazes_at' in their samples"
-                        : "make these facts of motion, 'use contact from motion' above the other "
-                          "lines, or pick_and_place_from_motion; docs/facts-from-motion.md");
+        RemedyFor(fact));
   }
   missing.nothing_left = never.size() == grammar::EventNames(program).size();
   return missing;

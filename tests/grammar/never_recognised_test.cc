@@ -24,6 +24,7 @@ event gripped(h: Hand) while trigger(h) > 0.5 until trigger(h) < 0.2
 event open(h: Hand) while trigger(h) < 0.5 and speed(h) > 1 m/s
 event seen(p: Person, x: Thing) while gazed(p, x)
 event pressed(x: Thing, y: Thing) while force(x, y) > 1 N or speed(x) > 1 m/s
+event squeezed(h: Hand, x: Thing) while force(h, x) > 1 N
 event lifted(h: Hand, x: Thing) from held(h, any) begins to height(x) > 1 m begins
 event left(h: Hand, x: Thing) rest of held(h, x) outside gripped(h)
 event alone(x: Thing) while not touching_any(x)
@@ -33,13 +34,17 @@ event fast(h: Hand) while speed(h) > 1 m/s requires gripped(h)
 event story(h: Hand, x: Thing) compose a: fast(h), b: held(h, x) where a before b
 )");
   EXPECT_EQ(Never(*program, {}),
-            "held: touches, gripped: grips, seen: gazes, lifted: touches, left: touches, "
+            "held: touches, gripped: grips, seen: gazes, squeezed: forces, lifted: touches, left: "
+            "touches, "
             "twice: touches, fast: grips, story: grips");
-  EXPECT_EQ(Never(*program, {.touches = true, .grips = true}),
-            "held: sensor sets, seen: gazes, lifted: sensor sets, left: sensor sets, "
-            "twice: sensor sets, story: sensor sets");
-  EXPECT_EQ(Never(*program, {.touches = true, .sensor_sets = true, .grips = true, .gazes = true}),
-            "");
+  EXPECT_EQ(
+      Never(*program, {.touches = true, .grips = true}),
+      "held: sensor sets, seen: gazes, squeezed: forces, lifted: sensor sets, left: sensor sets, "
+      "twice: sensor sets, story: sensor sets");
+  EXPECT_EQ(
+      Never(*program,
+            {.touches = true, .sensor_sets = true, .grips = true, .gazes = true, .forces = true}),
+      "");
 }
 
 TEST(NeverRecognised, TheLibraryNeedsTouchesAndFactsFromMotionNeedNone) {

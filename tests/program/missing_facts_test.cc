@@ -45,5 +45,20 @@ TEST(MissingFacts, WhatCanStillBeRecognisedIsExitCodeZero) {
   EXPECT_EQ(motion.err.find("never recognised"), std::string::npos) << motion.err;
 }
 
+TEST(MissingFacts, ForcesAreNotMadeOfMotion) {
+  const auto folder = FreshFolder("missing");
+  WriteFile(folder / "poses.jsonl", kPoses);
+  WriteFile(folder / "g.grammar", "grammar g\nuse contact from motion\nuse force\n");
+  const Said said = Prehend({"resegment", (folder / "poses.jsonl").string(), "--grammar",
+                             (folder / "g.grammar").string()});
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_NE(said.err.find("warning: this recording has no forces, so 'holding_onto' is never "
+                          "recognised\n  hint: motion does not show forces: give touches "
+                          "'force_n', or leave these events out\n"),
+            std::string::npos)
+      << said.err;
+  EXPECT_EQ(said.err.find("make these facts of motion"), std::string::npos) << said.err;
+}
+
 }  // namespace
 }  // namespace prehend::house
