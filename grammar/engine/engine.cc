@@ -27,16 +27,28 @@ Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
   for (const Rule& rule : program_->rules) {
     rule_ticks_.push_back(grammar::TicksOf(rule, history_));
     past_.LookBack(rule, history_);
+    nearness_.push_back(NearnessOf(rule));
   }
   instances_.BindUnguarded();
   for (InstanceId i(0); i < instances_.end_id(); ++i) Wake(i);
   if (instances_.TooMany()) error_ = instances_.WhyTooMany();
 }
 
+// The condition without which nothing of the rule begins or leads on, if entities must be near each
+// other for it.
+NodeId Engine::NearnessOf(const Rule& rule) const {
+  NodeId condition;
+  if (const auto* holds = rule.If<WhileRule>(); holds != nullptr && holds->at_least == 0)
+    condition = holds->condition;
+  if (const auto* looks_back = rule.If<UntilSinceRule>()) condition = looks_back->since;
+  return condition != kNone && evaluator_.NeedsNearness(condition) ? condition : NodeId();
+}
+
 void Engine::Wake(InstanceId index) {
   RuleInstance& instance = instances_[index];
   if (instance.awake || instance.rule == kNone) return;
   instance.awake = true;
+  instances_.RestsUntil_m(index) = -1;
   instance.next = std::max<FrameNumber>(history_.now(), 0);
   if (auto* looks_back = instance.If<UntilSinceState>()) looks_back->approach_from = instance.next;
   const bool rested = instance.known == kNever;
@@ -48,6 +60,8 @@ void Engine::Wake(InstanceId index) {
 
 void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
   for (const Watch& watch : watchers) {
+    const RuleInstance& instance = instances_[watch.instance];
+    if (instance.awake || Ways_m(instance) < instances_.RestsUntil_m(watch.instance)) continue;
     if (MayWake(instances_[watch.instance])) Wake(watch.instance);
   }
 }
@@ -55,6 +69,24 @@ void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
 // An instance that is not open cannot begin while its guard rests, whatever else happens.
 bool Engine::MayWake(const RuleInstance& instance) const {
   return instance.open || (MayBegin(instance) && !instances_.GuardRests(instance));
+}
+
+double Engine::Ways_m(const RuleInstance& instance) const {
+  double ways_m = 0;
+  for (std::size_t role = 0; role < RuleOf(instance).roles.size(); ++role)
+    ways_m += history_.Way_m(instance.entities[role]);
+  return ways_m;
+}
+
+// An instance whose entities are too far apart for its condition rests until they have got nearer:
+// most pairs in a room have nothing to do with each other, though all of them move.
+bool Engine::RestsFarApart(RuleInstance& instance) {
+  const NodeId condition = nearness_[instance.rule];
+  if (instance.open || condition == kNone || log_ != nullptr) return false;
+  const double apart_m = evaluator_.FalseFor_m(condition, instance, history_.now());
+  if (apart_m <= 0) return false;
+  instances_.RestsUntil_m(instance.index) = Ways_m(instance) + apart_m;
+  return true;
 }
 
 // Whether what must be measured for this instance to begin is known. At the end of the episode all
@@ -190,6 +222,8 @@ void Engine::Rest(RuleInstance& instance) {
   const bool is_known = instance.known > history_.now();
   if (!instance.open || (instance.certain && !instance.in_gap) || is_known) instance.known = kNever;
   if (!instance.open) idle_.Queue(instance);
+  // No end leads back over a frame in which nothing led on.
+  if (RuleOf(instance).form() == Form::kUntilSince) RestsFarApart(instance);
 }
 
 void Engine::StepRule(RuleId rule) {

@@ -90,6 +90,9 @@ class Engine {
   void Wake(InstanceId instance);
   void WakeWatchers(const std::vector<Watch>& watchers);
   bool MayWake(const RuleInstance& instance) const;
+  NodeId NearnessOf(const Rule& rule) const;
+  double Ways_m(const RuleInstance& instance) const;
+  bool RestsFarApart(RuleInstance& instance);
   bool CanMeasure(const RuleInstance& instance) const;
   bool IsMeasured(const RuleInstance& instance) const;
   /// Likewise, of a grip, if there is one, and a touch, which names the two the other way round
@@ -136,6 +139,7 @@ class Engine {
   FrameNumber FirstLook(int entity) {
     return past_.FirstLook(entity, history_, [this](const auto& held) { return IsHeld(held); });
   }
+  bool IsAtTheKnown(const RuleInstance& instance) const;
   void SkipUnchanged(RuleInstance& instance) const;
   FrameNumber NextChange(const RuleInstance& instance, FrameNumber after) const;
 
@@ -208,6 +212,8 @@ class Engine {
   Evaluator evaluator_;
   WalkMemory walk_memory_;
   IdVector<RuleId, RuleTicks> rule_ticks_;
+  IdVector<RuleId, NodeId>
+      nearness_;  // a condition that entities far apart do not fulfil, or kNone
   Thresholds thresholds_;
   bool recalls_touches_ = false;     // which thresholds they had crossed
   bool keeps_touches_ = false;       // and all that they measured

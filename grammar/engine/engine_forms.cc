@@ -12,7 +12,7 @@ namespace prehend::grammar {
 void Engine::StepInstance(RuleInstance& instance) {
   if (RuleOf(instance).form() == Form::kCompose) return StepCompose(instance);
   while (instance.next <= history_.now() && StepFrame(instance)) SkipUnchanged(instance);
-  ResolvePending(instance);
+  if (!instance.pending.empty()) ResolvePending(instance);
   UpdateKnown(instance);
 }
 
@@ -64,6 +64,7 @@ bool Engine::LooksTheSame(RuleInstance& instance) {
   if (instance.next != now || waits || !settled() ||
       (rule.referenced && instance.reported != Known(instance.open)))
     return false;
+  if (rule.form() == Form::kWhile && RestsFarApart(instance)) return true;
   const bool was_open = instance.open;
   if (!StepFrame(instance) || evaluator_.depends_on_time()) return false;
   const auto* looks_back = instance.If<UntilSinceState>();

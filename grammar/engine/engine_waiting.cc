@@ -86,6 +86,15 @@ void Engine::StopWaiting(RuleInstance& instance) {
   ++awake_count_;
 }
 
+// Whether something that it asks about is known up to its next frame, and no further.
+bool Engine::IsAtTheKnown(const RuleInstance& instance) const {
+  bool is_there = false;
+  ForEachReference(instance, [&](InstanceId index) {
+    is_there = is_there || instances_[index].known == instance.next;
+  });
+  return is_there;
+}
+
 // A frame was decided. Those that follow are left out as long as they cannot differ from it.
 void Engine::SkipUnchanged(RuleInstance& instance) const {
   const FrameNumber now = history_.now();
@@ -94,7 +103,7 @@ void Engine::SkipUnchanged(RuleInstance& instance) const {
     return;
   const Form form = RuleOf(instance).form();
   const bool has_deadline = instance.open && TicksOf(instance).within >= 0;
-  if (form == Form::kUntilSince || has_deadline) return;
+  if (form == Form::kUntilSince || has_deadline || IsAtTheKnown(instance)) return;
   instance.next = std::clamp(NextChange(instance, instance.next - 1), instance.next, now + 1);
 }
 

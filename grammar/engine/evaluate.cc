@@ -188,7 +188,8 @@ std::optional<Reach> Evaluator::ReachOf(const Node& node, const View& view) cons
   if (!centre || !radius) return std::nullopt;
   if (solid) {
     const int entity = Entity(node, view, 0);
-    if (!IsTracked(entity, view.frame)) return Reach{.distance_m = kNotKnown};
+    if (!IsTracked(entity, view.frame) || std::isnan(centre->x()))
+      return Reach{.distance_m = kNotKnown};
     const double distance = DistanceToSurface_m(*centre, entity_table_.entities[entity],
                                                 history_.Look(entity, view.frame));
     return Reach{.distance_m = distance, .radius_m = *radius};

@@ -68,6 +68,12 @@ class Evaluator {
   /// told.
   bool TooFarApart(NodeId node, RuleInstance& instance, FrameNumber early, FrameNumber late) const;
 
+  /// A condition that is false at a frame stays so until the entities of its roles have moved by
+  /// more than this, all their ways added. 0 if it may be true, or this cannot be told.
+  double FalseFor_m(NodeId node, RuleInstance& instance, FrameNumber frame) const;
+  /// Whether FalseFor_m() may tell something of it.
+  bool NeedsNearness(NodeId node) const;
+
   /// Whether a value asked for since ResetTimeDependence() may change with time alone, though
   /// nothing that it is made of changes: an instant that is over one frame later, a speed from
   /// frame to frame, a window of time.
@@ -96,6 +102,9 @@ class Evaluator {
   std::optional<double> Arithmetic(const Node& node, const View& view) const;
   double SignalOf(const Node& node, const View& view) const;
   double Clearance_m(int a, int b, FrameNumber frame) const;
+  double OutOfBox_m(int a, int b, FrameNumber frame) const;
+  double OutOfReach_m(const Node& node, RuleInstance& instance, FrameNumber frame) const;
+  double OffTop_m(int a, int b, double most_m, FrameNumber frame) const;
   double Gap(int hand, int object, FrameNumber frame) const;
   double ClosingSpeed(int hand, int object, FrameNumber frame) const;
   double SurfaceSpeed(int hand, FrameNumber frame) const;
@@ -151,7 +160,8 @@ class Evaluator {
     bool depends_on_time = false;
     double value = 0;
   };
-  mutable std::vector<Computed> computed_;  ///< empty if they share none
+  mutable std::vector<Computed> computed_;     ///< empty if they share none
+  mutable std::vector<double> window_values_;  ///< kept for its memory
 };
 
 }  // namespace prehend::grammar

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "grammar/engine/evaluate.h"
 
@@ -62,21 +63,10 @@ std::optional<double> Evaluator::SpeedOver(const Node& node, const View& view) c
          SecondsBetween(window->early, window->late);
 }
 
-// Of the values at the frames at most half the window before or after. Nothing while one of them
-// may still come.
-std::optional<double> Evaluator::OfWindow(const Node& node, const View& view) const {
-  depends_on_time_ = true;
-  const Tick now = history_.At(view.frame).tick;
-  const Tick half = history_.AtMostTicks(node.number / 2);
-  if (history_.At(history_.now()).tick < now + half && !history_.complete()) return std::nullopt;
-  std::vector<double> values;
-  for (FrameNumber frame = history_.FirstNotBefore(now - half);
-       frame <= std::min(history_.LastNotAfter(now + half), history_.now()); ++frame) {
-    const std::optional<double> value = Number(node.args[0], view.At(frame));
-    if (!value || std::isnan(*value)) return value;
-    values.push_back(*value);
-  }
-  switch (node.op) {
+namespace {
+
+double OfValues(Op op, std::vector<double>& values) {
+  switch (op) {
     case Op::kMean:
       return std::accumulate(values.begin(), values.end(), 0.0) /
              static_cast<double>(values.size());
@@ -90,6 +80,29 @@ std::optional<double> Evaluator::OfWindow(const Node& node, const View& view) co
       return *middle;
     }
   }
+}
+
+}  // namespace
+
+// Of the values at the frames at most half the window before or after. Nothing while one of them
+// may still come.
+std::optional<double> Evaluator::OfWindow(const Node& node, const View& view) const {
+  depends_on_time_ = true;
+  const Tick now = history_.At(view.frame).tick;
+  const Tick half = history_.AtMostTicks(node.number / 2);
+  if (history_.At(history_.now()).tick < now + half && !history_.complete()) return std::nullopt;
+  const FrameNumber last = std::min(history_.LastNotAfter(now + half), history_.now());
+  std::vector<double> values = std::exchange(window_values_, {});  // a window may be in a window
+  values.clear();
+  std::optional<double> value = 0;
+  for (FrameNumber frame = history_.FirstNotBefore(now - half);
+       frame <= last && value && !std::isnan(*value); ++frame) {
+    value = Number(node.args[0], view.At(frame));
+    if (value) values.push_back(*value);
+  }
+  if (value && !std::isnan(*value)) value = OfValues(node.op, values);
+  window_values_ = std::move(values);
+  return value;
 }
 
 // The way of a as seen from b between two frames, turned to where b is now, without its upright

@@ -103,6 +103,55 @@ Extent ExtentOf(std::span<const SolidPart> parts, const Vector3d& n) {
 
 }  // namespace
 
+double BoundOf_m(const EntityInfo& entity) {
+  SolidPart box;
+  const auto parts = PartsOf(entity, box);
+  Vector3d corner_m;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const Extent extent = ExtentOf(parts, Vector3d::Unit(axis));
+    corner_m[axis] = std::max({std::abs(extent.low), std::abs(extent.high),
+                               std::abs(entity.p_BC_m[axis]) + entity.half_size_m[axis]});
+  }
+  return corner_m.norm();
+}
+
+namespace {
+
+// How something lies to a part of something else.
+struct OverPart {
+  double above_m = 0;   // its lowest point, above the part's top
+  double beside_m = 0;  // how far it is beside it; below 0 it is below or above it
+  double up = 0;        // cosine between the part's top and up
+};
+
+OverPart Over(const EntitySample& at, std::span<const SolidPart> upper, const EntitySample& on,
+              const SolidPart& part) {
+  const Eigen::Quaterniond q_WS = on.q_WB * part.q_BS;
+  const Vector3d p_WS_m = on.p_WB_m + on.q_WB * part.p_BS_m;
+  const Vector3d up = q_WS.conjugate() * Vector3d::UnitZ();
+  Eigen::Index top = 0;
+  OverPart over{.beside_m = -std::numeric_limits<double>::infinity()};
+  over.up = up.cwiseAbs().maxCoeff(&top);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const double sign = up[axis] < 0 ? -1 : 1;
+    const Vector3d n = Vector3d::Unit(axis) * sign;
+    const Extent of_part = ExtentOf(part.shape, n);
+    const Vector3d n_W = q_WS * n;
+    Extent of_upper = ExtentOf(upper, at.q_WB.conjugate() * n_W);
+    const double away_m = (at.p_WB_m - p_WS_m).dot(n_W);
+    of_upper = {of_upper.low + away_m, of_upper.high + away_m};
+    if (axis == top) {
+      over.above_m = of_upper.low - of_part.high;
+    } else {
+      over.beside_m =
+          std::max({over.beside_m, of_upper.low - of_part.high, of_part.low - of_upper.high});
+    }
+  }
+  return over;
+}
+
+}  // namespace
+
 // The top of a part is the side of its own box that looks up most. Of the parts of b below which or
 // above which a is, the one counts whose top is nearest to a's lowest point.
 double Evaluator::Clearance_m(int a, int b, FrameNumber frame) const {
@@ -110,34 +159,132 @@ double Evaluator::Clearance_m(int a, int b, FrameNumber frame) const {
   SolidPart box_a, box_b;
   const auto upper = PartsOf(entity_table_.entities[static_cast<std::size_t>(a)], box_a);
   const auto lower = PartsOf(entity_table_.entities[static_cast<std::size_t>(b)], box_b);
-  const EntitySample& at = history_.Look(a, frame);
-  const EntitySample& on = history_.Look(b, frame);
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const SolidPart& part : lower) {
-    const Eigen::Quaterniond q_WS = on.q_WB * part.q_BS;
-    const Vector3d p_WS_m = on.p_WB_m + on.q_WB * part.p_BS_m;
-    const Vector3d up = q_WS.conjugate() * Vector3d::UnitZ();
-    Eigen::Index top = 0;
-    up.cwiseAbs().maxCoeff(&top);
-    double above_m = 0;
-    bool overlap = true;
-    for (Eigen::Index axis = 0; axis < 3 && overlap; ++axis) {
-      const double sign = up[axis] < 0 ? -1 : 1;
-      const Vector3d n = Vector3d::Unit(axis) * sign;
-      const Extent of_part = ExtentOf(part.shape, n);
-      const Vector3d n_W = q_WS * n;
-      Extent of_upper = ExtentOf(upper, at.q_WB.conjugate() * n_W);
-      const double away_m = (at.p_WB_m - p_WS_m).dot(n_W);
-      of_upper = {of_upper.low + away_m, of_upper.high + away_m};
-      if (axis == top) {
-        above_m = of_upper.low - of_part.high;
-      } else {
-        overlap = of_upper.low < of_part.high && of_upper.high > of_part.low;
-      }
-    }
-    if (overlap && std::abs(above_m) < std::abs(nearest_m)) nearest_m = above_m;
+    const OverPart over = Over(history_.Look(a, frame), upper, history_.Look(b, frame), part);
+    if (over.beside_m < 0 && std::abs(over.above_m) < std::abs(nearest_m)) nearest_m = over.above_m;
   }
   return nearest_m;
+}
+
+namespace {
+
+constexpr double kSafe_m = 1e-5;  // more than all rounding, of ways that were added for days, too
+
+bool IsAbsoluteClearance(const Program& program, const Node& node) {
+  return node.op == Op::kAbs && program.nodes[node.args[0]].op == Op::kClearance;
+}
+
+bool AreOrigins(const Program& program, NodeId a, NodeId b) {
+  return program.nodes[a].op == Op::kPosition && program.nodes[b].op == Op::kPosition;
+}
+
+bool IsAtMost(const Node& node) { return node.op == Op::kLess || node.op == Op::kLessEqual; }
+
+}  // namespace
+
+bool Evaluator::NeedsNearness(NodeId index) const {
+  const Node& node = program_.nodes[index];
+  const auto is_number = [&](NodeId arg) { return program_.nodes[arg].op == Op::kNumber; };
+  switch (node.op) {
+    case Op::kAnd:
+      return NeedsNearness(node.args[0]) || NeedsNearness(node.args[1]);
+    case Op::kOr:
+      return NeedsNearness(node.args[0]) && NeedsNearness(node.args[1]);
+    case Op::kInside:
+      return true;
+    case Op::kSolidInSphere:
+      return program_.nodes[node.args[0]].op == Op::kPosition && is_number(node.args[1]);
+    case Op::kInSphere:
+      return AreOrigins(program_, node.args[0], node.args[1]) && is_number(node.args[2]);
+    default:
+      break;
+  }
+  if (!IsAtMost(node) || !is_number(node.args[1])) return false;
+  const Node& value = program_.nodes[node.args[0]];
+  return IsAbsoluteClearance(program_, value) ||
+         (value.op == Op::kDistance && AreOrigins(program_, value.args[0], value.args[1]));
+}
+
+double Evaluator::FalseFor_m(NodeId index, RuleInstance& instance, FrameNumber frame) const {
+  if (!NeedsNearness(index)) return 0;
+  const Node& node = program_.nodes[index];
+  if (node.op == Op::kAnd || node.op == Op::kOr) {
+    const double left_m = FalseFor_m(node.args[0], instance, frame);
+    if (node.op == Op::kOr && left_m == 0) return 0;
+    const double right_m = FalseFor_m(node.args[1], instance, frame);
+    return node.op == Op::kAnd ? std::max(left_m, right_m) : std::min(left_m, right_m);
+  }
+  const double away_m = OutOfReach_m(node, instance, frame) - kSafe_m;
+  return away_m > 0 ? away_m : 0;  // nor if it is no number
+}
+
+// Of a single test. The distance of two points, or of a point and a body, changes by no more than
+// these move.
+double Evaluator::OutOfReach_m(const Node& node, RuleInstance& instance, FrameNumber frame) const {
+  const View view{instance, frame};
+  for (std::size_t role = 0; role < program_.rules[instance.rule].roles.size(); ++role) {
+    if (!IsTracked(instance.entities[role], frame)) return 0;
+  }
+  const auto number = [&](NodeId arg) { return program_.nodes[arg].number; };
+  const auto origin = [&](NodeId arg) -> const Vector3d& {
+    return history_.Look(Entity(program_.nodes[arg], view, 0), frame).p_WB_m;
+  };
+  switch (node.op) {
+    case Op::kInside:
+      return OutOfBox_m(Entity(node, view, 0), Entity(node, view, 1), frame);
+    case Op::kSolidInSphere: {
+      const int entity = Entity(node, view, 0);
+      return DistanceToSurface_m(origin(node.args[0]),
+                                 entity_table_.entities[static_cast<std::size_t>(entity)],
+                                 history_.Look(entity, frame)) -
+             number(node.args[1]);
+    }
+    case Op::kInSphere:
+      return (origin(node.args[0]) - origin(node.args[1])).norm() - number(node.args[2]);
+    default: {
+      const Node& value = program_.nodes[node.args[0]];
+      const double most_m = number(node.args[1]);
+      if (value.op == Op::kDistance)
+        return (origin(value.args[0]) - origin(value.args[1])).norm() - most_m;
+      const Node& clearance = program_.nodes[value.args[0]];
+      return OffTop_m(Entity(clearance, view, 0), Entity(clearance, view, 1), most_m, frame);
+    }
+  }
+}
+
+// How far the centre of a is from the box of b.
+double Evaluator::OutOfBox_m(int a, int b, FrameNumber frame) const {
+  const EntityInfo& box = entity_table_.entities[static_cast<std::size_t>(b)];
+  const EntitySample& look = history_.Look(a, frame);
+  const EntitySample& at = history_.Look(b, frame);
+  const Vector3d centre_W =
+      look.p_WB_m + look.q_WB * entity_table_.entities[static_cast<std::size_t>(a)].p_BC_m;
+  const Vector3d away_m = at.q_WB.conjugate() * (centre_W - at.p_WB_m) - box.p_BC_m;
+  if (box.round) return away_m.norm() - box.half_size_m.x();
+  return (away_m.cwiseAbs() - box.half_size_m).cwiseMax(0).norm();
+}
+
+// How far a and b may move until a's clearance above b may be at most `most_m`. Beside b it is
+// endless. It is measured along axes of b, which turn with it: by an angle of at most b's way per
+// the ball around b that b fills, and what is seen along an axis that turns moves by this angle
+// times how far away it is. No other side of b becomes its top while it stands nearly upright.
+double Evaluator::OffTop_m(int a, int b, double most_m, FrameNumber frame) const {
+  constexpr double kNearlyUp = 0.9, kTurn_rad = 0.2, kMore = 1.1;
+  const EntitySample& at = history_.Look(a, frame);
+  const EntitySample& on = history_.Look(b, frame);
+  SolidPart box_a, box_b;
+  const auto upper = PartsOf(entity_table_.entities[static_cast<std::size_t>(a)], box_a);
+  const auto lower = PartsOf(entity_table_.entities[static_cast<std::size_t>(b)], box_b);
+  double away_m = std::numeric_limits<double>::infinity();
+  for (const SolidPart& part : lower) {
+    const OverPart over = Over(at, upper, on, part);
+    if (!(over.up > kNearlyUp)) return 0;
+    away_m = std::min(away_m, std::max(over.beside_m, std::abs(over.above_m) - most_m));
+  }
+  const double ball_a_m = history_.Bound_m(a), ball_b_m = history_.Bound_m(b);
+  const double far_m = (at.p_WB_m - on.p_WB_m).norm() + ball_a_m + ball_b_m + away_m;
+  return std::min(away_m * ball_b_m / (ball_b_m + kMore * far_m), kTurn_rad * ball_b_m / kMore);
 }
 
 }  // namespace prehend::grammar

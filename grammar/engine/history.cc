@@ -10,13 +10,17 @@ namespace {
 
 constexpr double kRounding = 1e-6;  // of a product of seconds and ticks per second
 constexpr double kMaxTracedTicks = 1e15;
+constexpr double kFar_m = 1e3;
 
 }  // namespace
 
 History::History(const EntityTable& entity_table)
     : ticks_per_second_(static_cast<double>(entity_table.ticks_per_second)),
       looks_(entity_table.entities.size()),
-      hand_of_entity_(entity_table.entities.size(), -1) {}
+      ways_m_(entity_table.entities.size(), 0),
+      hand_of_entity_(entity_table.entities.size(), -1) {
+  for (const EntityInfo& entity : entity_table.entities) bounds_m_.push_back(BoundOf_m(entity));
+}
 
 void History::BeginFrame(Tick tick) {
   ticks_.PushBack() = tick;
@@ -27,10 +31,22 @@ void History::SetSample(int entity, const EntitySample& look, FrameNumber first)
   RingBuffer<PoseAtFrame>& samples = looks_[entity].samples;
   ForgetSamples(samples, first);
   if (samples.empty() && now() > 0) samples.PushBack() = {};  // what it was before anybody said
+  ways_m_[entity] += samples.empty() ? kFar_m : StepOf(entity, samples.back().look, look);
   PoseAtFrame& sample = samples.PushBack();
   sample.frame = now();
   sample.look = look;
   looks_[entity].GiveBack();
+}
+
+// A bound for all of its points: what turns by an angle moves them by at most four times the sine
+// of a quarter of it, which is half the distance of the quaternions, times their distance from the
+// origin.
+double History::StepOf(int entity, const EntitySample& from, const EntitySample& to) const {
+  const auto& before = from.q_WB.coeffs();
+  const auto& after = to.q_WB.coeffs();
+  const double turned = std::min((after - before).norm(), (after + before).norm());
+  const double step_m = (to.p_WB_m - from.p_WB_m).norm() + 2 * turned * bounds_m_[entity];
+  return std::isnan(step_m) ? kFar_m : step_m;
 }
 
 void History::SetHand(const HandSample& look, std::uint64_t crossed_thresholds, FrameNumber first) {
@@ -55,18 +71,22 @@ void History::Forget(FrameNumber ticks, FrameNumber looks) {
   first_look_ = std::max(first_look_, looks);
 }
 
+// Frames mostly come at even steps. Then it is where it would be if all steps were even, or beside.
 FrameNumber History::FirstNotBefore(Tick tick) const {
+  if (ticks_.empty() || tick <= ticks_.front()) return first();
+  if (tick > ticks_.back()) return count_;
   std::size_t low = 0;
-  std::size_t high = ticks_.size();
-  while (low < high) {
-    const std::size_t middle = low + (high - low) / 2;
-    if (ticks_[middle] < tick) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  return first() + static_cast<FrameNumber>(low);
+  std::size_t high = ticks_.size() - 1;  // the tick is after that of low and not after that of high
+  const auto narrow = [&](std::size_t i) {
+    if (i > low && i < high) (ticks_[i] < tick ? low : high) = i;
+  };
+  const double share = static_cast<double>(tick - ticks_.front()) /
+                       static_cast<double>(ticks_.back() - ticks_.front());
+  const auto guess = static_cast<std::size_t>(share * static_cast<double>(high) + 0.5);
+  narrow(guess);
+  narrow(low == guess ? guess + 1 : guess - 1);
+  while (high - low > 1) narrow(low + (high - low) / 2);
+  return first() + static_cast<FrameNumber>(high);
 }
 
 FrameNumber History::LastNotAfter(Tick tick) const {

@@ -74,6 +74,9 @@ struct Looks {
   }
 };
 
+/// A ball of this radius around its origin holds the entity and its bounding box.
+double BoundOf_m(const EntityInfo& entity);
+
 class History {
  public:
   explicit History(const EntityTable& entity_table);
@@ -105,8 +108,7 @@ class History {
   FrameNumber LastNotAfter(Tick tick) const;
 
   const EntitySample& Look(int entity, FrameNumber frame) const {
-    static const EntitySample kNotSeenYet;
-    return looks_[entity].samples.empty() ? kNotSeenYet
+    return looks_[entity].samples.empty() ? not_seen_yet_
                                           : SampleAt(looks_[entity].samples, frame).look;
   }
   /// Prefetches what SetSample() needs, in two steps.
@@ -123,6 +125,11 @@ class History {
     const int hand = hand_of_entity_[entity];
     return hand < 0 ? look : std::min(look, FirstAfter(hands_[hand].samples, after));
   }
+  /// How far the entity has moved so far: between two frames no point of it gets farther than the
+  /// difference. Where it is lost or found it counts as far.
+  double Way_m(int entity) const { return ways_m_[entity]; }
+  /// It lies in a ball of this radius around its origin.
+  double Bound_m(int entity) const { return bounds_m_[entity]; }
   bool Shows(int hand) const { return hand_of_entity_[hand] >= 0; }
   double Seconds(Tick ticks) const { return static_cast<double>(ticks) / ticks_per_second_; }
   /// Whole ticks such that comparing differences of ticks gives the same as comparing seconds.
@@ -135,12 +142,17 @@ class History {
     EntitySample look;
   };
 
+  double StepOf(int entity, const EntitySample& from, const EntitySample& to) const;
+
   double ticks_per_second_;
   FrameNumber count_ = 0;
   FrameNumber first_look_ = 0;
   bool complete_ = false;
   RingBuffer<Tick> ticks_;
+  EntitySample not_seen_yet_;
   std::vector<Looks<PoseAtFrame>> looks_;  // by entity
+  std::vector<double> ways_m_;             // likewise
+  std::vector<double> bounds_m_;           // likewise: it lies in such a ball around its origin
   std::vector<Looks<HandAtFrame>> hands_;  // by hand, in order of first sight
   std::vector<int> hand_of_entity_;        // index into hands_ or -1
 };

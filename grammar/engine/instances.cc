@@ -11,6 +11,8 @@ namespace {
 // More bindings than this are a mistake in the grammar or need another machine: see docs/speed.md.
 constexpr int kMaxInstances = 1'000'000;
 
+constexpr double kNoRest_m = -1;
+
 FormState StateFor(Form form) {
   switch (form) {
     case Form::kTouching:
@@ -153,6 +155,7 @@ RuleInstance& RuleInstances::UnusedFor(Form form) {
   if (free.empty()) {
     const InstanceId index = end_id();
     RuleInstance& instance = instances_.PushBack();
+    rests_until_m_.push_back(kNoRest_m);
     instance.index = index;
     instance.of_form = std::move(fresh);
     return instance;
@@ -303,6 +306,7 @@ void RuleInstances::Free(InstanceId index, std::vector<InstanceId>& orphans) {
   instance.dependents_made = instance.awaited = false;
   instance.reported = Kleene::kFalse;
   instance.moment = kNever;
+  rests_until_m_[index] = kNoRest_m;
   instance.style = kNoEntity;
   instance.rule = kNone;
   free_[instance.of_form.index()].push_back(index);
@@ -329,8 +333,7 @@ InstanceKey RuleInstances::Referred(const RuleInstance& instance, int slot) cons
   return Canonical(reference.rule, entities);
 }
 
-InstanceId RuleInstances::Resolve(RuleInstance& instance, int slot) {
-  if (instance.references[slot] != kNone) return instance.references[slot];
+InstanceId RuleInstances::MakeReferred(RuleInstance& instance, int slot) {
   const InstanceKey key = Referred(instance, slot);
   Refer(instance, slot, Ensure(key.rule, key.entities));
   return instance.references[slot];

@@ -212,13 +212,19 @@ class RuleInstances {
 
   RuleInstance& operator[](InstanceId instance) { return instances_[instance]; }
   const RuleInstance& operator[](InstanceId instance) const { return instances_[instance]; }
+  /// An instance at rest is not woken by poses before its entities have got so far, all their ways
+  /// added; below 0 it is.
+  double& RestsUntil_m(InstanceId instance) { return rests_until_m_[instance]; }
   /// Numbers of instances are below this, free ones included.
   InstanceId end_id() const { return instances_.end_id(); }
   int in_use() const { return end_id().number() - free_count_; }
 
   /// The instance that reference `slot` of `instance` means, made if need be; from now on its
   /// changes wake this one.
-  InstanceId Resolve(RuleInstance& instance, int slot);
+  InstanceId Resolve(RuleInstance& instance, int slot) {
+    const InstanceId referred = instance.references[static_cast<std::size_t>(slot)];
+    return referred != kNone ? referred : MakeReferred(instance, slot);
+  }
   /// Likewise, kNone if it is not there.
   InstanceId Find(const RuleInstance& instance, int slot) const {
     return Find(Referred(instance, slot));
@@ -292,6 +298,7 @@ class RuleInstances {
                                      : index_.Find(key);
   }
   void Refer(RuleInstance& instance, int slot, InstanceId target);
+  InstanceId MakeReferred(RuleInstance& instance, int slot);
   InstanceKey Referred(const RuleInstance& instance, int slot) const;
   bool Fits(RuleId rule, const Binding& entities) const;
   void BindRest(RuleId rule, Binding& entities, std::size_t role, InstanceId guard,
@@ -311,6 +318,7 @@ class RuleInstances {
   const EntityTable& entity_table_;
   StableBlocks<InstanceId, RuleInstance>
       instances_;  // an instance stays where it is when others are made
+  IdVector<InstanceId, double> rests_until_m_;
   std::array<std::vector<InstanceId>, std::variant_size_v<FormState>> free_;  // by kind of state
   int free_count_ = 0;
   InstanceIndex<InstanceKey> index_;

@@ -2,6 +2,7 @@
 // Of what is not tracked, no condition holds, and neither does its opposite; what held ends there.
 #include "grammar/base/tracking.h"
 
+#include "grammar/base/solid.h"
 #include "tests/grammar/scene.h"
 
 namespace prehend::grammar {
@@ -17,6 +18,7 @@ std::string Held(const std::string& grammar, const std::vector<int>& lost) {
   if (!program) return "";
   Scene scene;
   scene.entity_table.entities[Scene::kCup].half_size_m = {0.05, 0.05, 0.05};
+  scene.entity_table.entities[Scene::kCup].solid = Solid({{.shape = Box{{0.05, 0.05, 0.05}}}});
   scene.entity_table.entities[Scene::kTray].half_size_m = {0.5, 0.5, 0.5};
   const std::vector<EntitySample> all = scene.looks;
   Monitor monitor(program, scene.entity_table);
@@ -87,6 +89,7 @@ TEST(NotTracked, EitherOneOfTwoIsEnough) {
   for (const int lost : {Scene::kHand, Scene::kCup})
     EXPECT_EQ(Held(While("gap(hand, cup) < 1 m and distance(cup, hand) < 1 m"), {lost}),
               "0..300; 500..1000; ");
+  EXPECT_EQ(Held(While("not (in_sphere(cup, position(hand), 1 m))"), {Scene::kHand}), "");
   EXPECT_EQ(Held(While("distance(hand, cup) < 1 m or height(tray) < 1 m"), {Scene::kCup}),
             "0..1000; ");
   EXPECT_EQ(Held(While("not (distance(hand, cup) < 1 m and height(tray) < 1 m)"), {Scene::kCup}),
