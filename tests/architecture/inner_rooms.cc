@@ -75,7 +75,7 @@ const Arrows& ProjectArrows() {
         "harness/timeline"}},
       {"harness/pictures",
        {"harness/base", "harness/process", "harness/run", "harness/scenario", "harness/timeline",
-        "render"}},
+        "physics/scene", "render"}},
       {"harness/figures",
        {"harness/base", "harness/golden", "harness/pictures", "harness/run", "harness/scenario",
         "harness/timeline", "physics/scene"}},
