@@ -29,14 +29,15 @@ std::vector<render::Color> BodyColors(const Scenario& scenario);
 std::vector<std::vector<render::Color>> SensorColors(
     const physics::Scene& scene, const std::map<std::string, std::uint32_t>& color_of_set);
 
-/// Legs of fixed boards that nothing below carries, down to the floor at z = 0.
+/// What fixed things stand on that nothing carries: legs, or near to the floor at z = 0 a plinth.
 std::vector<render::Prop> LegsOf(const Scenario& scenario, const std::vector<render::Color>& colors,
                                  const physics::Snapshot& now);
 
 /// A ray from the eyes of each person to what she sees.
 std::vector<render::GazeRay> GazesOf(const physics::Scene& scene, const physics::Snapshot& now);
 
-/// One per scene body: less than 1 for a person who hides a hand from the eye of the camera.
+/// One per scene body: less than 1 for the parts of a person that hide a hand, what is touched, or
+/// what moves from the eye of the camera.
 std::vector<float> BodyAlphas(const physics::Scene& scene, const physics::Snapshot& now,
                               const Eigen::Vector3f& eye_m);
 

@@ -47,16 +47,50 @@ TEST(SceneryTest, ABoardInTheAirHasLegsDownToTheFloor) {
   }
 }
 
-TEST(SceneryTest, WhatStandsOnSomethingOrIsNoBoardHasNoLegs) {
+TEST(SceneryTest, WhatStandsOnSomethingHasNoLegs) {
   Room room;
   room.Add("floor", "Floor", {3, 3, 0.04}, {0, 0, 0.0});
-  room.Add("block", "Block", {0.4, 0.4, 0.4}, {2, 2, 0.8});
+  room.Add("post", "Post", {0.1, 0.1, 0.5}, {1, 1, 0.25});
   room.Add("tray", "Tray", {0.4, 0.4, 0.02}, {5, 5, 0.8}, false);
   EXPECT_TRUE(room.Legs().empty());
   room.Add("table", "Table", {0.8, 0.8, 0.04}, {9, 0, 0.74});
   EXPECT_EQ(room.Legs().size(), 4u);
+  room.Add("rail", "Rail", {0.1, 0.4, 0.02}, {9.45, 0, 0.9});
+  room.Add("wall", "Wall", {0.02, 0.4, 1.0}, {9.52, 0, 0.5});
+  EXPECT_EQ(room.Legs().size(), 4u) << "the wall bears the rail";
   room.Add("cabinet", "Cabinet", {0.6, 0.6, 0.7}, {9, 0, 0.35});
   EXPECT_TRUE(room.Legs().empty()) << "the cabinet carries it";
+}
+
+TEST(SceneryTest, ThingsOfAllSizesStandOnSomething) {
+  Room room;
+  room.Add("cupboard", "Cupboard", {0.4, 0.5, 0.6}, {0, 0, 0.9});
+  ASSERT_EQ(room.Legs().size(), 4u);
+  EXPECT_NEAR(room.Legs()[0].center_m.z() + room.Legs()[0].half_size_m.z(), 0.6, 1e-6);
+  room = {};
+  room.Add("beam", "Beam", {0.6, 0.05, 0.05}, {0, 0, 1.6});
+  ASSERT_EQ(room.Legs().size(), 2u) << "at its ends";
+  EXPECT_NEAR(std::abs(room.Legs()[0].center_m.x()), 0.26, 1e-6);
+  room = {};
+  room.Add("peg", "Peg", {0.02, 0.1, 0.1}, {0, 0, 1});
+  ASSERT_EQ(room.Legs().size(), 1u);
+  EXPECT_NEAR(room.Legs()[0].half_size_m.x(), 0.01, 1e-6) << "no wider than it";
+  room = {};
+  room.Add("low", "Cabinet", {0.4, 0.5, 0.6}, {0, 0, 0.35});
+  ASSERT_EQ(room.Legs().size(), 1u) << "a plinth";
+  EXPECT_NEAR(room.Legs()[0].half_size_m.y(), 0.23, 1e-6);
+  EXPECT_NEAR(room.Legs()[0].center_m.z() + room.Legs()[0].half_size_m.z(), 0.05, 1e-6);
+}
+
+TEST(SceneryTest, ALegEndsOnWhatIsBelowIt) {
+  Room room;
+  room.Add("step", "Step", {1, 1, 0.3}, {0.6, 0, 0.15});
+  room.Add("table", "Table", {1, 0.6, 0.04}, {0, 0, 0.74});
+  for (const render::Prop& leg : room.Legs()) {
+    const float foot_m = leg.center_m.z() - leg.half_size_m.z();
+    EXPECT_NEAR(foot_m, leg.center_m.x() > 0.1f ? 0.3 : 0, 1e-6);
+  }
+  EXPECT_EQ(room.Legs().size(), 4u);
 }
 
 TEST(SceneryTest, APersonIsPaleOnlyWhereSheHidesAHand) {
@@ -68,6 +102,21 @@ TEST(SceneryTest, APersonIsPaleOnlyWhereSheHidesAHand) {
   EXPECT_LT(BodyAlphas(room.scenario.scene, room.now, {0, -2, 1})[0], 0.5f) << "between";
   EXPECT_EQ(BodyAlphas(room.scenario.scene, room.now, {2, 1, 1})[0], 1) << "beside";
   EXPECT_EQ(BodyAlphas(room.scenario.scene, room.now, {0, 3, 1})[0], 1) << "behind";
+}
+
+TEST(SceneryTest, APersonIsPaleWhereSheHidesWhatMovesOrIsTouched) {
+  Room room;
+  room.Add("anna", "Person", {0.3, 0.3, 0.3}, {0, 0, 1});
+  room.scenario.scene.bodies[0].fixed = false;
+  room.scenario.scene.bodies[0].kinematic = true;
+  room.Add("drawer", "Drawer", {0.3, 0.3, 0.1}, {0, 1, 1}, false);
+  const auto alpha = [&] { return BodyAlphas(room.scenario.scene, room.now, {0, -2, 1})[0]; };
+  EXPECT_EQ(alpha(), 1) << "a thing at rest";
+  room.now.bodies[1].v_WB_m_per_s = {0, 0.1, 0};
+  EXPECT_LT(alpha(), 0.5f) << "moves";
+  room.now.bodies[1].v_WB_m_per_s.setZero();
+  room.now.contacts = {{.a = {.body = 0}, .b = {.body = 1}}};
+  EXPECT_LT(alpha(), 0.5f) << "touched";
 }
 
 TEST(SceneryTest, AGazeEndsAtWhatIsSeen) {
