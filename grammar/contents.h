@@ -3,6 +3,7 @@
 // that need no more of a program than that. Tested by tests/grammar/contents_test.cc
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,26 @@ struct EventSignature {
 };
 /// Of the events, in the order of EventNames().
 std::vector<EventSignature> EventSignatures(const Program& program);
+
+/// A part of space that a rule asks about: `in_sphere(object, ahead(hand, 30 cm), 30 cm)`.
+struct RegionOfInterest {
+  enum class Shape : std::uint8_t { kSphere, kCylinder };
+  /// Where its middle is: in front of a hand's palm, or where an entity is at the moment, or was or
+  /// will be when the event begins or ends.
+  enum class Middle : std::uint8_t { kAhead, kNow, kAtBegin, kAtEnd };
+  Shape shape = Shape::kSphere;
+  Middle middle = Middle::kNow;
+  int role = 0;    ///< of the event: whose place that is
+  int inside = 0;  ///< of the event: who is to be inside
+  double radius_m = 0;
+  double height_m = 0;  ///< of a cylinder: so far above its middle, and below it
+  double ahead_m = 0;   ///< Middle::kAhead: so far from the palm
+
+  friend bool operator==(const RegionOfInterest&, const RegionOfInterest&) = default;
+};
+/// Those of the conditions that an event is made of, other events left out; with numbers that the
+/// grammar fixes, and no larger than a room.
+std::vector<RegionOfInterest> RegionsOf(const Program& program, std::string_view event);
 
 /// What Compile() warned of.
 const Diagnostics& CompileWarnings(const Program& program);

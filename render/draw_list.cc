@@ -274,6 +274,19 @@ void AddGhost(const Picture& picture, std::size_t number, DrawList* list) {
   list->ghosts.push_back(std::move(items));
 }
 
+/// Three thin boards through one line, crossed.
+void AddStar(Item item, DrawList* list) {
+  const Vector3f half = item.X_WI.linear().diagonal();
+  const Affine3f X_WS(Eigen::Translation3f(item.X_WI.translation()));
+  item.primitive = Primitive::kBox;
+  SetRoundedBox({half.x(), 0.22f * half.y(), 0.28f * half.z()}, 0.1f * half.z(), &item);
+  for (int i = 0; i < 3; ++i) {
+    const auto angle = static_cast<float>(i * M_PI / 3);
+    item.X_WI = X_WS * Eigen::AngleAxisf(angle, Vector3f::UnitY());
+    AddItem(item, &list->markers, list);
+  }
+}
+
 void AddMarker(const Picture& picture, std::size_t number, DrawList* list) {
   const Marker& marker = picture.markers[number];
   struct MarkerSample {
@@ -281,21 +294,39 @@ void AddMarker(const Picture& picture, std::size_t number, DrawList* list) {
     Color color;
     float alpha;
   };
-  static const MarkerSample kLooks[] = {{"contact", {1.0f, 0.83f, 0.0f}, 0.9f},
-                                        {"support", {0.18f, 0.80f, 0.25f}, 0.75f},
-                                        {"region", {0.42f, 0.66f, 1.0f}, 0.30f}};
+  static const MarkerSample kLooks[] = {
+      {"contact", {1.0f, 0.83f, 0.0f}, 0.9f},    {"support", {0.18f, 0.80f, 0.25f}, 0.75f},
+      {"region", {0.42f, 0.66f, 1.0f}, 0.30f},   {"contact", {1.0f, 0.83f, 0.0f}, 0.9f},
+      {"sphere", {0.42f, 0.66f, 1.0f}, 0.30f},   {"cylinder", {0.42f, 0.66f, 1.0f}, 0.30f},
+      {"candidate", {0.93f, 0.49f, 0.0f}, 0.95f}};
   const MarkerSample& look = kLooks[static_cast<int>(marker.kind)];
   const std::string name = "marker:" + std::to_string(number) + ":" + look.name;
   if (!(marker.half_size_m.minCoeff() > 0)) return;
-  const Affine3f X_WI = Eigen::Translation3f(marker.p_W_m) * Eigen::Scaling(marker.half_size_m);
-  AddItem({.primitive = Primitive::kBall,
-           .X_WI = X_WI,
-           .rounding_m = 1,
-           .color = look.color,
-           .alpha = look.alpha,
-           .gloss = 0,
-           .object = AddObject(name, list)},
-          &list->markers, list);
+  Item item{.primitive = Primitive::kBall,
+            .X_WI = Eigen::Translation3f(marker.p_W_m) * Eigen::Scaling(marker.half_size_m),
+            .rounding_m = 1,
+            .color = marker.color.value_or(look.color),
+            .alpha = look.alpha,
+            .gloss = 0,
+            .object = AddObject(name, list),
+            .shines_through = marker.kind == MarkerKind::kPersonsContact ||
+                              marker.kind == MarkerKind::kCandidate};
+  if (marker.kind == MarkerKind::kCandidate) return AddStar(item, list);
+  if (marker.kind == MarkerKind::kCylinder) {
+    item.X_WI = Eigen::Translation3f(marker.p_W_m);
+    item.primitive = Primitive::kCylinder;
+    item.rounding_m = 0.08f * marker.half_size_m.minCoeff();
+    item.half_size_m = marker.half_size_m.array() - item.rounding_m;
+  }
+  AddItem(item, &list->markers, list);
+}
+
+/// Of beads and tubes: they grow with the distance, within bounds, but shrink again near a hand,
+/// which they would hide.
+float ScaleAt(float distance_m) {
+  constexpr float kLeast = 0.6f, kMost = 4, kNear_m = 0.9f;
+  return std::min(std::clamp(distance_m / kUsualDistance_m, kLeast, kMost),
+                  kLeast * distance_m / kNear_m);
 }
 
 }  // namespace
@@ -341,8 +372,7 @@ DrawList MakeDrawList(const Picture& picture) {
     list.to_light = picture.to_light.normalized();
   if (picture.scene != nullptr) AddBodiesAndHands(picture, &list);
   const float distance = (picture.camera.eye_m - picture.camera.look_at_m).norm();
-  const float scale =
-      std::isfinite(distance) ? std::clamp(distance / kUsualDistance_m, 0.6f, 4.0f) : 1.0f;
+  const float scale = std::isfinite(distance) ? ScaleAt(distance) : 1.0f;
   AddPath(picture.path, scale, &list);
   if (picture.scene != nullptr) {
     for (std::size_t i = 0; i < picture.ghosts.size(); ++i) AddGhost(picture, i, &list);

@@ -33,6 +33,7 @@ struct Item {
   float alpha = 1;
   float gloss = 0.25f;
   int object = 0;
+  bool shines_through = false;  ///< a marker that is faintly visible through solids
 };
 
 /// A named object: "body:milk", "hand:right_hand", "forearm:right_hand", "path:2:reaching",

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,11 +35,20 @@ struct Ghost {
   Color tint = {0.7f, 0.7f, 0.7f};
 };
 
-enum class MarkerKind { kContact, kSupport, kRegion };
+enum class MarkerKind {
+  kContact,
+  kSupport,
+  kRegion,          ///< a bubble around a thing
+  kPersonsContact,  ///< of a person's body, which would hide a small mark
+  kSphere,          ///< a region of interest
+  kCylinder,        ///< likewise, upright
+  kCandidate        ///< a star above what a hand may be reaching for
+};
 struct Marker {
   MarkerKind kind = MarkerKind::kContact;
   Eigen::Vector3f p_W_m = Eigen::Vector3f::Zero();
   Eigen::Vector3f half_size_m = {0.02f, 0.02f, 0.02f};
+  std::optional<Color> color = std::nullopt;  ///< instead of that of its kind
 };
 
 /// Something solid that only the picture has, upright: a leg of a table.

@@ -34,6 +34,7 @@ constexpr int kSamples = 4;  // the most that llvmpipe has
 constexpr int kShadowSize_px = 2048;
 constexpr float kRegionAlpha = 0.5f;  // regions are fainter than marks of contact
 constexpr float kHiddenAlpha = 0.16f;
+constexpr float kHiddenMarkShare = 0.4f;
 constexpr float kOcclusionRadius_m = 0.09f;
 constexpr int kOcclusionTaps = 8;
 constexpr float kGroundDrop_m =
@@ -394,6 +395,12 @@ void SceneRenderer::DrawMarkers(const Frame& frame) const {
     DrawItem(surface, frame, inside);
     gl_.CullFace(GL_BACK);
     DrawItem(surface, frame, item);
+    if (!item.shines_through) continue;
+    Item hidden = item;
+    hidden.alpha *= kHiddenMarkShare;
+    gl_.DepthFunc(GL_GREATER);
+    DrawItem(surface, frame, hidden);
+    gl_.DepthFunc(GL_LESS);
   }
   gl_.DepthMask(GL_TRUE);
   gl_.Disable(GL_BLEND);

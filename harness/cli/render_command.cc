@@ -159,7 +159,7 @@ struct Product {
   std::vector<const char*> unused;
 };
 const Product kProducts[] = {
-    {"--strip", {"--at", "--sheet", "--json", "--size", "--camera", "--theme"}},
+    {"--strip", {"--at", "--sheet", "--json", "--size", "--camera", "--theme", "--regions"}},
     {"--against", {"--at", "--sheet", "--json", "--size", "--without"}},
     {"--film", {"--at", "--sheet", "--json", "--output"}}};
 
@@ -231,7 +231,7 @@ ExitCode ComparePictures(const PlayedRun& played, const ParsedOptions& options,
     std::ifstream file(golden.path, std::ios::binary);
     const std::string kept{std::istreambuf_iterator<char>(file), {}};
     const PictureYaml& entry = scenario.pictures[index];
-    const DrawnScene now = painter.Draw(scenario, played.run, entry, {});
+    const DrawnScene now = painter.Draw(scenario, played.run, entry, kGoldenFormat);
     const SceneDifference difference = DifferenceOf(kept, now.png);
     sheet.rows.push_back(
         {.heading = fmt::format("picture {}: {}", golden.number, entry.at.value),

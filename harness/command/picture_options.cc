@@ -51,7 +51,10 @@ std::vector<Option> LookOptions() {
            .help = "light, or print: on white paper",
            .placeholder = "THEME",
            .rule = Themes()},
-          {.name = "--transparent", .help = "without a ground: for slides and posters"}};
+          {.name = "--transparent", .help = "without a ground: for slides and posters"},
+          {.name = "--regions",
+           .help = "the regions of interest of what hands do at the moment, and a star above\n"
+                   "each thing that a hand may be reaching for"}};
 }
 
 PictureFormat FormatOfOptions(const ParsedOptions& options) {
@@ -59,7 +62,8 @@ PictureFormat FormatOfOptions(const ParsedOptions& options) {
                        .print = options.Text("--theme") == "print",
                        .transparent = options.Has("--transparent"),
                        .only = options.Text("--only"),
-                       .of = options.Text("--of")};
+                       .of = options.Text("--of"),
+                       .regions = options.Has("--regions")};
   if (options.Has("--from")) format.from_s = options.NumberOr("--from", 0);
   if (options.Has("--to")) format.to_s = options.NumberOr("--to", 0);
   return format;

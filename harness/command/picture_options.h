@@ -14,7 +14,7 @@ namespace prehend::harness {
 
 /// --from, --to, --only, --of.
 std::vector<Option> PartOptions();
-/// --camera, --text, --theme, --transparent.
+/// --camera, --text, --theme, --transparent, --regions.
 std::vector<Option> LookOptions();
 
 /// What these options say; the rest is as of a picture.

@@ -75,6 +75,7 @@ Sheet KeyFrameSheet(const Scenario& scenario, const RunResult& run,
                     ScenePainter& painter) {
   TileRow row{.tiles = {}, .columns = ColumnsFor(moments.size(), kMostColumns)};
   SceneFormat bare = Bare(format);
+  bare.picture.regions = true;
   for (std::size_t i = 0; i < moments.size(); ++i) {
     bare.picture.framed = moments[i].involved;
     const std::string caption =

@@ -6,10 +6,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <set>
 
 #include "harness/pictures/framing.h"
+#include "harness/pictures/regions_of_interest.h"
 #include "harness/pictures/scenery.h"
 #include "harness/run/event_time.h"
 #include "harness/timeline/event_drawings.h"
@@ -22,6 +24,8 @@ using grammar::DrawnAs;
 
 /// Paths are thinned to this many points per second; more only costs triangles.
 constexpr double kPathPoints_per_s = 60;
+/// Radius of the mark of a contact.
+constexpr float kHandsContact_m = 0.008f, kPersonsContact_m = 0.025f;
 /// Rows of the strip; more would hide the picture.
 constexpr std::size_t kMaxRows = 6;
 
@@ -72,12 +76,6 @@ const std::string& FirstOf(const RunResult& run, const grammar::NamedEvent& even
 
 bool Covers(const grammar::NamedEvent& event, grammar::Tick tick) {
   return event.interval.begin <= tick && tick < event.interval.end;
-}
-
-/// First recorded snapshot at or after a tick, else the last one.
-const physics::Snapshot& SnapshotAt(const RunResult& run, grammar::Tick tick) {
-  const auto at = std::ranges::lower_bound(run.recording, tick, {}, &physics::Snapshot::tick);
-  return at == run.recording.end() ? run.recording.back() : *at;
 }
 
 int BodyNamed(const physics::Scene& scene, const std::string& name) {
@@ -209,9 +207,12 @@ std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunRe
                        Eigen::Vector3d(half.x() * 1.35, half.y() * 1.35, 0.006).cast<float>()});
   }
   for (const physics::ContactPoint& contact : snapshot.contacts) {
-    if (contact.a.hand < 0 && contact.b.hand < 0 && !IsPart(scenario, contact)) continue;
+    const bool is_hands = contact.a.hand >= 0 || contact.b.hand >= 0;
+    if (!is_hands && !IsPart(scenario, contact)) continue;
     markers.push_back(
-        {render::MarkerKind::kContact, contact.p_W_m.cast<float>(), {0.008f, 0.008f, 0.008f}});
+        {is_hands ? render::MarkerKind::kContact : render::MarkerKind::kPersonsContact,
+         contact.p_W_m.cast<float>(),
+         Eigen::Vector3f::Constant(is_hands ? kHandsContact_m : kPersonsContact_m)});
   }
   return markers;
 }
@@ -249,6 +250,17 @@ std::string Printed(std::string name) {
   return name;
 }
 
+/// Whether a hand deals with the thing in what the picture shows.
+bool IsDealtWith(const RunResult& run, const Selection& selection, const std::string& thing) {
+  return std::ranges::any_of(run.timeline.events, [&](const grammar::NamedEvent& event) {
+    const bool of_hand =
+        IsDrawnAs(run, event, DrawnAs::kPhase) || IsDrawnAs(run, event, DrawnAs::kGrasp);
+    return of_hand && Seconds(event.interval.end, run) > selection.path_from_s &&
+           Seconds(event.interval.begin, run) < selection.path_to_s && selection.Has(event) &&
+           std::ranges::find(event.roles, thing, &grammar::Role::value) != event.roles.end();
+  });
+}
+
 /// Makes the strip row by row, from bars that are events of the run.
 class StripComposer {
  public:
@@ -284,14 +296,16 @@ class StripComposer {
     Append(std::move(row));
   }
 
-  /// Bars have the names of the supports.
-  void AddSupports(const std::string& body) {
-    render::StripRow row{body + " on", {}};
-    for (const grammar::NamedEvent& event : run_.timeline.events) {
-      if (!IsDrawnAs(run_, event, DrawnAs::kSupport) || FirstOf(run_, event) != body) continue;
-      AddBar(event, event.roles[run_.drawings.Of(event.event).last].value, row);
+  /// A row for each body that stands on something. Where there is no room for all of them, those
+  /// come first with which hands deal.
+  void AddSupports(std::vector<std::string> bodies) {
+    std::erase_if(bodies,
+                  [&](const std::string& body) { return SupportsOf(body).segments.empty(); });
+    if (strip_.rows.size() + bodies.size() > kMaxRows) {
+      std::ranges::stable_partition(
+          bodies, [&](const std::string& body) { return IsDealtWith(run_, selection_, body); });
     }
-    Append(std::move(row));
+    for (const std::string& body : bodies) Append(SupportsOf(body));
   }
 
   const render::TimelineStrip& strip() const { return strip_; }
@@ -304,6 +318,15 @@ class StripComposer {
     if (!is_in) return;
     row.segments.push_back({std::move(name), Seconds(event.interval.begin, run_),
                             Seconds(event.interval.end, run_), EventColor(run_, event)});
+  }
+  /// Bars have the names of the supports.
+  render::StripRow SupportsOf(const std::string& body) const {
+    render::StripRow row{body + " on", {}};
+    for (const grammar::NamedEvent& event : run_.timeline.events) {
+      if (!IsDrawnAs(run_, event, DrawnAs::kSupport) || FirstOf(run_, event) != body) continue;
+      AddBar(event, event.roles[run_.drawings.Of(event.event).last].value, row);
+    }
+    return row;
   }
   void Append(render::StripRow row) {
     if (row.segments.empty()) return;
@@ -329,8 +352,10 @@ render::TimelineStrip ComposeStrip(const physics::Scene& scene, const RunResult&
     composer.AddGrasps(hand.name);
   }
   for (const std::string& name : OtherEvents(run)) composer.AddEvents(name);
+  std::vector<std::string> movable;
   for (const physics::Body& body : scene.bodies)
-    if (!body.fixed && !body.kinematic) composer.AddSupports(body.name);
+    if (!body.fixed && !body.kinematic) movable.push_back(body.name);
+  composer.AddSupports(std::move(movable));
   return composer.strip();
 }
 
@@ -403,17 +428,6 @@ Selection SelectionOf(const PictureFormat& format, const physics::Scene& scene,
   return selection;
 }
 
-/// Whether a hand deals with the thing in what the picture shows.
-bool IsDealtWith(const RunResult& run, const Selection& selection, const std::string& thing) {
-  return std::ranges::any_of(run.timeline.events, [&](const grammar::NamedEvent& event) {
-    const bool of_hand =
-        IsDrawnAs(run, event, DrawnAs::kPhase) || IsDrawnAs(run, event, DrawnAs::kGrasp);
-    return of_hand && Seconds(event.interval.end, run) > selection.path_from_s &&
-           Seconds(event.interval.begin, run) < selection.path_to_s && selection.Has(event) &&
-           std::ranges::find(event.roles, thing, &grammar::Role::value) != event.roles.end();
-  });
-}
-
 /// One per scene body; "" has no label. A person has one, at her head: labels of eighteen parts
 /// would hide her. The only piece of furniture needs none.
 std::vector<std::string> BodyLabels(const Scenario& scenario, const RunResult& run,
@@ -468,6 +482,14 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
     picture.ghosts = ComposeGhosts(scene, run, selection, moment.tick);
   picture.markers = ComposeMarkers(scenario, run, picture.snapshot);
   MarkThings(scene, picture.snapshot, format.marked, picture.markers);
+  if (format.regions) {
+    const auto shown = [&](const grammar::NamedEvent& event) {
+      return selection.Has(event) &&
+             selection.HasHand(event.roles[run.drawings.Of(event.event).hand].value);
+    };
+    std::ranges::copy(RegionMarkers(scenario, run, picture.snapshot, shown),
+                      std::back_inserter(picture.markers));
+  }
   picture.props = LegsOf(scenario, picture.body_colors, picture.snapshot);
   if (format.gaze) picture.gazes = GazesOf(scene, picture.snapshot);
   if (format.strip) picture.strip = ComposeStrip(scene, run, selection, moment.tick);

@@ -15,6 +15,7 @@ constexpr double kSceneryFrom_m = 0.5;
 constexpr double kMoves_m = 0.02;
 /// What is nearer to a hand than this is framed with it.
 constexpr double kNearHand_m = 0.18;
+constexpr double kNearStar_m = 0.08;
 constexpr double kPalmReach_m = 0.11;
 /// Snapshots that are looked at per episode, at most.
 constexpr std::size_t kLooks = 400;
@@ -96,6 +97,17 @@ void FrameHands(const Scenario& scenario, const physics::Snapshot& now,
   }
 }
 
+/// Of what is framed.
+void FrameStars(const std::vector<render::Marker>& markers, Framing& framing) {
+  const Eigen::AlignedBox3d framed = framing.box();
+  for (const render::Marker& marker : markers) {
+    const Eigen::Vector3d p_W_m = marker.p_W_m.cast<double>();
+    if (marker.kind == render::MarkerKind::kCandidate &&
+        framed.exteriorDistance(p_W_m) < kNearStar_m)
+      framing.AddBall(p_W_m, marker.half_size_m.x());
+  }
+}
+
 /// A person who has a body and a hand of the scene is looked over the shoulder: only her hands are
 /// framed, unless `body` asks for all of her.
 bool IsFramed(const Scenario& scenario, std::size_t body, const std::string& camera) {
@@ -126,6 +138,7 @@ render::Camera CameraFor(const Scenario& scenario, const RunResult& run,
   Framing framing(scenario, run, format);
   if (name == "hand" && !scenario.scene.hands.empty()) {
     FrameHands(scenario, picture.snapshot, format.framed, framing);
+    FrameStars(picture.markers, framing);
   } else {
     framing.ForEachLook([&](const physics::Snapshot& now) { framing.AddHands(now); });
     for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {

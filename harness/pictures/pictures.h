@@ -47,6 +47,7 @@ struct PictureFormat {
   /// 0xRRGGBB of the parts of hands with sensors of the set of this name; others look like skin.
   std::map<std::string, std::uint32_t> sensor_colors = {};
   bool path_so_far = false;  ///< paths end at the moment, as in a film
+  bool regions = false;      ///< of interest of the phases at the moment, and candidates
   bool title = true, labels = true, strip = true, ghosts = true, paths = true, gaze = true;
 };
 

@@ -185,9 +185,11 @@ PictureResult DrawSheet(const std::vector<SheetEntry>& entries, int columns,
     render::Picture picture = ComposePicture(*scenario, *run, entry, format);
     if (format.title) {
       const char letter = static_cast<char>('a' + i % 26);
-      picture.title = title.empty() ? fmt::format("{}  ·  {}  ·  {:.3f} s", letter, entry.at.value,
-                                                  SecondsOf(picture, *run))
-                                    : fmt::format("{}  ·  {}", letter, title);
+      const auto at = ParseEventTime(entry.at.value);
+      const std::string event = at && at->time_s ? "" : entry.at.value + "  ·  ";
+      picture.title =
+          title.empty() ? fmt::format("{}  ·  {}{:.3f} s", letter, event, SecondsOf(picture, *run))
+                        : fmt::format("{}  ·  {}", letter, title);
     }
     const render::Image image = painter.Draw(picture);
     if (image.rgb.empty()) {

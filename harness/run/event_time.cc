@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -61,6 +62,11 @@ FoundTime FindEventTime(const std::string& text, const RunResult& run) {
       return {moment->end ? event.interval.end : event.interval.begin, ""};
   }
   return {run.ticks, fmt::format("{} did not happen", text)};
+}
+
+const physics::Snapshot& SnapshotAt(const RunResult& run, grammar::Tick tick) {
+  const auto at = std::ranges::lower_bound(run.recording, tick, {}, &physics::Snapshot::tick);
+  return at == run.recording.end() ? run.recording.back() : *at;
 }
 
 }  // namespace prehend::harness

@@ -37,4 +37,7 @@ struct FoundTime {
 };
 FoundTime FindEventTime(const std::string& text, const RunResult& run);
 
+/// First recorded snapshot at or after a tick, else the last one. Something was recorded.
+const physics::Snapshot& SnapshotAt(const RunResult& run, grammar::Tick tick);
+
 }  // namespace prehend::harness

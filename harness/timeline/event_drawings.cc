@@ -29,6 +29,7 @@ EventDrawings::EventDrawings(const grammar::Program& program) {
   std::size_t next_color = 0;
   for (const grammar::EventSignature& event : EventSignatures(program))
     drawings_[event.name] = DrawingOf(event, next_color);
+  for (auto& [name, drawing] : drawings_) drawing.regions = grammar::RegionsOf(program, name);
 }
 
 const EventDrawing& EventDrawings::Of(std::string_view event) const {

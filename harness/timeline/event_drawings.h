@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "grammar/base/timeline.h"
 #include "grammar/contents.h"
@@ -23,6 +24,7 @@ struct EventDrawing {
   std::size_t hand = 0;   ///< of a phase or grasp: which role is the hand
   std::size_t first = 0;  ///< of a grasp: which role is held; of a support: which one stands
   std::size_t last = 0;   ///< of a support: on which one it stands
+  std::vector<grammar::RegionOfInterest> regions = {};  ///< that its rule asks about
 };
 
 class EventDrawings {

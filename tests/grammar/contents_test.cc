@@ -69,5 +69,44 @@ TEST_F(Contents, HasWhatCompileWarnedOf) {
   EXPECT_EQ(warnings[0].message, "no event uses the condition 'near'");
 }
 
+TEST(RegionsOf, AreThoseOfTheConditionsThatAnEventIsMadeOf) {
+  const CompileResult compiled = Compile({"g.grammar", R"(grammar g
+event reaching(hand: Hand, object: Thing)
+  while in_sphere(object, ahead(hand, 30 cm), 20 cm) and not touching(hand, object)
+condition away(hand: Hand, object: Movable)
+  from touching(hand, object) begins
+  to not in_cylinder(position(object), position(object)@begin, 9 cm, 12 cm) begins
+condition above(hand: Hand, object: Movable)
+  from touching(hand, object) begins
+  to in_cylinder(position(object), position(object)@begin, 9 cm, 1000 m) begins
+event carrying(hand: Hand, object: Movable)
+  from touching(hand, object) begins to away(hand, object) ends
+  requires above(hand, object)
+event after(hand: Hand, object: Movable)
+  from carrying(hand, object) ends to touching(hand, object) begins
+)"},
+                                         nullptr);
+  ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
+  using Region = RegionOfInterest;
+  EXPECT_EQ(RegionsOf(*compiled.program, "reaching"),
+            (std::vector<Region>{{.shape = Region::Shape::kSphere,
+                                  .middle = Region::Middle::kAhead,
+                                  .role = 0,
+                                  .inside = 1,
+                                  .radius_m = 0.2,
+                                  .height_m = 0,
+                                  .ahead_m = 0.3}}));
+  EXPECT_EQ(RegionsOf(*compiled.program, "carrying"),
+            (std::vector<Region>{{.shape = Region::Shape::kCylinder,
+                                  .middle = Region::Middle::kAtBegin,
+                                  .role = 1,
+                                  .inside = 1,
+                                  .radius_m = 0.09,
+                                  .height_m = 0.12}}))
+      << "not a cylinder without end";
+  EXPECT_TRUE(RegionsOf(*compiled.program, "after").empty()) << "another event has its own";
+  EXPECT_TRUE(RegionsOf(*compiled.program, "unknown").empty());
+}
+
 }  // namespace
 }  // namespace prehend::grammar

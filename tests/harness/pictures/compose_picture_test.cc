@@ -90,6 +90,28 @@ TEST(ComposePictureTest, RowsBeyondTheSixthAreLeftOut) {
   EXPECT_EQ(stage.At("0.5").strip.rows_left_out, 3) << "four, five and cup on";
 }
 
+TEST(ComposePictureTest, OfManySupportsThoseOfWhatAHandHoldsAreShown) {
+  Stage stage;
+  for (const char* name : {"a", "b", "c", "d", "e", "held"}) {
+    stage.scenario.scene.bodies.push_back(
+        {.name = name, .shapes = {{physics::Box{}, {}}}, .mass_kg = 0.2});
+    stage.scenario.body_classes.push_back("Thing");
+    for (physics::Snapshot& snapshot : stage.run.recording) snapshot.bodies.emplace_back();
+    stage.Add("stands_on", {{"x", name}, {"y", "tray"}}, 0, 480);
+  }
+  stage.Add("holds", {{"h", "left"}, {"x", "held"}}, 300, 400);
+  const render::TimelineStrip strip = stage.At("0.7").strip;
+  const auto labels = [&] {
+    std::vector<std::string> all;
+    for (const render::StripRow& row : strip.rows) all.push_back(row.label);
+    return all;
+  }();
+  ASSERT_EQ(labels.size(), 6u);
+  EXPECT_EQ(labels[3], "cup on");
+  EXPECT_EQ(labels[4], "held on");
+  EXPECT_EQ(labels[5], "a on");
+}
+
 TEST(ComposePictureTest, ThePathIsCutWherePhasesChange) {
   const auto path = Stage().At("0.5").path;
   ASSERT_EQ(path.size(), 3u);
