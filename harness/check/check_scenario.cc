@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <set>
 #include <utility>
 
 #include "grammar/base/check.h"
@@ -16,6 +15,7 @@
 #include "harness/base/shell_quote.h"
 #include "harness/check/attribute.h"
 #include "harness/check/blame.h"
+#include "harness/check/draw_disputed.h"
 #include "harness/check/last_pass.h"
 #include "harness/check/settings.h"
 #include "harness/check/state_trace.h"
@@ -255,64 +255,10 @@ void Conclude(const Findings& findings, ScenarioVerdict& verdict) {
   verdict.reason = first.reason;
 }
 
-/// The first boundaries that are out of their tolerance, as the scene at both of their times, in
-/// one view, which is near to what happens in between. Empty if there are none, or nothing can be
-/// drawn.
-std::vector<DisputedMoment> DrawDisputed(const CheckRequest& request, const CheckedRun& checked,
-                                         const Comparison& comparison) {
-  constexpr double kAround_s = 0.15;
+std::vector<DisputedMoment> DisputedMoments(const CheckRequest& request, const CheckedRun& checked,
+                                            const Comparison& comparison) {
   if (!request.pictures || !CanDrawPictures()) return {};
-  const auto seconds = [&](grammar::Tick tick) {
-    return static_cast<double>(tick) / static_cast<double>(comparison.ticks_per_second);
-  };
-  const fs::path folder =
-      fs::path("pictures") / checked.loaded.scenario.skill / checked.loaded.scenario.name;
-  std::error_code error;
-  fs::create_directories((fs::path(request.report_folder) / folder).parent_path(), error);
-  std::vector<DisputedMoment> moments;
-  std::set<std::pair<grammar::Tick, grammar::Tick>> drawn;  // several events may share a boundary
-  for (const Pairing* pairing : comparison.Differing()) {
-    if (!pairing->expected || !pairing->actual || moments.size() == kMostDisputed) continue;
-    const bool at_begin = std::abs(pairing->begin_offset) > pairing->tolerance;
-    if (!at_begin && std::abs(pairing->end_offset) <= pairing->tolerance) continue;
-    const auto boundary = [&](const grammar::NamedEvent& event) {
-      return at_begin ? event.interval.begin : event.interval.end;
-    };
-    const auto [first, last] =
-        std::minmax({boundary(*pairing->expected), boundary(*pairing->actual)});
-    if (!drawn.emplace(first, last).second) continue;
-    std::vector<std::string> involved;
-    for (const grammar::Role& role : pairing->event().roles) involved.push_back(role.value);
-    const PictureFormat format{.width_px = 480,
-                               .height_px = 270,
-                               .framed = involved,
-                               .framed_from_s = seconds(first) - kAround_s,
-                               .framed_to_s = seconds(last) + kAround_s,
-                               .title = false,
-                               .labels = false,
-                               .strip = false,
-                               .ghosts = false,
-                               .paths = false};
-    bool is_drawn = true;
-    const auto draw = [&](const char* side, grammar::Tick tick) {
-      PictureYaml entry;
-      entry.at.value = fmt::format("{:.6f}", seconds(tick));
-      entry.camera.value = "action";
-      const std::string file =
-          fmt::format("{}.{}{}.png", folder.generic_string(), side, moments.size() + 1);
-      const PictureResult result =
-          DrawPicture(checked.loaded.scenario, checked.result, entry,
-                      (fs::path(request.report_folder) / file).string(), format);
-      is_drawn = is_drawn && result.error.empty();
-      return ReportedPicture{file, fmt::format("{}: {:.4f} s", side, seconds(tick))};
-    };
-    DisputedMoment moment{.what = (at_begin ? "begin of " : "end of ") + pairing->event().Label(),
-                          .expected = draw("golden", boundary(*pairing->expected)),
-                          .recognised = draw("recognised", boundary(*pairing->actual))};
-    if (!is_drawn) return {};
-    moments.push_back(std::move(moment));
-  }
-  return moments;
+  return DrawDisputed(checked.loaded.scenario, checked.result, comparison, request.report_folder);
 }
 
 bool WantsReplay(const CheckRequest& request, const ScenarioVerdict& verdict) {
@@ -379,7 +325,7 @@ ScenarioVerdict VerdictOn(const CheckRequest& request, const CheckedRun& checked
       judgement.pictures, AsItsFileSays(request) ? AcceptPicturesCommand(request.id) : "");
   AddReplay(request, checked, verdict);
   if (verdict.DiffersFromGolden())
-    verdict.disputed = DrawDisputed(request, checked, *verdict.comparison);
+    verdict.disputed = DisputedMoments(request, checked, *verdict.comparison);
   if (request.explain && verdict.DiffersFromGolden())
     verdict.explained = Explain(checked.loaded.scenario, checked.result, checked.loaded.program,
                                 *verdict.comparison);

@@ -37,10 +37,12 @@ struct ReportedPicture {
   std::string caption;
 };
 
-/// The scene when the golden says that an event begins or ends, and when it was recognised.
+/// The scene when the golden says that an event begins or ends, and when it was recognised; or
+/// where an event begins that only one of them has.
 struct DisputedMoment {
-  std::string what;  ///< "begin of reaching(right_hand, milk)"
-  ReportedPicture expected, recognised;
+  std::string what;  ///< "begin of reaching(right_hand, milk)", or only the event
+  ReportedPicture expected = {}, recognised = {};
+  bool in_golden = true, in_run = true;  ///< who has the event
 };
 
 /// Of one scenario.

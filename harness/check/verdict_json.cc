@@ -48,7 +48,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RelationChange, first, second, expected, actu
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Margin, label, at_end, offset, tolerance)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, ticks_per_second, pairings, relations, margins)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportedPicture, file, caption)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DisputedMoment, what, expected, recognised)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DisputedMoment, what, expected, recognised, in_golden, in_run)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, claim, place, says, found, times)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TransformVerdict, transform, says, why)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attribution, event, what, shift_ms, because, question)

@@ -73,6 +73,17 @@ void FillScenario(pugi::xml_node cell, const ScenarioVerdict& verdict) {
   AddElement(cell, "span", {{"class", "soft"}}, verdict.shows);
 }
 
+/// What the pictures of a disputed moment show.
+std::string DisputeText(const DisputedMoment& moment) {
+  constexpr const char* kPaths = "; the paths show what hands do by the golden, and by this run";
+  if (!moment.in_run)
+    return "Where " + moment.what + " should begin, which was not recognised" + kPaths;
+  if (!moment.in_golden)
+    return "Where " + moment.what + " begins, which is not in the golden" + kPaths;
+  return "The scene at the disputed " + moment.what +
+         ": when it should be, when it was recognised, and what moved in between";
+}
+
 void FillReason(pugi::xml_node cell, const ScenarioVerdict& verdict) {
   AddText(cell, verdict.reason.empty() ? MarginText(verdict) : verdict.reason);
 }
@@ -227,9 +238,7 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, bool open,
     AddExplanations(fold, verdict.explained, verdict.comparison->ticks_per_second);
   for (const DisputedMoment& moment : verdict.disputed) {
     const pugi::xml_node pair = AddElement(fold, "div", {{"class", "disputed"}});
-    AddElement(pair, "p", {},
-               "The scene at the disputed " + moment.what +
-                   ": when it should be, when it was recognised, and what moved in between");
+    AddElement(pair, "p", {}, DisputeText(moment));
     pictures.Add(pair, moment.expected);
     pictures.Add(pair, moment.recognised);
   }
@@ -264,8 +273,8 @@ void AddCauses(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts
     AddElement(body, "h2", {},
                causes.size() == 1 ? "1 cause" : fmt::format("{} causes", causes.size()));
     AddElement(body, "p", {{"class", "soft"}},
-               "What is not as it was when these scenarios last passed (it was \u2192 it is), and "
-               "what that changes.");
+               "What has changed since these scenarios last passed, from what to what, and what it "
+               "does to the events.");
     const pugi::xml_node list = AddElement(body, "ol", {{"class", "causes"}});
     for (const Cause& cause : causes) {
       const pugi::xml_node item = AddElement(list, "li");

@@ -102,6 +102,34 @@ TEST_F(RenderScenes, TheGoldenThatAgreesNeedsNoScenes) {
   EXPECT_FALSE(Has(sheet, "(golden)")) << "what both say is one row";
 }
 
+TEST_F(RenderScenes, GoldenPicturesAreBesideThoseOfNow) {
+  ASSERT_EQ(Do({"--against", "pictures", "-o", Path("a.svg")}).exit_code, 0);
+  const std::string same = ReadFile(Path("a.svg"));
+  EXPECT_TRUE(Has(same, "milk_carton_wrap: golden pictures and those of now"));
+  EXPECT_TRUE(Has(same, ">golden<") && Has(same, ">now<"));
+  EXPECT_TRUE(Has(same, ">difference: 0 % of the pixels<")) << "drawn as the golden one was";
+  const std::vector<std::string> late = {"--against",       "pictures", "--set",
+                                         "lift_height=6cm", "-o",       Path("b.svg")};
+  ASSERT_EQ(Do(late).exit_code, 0);
+  EXPECT_FALSE(Has(ReadFile(Path("b.svg")), ">difference: 0 % of the pixels<"))
+      << "a phase ends earlier";
+  const Said none = Prehend({"render", "slide/hop_divides_a_slide", "--against", "pictures"});
+  EXPECT_EQ(none.exit_code, 4);
+  EXPECT_TRUE(Has(none.err, "has no golden pictures; "));
+}
+
+TEST_F(RenderScenes, RegionsOfInterestAreDrawnWhenAsked) {
+  const auto picture = [&](const char* name, std::vector<std::string> more) {
+    std::vector<std::string> options = {"--at", "reaching.begin", "--size", "320x180",
+                                        "-o",   Path(name)};
+    options.insert(options.end(), more.begin(), more.end());
+    EXPECT_EQ(Do(options).exit_code, 0);
+    return ReadFile(Path(name));
+  };
+  EXPECT_NE(picture("a.png", {}), picture("b.png", {"--regions"}));
+  EXPECT_EQ(Do({"--strip", "--regions"}).exit_code, 2);
+}
+
 TEST_F(RenderScenes, TheOtherEngineHasScenesOfItsOwn) {
   const Said said = Prehend(
       {"render", "planar/box_is_stacked_on_another", "--against", "bullet", "-o", Path("a.svg")});

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of the moments about which a golden and a run differ. Tested by
+// tests/harness/check/draw_disputed_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/check/verdict.h"
+#include "harness/run/run_scenario.h"
+
+namespace prehend::harness {
+
+/// The first kMostDisputed boundaries that are out of their tolerance, as the scene at both of
+/// their times, in one view, which is near to what happens in between; and events that only one
+/// side has, as the scene where they begin, with what hands do according to the one and the other.
+/// Files are below REPORT_FOLDER/pictures. Empty if there are none, or nothing can be drawn.
+std::vector<DisputedMoment> DrawDisputed(const Scenario& scenario, const RunResult& run,
+                                         const Comparison& comparison,
+                                         const std::string& report_folder);
+
+}  // namespace prehend::harness
