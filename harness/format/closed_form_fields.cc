@@ -21,7 +21,9 @@ constexpr double kMaxPart_m = 1;
 /// A number, or text; whether it is a formula is found where it is computed.
 ValueFormat<FormulaYaml> FormulaText() {
   return ValueFormat<FormulaYaml>(
-      Json{{"type", {"number", "string"}}, {"maxLength", kMaxFormulaBytes}},
+      []() -> Json {
+        return {{"type", {"number", "string"}}, {"maxLength", kMaxFormulaBytes}};
+      },
       [](const YamlNode& node, DiagnosticList& errors, FormulaYaml& formula) {
         if (node.kind != YamlNode::Kind::kScalar || node.text.empty() ||
             node.text.size() > kMaxFormulaBytes)

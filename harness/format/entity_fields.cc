@@ -108,8 +108,11 @@ ValueFormat<JointYaml> BallJointFormat() {
 /// A word is looked up; its hint is the nearest word.
 ValueFormat<std::string> ColorFormat() {
   return ValueFormat<std::string>(
-      {{"anyOf",
-        {{{"enum", ColorWords()}}, {{"type", "string"}, {"pattern", "^#[0-9A-Fa-f]{6}$"}}}}},
+      []() -> Json {
+        return {
+            {"anyOf",
+             {{{"enum", ColorWords()}}, {{"type", "string"}, {"pattern", "^#[0-9A-Fa-f]{6}$"}}}}};
+      },
       [](const YamlNode& node, DiagnosticList& errors, std::string& color) {
         color = node.text;
         if (node.kind == YamlNode::Kind::kScalar && ColorOfText(color)) return true;

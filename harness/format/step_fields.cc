@@ -427,7 +427,7 @@ ValueFormat<std::vector<Located<StepYaml>>> StepsFormat() {
     steps.push_back(std::move(step));
     return true;
   };
-  return ValueFormat<Steps>({{"anyOf", {one.schema(), several.schema()}}}, read);
+  return ValueFormat<Steps>(AnyOf({one.schema(), several.schema()}), read);
 }
 
 }  // namespace

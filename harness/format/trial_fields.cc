@@ -17,7 +17,9 @@ namespace {
 ValueFormat<std::string> Value() {
   const ValueFormat<std::string> text = Text();
   return ValueFormat<std::string>(
-      {{"type", {"string", "number", "boolean"}}},
+      []() -> Json {
+        return {{"type", {"string", "number", "boolean"}}};
+      },
       [text](const YamlNode& node, DiagnosticList& errors, std::string& value) {
         const bool plain = node.kind == YamlNode::Kind::kScalar &&
                            (NumberOf(node) || node.text == "true" || node.text == "false");

@@ -246,6 +246,6 @@ Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format) {
   return file;
 }
 
-std::string ImportMapSchema() { return MapFormat().schema().dump(2) + "\n"; }
+std::string ImportMapSchema() { return MapFormat().schema().json().dump(2) + "\n"; }
 
 }  // namespace prehend::harness::import

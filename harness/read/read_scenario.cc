@@ -257,7 +257,8 @@ Result<Scenario> ReadDocumentAs(const std::string& file, Result<YamlDocument> do
                                 const ScenarioLibrary& library) {
   if (!document) return tl::unexpected(std::move(document.error()));
   for (const std::string& assignment : overrides) {
-    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema(), *document); !bad.empty())
+    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema().json(), *document);
+        !bad.empty())
       return tl::unexpected(std::move(bad));
   }
   Result<Scenario> scenario = Resolve(file, *document, library);

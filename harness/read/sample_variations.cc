@@ -73,7 +73,7 @@ std::string SettingOf(const YamlDocument& document, const VariationYaml& variati
   double value = std::get<double>(draw);
   if (variation.plus) value = written + value;
   if (variation.times) value = written * value;
-  if (IsWholeNumber(field, ScenarioFormat().schema(), document))
+  if (IsWholeNumber(field, ScenarioFormat().schema().json(), document))
     return fmt::format("{}={}", field, std::llround(value));
   return fmt::format("{}={:.6f}", field, value);
 }

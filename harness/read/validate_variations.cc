@@ -60,7 +60,7 @@ class DrawChecker {
       for (const std::string& field : variation.fields) {
         if (IsSetOnCommandLine(document_, field)) continue;
         setting = SettingOf(document_, variation, field, bounds.draws[bound]);
-        (void)ApplyOverride(setting, ScenarioFormat().schema(),
+        (void)ApplyOverride(setting, ScenarioFormat().schema().json(),
                             varied);  // ValidateVariations() has tried the path
       }
       if (setting.empty()) return;
@@ -102,7 +102,7 @@ void ValidateVariations(const YamlDocument& document, const std::vector<Variatio
                    "give it one distribution");
       const YamlNode* node = FindField(document.root, field);
       const grammar::Diagnostics nowhere =
-          ApplyOverride(field + "=0", ScenarioFormat().schema(), tried);
+          ApplyOverride(field + "=0", ScenarioFormat().schema().json(), tried);
       if (!nowhere.empty() || (relative && !node)) {
         const std::string hint =
             nowhere.empty() ? "plus and times need a written number" : nowhere.front().hint;

@@ -82,7 +82,7 @@ std::string GrammarNamedIn(const RunRequest& request, const std::string& root) {
 
 bool IsFieldOfScenario(const std::string& name) {
   return name.find('.') != std::string::npos ||
-         ScenarioFormat().schema().at("properties").contains(name);
+         ScenarioFormat().schema().json().at("properties").contains(name);
 }
 
 Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,

@@ -34,7 +34,7 @@ Result<Nominal> ReadNominal(const RunRequest& request, const std::string& root) 
   for (const std::string& setting : request.settings) {
     if (IsFieldOfScenario(setting.substr(0, setting.find('='))))
       // LoadRun() has accepted the setting, so it cannot fail.
-      (void)ApplyOverride(setting, ScenarioFormat().schema(), *document);
+      (void)ApplyOverride(setting, ScenarioFormat().schema().json(), *document);
   }
   return Nominal{std::move(*loaded), std::move(*document)};
 }

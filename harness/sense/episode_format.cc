@@ -37,7 +37,10 @@ ValueFormat<T> Halved(const ValueFormat<T>& whole) {
 /// A sample, or null where the entity is not tracked.
 ValueFormat<SampleEntry> OrNull(const ValueFormat<SampleEntry>& sample) {
   return ValueFormat<SampleEntry>(
-      {{"anyOf", {sample.schema(), {{"type", "null"}}}}},
+      AnyOf({sample.schema(),
+             [] {
+               return Json{{"type", "null"}};
+             }}),
       [sample](const YamlNode& node, DiagnosticList& errors, SampleEntry& entry) {
         entry.not_tracked = node.kind == YamlNode::Kind::kNull;
         return entry.not_tracked || sample.Read(node, errors, entry);

@@ -116,15 +116,15 @@ StructRules::~StructRules() = default;
 void StructRules::Add(std::string_view key, bool required, std::ptrdiff_t offset,
                       MemberReader read_member, const ErasedFormat& format, std::string_view doc,
                       const void* initial) {
-  Json schema = {{"description", doc}};
-  schema.update(format.schema);
-  if (initial && format.show) schema["default"] = format.show(initial);
-  fields.push_back({.key = std::string(key),
-                    .required = required,
-                    .schema = std::move(schema),
-                    .offset = offset,
-                    .read_member = read_member,
-                    .read = format.read});
+  fields.push_back(
+      {.key = std::string(key),
+       .required = required,
+       .schema = format.schema,
+       .doc = std::string(doc),
+       .initial = initial && format.show ? std::optional(format.show(initial)) : std::nullopt,
+       .offset = offset,
+       .read_member = read_member,
+       .read = format.read});
 }
 
 bool StructRules::Read(const YamlNode& node, DiagnosticList& errors, void* value) const {
@@ -146,12 +146,15 @@ std::string StructRules::TitleOf(const YamlNode& node) const {
   return named_by_key && !node.key.empty() ? fmt::format("{} '{}'", noun, node.key) : noun;
 }
 
-Json StructRules::Schema() const {
+Json StructRules::MakeSchema() const {
   Json schema = {
       {"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
   Json required = Json::array();
   for (const Field& field : fields) {
-    schema["properties"][field.key] = field.schema;
+    Json& property = schema["properties"][field.key];
+    property = {{"description", field.doc}};
+    property.update(field.schema.json());
+    if (field.initial) property["default"] = *field.initial;
     if (field.required) required.push_back(field.key);
   }
   if (!required.empty()) schema["required"] = std::move(required);
@@ -212,31 +215,36 @@ bool StructRules::CheckKeys(const YamlNode& node, DiagnosticList& errors) const 
 }
 
 ErasedFormat FormatOf(const StructRules& rules) {
-  return {.schema = rules.Schema(),
-          .read = [shared = std::make_shared<const StructRules>(rules)](
-                      const YamlNode& node, DiagnosticList& errors, void* value) {
-            return shared->Read(node, errors, value);
-          }};
+  const auto shared = std::make_shared<const StructRules>(rules);
+  return {.schema = [shared] { return shared->MakeSchema(); },
+          .read = [shared](const YamlNode& node, DiagnosticList& errors,
+                           void* value) { return shared->Read(node, errors, value); }};
 }
 
 ErasedFormat ErasedByKey(const std::string& noun,
                          std::vector<std::pair<std::string, ErasedFormat>> cases,
                          Remedies remedies) {
-  Json one_of = Json::array();
+  std::vector<Schema> schemas;
   std::vector<std::string> keys;
   std::vector<ErasedFormat::Read> readers;
   for (auto& [key, format] : cases) {
-    one_of.push_back(std::move(format.schema));
+    schemas.push_back(std::move(format.schema));
     keys.push_back(key);
     readers.push_back(std::move(format.read));
   }
-  return {.schema = {{"oneOf", std::move(one_of)}},
-          .read = [noun, keys = std::move(keys), readers = std::move(readers),
-                   remedies = std::move(remedies)](const YamlNode& node, DiagnosticList& errors,
-                                                   void* value) {
-            const auto found = FindCase(node, noun, keys, remedies, errors);
-            return found && readers[*found](node, errors, value);
-          }};
+  return {.schema =
+              [schemas = std::move(schemas)] {
+                Json one_of = Json::array();
+                for (const Schema& schema : schemas) one_of.push_back(schema.json());
+                return Json{{"oneOf", std::move(one_of)}};
+              },
+          .read =
+              [noun, keys = std::move(keys), readers = std::move(readers),
+               remedies = std::move(remedies)](const YamlNode& node, DiagnosticList& errors,
+                                               void* value) {
+                const auto found = FindCase(node, noun, keys, remedies, errors);
+                return found && readers[*found](node, errors, value);
+              }};
 }
 
 }  // namespace prehend::harness

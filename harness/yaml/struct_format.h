@@ -29,8 +29,10 @@ using MemberReader = bool (*)(const ErasedFormat::Read& read, const YamlNode& no
 struct Field {
   std::string key;
   bool required = false;
-  Json schema;
-  std::ptrdiff_t offset = 0;  ///< of the member in the struct, in bytes
+  Schema schema;  ///< of its value
+  std::string doc;
+  std::optional<Json> initial;  ///< its default, where the schema shows one
+  std::ptrdiff_t offset = 0;    ///< of the member in the struct, in bytes
   MemberReader read_member = nullptr;
   ErasedFormat::Read read;
 };
@@ -57,7 +59,7 @@ struct StructRules {
   void Add(std::string_view key, bool required, std::ptrdiff_t offset, MemberReader read_member,
            const ErasedFormat& format, std::string_view doc, const void* initial);
   bool Read(const YamlNode& node, DiagnosticList& errors, void* value) const;
-  Json Schema() const;
+  Json MakeSchema() const;
 
  private:
   /// "a box", or "entity 'milk'".

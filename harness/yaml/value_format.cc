@@ -99,6 +99,19 @@ std::string& StringAt(void* value) { return *static_cast<std::string*>(value); }
 
 }  // namespace
 
+const Json& Schema::json() const {
+  if (!state_->made) state_->made = state_->make();
+  return *state_->made;
+}
+
+Schema AnyOf(std::vector<Schema> schemas) {
+  return [schemas = std::move(schemas)] {
+    Json any_of = Json::array();
+    for (const Schema& schema : schemas) any_of.push_back(schema.json());
+    return Json{{"anyOf", std::move(any_of)}};
+  };
+}
+
 FormatHolder::FormatHolder(ErasedFormat erased) : erased_(std::move(erased)) {}
 FormatHolder::FormatHolder(const FormatHolder& other) = default;
 FormatHolder::FormatHolder(FormatHolder&& other) noexcept = default;
@@ -145,7 +158,9 @@ bool IsMappingOf(const YamlNode& node, DiagnosticList& errors, std::size_t least
 ValueFormat<double> Number(double lowest, double highest) {
   const std::string wanted = fmt::format("a number from {} to {}", lowest, highest);
   return ValueFormat<double>(
-      {.schema = {{"type", "number"}, {"minimum", lowest}, {"maximum", highest}},
+      {.schema = [=]() -> Json {
+         return {{"type", "number"}, {"minimum", lowest}, {"maximum", highest}};
+       },
        .read =
            [=](const YamlNode& node, DiagnosticList& errors, void* value) {
              const auto meaning = NumericMeaning(node);
@@ -159,7 +174,9 @@ ValueFormat<double> Number(double lowest, double highest) {
 
 ErasedFormat ErasedInteger(std::int64_t lowest, std::int64_t highest, const IntegerAccess& access) {
   const std::string wanted = fmt::format("a whole number from {} to {}", lowest, highest);
-  return {.schema = {{"type", "integer"}, {"minimum", lowest}, {"maximum", highest}},
+  return {.schema = [=]() -> Json {
+            return {{"type", "integer"}, {"minimum", lowest}, {"maximum", highest}};
+          },
           .read =
               [=](const YamlNode& node, DiagnosticList& errors, void* value) {
                 const auto meaning = NumericMeaning(node);
@@ -176,7 +193,9 @@ ErasedFormat ErasedInteger(std::int64_t lowest, std::int64_t highest, const Inte
 
 ValueFormat<bool> Flag() {
   return ValueFormat<bool>(
-      {.schema = {{"type", "boolean"}},
+      {.schema = []() -> Json {
+         return {{"type", "boolean"}};
+       },
        .read =
            [](const YamlNode& node, DiagnosticList& errors, void* value) {
              if (node.kind != YamlNode::Kind::kScalar || !MeaningOf(node).flag)
@@ -190,7 +209,9 @@ ValueFormat<bool> Flag() {
 ValueFormat<std::string> Text(std::size_t max_length) {
   const std::string wanted = fmt::format("text of 1 to {} bytes", max_length);
   return ValueFormat<std::string>(
-      {.schema = {{"type", "string"}, {"minLength", 1}, {"maxLength", max_length}},
+      {.schema = [=]() -> Json {
+         return {{"type", "string"}, {"minLength", 1}, {"maxLength", max_length}};
+       },
        .read =
            [=](const YamlNode& node, DiagnosticList& errors, void* value) {
              auto text = StringOf(node, errors, wanted);
@@ -225,7 +246,9 @@ ValueFormat<std::string> Word(const std::string& pattern, const std::string& wan
   const std::string whole = "^(" + pattern + ")$";
   const bool is_name = pattern.starts_with("[a-z]") || pattern.starts_with("[A-Z]");
   return ValueFormat<std::string>(
-      {.schema = {{"type", "string"}, {"pattern", whole}, {"maxLength", max_length}},
+      {.schema = [=]() -> Json {
+         return {{"type", "string"}, {"pattern", whole}, {"maxLength", max_length}};
+       },
        .read =
            [=, matcher = Compiled(whole)](const YamlNode& node, DiagnosticList& errors,
                                           void* value) {
@@ -265,10 +288,12 @@ namespace {
 /// `count` numbers in a row, from `value` on.
 ErasedFormat ErasedVector(std::size_t count, double lowest, double highest) {
   const ValueFormat<double> number = Number(lowest, highest);
-  return {.schema = {{"type", "array"},
-                     {"items", number.schema()},
-                     {"minItems", count},
-                     {"maxItems", count}},
+  return {.schema = [=]() -> Json {
+            return {{"type", "array"},
+                    {"items", number.schema().json()},
+                    {"minItems", count},
+                    {"maxItems", count}};
+          },
           .read =
               [=](const YamlNode& node, DiagnosticList& errors, void* value) {
                 if (!IsListOf(node, errors, count, count)) return false;
@@ -325,9 +350,10 @@ ValueFormat<std::string> Identifier() {
 ValueFormat<std::string> Choice(std::vector<std::string> words) {
   const std::string wanted = words.size() == 1 ? fmt::format("'{}'", words[0])
                                                : fmt::format("one of {}", fmt::join(words, ", "));
-  Json schema = {{"type", "string"}, {"enum", words}};
   return ValueFormat<std::string>(
-      {.schema = std::move(schema),
+      {.schema = [words]() -> Json {
+         return {{"type", "string"}, {"enum", words}};
+       },
        .read =
            [wanted, words = std::move(words)](const YamlNode& node, DiagnosticList& errors,
                                               void* value) {
@@ -369,50 +395,54 @@ ErasedFormat ErasedChoice(std::vector<std::string> words, std::vector<std::int64
 
 ErasedFormat ErasedList(const ErasedFormat& item, std::size_t least, std::size_t most,
                         const ListAccess& access) {
-  return {.schema = {{"type", "array"},
-                     {"items", item.schema},
-                     {"minItems", least},
-                     {"maxItems", most}},
-          .read =
-              [=, read = item.read](const YamlNode& node, DiagnosticList& errors, void* list) {
-                access.clear(list);
-                if (!IsListOf(node, errors, least, most)) return false;
-                bool good = true;
-                for (const YamlNode& child : node.children)
-                  good &= read(child, errors, access.append(list));
-                return good;
-              },
-          .show =
-              [access, show = item.show](const void* list) {
-                Json shown = Json::array();
-                for (std::size_t i = 0; i < access.size(list); ++i)
-                  shown.push_back(show ? show(access.at(list, i)) : Json());
-                return shown;
-              }};
+  return {
+      .schema = [=, items = item.schema]() -> Json {
+        return {
+            {"type", "array"}, {"items", items.json()}, {"minItems", least}, {"maxItems", most}};
+      },
+      .read =
+          [=, read = item.read](const YamlNode& node, DiagnosticList& errors, void* list) {
+            access.clear(list);
+            if (!IsListOf(node, errors, least, most)) return false;
+            bool good = true;
+            for (const YamlNode& child : node.children)
+              good &= read(child, errors, access.append(list));
+            return good;
+          },
+      .show =
+          [access, show = item.show](const void* list) {
+            Json shown = Json::array();
+            for (std::size_t i = 0; i < access.size(list); ++i)
+              shown.push_back(show ? show(access.at(list, i)) : Json());
+            return shown;
+          }};
 }
 
 ErasedFormat ErasedMap(const ValueFormat<std::string>& name, const ErasedFormat& item,
                        std::size_t least, std::size_t most, const MapAccess& access) {
-  return {.schema = {{"type", "object"},
-                     {"propertyNames", name.schema()},
-                     {"additionalProperties", item.schema},
-                     {"minProperties", least},
-                     {"maxProperties", most}},
-          .read = [=, read_name = name.erased().read, read = item.read](
-                      const YamlNode& node, DiagnosticList& errors, void* map) {
-            access.clear(map);
-            bool good = IsMappingOf(node, errors, least, most);
-            for (const YamlNode& child : node.children) {
-              YamlNode key;
-              key.kind = YamlNode::Kind::kScalar;
-              key.text = child.key;
-              key.where = child.key_where;
-              std::string read_key = child.key;
-              good &= read_name(key, errors, &read_key);
-              good &= read(child, errors, access.append(map, read_key, child.key_where));
-            }
-            return good;
-          }};
+  return {.schema = [=, names = name.schema(), items = item.schema]() -> Json {
+            return {{"type", "object"},
+                    {"propertyNames", names.json()},
+                    {"additionalProperties", items.json()},
+                    {"minProperties", least},
+                    {"maxProperties", most}};
+          },
+          .read =
+              [=, read_name = name.erased().read, read = item.read](
+                  const YamlNode& node, DiagnosticList& errors, void* map) {
+                access.clear(map);
+                bool good = IsMappingOf(node, errors, least, most);
+                for (const YamlNode& child : node.children) {
+                  YamlNode key;
+                  key.kind = YamlNode::Kind::kScalar;
+                  key.text = child.key;
+                  key.where = child.key_where;
+                  std::string read_key = child.key;
+                  good &= read_name(key, errors, &read_key);
+                  good &= read(child, errors, access.append(map, read_key, child.key_where));
+                }
+                return good;
+              }};
 }
 
 }  // namespace prehend::harness

@@ -18,9 +18,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <concepts>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +35,25 @@ namespace prehend::harness {
 
 using Json = nlohmann::ordered_json;
 
+/// A JSON Schema, made when somebody asks for it: to read a file, nobody does. Copies share it.
+class Schema {
+ public:
+  /// `make` is Json().
+  template <std::invocable Maker>
+  Schema(Maker make) : state_(std::make_shared<State>(State{std::move(make), {}})) {}
+  const Json& json() const;
+
+ private:
+  struct State {
+    std::function<Json()> make;
+    std::optional<Json> made;
+  };
+  std::shared_ptr<State> state_;
+};
+
+/// One of these.
+Schema AnyOf(std::vector<Schema> schemas);
+
 /// A format without the type of its values: `value` points to one. Lists, mappings and structs are
 /// made of these, so that only a few lines are compiled anew for each type.
 struct ErasedFormat {
@@ -40,7 +62,7 @@ struct ErasedFormat {
   /// How a value is written, for defaults in the schema.
   using Show = std::function<Json(const void* value)>;
 
-  Json schema;
+  Schema schema;
   Read read;
   Show show = {};  ///< may be empty
 };
@@ -54,7 +76,7 @@ class FormatHolder {
   FormatHolder& operator=(const FormatHolder& other) = delete;
   ~FormatHolder();
 
-  const Json& schema() const { return erased_.schema; }
+  const Schema& schema() const { return erased_.schema; }
   const ErasedFormat& erased() const { return erased_; }
 
  protected:
@@ -67,7 +89,7 @@ class ValueFormat : public FormatHolder {
   using FormatHolder::FormatHolder;
   /// `read` is bool(const YamlNode&, DiagnosticList&, T&).
   template <class Reader>
-  ValueFormat(Json schema, Reader read)
+  ValueFormat(Schema schema, Reader read)
       : FormatHolder({.schema = std::move(schema),
                       .read = [read = std::move(read)](const YamlNode& node, DiagnosticList& errors,
                                                        void* value) {

@@ -30,10 +30,10 @@ void Relocate(YamlNode& node, int source, int column_offset) {
   }
 }
 
-using Schema = nlohmann::ordered_json;
+using SchemaJson = nlohmann::ordered_json;
 
 /// The schema of the field called `step`, or of a list's items; null if there is none.
-const Schema* FieldSchema(const Schema* schema, const std::string& step) {
+const SchemaJson* FieldSchema(const SchemaJson* schema, const std::string& step) {
   if (!schema) return nullptr;
   const auto properties = schema->find("properties");
   if (properties != schema->end() && properties->contains(step)) return &(*properties)[step];
@@ -46,9 +46,9 @@ const Schema* FieldSchema(const Schema* schema, const std::string& step) {
 
 /// For a schema with alternatives (an actor is a hand or a person): the first that has every key of
 /// the node.
-const Schema* Alternative(const Schema* schema, const YamlNode& node) {
+const SchemaJson* Alternative(const SchemaJson* schema, const YamlNode& node) {
   if (!schema || !schema->contains("oneOf")) return schema;
-  for (const Schema& alternative : (*schema)["oneOf"]) {
+  for (const SchemaJson& alternative : (*schema)["oneOf"]) {
     const auto known = alternative.find("properties");
     const bool fits = known != alternative.end() &&
                       std::ranges::all_of(node.children, [&](const YamlNode& child) {
@@ -60,13 +60,13 @@ const Schema* Alternative(const Schema* schema, const YamlNode& node) {
 }
 
 /// Whether a field of that name may be left out in the file, and is a mapping.
-bool IsOptionalMapping(const Schema* schema, const std::string& step) {
+bool IsOptionalMapping(const SchemaJson* schema, const std::string& step) {
   return schema && schema->contains("properties") && (*schema)["properties"].contains(step) &&
          (*schema)["properties"][step].contains("properties");
 }
 
 /// The keys that a mapping has and those that its schema allows.
-std::vector<std::string> NamesIn(const YamlNode& node, const Schema* schema) {
+std::vector<std::string> NamesIn(const YamlNode& node, const SchemaJson* schema) {
   std::vector<std::string> names;
   if (schema && schema->contains("properties")) {
     for (const auto& [name, field] : (*schema)["properties"].items()) names.push_back(name);
@@ -75,7 +75,7 @@ std::vector<std::string> NamesIn(const YamlNode& node, const Schema* schema) {
   return names;
 }
 
-std::string HintFor(const YamlNode& node, const Schema* schema, const std::string& step) {
+std::string HintFor(const YamlNode& node, const SchemaJson* schema, const std::string& step) {
   if (node.kind == Kind::kSequence)
     return fmt::format("'{}' is a list of {}", node.key, node.children.size());
   const std::string near = grammar::NearestName(step, NamesIn(node, schema));
@@ -92,7 +92,7 @@ const YamlNode* ChildOf(const YamlNode& node, std::string_view step) {
   return whole && index < node.children.size() ? &node.children[index] : nullptr;
 }
 
-Diagnostics ApplyOverride(const std::string& assignment, const Schema& schema,
+Diagnostics ApplyOverride(const std::string& assignment, const SchemaJson& schema,
                           YamlDocument& document) {
   const auto report = [&](std::size_t offset, std::string message,
                           std::string hint) -> Diagnostics {
@@ -109,7 +109,7 @@ Diagnostics ApplyOverride(const std::string& assignment, const Schema& schema,
   document.sources.push_back({"--set", assignment});
   const int source = static_cast<int>(document.sources.size()) - 1;
   YamlNode* node = &document.root;
-  const Schema* known = &schema;  // about `node`
+  const SchemaJson* known = &schema;  // about `node`
   for (std::size_t begin = 0; begin <= equals;) {
     const std::size_t end = std::min(assignment.find('.', begin), equals);
     const std::string step = assignment.substr(begin, end - begin);
@@ -139,9 +139,10 @@ Diagnostics ApplyOverride(const std::string& assignment, const Schema& schema,
   return {};
 }
 
-bool IsWholeNumber(const std::string& path, const Schema& schema, const YamlDocument& document) {
+bool IsWholeNumber(const std::string& path, const SchemaJson& schema,
+                   const YamlDocument& document) {
   const YamlNode* node = &document.root;
-  const Schema* known = &schema;
+  const SchemaJson* known = &schema;
   for (std::size_t begin = 0; begin <= path.size();) {
     const std::size_t end = std::min(path.find('.', begin), path.size());
     const std::string step = path.substr(begin, end - begin);

@@ -117,7 +117,7 @@ TEST(ScenarioFormatDocument, NamesEveryKey) {
       if (inner.is_structured()) check(inner);
     }
   };
-  check(ScenarioFormat().schema());
+  check(ScenarioFormat().schema().json());
 }
 
 }  // namespace

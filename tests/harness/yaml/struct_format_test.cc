@@ -107,8 +107,32 @@ TEST(FieldTable, TheDocumentMustBeAMapping) {
             "1:1: expected a mapping with the fields of a wheel, found a list\n");
 }
 
+TEST(FieldTable, TheSchemaIsMadeOnceAndOnlyWhenItIsAskedFor) {
+  int made = 0;
+  const ValueFormat<double> format(
+      [&made] {
+        ++made;
+        return Json{{"type", "number"}};
+      },
+      [](const YamlNode&, DiagnosticList&, double& value) {
+        value = 5;
+        return true;
+      });
+  const auto list = ListOf(format, 1, 2);
+  const auto document = ParseYaml("probe.yaml", "- 1\n");
+  ASSERT_TRUE(document);
+  DiagnosticList errors(*document);
+  std::vector<double> read;
+  ASSERT_TRUE(list.Read(document->root, errors, read));
+  EXPECT_EQ(read, std::vector<double>{5});
+  EXPECT_EQ(made, 0);
+  EXPECT_EQ(list.schema().json()["items"], format.schema().json());
+  EXPECT_EQ(AnyOf({format.schema(), format.schema()}).json()["anyOf"].size(), 2u);
+  EXPECT_EQ(made, 1);
+}
+
 TEST(FieldTable, TheSchemaSaysTheSame) {
-  const Json schema = WheelFormat().schema();
+  const Json schema = WheelFormat().schema().json();
   EXPECT_EQ(schema["additionalProperties"], false);
   EXPECT_EQ(schema["required"], Json({"radius_m"}));
   EXPECT_EQ(schema["properties"]["radius_m"], Json({{"description", "Distance from axle to tread."},
