@@ -91,8 +91,8 @@ class ChunkWriter {
 
   struct Links {
     LinkGuess guess;
-    std::vector<physics::Pose> guessed;
-    std::vector<Word> off;  ///< per frame 7 words for each link: how far the guess is off
+    std::vector<PlacedLink> placed;  ///< the palm, and each link
+    std::vector<Word> off;           ///< per frame 7 words for each link: how far the guess is off
   };
   std::vector<Links> links_;
 };
@@ -125,7 +125,7 @@ class PartReader {
   Compressor compressor_;
 };
 
-/// A link's pose from its guess, and how far that is off, and back. `off`: 7 words.
+/// A link's pose from its guess, and how far that is off.
 void AddOff(const Columns& off, std::size_t frame, std::size_t link, physics::Pose& pose);
 
 }  // namespace prehend::harness::episodes

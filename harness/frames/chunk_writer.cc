@@ -42,7 +42,7 @@ const physics::Pose& PoseOf(const physics::Snapshot& snapshot, const physics::Co
 ChunkWriter::ChunkWriter(FrameLayout layout)
     : layout_(std::move(layout)), tracks_(layout_.tracks()) {
   for (const physics::HandModel& model : layout_.hands)
-    links_.push_back({LinkGuess(model), std::vector<physics::Pose>(model.links.size()), {}});
+    links_.push_back({LinkGuess(model), std::vector<PlacedLink>(1 + model.links.size()), {}});
 }
 ChunkWriter::~ChunkWriter() = default;
 ChunkWriter::ChunkWriter(ChunkWriter&&) noexcept = default;
@@ -93,15 +93,18 @@ void ChunkWriter::AddLinks(const physics::Snapshot& snapshot) {
     Links& links = links_[h];
     const physics::HandState& hand = snapshot.hands[h];
     const std::size_t begin = links.off.size();
-    links.off.resize(begin + 7 * links.guessed.size());
+    links.off.resize(begin + 7 * links.guess.size());
     Word* off = links.off.data() + begin;
-    const auto correct = [&](std::size_t link, physics::Pose& guessed) {
-      const physics::Pose& found = hand.X_WL[link];
+    links.placed.front() = PlacedLink::Palm(hand.palm.X_WB);
+    for (std::size_t i = 0; i < links.guess.size(); ++i) {
+      const auto parent = static_cast<std::size_t>(links.guess.ParentOf(i) + 1);
+      PlacedLink& placed = links.placed[i + 1];
+      placed = links.guess.Guess(i, links.placed[parent], hand.joints[i]);
+      const physics::Pose &guessed = placed.X_WL, &found = hand.X_WL[i];
       for (int k = 0; k < 3; ++k) *off++ = OffBy(found.p_m[k], guessed.p_m[k]);
       for (int k = 0; k < 4; ++k) *off++ = OffBy(found.q.coeffs()[k], guessed.q.coeffs()[k]);
-      guessed = found;
-    };
-    links.guess.Guess(hand.palm.X_WB, hand.joints, links.guessed, correct);
+      placed.Correct(found);
+    }
   }
 }
 

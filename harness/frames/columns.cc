@@ -38,8 +38,23 @@ Word FromOrdered(Word word) { return word & kSignBit ? word & ~kSignBit : ~word;
 /// Of each row the one that it continues, or -1.
 class Order {
  public:
-  Order(const Guesses& guesses, std::size_t rows) : before_(guesses.before), rows_(rows) {}
+  Order(const Guesses& guesses, std::size_t rows) : before_(guesses.before), rows_(rows) {
+    for (std::size_t row = 0; row < before_.size() && is_runs_; ++row)
+      is_runs_ = before_[row] < 0 || before_[row] + 1 == static_cast<int>(row);
+  }
   bool IsGiven() const { return !before_.empty(); }
+  /// Whether each row continues the one above, or none.
+  bool IsRuns() const { return is_runs_; }
+  /// Calls `look(first, size)`.
+  template <typename Look>
+  void EachRun(const Look& look) const {
+    for (std::size_t begin = 0; begin < rows_;) {
+      std::size_t end = begin + 1;
+      while (end < rows_ && Before(end) >= 0) ++end;
+      look(begin, end - begin);
+      begin = end;
+    }
+  }
   int Before(std::size_t row) const {
     return before_.empty() ? static_cast<int>(row) - 1 : before_[row];
   }
@@ -52,28 +67,8 @@ class Order {
  private:
   const std::vector<int>& before_;
   std::size_t rows_;
+  bool is_runs_ = true;
 };
-
-/// Words from the planes of their bytes, plane after plane.
-template <int planes>
-void JoinPlanesOf(const char* bytes, std::span<Word> words) {
-  const std::size_t count = words.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    Word word = 0;
-    for (int plane = 0; plane < planes; ++plane)
-      word |= Word{static_cast<std::uint8_t>(bytes[static_cast<std::size_t>(plane) * count + i])}
-              << (8 * plane);
-    words[i] = word;
-  }
-}
-
-void JoinPlanes(const char* bytes, int planes, std::span<Word> words) {
-  using Join = void (*)(const char*, std::span<Word>);
-  constexpr Join kJoins[] = {JoinPlanesOf<0>, JoinPlanesOf<1>, JoinPlanesOf<2>,
-                             JoinPlanesOf<3>, JoinPlanesOf<4>, JoinPlanesOf<5>,
-                             JoinPlanesOf<6>, JoinPlanesOf<7>, JoinPlanesOf<8>};
-  kJoins[planes](bytes, words);
-}
 
 /// The next value of the polynomial through `known` values, the latest first.
 inline double Polynomial(const double* x, std::size_t known) {
@@ -177,8 +172,10 @@ class Encoder {
       best_bits = bits;
     }
     distances_.clear();
-    if (best != Guess::kMotion && !order_.IsGiven()) {
-      AddDistances(words, best);
+    if (best != Guess::kMotion && best != Guess::kBeside && order_.IsRuns()) {
+      order_.EachRun([&](std::size_t begin, std::size_t size) {
+        AddDistances(words.subspan(begin, size), best);
+      });
     } else {
       for (std::size_t row = 0; row < words.size(); ++row) {
         if (order_.Before(row) >= 0)
@@ -197,7 +194,8 @@ class Encoder {
 
   /// The same as GuessAt() for rows that each continue the one above.
   void AddDistances(std::span<const Word> words, Guess guess) {
-    distances_.resize(words.size() - 1);
+    const std::size_t begin = distances_.size();
+    distances_.resize(begin + words.size() - 1);
     const std::size_t values = guess == Guess::kBefore   ? 1
                                : guess == Guess::kLinear ? 2
                                : guess == Guess::kSquare ? 3
@@ -210,7 +208,7 @@ class Encoder {
       x[1] = x[0];
       x[0] = AsDouble(before);
       const double next = values == 1 ? 0 : Polynomial(x, std::min(values, row));
-      distances_[row - 1] =
+      distances_[begin + row - 1] =
           Distance(words[row], values > 1 && std::isfinite(next) ? AsWord(next) : before);
     }
   }
@@ -336,12 +334,12 @@ class Decoder {
   void Continue(std::size_t column) {
     if (guess_[column] == Guess::kConstant) return;
     const std::span<Word> words = columns_.Column(column);
-    if (guess_[column] == Guess::kBefore && !order_.IsGiven()) {
-      for (std::size_t row = 1; row < words.size(); ++row)
-        words[row] = AtDistance(words[row - 1], words[row]);
+    if (order_.IsRuns() && guess_[column] != Guess::kBeside) {
+      order_.EachRun([&](std::size_t begin, std::size_t size) {
+        ContinueRun(words.subspan(begin, size), guess_[column]);
+      });
       return;
     }
-    if (!order_.IsGiven()) return ContinuePolynomial(words, guess_[column]);
     for (std::size_t row = 0; row < words.size(); ++row) {
       if (order_.Before(row) >= 0)
         words[row] = AtDistance(GuessAt(guess_[column], words, order_, row), words[row]);
@@ -349,6 +347,12 @@ class Decoder {
   }
 
   /// The same as GuessAt() for rows that each continue the one above.
+  static void ContinueRun(std::span<Word> words, Guess guess) {
+    if (guess != Guess::kBefore) return ContinuePolynomial(words, guess);
+    for (std::size_t row = 1; row < words.size(); ++row)
+      words[row] = AtDistance(words[row - 1], words[row]);
+  }
+
   static void ContinuePolynomial(std::span<Word> words, Guess guess) {
     const std::size_t values = guess == Guess::kLinear ? 2 : guess == Guess::kSquare ? 3 : 4;
     double x[4] = {AsDouble(words[0])};  // the last values, the latest first

@@ -57,6 +57,10 @@ void Encode(const Columns& columns, const Guesses& guesses, std::string& bytes);
 std::optional<Columns> Decode(std::string_view& bytes, std::size_t rows, std::size_t width,
                               const Guesses& guesses);
 
+/// Words from the planes of their bytes, plane after plane; `bytes` has `planes` (0 to 8) times as
+/// many as there are words.
+void JoinPlanes(const char* bytes, int planes, std::span<Word> words);
+
 /// Integers of any size, short ones in few bytes (LEB128).
 void AppendVarint(Word value, std::string& bytes);
 /// Takes one off the front of `bytes`.

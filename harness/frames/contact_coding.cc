@@ -75,9 +75,16 @@ struct Chains {
   std::vector<std::size_t> order;   ///< of the rows
   std::vector<std::size_t> frames;  ///< of the rows in that order
   std::vector<int> before;          ///< in that order: the one that a row continues, or -1
+  std::vector<std::size_t> at;      ///< of each row, its place in that order
+  std::vector<std::size_t> chains;  ///< of each row, the number of its chain
+  std::size_t count = 0;            ///< of chains
 
   Chains(std::span<const Word> counts, std::span<const Word> ids, std::size_t keys)
-      : order(ids.size()), frames(ids.size()), before(ids.size(), -1) {
+      : order(ids.size()),
+        frames(ids.size()),
+        before(ids.size(), -1),
+        at(ids.size()),
+        chains(ids.size()) {
     std::vector<std::size_t> places(ids.size()), times(ids.size()), used(keys, 0);
     std::size_t row = 0;
     for (std::size_t frame = 0; frame < counts.size(); ++frame) {
@@ -88,12 +95,26 @@ struct Chains {
       }
       for (std::size_t i = begin; i < row; ++i) used[static_cast<std::size_t>(ids[i])] = 0;
     }
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto chain = [&](std::size_t i) { return std::pair(ids[i], places[i]); };
-    std::ranges::stable_sort(order, {}, chain);
+    // Sorted by counting: where the chains of each pair begin, then where each chain does.
+    std::vector<std::size_t> firsts(keys + 1, 0);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      std::size_t& most = firsts[static_cast<std::size_t>(ids[i]) + 1];
+      most = std::max(most, places[i] + 1);
+    }
+    std::partial_sum(firsts.begin(), firsts.end(), firsts.begin());
+    count = firsts.back();
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      chains[i] = firsts[static_cast<std::size_t>(ids[i])] + places[i];
+    std::vector<std::size_t> begins(count + 1, 0);
+    for (const std::size_t chain : chains) ++begins[chain + 1];
+    std::partial_sum(begins.begin(), begins.end(), begins.begin());
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      at[i] = begins[chains[i]]++;
+      order[at[i]] = i;
+    }
     for (std::size_t i = 0; i < order.size(); ++i) {
       frames[i] = times[order[i]];
-      if (i > 0 && chain(order[i]) == chain(order[i - 1]) && frames[i] == frames[i - 1] + 1)
+      if (i > 0 && chains[order[i]] == chains[order[i - 1]] && frames[i] == frames[i - 1] + 1)
         before[i] = static_cast<int>(i) - 1;
     }
   }
@@ -108,55 +129,59 @@ double Outward(const physics::ContactPoint& point) {
   return &OwnerOf(point) == &point.b ? 1.0 : -1.0;
 }
 
-/// The columns of place and normal.
+/// Place and normal.
 constexpr std::size_t kGeometry = 6;
+using Geometry = std::array<double, kGeometry>;
 
-double& ValueAt(PlacedNormal& geometry, std::size_t column) {
-  Vector3& v = column < 3 ? geometry.p : geometry.n;
-  return column % 3 == 0 ? v.x : column % 3 == 1 ? v.y : v.z;
+Geometry GeometryOf(const physics::ContactPoint& point) {
+  const Eigen::Vector3d &p = point.p_W_m, &n = point.nhat_BA_W;
+  return {p.x(), p.y(), p.z(), n.x(), n.y(), n.z()};
 }
 
-PlacedNormal GeometryOf(const physics::ContactPoint& point) {
-  return {ToVector3(point.p_W_m), ToVector3(point.nhat_BA_W)};
+Vector3 NormalIn(const Geometry& geometry) { return {geometry[3], geometry[4], geometry[5]}; }
+
+PlacedNormal PlacedIn(const Geometry& geometry) {
+  return {{geometry[0], geometry[1], geometry[2]}, NormalIn(geometry)};
 }
 
-/// Goes along the chains; encoder and decoder guess alike.
+/// Goes along a chain; encoder and decoder guess alike.
 class GeometryGuess {
  public:
-  explicit GeometryGuess(const Chains& chains)
-      : chains_(chains), known_(chains.size()), poses_(chains.size()), rules_(chains.size()) {}
-
-  /// Calls `take(column, guess)` for each value of the i-th row that continues another one, and
-  /// keeps what that returns.
+  void Begin(const Geometry& geometry) {
+    now_ = geometry;
+    rule_ = PlaceRule::kKept;
+    has_pose_ = false;
+  }
+  /// Where the owner of the last row was.
+  void KeepPose(const physics::Pose& owner) {
+    from_ = has_pose_ ? to_ : owner;
+    to_ = owner;
+    has_pose_ = true;
+  }
+  /// Calls `take(column, guess)` for each value of the next row, and keeps what that returns.
   template <typename Take>
-  const PlacedNormal& Continue(std::size_t i, double outward, const Take& take) {
-    const auto before = static_cast<std::size_t>(chains_.before[i]);
-    PlacedNormal& now = known_[i];
-    PlacedNormal last = known_[before];
+  const Geometry& Continue(double outward, const Take& take) {
+    const PlacedNormal last = PlacedIn(now_);
     const int largest = LargestOf(last.n);
     const std::size_t third = 3 + static_cast<std::size_t>(largest);
     for (std::size_t column = 3; column < kGeometry; ++column) {
-      if (column != third) ValueAt(now, column) = take(column, ValueAt(last, column));
+      if (column != third) now_[column] = take(column, now_[column]);
     }
-    ValueAt(now, third) = take(third, LargestGuess(largest, last.n, now.n));
-    const int earlier = chains_.before[before];
-    const physics::Pose& to = poses_[before];
-    const physics::Pose& from = earlier < 0 ? to : poses_[static_cast<std::size_t>(earlier)];
-    const std::array<Vector3, 2> places = PlacesFor(last, from, to, outward, now.n);
-    PlacedNormal guess{places[static_cast<std::size_t>(rules_[before])], {}};
-    for (std::size_t column = 0; column < 3; ++column)
-      ValueAt(now, column) = take(column, ValueAt(guess, column));
-    rules_[i] = BestRule(places, now.p);
-    return now;
+    now_[third] = take(third, LargestGuess(largest, last.n, NormalIn(now_)));
+    const std::array<Vector3, 2> places = PlacesFor(last, from_, to_, outward, NormalIn(now_));
+    const Vector3& guess = places[static_cast<std::size_t>(rule_)];
+    now_[0] = take(0, guess.x);
+    now_[1] = take(1, guess.y);
+    now_[2] = take(2, guess.z);
+    rule_ = BestRule(places, {now_[0], now_[1], now_[2]});
+    return now_;
   }
-  void Begin(std::size_t i, const PlacedNormal& geometry) { known_[i] = geometry; }
-  void KeepPose(std::size_t i, const physics::Pose& owner) { poses_[i] = owner; }
 
  private:
-  const Chains& chains_;
-  std::vector<PlacedNormal> known_;
-  std::vector<physics::Pose> poses_;
-  std::vector<PlaceRule> rules_;
+  Geometry now_{};
+  physics::Pose from_, to_;  ///< of the owner in the two rows before
+  bool has_pose_ = false;
+  PlaceRule rule_ = PlaceRule::kKept;
 };
 
 void AppendDouble(double value, std::string& bytes) {
@@ -173,25 +198,24 @@ double TakeDouble(std::string_view& bytes) {
 
 void EncodeValues(const Chains& chains, const std::vector<physics::ContactPoint>& points,
                   const std::vector<physics::Pose>& owners, std::string& bytes) {
-  GeometryGuess guess(chains);
+  GeometryGuess guess;
   Columns off(chains.size() - chains.Starts(), kGeometry), forces(chains.size(), 2);
   std::size_t next = 0;
   for (std::size_t i = 0; i < chains.size(); ++i) {
     const physics::ContactPoint& point = points[chains.order[i]];
-    PlacedNormal geometry = GeometryOf(point);
+    const Geometry geometry = GeometryOf(point);
     if (chains.before[i] < 0) {
-      for (std::size_t column = 0; column < kGeometry; ++column)
-        AppendDouble(ValueAt(geometry, column), bytes);
-      guess.Begin(i, geometry);
+      for (const double value : geometry) AppendDouble(value, bytes);
+      guess.Begin(geometry);
     } else {
-      guess.Continue(i, Outward(point), [&](std::size_t column, double guessed) {
-        const double value = ValueAt(geometry, column);
+      guess.Continue(Outward(point), [&](std::size_t column, double guessed) {
+        const double value = geometry[column];
         off.At(next, column) = Distance(std::bit_cast<Word>(value), std::bit_cast<Word>(guessed));
         return value;
       });
       ++next;
     }
-    if (chains.IsContinued(i)) guess.KeepPose(i, owners[chains.order[i]]);
+    if (chains.IsContinued(i)) guess.KeepPose(owners[chains.order[i]]);
     forces.At(i, 0) = std::bit_cast<Word>(point.distance_m);
     forces.At(i, 1) = std::bit_cast<Word>(point.normal_impulse_n_s);
   }
@@ -204,31 +228,36 @@ bool DecodeValues(const Chains& chains, const ContactWorld& world, std::string_v
                   std::vector<physics::ContactPoint>& points) {
   const std::size_t starts = chains.Starts();
   if (bytes.size() < 8 * kGeometry * starts) return false;
-  std::string_view begins = bytes.substr(0, 8 * kGeometry * starts);
-  bytes.remove_prefix(begins.size());
+  std::vector<Geometry> begins(starts);
+  for (Geometry& begin : begins) {
+    for (double& value : begin) value = TakeDouble(bytes);
+  }
   const auto off = DecodeSmall(bytes, chains.size() - starts, kGeometry);
   if (!off) return false;
   const auto forces = Decode(bytes, chains.size(), 2, {.before = chains.before});
   if (!forces) return false;
-  GeometryGuess guess(chains);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < chains.size(); ++i) {
-    physics::ContactPoint& point = points[chains.order[i]];
-    PlacedNormal now;
+  std::vector<std::size_t> started(chains.size());  // chains up to this one, in their order
+  for (std::size_t i = 0, begun = 0; i < chains.size(); ++i)
+    started[i] = begun += chains.before[i] < 0 ? 1 : 0;
+  // Frame after frame, so that the poses of a frame are at hand when they are asked for.
+  std::vector<GeometryGuess> guesses(chains.count);
+  for (std::size_t row = 0; row < points.size(); ++row) {
+    physics::ContactPoint& point = points[row];
+    const std::size_t i = chains.at[row];
+    GeometryGuess& guess = guesses[chains.chains[row]];
+    Geometry now{};
     if (chains.before[i] < 0) {
-      for (std::size_t column = 0; column < kGeometry; ++column)
-        ValueAt(now, column) = TakeDouble(begins);
-      guess.Begin(i, now);
+      now = begins[started[i] - 1];
+      guess.Begin(now);
     } else {
-      now = guess.Continue(i, Outward(point), [&](std::size_t column, double guessed) {
+      now = guess.Continue(Outward(point), [&](std::size_t column, double guessed) {
         return std::bit_cast<double>(
-            AtDistance(std::bit_cast<Word>(guessed), off->At(next, column)));
+            AtDistance(std::bit_cast<Word>(guessed), off->At(i - started[i], column)));
       });
-      ++next;
     }
-    if (chains.IsContinued(i)) guess.KeepPose(i, world.pose(chains.frames[i], OwnerOf(point)));
-    point.p_W_m = {now.p.x, now.p.y, now.p.z};
-    point.nhat_BA_W = {now.n.x, now.n.y, now.n.z};
+    if (chains.IsContinued(i)) guess.KeepPose(world.pose(chains.frames[i], OwnerOf(point)));
+    point.p_W_m = {now[0], now[1], now[2]};
+    point.nhat_BA_W = {now[3], now[4], now[5]};
     point.distance_m = std::bit_cast<double>(forces->At(i, 0));
     point.normal_impulse_n_s = std::bit_cast<double>(forces->At(i, 1));
   }
@@ -363,12 +392,8 @@ std::optional<Columns> DecodeSmall(std::string_view& bytes, std::size_t rows, st
     const auto planes = static_cast<std::uint8_t>(bytes.front());
     bytes.remove_prefix(1);
     if (planes > 8 || bytes.size() < planes * rows) return std::nullopt;
-    for (int plane = 0; plane < planes; ++plane) {
-      std::size_t row = 0;
-      for (Word& word : columns.Column(column))
-        word |= Word{static_cast<std::uint8_t>(bytes[row++])} << (8 * plane);
-      bytes.remove_prefix(rows);
-    }
+    if (planes > 0) JoinPlanes(bytes.data(), planes, columns.Column(column));
+    bytes.remove_prefix(planes * rows);
   }
   return columns;
 }

@@ -175,6 +175,18 @@ void WriteRow(const FrameLayout& layout, std::size_t track, const Columns& colum
   }
 }
 
+physics::Pose PoseInRow(const Columns& columns, std::size_t row) {
+  RowReader in(columns, row);
+  physics::Pose pose;
+  in.Take(pose.p_m);
+  in.Take(pose.q);
+  return pose;
+}
+
+double JointInRow(const Columns& columns, std::size_t row, std::size_t link) {
+  return std::bit_cast<double>(columns.At(row, kHandOwnWidth + link));
+}
+
 bool HasValidIndices(const FrameLayout& layout, const physics::Snapshot& snapshot) {
   for (std::size_t i = 0; i < layout.hands.size(); ++i) {
     const std::size_t styles = std::max<std::size_t>(layout.hands[i].styles.size(), 1);

@@ -52,6 +52,10 @@ void ReadRow(const FrameLayout& layout, std::size_t track, const physics::Snapsh
 void WriteRow(const FrameLayout& layout, std::size_t track, const Columns& columns, std::size_t row,
               physics::Snapshot& snapshot);
 
+/// Of the track of a body or a hand: where that is in a row, and how far a hand's joint has gone.
+physics::Pose PoseInRow(const Columns& columns, std::size_t row);
+double JointInRow(const Columns& columns, std::size_t row, std::size_t link);
+
 /// Whether the numbers of a snapshot that other code uses as indices are in their ranges.
 bool HasValidIndices(const FrameLayout& layout, const physics::Snapshot& snapshot);
 

@@ -12,8 +12,7 @@ FramePlayer::FramePlayer(FrameLayout layout)
       tracks_(layout_.tracks()),
       links_(layout_.hands.size()),
       hand_poses_(layout_.hands.size()),
-      now_(BlankSnapshot(layout_)),
-      aside_(now_) {
+      now_(BlankSnapshot(layout_)) {
   for (const physics::HandModel& model : layout_.hands) guesses_.emplace_back(model);
 }
 
@@ -43,7 +42,11 @@ bool FramePlayer::Open(const FetchPart& fetch, bool follows) {
     links_[hand] = parts_.Links(hand, *bytes);
     if (!links_[hand] || links_[hand]->rows != head_.ticks.size()) return false;
   }
-  for (HandPoses& hand : hand_poses_) hand.known.assign(head_.ticks.size(), false);
+  for (std::size_t hand = 0; hand < layout_.hands.size(); ++hand) {
+    const std::size_t count = (1 + guesses_[hand].size()) * head_.ticks.size();
+    hand_poses_[hand].known.assign(count, false);
+    hand_poses_[hand].placed.resize(count);
+  }
   return OpenContacts(fetch) && OpenResting(fetch, follows);
 }
 
@@ -78,11 +81,11 @@ bool FramePlayer::OpenContacts(const FetchPart& fetch) {
 
 physics::Pose FramePlayer::PoseOf(std::size_t frame, const physics::ContactSide& side) {
   if (side.hand >= 0)
-    return PosesOf(static_cast<std::size_t>(side.hand),
-                   frame)[static_cast<std::size_t>(side.link < 0 ? 0 : side.link + 1)];
+    return Placed(static_cast<std::size_t>(side.hand),
+                  static_cast<std::size_t>(side.link < 0 ? 0 : side.link + 1), frame)
+        .X_WL;
   const auto body = static_cast<std::size_t>(side.body);
-  if (tracks_[body]) WriteRow(layout_, body, *tracks_[body], frame, aside_);
-  return (tracks_[body] ? aside_ : now_).bodies[body].X_WB;
+  return tracks_[body] ? PoseInRow(*tracks_[body], frame) : now_.bodies[body].X_WB;
 }
 
 bool FramePlayer::OpenResting(const FetchPart& fetch, bool follows) {
@@ -124,31 +127,36 @@ const physics::Snapshot* FramePlayer::Show(std::size_t frame, bool links) {
     if (from.frame <= frame) now_.resting = from.points;
   }
   for (std::size_t hand = 0; links && hand < layout_.hands.size(); ++hand) {
-    const auto poses = PosesOf(hand, frame).subspan(1);
-    now_.hands[hand].X_WL.assign(poses.begin(), poses.end());
+    for (std::size_t link = 0; link < guesses_[hand].size(); ++link)
+      now_.hands[hand].X_WL[link] = Placed(hand, link + 1, frame).X_WL;
   }
   return &now_;
 }
 
-std::span<const physics::Pose> FramePlayer::PosesOf(std::size_t hand, std::size_t frame) {
+const PlacedLink& FramePlayer::Placed(std::size_t hand, std::size_t place, std::size_t frame) {
   HandPoses& kept = hand_poses_[hand];
-  const std::size_t width = 1 + guesses_[hand].size();
-  kept.poses.resize(std::max(kept.poses.size(), width * kept.known.size()));
-  const std::span<physics::Pose> poses = std::span(kept.poses).subspan(width * frame, width);
-  if (kept.known[frame]) return poses;
-  kept.known[frame] = true;
-  const std::size_t track = layout_.FirstHand() + hand;
-  if (tracks_[track]) WriteRow(layout_, track, *tracks_[track], frame, aside_);
-  const physics::HandState& state = (tracks_[track] ? aside_ : now_).hands[hand];
-  poses.front() = state.palm.X_WB;
-  const auto correct = [&](std::size_t link, physics::Pose& pose) {
-    if (links_[hand]) AddOff(*links_[hand], frame, link, pose);
-  };
-  const bool old = layout_.version == 1;
-  guesses_[hand].Guess(state.palm.X_WB, state.joints, poses.subspan(1),
-                       old ? LinkGuess::Correction() : correct);
-  for (std::size_t link = 0; old && link + 1 < width; ++link) correct(link, poses[link + 1]);
-  return poses;
+  const std::size_t at = frame * (1 + guesses_[hand].size()) + place;
+  PlacedLink& placed = kept.placed[at];
+  if (kept.known[at]) return placed;
+  kept.known[at] = true;
+  const std::optional<Columns>& track = tracks_[layout_.FirstHand() + hand];
+  const physics::HandState& state = now_.hands[hand];  // where the track does not change
+  if (place == 0) {
+    placed = PlacedLink::Palm(track ? PoseInRow(*track, frame) : state.palm.X_WB);
+    return placed;
+  }
+  const std::size_t link = place - 1;
+  const auto parent = static_cast<std::size_t>(guesses_[hand].ParentOf(link) + 1);
+  placed = guesses_[hand].Guess(link, Placed(hand, parent, frame),
+                                track ? JointInRow(*track, frame, link) : state.joints[link]);
+  if (!links_[hand]) return placed;
+  physics::Pose found = placed.X_WL;
+  AddOff(*links_[hand], frame, link, found);
+  if (layout_.version == 1)
+    placed.X_WL = found;  // the links on it went on from the guess
+  else
+    placed.Correct(found);
+  return placed;
 }
 
 }  // namespace prehend::harness::episodes

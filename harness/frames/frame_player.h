@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,8 +39,8 @@ class FramePlayer {
   bool OpenTrack(const FetchPart& fetch, std::size_t track, bool follows);
   bool OpenContacts(const FetchPart& fetch);
   bool OpenResting(const FetchPart& fetch, bool follows);
-  /// The palm and the links of a hand in a frame, computed once.
-  std::span<const physics::Pose> PosesOf(std::size_t hand, std::size_t frame);
+  /// The palm of a hand (place 0) or one of its links (place 1, ..) in a frame, computed once.
+  const PlacedLink& Placed(std::size_t hand, std::size_t place, std::size_t frame);
   physics::Pose PoseOf(std::size_t frame, const physics::ContactSide& side);
 
   FrameLayout layout_;
@@ -53,13 +52,12 @@ class FramePlayer {
   std::vector<PartReader::RestingFrom> resting_;
   std::vector<std::optional<Columns>> links_;
   std::vector<LinkGuess> guesses_;
-  struct HandPoses {
-    std::vector<bool> known;           ///< by frame
-    std::vector<physics::Pose> poses;  ///< frame after frame
+  struct HandPoses {  ///< frame after frame, in each place after place
+    std::vector<bool> known;
+    std::vector<PlacedLink> placed;
   };
   std::vector<HandPoses> hand_poses_;
   physics::Snapshot now_;
-  physics::Snapshot aside_;  ///< for hands at other frames
 };
 
 }  // namespace prehend::harness::episodes

@@ -20,8 +20,19 @@ Turn Product(const Turn& a, const Turn& b) {
 
 Vector3 Sum(const Vector3& a, const Vector3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 
-Turn AroundAxis(const Vector3& axis, double angle) {
-  const double length = std::sqrt(axis.x * axis.x + axis.y * axis.y + axis.z * axis.z);
+/// In the loops of this file a call costs as much as its work.
+[[gnu::always_inline]] inline Vector3 Rotate(const Turn& q, const Vector3& v) {
+  const Turn half = {q.w * v.x + q.y * v.z - q.z * v.y, q.w * v.y + q.z * v.x - q.x * v.z,
+                     q.w * v.z + q.x * v.y - q.y * v.x, -q.x * v.x - q.y * v.y - q.z * v.z};
+  const Turn back = {-q.x, -q.y, -q.z, q.w};  // of the product with it, w is 0
+  return {half.w * back.x + half.x * back.w + half.y * back.z - half.z * back.y,
+          half.w * back.y + half.y * back.w + half.z * back.x - half.x * back.z,
+          half.w * back.z + half.z * back.w + half.x * back.y - half.y * back.x};
+}
+
+double LengthOf(const Vector3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+
+Turn AroundAxis(const Vector3& axis, double length, double angle) {
   const double s = std::sin(angle * 0.5) / length;
   return {axis.x * s, axis.y * s, axis.z * s, std::cos(angle * 0.5)};
 }
@@ -61,17 +72,12 @@ Vector3 ToVector3(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 Turn Inverse(const Turn& q) { return {-q.x, -q.y, -q.z, q.w}; }
 
-Vector3 Rotated(const Turn& q, const Vector3& v) {
-  const Turn half = {q.w * v.x + q.y * v.z - q.z * v.y, q.w * v.y + q.z * v.x - q.x * v.z,
-                     q.w * v.z + q.x * v.y - q.y * v.x, -q.x * v.x - q.y * v.y - q.z * v.z};
-  const Turn all = Product(half, Inverse(q));
-  return {all.x, all.y, all.z};
-}
+Vector3 Rotated(const Turn& q, const Vector3& v) { return Rotate(q, v); }
 
 Turn Turned(const Turn& before, const Vector3& w_rad_per_s, double dt_s) {
   const Vector3& w = w_rad_per_s;
   constexpr double kLargestTurn = 0.25 * std::numbers::pi;
-  double speed = std::sqrt(w.x * w.x + w.y * w.y + w.z * w.z);
+  double speed = LengthOf(w);
   if (speed * dt_s > kLargestTurn) speed = kLargestTurn / dt_s;
   const double scale = speed < 0.001
                            ? 0.5 * dt_s - (dt_s * dt_s * dt_s) * 0.020833333333 * speed * speed
@@ -84,7 +90,16 @@ Turn Turned(const Turn& before, const Vector3& w_rad_per_s, double dt_s) {
   return ThroughMatrix(after);
 }
 
-LinkGuess::LinkGuess(const physics::HandModel& model) : turns_(model.links.size()) {
+PlacedLink PlacedLink::Palm(const physics::Pose& X_WPalm) {
+  return {Inverse(ToTurn(X_WPalm.q)), ToVector3(X_WPalm.p_m), X_WPalm};
+}
+
+void PlacedLink::Correct(const physics::Pose& found) {
+  X_WL = found;
+  p_m = ToVector3(found.p_m);
+}
+
+LinkGuess::LinkGuess(const physics::HandModel& model) {
   const std::vector<physics::Pose> rest =
       physics::LinkPoses(model, std::vector<double>(model.links.size(), 0.0));
   for (std::size_t i = 0; i < model.links.size(); ++i) {
@@ -92,37 +107,32 @@ LinkGuess::LinkGuess(const physics::HandModel& model) : turns_(model.links.size(
     const physics::Pose& X_HL = rest[i];
     const physics::Pose X_HP =
         link.parent < 0 ? physics::Pose{} : rest[static_cast<std::size_t>(link.parent)];
+    const Vector3 axis = ToVector3(X_HL.q.conjugate() * link.joint_axis);
     links_.push_back({.parent = link.parent,
                       .slides = link.slides,
                       .turn = ToTurn(X_HL.q.conjugate() * X_HP.q),
-                      .axis = ToVector3(X_HL.q.conjugate() * link.joint_axis),
+                      .axis = axis,
+                      .axis_length = LengthOf(axis),
                       .pivot = ToVector3(X_HP.q.conjugate() * (link.pivot_m - X_HP.p_m)),
                       .centre = ToVector3(X_HL.q.conjugate() * (X_HL.p_m - link.pivot_m))});
   }
 }
 
-void LinkGuess::Guess(const physics::Pose& X_WPalm, const std::vector<double>& joints,
-                      std::span<physics::Pose> X_WL, const Correction& correct) {
-  const Turn palm = Inverse(ToTurn(X_WPalm.q));
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    const Link& link = links_[i];
-    const bool on_palm = link.parent < 0;
-    const auto parent = static_cast<std::size_t>(link.parent);
-    const Turn turn =
-        link.slides ? link.turn : Product(AroundAxis(link.axis, -joints[i]), link.turn);
-    Vector3 along = Sum(link.centre, Rotated(turn, link.pivot));
-    if (link.slides)
-      along =
-          Sum(along, {joints[i] * link.axis.x, joints[i] * link.axis.y, joints[i] * link.axis.z});
-    turns_[i] = Product(turn, on_palm ? palm : turns_[parent]);
-    const Turn world = Inverse(turns_[i]);
-    const Vector3 step = Rotated(world, along);
-    const Eigen::Vector3d& from = on_palm ? X_WPalm.p_m : X_WL[parent].p_m;
-    X_WL[i].p_m = {from.x() + step.x, from.y() + step.y, from.z() + step.z};
-    const Turn shown = ThroughMatrix(world);
-    X_WL[i].q = Eigen::Quaterniond(shown.w, shown.x, shown.y, shown.z);
-    if (correct) correct(i, X_WL[i]);
-  }
+PlacedLink LinkGuess::Guess(std::size_t number, const PlacedLink& parent, double joint) const {
+  const Link& link = links_[number];
+  const Turn turn =
+      link.slides ? link.turn : Product(AroundAxis(link.axis, link.axis_length, -joint), link.turn);
+  Vector3 along = Sum(link.centre, Rotate(turn, link.pivot));
+  if (link.slides)
+    along = Sum(along, {joint * link.axis.x, joint * link.axis.y, joint * link.axis.z});
+  PlacedLink placed;
+  placed.turn = Product(turn, parent.turn);
+  const Turn world = Inverse(placed.turn);
+  placed.p_m = Sum(parent.p_m, Rotate(world, along));
+  const Turn shown = ThroughMatrix(world);
+  placed.X_WL = {{placed.p_m.x, placed.p_m.y, placed.p_m.z},
+                 Eigen::Quaterniond(shown.w, shown.x, shown.y, shown.z)};
+  return placed;
 }
 
 }  // namespace prehend::harness::episodes

@@ -4,8 +4,6 @@
 // tests/harness/frames/columns_test.cc
 #pragma once
 
-#include <functional>
-#include <span>
 #include <vector>
 
 #include "physics/scene/hand_model.h"
@@ -30,16 +28,25 @@ Vector3 Rotated(const Turn& q, const Vector3& v);
 /// The rotation after one more `dt_s` at this angular velocity (the exponential map).
 Turn Turned(const Turn& before, const Vector3& w_rad_per_s, double dt_s);
 
+/// A palm, or a link on it.
+struct PlacedLink {
+  Turn turn;    ///< from the world to it
+  Vector3 p_m;  ///< from where the links on it go on
+  physics::Pose X_WL;
+
+  static PlacedLink Palm(const physics::Pose& X_WPalm);
+  /// What is known of its pose after all; the links on it go on from there.
+  void Correct(const physics::Pose& found);
+};
+
 /// Where the links of a hand are that has these joints: forward kinematics, link after link.
 class LinkGuess {
  public:
   explicit LinkGuess(const physics::HandModel& model);
   std::size_t size() const { return links_.size(); }
-  /// What is known of a link's pose after all, once it is guessed; the links on it follow that.
-  using Correction = std::function<void(std::size_t link, physics::Pose& X_WL)>;
-  /// `joints`: one per link. `X_WL`: as many poses.
-  void Guess(const physics::Pose& X_WPalm, const std::vector<double>& joints,
-             std::span<physics::Pose> X_WL, const Correction& correct = {});
+  /// The link that this one is on; -1: the palm.
+  int ParentOf(std::size_t link) const { return links_[link].parent; }
+  PlacedLink Guess(std::size_t link, const PlacedLink& parent, double joint) const;
 
  private:
   struct Link {
@@ -47,10 +54,10 @@ class LinkGuess {
     bool slides = false;
     Turn turn;     ///< from the parent's frame to this one, the joint at zero
     Vector3 axis;  ///< of the joint, in this frame
+    double axis_length = 1;
     Vector3 pivot, centre;
   };
   std::vector<Link> links_;
-  std::vector<Turn> turns_;  ///< from the world to the link
 };
 
 }  // namespace prehend::harness::episodes
