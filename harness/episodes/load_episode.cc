@@ -114,6 +114,23 @@ Result<SegmentedRecording> SegmentRecorded(const EpisodeFile& file, const Episod
   return SegmentEpisode(*recording, loaded.program, file.path());
 }
 
+void EpisodeLoader::Refresh() {
+  if (library_.read_hand && writes_read_ == tasks_.writes()) return;
+  library_ = ProjectLibrary(tasks_.root());
+  std::erase_if(programs_, [](const auto& known) { return known.first.is_own; });
+  writes_read_ = tasks_.writes();
+}
+
+grammar::CompileResult EpisodeLoader::Compile(bool is_own, const std::string& name_or_path,
+                                              const grammar::Overrides& overrides) {
+  const GrammarKey key{is_own, name_or_path, overrides};
+  if (const auto known = programs_.find(key); known != programs_.end()) return {known->second, {}};
+  grammar::CompileResult compiled =
+      LoadGrammar(is_own ? tasks_.root() : root_, name_or_path, overrides);
+  if (compiled.program) programs_.emplace(key, compiled.program);
+  return compiled;
+}
+
 Result<LoadedRun> EpisodeLoader::LoadRecording(const EpisodeFile& file, const EpisodeRow& episode,
                                                const TaskFiles& task, const GrammarChoice& choice) {
   Result<EpisodeHeader> header = ReadRecordingHeader(file, episode);
@@ -123,8 +140,7 @@ Result<LoadedRun> EpisodeLoader::LoadRecording(const EpisodeFile& file, const Ep
   const bool is_own = choice.grammar.empty();
   const std::string asked = tasks_.RequestOf(task).grammar;
   const std::string own = asked.empty() ? header->grammar : asked;
-  grammar::CompileResult compiled =
-      LoadGrammar(is_own ? tasks_.root() : root_, is_own ? own : choice.grammar, *overrides);
+  grammar::CompileResult compiled = Compile(is_own, is_own ? own : choice.grammar, *overrides);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
   LoadedRun loaded{.scenario = StandInFor(*header), .program = std::move(compiled.program)};
   loaded.scenario.file = task.run.scenario_file;
@@ -140,11 +156,13 @@ Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow&
   if (!task) return tl::unexpected(task.error());
   if (const std::string problem = tasks_.Unpack(*task); !problem.empty())
     return Failure(file, episode, problem);
+  Refresh();
   if (!episode.simulated) return LoadRecording(file, episode, *task, choice);
-  if (!library_.read_hand || library_writes_ != tasks_.writes())
-    library_ = ProjectLibrary(tasks_.root());
-  library_writes_ = tasks_.writes();
-  Result<LoadedRun> loaded = LoadRun(tasks_.RequestOf(*task), tasks_.root(), library_, nullptr);
+  const auto load_grammar = [&](const std::string& name, const grammar::Overrides& overrides) {
+    return Compile(true, name, overrides);
+  };
+  Result<LoadedRun> loaded =
+      LoadRun(tasks_.RequestOf(*task), tasks_.root(), library_, load_grammar);
   if (!loaded) {
     grammar::Diagnostics diagnostics = std::move(loaded.error());
     for (grammar::Diagnostic& diagnostic : diagnostics)
@@ -159,7 +177,7 @@ Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow&
   if (!overrides) return tl::unexpected(std::move(overrides.error()));
   const bool is_own = choice.grammar.empty();
   const std::string name = is_own ? loaded->scenario.grammar : choice.grammar;
-  grammar::CompileResult compiled = LoadGrammar(is_own ? tasks_.root() : root_, name, *overrides);
+  grammar::CompileResult compiled = Compile(is_own, name, *overrides);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
   loaded->program = std::move(compiled.program);
   loaded->scenario.grammar = GrammarName(*loaded->program);

@@ -3,6 +3,7 @@
 // by tests/harness/episodes/episode_file_test.cc
 #pragma once
 
+#include <compare>
 #include <map>
 #include <memory>
 #include <string>
@@ -34,11 +35,23 @@ class EpisodeLoader {
  private:
   Result<LoadedRun> LoadRecording(const EpisodeFile& file, const EpisodeRow& episode,
                                   const TaskFiles& task, const GrammarChoice& choice);
+  /// Forgets what was read of the tasks' files if other ones are there now.
+  void Refresh();
+  /// `is_own`: one of the task's grammars, else one of the project.
+  grammar::CompileResult Compile(bool is_own, const std::string& name_or_path,
+                                 const grammar::Overrides& overrides);
 
   std::string root_;
   UnpackedTasks tasks_;
   ScenarioLibrary library_;  ///< what was read of the tasks' hands
-  std::size_t library_writes_ = 0;
+  struct GrammarKey {
+    bool is_own = false;
+    std::string name_or_path;
+    grammar::Overrides overrides;
+    auto operator<=>(const GrammarKey&) const = default;
+  };
+  std::map<GrammarKey, std::shared_ptr<const grammar::Program>> programs_;
+  std::size_t writes_read_ = 0;  ///< of the tasks' files, when these were read
 };
 
 /// What the grammar recognises in the episode; its frames are not kept. An episode that is not

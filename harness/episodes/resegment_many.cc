@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kSliceTimeLimit_s = 3600;
-constexpr std::size_t kSlicesPerJob = 4;
+constexpr std::size_t kSlicesPerJob = 2;
 constexpr std::size_t kMostLines = 20;
 
 bool Matches(const EpisodeRow& row, const std::string& only) {

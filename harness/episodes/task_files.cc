@@ -91,7 +91,7 @@ std::string UnpackedTasks::Unpack(const TaskFiles& task) {
     const auto [known, is_new] = written_.try_emplace(path, hash);
     if (!is_new && known->second == hash) continue;
     known->second = hash;
-    if (!path.starts_with("scenarios/")) ++writes_;
+    if (!path.starts_with("scenarios/") || path.ends_with(".grammar")) ++writes_;
     const std::string problem = WriteTextFile(PathOf(path), content);
     if (!problem.empty()) return problem;
   }

@@ -87,11 +87,15 @@ bool IsFieldOfScenario(const std::string& name) {
 
 Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
                           std::vector<std::string>* files) {
-  return LoadRun(request, root, ProjectLibrary(root, files), files);
+  const auto load_grammar = [&](const std::string& name, const grammar::Overrides& overrides) {
+    return LoadGrammar(root, name, overrides, files);
+  };
+  return LoadRun(request, root, ProjectLibrary(root, files), load_grammar, files);
 }
 
 Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
-                          const ScenarioLibrary& library, std::vector<std::string>* files) {
+                          const ScenarioLibrary& library, const GrammarLoader& load_grammar,
+                          std::vector<std::string>* files) {
   Settings settings = Split(request.settings, IsFieldOfScenario);
   if (!settings.diagnostics.empty()) return tl::unexpected(std::move(settings.diagnostics));
   if (files) files->push_back(request.scenario_file);
@@ -99,9 +103,8 @@ Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
   const std::string grammar = !request.grammar.empty() ? request.grammar
                               : scenario               ? scenario->grammar
                                                        : GrammarNamedIn(request, root);
-  grammar::CompileResult compiled = grammar.empty()
-                                        ? grammar::CompileResult{}
-                                        : LoadGrammar(root, grammar, settings.of_grammar, files);
+  grammar::CompileResult compiled =
+      grammar.empty() ? grammar::CompileResult{} : load_grammar(grammar, settings.of_grammar);
   if (!scenario || !compiled.program) {
     grammar::Diagnostics diagnostics = ErrorsOf(scenario);
     std::ranges::move(compiled.diagnostics, std::back_inserter(diagnostics));

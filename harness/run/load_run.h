@@ -3,6 +3,7 @@
 // command line. Tested by tests/harness/run/load_run_test.cc
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,9 +33,15 @@ struct LoadedRun {
 Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
                           std::vector<std::string>* files = nullptr);
 
-/// The same with a library that has been used before, so that what it has read is not read again.
+/// Compiles a grammar of this name or path with these parameters.
+using GrammarLoader = std::function<grammar::CompileResult(const std::string& name_or_path,
+                                                           const grammar::Overrides& overrides)>;
+
+/// The same with a library and a loader that have been used before, so that what they have read is
+/// not read again.
 Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
-                          const ScenarioLibrary& library, std::vector<std::string>* files);
+                          const ScenarioLibrary& library, const GrammarLoader& load_grammar,
+                          std::vector<std::string>* files = nullptr);
 
 /// Whether this name in a setting is a field of the scenario; otherwise it is a parameter of its
 /// grammar.

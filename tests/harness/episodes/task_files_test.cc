@@ -54,6 +54,22 @@ TEST(TaskFilesOfARun, StayBelowTheFolderOfTheirTask) {
   EXPECT_FALSE(fs::exists(victim));
 }
 
+TEST(TaskFilesOfARun, SayThatWhatWasReadOfThemIsOld) {
+  UnpackedTasks tasks;
+  TaskFiles task;
+  task.files = {{"scenarios/a/own.grammar", "grammar own"}, {"scenarios/a/a.yaml", "scenario: a"}};
+  ASSERT_EQ(tasks.Unpack(task), "");
+  const std::size_t before = tasks.writes();
+  ASSERT_EQ(tasks.Unpack(task), "");
+  EXPECT_EQ(tasks.writes(), before) << "the same files";
+  task.files["scenarios/a/a.yaml"] = "scenario: b";
+  ASSERT_EQ(tasks.Unpack(task), "");
+  EXPECT_EQ(tasks.writes(), before) << "a scenario is read each time";
+  task.files["scenarios/a/own.grammar"] = "grammar other";
+  ASSERT_EQ(tasks.Unpack(task), "");
+  EXPECT_GT(tasks.writes(), before) << "a grammar beside a scenario is kept when it is compiled";
+}
+
 TEST(TaskFilesOfARun, AreOneTaskOnlyIfEverythingIsEqual) {
   TaskFiles a;
   a.run.scenario_file = "s.yaml";
