@@ -144,6 +144,8 @@ Database::Database(const std::string& path, Mode mode) {
   const std::string folder = std::filesystem::absolute(path).parent_path().string();
   if (!writes && access(folder.c_str(), W_OK) != 0 && !std::filesystem::exists(path + "-wal"))
     options = "?immutable=1";
+  if (writes && !std::filesystem::exists(path) && access(folder.c_str(), W_OK) != 0)
+    throw DatabaseError(std::string("its folder cannot be written: ") + std::strerror(errno));
   Open(AsUri(path, options),
        writes ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY);
 }

@@ -22,8 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMagic{"SQLite format 3\0", 16};
 
-constexpr const char* kTables = R"(
-CREATE TABLE asset(
+constexpr const char* kTables = R"(CREATE TABLE asset(
   hash TEXT PRIMARY KEY, bytes INTEGER NOT NULL, content BLOB NOT NULL) WITHOUT ROWID;
 CREATE TABLE task(
   id INTEGER PRIMARY KEY, uuid TEXT NOT NULL UNIQUE, scenario TEXT NOT NULL, file TEXT NOT NULL,
@@ -136,6 +135,15 @@ bool IsEpisodeFile(const std::string& path) {
 
 namespace {
 
+/// Whether its tables are those that this program makes, word by word.
+bool IsAsMade(const Database& database) {
+  std::string made;
+  Statement rows =
+      database.Prepare("SELECT sql FROM sqlite_master WHERE sql IS NOT NULL ORDER BY rowid");
+  while (rows.Step()) made += rows.Text(0) + ";\n";
+  return made == kTables;
+}
+
 void RefuseOthers(const Database& database, const std::string& path, std::int64_t supported) {
   const std::int64_t application = database.Number("PRAGMA application_id");
   if (application != kApplicationId)
@@ -155,6 +163,7 @@ void RefuseOthers(const Database& database, const std::string& path, std::int64_
                     "file of it that can be read",
                     version, supported, CommandText({"migrate", path, "-o", "NEW.episodes"})));
   }
+  if (IsAsMade(database)) return;
   // Tables and columns that a program reads must be there; what others added is left alone.
   constexpr const char* kColumns =
       "SELECT tables.name, columns.name FROM sqlite_master AS tables,"

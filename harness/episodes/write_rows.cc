@@ -89,12 +89,16 @@ std::int64_t WriteTask(const Database& database, const NewTask& task) {
   insert.Bind(nlohmann::json(files.run.settings).dump()).Bind(task.shows).Run();
   const std::int64_t row = database.LastRow();
   Compressor compressor(9);
-  Statement add = database.Prepare("INSERT OR IGNORE INTO asset VALUES(?, ?, ?)");
+  Statement has = database.Prepare("SELECT 1 FROM asset WHERE hash = ?");
+  Statement add = database.Prepare("INSERT INTO asset VALUES(?, ?, ?)");
   Statement name = database.Prepare("INSERT INTO task_asset VALUES(?, ?, ?)");
   for (const auto& [path, content] : files.files) {
     const std::string hash = ContentHash(content);
-    const std::string packed(compressor.Pack(content));
-    add.Bind(hash).Bind(static_cast<std::int64_t>(content.size())).BindBytes(packed).Run();
+    if (!has.Bind(hash).Step()) {
+      add.Bind(hash).Bind(static_cast<std::int64_t>(content.size()));
+      add.BindBytes(compressor.Pack(content)).Run();
+    }
+    has.Reset();
     name.Bind(row).Bind(path).Bind(hash).Run();
   }
   WriteEntities(database, row, uuid, task.entities);

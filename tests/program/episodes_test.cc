@@ -149,6 +149,11 @@ TEST(Episodes, BadUseIsExplained) {
   const Said check = Prehend({"check", kShort, "--record", text});
   EXPECT_EQ(check.exit_code, 2);
   EXPECT_EQ(check.err, "prehend: --record: " + text + cause);
+  const auto nowhere = (folder / "no_folder/a.episodes").string();
+  const Said lost = Prehend({"run", kShort, "--record", nowhere});
+  EXPECT_EQ(lost.exit_code, 2);
+  EXPECT_EQ(lost.err, "prehend: --record: " + nowhere +
+                          ": its folder cannot be written: No such file or directory\n");
   const Said other = Prehend({"check", kShort, "--record", (folder / "a.jsonl").string()});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_NE(other.err.find("wanted a file NAME.episodes"), std::string::npos) << other.err;
