@@ -24,10 +24,20 @@ std::string GapsOfPlaced(const Episode& episode, const std::vector<bool>& placed
   return GapsText(episode.header.entity_table, gaps);
 }
 
-std::string_view RemedyFor(std::string_view fact) {
+/// Whether contacts and grasps are made of motion already.
+bool UsesMotion(const grammar::Program& program) {
+  return std::ranges::any_of(program.rules, [](const grammar::Rule& rule) {
+    return rule.file.ends_with("contact_from_motion.grammar");
+  });
+}
+
+std::string_view RemedyFor(std::string_view fact, bool uses_motion) {
   if (fact == "gazes") return "give persons or heads 'gazes_at' in their samples";
   if (fact == "forces")
     return "motion does not show forces: give touches 'force_n', or leave these events out";
+  if (uses_motion)
+    return "these rules ask for what was measured; contact(a, b), supported_by(a, b) and "
+           "grasping(a, b) are made of motion";
   return "make these facts of motion, 'use contact from motion' above the other lines, or "
          "pick_and_place_from_motion; docs/facts-from-motion.md";
 }
@@ -61,7 +71,7 @@ MissingFacts FindMissingFacts(Episode& episode, const grammar::Program& program)
         names.size() == 1
             ? std::string()
             : fmt::format(", nor {}", fmt::join(names.begin() + 1, names.end(), ", ")),
-        RemedyFor(fact));
+        RemedyFor(fact, UsesMotion(program)));
   }
   missing.nothing_left = never.size() == grammar::EventNames(program).size();
   return missing;

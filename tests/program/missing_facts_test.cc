@@ -48,13 +48,19 @@ TEST(MissingFacts, WhatCanStillBeRecognisedIsExitCodeZero) {
 TEST(MissingFacts, ForcesAreNotMadeOfMotion) {
   const auto folder = FreshFolder("missing");
   WriteFile(folder / "poses.jsonl", kPoses);
-  WriteFile(folder / "g.grammar", "grammar g\nuse contact from motion\nuse force\n");
+  WriteFile(folder / "g.grammar", "grammar g\nuse contact from motion\nuse kitchen\n");
   const Said said = Prehend({"resegment", (folder / "poses.jsonl").string(), "--grammar",
                              (folder / "g.grammar").string()});
   EXPECT_EQ(said.exit_code, 0);
   EXPECT_NE(said.err.find("warning: this recording has no forces, so 'holding_onto' is never "
                           "recognised\n  hint: motion does not show forces: give touches "
                           "'force_n', or leave these events out\n"),
+            std::string::npos)
+      << said.err;
+  // What asks for touches themselves is not told to use what it uses.
+  EXPECT_NE(said.err.find("so 'opened_by' is never recognised, nor closed_by\n  hint: these rules "
+                          "ask for what was measured; contact(a, b), supported_by(a, b) and "
+                          "grasping(a, b) are made of motion\n"),
             std::string::npos)
       << said.err;
   EXPECT_EQ(said.err.find("make these facts of motion"), std::string::npos) << said.err;
