@@ -32,7 +32,7 @@ class DoubtFinder {
     if (Asks(Doubt::kTime)) Times();
     if (Asks(Doubt::kUnit)) Unit();
     // With a wrong unit, lengths mean nothing.
-    if (errors_.empty() && Asks(Doubt::kUp)) Up();
+    if (errors_.empty() && Asks(Doubt::kAxes)) Up();
     if (errors_.empty() && Asks(Doubt::kPlace)) Near();
     if (Asks(Doubt::kQuaternionOrder) && poses_.quaternion_order) Order();
     return errors_.Sorted();
@@ -168,7 +168,7 @@ class DoubtFinder {
       int tallest = 0;
       poses_.stature->maxCoeff(&tallest);
       if (tallest != up)
-        Add(map_.up.where, Doubt::kUp,
+        Add(map_.up.where, Doubt::kAxes,
             fmt::format("the head is {:.2f} m from the feet along {}, and {:.2f} m along {}: {} "
                         "looks up",
                         (*poses_.stature)[tallest] * scale_, kAxes[tallest],
@@ -181,7 +181,7 @@ class DoubtFinder {
     for (const int axis : {1, 2, 0}) {
       const Lifts other = LiftsAlong(axis);
       if (axis == up || other.lifted < other.moving) continue;
-      Add(map_.up.where, Doubt::kUp,
+      Add(map_.up.where, Doubt::kAxes,
           fmt::format("nothing is lifted along {}, but '{}' rises {:.2f} m along {} and comes "
                       "down again: {} looks up",
                       kAxes[up], other.example, other.highest_m, kAxes[axis], kAxes[axis]),

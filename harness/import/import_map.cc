@@ -121,6 +121,8 @@ ValueFormat<ImportMap> MapFormat() {
               {{"refuse", Lost::kRefuse}, {"hold", Lost::kHold}, {"unknown", Lost::kUnknown}}),
           "What is done where a body is not tracked for longer: nothing is imported, it "
           "stays where it was, or nobody knows where it is.")
+      .Optional("smooth_s", &M::smooth_s, Number(0, 2),
+                "Each pose is the mean of those at most half of this before or after it.")
       .Optional("sure", &M::sure, ListOf(Choice<Doubt>(doubts), 0, kDoubtNames.size()),
                 "Looks wrong, but is right.")
       .Optional("ticks_per_second", &M::ticks_per_second, Integer<std::int64_t>(100, 1'000'000),

@@ -23,9 +23,9 @@ enum class Separator { kComma, kSemicolon, kTab };
 enum class Lost { kRefuse, kHold, kUnknown };
 enum class Clock { kHeader, kLog, kPublish };
 /// What looks wrong, and is accepted because the map says that it is right.
-enum class Doubt { kUnit, kUp, kQuaternionOrder, kTime, kPlace, kZero };
+enum class Doubt { kUnit, kAxes, kQuaternionOrder, kTime, kPlace, kZero };
 
-inline constexpr std::array kDoubtNames = {"unit", "up",    "quaternion_order",
+inline constexpr std::array kDoubtNames = {"unit", "axes",  "quaternion_order",
                                            "time", "place", "zero"};
 
 /// The names of columns. `{}` in a name stands for the body's name: then a row has all bodies.
@@ -76,6 +76,7 @@ struct ImportMap {
   bool zero_is_missing = false;
   double bridge_s = 0.1;  ///< the longest gap that is filled with a straight line
   Lost lost = Lost::kRefuse;
+  double smooth_s = 0;  ///< poses are means over so long, where nothing was lost
   std::vector<Doubt> sure;
   std::int64_t ticks_per_second = 10'000;
   Columns columns;  ///< of CSV only

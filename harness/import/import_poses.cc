@@ -11,6 +11,7 @@
 
 #include "grammar/base/tracking.h"
 #include "harness/import/doubts.h"
+#include "harness/import/rests.h"
 
 namespace prehend::harness::import {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 constexpr double kMostSpeed_m_per_s = 20;  ///< of a hand that throws; faster is a jump
 constexpr double kGap = 1.5;               ///< of the usual step: longer is a gap
 constexpr double kFarthest_m = 1e4;        ///< of the recording format
+constexpr double kTrembles_m = 0.0015;     ///< more than this hides how things move
 
 std::string EpisodeName(const ImportMap& map, const std::string& path) {
   if (!map.episode.empty()) return map.episode;
@@ -66,6 +68,56 @@ struct Track {
   }
 };
 
+/// The poses from `begin` on, up to where it is lost.
+std::size_t EndOfSight(const std::vector<Pose>& poses, std::size_t begin) {
+  std::size_t end = begin + 1;
+  while (end < poses.size() && !poses[end].after_loss) ++end;
+  return end;
+}
+
+/// The mean of the poses at most `half_s` before or after each; less at both ends, so that it is
+/// not drawn to one side.
+std::vector<Pose> Smoothed(const std::vector<Pose>& poses, double half_s) {
+  std::vector<Pose> smooth = poses;
+  for (std::size_t begin = 0; begin < poses.size(); begin = EndOfSight(poses, begin)) {
+    const std::size_t end = EndOfSight(poses, begin);
+    for (std::size_t i = begin, first = begin; i < end; ++i) {
+      const double t_s = poses[i].t_s;
+      const double to_end_s = std::min(t_s - poses[begin].t_s, poses[end - 1].t_s - t_s);
+      const double reach_s = std::min(half_s, to_end_s) + 1e-9;
+      while (poses[first].t_s < t_s - half_s - 1e-9) ++first;
+      Eigen::Vector3d p = Eigen::Vector3d::Zero();
+      Eigen::Vector4d q = Eigen::Vector4d::Zero();
+      double count = 0;
+      for (std::size_t k = first; k < end && poses[k].t_s <= t_s + reach_s; ++k) {
+        if (poses[k].t_s < t_s - reach_s) continue;
+        p += poses[k].p;
+        const double sign = poses[k].q.dot(poses[i].q) < 0 ? -1 : 1;
+        q += sign * poses[k].q.coeffs();
+        ++count;
+      }
+      smooth[i].p = p / count;
+      smooth[i].q = Eigen::Quaterniond(q.normalized());
+    }
+  }
+  return smooth;
+}
+
+/// The standard deviation of its position on each axis, as far as it is noise: half of all second
+/// differences are below its root of six times the median of a chi distribution of three axes.
+double Trembling_m(const std::vector<Pose>& poses) {
+  constexpr double kMedianOfThree = 1.538;
+  std::vector<double> bends;
+  for (std::size_t i = 2; i < poses.size(); ++i) {
+    if (poses[i].after_loss || poses[i - 1].after_loss) continue;
+    bends.push_back((poses[i].p - 2 * poses[i - 1].p + poses[i - 2].p).norm());
+  }
+  if (bends.empty()) return 0;
+  const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
+  std::nth_element(bends.begin(), middle, bends.end());
+  return *middle / (std::sqrt(6.0) * kMedianOfThree);
+}
+
 /// Whether nobody knows where it was at the time of the last At().
 bool IsLost(const Track& track, double t_s) {
   if (track.next == 0) return track.lost_before;
@@ -86,6 +138,7 @@ class Importer {
       return tl::unexpected(grammar::Diagnostics{
           {.file = file_.file, .place = {}, .message = problem, .source_line = {}, .hint = {}}});
     AddFrames();
+    if (std::string text = RestOnNothing(imported_.episode); !text.empty()) Warn(std::move(text));
     for (const std::string& body : file_.unused)
       Warn(fmt::format("the file has '{}', which the map does not mention", body));
     return std::move(imported_);
@@ -128,6 +181,8 @@ class Importer {
       track.poses = Converted(body, e);
       MarkGaps(body, e, track, report);
       WarnOfMotion(body, entity, track.poses, report);
+      if (map_.smooth_s > 0) track.poses = Smoothed(track.poses, map_.smooth_s / 2);
+      WarnOfTrembling(track.poses, report);
     }
     for (const Pose& pose : track.poses) report.extent.extend(pose.p);
     if (report.extent.min().minCoeff() < -kFarthest_m ||
@@ -224,6 +279,15 @@ class Importer {
     if (entity.value.hand && extent.diagonal().norm() < 0.01)
       Warn(fmt::format("the hand '{}' never leaves {:.1f} mm", entity.name,
                        extent.diagonal().norm() * 1e3));
+  }
+
+  void WarnOfTrembling(const std::vector<Pose>& poses, const EntityReport& report) {
+    const double trembling_m = Trembling_m(poses);
+    if (trembling_m <= kTrembles_m) return;
+    Warn(
+        fmt::format("'{}' trembles by {:.1f} mm from frame to frame, which hides how it moves; "
+                    "smooth_s: {:g} takes means over that long",
+                    report.from, 1e3 * trembling_m, map_.smooth_s > 0 ? 2 * map_.smooth_s : 0.2));
   }
 
   std::int64_t TickOf(double t_s) const {

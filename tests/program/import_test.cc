@@ -260,6 +260,82 @@ TEST(Import, WhatTheMapIsSureOfIsNoError) {
 
 /// The page's map is the shipped one, and its transport is that of the simulated run, within a
 /// frame.
+TEST(Import, ADoubtIsCalledAsThePageAndTheMapCallIt) {
+  const auto folder = FreshFolder("import");
+  for (const char* doubt : {"unit", "axes", "quaternion_order", "time", "place", "zero"}) {
+    const Said said = Import(folder, Csv(), std::string(kMap) + "sure: [" + doubt + "]\n");
+    EXPECT_EQ(said.exit_code, 0) << doubt << said.err;
+  }
+}
+
+// The cup is 4 mm to one side and 4 mm to the other, from frame to frame.
+std::string TremblingCsv() {
+  int frame = 0;
+  return Csv([&frame](const char* name, Row row) {
+    if (std::string(name) == "Mug") row.x += ++frame % 2 == 0 ? 0.004 : -0.004;
+    return AsWritten(name, row);
+  });
+}
+
+TEST(Import, AThingThatTremblesIsNamedAndMeansOverATimeMakeItSmooth) {
+  const auto folder = FreshFolder("import");
+  const Said rough = Import(folder, TremblingCsv(), kMap);
+  EXPECT_EQ(rough.exit_code, 0);
+  EXPECT_NE(rough.err.find("warning: 'Mug' trembles by 4.2 mm from frame to frame, which hides how "
+                           "it moves; smooth_s: 0.2 takes means over that long\n"),
+            std::string::npos)
+      << rough.err;
+  const Said smooth = Import(folder, TremblingCsv(), kMap + std::string("smooth_s: 0.2\n"));
+  EXPECT_EQ(smooth.exit_code, 0);
+  EXPECT_EQ(smooth.err, "");
+  const std::string events = Events(folder);
+  for (const char* event : {"picking_up", "transporting", "putting_down", "pick_and_place"})
+    EXPECT_NE(events.find(event), std::string::npos) << event << "\n" << events;
+}
+
+TEST(Import, NothingIsSmoothedOverATimeInWhichItWasLost) {
+  const auto folder = FreshFolder("import");
+  std::string csv = "t,name,x,y,z,qw,qx,qy,qz\n";
+  for (int i = 0; i <= 120; ++i) {
+    const double t = i / 60.0;
+    if (t < 0.7 || t > 1.3) csv += AsWritten("Mug", {t, t < 1 ? 0.0 : 0.25, 0, 0.75});
+    csv += AsWritten("Glove", {t, 0.125, 0, 0.875});
+  }
+  const std::string map = kMap + std::string("lost: unknown\n");
+  ASSERT_EQ(Import(folder, csv, map).exit_code, 0);
+  const std::string as_is = ReadFile(folder / "take.jsonl");
+  ASSERT_EQ(Import(folder, csv, map + "smooth_s: 0.5\n").exit_code, 0);
+  EXPECT_EQ(ReadFile(folder / "take.jsonl"), as_is);
+}
+
+TEST(Import, ThingsThatRestOnNothingAreNamedWithWhatTheMapCouldSay) {
+  const auto folder = FreshFolder("import");
+  std::string map = kMap;
+  const std::size_t table = map.find("  table:");
+  map.erase(table, map.find('\n', table) + 1 - table);
+  const Said without = Import(folder, Csv(), map);
+  EXPECT_EQ(without.exit_code, 0) << without.err;
+  const std::size_t begin = without.err.find("could be 'table:"),
+                    end = without.err.find("'\n", begin);
+  EXPECT_NE(without.err.find("warning: 'cup' rests with the lowest point at 0.72 m, and nothing in "
+                             "the map has its top within 5 cm of that: no support, pick-up or "
+                             "put-down is recognised"),
+            std::string::npos)
+      << without.err;
+  ASSERT_NE(begin, std::string::npos);
+  EXPECT_EQ(Events(folder).find("picking_up"), std::string::npos);
+
+  // The map that the warning proposes.
+  const std::string proposed = without.err.substr(begin + 10, end - begin - 10);
+  const Said with = Import(folder, Csv(), map + "  " + proposed + "\n");
+  EXPECT_EQ(with.exit_code, 0) << with.err;
+  EXPECT_EQ(with.err, "");
+  EXPECT_NE(Events(folder).find("picking_up"), std::string::npos);
+
+  const Said low = Import(folder, Csv(), Replaced(kMap, "[0, 0, 0.7]", "[0, 0, 0.6]"));
+  EXPECT_NE(low.err.find("rests with the lowest point at 0.72 m"), std::string::npos) << low.err;
+}
+
 TEST(Import, TheDocumentedRecordingIsSegmentedAsThePageSays) {
   const std::filesystem::path docs = std::filesystem::path(PREHEND_SOURCE_DIR) / "docs";
   const std::string page = ReadFile(docs / "motion-capture.md"),

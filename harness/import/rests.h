@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Things that rest on nothing: the table is not in the map, or at another height. Tested by
+// tests/program/import_test.cc
+#pragma once
+
+#include <string>
+
+#include "harness/sense/episode_file.h"
+
+namespace prehend::harness::import {
+
+/// Names the things that rest mostly where nothing is below them, at which height, and what the map
+/// could say; "" if there are none.
+std::string RestOnNothing(const Episode& episode);
+
+}  // namespace prehend::harness::import
