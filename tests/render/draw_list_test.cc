@@ -56,6 +56,44 @@ TEST(DrawListTest, EverythingHasItsName) {
   EXPECT_EQ(names, expected);
 }
 
+TEST(DrawListTest, RegionsOfInterestAreSpheresCylindersAndStars) {
+  const physics::Scene scene = DemoScene();
+  Picture picture = DemoPicture(scene);
+  picture.markers = {{.kind = MarkerKind::kSphere,
+                      .half_size_m = Vector3f::Constant(0.3f),
+                      .color = Color(1, 0, 0)},
+                     {.kind = MarkerKind::kCylinder, .half_size_m = {0.09f, 0.09f, 0.12f}},
+                     {.kind = MarkerKind::kCandidate},
+                     {.kind = MarkerKind::kPersonsContact},
+                     {.kind = MarkerKind::kContact}};
+  const DrawList list = MakeDrawList(picture);
+  EXPECT_EQ(Names(list).at(Names(list).size() - 4), "marker:1:cylinder");
+  EXPECT_EQ(Names(list).back(), "marker:4:contact");
+  EXPECT_EQ(Count(list.markers, Primitive::kCylinder), 1);
+  EXPECT_EQ(Count(list.markers, Primitive::kBox), 3) << "the star's three boards";
+  EXPECT_EQ(list.markers[0].color, Color(1, 0, 0)) << "that of its phase";
+  EXPECT_NEAR(list.markers[1].half_size_m.z() + list.markers[1].rounding_m, 0.12f, 1e-6f);
+  const auto shining = std::count_if(list.markers.begin(), list.markers.end(),
+                                     [](const Item& item) { return item.shines_through; });
+  EXPECT_EQ(shining, 4) << "the star and the contact of a person, which something may hide";
+}
+
+TEST(DrawListTest, PathsAreThinnerNearAHand) {
+  const physics::Scene scene = DemoScene();
+  Picture picture = DemoPicture(scene);
+  const auto bead_at = [&](float distance_m) {
+    picture.camera.eye_m = picture.camera.look_at_m + Vector3f(0, -distance_m, 0);
+    const DrawList list = MakeDrawList(picture);
+    const auto ball = std::find_if(list.paths.begin(), list.paths.end(), [](const Item& item) {
+      return item.primitive == Primitive::kBall;
+    });
+    return ball == list.paths.end() ? 0.0f : ball->rounding_m;
+  };
+  EXPECT_GT(bead_at(0.4f), 0);
+  EXPECT_LT(bead_at(0.4f), 0.6f * bead_at(1));
+  EXPECT_EQ(bead_at(1), bead_at(1.2f)) << "no less than this from afar";
+}
+
 TEST(DrawListTest, LegsAndGazesAreDrawnLast) {
   const physics::Scene scene = DemoScene();
   Picture picture{.scene = &scene};
