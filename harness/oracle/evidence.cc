@@ -16,6 +16,8 @@ using Eigen::Vector3d;
 
 /// A contact that does not push for longer than this is over (docs/physics.md).
 constexpr grammar::Tick kReleaseTicks = 4;
+/// The impulse of a resting contact flickers; its mean over so many ticks does not.
+constexpr grammar::Tick kAsleepTicks = 48;
 
 /// The points between two bodies in one frame, as they act on the first. Of a touch without known
 /// forces, all points count alike.
@@ -120,6 +122,13 @@ class EvidenceReader {
         }
         bearing.share = ShareOf(object, sum.impulse_n_s.z() / (frame - first_frame + 1));
       }
+      // Of a contact that rests, a snapshot repeats the last tick, whose impulse may be next to
+      // none: what sleeps is borne as it was before it fell asleep.
+      if (frame > 0 && held.asleep && bearing.touching && bearings[frame - 1].touching) {
+        const bool falls_asleep = !recording_.body(object, frame - 1).asleep;
+        bearing.up = bearings[frame - 1].up;
+        bearing.share = falls_asleep ? MeanShareBefore(bearings, frame) : bearings[frame - 1].share;
+      }
       const auto relative_at = [&](const Vector3d& p_W_m) {
         return Vector3d(VelocityAt(held, p_W_m) - VelocityAt(by, p_W_m));
       };
@@ -133,6 +142,15 @@ class EvidenceReader {
       if (frame > 0) along_m += by.X_WB.q.inverse() * along * recording_.Seconds(frame - 1, frame);
       bearing.along_m = along_m;
     }
+  }
+
+  /// In the last ticks before a frame, the first of which may be before the recording.
+  double MeanShareBefore(const std::vector<Bearing>& bearings, int frame) const {
+    double sum = 0;
+    int first = frame;
+    while (first > 0 && recording_.ticks[frame] - recording_.ticks[first - 1] <= kAsleepTicks)
+      sum += bearings[--first].share;
+    return sum / std::max(frame - first, 1);
   }
 
   /// `impulse_n_s`: per tick.

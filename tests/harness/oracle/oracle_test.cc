@@ -140,6 +140,29 @@ TEST(OracleSupport, IsJudgedWhereTheLoadIs) {
   }
 }
 
+TEST(OracleSupport, OfWhatSleepsIsAsItWasBefore) {
+  for (const bool asleep : {true, false}) {
+    Stage stage;
+    stage.cup_on_table = false;
+    const auto bears = [&](double impulse_n_s) {
+      stage.contacts = {{.a = Stage::BodySide(stage.cup),
+                         .b = Stage::BodySide(stage.table),
+                         .impulse_n_s = impulse_n_s}};
+    };
+    bears(0.004);  // in a tick, the weight of 200 g
+    stage.Play(0.3);
+    bears(1e-6);  // the last tick of a contact that flickers
+    stage.Play(0.01);
+    const Tick weak = stage.now();
+    stage.body(stage.cup).asleep = asleep;
+    stage.Play(1);
+    const Intervals supported = Of("supported_by(cup, table)", stage.Truth());
+    ASSERT_EQ(supported.size(), 1u);
+    EXPECT_EQ(supported[0].end == stage.now(), asleep);
+    EXPECT_LE(asleep ? 0 : supported[0].end, weak);
+  }
+}
+
 TEST(OracleSupport, OfABlowThereIsNone) {
   for (const int frames_at_rest : {3, 6}) {
     Stage stage;
