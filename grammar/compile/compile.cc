@@ -292,12 +292,21 @@ class Compiler {
           Complain(*located.source, located.definition->place,
                    "'" + define.name + "' is defined twice",
                    FirstAt(source.text.file, define.place));
-        } else if (IsBuiltin(define.name) || rule != symbols_.rules.end() ||
-                   symbols_.IsParamIn(source.text.file, define.name) ||
-                   !symbols_.defines.try_emplace(define.name, DefineSource{&source.text, &define})
-                        .second) {
+        } else if (IsBuiltin(define.name)) {
           Complain(source, define.place, "'" + define.name + "' means something already",
-                   "choose another name");
+                   "it is built in; choose another name");
+        } else if (rule != symbols_.rules.end()) {
+          const Located& first = definitions_[rule->second.index() - 1];
+          Complain(source, define.place, "'" + define.name + "' is defined twice",
+                   FirstAt(first.source->text.file, first.definition->place));
+        } else if (symbols_.IsParamIn(source.text.file, define.name)) {
+          Complain(source, define.place, "'" + define.name + "' means something already",
+                   "it is a parameter; choose another name");
+        } else if (const auto [first, is_new] = symbols_.defines.try_emplace(
+                       define.name, DefineSource{&source.text, &define});
+                   !is_new) {
+          Complain(source, define.place, "'" + define.name + "' is defined twice",
+                   FirstAt(first->second.text->file, first->second.define->place));
         }
         CheckParameters(source, define);
       }

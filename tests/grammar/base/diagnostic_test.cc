@@ -44,6 +44,11 @@ TEST(NearestName, FindsTypingMistakesOnly) {
   EXPECT_EQ(NearestName("tabel", {"table"}), "table");
   EXPECT_EQ(NearestName("pouring", names), "");
   EXPECT_EQ(NearestName("", names), "");
+  const std::vector<std::string> events = {"contact", "sliding", "picking_up", "putting_down"};
+  EXPECT_EQ(NearestName("slide", events), "sliding");
+  EXPECT_EQ(NearestName("Slides", events), "sliding");
+  EXPECT_EQ(NearestName("put_down", events), "putting_down");
+  EXPECT_EQ(NearestName("pick", events), "") << "a word is missing";
   EXPECT_EQ(NearestName(std::string(1 << 20, 'x'), names), "");
 }
 

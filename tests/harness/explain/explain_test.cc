@@ -514,6 +514,10 @@ TEST(Ask, BadOnesNamePlaceAndRemedy) {
        "--event:1:1: error: found 'mved', wanted an event or condition of grammar 'test'\n  "
        "mved@1s\n  ^\n"
        "  hint: did you mean 'moved'?\n"},
+      {"moving@1s",
+       "--event:1:1: error: found 'moving', wanted an event or condition of grammar 'test'\n  "
+       "moving@1s\n  ^\n"
+       "  hint: did you mean 'moved'?\n"},
       {"moved cpu",
        "--event:1:7: error: found 'cpu', wanted an entity of the episode\n  moved cpu\n        ^\n"
        "  hint: did you mean 'cup'?\n"},
