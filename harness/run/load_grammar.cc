@@ -130,6 +130,14 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
 
 namespace {
 
+/// Whether the file ships with the program and no scenario names it: `use` of another grammar took
+/// it along. It has no typing errors, and not every episode has all that it knows of.
+bool IsUsedFromLibrary(const std::string& file, const std::string& grammar) {
+  const std::string stem = fs::path(file).stem().string(), joint = "_and_";  // see Join()
+  return fs::path(file).parent_path() == fs::path(ShippedRoot()) / "grammar/library" &&
+         (joint + grammar + joint).find(joint + stem + joint) == std::string::npos;
+}
+
 // Warns of names in the grammar that nothing in the episode has. A class that every scenario knows
 // is no typing error.
 void WarnOfUnknownNames(const std::vector<grammar::NameInSource>& names,
@@ -161,7 +169,13 @@ grammar::Diagnostics Warnings(const grammar::Program& program,
     for (std::size_t i = 1; i <= member.sensor_sets.size(); ++i) numbers.insert(std::to_string(i));
   }
   grammar::Diagnostics warnings = CompileWarnings(program);
-  WarnOfUnknownNames(NamedClasses(program), classes, "no entity of this episode is a", "",
+  std::vector<grammar::NameInSource> asked_for = NamedClasses(program);
+  std::erase_if(asked_for, [&](const grammar::NameInSource& named) {
+    return IsUsedFromLibrary(named.file, GrammarName(program));
+  });
+  WarnOfUnknownNames(asked_for, classes, "no entity of this episode is a",
+                     "an entity is one by its 'class', or by a line of the scenario's 'classes'; "
+                     "without one, what needs it never happens",
                      warnings);
   WarnOfUnknownNames(
       NamedSensorSets(program), sensor_sets, "no hand of this episode has a sensor set",

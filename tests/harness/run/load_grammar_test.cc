@@ -94,7 +94,23 @@ TEST_F(LoadGrammarFiles, WarnsOfClassesThatNobodyHas) {
                 file +
                 ":3:52: warning: no entity of this episode is a 'Pot'\n"
                 "  event on(c: Cup) while near(any Hand, c) and is(c, Pot)\n"
-                "                                                     ^\n");
+                "                                                     ^\n"
+                "  hint: an entity is one by its 'class', or by a line of the scenario's "
+                "'classes'; without one, what needs it never happens\n");
+}
+
+TEST_F(LoadGrammarFiles, WhatTheLibraryTakesAlongIsNotWarnedOf) {
+  const grammar::EntityTable entity_table{
+      .entities = {{.name = "cup", .classes = {"Cup", "Movable", "Thing", "Entity"}}}};
+  const auto warnings_of = [&](const std::string& grammar) {
+    const auto loaded = Load(grammar);
+    EXPECT_TRUE(loaded.program) << Format(loaded.diagnostics);
+    return loaded.program ? Format(Warnings(*loaded.program, entity_table)) : "";
+  };
+  EXPECT_EQ(warnings_of("kitchen"), "") << "its 'use containers' is no typing error";
+  const std::string container = "warning: no entity of this episode is a 'Container'";
+  EXPECT_NE(warnings_of("containers").find(container), std::string::npos);
+  EXPECT_NE(warnings_of("pick_and_place+containers").find(container), std::string::npos);
 }
 
 TEST_F(LoadGrammarFiles, WarnsOfSensorSetsThatNoHandHas) {
