@@ -55,6 +55,15 @@ std::string Command(const char* name, const std::string& id, const RunRequest& c
   return command;
 }
 
+/// Of the recording that an episode was imported from; nothing if it is gone.
+std::optional<std::string> ReviewCommandOf(const fs::path& recording) {
+  std::error_code error;
+  if (!fs::exists(recording, error)) return std::nullopt;
+  const fs::path from_here = fs::proximate(recording, error);
+  const bool is_below = !from_here.empty() && *from_here.begin() != "..";
+  return CommandText({"review", (is_below ? from_here : recording).string()});
+}
+
 /// Whether nothing is changed by the command line, so that what differs can be accepted.
 bool AsItsFileSays(const CheckRequest& request) { return OptionsOf(request.run).empty(); }
 
@@ -388,6 +397,10 @@ std::optional<ScenarioVerdict> CheckImported(const CheckRequest& request) {
   ScenarioVerdict verdict =
       CheckRecording(request, golden, JudgeSegmented(std::move(*segmented), golden));
   verdict.state_hash = row->state_hash;
+  // `review` and `accept` take the recording itself, beside which its golden lies.
+  if (verdict.verdict == Verdict::kPending)
+    verdict.command = ReviewCommandOf(fs::path(request.root) / loaded->scenario.file)
+                          .value_or(RepeatCommand(request.id, request.run));
   if (WantsReplay(request, verdict)) verdict.replay = ReplayData(loaded->scenario, *run);
   return verdict;
 }
