@@ -3,17 +3,15 @@
 // tests/physics/simulation_test.cc
 #include "physics/simulation.h"
 
-#include <array>
-
 #include "physics/box2d/world.h"
 #include "physics/bullet/world.h"
-#include "physics/hand/hand_contacts.h"
 #include "physics/hand/script_player.h"
 #include "physics/motion/stage_clock.h"
 #include "physics/motion/tracker.h"
 #include "physics/person/person_player.h"
 #include "physics/scene/run_limits.h"
 #include "physics/scene/state_hash.h"
+#include "physics/step_watch.h"
 
 namespace prehend::physics {
 namespace {
@@ -21,9 +19,6 @@ namespace {
 /// A longer run is a mistake in the script: half an hour of simulated time takes minutes and fills
 /// memory.
 constexpr double kMaxRun_s = 1800;
-
-/// An arm that ends farther before its hand is noted.
-constexpr double kNotedArm_m = 0.03;
 
 std::unique_ptr<World> MakeWorld(const Scene& scene, const std::vector<int>& styles) {
   switch (scene.world.engine) {
@@ -39,21 +34,15 @@ std::unique_ptr<World> MakeWorld(const Scene& scene, const std::vector<int>& sty
 }  // namespace
 
 struct Simulation::State {
-  /// When an arm was farthest from the hand that it follows.
-  struct ShortArm {
-    std::int64_t tick = 0;
-    double by_m = 0;
-  };
-
   State(Scene s, Script t)
       : scene(std::move(s)),
         too_long(DurationOf(t) > kMaxRun_s),
         world(MakeWorld(scene, ScriptPlayer::FirstStyles(scene, t))),
-        player(scene, std::move(t)) {
+        player(scene, std::move(t)),
+        watch(scene, player.script()) {
     AddTrackers();
     for (std::size_t i = 0; i < scene.persons.size(); ++i)
       persons.emplace_back(scene, player.script(), static_cast<int>(i));
-    arms.resize(persons.size());
     world->Describe(snapshot);
     See();
     if (too_long)
@@ -69,9 +58,6 @@ struct Simulation::State {
   void AddTrackers();
   std::vector<HandCommand> Tracked(std::vector<HandCommand> commands);
   void MovePersons();
-  /// Remembers, and in the end notes, arms that are too short for where their hands go.
-  void WatchArms();
-  void NoteArms();
   void See();
 
   const Scene scene;
@@ -80,7 +66,7 @@ struct Simulation::State {
   ScriptPlayer player;
   std::vector<std::optional<Tracker>> trackers;  ///< per hand
   std::vector<PersonPlayer> persons;
-  std::vector<std::array<ShortArm, 2>> arms;  ///< per person: right, left
+  StepWatch watch;
   Snapshot snapshot;
   RunStatus status;
   StateHash hash;
@@ -113,30 +99,6 @@ void Simulation::State::MovePersons() {
   }
 }
 
-void Simulation::State::WatchArms() {
-  for (std::size_t i = 0; i < persons.size(); ++i) {
-    for (const bool right : {true, false}) {
-      ShortArm& arm = arms[i][right ? 0 : 1];
-      const double by_m = persons[i].ArmIsShortBy(right);
-      if (by_m > arm.by_m) arm = {snapshot.tick, by_m};
-    }
-  }
-}
-
-void Simulation::State::NoteArms() {
-  for (std::size_t i = 0; i < persons.size(); ++i) {
-    for (const bool right : {true, false}) {
-      const ShortArm& arm = arms[i][right ? 0 : 1];
-      const Person& person = scene.persons[i];
-      if (arm.by_m > kNotedArm_m)
-        player.AddNote({arm.tick, right ? person.right_hand : person.left_hand,
-                        "it is out of reach: the arm of " + person.name + " ends " +
-                            Millimetres(arm.by_m) +
-                            " before it; let her stand nearer, walk, turn or lean"});
-    }
-  }
-}
-
 void Simulation::State::See() {
   snapshot.gazes.clear();
   for (const PersonPlayer& person : persons) snapshot.gazes.push_back(person.See(*world));
@@ -152,14 +114,15 @@ bool Simulation::State::Step() {
   }
   if (!commands) {
     status = {.kind = RunStatus::Kind::kCompleted, .tick = snapshot.tick};
-    NoteArms();
+    for (ScriptNote& note : watch.Notes()) player.AddNote(std::move(note));
     return false;
   }
+  watch.Begin(player.begun(), snapshot);
   MovePersons();
   world->Step(Tracked(*commands));
   world->Describe(snapshot);
   See();
-  WatchArms();
+  watch.See(snapshot, persons);
   hash.Add(snapshot);
   if (auto problem = CheckSnapshot(scene, snapshot))
     Fail(problem->entity, problem->reason, problem->advice);

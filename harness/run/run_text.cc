@@ -63,10 +63,13 @@ std::string RunTable(const RunResult& run) {
 
 std::vector<std::string> NoteLines(const Scenario& scenario, const RunResult& run) {
   std::vector<std::string> lines;
-  for (const physics::ScriptNote& note : run.notes)
-    lines.push_back(
-        fmt::format("note: {} s: {}: {}", SecondsText(note.tick, run.timeline.ticks_per_second),
-                    scenario.scene.hands[static_cast<std::size_t>(note.hand)].name, note.text));
+  for (const physics::ScriptNote& note : run.notes) {
+    const std::string hand =
+        note.hand < 0 ? "" : scenario.scene.hands[static_cast<std::size_t>(note.hand)].name + ": ";
+    lines.push_back(fmt::format("note: {} s: {}{}",
+                                SecondsText(note.tick, run.timeline.ticks_per_second), hand,
+                                note.text));
+  }
   return lines;
 }
 

@@ -25,7 +25,7 @@ namespace prehend::physics {
 /// A remark on a step that was executed but perhaps not as its author intended.
 struct ScriptNote {
   std::int64_t tick = 0;
-  int hand = 0;  ///< index into Scene::hands
+  int hand = 0;  ///< index into Scene::hands; -1: the text names its actor
   std::string text;
 };
 

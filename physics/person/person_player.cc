@@ -249,11 +249,13 @@ void PersonPlayer::Advance(const Snapshot& now, World& world) {
     world.MoveKinematic(person_.head + static_cast<int>(i), places_[i]);
 }
 
-double PersonPlayer::ArmIsShortBy(bool right) const {
-  const int hand = right ? person_.right_hand : person_.left_hand;
-  if (!person_.has_body || hand < 0) return 0;
-  const BodyTargets::Limb& arm = targets_.limbs[right ? 0 : 1];
-  return (arm.p_W_m - PlaceOf(arm.end, person_, targets_)).norm();
+double PersonPlayer::LimbIsShortBy(int limb) const {
+  const auto index = static_cast<std::size_t>(limb);
+  const int hand = limb == 0 ? person_.right_hand : limb == 1 ? person_.left_hand : -1;
+  const bool is_led = hand >= 0 || (!limbs_[index].to_rest && !targets_.posture);
+  if (!person_.has_body || !is_led) return 0;
+  const BodyTargets::Limb& target = targets_.limbs[index];
+  return (target.p_W_m - PlaceOf(target.end, person_, targets_)).norm();
 }
 
 GazeState PersonPlayer::See(const World& world) const {

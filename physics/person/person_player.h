@@ -30,9 +30,9 @@ class PersonPlayer {
   GazeState See(const World& world) const;
 
   const BodyTargets& targets() const { return targets_; }
-  /// Distance by which her arm ends before a hand of the scene that it follows, metres; 0 if it
-  /// follows none. `right`: the right arm.
-  double ArmIsShortBy(bool right) const;
+  /// Distance by which a limb ends before the hand of the scene that it follows, or before where
+  /// its step wants it, metres; 0 if it does neither. `limb`: index into BodyTargets::limbs.
+  double LimbIsShortBy(int limb) const;
 
  private:
   /// A minimum-jerk motion of one quantity.

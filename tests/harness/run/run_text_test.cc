@@ -55,6 +55,16 @@ TEST(RunText, JsonKeepsTheContract) {
       R"("begin_tick":120,"end_tick":480,"begin_s":0.25,"end_s":1.0,"decided_tick":510,"open_end":false})");
 }
 
+TEST(RunText, NotesNameTheirHand) {
+  Scenario scenario;
+  scenario.scene.hands.push_back({.name = "right_hand", .model = {}, .X_WH = {}});
+  RunResult run = SampleRun();
+  run.notes = {{480, 0, "it has closed"}, {720, -1, "anna: move_limb: out of reach"}};
+  EXPECT_EQ(NoteLines(scenario, run),
+            (std::vector<std::string>{"note: 1.0000 s: right_hand: it has closed",
+                                      "note: 1.5000 s: anna: move_limb: out of reach"}));
+}
+
 TEST(RunText, AFailedRunNamesEntityTickReasonAndAdvice) {
   RunResult run = SampleRun();
   run.status = {.kind = physics::RunStatus::Kind::kFailed,

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Looks at the world while a script is played, and notes what its steps do not achieve: joints that
+// do not follow a hand, limbs that are too short, arms that meet things on their way. It changes
+// nothing. Tested by tests/physics/step_watch_test.cc
+#pragma once
+
+#include <array>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "physics/hand/script_player.h"
+#include "physics/person/person_player.h"
+
+namespace prehend::physics {
+
+class StepWatch {
+ public:
+  /// `scene` and `script` must outlive it.
+  StepWatch(const Scene& scene, const Script& script);
+
+  /// These steps begin with the tick after `now`.
+  void Begin(const std::vector<BegunSteps>& begun, const Snapshot& now);
+  /// After each tick.
+  void See(const Snapshot& now, const std::vector<PersonPlayer>& persons);
+  /// What there is to say in the end, by time.
+  std::vector<ScriptNote> Notes() const;
+
+ private:
+  /// When a limb was farthest from where it should be.
+  struct Short {
+    std::int64_t tick = 0;
+    double by_m = 0;
+    LimbEnd end = LimbEnd::kRightWrist;  ///< that should be there
+  };
+  /// A hand that leads a joint.
+  struct Leading {
+    int hand = 0;
+    int joint = 0;  ///< index into Scene::joints
+    double from = 0, to = 0;
+    std::int64_t end_tick = 0;
+  };
+  /// A thing that an arm has met.
+  struct Met {
+    std::int64_t tick = 0;       ///< of the first touch
+    std::int64_t last_tick = 0;  ///< of the last one
+    Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
+    double moved_m = 0;  ///< while the arm touched it and its hand did not
+  };
+
+  void SeeJoints(const Snapshot& now);
+  void SeeArms(const Snapshot& now, const std::vector<PersonPlayer>& persons);
+  /// Of the arm that follows `hand`: its parts are the bodies from `begin` to before `end`.
+  void SeeContacts(int hand, int begin, int end, const Snapshot& now);
+
+  const Scene& scene_;
+  const Script& script_;
+  std::vector<Leading> leading_;
+  std::vector<std::array<Short, 4>> limbs_;       ///< by person and limb
+  std::map<std::tuple<int, int, int>, Met> met_;  ///< by hand, part of the arm and thing
+  std::vector<ScriptNote> notes_;
+};
+
+}  // namespace prehend::physics
