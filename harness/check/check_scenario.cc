@@ -292,6 +292,7 @@ ScenarioVerdict VerdictOn(const CheckRequest& request, const CheckedRun& checked
                           ScenarioVerdict verdict) {
   verdict.settings = SettingsOf(checked.loaded, request.run, verdict.inputs, request.root);
   verdict.shows = checked.loaded.scenario.shows;
+  verdict.notes = NoteLines(checked.loaded.scenario, checked.result);
   verdict.state_hash = HashText(checked.result.state_hash);
   verdict.ticks = checked.result.ticks;
   Judgement judgement;

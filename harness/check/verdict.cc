@@ -44,6 +44,17 @@ std::string MarginText(const ScenarioVerdict& verdict) {
   return good && verdict.has_golden && verdict.comparison ? MarginText(*verdict.comparison) : "";
 }
 
+std::string NotesText(const ScenarioVerdict& verdict) {
+  const std::size_t count = verdict.notes.size();
+  if (count == 0) return "";
+  if (verdict.exit_code == ExitCode::kAgrees)
+    return count == 1 ? "1 note on its steps is in the report\n"
+                      : fmt::format("{} notes on its steps are in the report\n", count);
+  std::string text;
+  for (const std::string& note : verdict.notes) text += note + "\n";
+  return text;
+}
+
 namespace {
 
 bool SameOutcome(const ScenarioVerdict& a, const ScenarioVerdict& b) {

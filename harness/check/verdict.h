@@ -54,7 +54,8 @@ struct ScenarioVerdict {
   Verdict verdict = Verdict::kFailed;
   ExitCode exit_code = ExitCode::kAgrees;  ///< what a check of this scenario alone ends with
   std::string reason;                      ///< one line; empty when passed
-  std::string details;  ///< differences, violations, diagnostics; several lines or empty
+  std::string details;             ///< differences, violations, diagnostics; several lines or empty
+  std::vector<std::string> notes;  ///< NoteLines(): steps that did not do what they say
   std::vector<ClaimVerdict> claims;          ///< of a run that completed
   std::vector<TransformVerdict> transforms;  ///< that were asked for
   std::optional<Comparison> comparison;      ///< with the golden; without one every event is extra
@@ -86,6 +87,9 @@ std::string_view CommandLabel(const ScenarioVerdict& verdict);
 
 /// The smallest margin of what passed; else empty.
 std::string MarginText(const ScenarioVerdict& verdict);
+
+/// The notes, a line each; of what passed, their number; or "".
+std::string NotesText(const ScenarioVerdict& verdict);
 
 /// As `prehend check --json` prints it: keys in docs/regression-suite.md.
 nlohmann::ordered_json VerdictJson(const ScenarioVerdict& verdict);

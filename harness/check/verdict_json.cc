@@ -53,10 +53,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, claim, place, says, found, time
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TransformVerdict, transform, says, why)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attribution, event, what, shift_ms, because, question)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, shows, verdict, exit_code, reason,
-                                   details, claims, transforms, comparison, has_golden, drawings,
-                                   explain, cause, attributions, settings, command, state_hash,
-                                   ticks, seconds, peak_memory_kib, inputs, pictures, not_recorded,
-                                   picture_differences, disputed, explained, replay)
+                                   details, notes, claims, transforms, comparison, has_golden,
+                                   drawings, explain, cause, attributions, settings, command,
+                                   state_hash, ticks, seconds, peak_memory_kib, inputs, pictures,
+                                   not_recorded, picture_differences, disputed, explained, replay)
 
 namespace {
 
@@ -121,6 +121,7 @@ Json VerdictJson(const ScenarioVerdict& verdict) {
           {"exit_code", static_cast<int>(verdict.exit_code)},
           {"reason", verdict.reason},
           {"details", verdict.details},
+          {"notes", verdict.notes},
           {"claims", ClaimsJson(verdict.claims)},
           {"transforms", TransformsJson(verdict.transforms)},
           {"differences", DifferencesJson(compared, verdict.explain)},

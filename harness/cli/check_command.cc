@@ -259,6 +259,7 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, const TextOptions& 
     context.out << fmt::format("{}  {}{}{}\n", Colored(verdict.verdict, context.colored),
                                verdict.scenario, note.empty() ? "" : "  ", note);
     if (brief && verdict.exit_code != ExitCode::kAgrees) continue;
+    context.out << Indented(NotesText(verdict));
     context.out << Indented(verdict.details);  // of what passed: claims that were not judged
     if (verdict.exit_code == ExitCode::kAgrees) continue;
     context.out << "    " << CommandLabel(verdict) << ": " << verdict.command << "\n";

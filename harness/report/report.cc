@@ -223,6 +223,8 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, bool open,
   AddText(title, " " + verdict.scenario);
   AddElement(fold, "div", {{"class", "soft"}}, verdict.shows);
   if (!verdict.reason.empty()) AddElement(fold, "p", {{"class", name}}, verdict.reason);
+  for (const std::string& note : verdict.notes)
+    AddElement(fold, "p", {{"class", "soft note"}}, note);
   AddReasons(fold, verdict);
   if (verdict.comparison) {
     const pugi::xml_node scroll = AddElement(fold, "div",

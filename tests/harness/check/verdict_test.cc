@@ -28,6 +28,7 @@ TEST(Verdict, TravelsWithAllItsFields) {
                                 .exit_code = ExitCode::kPending,
                                 .reason = "no golden yet",
                                 .details = "a\nb\n",
+                                .notes = {"note: 1.0 s: hand: it has closed"},
                                 .claims = {{.claim = "no sliding",
                                             .place = "x.yaml:4",
                                             .says = kContradicted,
@@ -64,10 +65,10 @@ TEST(Verdict, IsPrintedWithTheDocumentedKeys) {
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_EQ(keys,
             (std::vector<std::string>{
-                "scenario",        "verdict",     "exit_code", "reason",     "details", "claims",
-                "transforms",      "differences", "relations", "blame",      "causes",  "headroom",
-                "boundaries",      "command",     "shows",     "state_hash", "ticks",   "seconds",
-                "peak_memory_kib", "inputs",      "pictures"}));
+                "scenario", "verdict",         "exit_code",   "reason",    "details",    "notes",
+                "claims",   "transforms",      "differences", "relations", "blame",      "causes",
+                "headroom", "boundaries",      "command",     "shows",     "state_hash", "ticks",
+                "seconds",  "peak_memory_kib", "inputs",      "pictures"}));
   EXPECT_EQ(json["verdict"], "passed");
   EXPECT_EQ(json["headroom"], "margin: 6.0 of 10.0 ms left at end of sliding(hand, cup)");
   const nlohmann::ordered_json end_of_slide = {
@@ -110,6 +111,17 @@ TEST(Verdict, TheWorstDecides) {
     for (const ExitCode code : row.codes) verdicts.push_back({.exit_code = code});
     EXPECT_EQ(WorstOf(verdicts), row.worst);
   }
+}
+
+TEST(Verdict, NotesArePrintedUntilItPasses) {
+  ScenarioVerdict verdict{.exit_code = ExitCode::kPending, .notes = {"note: a", "note: b"}};
+  EXPECT_EQ(NotesText(verdict), "note: a\nnote: b\n");
+  verdict.exit_code = ExitCode::kAgrees;
+  EXPECT_EQ(NotesText(verdict), "2 notes on its steps are in the report\n");
+  verdict.notes.pop_back();
+  EXPECT_EQ(NotesText(verdict), "1 note on its steps is in the report\n");
+  verdict.notes.clear();
+  EXPECT_EQ(NotesText(verdict), "");
 }
 
 TEST(Verdict, AreCounted) {

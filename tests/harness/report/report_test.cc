@@ -35,6 +35,7 @@ std::vector<ScenarioVerdict> Verdicts() {
            .exit_code = ExitCode::kDiffers,
            .reason = "1 of 9 events differ",
            .details = "shifted sliding(hand, cup)\n",
+           .notes = {"note: 1.0 s: h: the cup is <wide>"},
            .command = "prehend check slide/bad"},
           {.scenario = "slide/new",
            .verdict = Verdict::kPending,
@@ -56,7 +57,8 @@ TEST(Report, HasVerdictsTimelinesPicturesDifferencesAndCommands) {
         "picture, not in this page: pictures/slide/good.png (sliding.begin)",
         "golden sliding(h, cup), 1.0000..2.0000 s: matched", "In every row",
         "shifted sliding(hand, cup)", "prehend check slide/bad", "it &lt;slides&gt;",
-        "margin: all boundaries match exactly", "no golden yet"}) {
+        "margin: all boundaries match exactly", "no golden yet",
+        "note: 1.0 s: h: the cup is &lt;wide&gt;"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
   EXPECT_EQ(html.find("<slides>"), std::string::npos);
