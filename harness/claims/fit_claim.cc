@@ -58,6 +58,11 @@ class FittingEvent {
   }
 
   void AddUnknownRole(const ClaimRole& role) {
+    if (std::ranges::count(event_.attributes, role.name.text) > 0)
+      return Add(role.name,
+                 fmt::format("'{}' is a value of '{}'; a claim asks for roles and 'style' only",
+                             role.name.text, event_.name),
+                 "leave it out; 'prehend run' prints the values of events");
     if (!role.name.text.empty())
       return Add(role.name, fmt::format("'{}' has no role '{}'", event_.name, role.name.text),
                  HintForName(role.name.text, event_.roles));
@@ -76,9 +81,38 @@ class FittingEvent {
     const auto entity = std::ranges::find(entities, role.value.text, &grammar::EntityInfo::name);
     if (entity == entities.end()) return;  // one of UnknownNames(), or anybody
     const std::string& wanted = event_.classes[index];
-    if (std::ranges::count(entity->classes, wanted) > 0) return;
-    Add(role.value, fmt::format("'{}' is never '{}' of '{}', which takes a {}", role.value.text,
-                                event_.roles[index], event_.name, wanted));
+    if (Takes(index, role.value.text)) return;
+    Add(role.value,
+        fmt::format("'{}' is never '{}' of '{}', which takes a {}", role.value.text,
+                    event_.roles[index], event_.name, wanted),
+        Remedy(index));
+  }
+
+  /// Whether anybody of this name can have the role.
+  bool Takes(std::size_t index, const std::string& name) const {
+    const auto& entities = known_.entity_table.entities;
+    const auto entity = std::ranges::find(entities, name, &grammar::EntityInfo::name);
+    return entity != entities.end() &&
+           std::ranges::count(entity->classes, event_.classes[index]) > 0;
+  }
+
+  /// The event with two participants exchanged if they fit so; else who can have the role.
+  std::string Remedy(std::size_t index) const {
+    std::size_t by_place = 0;
+    while (by_place < claimed_.roles.size() && claimed_.roles[by_place].name.text.empty())
+      ++by_place;
+    const auto name = [&](std::size_t i) { return claimed_.roles[i].value.text; };
+    for (std::size_t other = 0; index < by_place && other < by_place; ++other) {
+      if (other == index || !Takes(index, name(other)) || !Takes(other, name(index))) continue;
+      std::string exchanged = event_.name + "(";
+      for (std::size_t i = 0; i < by_place; ++i)
+        exchanged += (i == 0 ? "" : ", ") + name(i == index ? other : i == other ? index : i);
+      return "did you mean '" + exchanged + (by_place < claimed_.roles.size() ? ", ..)'?" : ")'?");
+    }
+    std::string who;
+    for (const grammar::EntityInfo& entity : known_.entity_table.entities)
+      if (Takes(index, entity.name)) who += (who.empty() ? "" : ", ") + entity.name;
+    return who.empty() ? "the scenario has none" : "that can be " + who;
   }
 
   void Add(const ClaimWord& word, std::string message, std::string hint = {}) {
@@ -120,6 +154,9 @@ std::vector<ClaimProblem> UnknownNames(const Claim& claim, const ClaimableEvents
   for (const ClaimedEvent& claimed : claim.events) {
     for (const ClaimRole& role : claimed.roles) {
       const std::string& value = role.value.text;
+      const EventSignature* event = Find(known, claimed.name.text);
+      if (event && std::ranges::count(event->attributes, role.name.text) > 0 && !IsStyle(role))
+        continue;  // one of Misfits()
       if (IsAnybody(role) || std::ranges::count(IsStyle(role) ? styles : entities, value) > 0)
         continue;
       problems.push_back({role.value.offset,

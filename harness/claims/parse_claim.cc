@@ -40,6 +40,27 @@ bool IsNameLetter(char letter) {
   return (letter >= 'a' && letter <= 'z') || IsDigit(letter) || letter == '_';
 }
 
+/// As a word: "two".
+std::optional<int> NumberNamed(std::string_view word) {
+  static constexpr std::string_view kWords[] = {"one",  "two", "three",  "four",
+                                                "five", "six", "seven",  "eight",
+                                                "nine", "ten", "eleven", "twelve"};
+  const auto found = std::ranges::find(kWords, word);
+  if (found == std::end(kWords)) return std::nullopt;
+  return static_cast<int>(found - std::begin(kWords)) + 1;
+}
+
+bool IsRelation(std::string_view word) {
+  return word == "then" || word == "while" || word == "lies" || word == "lie" ||
+         grammar::AllenNamed(word);
+}
+
+std::string_view Trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(' ');
+  if (begin == std::string_view::npos) return "";
+  return text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
+}
+
 /// A name, a number, or a single other letter; empty at the end.
 struct Token {
   std::string_view text;
@@ -75,30 +96,91 @@ class ClaimParser {
 
  private:
   void ParseQuantity(Claim& claim) {
-    const bool is_word = next_.text == "no" || next_.text == "one" || next_.text == "every";
-    if (is_word || next_.IsNumber()) {
-      claim.quantity = next_.text == "every" ? Quantity::kEvery : Quantity::kExactly;
-      if (next_.text == "no") {
-        claim.number = 0;
-        Advance();
-      } else if (next_.text == "every") {
-        Advance();
-      } else {
-        ParseNumber(claim);
-      }
-      return;
+    if (FailAtQuantity()) return;
+    if (Accept("no")) {
+      claim.quantity = Quantity::kExactly;
+      claim.number = 0;
+    } else if (Accept("every")) {
+      claim.quantity = Quantity::kEvery;
+    } else if (Accept("exactly")) {
+      claim.quantity = Quantity::kExactly;
+      ParseNumber(claim);
+    } else if (next_.IsNumber() || NumberNamed(next_.text)) {
+      claim.quantity = Quantity::kExactly;
+      ParseNumber(claim);
+    } else if (Accept("at")) {
+      if (next_.text != "least" && next_.text != "most")
+        return Fail(next_.offset, "expected 'least' or 'most' after 'at', found " + Found(),
+                    "at least 2 grasping, at most one sliding");
+      claim.quantity = next_.text == "least" ? Quantity::kAtLeast : Quantity::kAtMost;
+      Advance();
+      ParseNumber(claim);
     }
-    if (!Accept("at")) return;
-    if (next_.text != "least" && next_.text != "most")
-      return Fail(next_.offset, "expected 'least' or 'most' after 'at', found " + Found(),
-                  "at least 2 grasping, at most one sliding");
-    claim.quantity = next_.text == "least" ? Quantity::kAtLeast : Quantity::kAtMost;
+  }
+
+  /// Of words that people try. A word before another one that is no relation can be no event.
+  bool FailAtQuantity() {
+    struct Instead {
+      std::string_view said, ours;
+    };
+    static constexpr Instead kInstead[] = {{"not", "no "},
+                                           {"never", "no "},
+                                           {"zero", "no "},
+                                           {"none", "no "},
+                                           {"without", "no "},
+                                           {"a", ""},
+                                           {"an", ""},
+                                           {"some", ""},
+                                           {"only", ""},
+                                           {"just", ""},
+                                           {"once", "one "},
+                                           {"twice", "two "},
+                                           {"each", "every "},
+                                           {"all", "every "},
+                                           {"several", "at least two "},
+                                           {"more", "at least "},
+                                           {"fewer", "at most "},
+                                           {"less", "at most "},
+                                           {"up", "at most "}};
+    const auto instead = std::ranges::find(kInstead, next_.text, &Instead::said);
+    if (instead == std::end(kInstead)) return false;
+    const Token first = next_;
+    const std::size_t after = at_;
     Advance();
-    ParseNumber(claim);
+    const bool is_quantity = (next_.IsName() || next_.IsNumber()) && !IsRelation(next_.text);
+    if (is_quantity) {
+      Fail(first.offset, "expected a quantity or an event, found '" + std::string(first.text) + "'",
+           RemedyForQuantity(first.text, instead->ours));
+    }
+    at_ = after;
+    next_ = first;
+    return is_quantity;
+  }
+
+  /// `next_` is what follows the word.
+  std::string RemedyForQuantity(std::string_view said, std::string_view ours) {
+    const bool compares = said == "more" || said == "fewer" || said == "less" || said == "up";
+    if (!compares) return fmt::format("write: {}{}", ours, text_.substr(next_.offset));
+    Advance();  // 'than' or 'to'
+    std::optional<int> number = NumberNamed(next_.text);
+    int digits = 0;
+    if (next_.IsNumber() &&
+        std::from_chars(next_.text.begin(), next_.text.end(), digits).ec == std::errc() &&
+        digits < kMaxClaimedNumber)
+      number = digits;
+    Advance();
+    if (said == "more" && number) ++*number;
+    if ((said == "fewer" || said == "less") && number) --*number;
+    if (!number || *number < 1) return "at least 2 grasping, at most one sliding, no sliding";
+    return fmt::format("write: {}{} {}", ours, *number, text_.substr(next_.offset));
   }
 
   void ParseNumber(Claim& claim) {
-    if (Accept("one")) return;
+    if (const auto number = NumberNamed(next_.text)) {
+      claim.number = *number;
+      Advance();
+      return;
+    }
     if (!next_.IsNumber())
       return Fail(next_.offset, "expected a number, found " + Found(), "at least 2 grasping");
     int number = 0;
@@ -116,6 +198,9 @@ class ClaimParser {
 
   void ParseEvent(Claim& claim) {
     if (problem_) return;
+    if (IsRelation(next_.text) && !claim.events.empty())
+      return Fail(next_.offset, "expected an event, found " + Found(),
+                  "one relation stands between two events: sliding before grasping");
     ClaimedEvent& event = claim.events.emplace_back();
     event.name = ParseName("an event");
     if (!Accept("(")) return;
@@ -130,6 +215,10 @@ class ClaimParser {
     role.value = ParseName("an entity or 'any'");
     if (Accept("=")) {
       role.name = std::exchange(role.value, {});
+      if (next_.IsNumber())
+        Fail(next_.offset, "expected an entity or 'any', found " + Found(),
+             "a claim asks who takes part, not for numbers; 'prehend run' prints the values of "
+             "events");
       role.value = ParseName("an entity or 'any'");
       return role;
     }
@@ -157,17 +246,65 @@ class ClaimParser {
   }
 
   void FailAtRelation() {
-    std::string hint;
-    if (next_.text == "during") {
-      hint = "with both ends in it, that is 'lies inside': sliding lies inside grasping";
-    } else if (next_.IsName()) {
-      std::vector<std::string> words = {"then", "while", "lies inside"};
-      words.insert(words.end(), grammar::kAllenNames.begin(), grammar::kAllenNames.end());
-      hint = HintForName(next_.text, words);
-    }
+    const std::string hint = RemedyForRelation();
     Fail(next_.offset,
          "expected 'then', 'while', 'lies inside' or one of Allen's relations, found " + Found(),
-         std::move(hint));
+         hint);
+  }
+
+  /// `next_` is no relation.
+  std::string RemedyForRelation() const {
+    const std::string_view before = Trimmed(text_.substr(0, next_.offset));
+    const std::string_view after = Trimmed(text_.substr(at_));
+    if (next_.text == "and" || next_.text == "," || next_.text == ";")
+      return after.empty()
+                 ? ""
+                 : fmt::format("two claims stand on two lines: '{}' and '{}'", before, after);
+    if (next_.text == "or")
+      return "claims hold together, there is no 'or': claim what is certain, or use "
+             "'at least' and 'at most'";
+    if (next_.text == "once" || next_.text == "twice")
+      return fmt::format("the number stands first: {} {}", next_.text == "once" ? "one" : "two",
+                         before);
+    if (next_.IsNumber() || NumberNamed(next_.text))
+      return fmt::format("the number stands first: {} {}", next_.text, before);
+    struct Instead {
+      std::string_view said, ours;
+    };
+    // The longer of two that begin alike comes first.
+    static constexpr Instead kInstead[] = {{"followed by", "then"},
+                                           {"precedes", "before"},
+                                           {"follows", "after"},
+                                           {"during", "lies inside"},
+                                           {"within", "lies inside"},
+                                           {"in", "lies inside"},
+                                           {"is before", "before"},
+                                           {"is after", "after"},
+                                           {"is inside", "lies inside"},
+                                           {"is during", "lies inside"},
+                                           {"happens before", "before"},
+                                           {"happens after", "after"},
+                                           {"happens during", "lies inside"},
+                                           {"comes before", "before"},
+                                           {"comes after", "after"},
+                                           {"until", "meets"},
+                                           {"when", "while"},
+                                           {"with", "while"},
+                                           {"as", "while"},
+                                           {"immediately before", "meets"},
+                                           {"right before", "meets"}};
+    const std::string_view rest = text_.substr(next_.offset);
+    for (const auto& [said, ours] : kInstead) {
+      if (!rest.starts_with(said) || (rest.size() > said.size() && IsNameLetter(rest[said.size()])))
+        continue;
+      const std::string_view other = Trimmed(rest.substr(said.size()));
+      return other.empty() ? fmt::format("that is '{}'", ours)
+                           : fmt::format("write: {} {} {}", before, ours, other);
+    }
+    if (!next_.IsName()) return "";
+    std::vector<std::string> words = {"then", "while", "lies inside"};
+    words.insert(words.end(), grammar::kAllenNames.begin(), grammar::kAllenNames.end());
+    return HintForName(next_.text, words);
   }
 
   ClaimWord ParseName(const char* wanted) {

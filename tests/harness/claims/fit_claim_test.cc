@@ -64,7 +64,30 @@ TEST(FitClaim, WhatTheGrammarDoesNotHaveIsAMisfit) {
   EXPECT_EQ(Misfit("sliding(hand, hand=hand)"), "14: the role 'hand' is given twice\n");
   EXPECT_EQ(Misfit("sliding(style=wrap)"), "8: 'sliding' has no style\n");
   EXPECT_EQ(Misfit("no sliding(hand, table)"),
-            "17: 'table' is never 'object' of 'sliding', which takes a Movable\n");
+            "17: 'table' is never 'object' of 'sliding', which takes a Movable | "
+            "that can be cup, jug\n");
+}
+
+TEST(FitClaim, ExchangedParticipantsAreExchanged) {
+  EXPECT_EQ(Misfit("grasping(cup, hand)"),
+            "9: 'cup' is never 'hand' of 'grasping', which takes a Hand | "
+            "did you mean 'grasping(hand, cup)'?\n"
+            "14: 'hand' is never 'object' of 'grasping', which takes a Thing | "
+            "did you mean 'grasping(hand, cup)'?\n");
+  EXPECT_EQ(Misfit("grasping(cup, jug)"),
+            "9: 'cup' is never 'hand' of 'grasping', which takes a Hand | that can be hand\n");
+  EXPECT_EQ(Misfit("grasping(object=table, hand=cup, style=wrap)"),
+            "28: 'cup' is never 'hand' of 'grasping', which takes a Hand | that can be hand\n");
+}
+
+TEST(FitClaim, ValuesOfEventsAreNotClaimed) {
+  const char* claim = "contact(hand, cup, force=jug)";
+  ClaimableEvents known = StageOfClaims();
+  known.events.back().attributes = {"force"};
+  EXPECT_EQ(Text(Misfits(ClaimOf(claim), known)),
+            "19: 'force' is a value of 'contact'; a claim asks for roles and 'style' only | "
+            "leave it out; 'prehend run' prints the values of events\n");
+  EXPECT_EQ(Text(UnknownNames(ClaimOf("contact(hand, cup, force=hard)"), known)), "");
 }
 
 TEST(FitClaim, EntitiesAndStylesAreThoseOfTheScenario) {

@@ -36,6 +36,12 @@ TEST(ParseClaim, ReadsQuantities) {
   EXPECT_EQ(quantity("no sliding"), std::tuple(Quantity::kExactly, 0));
   EXPECT_EQ(quantity("one sliding"), std::tuple(Quantity::kExactly, 1));
   EXPECT_EQ(quantity("12 sliding"), std::tuple(Quantity::kExactly, 12));
+  EXPECT_EQ(quantity("two sliding"), std::tuple(Quantity::kExactly, 2));
+  EXPECT_EQ(quantity("twelve sliding"), std::tuple(Quantity::kExactly, 12));
+  EXPECT_EQ(quantity("exactly one sliding"), std::tuple(Quantity::kExactly, 1));
+  EXPECT_EQ(quantity("exactly 3 sliding"), std::tuple(Quantity::kExactly, 3));
+  EXPECT_EQ(quantity("at least three sliding"), std::tuple(Quantity::kAtLeast, 3));
+  EXPECT_EQ(quantity("not while sliding"), std::tuple(Quantity::kAtLeast, 1)) << "an event's name";
   EXPECT_EQ(quantity("at least 2 sliding"), std::tuple(Quantity::kAtLeast, 2));
   EXPECT_EQ(quantity("at most one sliding"), std::tuple(Quantity::kAtMost, 1));
   EXPECT_EQ(quantity("every sliding lies inside grasping"), std::tuple(Quantity::kEvery, 1));
@@ -100,9 +106,7 @@ TEST(ParseClaim, SaysWhatIsWrongAndWhere) {
             "what goes by its place comes before what goes by its name");
   EXPECT_EQ(Problem("sliding meet grasping"), "8: " + relations + "'meet' | did you mean 'meets'?");
   EXPECT_EQ(Problem("sliding during grasping"),
-            "8: " + relations +
-                "'during' | "
-                "with both ends in it, that is 'lies inside': sliding lies inside grasping");
+            "8: " + relations + "'during' | write: sliding lies inside grasping");
   EXPECT_EQ(Problem("sliding lies in grasping"), "13: expected 'inside' after 'lies', found 'in'");
   EXPECT_EQ(Problem("sliding meets"), "13: expected an event, found the end");
   EXPECT_EQ(Problem("sliding meets|"), "14: " + relations + "the end");
@@ -112,6 +116,56 @@ TEST(ParseClaim, SaysWhatIsWrongAndWhere) {
   std::string chain = "a";
   for (int i = 0; i < 16; ++i) chain += " then a";
   EXPECT_EQ(Problem(chain), "0: a claim has at most 16 events, found 17");
+}
+
+TEST(ParseClaim, WordsThatPeopleTryGetTheRemedy) {
+  const auto quantity = [](const std::string& word) {
+    return "0: expected a quantity or an event, found '" + word + "' | ";
+  };
+  EXPECT_EQ(Problem("not sliding(hand, cup)"), quantity("not") + "write: no sliding(hand, cup)");
+  EXPECT_EQ(Problem("never sliding then a"), quantity("never") + "write: no sliding then a");
+  EXPECT_EQ(Problem("a sliding"), quantity("a") + "write: sliding");
+  EXPECT_EQ(Problem("only one sliding"), quantity("only") + "write: one sliding");
+  EXPECT_EQ(Problem("all sliding lie inside grasping"),
+            quantity("all") + "write: every sliding lie inside grasping");
+  EXPECT_EQ(Problem("twice sliding"), quantity("twice") + "write: two sliding");
+  EXPECT_EQ(Problem("more than two sliding"), quantity("more") + "write: at least 3 sliding");
+  EXPECT_EQ(Problem("fewer than 3 sliding"), quantity("fewer") + "write: at most 2 sliding");
+  EXPECT_EQ(Problem("less than 1 sliding"),
+            quantity("less") + "at least 2 grasping, at most one sliding, no sliding");
+  EXPECT_EQ(Problem("up to 4 sliding"), quantity("up") + "write: at most 4 sliding");
+  EXPECT_EQ(Problem("exactly sliding"),
+            "8: expected a number, found 'sliding' | at least 2 grasping");
+
+  const std::string relation =
+      "expected 'then', 'while', 'lies inside' or one of Allen's relations, found ";
+  EXPECT_EQ(Problem("sliding(hand, cup) and no grasping"),
+            "19: " + relation +
+                "'and' | two claims stand on two lines: 'sliding(hand, cup)' and 'no grasping'");
+  EXPECT_EQ(Problem("sliding, grasping"),
+            "7: " + relation + "',' | two claims stand on two lines: 'sliding' and 'grasping'");
+  EXPECT_EQ(Problem("sliding or grasping"),
+            "8: " + relation +
+                "'or' | claims hold together, there is no 'or': claim what is certain, or use "
+                "'at least' and 'at most'");
+  EXPECT_EQ(Problem("one sliding followed by grasping"),
+            "12: " + relation + "'followed' | write: one sliding then grasping");
+  EXPECT_EQ(Problem("sliding happens before grasping"),
+            "8: " + relation + "'happens' | write: sliding before grasping");
+  EXPECT_EQ(Problem("sliding precedes grasping"),
+            "8: " + relation + "'precedes' | write: sliding before grasping");
+  EXPECT_EQ(Problem("sliding twice"), "8: " + relation +
+                                          "'twice' | the number stands first: "
+                                          "two sliding");
+  EXPECT_EQ(Problem("sliding 3 times"), "8: " + relation +
+                                            "'3' | the number stands first: "
+                                            "3 sliding");
+  EXPECT_EQ(Problem("sliding starts before grasping"),
+            "15: expected an event, found 'before' | "
+            "one relation stands between two events: sliding before grasping");
+  EXPECT_EQ(Problem("pouring(hand, amount=3)"),
+            "21: expected an entity or 'any', found '3' | a claim asks who takes part, not for "
+            "numbers; 'prehend run' prints the values of events");
 }
 
 }  // namespace
