@@ -115,6 +115,11 @@ ValueFormat<std::string> ColorFormat() {
       },
       [](const YamlNode& node, DiagnosticList& errors, std::string& color) {
         color = node.text;
+        if (node.kind == YamlNode::Kind::kNull) {
+          errors.Add(node.where, "color: expected a word or \"#RRGGBB\" in quotes, found nothing",
+                     "'#' begins a comment in YAML: a colour goes in quotes, color: \"#ff0000\"");
+          return false;
+        }
         if (node.kind == YamlNode::Kind::kScalar && ColorOfText(color)) return true;
         const std::string found = node.kind == YamlNode::Kind::kScalar ? color : "a list or a map";
         errors.AddUnknownName(

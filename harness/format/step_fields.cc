@@ -8,6 +8,7 @@
 #include "harness/format/limits.h"
 #include "harness/format/scenario_fields.h"
 #include "harness/format/scenario_formats.h"
+#include "harness/format/step_remedies.h"
 #include "harness/yaml/struct_format.h"
 
 namespace prehend::harness {
@@ -24,12 +25,22 @@ const std::string kDelayDoc = "Seconds to wait first, while others in this stage
 const std::string kUntilDoc =
     "Ends the step before its time: 'touching(milk)' or 'gap(milk) < 5 mm'. If that never happens "
     "the run fails; with ', or go on' it goes on.";
+const std::string kConditions = "'touching(milk)' or 'gap(milk) < 5 mm', perhaps with ', or go on'";
 ValueFormat<std::string> UntilFormat() {
-  return Word(
+  const auto condition = Word(
       "(touching\\([a-z][a-z0-9_]*\\)|gap\\([a-z][a-z0-9_]*\\) < [0-9]+(\\.[0-9]+)? (mm|cm|m))(, "
       "or go "
       "on)?",
-      "'touching(milk)' or 'gap(milk) < 5 mm', perhaps with ', or go on'", 120);
+      kConditions, 120);
+  return ValueFormat<std::string>(condition.schema(), [condition](const YamlNode& node,
+                                                                  DiagnosticList& errors,
+                                                                  std::string& until) {
+    const std::string remedy = node.kind == YamlNode::Kind::kScalar ? UntilRemedy(node.text) : "";
+    if (remedy.empty()) return condition.Read(node, errors, until);
+    errors.Add(node.where, fmt::format("until: expected {}, found '{}'", kConditions, node.text),
+               remedy);
+    return false;
+  });
 }
 const std::string kForceDoc =
     "Yields: slows down so that it pushes with no more than this, newtons.";
@@ -53,6 +64,7 @@ StructFormat<Entry> WithTiming(StructFormat<Entry> format) {
       .Optional("with", static_cast<Name>(&T::with), Identifier(),
                 "It begins when the step of this name, in the same stage, begins.")
       .AtMostOneOf({"after", "with"});
+  for (const char* word : {"times", "repeat", "count"}) format.Remedy(word, kRepeatRemedy);
   return format;
 }
 
@@ -323,47 +335,6 @@ ValueFormat<StepYaml> WalkFormat() {
                      .Optional("max_force_n", &W::max_force_n, Number(1, 10000), kForceDoc)
                      .Optional("over_s", &W::over_s, Duration(), kOverDoc))
           .format());
-}
-
-/// Words that people try first, and what is written instead.
-Remedies StepRemedies() {
-  const std::pair<const char*, const char*> groups[] = {
-      {"grasp grip grab take pick pick_up",
-       "a grasp is two steps: 'reach: milk', then 'close_to: 1'"},
-      {"release let_go drop", "to let go is 'open_to: 0'; before it 'place_on: table' sets down"},
-      {"open open_hand",
-       "a hand opens by 'open_to: 0'; a drawer or door by 'reach: handle', 'close_to: 1', "
-       "'follow_joint: drawer'"},
-      {"close close_hand shut",
-       "a hand closes by 'close_to: 1'; a drawer or door by 'follow_joint: drawer, to: 0'"},
-      {"lift lift_m raise", "straight up is 'lift_by_m: 0.2'"},
-      {"move move_to move_to_m go_to goto carry carry_to transport",
-       "'reach: milk' goes to a thing, 'move_by_m: [x, y, z]' by a way, 'carry_to_m: [x, y]' "
-       "brings "
-       "what is held to a place, 'poses: [..]' goes anywhere"},
-      {"wait pause hold sleep delay_s", "to hold still is 'wait_s: 1'"},
-      {"turn rotate twist", "to turn the hand is 'turn_by_deg: [0, 0, 90]'"},
-      {"place put put_down put_on set_down", "to set down is 'place_on: table'"},
-      {"push slide drag",
-       "a hand that moves pushes: 'close_to: 0.8', then 'move_by_m: [0.1, 0, 0]'"},
-      {"pour", "'lift_by_m', 'carry_to_m' above the vessel, then 'turn_by_deg: [120, 0, 0]'"},
-      {"retreat", "'retreat_by_m: 0.2' goes back the way the hand came"},
-      {"press", "'press_n: 5, against: table' presses with 5 N"},
-      {"shake stir wipe",
-       "'repeat: 3' with 'steps: [..]' plays steps several times; "
-       "docs/script-cookbook.md has a script"},
-      {"hand_over give stack throw",
-       "it takes several steps; docs/script-cookbook.md and 'prehend new NAME' have scripts"},
-      {"look", "a person looks by 'look_at: milk'"},
-      {"walk walk_to", "a person walks by 'walk_to_m: [x, y]'"}};
-  Remedies remedies = {
-      {"",
-       "steps that follow each other are a list: 'right_hand: [{reach: milk}, {close_to: 1}]'"}};
-  for (const auto& [words, remedy] : groups) {
-    std::istringstream each(words);
-    for (std::string word; each >> word;) remedies.emplace_back(word, remedy);
-  }
-  return remedies;
 }
 
 ValueFormat<StepYaml> OneStepFormat() {

@@ -35,12 +35,19 @@ class Writer {
   }
 
  private:
+  static std::string Remedy(const YamlNode& unknown) {
+    if (unknown.kind == YamlNode::Kind::kScalar)
+      return "known: repeat, steps; 'repeat: 3' says how often";
+    return "what is repeated is a list below 'steps:', like '- repeat: 3' and below it "
+           "'steps: [{right_hand: {close_to: 1}}]'";
+  }
+
   bool AddBlock(const YamlNode& block) {
     const YamlNode *count = block.Find("repeat"), *steps = block.Find("steps");
     for (const YamlNode& child : block.children) {
       if (&child == count || &child == steps) continue;
       errors_.Add(child.key_where, fmt::format("unknown key '{}' in a repeated block", child.key),
-                  "known: repeat, steps");
+                  Remedy(child));
       return false;
     }
     if (!count || !steps) {

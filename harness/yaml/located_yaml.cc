@@ -223,6 +223,21 @@ std::string_view LineOf(std::string_view text, int line) {
   return text.substr(0, text.find('\n'));
 }
 
+/// "#ff0000" of the last line up to this one that has a colour where a value begins; or "".
+std::string ColourAsComment(std::string_view text, int up_to_line) {
+  constexpr int kMostLines = 50;
+  for (int number = up_to_line; number > std::max(0, up_to_line - kMostLines); --number) {
+    const std::string_view line = LineOf(text, number);
+    const std::size_t at = line.find(": #");
+    if (at == std::string_view::npos) continue;
+    const std::size_t begin = at + 3;
+    const std::size_t end =
+        std::min(line.find_first_not_of("0123456789abcdefABCDEF", begin), line.size());
+    if (end - begin == 3 || end - begin == 6) return std::string(line.substr(at + 2, end - at - 2));
+  }
+  return "";
+}
+
 /// Rewords yaml-cpp's message of a syntax error as message and hint.
 std::pair<std::string, std::string> InPlainWords(const std::string& message, std::string_view text,
                                                  Place place) {
@@ -261,6 +276,11 @@ std::pair<std::string, std::string> InPlainWords(const std::string& message, std
       {"unknown token", "a value cannot begin with this character",
        "text with special characters goes in quotes"},
   };
+  const bool is_open =
+      message == "end of map flow not found" || message == "end of sequence flow not found";
+  if (const auto colour = ColourAsComment(text, place.line); is_open && !colour.empty())
+    return {"not valid YAML: '#' begins a comment, which hides the rest of the line",
+            fmt::format("a colour goes in quotes: \"{}\"", colour)};
   for (const Words& words : kWords) {
     if (message == words.said) return {std::string("not valid YAML: ") + words.message, words.hint};
   }

@@ -28,13 +28,16 @@ std::string WithoutUnit(const std::string& key) {
 /// Returns the known key that was probably meant, or "".
 std::string ReportUnknownKey(const YamlNode& child, const std::string& title,
                              const std::vector<std::string>& known,
-                             const std::vector<std::pair<std::string, std::string>>& renamed,
+                             const std::vector<std::pair<std::string, std::string>>& remedies,
                              DiagnosticList& errors) {
   const std::string message = fmt::format("unknown key '{}' in {}", child.key, title);
-  for (const auto& [former, key] : renamed) {
-    if (child.key != former) continue;
-    errors.Add(child.key_where, message, fmt::format("it is called '{}' now", key));
-    return key;
+  for (const auto& [key, remedy] : remedies) {
+    if (child.key != key) continue;
+    errors.Add(child.key_where, message, remedy);
+    const auto named = std::ranges::find_if(known, [&](const std::string& other) {
+      return remedy.find("'" + other + "'") != std::string::npos;
+    });
+    return named == known.end() ? "" : *named;
   }
   const auto same_stem = std::find_if(known.begin(), known.end(), [&](const std::string& key) {
     return WithoutUnit(key) == WithoutUnit(child.key);
@@ -61,6 +64,17 @@ Where HeadOf(const YamlNode& node) {
   const bool in_list = node.key.ends_with(']');
   return node.key.empty() || in_list || node.key_where.place.line == 0 ? node.where
                                                                        : node.key_where;
+}
+
+/// "[0.1, 0.2]" of a list of scalars; "[..]" of another one.
+std::string FlowOf(const YamlNode& list) {
+  constexpr std::size_t kMostItems = 6;
+  std::string items;
+  for (const YamlNode& item : list.children) {
+    if (item.kind != YamlNode::Kind::kScalar || list.children.size() > kMostItems) return "[..]";
+    items += (items.empty() ? "" : ", ") + item.text;
+  }
+  return "[" + items + "]";
 }
 
 std::vector<std::string> KeysPresent(const YamlNode& node, const std::vector<std::string>& keys) {
@@ -174,10 +188,29 @@ Json StructRules::MakeSchema() const {
   return schema;
 }
 
+std::string StructRules::AsMapping(const YamlNode& node) const {
+  if (named_by_key || node.key.empty() || node.key.ends_with(']')) return "";
+  std::string fields_text;
+  std::vector<std::string> needed;
+  for (const Field& field : fields)
+    if (field.required) needed.push_back(field.key);
+  std::string value = "..";
+  if (needed.size() == 1 && node.kind == YamlNode::Kind::kScalar) value = node.text;
+  if (needed.size() == 1 && node.kind == YamlNode::Kind::kSequence) value = FlowOf(node);
+  for (const std::string& key : needed)
+    fields_text += fmt::format("{}{}: {}", fields_text.empty() ? "" : ", ", key, value);
+  return needed.empty() ? "" : fmt::format("{}: {{{}}}", node.key, fields_text);
+}
+
 bool StructRules::CheckKeys(const YamlNode& node, DiagnosticList& errors) const {
   if (node.kind != YamlNode::Kind::kMapping) {
-    return ReportExpected(node, errors,
-                          fmt::format("a mapping with the fields of {}", TitleOf(node)));
+    const std::string wanted = fmt::format("a mapping with the fields of {}", TitleOf(node));
+    const std::string written = AsMapping(node);
+    if (written.empty()) return ReportExpected(node, errors, wanted);
+    errors.Add(node.where,
+               fmt::format("{}: expected {}, found {}", node.key, wanted, Describe(node)),
+               "write '" + written + "'");
+    return false;
   }
   std::vector<std::string> known;
   for (const Field& field : fields) known.push_back(field.key);
@@ -185,7 +218,7 @@ bool StructRules::CheckKeys(const YamlNode& node, DiagnosticList& errors) const 
   std::set<std::string> meant;  // but misspelt: not reported as missing, too
   for (const YamlNode& child : node.children) {
     if (std::find(known.begin(), known.end(), child.key) != known.end()) continue;
-    meant.insert(ReportUnknownKey(child, TitleOf(node), known, renamed, errors));
+    meant.insert(ReportUnknownKey(child, TitleOf(node), known, remedies, errors));
     good = false;
   }
   for (const Field& field : fields) {

@@ -52,7 +52,7 @@ struct StructRules {
   std::vector<Field> fields;
   std::vector<std::vector<std::string>> exactly_one;  ///< of these keys
   std::vector<std::vector<std::string>> at_most_one;
-  std::vector<std::pair<std::string, std::string>> renamed;  ///< a former key, and what it is now
+  std::vector<std::pair<std::string, std::string>> remedies;  ///< of keys that people try
   std::vector<Check> checks;
 
   /// `initial` is the member's default value, or null if the schema shows none.
@@ -66,6 +66,8 @@ struct StructRules {
   std::string TitleOf(const YamlNode& node) const;
   /// Reports a node that is no mapping, unknown keys and missing keys. False after an error.
   bool CheckKeys(const YamlNode& node, DiagnosticList& errors) const;
+  /// What is not a mapping written as one: "box: {size_m: [0.1, 0.1, 0.1]}"; or "".
+  std::string AsMapping(const YamlNode& node) const;
 };
 
 /// The format that these rules describe.
@@ -142,7 +144,11 @@ class StructFormat {
   }
   /// The key was called `former`; the error about the former key names the new one.
   StructFormat& Renamed(std::string former, std::string key) {
-    rules_.renamed.emplace_back(std::move(former), std::move(key));
+    return Remedy(std::move(former), "it is called '" + key + "' now");
+  }
+  /// People try this key; the error about it says what is written instead.
+  StructFormat& Remedy(std::string key, std::string remedy) {
+    rules_.remedies.emplace_back(std::move(key), std::move(remedy));
     return *this;
   }
   /// A rule across fields, checked when all of them are well-formed. The node is the mapping, the
