@@ -18,6 +18,7 @@
 #include "harness/build/build_persons.h"
 #include "harness/build/build_scene.h"
 #include "harness/build/build_script.h"
+#include "harness/build/plausible_sizes.h"
 #include "harness/build/validate_classes.h"
 #include "harness/build/validate_planar.h"
 #include "harness/build/validate_put_downs.h"
@@ -248,7 +249,8 @@ Result<Scenario> Resolve(const std::string& file, const YamlDocument& document,
                             CamerasOf(scenario));
   }
   if (!errors.empty()) return AllOf(errors, in_other_files);
-  scenario.warnings = std::move(in_other_files);
+  scenario.warnings = ImplausibleSizes(entry, scene, document);
+  std::ranges::move(in_other_files, std::back_inserter(scenario.warnings));
   return scenario;
 }
 
