@@ -3,6 +3,7 @@
 #include "harness/templates/new_scenario.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -91,6 +92,48 @@ const Destination& DestinationIn(const Destination (&known)[n],
   return known[0];
 }
 
+/// Words that change nothing of what happens.
+constexpr std::string_view kPlain =
+    "a an the is are was be been it its and then with by to of from at in into inside on onto over "
+    "up down away back again off out hand hands person table three times first try new test "
+    "scenario my";
+
+/// Of what the templates cannot do, the section of docs/script-cookbook.md that does.
+constexpr std::pair<std::string_view, std::string_view> kSections[] = {
+    {"rests rest stays waits beside near next", "Rest beside"},
+    {"elbow", "With the elbow"},
+    {"wall along", "Along a wall"},
+    {"circles circled circle around round orbits", "Circle"},
+    {"tray", "Carry a tray"},
+    {"brushes brushed brush touches touched touch twin twins", "Brush one, take the other"},
+    {"tilts tilted tilt shown shows", "Way-points from where the hand is"},
+    {"walks walk leans", "Walk gently"},
+    {"set sets twelve six", "Set a table"}};
+
+/// What of the name the new scenario does not do: "'elbow' of the name is left out; ..". Empty if
+/// all of it is understood. `verb` may be null.
+std::string IgnoredWords(const std::vector<std::string>& words, const Verb* verb,
+                         const Thing& thing, const Destination& destination) {
+  std::vector<std::string> ignored;
+  std::string_view section;
+  for (const std::string& word : words) {
+    const bool of_verb = verb && (Has(verb->words, word) || Has(verb->also, word) ||
+                                  (!verb->destination.empty() && word == destination.word));
+    const bool of_thing =
+        thing.noun && (FindNoun(word) == thing.noun || thing.name.starts_with(word + "_"));
+    if (of_verb || of_thing || Has(kPlain, word)) continue;
+    ignored.push_back("'" + word + "'");
+    for (const auto& [known, title] : kSections)
+      if (section.empty() && Has(known, word)) section = title;
+  }
+  if (ignored.empty()) return "";
+  const std::string where = section.empty()
+                                ? "docs/script-cookbook.md has scripts to copy"
+                                : fmt::format("docs/script-cookbook.md has it: '{}'", section);
+  return fmt::format("of the name, {} {} left out; {}", fmt::join(ignored, ", "),
+                     ignored.size() == 1 ? "is" : "are", where);
+}
+
 std::string WithArticle(const std::string& name) {
   return (std::string("aeiou").find(name.front()) != std::string::npos ? "an " : "a ") + name;
 }
@@ -165,7 +208,8 @@ NewScenario ComposeScenario(std::string_view name, std::string_view wanted) {
         fmt::format("the name has no verb that 'new' knows, so this is '{}'; choose by --verb: {}",
                     verb.name, fmt::join(VerbNames(), ", "));
   const std::vector<std::string> nouns = WordsOf(verb.nouns, ' ');
-  Thing thing = ThingIn(words);
+  const Thing spoken_of = ThingIn(words);
+  Thing thing = spoken_of;
   if (!nouns.empty() && (!thing.noun || !Has(verb.nouns, std::string(thing.noun->word)))) {
     const std::string instead = nouns.front();
     if (said && thing.noun)
@@ -197,6 +241,10 @@ NewScenario ComposeScenario(std::string_view name, std::string_view wanted) {
     parts[key] = Filled(text, values);
   if (parts["picture"].find(',') == std::string::npos)
     parts["picture"] += ", camera: three_quarter";
+  if (wanted.empty()) {
+    const std::string ignored = IgnoredWords(words, said, spoken_of, destination);
+    if (!ignored.empty()) made.note += (made.note.empty() ? "" : "; ") + ignored;
+  }
   made.what = Filled(verb.shows, values);
   made.text = Filled(kText, parts);
   return made;

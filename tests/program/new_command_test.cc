@@ -72,6 +72,28 @@ TEST_F(New, DoesWhatTheNameSays) {
   EXPECT_FALSE(Has(checked.out, "failed  ")) << checked.out;
 }
 
+TEST_F(New, SaysWhichWordsItLeavesOut) {
+  const std::vector<std::pair<std::string, std::string>> all = {
+      {"drawer_is_shut_with_the_left_elbow",
+       "note: of the name, 'elbow' is left out; docs/script-cookbook.md has it: 'With the "
+       "elbow'\n"},
+      {"box_is_carried_along_a_wall",
+       "note: of the name, 'along', 'wall' are left out; docs/script-cookbook.md has it: 'Along a "
+       "wall'\n"},
+      {"bottle_is_shaken_wildly",
+       "note: of the name, 'wildly' is left out; docs/script-cookbook.md has scripts to copy\n"},
+      {"blue_bottle_is_shaken_three_times", ""},
+      {"table_is_wiped_with_a_sponge", ""},
+      {"ball_is_put_into_a_bowl", ""}};
+  for (const auto& [name, note] : all) EXPECT_EQ(Do({"new", name}).err, note) << name;
+  const Said rests = Do({"new", "hand_rests_beside_a_can"});
+  EXPECT_TRUE(rests.err.ends_with(
+      "; of the name, 'rests', 'beside' are left out; docs/script-cookbook.md has it: 'Rest "
+      "beside'\n"))
+      << rests.err;
+  EXPECT_EQ(Do({"new", "elbow_of_mine", "--verb", "pour"}).err.find("left out"), std::string::npos);
+}
+
 TEST_F(New, SaysWhatTheNameLeftOpen) {
   const Said no_verb = Do({"new", "first_try"});
   EXPECT_TRUE(Has(no_verb.err,
