@@ -66,15 +66,16 @@ std::string Today() {
 }
 
 ProgramDescription Description() {
-  return {.version = "prehend " PREHEND_VERSION,
-          .summary =
-              "Simulate manipulation, segment it with activity grammars, compare it with goldens.",
-          .footer =
-              "Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 simulation or internal "
-              "failure,\n"
-              "4 nothing was selected or found, 5 goldens wait for acceptance.\n"
-              "PREHEND_HOME names the project's folder; otherwise it is the one above the program, "
-              "or the working folder."};
+  return {
+      .version = "prehend " PREHEND_VERSION,
+      .summary =
+          "Simulate manipulation, segment it with activity grammars, compare it with goldens.",
+      .footer =
+          "Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 simulation or internal "
+          "failure,\n"
+          "4 nothing was selected or found, 5 goldens wait for acceptance.\n"
+          "The project is the folder that PREHEND_HOME names; otherwise the nearest folder, the "
+          "working\none or above, with a prehend.yaml; otherwise the checkout of the program."};
 }
 
 ExitCode Report(const UsageError& error) {
