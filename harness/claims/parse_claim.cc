@@ -40,6 +40,13 @@ bool IsNameLetter(char letter) {
   return (letter >= 'a' && letter <= 'z') || IsDigit(letter) || letter == '_';
 }
 
+bool IsCapital(char letter) { return letter >= 'A' && letter <= 'Z'; }
+std::string InSmallLetters(std::string word) {
+  for (char& letter : word)
+    if (IsCapital(letter)) letter = static_cast<char>(letter - 'A' + 'a');
+  return word;
+}
+
 /// As a word: "two".
 std::optional<int> NumberNamed(std::string_view word) {
   static constexpr std::string_view kWords[] = {"one",  "two", "three",  "four",
@@ -312,10 +319,21 @@ class ClaimParser {
     ClaimWord word{std::string(next_.text), next_.offset};
     if (next_.IsName()) {
       Advance();
+    } else if (const std::string capital = WordWithCapitals(); !capital.empty()) {
+      Fail(next_.offset, fmt::format("expected {}, found '{}'", wanted, capital),
+           fmt::format("write '{}': names have small letters", InSmallLetters(capital)));
     } else {
       Fail(next_.offset, fmt::format("expected {}, found {}", wanted, Found()));
     }
     return word;
+  }
+
+  /// That begins at `next_`; empty if it begins otherwise.
+  std::string WordWithCapitals() const {
+    std::size_t end = next_.offset;
+    while (end < text_.size() && (IsNameLetter(text_[end]) || IsCapital(text_[end]))) ++end;
+    const bool begins_so = end > next_.offset && IsCapital(text_[next_.offset]);
+    return begins_so ? std::string(text_.substr(next_.offset, end - next_.offset)) : "";
   }
 
   bool Accept(std::string_view text) {

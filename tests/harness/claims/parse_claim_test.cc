@@ -85,7 +85,11 @@ TEST(ParseClaim, SaysWhatIsWrongAndWhere) {
       "expected 'then', 'while', 'lies inside' or one of Allen's relations, found ";
   EXPECT_EQ(Problem(""), "0: expected an event, found the end");
   EXPECT_EQ(Problem("no"), "2: expected an event, found the end");
-  EXPECT_EQ(Problem("Sliding"), "0: expected an event, found 'S'");
+  EXPECT_EQ(Problem("Sliding"),
+            "0: expected an event, found 'Sliding' | write 'sliding': names have small letters");
+  EXPECT_EQ(Problem("sliding(Right_hand)"),
+            "8: expected an entity or 'any', found 'Right_hand' | write 'right_hand': names have "
+            "small letters");
   EXPECT_EQ(Problem("gräsping"), "2: " + relations + "'ä'");
   EXPECT_EQ(Problem("0 sliding"),
             "0: expected a number from 1, found '0' | "
