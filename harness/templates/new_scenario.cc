@@ -55,7 +55,10 @@ const Verb& VerbNamed(std::string_view name) {
 }
 
 /// The verb that the words name; null if there is none.
-const Verb* VerbIn(const std::vector<std::string>& words) {
+const Verb* VerbIn(std::vector<std::string> words) {
+  // A hand is who does it, but in 'hand over'.
+  if (std::ranges::count(words, "over") == 0)
+    std::erase_if(words, [](const std::string& word) { return word == "hand" || word == "hands"; });
   for (const Verb& verb : Verbs())
     if (HasAny(verb.words, words) && (verb.also.empty() || HasAny(verb.also, words))) return &verb;
   return nullptr;

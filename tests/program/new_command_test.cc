@@ -87,6 +87,9 @@ TEST_F(New, SaysWhichWordsItLeavesOut) {
       {"ball_is_put_into_a_bowl", ""}};
   for (const auto& [name, note] : all) EXPECT_EQ(Do({"new", name}).err, note) << name;
   const Said rests = Do({"new", "hand_rests_beside_a_can"});
+  EXPECT_TRUE(
+      rests.err.starts_with("note: the name has no verb that 'new' knows, so this is 'carry'"))
+      << rests.err;
   EXPECT_TRUE(rests.err.ends_with(
       "; of the name, 'rests', 'beside' are left out; docs/script-cookbook.md has it: 'Rest "
       "beside'\n"))
