@@ -154,7 +154,7 @@ std::string NearestName(std::string_view name, const std::vector<std::string>& c
     }
   }
   if (!best.empty()) return best;
-  // Else the first one that differs by the endings of its words: "slide" is far from "sliding".
+  // Else the first one that differs by the endings of its words, as slide and sliding do.
   const std::string stem = StemOf(name);
   const auto related = std::ranges::find(candidates, stem, StemOf);
   return related == candidates.end() || stem.size() < 3 ? "" : *related;

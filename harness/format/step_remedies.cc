@@ -63,7 +63,7 @@ std::string UntilRemedy(const std::string& condition) {
   if (open == std::string::npos || close == std::string::npos || close < open) return "";
   const std::string word = condition.substr(0, open);
   const std::string thing = condition.substr(open + 1, close - open - 1);
-  if (word == "touches" || word == "touch" || word == "touched" || word == "contact")
+  if (word != "touching" && word.starts_with("touch"))
     return fmt::format("write: touching({})", thing);
   const std::size_t less = condition.find('<', close);
   if (word != "gap" || less == std::string::npos) return "";

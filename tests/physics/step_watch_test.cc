@@ -55,8 +55,8 @@ TEST(StepWatch, AJointThatFollowsIsNotNoted) {
 }
 
 /// Somebody with a body stands before the table, facing it; the hand is her right one if `led`.
-Scene WithAnna(bool led) {
-  Scene scene = MakeScene({.hand_at_m = {-0.2, -0.1, 1.05}});
+Scene WithAnna(bool led, const Vector3d& hand_at_m = {-0.2, -0.1, 1.05}) {
+  Scene scene = MakeScene({.hand_at_m = hand_at_m});
   Person person{.name = "anna",
                 .head = static_cast<int>(scene.bodies.size()),
                 .has_body = true,
@@ -96,10 +96,9 @@ TEST(StepWatch, AnArmThatIsTooShortIsNoted) {
 
 TEST(StepWatch, AnArmThatPushesSomethingOnItsWayIsNoted) {
   const auto met_by_the_arm = [](double object_y_m) {
-    Scene scene = WithAnna(true);
+    Scene scene = WithAnna(true, {-0.25, -0.25, 0.95});
     scene.bodies[kObject].shapes = {{Box{{0.07, 0.07, 0.4}}, {}}};
     scene.bodies[kObject].X_WB.p_m = {-0.42, object_y_m, kTop_m + 0.2};
-    scene.hands[0].X_WH.p_m = {-0.25, -0.25, 0.95};
     Texts met;
     for (const std::string& note : NotesOf(scene, {.stages = {One(MoveStep{{0, 0.25, 0}}, 1)}}))
       if (note.find("on its way") != std::string::npos) met.push_back(note);
