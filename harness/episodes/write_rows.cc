@@ -88,7 +88,7 @@ std::int64_t WriteTask(const Database& database, const NewTask& task) {
   insert.Bind(uuid).Bind(task.scenario).Bind(files.run.scenario_file).Bind(files.run.grammar);
   insert.Bind(nlohmann::json(files.run.settings).dump()).Bind(task.shows).Run();
   const std::int64_t row = database.LastRow();
-  Compressor compressor(9);
+  Compressor compressor(3);  // a run waits for it
   Statement has = database.Prepare("SELECT 1 FROM asset WHERE hash = ?");
   Statement add = database.Prepare("INSERT INTO asset VALUES(?, ?, ?)");
   Statement name = database.Prepare("INSERT INTO task_asset VALUES(?, ?, ?)");

@@ -15,9 +15,9 @@ constexpr std::size_t kMostWordsOfChunk = 1 << 16;
 
 Columns Transposed(const std::vector<Word>& rows, std::size_t width) {
   Columns columns(width == 0 ? 0 : rows.size() / width, width);
-  for (std::size_t row = 0; row < columns.rows; ++row) {
-    for (std::size_t column = 0; column < width; ++column)
-      columns.At(row, column) = rows[row * width + column];
+  Word* to = columns.words.data();
+  for (std::size_t column = 0; column < width; ++column) {
+    for (std::size_t at = column; at < rows.size(); at += width) *to++ = rows[at];
   }
   return columns;
 }

@@ -90,9 +90,14 @@ Word PolynomialGuess(std::span<const Word> column, const Order& order, int last,
                      std::size_t values) {
   double x[4] = {};
   std::size_t known = 0;
-  for (int row = last; row >= 0 && known < values;
-       row = order.Before(static_cast<std::size_t>(row)))
-    x[known++] = AsDouble(column[static_cast<std::size_t>(row)]);
+  const auto take = [&](int row) { x[known++] = AsDouble(column[static_cast<std::size_t>(row)]); };
+  if (order.IsGiven()) {
+    for (int row = last; row >= 0 && known < values;
+         row = order.Before(static_cast<std::size_t>(row)))
+      take(row);
+  } else {
+    for (int row = last; row >= 0 && known < values; --row) take(row);
+  }
   const double guess = Polynomial(x, known);
   return std::isfinite(guess) ? AsWord(guess) : column[static_cast<std::size_t>(last)];
 }
@@ -241,11 +246,7 @@ class Encoder {
     }
     const std::size_t begin = bytes.size(), count = distances_.size();
     bytes.resize(begin + static_cast<std::size_t>(planes) * count);
-    char* out = bytes.data() + begin;
-    for (int plane = 0; plane < planes; ++plane, out += count) {
-      for (std::size_t i = 0; i < count; ++i)
-        out[i] = static_cast<char>(distances_[i] >> (8 * plane));
-    }
+    SplitPlanes(distances_, planes, bytes.data() + begin);
   }
 
   const Columns& columns_;

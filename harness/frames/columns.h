@@ -60,6 +60,8 @@ std::optional<Columns> Decode(std::string_view& bytes, std::size_t rows, std::si
 /// Words from the planes of their bytes, plane after plane; `bytes` has `planes` (0 to 8) times as
 /// many as there are words.
 void JoinPlanes(const char* bytes, int planes, std::span<Word> words);
+/// The other way round: the lowest `planes` bytes of each word.
+void SplitPlanes(std::span<const Word> words, int planes, char* bytes);
 
 /// Integers of any size, short ones in few bytes (LEB128).
 void AppendVarint(Word value, std::string& bytes);

@@ -377,11 +377,7 @@ void EncodeSmall(const Columns& columns, std::string& bytes) {
     bytes += static_cast<char>(planes);
     const std::size_t begin = bytes.size();
     bytes.resize(begin + static_cast<std::size_t>(planes) * columns.rows);
-    char* out = bytes.data() + begin;
-    for (int plane = 0; plane < planes; ++plane) {
-      for (const Word word : columns.Column(column))
-        *out++ = static_cast<char>(word >> (8 * plane));
-    }
+    SplitPlanes(columns.Column(column), planes, bytes.data() + begin);
   }
 }
 

@@ -118,6 +118,24 @@ TEST(Columns, DamagedBytesAreRefusedOrReadAsSomething) {
   }
 }
 
+TEST(Planes, HoldBytesOfEqualWeightTheLowestFirst) {
+  std::mt19937_64 random(3);
+  for (int planes = 0; planes <= 8; ++planes) {
+    for (const std::size_t count : {0, 1, 7, 8, 9, 16, 29}) {
+      std::vector<Word> words(count), joined(count);
+      for (Word& word : words) word = planes == 0 ? 0 : random() >> (64 - 8 * planes);
+      std::string bytes(static_cast<std::size_t>(planes) * count, 'x');
+      SplitPlanes(words, planes, bytes.data());
+      for (std::size_t at = 0; at < bytes.size(); ++at)
+        ASSERT_EQ(static_cast<std::uint8_t>(bytes[at]),
+                  (words[at % count] >> (at / count * 8)) & 255)
+            << planes << " planes of " << count << ", byte " << at;
+      JoinPlanes(bytes.data(), planes, joined);
+      EXPECT_EQ(joined, words) << planes << " planes of " << count;
+    }
+  }
+}
+
 TEST(Varint, AnyNumberComesBack) {
   std::string bytes;
   const std::vector<Word> words = {0, 1, 127, 128, 300, Word{1} << 40, ~Word{0}};

@@ -33,14 +33,16 @@ void TransposeBytes(std::array<Word, 8>& m) {
   swap(m[6], m[7], 8, kBytes);
 }
 
+/// With few planes, one word after another is faster.
+template <int planes>
+constexpr bool kInEights = planes >= 4 && std::endian::native == std::endian::little;
+
 /// Words from the planes of their bytes, plane after plane.
 template <int planes>
 void JoinPlanesOf(const char* bytes, std::span<Word> words) {
   const std::size_t count = words.size();
   std::size_t i = 0;
-  // With few planes, one word after another is faster.
-  constexpr bool kInEights = planes >= 4 && std::endian::native == std::endian::little;
-  for (; kInEights && i + 8 <= count; i += 8) {
+  for (; kInEights<planes> && i + 8 <= count; i += 8) {
     std::array<Word, 8> eight{};
     for (int plane = 0; plane < planes; ++plane)
       std::memcpy(&eight[static_cast<std::size_t>(plane)],
@@ -57,6 +59,25 @@ void JoinPlanesOf(const char* bytes, std::span<Word> words) {
   }
 }
 
+template <int planes>
+void SplitPlanesOf(std::span<const Word> words, char* bytes) {
+  const std::size_t count = words.size();
+  std::size_t i = 0;
+  for (; kInEights<planes> && i + 8 <= count; i += 8) {
+    std::array<Word, 8> eight{};
+    std::copy_n(words.begin() + static_cast<std::ptrdiff_t>(i), 8, eight.begin());
+    TransposeBytes(eight);
+    for (int plane = 0; plane < planes; ++plane)
+      std::memcpy(bytes + static_cast<std::size_t>(plane) * count + i,
+                  &eight[static_cast<std::size_t>(plane)], 8);
+  }
+  for (; i < count; ++i) {
+    for (int plane = 0; plane < planes; ++plane)
+      bytes[static_cast<std::size_t>(plane) * count + i] =
+          static_cast<char>(words[i] >> (8 * plane));
+  }
+}
+
 }  // namespace
 
 void JoinPlanes(const char* bytes, int planes, std::span<Word> words) {
@@ -65,6 +86,14 @@ void JoinPlanes(const char* bytes, int planes, std::span<Word> words) {
                              JoinPlanesOf<3>, JoinPlanesOf<4>, JoinPlanesOf<5>,
                              JoinPlanesOf<6>, JoinPlanesOf<7>, JoinPlanesOf<8>};
   kJoins[planes](bytes, words);
+}
+
+void SplitPlanes(std::span<const Word> words, int planes, char* bytes) {
+  using Split = void (*)(std::span<const Word>, char*);
+  constexpr Split kSplits[] = {SplitPlanesOf<0>, SplitPlanesOf<1>, SplitPlanesOf<2>,
+                               SplitPlanesOf<3>, SplitPlanesOf<4>, SplitPlanesOf<5>,
+                               SplitPlanesOf<6>, SplitPlanesOf<7>, SplitPlanesOf<8>};
+  kSplits[planes](words, bytes);
 }
 
 }  // namespace prehend::harness::episodes
