@@ -267,10 +267,12 @@ void BulletSolver::solveGroupCacheFriendlySplitImpulseIterations(btCollisionObje
                                                                  const btContactSolverInfo& info,
                                                                  btIDebugDraw*) {
   if (!info.m_splitImpulse) return;
-  for (int i = 0; i < info.m_numIterations; ++i)
-    if (std::max(rigid_.SolvePenetrations(), grains_.SolvePenetrations()) <=
-        info.m_leastSquaresResidualThreshold)
+  for (int i = 0; i < info.m_numIterations; ++i) {
+    // One after the other: a grain may be in rows of both.
+    const btScalar grains_change = grains_.SolvePenetrations();
+    if (std::max(rigid_.SolvePenetrations(), grains_change) <= info.m_leastSquaresResidualThreshold)
       return;
+  }
 }
 
 btScalar BulletSolver::solveSingleIteration(int iteration, btCollisionObject**, int,
