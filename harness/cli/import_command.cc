@@ -89,7 +89,7 @@ Command ImportCommand() {
                    "import poses.csv --map bodies.yaml -o take.jsonl", "resegment take.jsonl",
                    "import take.jsonl -o takes.episodes"},
       .options = {{.name = "poses",
-                   .help = "a file with poses of hands and things, CSV, BVH or MCAP\n"
+                   .help = "a file with poses of hands and things, CSV, BVH, MCAP or a bag\n"
                            "(docs/motion-capture.md), or a recording (docs/recording-format.md)",
                    .required = true},
                   {.name = "--map",

@@ -205,6 +205,13 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
     errors.Add(map.entities.front().name_where, "no entity is 'from' a body of the file");
 }
 
+std::string EndingOf(const std::string& poses_path) {
+  std::string ending = std::filesystem::path(poses_path).extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
 }  // namespace
 
 bool ImportMap::IsSure(Doubt doubt) const { return std::ranges::find(sure, doubt) != sure.end(); }
@@ -215,14 +222,13 @@ double ImportMap::MetresPerUnit() const {
   return kMetres[static_cast<std::size_t>(unit->value)];
 }
 
+bool IsBag(const std::string& poses_path) { return EndingOf(poses_path) == ".bag"; }
+
 Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
-  std::string ending = std::filesystem::path(poses_path).extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = EndingOf(poses_path);
   if (ending == ".bvh") return PoseFormat::kBvh;
-  if (ending == ".mcap") return PoseFormat::kMcap;
+  if (ending == ".mcap" || ending == ".bag") return PoseFormat::kMcap;
   static const std::map<std::string, std::string> kOthers = {
-      {".bag", "convert it, with the program that comes with MCAP: mcap convert IN.bag OUT.mcap"},
       {".db3", "convert it, with the program that comes with MCAP: mcap convert IN.db3 OUT.mcap"},
       {".c3d", "export poses of rigid bodies as CSV; C3D mostly holds single markers"},
       {".fbx", "export it as BVH"},
@@ -232,7 +238,8 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
   return tl::unexpected(grammar::Diagnostics{
       {.file = ReadableName(poses_path),
        .place = {},
-       .message = fmt::format("files {} are not read; CSV, BVH and MCAP are", ending),
+       .message =
+           fmt::format("files {} are not read; CSV, BVH, MCAP and bags of ROS 1 are", ending),
        .source_line = {},
        .hint = other->second}});
 }

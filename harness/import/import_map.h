@@ -14,7 +14,7 @@
 
 namespace prehend::harness::import {
 
-/// What is imported, by the ending of its name.
+/// What is imported, by the ending of its name. Bags of ROS 1 hold messages as MCAP files do.
 enum class PoseFormat { kCsv, kBvh, kMcap };
 enum class LengthUnit { kMetre, kCentimetre, kMillimetre, kInch };
 enum class TimeUnit { kSecond, kMillisecond, kMicrosecond, kNanosecond, kFrame };
@@ -94,6 +94,8 @@ struct MapFile {
   YamlDocument document;
   ImportMap map;
 };
+
+bool IsBag(const std::string& poses_path);
 
 /// A kind of file that is not read is an error that says what helps.
 Result<PoseFormat> PoseFormatOf(const std::string& poses_path);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses from an MCAP file: of topics, of named bodies, of the frames of a tree of transforms.
-// Tested by tests/program/import_mcap_test.cc
+// Poses from an MCAP file or a bag of ROS 1: of topics, of named bodies, of the frames of a tree of
+// transforms. Tested by tests/program/import_mcap_test.cc
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +11,7 @@
 #include <set>
 
 #include "harness/base/text_file.h"
+#include "harness/import/bag_file.h"
 #include "harness/import/frame_tree.h"
 #include "harness/import/pose_file.h"
 #include "harness/import/pose_messages.h"
@@ -47,7 +48,8 @@ class McapPoseReader {
     if (error || !std::filesystem::is_regular_file(poses.file))
       return Fail(std::filesystem::exists(poses.file) ? "is not a regular file" : "no such file");
     std::ifstream in(poses.file, std::ios::binary);
-    const std::string why = ReadMcap(
+    const auto read = IsBag(poses.file) ? ReadBag : ReadMcap;
+    const std::string why = read(
         in, size, [this](const McapMessage& message) { return TakeMessage(message); },
         [this](const McapChannel& channel) { TakeChannel(channel); });
     if (!why.empty()) return Fail(why);

@@ -177,12 +177,14 @@ TEST_F(ImportBvh, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
 
 TEST_F(ImportBvh, FilesThatAreNotReadSayWhatHelps) {
   WriteFile(folder_ / "map.yaml", kMap);
-  for (const char* name : {"take.bag", "take.c3d", "take.DB3"}) {
+  for (const char* name : {"take.trc", "take.c3d", "take.DB3"}) {
     WriteFile(folder_ / name, "x");
     const Said said = Prehend(
         {"import", (folder_ / name).string(), "--map", (folder_ / "map.yaml").string(), "--check"});
     EXPECT_EQ(said.exit_code, 2);
-    EXPECT_NE(said.err.find("are not read; CSV, BVH and MCAP are"), std::string::npos) << said.err;
+    EXPECT_NE(said.err.find("are not read; CSV, BVH, MCAP and bags of ROS 1 are"),
+              std::string::npos)
+        << said.err;
   }
 }
 

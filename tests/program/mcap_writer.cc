@@ -40,7 +40,9 @@ std::string AsZstd(const std::string& text) {
          });
 }
 
-/// Likewise (LZ4 Frame Format Description 1.6); blocks of up to 256 KiB.
+}  // namespace
+
+// As blocks that are not compressed (LZ4 Frame Format Description 1.6); blocks of up to 256 KiB.
 std::string AsLz4(const std::string& text) {
   return std::string("\x04\x22\x4D\x18\x60\x50\xFB", 7) +
          InBlocks(text,
@@ -49,8 +51,6 @@ std::string AsLz4(const std::string& text) {
                   }) +
          Bytes32(0);
 }
-
-}  // namespace
 
 std::string Bytes16(std::uint16_t number) { return Little(number); }
 std::string Bytes32(std::uint32_t number) { return Little(number); }

@@ -16,6 +16,8 @@ std::string Bytes64(std::uint64_t number);
 std::string BytesOf(double number);
 /// With its length before it.
 std::string WithLength(const std::string& text);
+/// A frame of LZ4.
+std::string AsLz4(const std::string& text);
 
 class McapWriter {
  public:
