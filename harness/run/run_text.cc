@@ -64,8 +64,9 @@ std::string RunTable(const RunResult& run) {
 std::vector<std::string> NoteLines(const Scenario& scenario, const RunResult& run) {
   std::vector<std::string> lines;
   for (const physics::ScriptNote& note : run.notes) {
-    const std::string hand =
-        note.hand < 0 ? "" : scenario.scene.hands[static_cast<std::size_t>(note.hand)].name + ": ";
+    const auto& hands = scenario.scene.hands;
+    const auto index = static_cast<std::size_t>(note.hand);  // -1, and what a damaged file says
+    const std::string hand = index < hands.size() ? hands[index].name + ": " : "";
     lines.push_back(fmt::format("note: {} s: {}{}",
                                 SecondsText(note.tick, run.timeline.ticks_per_second), hand,
                                 note.text));

@@ -59,10 +59,13 @@ TEST(RunText, NotesNameTheirHand) {
   Scenario scenario;
   scenario.scene.hands.push_back({.name = "right_hand", .model = {}, .X_WH = {}});
   RunResult run = SampleRun();
-  run.notes = {{480, 0, "it has closed"}, {720, -1, "anna: move_limb: out of reach"}};
+  run.notes = {
+      {480, 0, "it has closed"}, {720, -1, "anna: move_limb: out of reach"}, {960, 7, "x"}};
   EXPECT_EQ(NoteLines(scenario, run),
             (std::vector<std::string>{"note: 1.0000 s: right_hand: it has closed",
-                                      "note: 1.5000 s: anna: move_limb: out of reach"}));
+                                      "note: 1.5000 s: anna: move_limb: out of reach",
+                                      "note: 2.0000 s: x"}))
+      << "the last one is of a damaged file";
 }
 
 TEST(RunText, AFailedRunNamesEntityTickReasonAndAdvice) {
