@@ -41,5 +41,31 @@ TEST(Cookbook, EachScenarioCouldBeAccepted) {
   fs::remove_all(folder);
 }
 
+/// So that a script of one page can be watched by a grammar of the other.
+TEST(Cookbook, EachGrammarJoinsPickAndPlace) {
+  const fs::path folder = FreshFolder("cookbook");
+  WriteFile(folder / "prehend.yaml", "");
+  constexpr std::string_view kBegin = "```\ngrammar ", kEnd = "```";
+  const std::string text = ReadFile(fs::path(PREHEND_SOURCE_DIR) / "docs/cookbook.md");
+  int count = 0;
+  for (std::size_t at = text.find(kBegin); at != std::string::npos; at = text.find(kBegin, at)) {
+    const std::size_t begin = at + kBegin.size();
+    at = text.find(kEnd, begin);
+    const std::string name = text.substr(begin, text.find('\n', begin) - begin);
+    WriteFile(folder / (name + ".grammar"), "grammar " + text.substr(begin, at - begin));
+    WriteFile(folder / ("with_" + name + ".yaml"),
+              "scenario: with_" + name + "\nshows: two grammars\ngrammar: [pick_and_place, ./" +
+                  name +
+                  ".grammar]\nentities:\n  ball: {sphere: {radius_m: 0.03}, mass_kg: 0.1, "
+                  "at_m: [0, 0, 0.5]}\n");
+    const Said said = Prehend({"validate", "with_" + name + ".yaml"}, {"CI="},
+                              "unset PREHEND_HOME && cd '" + folder.string() + "'");
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    ++count;
+  }
+  EXPECT_GE(count, 9);
+  fs::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace prehend::house

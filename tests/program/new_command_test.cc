@@ -75,7 +75,7 @@ TEST_F(New, DoesWhatTheNameSays) {
 TEST_F(New, SaysWhichWordsItLeavesOut) {
   const std::vector<std::pair<std::string, std::string>> all = {
       {"drawer_is_shut_with_the_left_elbow",
-       "note: of the name, 'elbow' is left out; docs/script-cookbook.md has it: 'With the "
+       "note: of the name, 'left', 'elbow' are left out; docs/script-cookbook.md has it: 'With the "
        "elbow'\n"},
       {"box_is_carried_along_a_wall",
        "note: of the name, 'along', 'wall' are left out; docs/script-cookbook.md has it: 'Along a "
