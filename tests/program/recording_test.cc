@@ -77,10 +77,10 @@ TEST(Recording, ClassesAreSegmentedAgainAsTheScenarioNamesThem) {
   EXPECT_EQ(EventsNamed("by_class", mine)[0]["begin_tick"],
             EventsNamed("by_superclass", mine)[0]["begin_tick"]);
 
-  // Without its superclass the cup is no container, and a warning says that there is none.
+  // Without its superclass the cup is no container, and who asks for containers is warned of it.
   const auto poorer = folder / "poorer.jsonl";
   WriteFile(poorer, Replaced(ReadFile(file), R"("kinds":["Container"],)", ""));
-  const Said none = Prehend({"resegment", poorer.string(), "--json"});
+  const Said none = Prehend({"resegment", poorer.string(), "--grammar", "containers", "--json"});
   EXPECT_TRUE(EventsNamed("contained_in", none).empty()) << none.out;
   EXPECT_NE(none.err.find("no entity of this episode is a 'Container'"), std::string::npos)
       << none.err;
