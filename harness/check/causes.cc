@@ -111,8 +111,7 @@ std::string CausesText(const std::vector<Cause>& causes) {
   std::string text = Counted(causes.size(), "cause") + ":\n";
   for (std::size_t i = 0; i < causes.size(); ++i) {
     const Cause& cause = causes[i];
-    text += fmt::format("{}. {}: {}\n", i + 1,
-                        cause.because.empty() ? "nothing known has changed" : cause.because,
+    text += fmt::format("{}. {}: {}\n", i + 1, cause.Title(),
                         cause.scenarios.size() == 1 ? cause.scenarios.front()
                                                     : Counted(cause.scenarios.size(), "scenario"));
     for (std::size_t k = 0; k < cause.effects.size() && k < kMostEffects; ++k)

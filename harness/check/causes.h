@@ -28,6 +28,9 @@ struct Cause {
   std::string because;                 ///< "`reach_radius` 30 cm -> 20 cm in x.grammar"; or ""
   std::vector<Effect> effects;         ///< the most frequent first
   std::vector<std::string> scenarios;  ///< sorted; a scenario may have several causes
+
+  /// `because`, or that nothing is known: nothing has changed, or there is no earlier pass here.
+  std::string Title() const { return because.empty() ? "no cause is known" : because; }
 };
 
 /// The one with most scenarios first. Without any difference from goldens, and of scenarios that

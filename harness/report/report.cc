@@ -280,8 +280,7 @@ void AddCauses(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts
     const pugi::xml_node list = AddElement(body, "ol", {{"class", "causes"}});
     for (const Cause& cause : causes) {
       const pugi::xml_node item = AddElement(list, "li");
-      AddSentence(AddElement(item, "strong"),
-                  cause.because.empty() ? "nothing known has changed" : WithArrows(cause.because));
+      AddSentence(AddElement(item, "strong"), WithArrows(cause.Title()));
       AddText(item, cause.scenarios.size() == 1
                         ? ": "
                         : fmt::format(": {} scenarios, for example ", cause.scenarios.size()));

@@ -47,7 +47,7 @@ TEST(Causes, AreGroupedWithCountMedianAndOneCommand) {
             "1. `r` 3 -> 2 in a.grammar: 3 scenarios\n"
             "     3 x reaching begins later, median +120.0 ms (+71.0 to +196.0)\n"
             "     look: prehend explain s/a --event q\n"
-            "2. nothing known has changed: s/d\n"
+            "2. no cause is known: s/d\n"
             "     1 x a claim does not hold\n"
             "     look: prehend check s/d\n"
             "3. `s` 1 -> 5 in a.grammar: s/b\n"
