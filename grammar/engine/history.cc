@@ -19,6 +19,7 @@ History::History(const EntityTable& entity_table)
       looks_(entity_table.entities.size()),
       ways_m_(entity_table.entities.size(), 0),
       hand_of_entity_(entity_table.entities.size(), -1) {
+  bounds_m_.reserve(entity_table.entities.size());
   for (const EntityInfo& entity : entity_table.entities) bounds_m_.push_back(BoundOf_m(entity));
 }
 

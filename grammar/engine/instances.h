@@ -318,7 +318,7 @@ class RuleInstances {
   const EntityTable& entity_table_;
   StableBlocks<InstanceId, RuleInstance>
       instances_;  // an instance stays where it is when others are made
-  IdVector<InstanceId, double> rests_until_m_;
+  StableBlocks<InstanceId, double> rests_until_m_;
   std::array<std::vector<InstanceId>, std::variant_size_v<FormState>> free_;  // by kind of state
   int free_count_ = 0;
   InstanceIndex<InstanceKey> index_;
