@@ -47,7 +47,7 @@ std::string Refusal(const ParsedOptions& options, const CommandContext& context)
   if (options.Text("--reason").find_first_not_of(" \t") == std::string::npos) {
     return "accept needs a reason: --reason \"why this is right\"";
   }
-  for (const char* name : {"--derived", "--reviewed", "--unsteady"}) {
+  for (const char* name : {"--derived", "--reviewed", "--unsteady", "--exact"}) {
     if (options.Has("--pictures") && options.Has(name))
       return std::string(name) + " concerns events; --pictures accepts pictures only";
   }
@@ -80,6 +80,22 @@ void ShowDifference(const Played& played, const OracleComparison& truth,
         ExplainCommand(played.id, {}));
   }
   context.out << GroundTruthText(truth);
+}
+
+/// A line for each event whose boundaries moved within their tolerance, or "".
+std::string MovedWithinTolerance(const Played& played) {
+  const double ms = 1000.0 / static_cast<double>(played.old->ticks_per_second);
+  std::string text;
+  for (const Pairing& pairing : Compare(*played.old, played.run.timeline,
+                                        DefaultTolerance(played.loaded.scenario))
+                                    .pairings) {
+    if (pairing.agreement != LineVerdict::kMatched) continue;
+    if (pairing.begin_offset == 0 && pairing.end_offset == 0) continue;
+    text += fmt::format("moved {}: begin {:+.1f} ms, end {:+.1f} ms, within the tolerance\n",
+                        pairing.event().Label(), static_cast<double>(pairing.begin_offset) * ms,
+                        static_cast<double>(pairing.end_offset) * ms);
+  }
+  return text;
 }
 
 /// The next difference is traced back to the run that is accepted now.
@@ -217,13 +233,15 @@ ExitCode AcceptEvents(const ParsedOptions& options, const CommandContext& contex
                     .grammar = loaded.scenario.grammar,
                     .derived = options.All("--derived"),
                     .acceptance = Acceptance{context.today, options.Text("--reason")},
-                    .tolerance = truth.tolerance};
+                    .tolerance = truth.tolerance,
+                    .exact = options.Has("--exact")};
   const bool from_people = !proposal.derived.empty();
   if (!from_people && old) proposal.derived = old->derived;
   proposal.derived = RenewedDerivation(proposal.derived, OracleLine(truth));
   const bool has_new_derivation = from_people && (!old || old->derived != proposal.derived);
   const Golden pending = PendingGolden(old, run.timeline, id, loaded.scenario.grammar, truth);
-  if (old && *old == pending && !has_new_derivation && !options.Has("--unsteady"))
+  const std::string moved = proposal.exact && old ? MovedWithinTolerance(played) : "";
+  if (old && *old == pending && !has_new_derivation && !options.Has("--unsteady") && moved.empty())
     return NothingToAccept(context, played);
   const std::string why_not = NotWhatWasShown(options, context, pending);
   if (!why_not.empty()) return Refuse(context, played, pending, truth, why_not);
@@ -231,7 +249,7 @@ ExitCode AcceptEvents(const ParsedOptions& options, const CommandContext& contex
   if (options.Has("--unsteady")) golden.unsteady = options.Text("--unsteady");
   if (const auto refused = RefuseUnlessSteady(context, played, golden)) return *refused;
   ShowDifference(played, truth, context);
-  context.out << OracleLine(truth) << "\n";
+  context.out << moved << OracleLine(truth) << "\n";
   const std::string problem = files.WriteAccepted(golden);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   LeaveBaseline(context, played);
@@ -242,7 +260,7 @@ ExitCode AcceptEvents(const ParsedOptions& options, const CommandContext& contex
 /// The golden of a recording lies beside it; nothing is simulated, so nothing is played elsewhere.
 ExitCode AcceptRecording(const std::string& file, const ParsedOptions& options,
                          const CommandContext& context) {
-  for (const char* of_play : {"--pictures", "--unsteady"}) {
+  for (const char* of_play : {"--pictures", "--unsteady", "--exact"}) {
     if (options.Has(of_play))
       return Complain(context, ExitCode::kBadInput,
                       fmt::format("{} concerns scenarios; {} is a recording", of_play, file));
@@ -353,6 +371,10 @@ Command AcceptCommand() {
                    .help = "accept only what 'review' printed with this fingerprint",
                    .placeholder = "FINGERPRINT",
                    .rule = {.problem = FingerprintProblem}},
+                  {.name = "--exact",
+                   .help =
+                       "take over boundaries that moved within their tolerance, too: after a\n"
+                       "change that moved many, or the next small one fails"},
                   {.name = "--unsteady",
                    .help =
                        "why the events may differ when the scenario is played elsewhere (check\n"

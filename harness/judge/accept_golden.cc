@@ -69,15 +69,17 @@ class MergeIntoGolden {
   }
 
  private:
-  /// A line whose boundaries moved within the tolerance stays: nobody was shown that they did.
+  /// A line whose boundaries moved within the tolerance stays, unless somebody asks for them:
+  /// nobody was shown that they did.
   GoldenEvent LineOf(const Pairing& pairing, const GoldenEvent* partner) const {
     const bool agrees = pairing.agreement == LineVerdict::kMatched;
-    if (partner && agrees && same_ticks_) return *partner;
+    const bool moved = pairing.begin_offset != 0 || pairing.end_offset != 0;
+    if (partner && agrees && same_ticks_ && !(proposal_.exact && moved)) return *partner;
     GoldenEvent line = partner ? *partner : GoldenEvent();
     line.as_written.clear();
     line.spread = {};
     line.event = AsWritten(*pairing.actual);
-    if (!agrees) line.accepted = next_;
+    if (!agrees || (proposal_.exact && moved)) line.accepted = next_;
     return line;
   }
 

@@ -20,9 +20,10 @@ struct Proposal {
   std::vector<std::string> derived;      ///< empty: keep the old golden's
   std::optional<Acceptance> acceptance;  ///< empty for a pending file
   grammar::Tick tolerance = 0;           ///< of lines without their own, in ticks of the run
+  bool exact = false;                    ///< boundaries that moved within it are taken over
 };
 
-/// Lines that agree within their tolerance stay as they are. A line that does not keeps its
+/// Lines that agree within their tolerance stay as they are, but with `exact`. A line that does not keeps its
 /// comments and its tolerance. Comments of a removed event move above the event of the same name
 /// and roles that begins as it did; without one they move to the end, below a line that names the
 /// event.

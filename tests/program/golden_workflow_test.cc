@@ -285,6 +285,15 @@ TEST_F(GoldenWorkflow, WhatMovedWithinTheToleranceIsNotWrittenUnseen) {
   const Said again = Do("accept carton_rests --reason again");
   EXPECT_TRUE(SaysIn(again, "nothing to accept: .*; margin: 6.2 of 8.3 ms left at end of contact"))
       << again.out;
+  const Said exact = Do("accept carton_rests --exact --reason it_rests_a_tick_longer");
+  EXPECT_TRUE(SaysIn(exact,
+                     "moved contact\\(carton, table\\): begin \\+0.0 ms, end \\+2.1 ms, within "
+                     "the tolerance\n"))
+      << exact.out;
+  EXPECT_TRUE(std::regex_search(ReadFile(Golden()),
+                                std::regex("contact +0\\.0042 +0\\.3021 .*accepted=3")));
+  const Said once_more = Do("accept carton_rests --exact --reason again");
+  EXPECT_TRUE(SaysIn(once_more, "nothing to accept: ")) << once_more.out;
 }
 
 TEST_F(GoldenWorkflow, WhatDiffersFromTheGroundTruthIsShownAndCounted) {

@@ -94,6 +94,30 @@ TEST(ProposeGolden, LinesThatAgreeStayByteForByte) {
       << "a tick beyond the tolerance";
 }
 
+TEST(ProposeGolden, ExactTakesWhatMovedWithinTheTolerance) {
+  const auto recognised =
+      Recognised({{.event = "reaching", .interval = {246, 474}},  // 12.5 ms, of 20
+                  {.event = "fixation", .interval = {480, 720}},  // where it was
+                  {.event = "grasping", .interval = {722, 1440}}});
+  const Golden golden =
+      ProposeGolden(Old(), recognised,
+                    {.scenario = "slide/x",
+                     .grammar = "pick_and_place",
+                     .derived = {},
+                     .acceptance = Acceptance{"2026-02-01", "where they are now"},
+                     .tolerance = 4,
+                     .exact = true});
+  const std::string text = WriteGolden(golden);
+  EXPECT_EQ(text.substr(text.find("# above the reach")), R"(# above the reach
+reaching  0.5125   0.9875  hand=hand  object=cup  accepted=2  tolerance=20ms because "soft start"
+# above the fixation
+fixation   1.0000   1.5000  hand=hand  object=cup
+# above the grasp
+grasping  1.5042   3.0000  hand=hand  object=cup  accepted=2
+# below
+)");
+}
+
 TEST(ProposeGolden, AnotherTickRateWritesEveryLineAnew) {
   auto recognised = Recognised({{.event = "reaching", .interval = {120, 240}},
                                 {.event = "fixation", .interval = {240, 360}},
