@@ -48,7 +48,7 @@ void Engine::Wake(InstanceId index) {
   RuleInstance& instance = instances_[index];
   if (instance.awake || instance.rule == kNone) return;
   instance.awake = true;
-  instances_.RestsUntil_m(index) = -1;
+  instances_.RestNoMore(index);
   instance.next = std::max<FrameNumber>(history_.now(), 0);
   if (auto* looks_back = instance.If<UntilSinceState>()) looks_back->approach_from = instance.next;
   const bool rested = instance.known == kNever;
@@ -85,7 +85,7 @@ bool Engine::RestsFarApart(RuleInstance& instance) {
   if (instance.open || condition == kNone || log_ != nullptr) return false;
   const double apart_m = evaluator_.FalseFor_m(condition, instance, history_.now());
   if (apart_m <= 0) return false;
-  instances_.RestsUntil_m(instance.index) = Ways_m(instance) + apart_m;
+  instances_.RestUntil_m(instance.index, Ways_m(instance) + apart_m);
   return true;
 }
 

@@ -11,8 +11,6 @@ namespace {
 // More bindings than this are a mistake in the grammar or need another machine: see docs/speed.md.
 constexpr int kMaxInstances = 1'000'000;
 
-constexpr double kNoRest_m = -1;
-
 FormState StateFor(Form form) {
   switch (form) {
     case Form::kTouching:
@@ -306,7 +304,7 @@ void RuleInstances::Free(InstanceId index, std::vector<InstanceId>& orphans) {
   instance.dependents_made = instance.awaited = false;
   instance.reported = Kleene::kFalse;
   instance.moment = kNever;
-  rests_until_m_[index] = kNoRest_m;
+  RestNoMore(index);
   instance.style = kNoEntity;
   instance.rule = kNone;
   free_[instance.of_form.index()].push_back(index);

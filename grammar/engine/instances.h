@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -214,7 +215,12 @@ class RuleInstances {
   const RuleInstance& operator[](InstanceId instance) const { return instances_[instance]; }
   /// An instance at rest is not woken by poses before its entities have got so far, all their ways
   /// added; below 0 it is.
-  double& RestsUntil_m(InstanceId instance) { return rests_until_m_[instance]; }
+  double RestsUntil_m(InstanceId instance) const { return rests_until_m_[instance]; }
+  /// Rounded down: it is woken a little early.
+  void RestUntil_m(InstanceId instance, double ways_m) {
+    rests_until_m_[instance] = std::nextafter(static_cast<float>(ways_m), kNoRest_m);
+  }
+  void RestNoMore(InstanceId instance) { rests_until_m_[instance] = kNoRest_m; }
   /// Numbers of instances are below this, free ones included.
   InstanceId end_id() const { return instances_.end_id(); }
   int in_use() const { return end_id().number() - free_count_; }
@@ -287,6 +293,7 @@ class RuleInstances {
   bool IsA(int entity, const std::string& class_name) const;
 
  private:
+  static constexpr float kNoRest_m = -1;
   InstanceKey Canonical(RuleId rule, const Binding& entities) const {
     const bool swap = symmetric_[rule] != 0 && name_rank_[entities[1]] < name_rank_[entities[0]];
     return {rule, swap ? Binding{entities[1], entities[0], entities[2], entities[3]} : entities};
@@ -318,7 +325,7 @@ class RuleInstances {
   const EntityTable& entity_table_;
   StableBlocks<InstanceId, RuleInstance>
       instances_;  // an instance stays where it is when others are made
-  StableBlocks<InstanceId, double> rests_until_m_;
+  StableBlocks<InstanceId, float> rests_until_m_;
   std::array<std::vector<InstanceId>, std::variant_size_v<FormState>> free_;  // by kind of state
   int free_count_ = 0;
   InstanceIndex<InstanceKey> index_;

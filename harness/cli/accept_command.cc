@@ -86,9 +86,9 @@ void ShowDifference(const Played& played, const OracleComparison& truth,
 std::string MovedWithinTolerance(const Played& played) {
   const double ms = 1000.0 / static_cast<double>(played.old->ticks_per_second);
   std::string text;
-  for (const Pairing& pairing : Compare(*played.old, played.run.timeline,
-                                        DefaultTolerance(played.loaded.scenario))
-                                    .pairings) {
+  for (const Pairing& pairing :
+       Compare(*played.old, played.run.timeline, DefaultTolerance(played.loaded.scenario))
+           .pairings) {
     if (pairing.agreement != LineVerdict::kMatched) continue;
     if (pairing.begin_offset == 0 && pairing.end_offset == 0) continue;
     text += fmt::format("moved {}: begin {:+.1f} ms, end {:+.1f} ms, within the tolerance\n",
@@ -372,9 +372,8 @@ Command AcceptCommand() {
                    .placeholder = "FINGERPRINT",
                    .rule = {.problem = FingerprintProblem}},
                   {.name = "--exact",
-                   .help =
-                       "take over boundaries that moved within their tolerance, too: after a\n"
-                       "change that moved many, or the next small one fails"},
+                   .help = "take over boundaries that moved within their tolerance, too: after a\n"
+                           "change that moved many, or the next small one fails"},
                   {.name = "--unsteady",
                    .help =
                        "why the events may differ when the scenario is played elsewhere (check\n"

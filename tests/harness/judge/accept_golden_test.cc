@@ -99,14 +99,13 @@ TEST(ProposeGolden, ExactTakesWhatMovedWithinTheTolerance) {
       Recognised({{.event = "reaching", .interval = {246, 474}},  // 12.5 ms, of 20
                   {.event = "fixation", .interval = {480, 720}},  // where it was
                   {.event = "grasping", .interval = {722, 1440}}});
-  const Golden golden =
-      ProposeGolden(Old(), recognised,
-                    {.scenario = "slide/x",
-                     .grammar = "pick_and_place",
-                     .derived = {},
-                     .acceptance = Acceptance{"2026-02-01", "where they are now"},
-                     .tolerance = 4,
-                     .exact = true});
+  const Golden golden = ProposeGolden(Old(), recognised,
+                                      {.scenario = "slide/x",
+                                       .grammar = "pick_and_place",
+                                       .derived = {},
+                                       .acceptance = Acceptance{"2026-02-01", "where they are now"},
+                                       .tolerance = 4,
+                                       .exact = true});
   const std::string text = WriteGolden(golden);
   EXPECT_EQ(text.substr(text.find("# above the reach")), R"(# above the reach
 reaching  0.5125   0.9875  hand=hand  object=cup  accepted=2  tolerance=20ms because "soft start"
