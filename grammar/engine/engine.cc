@@ -24,11 +24,14 @@ Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
       awake_(program_->rules.size()),
       idle_(*program_, history_, instances_),
       past_(entity_table_.entities.size()) {
+  bool any_rests = false;
   for (const Rule& rule : program_->rules) {
     rule_ticks_.push_back(grammar::TicksOf(rule, history_));
     past_.LookBack(rule, history_);
     nearness_.push_back(NearnessOf(rule));
+    any_rests = any_rests || nearness_.back() != kNone;
   }
+  if (any_rests) history_.MeasureWays(entity_table_);
   instances_.BindUnguarded();
   for (InstanceId i(0); i < instances_.end_id(); ++i) Wake(i);
   if (instances_.TooMany()) error_ = instances_.WhyTooMany();
@@ -61,7 +64,8 @@ void Engine::Wake(InstanceId index) {
 void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
   for (const Watch& watch : watchers) {
     const RuleInstance& instance = instances_[watch.instance];
-    if (instance.awake || Ways_m(instance) < instances_.RestsUntil_m(watch.instance)) continue;
+    const double rests_until_m = instances_.RestsUntil_m(watch.instance);
+    if (instance.awake || (rests_until_m > 0 && Ways_m(instance) < rests_until_m)) continue;
     if (MayWake(instances_[watch.instance])) Wake(watch.instance);
   }
 }

@@ -17,8 +17,10 @@ constexpr double kFar_m = 1e3;
 History::History(const EntityTable& entity_table)
     : ticks_per_second_(static_cast<double>(entity_table.ticks_per_second)),
       looks_(entity_table.entities.size()),
-      ways_m_(entity_table.entities.size(), 0),
-      hand_of_entity_(entity_table.entities.size(), -1) {
+      hand_of_entity_(entity_table.entities.size(), -1) {}
+
+void History::MeasureWays(const EntityTable& entity_table) {
+  ways_m_.assign(entity_table.entities.size(), 0);
   bounds_m_.reserve(entity_table.entities.size());
   for (const EntityInfo& entity : entity_table.entities) bounds_m_.push_back(BoundOf_m(entity));
 }
@@ -32,7 +34,8 @@ void History::SetSample(int entity, const EntitySample& look, FrameNumber first)
   RingBuffer<PoseAtFrame>& samples = looks_[entity].samples;
   ForgetSamples(samples, first);
   if (samples.empty() && now() > 0) samples.PushBack() = {};  // what it was before anybody said
-  ways_m_[entity] += samples.empty() ? kFar_m : StepOf(entity, samples.back().look, look);
+  if (!ways_m_.empty())
+    ways_m_[entity] += samples.empty() ? kFar_m : StepOf(entity, samples.back().look, look);
   PoseAtFrame& sample = samples.PushBack();
   sample.frame = now();
   sample.look = look;

@@ -80,6 +80,8 @@ double BoundOf_m(const EntityInfo& entity);
 class History {
  public:
   explicit History(const EntityTable& entity_table);
+  /// Call before the first frame if Way_m() or Bound_m() will be asked for.
+  void MeasureWays(const EntityTable& entity_table);
 
   /// A new frame in which everything looks as before, until it is said otherwise.
   void BeginFrame(Tick tick);
@@ -151,7 +153,7 @@ class History {
   RingBuffer<Tick> ticks_;
   EntitySample not_seen_yet_;
   std::vector<Looks<PoseAtFrame>> looks_;  // by entity
-  std::vector<double> ways_m_;             // likewise
+  std::vector<double> ways_m_;             // likewise, if anybody asks
   std::vector<double> bounds_m_;           // likewise: it lies in such a ball around its origin
   std::vector<Looks<HandAtFrame>> hands_;  // by hand, in order of first sight
   std::vector<int> hand_of_entity_;        // index into hands_ or -1

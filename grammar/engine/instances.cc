@@ -153,7 +153,6 @@ RuleInstance& RuleInstances::UnusedFor(Form form) {
   if (free.empty()) {
     const InstanceId index = end_id();
     RuleInstance& instance = instances_.PushBack();
-    rests_until_m_.PushBack() = kNoRest_m;
     instance.index = index;
     instance.of_form = std::move(fresh);
     return instance;

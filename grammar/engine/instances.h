@@ -215,12 +215,18 @@ class RuleInstances {
   const RuleInstance& operator[](InstanceId instance) const { return instances_[instance]; }
   /// An instance at rest is not woken by poses before its entities have got so far, all their ways
   /// added; below 0 it is.
-  double RestsUntil_m(InstanceId instance) const { return rests_until_m_[instance]; }
+  double RestsUntil_m(InstanceId instance) const {
+    return instance.index() < rests_until_m_.size() ? rests_until_m_[instance.index()] : kNoRest_m;
+  }
   /// Rounded down: it is woken a little early.
   void RestUntil_m(InstanceId instance, double ways_m) {
-    rests_until_m_[instance] = std::nextafter(static_cast<float>(ways_m), kNoRest_m);
+    if (instance.index() >= rests_until_m_.size())
+      rests_until_m_.resize(instance.index() + 1, kNoRest_m);
+    rests_until_m_[instance.index()] = std::nextafter(static_cast<float>(ways_m), kNoRest_m);
   }
-  void RestNoMore(InstanceId instance) { rests_until_m_[instance] = kNoRest_m; }
+  void RestNoMore(InstanceId instance) {
+    if (instance.index() < rests_until_m_.size()) rests_until_m_[instance.index()] = kNoRest_m;
+  }
   /// Numbers of instances are below this, free ones included.
   InstanceId end_id() const { return instances_.end_id(); }
   int in_use() const { return end_id().number() - free_count_; }
@@ -324,8 +330,8 @@ class RuleInstances {
   const Program& program_;
   const EntityTable& entity_table_;
   StableBlocks<InstanceId, RuleInstance>
-      instances_;  // an instance stays where it is when others are made
-  StableBlocks<InstanceId, float> rests_until_m_;
+      instances_;                     // an instance stays where it is when others are made
+  std::vector<float> rests_until_m_;  // up to the last one that rested; empty if none ever did
   std::array<std::vector<InstanceId>, std::variant_size_v<FormState>> free_;  // by kind of state
   int free_count_ = 0;
   InstanceIndex<InstanceKey> index_;
