@@ -15,7 +15,6 @@ namespace prehend::harness::import {
 namespace {
 
 constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
-constexpr std::size_t kMostTopicBytes = 1000;
 
 enum BagOpcode : std::uint8_t { kBagMessage = 2, kBagChunk = 5, kBagConnection = 7 };
 
@@ -37,59 +36,37 @@ Fields FieldsOf(std::string_view header, bool& ok) {
 
 class BagReader {
  public:
-  BagReader(std::istream& in, std::uint64_t size, const McapTaker& take,
-            const std::function<void(const McapChannel&)>& channels)
-      : in_(in), size_(size), take_(take), tell_(channels) {}
+  explicit BagReader(LogFile& file) : file_(file) {}
 
   std::string Read() {
-    if (size_ > kMaxMcapBytes) return fmt::format("it is larger than {} GiB", kMaxMcapBytes >> 30);
-    if (Take(kBagMagic.size()) != kBagMagic)
+    if (file_.ok() && file_.Take(kBagMagic.size()) != kBagMagic)
       return "it is no bag of ROS 1, version 2.0: it does not begin as one";
-    while (at_ < size_ && problem_.empty()) ReadRecord();
-    return problem_;
+    while (file_.left() > 0 && file_.ok()) ReadRecord();
+    return file_.problem();
   }
 
  private:
-  /// The next bytes of the file. Fewer at its end.
-  std::string Take(std::uint64_t count) {
-    std::string bytes(static_cast<std::size_t>(std::min(count, size_ - at_)), '\0');
-    in_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    bytes.resize(static_cast<std::size_t>(in_.gcount()));
-    at_ += bytes.size();
-    return bytes;
-  }
-
-  void Fail(std::string why) {
-    if (problem_.empty()) problem_ = fmt::format("at byte {}: {}", record_at_, why);
-  }
-
   /// With its length before it; "" after an error.
   std::string TakePart() {
-    const std::string head = Take(4);
+    const std::string head = file_.Take(4);
     ByteReader reader{.bytes = head};
     const auto length = reader.Number<std::uint32_t>();
-    if (!reader.ok || length > size_ - at_) {
-      Fail(
+    if (!reader.ok || length > file_.left()) {
+      file_.Fail(
           "the file is cut off: it ends within a record; if its recorder was killed, 'rosbag "
-          "reindex' "
-          "saves the rest");
+          "reindex' saves the rest");
       return "";
     }
-    if (length > kMaxMcapRecordBytes) {
-      Fail(fmt::format("a record of {} MiB; at most {} MiB are read", length >> 20,
-                       kMaxMcapRecordBytes >> 20));
-      return "";
-    }
-    return Take(length);
+    return file_.Admits("record", length) ? file_.Take(length) : "";
   }
 
   void ReadRecord() {
-    record_at_ = at_;
+    file_.BeginRecord();
     const std::string header = TakePart(), data = TakePart();
-    if (!problem_.empty()) return;
+    if (!file_.ok()) return;
     bool ok = true;
     const Fields fields = FieldsOf(header, ok);
-    if (!ok) return Fail("a damaged record: its header is no list of fields");
+    if (!ok) return file_.Fail("a damaged record: its header is no list of fields");
     if (Number<std::uint8_t>(fields, "op") == kBagChunk) return ReadChunk(fields, data);
     TakeRecord(fields, data);
   }
@@ -98,7 +75,7 @@ class BagReader {
   T Number(const Fields& fields, std::string_view name) {
     const auto field = fields.find(name);
     if (field == fields.end() || field->second.size() != sizeof(T)) {
-      Fail(fmt::format("a record without a whole '{}'", name));
+      file_.Fail(fmt::format("a record without a whole '{}'", name));
       return T{};
     }
     ByteReader reader{.bytes = field->second};
@@ -109,29 +86,24 @@ class BagReader {
     const auto size = Number<std::uint32_t>(fields, "size");
     const auto field = fields.find("compression");
     const std::string_view compression = field == fields.end() ? "none" : field->second;
-    if (size > kMaxMcapRecordBytes)
-      return Fail(fmt::format("a chunk of {} MiB; at most {} MiB are read", size >> 20,
-                              kMaxMcapRecordBytes >> 20));
-    content_bytes_ += size;
-    if (content_bytes_ > kMaxMcapContentBytes)
-      return Fail(fmt::format("more than {} GiB of messages", kMaxMcapContentBytes >> 30));
+    if (!file_.AdmitsChunk(size)) return;
     std::string records;
     if (compression == "lz4")
       records = FromLz4(packed, size);
     else if (compression == "none")
       records = packed;
     else
-      return Fail(
+      return file_.Fail(
           fmt::format("a chunk with the compression '{}'; lz4 and none are read: 'rosbag "
                       "decompress' makes such a file",
                       compression.substr(0, 40)));
-    if (records.size() != size) return Fail("a damaged chunk: it cannot be decompressed");
+    if (records.size() != size) return file_.Fail("a damaged chunk: it cannot be decompressed");
     ByteReader inner{.bytes = records};
-    while (inner.left() > 0 && problem_.empty()) {
+    while (inner.left() > 0 && file_.ok()) {
       bool ok = true;
       const Fields inner_fields = FieldsOf(inner.Text(), ok);
       const std::string_view data = inner.Text();
-      if (!inner.ok || !ok) return Fail("a damaged chunk: a record ends behind it");
+      if (!inner.ok || !ok) return file_.Fail("a damaged chunk: a record ends behind it");
       TakeRecord(inner_fields, data);
     }
   }
@@ -148,47 +120,36 @@ class BagReader {
     const Fields of_topic = FieldsOf(data, ok);
     const auto topic = fields.find("topic"), type = of_topic.find("type");
     if (!ok || topic == fields.end() || type == of_topic.end())
-      return Fail("a connection without a topic or a type");
-    if (std::max(topic->second.size(), type->second.size()) > kMostTopicBytes)
-      return Fail("a name of more than 1000 bytes");
-    const McapChannel channel{.topic = std::string(topic->second),
-                              .message_encoding = "ros1",
-                              .schema = std::string(type->second),
-                              .schema_encoding = "ros1msg"};
-    const auto [known, is_new] = connections_.try_emplace(id, channel);
-    if (is_new) return tell_(known->second);
-    if (known->second.topic != channel.topic)
-      Fail(fmt::format("connection {} is '{}' and '{}'", id, known->second.topic, channel.topic));
+      return file_.Fail("a connection without a topic or a type");
+    if (std::max(topic->second.size(), type->second.size()) > kMaxLogNameBytes)
+      return file_.Fail("a name of more than 1000 bytes");
+    const LogChannel channel{.topic = std::string(topic->second),
+                             .message_encoding = "ros1",
+                             .schema = std::string(type->second),
+                             .schema_encoding = "ros1msg"};
+    file_.TakeChannel("connection", id, channel);
   }
 
   void TakeMessage(const Fields& fields, std::string_view data) {
     const auto id = Number<std::uint32_t>(fields, "conn");
     const auto time = Number<std::uint64_t>(fields, "time");
-    if (!problem_.empty()) return;
-    const auto connection = connections_.find(id);
-    if (connection == connections_.end())
-      return Fail(fmt::format("a message of connection {}, which is not there", id));
+    if (!file_.ok()) return;
+    const LogChannel* const connection = file_.ChannelOf("connection", id);
+    if (!connection) return;
     // Seconds in the lower half, nanoseconds in the upper one.
     const auto ns = static_cast<std::int64_t>((time & 0xffffffffU) * 1'000'000'000 + (time >> 32));
-    const std::string why =
-        take_({.channel = connection->second, .log_ns = ns, .publish_ns = ns, .data = data});
-    if (!why.empty()) Fail(why);
+    file_.TakeMessage({.channel = *connection, .log_ns = ns, .publish_ns = ns, .data = data});
   }
 
-  std::istream& in_;
-  const std::uint64_t size_;
-  const McapTaker& take_;
-  const std::function<void(const McapChannel&)>& tell_;
-  std::uint64_t at_ = 0, record_at_ = 0, content_bytes_ = 0;
-  std::map<std::uint32_t, McapChannel> connections_;
-  std::string problem_;
+  LogFile& file_;
 };
 
 }  // namespace
 
-std::string ReadBag(std::istream& in, std::uint64_t size, const McapTaker& take,
-                    const std::function<void(const McapChannel&)>& channels) {
-  return BagReader(in, size, take, channels).Read();
+std::string ReadBag(std::istream& in, std::uint64_t size, const TakesMessage& take,
+                    const HearsOfChannel& channels) {
+  LogFile file(in, size, take, channels);
+  return BagReader(file).Read();
 }
 
 }  // namespace prehend::harness::import

@@ -4,12 +4,13 @@
 // tests/program/import_bag_test.cc
 #pragma once
 
-#include "harness/import/mcap_file.h"
+#include "harness/import/log_file.h"
 
 namespace prehend::harness::import {
 
-/// As ReadMcap(), with its limits. A connection is a channel whose messages are encoded as "ros1".
-std::string ReadBag(std::istream& in, std::uint64_t size, const McapTaker& take,
-                    const std::function<void(const McapChannel&)>& channels);
+/// As ReadMcap() (harness/import/mcap_file.h), with its limits. A connection is a channel whose
+/// messages are encoded as "ros1".
+std::string ReadBag(std::istream& in, std::uint64_t size, const TakesMessage& take,
+                    const HearsOfChannel& channels);
 
 }  // namespace prehend::harness::import

@@ -4,36 +4,13 @@
 // tests/program/import_mcap_test.cc
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <istream>
-#include <string>
-#include <string_view>
+#include "harness/import/log_file.h"
 
 namespace prehend::harness::import {
 
-inline constexpr std::uint64_t kMaxMcapBytes = std::uint64_t{8} << 30;
-inline constexpr std::uint64_t kMaxMcapRecordBytes = std::uint64_t{64} << 20;
-/// Of all chunks, decompressed.
-inline constexpr std::uint64_t kMaxMcapContentBytes = std::uint64_t{32} << 30;
-
-struct McapChannel {
-  std::string topic, message_encoding, schema, schema_encoding;
-};
-
-/// Lives as long as the call that shows it.
-struct McapMessage {
-  const McapChannel& channel;
-  std::int64_t log_ns = 0, publish_ns = 0;
-  std::string_view data;
-};
-
-/// Returns what is wrong with the message, or "": then the next one is read.
-using McapTaker = std::function<std::string(const McapMessage&)>;
-
 /// `size`: of the whole stream, bytes. Returns what is wrong with the file, with the byte at which
 /// it was seen, or "". `channels` hears of each channel, also of those without a message.
-std::string ReadMcap(std::istream& in, std::uint64_t size, const McapTaker& take,
-                     const std::function<void(const McapChannel&)>& channels);
+std::string ReadMcap(std::istream& in, std::uint64_t size, const TakesMessage& take,
+                     const HearsOfChannel& channels);
 
 }  // namespace prehend::harness::import

@@ -222,7 +222,7 @@ class JsonDecoder {
 
 }  // namespace
 
-std::optional<MessageFormat> FormatOf(const McapChannel& channel) {
+std::optional<MessageFormat> FormatOf(const LogChannel& channel) {
   static const std::map<std::string, MessageContent> kContents = {
       {"foxglove.PoseInFrame", MessageContent::kPose},
       {"foxglove.PosesInFrame", MessageContent::kPoses},

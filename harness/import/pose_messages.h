@@ -27,7 +27,7 @@ struct MessageFormat {
 };
 
 /// Of messages that are not read, none.
-std::optional<MessageFormat> FormatOf(const McapChannel& channel);
+std::optional<MessageFormat> FormatOf(const LogChannel& channel);
 
 struct MessagePose {
   /// The frame of a transform, or the name of a body; of a pose "", as its topic names it.

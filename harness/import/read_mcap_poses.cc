@@ -50,8 +50,8 @@ class McapPoseReader {
     std::ifstream in(poses.file, std::ios::binary);
     const auto read = IsBag(poses.file) ? ReadBag : ReadMcap;
     const std::string why = read(
-        in, size, [this](const McapMessage& message) { return TakeMessage(message); },
-        [this](const McapChannel& channel) { TakeChannel(channel); });
+        in, size, [this](const LogMessage& message) { return TakeMessage(message); },
+        [this](const LogChannel& channel) { TakeChannel(channel); });
     if (!why.empty()) return Fail(why);
     if (map_errors_.empty()) FindBodies();
     if (map_errors_.empty()) Compose();
@@ -75,13 +75,13 @@ class McapPoseReader {
                          .hint = {}});
   }
 
-  void TakeChannel(const McapChannel& channel) {
+  void TakeChannel(const LogChannel& channel) {
     if (FormatOf(channel)) return;
     unread_[channel.topic] = fmt::format(
         "{} ({})", channel.schema.empty() ? "no schema" : channel.schema, channel.message_encoding);
   }
 
-  std::string TakeMessage(const McapMessage& message) {
+  std::string TakeMessage(const LogMessage& message) {
     const std::optional<MessageFormat> format = FormatOf(message.channel);
     if (!format) return "";
     std::vector<MessagePose> read;
@@ -105,7 +105,7 @@ class McapPoseReader {
                        Seconds(message.log_ns), why);
   }
 
-  std::string TakePose(const McapMessage& message, const MessagePose& pose, FrameLink& link) {
+  std::string TakePose(const LogMessage& message, const MessagePose& pose, FrameLink& link) {
     const bool fixed = message.channel.topic.ends_with("tf_static");
     const std::string frame = FrameName(pose.frame);
     if (link.poses.empty()) {

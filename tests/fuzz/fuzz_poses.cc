@@ -29,11 +29,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::size_t messages = 0;
   const std::string why = ReadMcap(
       in, bytes.size(),
-      [&](const McapMessage& message) -> std::string {
-        if (message.data.size() > kMaxMcapRecordBytes || ++messages > 1'000'000) std::abort();
+      [&](const LogMessage& message) -> std::string {
+        if (message.data.size() > kMaxLogRecordBytes || ++messages > 1'000'000) std::abort();
         return "";
       },
-      [](const McapChannel&) {});
+      [](const LogChannel&) {});
   (void)why;
   return 0;
 }

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/import/log_file.h
+#include "harness/import/log_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace prehend::harness::import {
+
+LogFile::LogFile(std::istream& in, std::uint64_t size, const TakesMessage& take,
+                 const HearsOfChannel& tell)
+    : in_(in), size_(size), take_(take), tell_(tell) {
+  if (size > kMaxLogBytes) problem_ = fmt::format("it is larger than {} GiB", kMaxLogBytes >> 30);
+}
+
+void LogFile::Fail(std::string_view why) {
+  if (ok()) problem_ = fmt::format("at byte {}: {}", record_at_, why);
+}
+
+std::string LogFile::Take(std::uint64_t count) {
+  std::string bytes(static_cast<std::size_t>(std::min(count, left())), '\0');
+  in_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in_.gcount()));
+  at_ += bytes.size();
+  return bytes;
+}
+
+void LogFile::Skip(std::uint64_t count) {
+  in_.seekg(static_cast<std::streamoff>(count), std::ios::cur);
+  at_ += count;
+}
+
+bool LogFile::Admits(const char* what, std::uint64_t bytes) {
+  if (bytes > kMaxLogRecordBytes)
+    Fail(fmt::format("a {} of {} MiB; at most {} MiB are read", what, bytes >> 20,
+                     kMaxLogRecordBytes >> 20));
+  return ok();
+}
+
+bool LogFile::AdmitsChunk(std::uint64_t bytes) {
+  if (!Admits("chunk", bytes)) return false;
+  content_bytes_ += bytes;
+  if (content_bytes_ > kMaxLogContentBytes)
+    Fail(fmt::format("more than {} GiB of messages", kMaxLogContentBytes >> 30));
+  return ok();
+}
+
+void LogFile::TakeChannel(const char* kind, std::uint32_t id, const LogChannel& channel) {
+  const auto [known, is_new] = channels_.try_emplace(id, channel);
+  if (is_new) return tell_(known->second);
+  if (known->second.topic != channel.topic)
+    Fail(fmt::format("{} {} is '{}' and '{}'", kind, id, known->second.topic, channel.topic));
+}
+
+const LogChannel* LogFile::ChannelOf(const char* kind, std::uint32_t id) {
+  const auto channel = channels_.find(id);
+  if (channel != channels_.end()) return &channel->second;
+  Fail(fmt::format("a message of {} {}, which is not there", kind, id));
+  return nullptr;
+}
+
+void LogFile::TakeMessage(const LogMessage& message) {
+  const std::string why = take_(message);
+  if (!why.empty()) Fail(why);
+}
+
+}  // namespace prehend::harness::import
