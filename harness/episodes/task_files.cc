@@ -2,9 +2,6 @@
 // See harness/episodes/task_files.h. Tested by tests/harness/episodes/task_files_test.cc
 #include "harness/episodes/task_files.h"
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -60,32 +57,21 @@ TaskFiles PackTask(const RunRequest& run, const std::vector<std::string>& tried,
   return task;
 }
 
-UnpackedTasks::UnpackedTasks() {
+UnpackedTasks::UnpackedTasks() : root_(folder_.path().string() + "/project") {
   std::error_code error;
-  std::string name = (fs::temp_directory_path(error) / "prehend-XXXXXX").string();
-  if (error || !mkdtemp(name.data())) {
-    problem_ = "no folder for temporary files: " + std::string(std::strerror(errno));
-    return;
-  }
-  folder_ = name;
-  root_ = name + "/project";
+  if (folder_.path().empty()) return;
   fs::create_directories(root_ + "/grammar/library", error);
   fs::create_directories(root_ + "/physics/library", error);
-}
-
-UnpackedTasks::~UnpackedTasks() {
-  std::error_code error;
-  if (!folder_.empty()) fs::remove_all(folder_, error);
 }
 
 std::string UnpackedTasks::PathOf(const std::string& path) const {
   // A file says where it wants to be: it stays below the folder.
   const fs::path normal = fs::path("/" + path).lexically_normal().relative_path();
-  return (path.starts_with('/') ? fs::path(folder_) / "outside" : fs::path(root_)) / normal;
+  return (path.starts_with('/') ? folder_.path() / "outside" : fs::path(root_)) / normal;
 }
 
 std::string UnpackedTasks::Unpack(const TaskFiles& task) {
-  if (!problem_.empty()) return problem_;
+  if (!folder_.problem().empty()) return folder_.problem();
   for (const auto& [path, content] : task.files) {
     const std::string hash = ContentHash(content);
     const auto [known, is_new] = written_.try_emplace(path, hash);
@@ -106,7 +92,7 @@ RunRequest UnpackedTasks::RequestOf(const TaskFiles& task) const {
 }
 
 std::string UnpackedTasks::Original(const std::string& path) const {
-  const std::string outside = folder_ + "/outside";
+  const std::string outside = folder_.path().string() + "/outside";
   if (path.starts_with(root_ + "/")) return path.substr(root_.size() + 1);
   if (path.starts_with(outside + "/")) return path.substr(outside.size());
   return path;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/base/temporary_folder.h"
 #include "harness/run/load_run.h"
 
 namespace prehend::harness::episodes {
@@ -30,9 +31,6 @@ TaskFiles PackTask(const RunRequest& run, const std::vector<std::string>& tried,
 class UnpackedTasks {
  public:
   UnpackedTasks();
-  ~UnpackedTasks();
-  UnpackedTasks(const UnpackedTasks&) = delete;
-  UnpackedTasks& operator=(const UnpackedTasks&) = delete;
 
   /// Writes the files that are not there yet. Returns "" or what went wrong.
   std::string Unpack(const TaskFiles& task);
@@ -48,8 +46,8 @@ class UnpackedTasks {
  private:
   std::string PathOf(const std::string& path) const;
 
-  std::string folder_, root_;
-  std::string problem_;
+  TemporaryFolder folder_;
+  std::string root_;
   std::size_t writes_ = 0;
   std::map<std::string, std::string> written_;  ///< path -> content hash
 };

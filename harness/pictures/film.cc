@@ -3,7 +3,6 @@
 #include "harness/pictures/film.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <iterator>
 
 #include "harness/base/atomic_file.h"
+#include "harness/base/temporary_folder.h"
 #include "harness/pictures/scene_painter.h"
 #include "harness/process/run_tool.h"
 
@@ -21,25 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kLongestEncoding_s = 900;
-
-/// Removed at the end, with what is in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "prehend-film-XXXXXX").string();
-    if (mkdtemp(name.data())) path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code error;
-    if (!path_.empty()) fs::remove_all(path_, error);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;  ///< empty: it could not be made
-};
 
 fs::path FrameFile(const fs::path& folder, std::size_t number) {
   return folder / fmt::format("frame_{:05}.png", number);
@@ -152,8 +133,7 @@ std::string DrawFilm(const Scenario& scenario, const RunResult& run, const std::
   std::string why = WhyNoTool(*encoder);
   if (!why.empty()) return why;
   const TemporaryFolder frames;
-  if (frames.path().empty())
-    return fs::temp_directory_path().string() + ": no folder can be made there";
+  if (!frames.problem().empty()) return frames.problem();
   why = DrawFrames(scenario, run, camera, film, format, frames.path());
   if (!why.empty()) return why;
   const fs::path encoded = frames.path() / ("film" + fs::path(path).extension().string());
