@@ -23,10 +23,10 @@ struct Proposal {
   bool exact = false;                    ///< boundaries that moved within it are taken over
 };
 
-/// Lines that agree within their tolerance stay as they are, but with `exact`. A line that does not keeps its
-/// comments and its tolerance. Comments of a removed event move above the event of the same name
-/// and roles that begins as it did; without one they move to the end, below a line that names the
-/// event.
+/// Lines that agree within their tolerance stay as they are, but with `exact`. A line that does not
+/// keeps its comments and its tolerance. Comments of a removed event move above the event of the
+/// same name and roles that begins as it did; without one they move to the end, below a line that
+/// names the event.
 Golden ProposeGolden(const std::optional<Golden>& old, const grammar::Timeline& recognised,
                      const Proposal& proposal);
 
