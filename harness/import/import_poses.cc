@@ -19,7 +19,7 @@ namespace {
 constexpr double kMostSpeed_m_per_s = 20;  ///< of a hand that throws; faster is a jump
 constexpr double kGap = 1.5;               ///< of the usual step: longer is a gap
 constexpr double kFarthest_m = 1e4;        ///< of the recording format
-constexpr double kTrembles_m = 0.0015;     ///< more than this hides how things move
+constexpr double kTrembles_m = 0.0008;     ///< more than this hides how things move
 
 std::string EpisodeName(const ImportMap& map, const std::string& path) {
   if (!map.episode.empty()) return map.episode;
@@ -133,6 +133,7 @@ class Importer {
   Result<Imported> Import() {
     Describe();
     for (const Named<MappedEntity>& entity : map_.entities) AddTrack(entity);
+    WarnOfTrembling();
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
     if (const std::string problem = SetTicks(); !problem.empty())
       return tl::unexpected(grammar::Diagnostics{
@@ -182,7 +183,7 @@ class Importer {
       MarkGaps(body, e, track, report);
       WarnOfMotion(body, entity, track.poses, report);
       if (map_.smooth_s > 0) track.poses = Smoothed(track.poses, map_.smooth_s / 2);
-      WarnOfTrembling(track.poses, report);
+      NoteTrembling(track.poses, report);
     }
     for (const Pose& pose : track.poses) report.extent.extend(pose.p);
     if (report.extent.min().minCoeff() < -kFarthest_m ||
@@ -281,13 +282,23 @@ class Importer {
                        extent.diagonal().norm() * 1e3));
   }
 
-  void WarnOfTrembling(const std::vector<Pose>& poses, const EntityReport& report) {
+  void NoteTrembling(const std::vector<Pose>& poses, const EntityReport& report) {
     const double trembling_m = Trembling_m(poses);
     if (trembling_m <= kTrembles_m) return;
+    trembling_.push_back("'" + report.from + "'");
+    trembles_m_ = std::max(trembles_m_, trembling_m);
+  }
+
+  /// One line for all: the remedy is one for the file.
+  void WarnOfTrembling() {
+    if (trembling_.empty()) return;
+    const bool one = trembling_.size() == 1;
     Warn(
-        fmt::format("'{}' trembles by {:.1f} mm from frame to frame, which hides how it moves; "
-                    "smooth_s: {:g} takes means over that long",
-                    report.from, 1e3 * trembling_m, map_.smooth_s > 0 ? 2 * map_.smooth_s : 0.2));
+        fmt::format("{} {} by {}{:.1f} mm from frame to frame, which hides how {}; smooth_s: {:g} "
+                    "takes means over that long",
+                    fmt::join(trembling_, ", "), one ? "trembles" : "tremble", one ? "" : "up to ",
+                    1e3 * trembles_m_, one ? "it moves" : "they move",
+                    map_.smooth_s > 0 ? 2 * map_.smooth_s : 0.2));
   }
 
   std::int64_t TickOf(double t_s) const {
@@ -372,6 +383,8 @@ class Importer {
   Imported imported_;
   std::vector<Track> tracks_;
   std::map<std::int64_t, double> times_;
+  std::vector<std::string> trembling_;
+  double trembles_m_ = 0;  ///< the most
 };
 
 }  // namespace

@@ -35,6 +35,9 @@ bool IsAbove(const Eigen::AlignedBox3d& upper, const Eigen::AlignedBox3d& lower)
          (lower.min().head<2>().array() < upper.max().head<2>().array()).all();
 }
 
+/// Without "-0.0".
+double Tenths(double x) { return std::round(10 * x) / 10 + 0.0; }
+
 /// Where one thing rested, looked at once per kRest_s.
 struct Rests {
   std::vector<double> bottoms_m;  ///< of all rests
@@ -103,7 +106,7 @@ std::string RestOnNothing(const Episode& episode) {
       "{{at_m: [{:.1f}, {:.1f}, {:.2f}], fixed: true, class: Table, size_m: [{:.1f}, {:.1f}, "
       "0.04]}}'",
       fmt::join(names, ", "), names.size() == 1 ? "rests" : "rest", height_m, 100 * kOnTop_m,
-      middle.x(), middle.y(), height_m - 0.02, size.x(), size.y());
+      Tenths(middle.x()), Tenths(middle.y()), height_m - 0.02, size.x(), size.y());
 }
 
 }  // namespace prehend::harness::import

@@ -293,6 +293,21 @@ TEST(Import, AThingThatTremblesIsNamedAndMeansOverATimeMakeItSmooth) {
     EXPECT_NE(events.find(event), std::string::npos) << event << "\n" << events;
 }
 
+TEST(Import, AllThatTrembleByAMillimetreAreNamedInOneLine) {
+  const auto folder = FreshFolder("import");
+  int frame = 0;
+  const Said rough = Import(folder, Csv([&frame](const char* name, Row row) {
+                              row.x += ++frame % 4 < 2 ? 0.001 : -0.001;
+                              return AsWritten(name, row);
+                            }),
+                            kMap);
+  EXPECT_EQ(rough.exit_code, 0);
+  EXPECT_NE(rough.err.find("warning: 'Mug', 'Glove' tremble by up to 1.1 mm from frame to frame, "
+                           "which hides how they move; smooth_s: 0.2 takes means over that long\n"),
+            std::string::npos)
+      << rough.err;
+}
+
 TEST(Import, NothingIsSmoothedOverATimeInWhichItWasLost) {
   const auto folder = FreshFolder("import");
   std::string csv = "t,name,x,y,z,qw,qx,qy,qz\n";
