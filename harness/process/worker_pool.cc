@@ -352,6 +352,11 @@ LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& 
   rusage usage{};
   while (wait4(process, &status, 0, &usage) < 0 && errno == EINTR) {
   }
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGPIPE) {
+    // Nobody reads any more, as in "prehend list | head": ended quietly, as other programs.
+    signal(SIGPIPE, SIG_DFL);
+    raise(SIGPIPE);
+  }
   const bool returned = WIFEXITED(status) && WEXITSTATUS(status) < kExceptionExit;
   if (returned) return {.status = WEXITSTATUS(status), .reason = ""};
   if (WIFEXITED(status) && WEXITSTATUS(status) == kExceptionExit) throw std::runtime_error(said);

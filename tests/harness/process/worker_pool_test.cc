@@ -120,6 +120,12 @@ INSTANTIATE_TEST_SUITE_P(
                      "exception: no"}),
     NameOf);
 
+// As any program in front of "| head".
+TEST(WorkerPool, WhatNobodyReadsAnyMoreEndsQuietly) {
+  EXPECT_EXIT(RunWithinLimits([]() -> int { return raise(SIGPIPE); }, {.time_limit_s = 0}),
+              testing::KilledBySignal(SIGPIPE), "^$");
+}
+
 #ifndef __SANITIZE_ADDRESS__  // its shadow memory alone is above any limit
 WorkerResult RunWithin(std::uint64_t limit_mb, const WorkerJob& job) {
   const WorkerLimits limits{
