@@ -179,8 +179,7 @@ void Print(const std::vector<score::Score>& scores, double collar_s, std::ostrea
 }
 
 /// `score TAKES --truth LABELS`: against what people marked.
-ExitCode RunLabels(const std::vector<std::string>& grammars, const ParsedOptions& options,
-                   const CommandContext& context) {
+ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) {
   for (const char* other : {"--filter", "--events", "--differences", "--closed-form"}) {
     if (options.Has(other))
       return Complain(
@@ -194,6 +193,12 @@ ExitCode RunLabels(const std::vector<std::string>& grammars, const ParsedOptions
                     options.Has("names") ? "--episode: no episode matches"
                                          : "--truth: which recordings? score take1.jsonl --truth "
                                            "take1.csv");
+  std::vector<std::string> grammars = options.All("--grammar");
+  if (grammars.empty()) {
+    Result<std::string> own = labels::OwnGrammar(*takes);
+    if (!own) return Complain(context, own.error());
+    grammars.push_back(std::move(*own));
+  }
   const double collar_s = options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
   std::vector<std::vector<EpisodeToScore>> all(grammars.size()), by_hand(grammars.size());
   std::vector<std::vector<std::string>> not_covered(grammars.size());
@@ -270,9 +275,9 @@ ExitCode RunClosedForms(const std::vector<ClosedFormWitness>& recognisers,
 }
 
 ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--truth")) return RunLabels(options, context);
   std::vector<std::string> grammars = options.All("--grammar");
   if (grammars.empty()) grammars = {kDefaultGrammar, "original_2020"};
-  if (options.Has("--truth")) return RunLabels(grammars, options, context);
   for (const char* of_labels : {"--map", "--episode"}) {
     if (options.Has(of_labels))
       return Complain(context, ExitCode::kBadInput,
@@ -348,7 +353,7 @@ Command ScoreCommand() {
                        .repeatable = true},
                       {.name = "--grammar",
                        .help = "a grammar to score; may be repeated; default: pick_and_place and\n"
-                               "original_2020",
+                               "original_2020; with --truth that of the recordings",
                        .placeholder = "NAME|FILE",
                        .repeatable = true},
                       {.name = "--truth",

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "harness/base/atomic_file.h"
-#include "harness/base/default_grammar.h"
 #include "harness/command/command.h"
 #include "harness/command/recorded_episode.h"
 #include "harness/episodes/schema.h"
@@ -38,7 +37,7 @@ std::optional<sweep::SweepRequest> RequestFrom(const ParsedOptions& options,
                                                const std::vector<const char*>& outputs,
                                                const CommandContext& context) {
   sweep::SweepRequest request{.root = context.root,
-                              .grammar = options.TextOr("--grammar", kDefaultGrammar),
+                              .grammar = options.Text("--grammar"),
                               .settings = options.All("--set"),
                               .axes = {}};
   std::vector<std::string> truths = options.All("--truth");
@@ -77,10 +76,11 @@ std::optional<sweep::SweepRequest> RequestFrom(const ParsedOptions& options,
   return request;
 }
 
-/// The recordings, or the exit code after a complaint.
-tl::expected<std::vector<labels::TakeName>, ExitCode> EpisodesFrom(
-    const ParsedOptions& options, const sweep::SweepRequest& request,
-    const CommandContext& context) {
+/// The recordings, or the exit code after a complaint. Where no grammar was named, `request` gets
+/// theirs.
+tl::expected<std::vector<labels::TakeName>, ExitCode> EpisodesFrom(const ParsedOptions& options,
+                                                                   sweep::SweepRequest& request,
+                                                                   const CommandContext& context) {
   const std::vector<std::string>& files = options.All("files");
   const auto lines = std::ranges::find_if_not(files, episodes::IsEpisodeFile);
   if (lines != files.end() && request.truth != sweep::Truth::kLabels)
@@ -94,6 +94,11 @@ tl::expected<std::vector<labels::TakeName>, ExitCode> EpisodesFrom(
     return tl::unexpected(
         Complain(context, ExitCode::kNothing,
                  fmt::format("--episode: no episode matches '{}'", options.Text("--episode"))));
+  if (request.grammar.empty()) {
+    Result<std::string> own = labels::OwnGrammar(*episodes);
+    if (!own) return tl::unexpected(Complain(context, own.error()));
+    request.grammar = std::move(*own);
+  }
   return *episodes;
 }
 
@@ -113,7 +118,7 @@ std::optional<ExitCode> ComplainOf(const sweep::SweepResult& result,
 }
 
 ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context) {
-  const auto request = RequestFrom(options, {"--output"}, context);
+  auto request = RequestFrom(options, {"--output"}, context);
   if (!request) return ExitCode::kBadInput;
   const auto episodes = EpisodesFrom(options, *request, context);
   if (!episodes) return episodes.error();

@@ -7,12 +7,15 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "grammar/name_events.h"
+#include "harness/base/default_grammar.h"
 #include "harness/episodes/recordings.h"
 #include "harness/episodes/schema.h"
 #include "harness/labels/read_labels.h"
 #include "harness/sense/episode_file.h"
+#include "harness/sense/episode_stream.h"
 #include "harness/sense/sensing.h"
 
 namespace prehend::harness::labels {
@@ -90,6 +93,22 @@ Result<Take> OpenEpisode(const TakeName& name, const std::string& root) {
   return take;
 }
 
+/// "" if the file cannot be read, which whoever reads all of it reports.
+std::string GrammarNamedBy(const TakeName& name) {
+  if (name.id == 0) {
+    std::ifstream in(name.file);
+    std::string line;
+    EpisodeStream stream(name.file);
+    if (!std::getline(in, line) || !stream.Take(line).empty() || !stream.has_header()) return "";
+    return stream.header().grammar;
+  }
+  const auto file = episodes::EpisodeFile::Open(name.file);
+  if (!file) return "";
+  const auto row = std::ranges::find(file->episodes(), name.id, &episodes::EpisodeRow::id);
+  if (row == file->episodes().end()) return "";
+  return row->simulated ? kDefaultGrammar : row->grammar;
+}
+
 /// Where the labels of a take may lie in a folder, without ending.
 std::vector<fs::path> StemsOf(const TakeName& take, const fs::path& folder) {
   if (take.id == 0) return {folder / fs::path(take.file).stem()};
@@ -115,6 +134,25 @@ Result<std::vector<TakeName>> TakesOf(const std::vector<std::string>& files,
     takes.insert(takes.end(), of_file->begin(), of_file->end());
   }
   return takes;
+}
+
+Result<std::string> OwnGrammar(const std::vector<TakeName>& takes) {
+  std::string grammar;
+  const TakeName* named_by = nullptr;
+  for (const TakeName& take : takes) {
+    const std::string own = GrammarNamedBy(take);
+    if (own.empty()) continue;
+    if (named_by && own != grammar)
+      return tl::unexpected(grammar::Diagnostics{
+          {.file = take.scenario,
+           .place = {},
+           .message = fmt::format("it names the grammar {}, and {} the grammar {}", own,
+                                  named_by->scenario, grammar),
+           .hint = fmt::format("one of them for all: --grammar {}", own)}});
+    grammar = own;
+    named_by = &take;
+  }
+  return grammar.empty() ? kDefaultGrammar : grammar;
 }
 
 std::vector<std::string> LabelFilesOf(const std::vector<TakeName>& takes,

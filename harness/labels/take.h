@@ -32,6 +32,10 @@ Result<Take> OpenTake(const TakeName& name, const std::string& root);
 Result<std::vector<TakeName>> TakesOf(const std::vector<std::string>& files,
                                       const std::string& which);
 
+/// The grammar that the recordings name for themselves, for commands without --grammar; of runs the
+/// default one. Reports recordings that name different grammars.
+Result<std::string> OwnGrammar(const std::vector<TakeName>& takes);
+
 /// The file of labels of each take: as many as there are takes, in their order; or, where `given`
 /// is one folder, the file there with the take's name: of take1.jsonl take1.csv, take1.eaf, ..; of
 /// an episode SKILL/NAME.csv or NAME.csv. "" and `problem` where one is missing.

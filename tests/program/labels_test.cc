@@ -49,6 +49,39 @@ TEST_F(Labelled, ARecordingIsScored) {
   EXPECT_TRUE(Has(table.out, "no label means them")) << table.out;
 }
 
+TEST_F(Labelled, TheGrammarOfTheRecordingIsScoredUnlessAnotherIsNamed) {
+  const std::string take = Take("milk.jsonl");
+  const std::vector<std::string> truth = {"--truth", docs_ + "/labels.csv", "--map", map_};
+  const auto run = [&](std::vector<std::string> words) {
+    words.insert(words.end(), truth.begin(), truth.end());
+    return Prehend(words);
+  };
+  const Said scored = run({"score", take});
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  EXPECT_TRUE(Has(scored.out, "pick_and_place_from_motion, 1 episodes")) << scored.out;
+  EXPECT_TRUE(Has(scored.out, "all              5      5  5")) << scored.out;
+  EXPECT_FALSE(Has(scored.out, "original_2020")) << scored.out;
+  const Said swept = run({"sweep", take, "--over", "hold_way=3mm..4mm:2", "--collar-ms", "1000"});
+  EXPECT_EQ(swept.exit_code, 0) << swept.err;
+  EXPECT_EQ(Prehend({"import", take, "-o", Path("milk.episodes")}).exit_code, 0);
+  EXPECT_TRUE(Has(run({"score", Path("milk.episodes")}).out, "all              5      5  5"));
+
+  std::string text = ReadFile(take);
+  const std::string own = "\"grammar\":\"pick_and_place_from_motion\"";
+  ASSERT_TRUE(Has(text, own)) << text.substr(0, 400);
+  WriteFile(Path("other.jsonl"),
+            text.replace(text.find(own), own.size(), "\"grammar\":\"contact\""));
+  WriteFile(folder_ / "labels/milk.csv", ReadFile(docs_ + "/labels.csv"));
+  WriteFile(folder_ / "labels/other.csv", ReadFile(docs_ + "/labels.csv"));
+  const Said two =
+      Prehend({"score", take, Path("other.jsonl"), "--truth", Path("labels"), "--map", map_});
+  EXPECT_EQ(two.exit_code, 2);
+  EXPECT_TRUE(Has(two.err,
+                  "other: error: it names the grammar contact, and milk the grammar "
+                  "pick_and_place_from_motion\n  hint: one of them for all: --grammar contact"))
+      << two.err;
+}
+
 TEST_F(Labelled, TakesOfAFolderAreSummed) {
   const std::string one = Take("one.jsonl"), two = Take("two.jsonl");
   for (const char* name : {"one.csv", "two.csv"})
