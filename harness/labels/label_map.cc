@@ -57,12 +57,23 @@ class MapReader {
     }
     for (const YamlNode& node : root.children) {
       if (node.key == "offset_s")
-        ReadOffset(node);
+        ReadNumber(node, map_.offset_s, "seconds", false);
+      else if (node.key == "join_s")
+        ReadNumber(node, map_.join_s, "seconds", true);
+      else if (node.key == "rate_hz")
+        ReadNumber(node, map_.csv.rate_hz, "frames per second", true);
+      else if (node.key == "time_unit")
+        ReadTimeUnit(node);
+      else if (node.key == "columns")
+        ReadColumns(node);
+      else if (node.key == "entities")
+        ReadEntities(node);
       else if (node.key == "tiers")
         ReadTiers(node);
       else if (node.key != "labels")
         errors_.AddUnknownName(node.key_where, "unknown key '" + node.key + "'", node.key,
-                               {"labels", "tiers", "offset_s"});
+                               {"labels", "tiers", "offset_s", "join_s", "time_unit", "rate_hz",
+                                "columns", "entities"});
     }
     if (const YamlNode* labels = root.Find("labels"))
       ReadLabelNodes(*labels);
@@ -75,12 +86,70 @@ class MapReader {
   static constexpr const char* kExample =
       "labels:\n    hold: {event: EVENT, object: cup}\n    idle: ignore";
 
-  void ReadOffset(const YamlNode& node) {
+  void ReadNumber(const YamlNode& node, double& into, const char* what, bool positive) {
     const std::optional<double> number = NumberOf(node);
-    if (number)
-      map_.offset_s = *number;
+    if (number && (!positive || *number > 0))
+      into = *number;
     else
-      errors_.Add(node.where, "offset_s: expected seconds, found " + Describe(node));
+      errors_.Add(node.where, fmt::format("{}: expected {}{}, found {}", node.key, what,
+                                          positive ? ", more than 0" : "", Describe(node)));
+  }
+
+  void ReadTimeUnit(const YamlNode& node) {
+    static const std::map<std::string, double> units = {
+        {"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}, {"frame", 0}};
+    const auto unit = node.kind == YamlNode::Kind::kScalar ? units.find(node.text) : units.end();
+    if (unit == units.end())
+      return errors_.Add(node.where,
+                         "time_unit: expected s, ms, us, ns or frame, found " + Describe(node));
+    map_.csv.unit_s = unit->second;
+    map_.csv.in_frames = node.text == "frame";
+  }
+
+  /// Every role of an event.
+  std::set<std::string> Roles() const {
+    std::set<std::string> known;
+    for (const EventSignature& event : events_)
+      known.insert(event.roles.begin(), event.roles.end());
+    return known;
+  }
+
+  void ReadColumns(const YamlNode& columns) {
+    if (!IsMapping(columns)) return;
+    std::set<std::string> known = Roles();
+    for (const YamlNode& node : columns.children) {
+      if (node.kind != YamlNode::Kind::kScalar || node.text.empty()) {
+        errors_.Add(node.where,
+                    node.key + ": expected the name of a column, found " + Describe(node));
+      } else if (node.key == "begin") {
+        map_.csv.begin = node.text;
+      } else if (node.key == "end") {
+        map_.csv.end = node.text;
+      } else if (node.key == "label") {
+        map_.csv.label = node.text;
+      } else if (node.key == "tier") {
+        map_.csv.tier = node.text;
+      } else if (known.contains(node.key)) {
+        map_.csv.roles.push_back({node.key, node.text});
+      } else {
+        known.insert({"begin", "end", "label", "tier"});
+        errors_.AddUnknownName(
+            node.key_where,
+            "'" + node.key + "' is no column of labels: begin, end, label, tier or a role",
+            node.key, {known.begin(), known.end()});
+      }
+    }
+  }
+
+  void ReadEntities(const YamlNode& entities) {
+    if (!IsMapping(entities)) return;
+    for (const YamlNode& node : entities.children) {
+      if (node.kind != YamlNode::Kind::kScalar || node.text.empty())
+        errors_.Add(node.where, node.key + ": expected the name of an entity, or 'ignore', found " +
+                                    Describe(node));
+      else
+        map_.entities[node.key] = SaysIgnore(node) ? "" : node.text;
+    }
   }
 
   bool IsMapping(const YamlNode& node) {
@@ -95,9 +164,7 @@ class MapReader {
 
   void ReadTiers(const YamlNode& tiers) {
     if (!IsMapping(tiers)) return;
-    std::set<std::string> known;
-    for (const EventSignature& event : events_)
-      known.insert(event.roles.begin(), event.roles.end());
+    const std::set<std::string> known = Roles();
     for (const YamlNode& node : tiers.children) {
       Meaning& tier = map_.tiers[node.key];
       tier.where = node.key_where;
@@ -212,6 +279,7 @@ Result<LabelMap> ReadLabelMap(const std::string& path, const Events& events) {
 Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelMap* map,
                                       const Events& events) {
   LabelReading reading;
+  if (map) reading.join_s_ = map->join_s;
   Diagnostics problems;
   std::set<std::string> unknown;
   const auto compare = [&](const grammar::NamedEvent& event) {
@@ -266,14 +334,21 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
         named.event = meaning->second.event;
         named.roles = meaning->second.roles;
         const EventSignature& event = *FindEvent(events, named.event);
-        if (tier != map->tiers.end()) {
-          for (const grammar::Role& role : tier->second.roles) {
-            const bool has_it = std::ranges::find(event.roles, role.name) != event.roles.end();
-            const bool given = std::ranges::find(named.roles, role.name, &grammar::Role::name) !=
-                               named.roles.end();
-            if (has_it && !given) named.roles.push_back(role);
-          }
+        const auto add = [&](const grammar::Role& role) {
+          const bool has_it = std::ranges::find(event.roles, role.name) != event.roles.end();
+          const bool given =
+              std::ranges::find(named.roles, role.name, &grammar::Role::name) != named.roles.end();
+          if (has_it && !given) named.roles.push_back(role);
+        };
+        bool is_left_out = false;
+        for (grammar::Role role : label.roles) {
+          const auto entity = map->entities.find(role.value);
+          if (entity != map->entities.end()) role.value = entity->second;
+          is_left_out = is_left_out || role.value.empty();
+          add(role);
         }
+        if (is_left_out) continue;
+        if (tier != map->tiers.end()) std::ranges::for_each(tier->second.roles, add);
         PutInOrder(event, named.roles);
       }
       compare(named);
@@ -336,10 +411,11 @@ Result<grammar::Timeline> LabelReading::Truth(std::size_t file,
     truth.events.push_back(std::move(event));
   }
   if (!problems.empty()) return tl::unexpected(std::move(problems));
-  return Compared(truth, compared_);
+  return Compared(truth, compared_, TickAt(join_s_, ticks_per_second));
 }
 
-grammar::Timeline Compared(const grammar::Timeline& timeline, const ComparedRoles& roles) {
+grammar::Timeline Compared(const grammar::Timeline& timeline, const ComparedRoles& roles,
+                           grammar::Tick join) {
   std::map<std::string, std::vector<grammar::NamedEvent>> by_label;
   for (grammar::NamedEvent event : timeline.events) {
     const auto compared = roles.find(event.event);
@@ -357,7 +433,10 @@ grammar::Timeline Compared(const grammar::Timeline& timeline, const ComparedRole
     });
     const std::size_t first = all.events.size();
     for (grammar::NamedEvent& event : events) {
-      if (all.events.size() > first && event.interval.begin < all.events.back().interval.end) {
+      const bool follows = all.events.size() > first;
+      if (follows &&
+          (event.interval.begin < all.events.back().interval.end ||
+           (join > 0 && event.interval.begin <= all.events.back().interval.end + join))) {
         grammar::NamedEvent& before = all.events.back();
         before.interval.end = std::max(before.interval.end, event.interval.end);
         before.decided = std::max(before.decided, event.decided);

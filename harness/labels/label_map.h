@@ -27,6 +27,10 @@ struct Meaning {
 struct LabelMap {
   YamlDocument document;
   double offset_s = 0;  ///< added to all times of labels
+  double join_s = 0;    ///< labels of one event with no longer pause between them are one
+  CsvReading csv;
+  /// What the columns of roles hold, as entities; "": labels of it are left out.
+  std::map<std::string, std::string> entities;
   std::map<std::string, Meaning> labels;
   std::map<std::string, Meaning> tiers;  ///< empty: tiers mean nothing
 };
@@ -62,11 +66,13 @@ class LabelReading {
   std::vector<LabelFile> files_;
   std::vector<std::vector<LabelledEvent>> events_;  ///< per file
   ComparedRoles compared_;
+  double join_s_ = 0;
 };
 
 /// Only the compared events, each with its compared roles; those of the same label that overlap
-/// become one.
-grammar::Timeline Compared(const grammar::Timeline& timeline, const ComparedRoles& roles);
+/// become one, and so do those with at most `join` ticks between them.
+grammar::Timeline Compared(const grammar::Timeline& timeline, const ComparedRoles& roles,
+                           grammar::Tick join = 0);
 
 /// The same with the hand in the name of each event that has one: "grasping of left_hand".
 grammar::Timeline ByHand(grammar::Timeline timeline);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grammar/base/diagnostic.h"
+#include "grammar/base/timeline.h"
 #include "harness/base/result.h"
 
 namespace prehend::harness::labels {
@@ -18,6 +19,16 @@ struct Label {
   double begin_s = 0, end_s = 0;
   std::string text, tier;  ///< "" where the file has no tiers
   grammar::Place place;
+  std::vector<grammar::Role> roles;  ///< of CSV: what the columns of roles hold
+};
+
+/// What a map says of the columns of comma-separated values. "": found by their usual names.
+struct CsvReading {
+  std::string begin, end, label, tier;
+  std::vector<grammar::Role> roles;  ///< a role, and the name of its column
+  double unit_s = 0;   ///< of the times; 0: as the names of the columns say, otherwise seconds
+  double rate_hz = 0;  ///< of the video, for times in frames; 0: not known
+  bool in_frames = false;
 };
 
 struct LabelFile {
@@ -33,11 +44,12 @@ bool IsLabelFile(const std::string& path);
 /// The endings above.
 const std::vector<std::string>& LabelEndings();
 
-/// Errors have file, line and column; at most a dozen.
-Result<LabelFile> ReadLabels(const std::string& path);
+/// Errors have file, line and column; at most a dozen. `csv`: of comma-separated values only.
+Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv = {});
 
 // The readers of one format each; `text` is that of the file. They fill `file.labels`.
-grammar::Diagnostics ReadCsvLabels(LabelFile& file);
+/// Times are numbers, or 1:02:03.5 and 02:03.5.
+grammar::Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how = {});
 /// EAF 2.7 to 3.0 (Max Planck Institute for Psycholinguistics): time slots in milliseconds,
 /// annotations that are aligned or refer to an aligned one. Slots without a time are spaced evenly
 /// between their neighbours, as ELAN shows them.

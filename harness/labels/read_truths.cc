@@ -14,18 +14,18 @@ Result<LabelReading> ReadTruths(const std::vector<TakeName>& takes,
   if (!problem.empty())
     return tl::unexpected(
         grammar::Diagnostics{{.file = "--truth", .place = {}, .message = problem}});
-  std::vector<LabelFile> files;
-  for (const std::string& path : paths) {
-    Result<LabelFile> file = ReadLabels(path);
-    if (!file) return tl::unexpected(std::move(file.error()));
-    files.push_back(std::move(*file));
-  }
   const std::vector<grammar::EventSignature> events = grammar::EventSignatures(program);
   std::optional<LabelMap> read;
   if (!map.empty()) {
     Result<LabelMap> meaning = ReadLabelMap(map, events);
     if (!meaning) return tl::unexpected(std::move(meaning.error()));
     read = std::move(*meaning);
+  }
+  std::vector<LabelFile> files;
+  for (const std::string& path : paths) {
+    Result<LabelFile> file = ReadLabels(path, read ? read->csv : CsvReading{});
+    if (!file) return tl::unexpected(std::move(file.error()));
+    files.push_back(std::move(*file));
   }
   return LabelReading::Of(std::move(files), read ? &*read : nullptr, events);
 }

@@ -66,6 +66,19 @@ class Labels : public testing::Test {
       ("labels_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
+grammar::Timeline TruthOf(const Result<LabelReading>& reading) {
+  const auto truth = reading->Truth(0, {"right_hand", "cup", "table"}, 100, 1000);
+  if (!truth) ADD_FAILURE() << grammar::Format(truth.error());
+  return truth ? *truth : grammar::Timeline{};
+}
+
+std::string Text(const grammar::Timeline& timeline) {
+  std::string text;
+  for (const grammar::NamedEvent& event : timeline.events)
+    text += fmt::format("{} {}..{}; ", event.Label(), event.interval.begin, event.interval.end);
+  return text;
+}
+
 TEST_F(Labels, CsvHasItsColumnsByName) {
   EXPECT_EQ(Read("a.csv", "begin_s,end_s,label\n0.5,1.5,hold\n\n2,3,\"a, b\"\n"),
             "0.5..1.5 hold; 2..3 a, b; ");
@@ -74,17 +87,77 @@ TEST_F(Labels, CsvHasItsColumnsByName) {
   EXPECT_EQ(Read("a.csv", "onset\toffset\taction\n0\t1\thold\n0\t1\t\n"), "0..1 hold; ");
 }
 
+// As EPIC-KITCHENS, spreadsheets and others write it.
+TEST_F(Labels, CsvHasClocksAndFramesToo) {
+  EXPECT_EQ(Read("a.csv",
+                 "start_timestamp,stop_timestamp,start_frame,stop_frame,verb,hand\n"
+                 "00:01:02.50,01:00:03,3750,216180,take,left\n"),
+            "62.5..3603 take [left]; ");
+  EXPECT_EQ(Read("a.csv", "Start Time;End Time;Activity\n00:30.5;0:31;hold\n"), "30.5..31 hold; ");
+  EXPECT_EQ(Problem("a.csv", "start_frame,end_frame,action\n30,60,hold\n"),
+            "a.csv:1:1: error: 'start_frame' is counted in frames");
+  EXPECT_EQ(Problem("a.csv", "begin,end,label\n0:61,0:62,hold\n"),
+            "a.csv:2:1: error: begin: found '0:61', wanted a number or a time like 0:01:02.5");
+}
+
+TEST_F(Labels, AMapNamesTheColumnsOfCsv) {
+  const auto read = [&](const std::string& map, const std::string& text) -> std::string {
+    const auto meaning = Map(map + "labels:\n  hold: {event: grasping}\n");
+    if (!meaning) return grammar::Format(meaning.error());
+    const auto file = ReadLabels(File("a.csv", text), meaning->csv);
+    if (!file) {
+      const std::string said = grammar::Format(file.error().front());
+      return said.substr(said.find("a.csv"), said.find('\n') - said.find("a.csv"));
+    }
+    const auto reading = LabelReading::Of({*file}, &*meaning, kEvents);
+    return reading ? Text(TruthOf(reading)) : grammar::Format(reading.error());
+  };
+  const std::string frames =
+      "start_frame,end_frame,verb,noun\n30,60,hold,red cup\n90,96,hold,tap\n";
+  EXPECT_EQ(
+      read("rate_hz: 30\ncolumns: {object: noun}\nentities: {red cup: cup, tap: ignore}\n", frames),
+      "grasping(cup) 100..200; ");
+  EXPECT_EQ(read("rate_hz: 60\n", frames), "grasping() 50..100; grasping() 150..160; ");
+  const std::string own = "t0,t1,what,who\n500,1500,hold,right\n";
+  const std::string columns = "columns: {begin: t0, end: t1, label: what, hand: who}\n";
+  EXPECT_EQ(read("time_unit: ms\nentities: {right: right_hand}\n" + columns, own),
+            "grasping(right_hand) 50..150; ");
+  EXPECT_EQ(read("time_unit: frame\nrate_hz: 1000\nentities: {right: right_hand}\n" + columns, own),
+            "grasping(right_hand) 50..150; ");
+  EXPECT_EQ(read("columns: {begin: t00}\n", own),
+            "a.csv:1:1: error: found the columns t0, t1, what, who; the map wants a column 't00'");
+  EXPECT_EQ(
+      MapProblem("columns: {objekt: noun}\nlabels:\n  hold: {event: grasping}\n"),
+      "map.yaml:1:11: error: 'objekt' is no column of labels: begin, end, label, tier or a role");
+  EXPECT_EQ(MapProblem("time_unit: min\nlabels:\n  hold: {event: grasping}\n"),
+            "map.yaml:1:12: error: time_unit: expected s, ms, us, ns or frame, found 'min'");
+  EXPECT_EQ(MapProblem("rate_hz: 0\nlabels:\n  hold: {event: grasping}\n"),
+            "map.yaml:1:10: error: rate_hz: expected frames per second, more than 0, found '0'");
+}
+
+// People mark move, pour, move; the grammar knows one transport.
+TEST_F(Labels, WhatFollowsAtOnceMayBeJoined) {
+  const auto file =
+      ReadLabels(File("a.csv", "begin,end,label\n0,1,move\n1.2,2,pour\n1.9,3,move\n3.6,4,move\n"));
+  const auto read = [&](const std::string& join) {
+    const auto map = Map(join + "labels:\n  move: {event: grasping}\n  pour: {event: grasping}\n");
+    return Text(TruthOf(LabelReading::Of({*file}, &*map, kEvents)));
+  };
+  EXPECT_EQ(read(""), "grasping() 0..100; grasping() 120..300; grasping() 360..400; ");
+  EXPECT_EQ(read("join_s: 0.3\n"), "grasping() 0..300; grasping() 360..400; ");
+}
+
 TEST_F(Labels, FaultyCsvIsNamed) {
   const std::string head = "begin_s,end_s,label\n";
   EXPECT_EQ(Problem("a.csv", "begin,label\n1,x\n"),
             "a.csv:1:1: error: found the columns begin, label; wanted one for the begin, the end "
             "and the label of each row");
   EXPECT_EQ(Problem("a.csv", head + "x,1,hold\n"),
-            "a.csv:2:1: error: begin_s: found 'x', wanted a number");
+            "a.csv:2:1: error: begin_s: found 'x', wanted a number or a time like 0:01:02.5");
   EXPECT_EQ(Problem("a.csv", head + "0,1e999,hold\n"),
-            "a.csv:2:3: error: end_s: found '1e999', wanted a number");
+            "a.csv:2:3: error: end_s: found '1e999', wanted a number or a time like 0:01:02.5");
   EXPECT_EQ(Problem("a.csv", head + "0,nan,hold\n"),
-            "a.csv:2:3: error: end_s: found 'nan', wanted a number");
+            "a.csv:2:3: error: end_s: found 'nan', wanted a number or a time like 0:01:02.5");
   EXPECT_EQ(Problem("a.csv", head + "0,1\n"), "a.csv:2:1: error: found 2 cells, wanted 3");
   EXPECT_EQ(Problem("a.csv", head + "2,1,hold\n"),
             "a.csv:2:5: error: 'hold' ends before it begins: 2 s to 1 s");
@@ -301,19 +374,6 @@ labels:
   touch: {event: contact, a: cup, b: table}
   idle: ignore
 )";
-
-grammar::Timeline TruthOf(const Result<LabelReading>& reading) {
-  const auto truth = reading->Truth(0, {"right_hand", "cup", "table"}, 100, 1000);
-  if (!truth) ADD_FAILURE() << grammar::Format(truth.error());
-  return truth ? *truth : grammar::Timeline{};
-}
-
-std::string Text(const grammar::Timeline& timeline) {
-  std::string text;
-  for (const grammar::NamedEvent& event : timeline.events)
-    text += fmt::format("{} {}..{}; ", event.Label(), event.interval.begin, event.interval.end);
-  return text;
-}
 
 TEST_F(Labels, AMapSaysWhatTheyMean) {
   const auto map = Map(kMap);
