@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "grammar/contents.h"
@@ -12,6 +13,7 @@
 #include "harness/check/select_scenarios.h"
 #include "harness/closed_form/closed_form.h"
 #include "harness/command/command.h"
+#include "harness/labels/clock_offset.h"
 #include "harness/labels/read_truths.h"
 #include "harness/oracle/oracle.h"
 #include "harness/process/worker_pool.h"
@@ -19,6 +21,7 @@
 #include "harness/score/closed_form_score.h"
 #include "harness/score/score_json.h"
 #include "harness/score/score_scenario.h"
+#include "harness/timeline/match_events.h"
 #include "harness/timeline/timeline_json.h"
 
 namespace prehend::harness {
@@ -178,9 +181,19 @@ void Print(const std::vector<score::Score>& scores, double collar_s, std::ostrea
          "events.\n";
 }
 
+/// The name of the take, and a line for each event that is missing, too much, or has a boundary
+/// beyond the collar; "" if there is none.
+std::string DifferencesOf(const EpisodeToScore& episode, double collar_s) {
+  const auto per_s = static_cast<double>(episode.truth.ticks_per_second);
+  const auto collar = static_cast<grammar::Tick>(std::lround(collar_s * per_s));
+  const std::string lines =
+      DescribeDisagreement(Agree(episode.truth, episode.found, collar), collar);
+  return lines.empty() ? "" : episode.scenario + ":\n" + lines;
+}
+
 /// `score TAKES --truth LABELS`: against what people marked.
 ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) {
-  for (const char* other : {"--filter", "--events", "--differences", "--closed-form"}) {
+  for (const char* other : {"--filter", "--events", "--closed-form"}) {
     if (options.Has(other))
       return Complain(
           context, ExitCode::kBadInput,
@@ -201,7 +214,7 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
   }
   const double collar_s = options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
   std::vector<std::vector<EpisodeToScore>> all(grammars.size()), by_hand(grammars.size());
-  std::vector<std::vector<std::string>> not_covered(grammars.size());
+  std::vector<std::string> differences(grammars.size());
   std::vector<labels::Take> opened;
   for (const labels::TakeName& name : *takes) {
     Result<labels::Take> take = labels::OpenTake(name, context.root);
@@ -214,6 +227,7 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
     const auto truths = labels::ReadTruths(*takes, options.All("--truth"), options.Text("--map"),
                                            *compiled.program);
     if (!truths) return Complain(context, truths.error());
+    std::vector<std::pair<grammar::Timeline, grammar::Timeline>> compared;
     for (std::size_t i = 0; i < opened.size(); ++i) {
       const labels::Take& take = opened[i];
       const auto truth = truths->Truth(i, take.entities, take.ticks_per_second, take.end);
@@ -225,11 +239,19 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
       episode.found = labels::Compared(*found, truths->compared());
       for (const grammar::NamedEvent& event : found->events)
         if (!truths->compared().contains(event.event)) ++episode.ignored[event.event];
+      compared.emplace_back(episode.truth, episode.found);
+      differences[g] += DifferencesOf(episode, collar_s);
       all[g].push_back(episode);
       episode.truth = labels::ByHand(std::move(episode.truth));
       episode.found = labels::ByHand(std::move(episode.found));
       by_hand[g].push_back(std::move(episode));
     }
+    if (const auto clock = labels::FindClockOffset(compared))
+      context.err << fmt::format(
+          "warning: {}: of {} labels {} are found, and {} if all of them were moved by {:+.2f} s; "
+          "does the video begin when the tracker does?\n  hint: offset_s: {:.2f} in the map\n",
+          grammars[g], clock->all, clock->found_now, clock->found_then, clock->offset_s,
+          truths->offset_s() + clock->offset_s);
   }
   std::vector<score::Score> scores, of_hands;
   for (std::size_t g = 0; g < grammars.size(); ++g) {
@@ -248,9 +270,13 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
   const bool has_hands = std::ranges::any_of(of_hands, [&](const score::Score& one) {
     return one.events.size() > scores[&one - of_hands.data()].events.size();
   });
-  if (!has_hands) return ExitCode::kAgrees;
-  context.out << "\nEach hand for itself:\n\n";
-  for (const score::Score& one : of_hands) context.out << ScoreTable(one, collar_s) << "\n";
+  if (has_hands) {
+    context.out << "\nEach hand for itself:\n\n";
+    for (const score::Score& one : of_hands) context.out << ScoreTable(one, collar_s) << "\n";
+  }
+  for (std::size_t g = 0; options.Has("--differences") && g < grammars.size(); ++g)
+    context.out << fmt::format("\n{}, against the labels:\n{}", grammars[g],
+                               differences[g].empty() ? "no differences\n" : differences[g]);
   return ExitCode::kAgrees;
 }
 
@@ -380,7 +406,8 @@ Command ScoreCommand() {
                        .placeholder = "MS",
                        .rule = NumbersFrom(0, 10000)},
                       {.name = "--differences",
-                       .help = "list every event that differs from what a witness says"},
+                       .help = "list every event that differs from what a witness says, or\n"
+                               "from the labels"},
                       {.name = "--closed-form",
                        .help = "score on recordings whose events are known on paper, instead of\n"
                                "scenarios; the oracle is scored, too (docs/closed-form.md)"},

@@ -279,7 +279,10 @@ Result<LabelMap> ReadLabelMap(const std::string& path, const Events& events) {
 Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelMap* map,
                                       const Events& events) {
   LabelReading reading;
-  if (map) reading.join_s_ = map->join_s;
+  if (map) {
+    reading.join_s_ = map->join_s;
+    reading.offset_s_ = map->offset_s;
+  }
   Diagnostics problems;
   std::set<std::string> unknown;
   const auto compare = [&](const grammar::NamedEvent& event) {

@@ -51,6 +51,8 @@ class LabelReading {
                                  const std::vector<grammar::EventSignature>& events);
 
   const ComparedRoles& compared() const { return compared_; }
+  /// What the map adds to all times.
+  double offset_s() const { return offset_s_; }
 
   /// The events of the file with this index in a take of these entities and this length. Errors
   /// are entities that it does not have, and labels beyond its end.
@@ -66,7 +68,7 @@ class LabelReading {
   std::vector<LabelFile> files_;
   std::vector<std::vector<LabelledEvent>> events_;  ///< per file
   ComparedRoles compared_;
-  double join_s_ = 0;
+  double join_s_ = 0, offset_s_ = 0;
 };
 
 /// Only the compared events, each with its compared roles; those of the same label that overlap

@@ -137,6 +137,39 @@ TEST_F(Labelled, MarginsNameWhatIsAtAnEdge) {
   EXPECT_TRUE(ReadFile(Path("margins.csv")).starts_with("parameter,value,f1,from,to"));
 }
 
+TEST_F(Labelled, DifferencesAreListed) {
+  const std::string take = Take("milk.jsonl");
+  const auto score = [&](const std::string& labels) {
+    WriteFile(folder_ / "a.csv", labels);
+    return Prehend({"score", take, "--truth", Path("a.csv"), "--map", map_, "--collar-ms", "200",
+                    "--differences"});
+  };
+  const std::string head = "begin_s,end_s,label,tier\n";
+  const Said said = score(head + "0.1,0.7,reach,right\n1.5,1.7,lift,right\n4.5,4.6,lift,right\n");
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_TRUE(Has(said.out, "\npick_and_place_from_motion, against the labels:\nmilk:\n"))
+      << said.out;
+  EXPECT_TRUE(Has(said.out, "missing  picking_up(right_hand, milk)  true 4.50000..4.60000 s\n"))
+      << said.out;
+  EXPECT_TRUE(Has(said.out, "extra    grasping(milk)                found 1.47910..")) << said.out;
+  EXPECT_FALSE(Has(said.out, "off ")) << said.out;
+  const Said agrees = Prehend({"score", take, "--truth", docs_ + "/labels.csv", "--map", map_,
+                               "--collar-ms", "1000", "--differences"});
+  EXPECT_TRUE(Has(agrees.out, "against the labels:\nno differences")) << agrees.out;
+}
+
+TEST_F(Labelled, AnotherClockIsAWarning) {
+  const std::string take = Take("milk.jsonl");
+  WriteFile(folder_ / "a.csv",
+            "begin_s,end_s,label,tier\n1.6,2.5,reach,right\n3.0,3.2,lift,right\n"
+            "3.2,4.8,carry,right\n4.8,4.9,put down,right\n");
+  const Said said = Prehend({"score", take, "--truth", Path("a.csv"), "--map", map_});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_TRUE(Has(said.err, "of 4 labels 0 are found, and 4 if all of them were moved by -1.50 s"))
+      << said.err;
+  EXPECT_TRUE(Has(said.err, "hint: offset_s: -1.50 in the map")) << said.err;
+}
+
 TEST_F(Labelled, OptionsOfLabelsNeedLabels) {
   EXPECT_EQ(Prehend({"score", "--map", map_}).exit_code, 2);
   EXPECT_EQ(Prehend({"score", "--truth", docs_ + "/labels.csv"}).exit_code, 4);

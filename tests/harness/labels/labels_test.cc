@@ -10,6 +10,7 @@
 #include <regex>
 #include <set>
 
+#include "harness/labels/clock_offset.h"
 #include "harness/labels/label_map.h"
 #include "harness/labels/read_labels.h"
 #include "harness/labels/write_labels.h"
@@ -145,6 +146,31 @@ TEST_F(Labels, WhatFollowsAtOnceMayBeJoined) {
   };
   EXPECT_EQ(read(""), "grasping() 0..100; grasping() 120..300; grasping() 360..400; ");
   EXPECT_EQ(read("join_s: 0.3\n"), "grasping() 0..300; grasping() 360..400; ");
+}
+
+TEST_F(Labels, AnotherClockIsNoticed) {
+  grammar::Timeline found{.ticks_per_second = 100, .events = {}}, marked = found;
+  for (const grammar::Tick begin : {100, 260, 430, 700, 790}) {
+    const auto at = [&](grammar::Tick later) {
+      return grammar::NamedEvent{.event = "grasping",
+                                 .roles = {{"hand", "right_hand"}},
+                                 .interval = {begin + later, begin + later + 50}};
+    };
+    found.events.push_back(at(0));
+    marked.events.push_back(at(begin % 20 == 0 ? 55 : 65));  // people differ by 100 ms
+  }
+  const auto of = [](const grammar::Timeline& truth, const grammar::Timeline& recognised) {
+    const std::vector<std::pair<grammar::Timeline, grammar::Timeline>> takes = {
+        {truth, recognised}};
+    return FindClockOffset(takes);
+  };
+  const auto clock = of(marked, found);
+  ASSERT_TRUE(clock);
+  EXPECT_NEAR(clock->offset_s, -0.6, 0.051);
+  EXPECT_EQ(clock->found_then, 5);
+  EXPECT_EQ(clock->all, 5);
+  EXPECT_FALSE(of(found, found));
+  EXPECT_FALSE(of(marked, {}));
 }
 
 TEST_F(Labels, FaultyCsvIsNamed) {
