@@ -73,16 +73,6 @@ Json BoundariesJson(const Comparison& comparison) {
   return boundaries;
 }
 
-Json ClaimsJson(const std::vector<ClaimVerdict>& verdicts) {
-  Json claims = Json::array();
-  for (const ClaimVerdict& verdict : verdicts)
-    claims.push_back({{"claim", verdict.claim},
-                      {"place", verdict.place},
-                      {"verdict", verdict.says},
-                      {"found", verdict.found}});
-  return claims;
-}
-
 Json TransformsJson(const std::vector<TransformVerdict>& verdicts) {
   Json transforms = Json::array();
   for (const TransformVerdict& verdict : verdicts)

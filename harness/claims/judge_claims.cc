@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <nlohmann/json.hpp>
 
 #include "harness/timeline/event_text.h"
 
@@ -16,6 +17,15 @@ using grammar::NamedEvent;
 
 /// Events by their index in the timeline.
 using Indices = std::vector<std::size_t>;
+
+/// "grasping(any, jug)", as it was claimed.
+std::string TextOf(const ClaimedEvent& claimed) {
+  if (claimed.roles.empty()) return claimed.name.text;
+  std::vector<std::string> roles;
+  for (const ClaimRole& role : claimed.roles)
+    roles.push_back((role.name.text.empty() ? "" : role.name.text + "=") + role.value.text);
+  return fmt::format("{}({})", claimed.name.text, fmt::join(roles, ", "));
+}
 
 class ClaimJudge {
  public:
@@ -54,23 +64,43 @@ class ClaimJudge {
   }
 
   std::string Times() const {
-    constexpr std::size_t kMostShown = 20;
     std::string lines;
     for (std::size_t i = 0; i < fitting_.size(); ++i) {
-      const Indices& fitting = fitting_[i];
-      if (fitting.empty()) lines += "  no " + claim_.events[i].name.text + "\n";
-      for (std::size_t k = 0; k < std::min(fitting.size(), kMostShown); ++k) {
-        const NamedEvent& event = timeline_.events[fitting[k]];
-        lines += fmt::format("  {} {}\n", event.Label(),
-                             IntervalText(event.interval, timeline_.ticks_per_second));
+      if (!fitting_[i].empty()) {
+        lines += TimesOf(fitting_[i]);
+        continue;
       }
-      if (fitting.size() > kMostShown)
-        lines += fmt::format("  and {} more\n", fitting.size() - kMostShown);
+      const Indices others = EventsNamed(claim_.events[i].name.text);
+      lines += fmt::format("  no {}{}\n", TextOf(claim_.events[i]),
+                           others.empty() ? "" : ", but of others:");
+      lines += TimesOf(others);
     }
     return lines;
   }
 
  private:
+  /// A line for each, of many for the first.
+  std::string TimesOf(const Indices& events) const {
+    constexpr std::size_t kMostShown = 20;
+    std::string lines;
+    for (std::size_t k = 0; k < std::min(events.size(), kMostShown); ++k) {
+      const NamedEvent& event = timeline_.events[events[k]];
+      lines += fmt::format("  {} {}\n", event.Label(),
+                           IntervalText(event.interval, timeline_.ticks_per_second));
+    }
+    if (events.size() > kMostShown)
+      lines += fmt::format("  and {} more\n", events.size() - kMostShown);
+    return lines;
+  }
+
+  Indices EventsNamed(const std::string& name) const {
+    Indices named;
+    for (std::size_t i = 0; i < timeline_.events.size(); ++i) {
+      if (timeline_.events[i].event == name) named.push_back(i);
+    }
+    return named;
+  }
+
   /// The first of each chain, found from its end.
   Indices Related() const {
     Indices later = fitting_.back();
@@ -124,6 +154,16 @@ std::vector<ClaimVerdict> JudgeClaims(const std::vector<Claim>& claims, const st
 
 std::string Text(const ClaimVerdict& verdict) {
   return fmt::format("expects: '{}' ({}): {}", verdict.claim, verdict.place, verdict.found);
+}
+
+nlohmann::ordered_json ClaimsJson(const std::vector<ClaimVerdict>& verdicts) {
+  nlohmann::ordered_json claims = nlohmann::ordered_json::array();
+  for (const ClaimVerdict& verdict : verdicts)
+    claims.push_back({{"claim", verdict.claim},
+                      {"place", verdict.place},
+                      {"verdict", verdict.says},
+                      {"found", verdict.found}});
+  return claims;
 }
 
 bool IsContradicted(const ClaimVerdict& verdict) { return verdict.says == kContradicted; }

@@ -2,6 +2,7 @@
 // Claims against what was recognised. Tested by tests/harness/claims/judge_claims_test.cc
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct ClaimVerdict {
   std::string place;  ///< "slide/x.yaml:31"
   std::string says;   ///< kHolds, kContradicted or kNotJudged
   std::string found;  ///< "found 11", or why the claim is not judged
-  std::string times;  ///< a line for each event that the claim is about
+  /// A line for each event that the claim is about; if there is none, for those of its name.
+  std::string times;
 };
 inline constexpr const char* kHolds = "holds";
 inline constexpr const char* kContradicted = "contradicted";
@@ -35,6 +37,8 @@ bool IsContradicted(const ClaimVerdict& verdict);
 
 /// Text() and times of those that are contradicted; several lines or empty.
 std::string TextOfContradicted(const std::vector<ClaimVerdict>& verdicts);
+/// An object for each: `claim`, `place`, `verdict`, `found`.
+nlohmann::ordered_json ClaimsJson(const std::vector<ClaimVerdict>& verdicts);
 /// Text() of those that are not judged; several lines or empty.
 std::string TextOfUndecided(const std::vector<ClaimVerdict>& verdicts);
 

@@ -165,9 +165,10 @@ std::optional<ExitCode> RefuseUnlessSteady(const CommandContext& context, const 
   return Complain(
       context, ExitCode::kDiffers,
       fmt::format("the events are others in {} of {} plays elsewhere (printed above); nothing was "
-                  "accepted\n  give the scenario a margin, or its line a tolerance with a reason, "
-                  "or say why that may be: --unsteady \"...\"",
-                  ensemble.differences.size(), ensemble.plays - 1));
+                  "accepted\n  give the scenario a margin{}, or say why that may be: --unsteady "
+                  "\"...\"",
+                  ensemble.differences.size(), ensemble.plays - 1,
+                  played.old ? ", or its line in the golden a tolerance with a reason" : ""));
 }
 
 /// Of a golden that stays as it is otherwise. The code if that fails.
@@ -334,6 +335,8 @@ ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) 
                     "a run that did not complete cannot be accepted: " + StatusText(played.run));
   }
   if (!options.Has("--pictures")) {
+    for (const std::string& note : NoteLines(played.loaded.scenario, played.run))
+      context.err << note << "\n";
     if (const auto refused = RefuseUnlessClaimsHold(context, played)) return *refused;
     if (const auto refused = RefuseUnlessEnginesAgree(context, played)) return *refused;
     return AcceptEvents(options, context, played);

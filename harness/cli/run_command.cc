@@ -13,6 +13,7 @@
 #include "harness/command/command.h"
 #include "harness/episodes/record_episode.h"
 #include "harness/episodes/schema.h"
+#include "harness/judge/judge_claims.h"
 #include "harness/report/report.h"
 #include "harness/run/outcome.h"
 #include "harness/run/run_text.h"
@@ -187,6 +188,10 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
   const RunResult run = Play(*loaded, {.record = options.Has("--report"), .measure = measure},
                              {recorder ? &*recorder : nullptr, episode ? &*episode : nullptr});
   for (const std::string& note : NoteLines(loaded->scenario, run)) context.err << note << "\n";
+  // Of an unfinished run the claims may still come true.
+  const std::vector<ClaimVerdict> claims = run.status.kind == physics::RunStatus::Kind::kCompleted
+                                               ? JudgeClaims(*loaded, run.timeline)
+                                               : std::vector<ClaimVerdict>{};
   std::string not_recorded;
   if (recorder) {
     recorder->Finish(run.ticks + 1);
@@ -198,12 +203,15 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
   }
   if (options.Has("--json")) {
     OrderedJson json = RunJson(loaded->scenario, run);
+    json["claims"] = ClaimsJson(claims);
     if (measure) json["measured"] = MeasurementJson(Measure(run));
     context.out << json.dump(2) << "\n";
   } else if (!record_is_output) {
     context.out << RunTable(run);
     if (measure) context.out << MeasurementText(Measure(run));
+    context.out << std::flush;
   }
+  context.err << TextOfContradicted(claims);
   if (!not_recorded.empty())
     return Complain(context, ExitCode::kFailure, "--record: " + not_recorded);
   if (options.Has("--report")) {

@@ -416,6 +416,10 @@ TEST_F(GoldenWorkflow, WhatContradictsAClaimIsNotAccepted) {
                                  "expects:\n  - one contact(table, carton)\n  - grasping\n"));
   const std::string contradiction =
       "expects: 'grasping' (" + Scenario().string() + ":5): found none";
+  const Said run = Do("run carton_rests");
+  EXPECT_EQ(run.exit_code, 0) << "a run shows what happens, a check judges it";
+  EXPECT_EQ(run.err, contradiction + "\n  no grasping\n");
+  EXPECT_EQ(Json::parse(Do("run carton_rests --json").out)["claims"][1]["found"], "found none");
   const Said checked = Do("check --no-pictures");
   EXPECT_EQ(checked.exit_code, 1);
   EXPECT_TRUE(checked.out.starts_with("failed  rest/carton_rests  " + contradiction + "\n    " +

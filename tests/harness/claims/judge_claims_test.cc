@@ -79,7 +79,9 @@ TEST(JudgeClaims, AContradictionShowsWhatWasFoundAndWhen) {
             "  sliding(hand, cup) 1.5000..2.0000 s\n"
             "  sliding(hand, cup) 3.2000..3.4000 s\n"
             "expects: 'grasping(any, jug) meets contact(hand, jug)' (x.yaml:4): found none\n"
-            "  no grasping\n"
+            "  no grasping(any, jug), but of others:\n"
+            "  grasping(hand, cup) 1.0000..2.0000 s\n"
+            "  grasping(hand, cup) 3.0000..4.0000 s\n"
             "  contact(hand, jug) 2.0000..3.0000 s\n");
 }
 
