@@ -40,14 +40,14 @@ constexpr int kJointWaypoints = 40;
 /// Likewise of an orbit or a turn, per whole turn.
 constexpr int kTurnWaypoints = 160;
 
-/// Number of hands that touch a body; at least 1.
+/// Number of hands that touch a body.
 int HandsOn(int body, const Snapshot& now) {
   std::set<int> hands;
   for (const ContactPoint& contact : now.contacts) {
     if (contact.a.body == body && contact.b.hand >= 0) hands.insert(contact.b.hand);
     if (contact.b.body == body && contact.a.hand >= 0) hands.insert(contact.a.hand);
   }
-  return std::max(static_cast<int>(hands.size()), 1);
+  return static_cast<int>(hands.size());
 }
 
 /// Upward force on a body from others than hands, newtons.
@@ -204,8 +204,12 @@ void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
     const std::optional<double> landing_m =
         LandingHeight(scene_.bodies[s], now_.bodies[s].X_WB, scene_.bodies[h], now_.bodies[h].X_WB);
     if (!landing_m) {
-      problem_ = "place_on: no part of '" + place.support + "' is below '" + scene_.bodies[h].name +
-                 "': carry it there first";
+      problem_ =
+          "place_on: no part of '" + place.support + "' is below '" + scene_.bodies[h].name + "'";
+      problem_ += HandsOn(held, now_) > 0
+                      ? ": carry it there first"
+                      : ", which no hand touches now: was it lost on the way? 'poses' tells where "
+                        "it is at each moment";
       return;
     }
     const Eigen::AlignedBox3d object = WorldBounds(scene_.bodies[h], now_.bodies[h].X_WB);
@@ -213,7 +217,7 @@ void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
     const double stiffness =
         scene_.hands[static_cast<std::size_t>(step_.hand)].model.translation.proportional;
     const double weight_n =
-        scene_.bodies[h].mass_kg * scene_.world.gravity_m_per_s2 / HandsOn(held, now_);
+        scene_.bodies[h].mass_kg * scene_.world.gravity_m_per_s2 / std::max(HandsOn(held, now_), 1);
     const double spring = std::min(weight_n / std::max(stiffness, 1.0), kMaxSpring_m);
     MoveBy({0, 0, -drop - kPress_m - spring}, kLoweringShare * step_.over_s);
     hand_.placing = Placing{.body = held, .support = support, .weight_n = weight_n};
