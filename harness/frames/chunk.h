@@ -62,13 +62,22 @@ class ChunkWriter {
     bool active = false;
     Word home = 0;  ///< the number of the chunk that has its last state
   };
+  struct Links {
+    LinkGuess guess;
+    // Per frame:
+    std::vector<physics::Pose> palms;
+    std::vector<double> joints;       ///< of all links
+    std::vector<physics::Pose> X_WL;  ///< of all links
+  };
   void AddTrack(std::size_t number, const physics::Snapshot& snapshot, bool may_have_moved);
   void AddLinks(const physics::Snapshot& snapshot);
   void AddResting(const physics::Snapshot& snapshot);
   std::string PackedTrack(std::size_t number);
   std::string PackedContacts();
   std::string PackedResting();
-  std::string PackedLinks(std::size_t hand);
+  /// Of each link 7 columns: how far the guess of its pose is off, frame by frame.
+  static Columns LinksOff(const Links& links);
+  std::string PackedLinks(const Columns& off);
   std::string PackedHead(const std::vector<bool>& has_links);
 
   FrameLayout layout_;
@@ -89,11 +98,6 @@ class ChunkWriter {
   Word resting_home_ = 0;
   std::vector<std::pair<std::size_t, std::shared_ptr<const ContactPoints>>> new_resting_;
 
-  struct Links {
-    LinkGuess guess;
-    std::vector<PlacedLink> placed;  ///< the palm, and each link
-    std::vector<Word> off;           ///< per frame 7 words for each link: how far the guess is off
-  };
   std::vector<Links> links_;
 };
 

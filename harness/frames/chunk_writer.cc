@@ -42,7 +42,7 @@ const physics::Pose& PoseOf(const physics::Snapshot& snapshot, const physics::Co
 ChunkWriter::ChunkWriter(FrameLayout layout)
     : layout_(std::move(layout)), tracks_(layout_.tracks()) {
   for (const physics::HandModel& model : layout_.hands)
-    links_.push_back({LinkGuess(model), std::vector<PlacedLink>(1 + model.links.size()), {}});
+    links_.push_back({LinkGuess(model), {}, {}, {}});
 }
 ChunkWriter::~ChunkWriter() = default;
 ChunkWriter::ChunkWriter(ChunkWriter&&) noexcept = default;
@@ -92,19 +92,9 @@ void ChunkWriter::AddLinks(const physics::Snapshot& snapshot) {
   for (std::size_t h = 0; h < links_.size(); ++h) {
     Links& links = links_[h];
     const physics::HandState& hand = snapshot.hands[h];
-    const std::size_t begin = links.off.size();
-    links.off.resize(begin + 7 * links.guess.size());
-    Word* off = links.off.data() + begin;
-    links.placed.front() = PlacedLink::Palm(hand.palm.X_WB);
-    for (std::size_t i = 0; i < links.guess.size(); ++i) {
-      const auto parent = static_cast<std::size_t>(links.guess.ParentOf(i) + 1);
-      PlacedLink& placed = links.placed[i + 1];
-      placed = links.guess.Guess(i, links.placed[parent], hand.joints[i]);
-      const physics::Pose &guessed = placed.X_WL, &found = hand.X_WL[i];
-      for (int k = 0; k < 3; ++k) *off++ = OffBy(found.p_m[k], guessed.p_m[k]);
-      for (int k = 0; k < 4; ++k) *off++ = OffBy(found.q.coeffs()[k], guessed.q.coeffs()[k]);
-      placed.Correct(found);
-    }
+    links.palms.push_back(hand.palm.X_WB);
+    links.joints.insert(links.joints.end(), hand.joints.begin(), hand.joints.end());
+    links.X_WL.insert(links.X_WL.end(), hand.X_WL.begin(), hand.X_WL.end());
   }
 }
 
@@ -127,8 +117,15 @@ Chunk ChunkWriter::Take() {
               .frames = ticks_.size(),
               .parts = {}};
   std::vector<bool> has_links;
-  for (const Links& links : links_)
-    has_links.push_back(std::ranges::any_of(links.off, [](Word word) { return word != 0; }));
+  std::vector<Columns> links_off;
+  for (Links& links : links_) {
+    links_off.push_back(LinksOff(links));
+    has_links.push_back(
+        std::ranges::any_of(links_off.back().words, [](Word word) { return word != 0; }));
+    links.palms.clear();
+    links.joints.clear();
+    links.X_WL.clear();
+  }
   chunk.parts.push_back({FrameLayout::kHead, PackedHead(has_links)});
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     if (tracks_[i].active) chunk.parts.push_back({FrameLayout::PartOfTrack(i), PackedTrack(i)});
@@ -136,8 +133,7 @@ Chunk ChunkWriter::Take() {
   if (!contacts_.empty()) chunk.parts.push_back({layout_.Contacts(), PackedContacts()});
   if (!new_resting_.empty()) chunk.parts.push_back({layout_.Resting(), PackedResting()});
   for (std::size_t h = 0; h < links_.size(); ++h) {
-    if (has_links[h]) chunk.parts.push_back({layout_.PartOfLinks(h), PackedLinks(h)});
-    links_[h].off.clear();
+    if (has_links[h]) chunk.parts.push_back({layout_.PartOfLinks(h), PackedLinks(links_off[h])});
   }
   for (Track& track : tracks_) {
     track.active = false;
@@ -191,13 +187,39 @@ std::string ChunkWriter::PackedResting() {
   return std::string(compressor_.Pack(bytes));
 }
 
-std::string ChunkWriter::PackedLinks(std::size_t hand) {
+Columns ChunkWriter::LinksOff(const Links& links) {
+  const std::size_t frames = links.palms.size(), count = links.guess.size();
+  Columns off(frames, 7 * count);
+  std::vector<PlacedLinks> placed(1 + count);  // the palm, and each link
+  for (std::size_t first = 0; first < frames; first += kLanes) {
+    const auto frame = [&](std::size_t lane) { return std::min(first + lane, frames - 1); };
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      placed.front().PutPalm(lane, links.palms[frame(lane)]);
+    for (std::size_t i = 0; i < count; ++i) {
+      Lanes joints{};
+      for (std::size_t lane = 0; lane < kLanes; ++lane)
+        joints[lane] = links.joints[frame(lane) * count + i];
+      PlacedLinks& now = placed[i + 1];
+      links.guess.Guess(i, placed[static_cast<std::size_t>(links.guess.ParentOf(i) + 1)], joints,
+                        now);
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const physics::Pose &guessed = now.X_WL[lane], &found = links.X_WL[frame(lane) * count + i];
+        Word* to = &off.At(frame(lane), 7 * i);
+        for (int k = 0; k < 3; ++k, to += frames) *to = OffBy(found.p_m[k], guessed.p_m[k]);
+        for (int k = 0; k < 4; ++k, to += frames)
+          *to = OffBy(found.q.coeffs()[k], guessed.q.coeffs()[k]);
+        now.Correct(lane, found);
+      }
+    }
+  }
+  return off;
+}
+
+std::string ChunkWriter::PackedLinks(const Columns& off) {
   // Small numbers: a byte each is nearly always enough.
-  const std::size_t width = 7 * links_[hand].guess.size();
-  const Columns columns = Transposed(links_[hand].off, width);
   std::string bytes;
-  AppendVarint(columns.rows, bytes);
-  EncodeSmall(columns, bytes);
+  AppendVarint(off.rows, bytes);
+  EncodeSmall(off, bytes);
   return std::string(compressor_.Pack(bytes));
 }
 

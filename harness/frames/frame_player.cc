@@ -43,7 +43,8 @@ bool FramePlayer::Open(const FetchPart& fetch, bool follows) {
     if (!links_[hand] || links_[hand]->rows != head_.ticks.size()) return false;
   }
   for (std::size_t hand = 0; hand < layout_.hands.size(); ++hand) {
-    const std::size_t count = (1 + guesses_[hand].size()) * head_.ticks.size();
+    const std::size_t blocks = (head_.ticks.size() + kLanes - 1) / kLanes;
+    const std::size_t count = (1 + guesses_[hand].size()) * blocks;
     hand_poses_[hand].known.assign(count, false);
     hand_poses_[hand].placed.resize(count);
   }
@@ -81,9 +82,8 @@ bool FramePlayer::OpenContacts(const FetchPart& fetch) {
 
 physics::Pose FramePlayer::PoseOf(std::size_t frame, const physics::ContactSide& side) {
   if (side.hand >= 0)
-    return Placed(static_cast<std::size_t>(side.hand),
-                  static_cast<std::size_t>(side.link < 0 ? 0 : side.link + 1), frame)
-        .X_WL;
+    return PlaceOf(static_cast<std::size_t>(side.hand),
+                   static_cast<std::size_t>(side.link < 0 ? 0 : side.link + 1), frame);
   const auto body = static_cast<std::size_t>(side.body);
   return tracks_[body] ? PoseInRow(*tracks_[body], frame) : now_.bodies[body].X_WB;
 }
@@ -128,34 +128,41 @@ const physics::Snapshot* FramePlayer::Show(std::size_t frame, bool links) {
   }
   for (std::size_t hand = 0; links && hand < layout_.hands.size(); ++hand) {
     for (std::size_t link = 0; link < guesses_[hand].size(); ++link)
-      now_.hands[hand].X_WL[link] = Placed(hand, link + 1, frame).X_WL;
+      now_.hands[hand].X_WL[link] = PlaceOf(hand, link + 1, frame);
   }
   return &now_;
 }
 
-const PlacedLink& FramePlayer::Placed(std::size_t hand, std::size_t place, std::size_t frame) {
+const PlacedLinks& FramePlayer::Placed(std::size_t hand, std::size_t place, std::size_t block) {
   HandPoses& kept = hand_poses_[hand];
-  const std::size_t at = frame * (1 + guesses_[hand].size()) + place;
-  PlacedLink& placed = kept.placed[at];
+  const std::size_t at = block * (1 + guesses_[hand].size()) + place;
+  PlacedLinks& placed = kept.placed[at];
   if (kept.known[at]) return placed;
   kept.known[at] = true;
   const std::optional<Columns>& track = tracks_[layout_.FirstHand() + hand];
   const physics::HandState& state = now_.hands[hand];  // where the track does not change
+  const std::size_t first = block * kLanes, last = head_.ticks.size() - 1;
+  const auto frame = [&](std::size_t lane) { return std::min(first + lane, last); };
   if (place == 0) {
-    placed = PlacedLink::Palm(track ? PoseInRow(*track, frame) : state.palm.X_WB);
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      placed.PutPalm(lane, track ? PoseInRow(*track, frame(lane)) : state.palm.X_WB);
     return placed;
   }
   const std::size_t link = place - 1;
   const auto parent = static_cast<std::size_t>(guesses_[hand].ParentOf(link) + 1);
-  placed = guesses_[hand].Guess(link, Placed(hand, parent, frame),
-                                track ? JointInRow(*track, frame, link) : state.joints[link]);
+  Lanes joints{};
+  for (std::size_t lane = 0; lane < kLanes; ++lane)
+    joints[lane] = track ? JointInRow(*track, frame(lane), link) : state.joints[link];
+  guesses_[hand].Guess(link, Placed(hand, parent, block), joints, placed);
   if (!links_[hand]) return placed;
-  physics::Pose found = placed.X_WL;
-  AddOff(*links_[hand], frame, link, found);
-  if (layout_.version == 1)
-    placed.X_WL = found;  // the links on it went on from the guess
-  else
-    placed.Correct(found);
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    physics::Pose found = placed.X_WL[lane];
+    AddOff(*links_[hand], frame(lane), link, found);
+    if (layout_.version == 1)
+      placed.X_WL[lane] = found;  // the links on it went on from the guess
+    else
+      placed.Correct(lane, found);
+  }
   return placed;
 }
 

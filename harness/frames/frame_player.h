@@ -39,8 +39,12 @@ class FramePlayer {
   bool OpenTrack(const FetchPart& fetch, std::size_t track, bool follows);
   bool OpenContacts(const FetchPart& fetch);
   bool OpenResting(const FetchPart& fetch, bool follows);
-  /// The palm of a hand (place 0) or one of its links (place 1, ..) in a frame, computed once.
-  const PlacedLink& Placed(std::size_t hand, std::size_t place, std::size_t frame);
+  /// The palm of a hand (place 0) or one of its links (place 1, ..) in the frames of a block of
+  /// kLanes, computed once.
+  const PlacedLinks& Placed(std::size_t hand, std::size_t place, std::size_t block);
+  const physics::Pose& PlaceOf(std::size_t hand, std::size_t place, std::size_t frame) {
+    return Placed(hand, place, frame / kLanes).X_WL[frame % kLanes];
+  }
   physics::Pose PoseOf(std::size_t frame, const physics::ContactSide& side);
 
   FrameLayout layout_;
@@ -52,9 +56,9 @@ class FramePlayer {
   std::vector<PartReader::RestingFrom> resting_;
   std::vector<std::optional<Columns>> links_;
   std::vector<LinkGuess> guesses_;
-  struct HandPoses {  ///< frame after frame, in each place after place
-    std::vector<bool> known;
-    std::vector<PlacedLink> placed;
+  struct HandPoses {  ///< block after block, in each place after place
+    std::vector<char> known;
+    std::vector<PlacedLinks> placed;
   };
   std::vector<HandPoses> hand_poses_;
   physics::Snapshot now_;

@@ -4,6 +4,8 @@
 // tests/harness/frames/columns_test.cc
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "physics/scene/hand_model.h"
@@ -28,15 +30,19 @@ Vector3 Rotated(const Turn& q, const Vector3& v);
 /// The rotation after one more `dt_s` at this angular velocity (the exponential map).
 Turn Turned(const Turn& before, const Vector3& w_rad_per_s, double dt_s);
 
-/// A palm, or a link on it.
-struct PlacedLink {
-  Turn turn;    ///< from the world to it
-  Vector3 p_m;  ///< from where the links on it go on
-  physics::Pose X_WL;
+/// So many frames are computed at a time, as processors have wide registers.
+inline constexpr std::size_t kLanes = 4;
+using Lanes = std::array<double, kLanes>;
 
-  static PlacedLink Palm(const physics::Pose& X_WPalm);
+/// A palm, or a link on it, in several frames.
+struct PlacedLinks {
+  alignas(32) std::array<Lanes, 4> turn{};  ///< x y z w, from the world to it
+  alignas(32) std::array<Lanes, 3> p_m{};   ///< from where the links on it go on
+  std::array<physics::Pose, kLanes> X_WL;
+
+  void PutPalm(std::size_t lane, const physics::Pose& X_WPalm);
   /// What is known of its pose after all; the links on it go on from there.
-  void Correct(const physics::Pose& found);
+  void Correct(std::size_t lane, const physics::Pose& found);
 };
 
 /// Where the links of a hand are that has these joints: forward kinematics, link after link.
@@ -46,7 +52,8 @@ class LinkGuess {
   std::size_t size() const { return links_.size(); }
   /// The link that this one is on; -1: the palm.
   int ParentOf(std::size_t link) const { return links_[link].parent; }
-  PlacedLink Guess(std::size_t link, const PlacedLink& parent, double joint) const;
+  void Guess(std::size_t link, const PlacedLinks& parent, const Lanes& joints,
+             PlacedLinks& placed) const;
 
  private:
   struct Link {

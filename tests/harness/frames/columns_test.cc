@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -115,6 +116,65 @@ TEST(Columns, DamagedBytesAreRefusedOrReadAsSomething) {
     for (int i = 0; i < 3; ++i) bad[random() % bad.size()] = static_cast<char>(random());
     std::string_view bytes = bad;
     (void)Decode(bytes, motion.rows, motion.width, {.dt_s = dt_s});
+  }
+}
+
+/// A finger on the palm, one on that, and one that slides.
+physics::HandModel Fingers() {
+  physics::HandModel model;
+  model.links.resize(3);
+  model.links[0].joint_axis = {0, 1, 0};
+  model.links[1].parent = 0;
+  model.links[1].joint_axis = {0.6, 0, 0.8};
+  model.links[1].pivot_m = {0.03, 0.01, 0};
+  model.links[2].slides = true;
+  model.links[2].joint_axis = {1, 0, 0};
+  return model;
+}
+
+std::vector<PlacedLinks> Placed(const LinkGuess& guess, const std::array<physics::Pose, 4>& palms,
+                                const std::vector<Lanes>& joints) {
+  std::vector<PlacedLinks> placed(1 + guess.size());
+  for (std::size_t lane = 0; lane < kLanes; ++lane) placed[0].PutPalm(lane, palms[lane]);
+  for (std::size_t i = 0; i < guess.size(); ++i)
+    guess.Guess(i, placed[static_cast<std::size_t>(guess.ParentOf(i) + 1)], joints[i],
+                placed[i + 1]);
+  return placed;
+}
+
+TEST(LinkGuess, IsForwardKinematicsAndEachFrameIsAloneInIt) {
+  const physics::HandModel model = Fingers();
+  const LinkGuess guess(model);
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int trial = 0; trial < 500; ++trial) {
+    std::array<physics::Pose, 4> palms;
+    for (physics::Pose& palm : palms)
+      palm = {{any(random), any(random), any(random)},
+              Eigen::Quaterniond(any(random), any(random), any(random), any(random)).normalized()};
+    std::vector<Lanes> joints(3);
+    for (Lanes& of_link : joints) {
+      for (double& joint : of_link) joint = 3 * any(random);
+    }
+    const std::vector<PlacedLinks> placed = Placed(guess, palms, joints);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::array<physics::Pose, 4> same = {palms[lane], palms[lane], palms[lane],
+                                                 palms[lane]};
+      std::vector<Lanes> alone;
+      for (const Lanes& of_link : joints)
+        alone.push_back({of_link[lane], of_link[lane], of_link[lane], of_link[lane]});
+      const std::vector<PlacedLinks> one = Placed(guess, same, alone);
+      const std::vector<physics::Pose> exact =
+          physics::LinkPoses(model, {joints[0][lane], joints[1][lane], joints[2][lane]});
+      for (std::size_t i = 0; i < guess.size(); ++i) {
+        const physics::Pose& found = placed[i + 1].X_WL[lane];
+        EXPECT_EQ(found.p_m, one[i + 1].X_WL[0].p_m);
+        EXPECT_EQ(found.q.coeffs(), one[i + 1].X_WL[0].q.coeffs());
+        const Eigen::Vector3d p_W_m = palms[lane].p_m + palms[lane].q * exact[i].p_m;
+        EXPECT_LT((found.p_m - p_W_m).norm(), 1e-12) << i;
+        EXPECT_LT(found.q.angularDistance(palms[lane].q * exact[i].q), 1e-7) << i;
+      }
+    }
   }
 }
 

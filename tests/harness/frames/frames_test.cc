@@ -60,11 +60,12 @@ std::vector<physics::Snapshot> Frames(std::size_t count) {
     hand.palm.X_WB.p_m = {0, t, 0};
     hand.joints = {std::sin(t), 0.001 * t};
     hand.style = i % 100 == 0 ? 1 : 0;
-    std::vector<PlacedLink> placed = {PlacedLink::Palm(hand.palm.X_WB)};
+    std::vector<PlacedLinks> placed(1 + links.size());
+    placed[0].PutPalm(0, hand.palm.X_WB);
     for (std::size_t link = 0; link < links.size(); ++link) {
       const auto parent = static_cast<std::size_t>(links.ParentOf(link) + 1);
-      placed.push_back(links.Guess(link, placed[parent], hand.joints[link]));
-      hand.X_WL[link] = placed.back().X_WL;
+      links.Guess(link, placed[parent], {hand.joints[link]}, placed[link + 1]);
+      hand.X_WL[link] = placed[link + 1].X_WL[0];
     }
     if (i >= 480) hand.X_WL[1].p_m.x() += 1e-15 * any(random);
     now.gazes[0].body = static_cast<int>(i % 4) - 1;
