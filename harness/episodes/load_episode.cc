@@ -117,6 +117,7 @@ Result<SegmentedRecording> SegmentRecorded(const EpisodeFile& file, const Episod
 void EpisodeLoader::Refresh() {
   if (library_.read_hand && writes_read_ == tasks_.writes()) return;
   library_ = ProjectLibrary(tasks_.root());
+  library_.were_played = true;
   std::erase_if(programs_, [](const auto& known) { return known.first.is_own; });
   writes_read_ = tasks_.writes();
 }

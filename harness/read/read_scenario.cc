@@ -218,8 +218,10 @@ Result<Scenario> Resolve(const std::string& file, const YamlDocument& document,
   ValidateVariations(document, entry.vary, errors);
   if (scene.world.planar) ValidatePlanar(entry, scene, errors);
   if (errors.empty()) ValidateDistances(entry, scene, errors);
-  if (errors.empty()) ValidatePlacement(entry, scene, errors);
-  if (errors.empty()) ValidatePutDowns(entry, scene, errors);
+  if (errors.empty() && !library.were_played) {
+    ValidatePlacement(entry, scene, errors);
+    if (errors.empty()) ValidatePutDowns(entry, scene, errors);
+  }
   if (!errors.empty()) return AllOf(errors, in_other_files);
 
   scenario.name = entry.name.value;
@@ -264,7 +266,7 @@ Result<Scenario> ReadDocumentAs(const std::string& file, Result<YamlDocument> do
       return tl::unexpected(std::move(bad));
   }
   Result<Scenario> scenario = Resolve(file, *document, library);
-  if (!scenario) return scenario;
+  if (!scenario || library.were_played) return scenario;
   Diagnostics unreadable = CheckDraws(
       *document, scenario->variations,
       [&](const YamlDocument& varied) { return ErrorsOf(Resolve(file, varied, library)); });

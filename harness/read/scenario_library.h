@@ -24,6 +24,9 @@ struct ScenarioLibrary {
       read_hand;
   /// Called with the path of each recording before it is read; may be empty.
   std::function<void(const std::string& path)> reads_recording = {};
+  /// The scenarios have been read and played before: what their `vary` may draw, and whether things
+  /// stand within each other, is not checked again.
+  bool were_played = false;
 };
 
 }  // namespace prehend::harness

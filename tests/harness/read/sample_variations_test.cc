@@ -39,6 +39,16 @@ TEST(Vary, ChoosesAmongNumbersAndFlagsToo) {
   EXPECT_FALSE(ReadVarying("vary:\n  - {fields: [world.planar], choose: [no]}\n"));
 }
 
+TEST(Vary, IsNotCheckedAgainWhereTheScenarioWasPlayed) {
+  const std::string vary = "vary:\n  - {fields: [entities.milk.mass_kg], choose: [-1]}\n";
+  EXPECT_FALSE(ReadVarying(vary));
+  ScenarioLibrary library = ProbeLibrary();
+  library.were_played = true;
+  const auto read = ReadScenarioText("probe.yaml", kProbe + vary, {}, library);
+  ASSERT_TRUE(read) << Brief(ErrorsOf(read));
+  EXPECT_EQ(read->variations.size(), 1u);
+}
+
 TEST(Vary, TheSameTrialIsTheSameDraw) {
   EXPECT_EQ(Draw(kMass, 1, 7), Draw(kMass, 1, 7));
   EXPECT_NE(Draw(kMass, 1, 7), Draw(kMass, 1, 8));
