@@ -78,6 +78,10 @@ class CsvPoseReader {
     if (line_ < map_.header_line)
       Complain({1, 1}, fmt::format("{} lines; the header is on line {}", line_, map_.header_line));
     if (!problems_.empty()) return;
+    for (PoseBody& body : poses.bodies)
+      for (PoseSample& sample : body.samples) sample.t_s -= poses.first_s;
+    poses.last_s -= poses.first_s;
+    poses.first_s = 0;
     if (poses.rows < 2)
       return Complain({line_, 1}, fmt::format("{} rows; a recording has at least 2", poses.rows));
     RefuseAbsentBodies(poses, map_, map_errors_);
@@ -178,18 +182,23 @@ class CsvPoseReader {
       t_s = (*time - *first_time_) * SecondsPer(map_);
     }
     const Place place{line_, time_seat_ ? cells[*time_seat_].column : 1};
-    if (poses.rows > 0 && (body_seat_ ? t_s < poses.last_s : t_s <= poses.last_s))
-      return Complain(place, fmt::format("the times must increase from row to row: {:.6g} s after "
-                                         "the first row comes after {:.6g} s",
-                                         t_s, poses.last_s));
-    poses.last_s = t_s;
+    // One body after the other is as good as one time after the other.
+    const std::string name(body_seat_ ? cells[*body_seat_].text : "");
+    const auto [before, is_first] = last_times_s_.try_emplace(name, t_s);
+    if (!is_first && (body_seat_ ? t_s < before->second : t_s <= before->second))
+      return Complain(place,
+                      fmt::format("the times{} must increase from row to row: {:.6g} s after the "
+                                  "first row comes after {:.6g} s",
+                                  body_seat_ ? " of '" + name + "'" : "", t_s, before->second));
+    before->second = t_s;
+    poses.first_s = std::min(poses.first_s, t_s);
+    poses.last_s = std::max(poses.last_s, t_s);
     ++poses.rows;
     if (!body_seat_) {
       for (std::size_t i = 0; i < wide_.size(); ++i)
         TakePose(cells, wide_[i], t_s, poses.bodies[i]);
       return;
     }
-    const std::string name(cells[*body_seat_].text);
     const auto body = index_.find(name);
     if (body != index_.end()) return TakePose(cells, shared_, t_s, poses.bodies[body->second]);
     if (std::ranges::find(poses.unused, name) == poses.unused.end() && poses.unused.size() < 1000)
@@ -262,6 +271,7 @@ class CsvPoseReader {
   std::map<std::string, std::size_t> index_;  ///< of bodies
   std::optional<std::size_t> time_seat_, body_seat_;
   std::optional<double> first_time_;
+  std::map<std::string, double> last_times_s_;  ///< by body; of a row with all bodies under ""
   Seats shared_;
   std::vector<Seats> wide_;
 };

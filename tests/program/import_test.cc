@@ -214,7 +214,7 @@ TEST(Import, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
       {"not of length one", Replaced(Csv(), mug, Replaced(mug, ",1,0,0,0\n", ",1,0,0.5,0\n")), kMap,
        "poses.csv:122:36: error: 'Mug': expected a unit quaternion, found one of length 1.118"},
       {"time goes back", change("\n1.0000,Mug", "\n0.9000,Mug"), kMap,
-       "poses.csv:122:1: error: the times must increase from row to row"},
+       "poses.csv:122:1: error: the times of 'Mug' must increase from row to row: 0.9 s after"},
       {"nan", change("\n1.0000,Mug,0.00000", "\n1.0000,Mug,nan"), kMap,
        "poses.csv:122:12: error: expected a number, found 'nan'"},
       {"no number", change("\n1.0000,Mug,0.00000", "\n1.0000,Mug,left"), kMap,
@@ -266,6 +266,26 @@ TEST(Import, ADoubtIsCalledAsThePageAndTheMapCallIt) {
     const Said said = Import(folder, Csv(), std::string(kMap) + "sure: [" + doubt + "]\n");
     EXPECT_EQ(said.exit_code, 0) << doubt << said.err;
   }
+}
+
+// As files of one body each, put together: the glove began a frame earlier.
+TEST(Import, OneBodyMayFollowTheOther) {
+  const auto folder = FreshFolder("import");
+  ASSERT_EQ(Import(folder, Csv(), kMap).exit_code, 0);
+  const std::string in_turn = ReadFile(folder / "take.jsonl");
+  std::string of_mug, of_glove;
+  Csv([&](const char* name, Row row) {
+    (name[0] == 'M' ? of_mug : of_glove) += AsWritten(name, row);
+    return std::string();
+  });
+  const std::string head = "t,name,x,y,z,qw,qx,qy,qz\n";
+  ASSERT_EQ(Import(folder, head + of_mug + of_glove, kMap).exit_code, 0);
+  EXPECT_EQ(ReadFile(folder / "take.jsonl"), in_turn);
+  const std::size_t second = of_mug.find('\n') + 1;
+  const Said late = Import(folder, head + of_mug.substr(second) + of_glove,
+                           kMap + std::string("lost: unknown\n"), {"--check"});
+  EXPECT_EQ(late.exit_code, 0) << late.err;
+  EXPECT_TRUE(late.out.starts_with("a_cup_is_carried: 301 frames, 5.000 s\n")) << late.out;
 }
 
 // The cup is 4 mm to one side and 4 mm to the other, from frame to frame.
