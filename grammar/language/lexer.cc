@@ -134,8 +134,15 @@ class Lexer {
     if (kOneByte.find(Peek()) != std::string_view::npos) return Take(Token::Kind::kSymbol, 1);
     const std::size_t length = Utf8Length(text(), at_);
     const std::string found(text().substr(at_, length));
-    Complain("unexpected character '" + found + "'", HintFor(found));
+    Complain(IsOtherBlank(found) ? "unexpected character that looks like a blank, but is none"
+                                 : "unexpected character '" + found + "'",
+             HintFor(found));
     while (text().substr(at_, length) == found) at_ += length;  // `&&` is one mistake
+  }
+
+  static bool IsOtherBlank(std::string_view found) {
+    return found == "\u00A0" || found == "\u2007" || found == "\u202F" || found == "\u3000" ||
+           found == "\u200B" || found == "\uFEFF";
   }
 
   /// What it means in other languages.
@@ -145,6 +152,8 @@ class Lexer {
     if (found == "!") return "it must not hold: not F";
     if (found == "%") return "shares are plain numbers: 0.5";
     if (found == "^") return "units are quotients: m/s/s";
+    if (IsOtherBlank(found)) return "separate with plain spaces";
+    if (found == "\u201C" || found == "\u201D") return "quotes are straight: \"";
     if (found == ";") return "nothing ends a line or a definition";
     return {};
   }

@@ -2,6 +2,8 @@
 // One function per form of a definition, then its modifiers in any order.
 #include "grammar/language/parser.h"
 
+#include <algorithm>
+
 #include "grammar/language/law_parser.h"
 
 namespace prehend::grammar {
@@ -72,7 +74,8 @@ class Parser : public LawParser {
              "one file holds one grammar; `use NAME` reads another one");
     } else {
       Fail("expected 'use', 'param', 'define', 'condition', 'event' or 'law', found " + Found(),
-           WordHint());
+           At(",") && Peek(1).kind == Token::Kind::kNumber ? "decimals have a point: 2.5"
+                                                           : WordHint());
     }
   }
 
@@ -421,10 +424,27 @@ class Parser : public LawParser {
   }
 };
 
+/// The place of the first word if it begins a scenario; line 0 otherwise.
+Place ScenarioIn(std::string_view text) {
+  for (int line = 1; !text.empty(); ++line) {
+    const std::string_view here = text.substr(0, text.find('\n'));
+    if (here.starts_with("scenario:")) return {line, 1};
+    if (!here.empty() && here.front() != '#' && here.front() != '\r') break;
+    text.remove_prefix(std::min(text.size(), here.size() + 1));
+  }
+  return {0, 0};
+}
+
 }  // namespace
 
 ast::File Parse(const GrammarText& grammar, Diagnostics& diagnostics) {
   const std::size_t before = diagnostics.size();
+  if (const Place place = ScenarioIn(grammar.text); place.line > 0) {
+    diagnostics.push_back(DiagnosticAt(grammar.file, grammar.text, place,
+                                       "expected a grammar, found a scenario",
+                                       "the name of a scenario's file ends in .yaml"));
+    return {};
+  }
   Parser parser(grammar, diagnostics);
   if (diagnostics.size() != before) return {};
   return parser.ParseFile();
