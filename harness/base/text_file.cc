@@ -98,6 +98,14 @@ Diagnostic NotText(const std::string& file, std::string_view text, std::size_t o
           .hint = "is this a text file, saved as UTF-8?"};
 }
 
+/// With a byte order mark, or as two letters of English look in it.
+bool IsUtf16(std::string_view text) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return true;
+  if (text.size() < 4) return false;
+  const auto is_zero = [&](std::size_t i) { return text[i] == '\0'; };
+  return is_zero(0) != is_zero(1) && is_zero(0) == is_zero(2) && is_zero(1) == is_zero(3);
+}
+
 std::string WithUnixLineEnds(std::string text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   std::string out;
@@ -151,6 +159,11 @@ Diagnostics CheckText(const std::string& file, std::string_view text) {
   if (text.empty())
     return {
         {.file = file, .place = {}, .message = "the file is empty", .source_line = {}, .hint = {}}};
+  if (IsUtf16(text)) {
+    Diagnostic wide = NotText(file, text, 0, "expected UTF-8, found UTF-16");
+    wide.hint = "save it as UTF-8";
+    return {std::move(wide)};
+  }
   for (std::size_t i = 0; i < text.size();) {
     if (text[i] == '\r') {
       Diagnostic alone = NotText(file, text, i, "a carriage return without a line feed");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -94,8 +95,31 @@ class GoldenReader {
     }
     const std::size_t colon = comment.find(": ");
     const std::string key = comment.substr(0, colon);
-    if (colon == std::string::npos || !ReadProvenance(key, colon + 2))
+    if (colon == std::string::npos || !ReadProvenance(key, colon + 2)) {
+      NoteNearMiss(comment);
       golden_.comments.push_back(comment);
+    }
+  }
+
+  /// A comment that may be meant as a line of the header that must not be missing.
+  void NoteNearMiss(std::string_view comment) {
+    const std::string_view word = comment.substr(0, comment.find(':'));
+    if (word.size() == comment.size() || word.size() > 40) return;
+    const std::size_t begin = std::min(word.find_first_not_of(" \t"), word.size());
+    const std::string near =
+        grammar::NearestName(word.substr(begin), {"scenario", "grammar", "ticks_per_second"});
+    if (!near.empty())
+      near_misses_.try_emplace(near, NearMiss{line_, line_number_, column_ + begin});
+  }
+
+  /// Of the header; at a line that is nearly it, if there is one.
+  void ComplainOfMissing(const std::string& key, const std::string& message) {
+    const auto near = near_misses_.find(key);
+    if (near == near_misses_.end()) return Complain(message);
+    line_ = near->second.line;
+    line_number_ = near->second.number;
+    column_ = near->second.column;
+    Complain(message, fmt::format("write '# {}: ', with these blanks", key));
   }
 
   /// False for any other key: the line is an ordinary comment.
@@ -174,7 +198,8 @@ class GoldenReader {
 
   void ReadEvent() {
     if (!has_ticks_per_second_) {
-      if (!missing_rate_reported_) Complain("an event before the line '# ticks_per_second: N'");
+      if (!missing_rate_reported_)
+        ComplainOfMissing("ticks_per_second", "an event before the line '# ticks_per_second: N'");
       missing_rate_reported_ = true;
       return;
     }
@@ -225,7 +250,9 @@ class GoldenReader {
         if (!ReadValue(line, key, word_column)) return false;
       } else if (AtEnd() || line_[column_] != '=') {
         return Fail(fmt::format("expected '=' after '{}'", key),
-                    "ROLE=NAME without blanks, or open_end");
+                    grammar::NearestName(key, {"open_end"}).empty()
+                        ? "ROLE=NAME without blanks, or open_end"
+                        : "did you mean 'open_end'?");
       } else if (++column_; key == "tolerance") {
         if (!ReadTolerance(line)) return false;
         may_explain = true;
@@ -361,12 +388,15 @@ class GoldenReader {
 
   void CheckWhole() {
     if (!diagnostics_.empty()) return;
-    line_ = {};
-    line_number_ = 0;
-    column_ = 0;
-    if (golden_.scenario.empty()) Complain("the line '# scenario: skill/name' is missing");
-    if (golden_.grammar.empty()) Complain("the line '# grammar: name' is missing");
-    if (!has_ticks_per_second_) Complain("the line '# ticks_per_second: N' is missing");
+    const auto must_have = [this](bool has, const std::string& key, const char* value) {
+      line_ = {};
+      line_number_ = 0;
+      column_ = 0;
+      if (!has) ComplainOfMissing(key, fmt::format("the line '# {}: {}' is missing", key, value));
+    };
+    must_have(!golden_.scenario.empty(), "scenario", "skill/name");
+    must_have(!golden_.grammar.empty(), "grammar", "name");
+    must_have(has_ticks_per_second_, "ticks_per_second", "N");
   }
 
   bool AtEnd() const { return column_ >= line_.size(); }
@@ -416,6 +446,12 @@ class GoldenReader {
   bool table_begun_ = false;
   bool has_ticks_per_second_ = false;
   bool missing_rate_reported_ = false;
+  struct NearMiss {
+    std::string_view line;
+    int number = 0;
+    std::size_t column = 0;
+  };
+  std::map<std::string, NearMiss> near_misses_;  ///< by what may be meant
   std::vector<std::string> pending_comments_;
   std::set<std::pair<std::string, std::pair<Tick, Tick>>> seen_;
   Golden golden_;

@@ -15,6 +15,7 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -287,6 +288,57 @@ std::pair<std::string, std::string> InPlainWords(const std::string& message, std
   return {"not valid YAML: " + message, ""};
 }
 
+/// What looks like a blank, and is none: where one is in the lines up to a syntax error, it is the
+/// cause.
+std::optional<Place> WrongBlank(std::string_view text, int up_to_line) {
+  for (int number = std::max(1, up_to_line - 1); number <= up_to_line; ++number) {
+    const std::string_view line = LineOf(text, number);
+    for (const char* blank : {"\u00A0", "\u3000", "\u200B", "\uFEFF", "\u2007", "\u202F"}) {
+      const std::size_t at = line.find(blank);
+      if (at != std::string_view::npos) return Place{number, static_cast<int>(at) + 1};
+    }
+  }
+  return std::nullopt;
+}
+
+/// A line that should begin a value, but has no ':'; the next one is where YAML stumbles.
+std::optional<Place> KeyWithoutColon(std::string_view text, int line_number) {
+  const std::string_view line = LineOf(text, line_number - 1), next = LineOf(text, line_number);
+  const std::size_t begin = line.find_first_not_of(' ');
+  if (line_number < 2 || begin == std::string_view::npos || begin != next.find_first_not_of(' '))
+    return std::nullopt;
+  const bool has_colon = line.find(": ") != std::string_view::npos || line.ends_with(':');
+  if (has_colon || line[begin] == '#' || line[begin] == '-') return std::nullopt;
+  return Place{line_number - 1, static_cast<int>(begin) + 1};
+}
+
+/// The first line with anything in it, if it is that of a grammar.
+std::optional<Place> GrammarLine(std::string_view text) {
+  for (int number = 1; !text.empty(); ++number) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    const std::size_t begin = line.find_first_not_of(' ');
+    if (begin != std::string_view::npos && line[begin] != '#') {
+      const bool is_grammar = line.starts_with("grammar ") && line.find(':') == line.npos;
+      return is_grammar ? std::optional(Place{number, 1}) : std::nullopt;
+    }
+    text.remove_prefix(std::min(text.size(), line.size() + 1));
+  }
+  return std::nullopt;
+}
+
+/// Of a syntax error: where it is to be mended, and how.
+void Explain(TreeBuilder& builder, const std::string& message, std::string_view text, Place place) {
+  if (const auto blank = WrongBlank(text, place.line))
+    return builder.Complain(*blank,
+                            "not valid YAML: a character that looks like a blank, but is none",
+                            "separate with plain spaces");
+  const auto key = KeyWithoutColon(text, place.line);
+  if (key && message == "illegal map value")
+    return builder.Complain(*key, "not valid YAML: a line without ':'", "write 'KEY: VALUE'");
+  const auto [plain, hint] = InPlainWords(message, text, place);
+  builder.Complain(place, plain, hint);
+}
+
 }  // namespace
 
 const YamlNode* YamlNode::Find(std::string_view name) const {
@@ -300,6 +352,10 @@ const YamlNode* YamlNode::Find(std::string_view name) const {
 Result<YamlDocument> ParseYaml(const std::string& file, std::string text) {
   if (auto bad = CheckText(file, text); !bad.empty()) return tl::unexpected(std::move(bad));
   if (auto bad = CheckTabs(file, text); !bad.empty()) return tl::unexpected(std::move(bad));
+  if (const auto place = GrammarLine(text))
+    return tl::unexpected(
+        Diagnostics{DiagnosticAt(file, text, *place, "expected YAML, found a grammar",
+                                 "the name of a grammar's file ends in .grammar")});
   TreeBuilder builder(file, text);
   try {
     std::istringstream stream(text);
@@ -313,8 +369,7 @@ Result<YamlDocument> ParseYaml(const std::string& file, std::string text) {
     builder.diagnostics.clear();  // they may be consequences
     const Place place =
         error.mark.is_null() ? Place{} : Place{error.mark.line + 1, error.mark.column + 1};
-    const auto [message, hint] = InPlainWords(error.msg, text, place);
-    builder.Complain(place, message, hint);
+    Explain(builder, error.msg, text, place);
   }
   if (!builder.diagnostics.empty()) return tl::unexpected(std::move(builder.diagnostics));
   return YamlDocument{{{file, std::move(text)}}, std::move(builder.root)};

@@ -182,7 +182,7 @@ ErasedFormat ErasedInteger(std::int64_t lowest, std::int64_t highest, const Inte
                 const auto meaning = NumericMeaning(node);
                 constexpr double kExactInDouble = 9007199254740992.0;  // 2^53
                 if (!meaning || !meaning->integer || std::abs(*meaning->number) > kExactInDouble)
-                  return ReportExpected(node, errors, wanted);
+                  return ReportExpectedNumber(node, errors, wanted);
                 const auto whole = static_cast<std::int64_t>(*meaning->number);
                 if (whole < lowest || whole > highest) return ReportExpected(node, errors, wanted);
                 access.set(whole, value);
@@ -432,6 +432,7 @@ ErasedFormat ErasedMap(const ValueFormat<std::string>& name, const ErasedFormat&
                   const YamlNode& node, DiagnosticList& errors, void* map) {
                 access.clear(map);
                 bool good = IsMappingOf(node, errors, least, most);
+                if (node.kind != YamlNode::Kind::kMapping) return good;
                 for (const YamlNode& child : node.children) {
                   YamlNode key;
                   key.kind = YamlNode::Kind::kScalar;

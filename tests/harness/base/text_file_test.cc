@@ -58,6 +58,15 @@ TEST_F(TextFile, RefusesWhatIsNoTextFile) {
             "control character 0x7f; this looks like a binary file");
 }
 
+TEST_F(TextFile, NamesUtf16) {
+  for (const std::string& text :
+       {std::string("\xFF\xFE"
+                    "a\0:\0",
+                    6),
+        std::string("\xFE\xFF\0a\0:", 6), std::string("a\0:\0", 4), std::string("\0a\0:", 4)})
+    EXPECT_EQ(Complaint(Write("wide", text)), "expected UTF-8, found UTF-16");
+}
+
 TEST_F(TextFile, RefusesWhatTerminalsObeyAndXmlCannotCarry) {
   EXPECT_EQ(Complaint(Write("c1", "a\u009b31m")), "control character U+009B");
   EXPECT_EQ(Complaint(Write("turned", "a\u202eb")),

@@ -153,6 +153,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "4:29: a tolerance is whole milliseconds up to 10000, like 20ms"},
         Mistake{"tolerance_unexplained", "contact 1 2 a=cup tolerance=20ms",
                 "4:33: a tolerance needs a reason | tolerance=20ms because \"the reason\""},
+        Mistake{"open_end_misspelt", "contact 1 2 a=cup open_ned",
+                "4:27: expected '=' after 'open_ned' | did you mean 'open_end'?"},
         Mistake{"reason_empty", "contact 1 2 a=cup tolerance=20ms because \"\"",
                 "4:42: the reason is empty"},
         Mistake{"reason_unquoted", "contact 1 2 a=cup tolerance=20ms because soft",
@@ -193,6 +195,15 @@ TEST(Golden, HeaderLinesThatAreNeeded) {
   EXPECT_EQ(result.error()[0].message, "the line '# scenario: skill/name' is missing");
   EXPECT_EQ(result.error()[1].message, "the line '# grammar: name' is missing");
   EXPECT_EQ(result.error()[2].message, "the line '# ticks_per_second: N' is missing");
+
+  const auto misspelt = ReadGolden("x", "# scenaro: s/x\n#\tgrammar: g\n# ticks_per_second: 480\n");
+  ASSERT_FALSE(misspelt);
+  ASSERT_EQ(misspelt.error().size(), 2u);
+  EXPECT_EQ(Format(misspelt.error()),
+            "x:1:3: error: the line '# scenario: skill/name' is missing\n  # scenaro: s/x\n    ^\n"
+            "  hint: write '# scenario: ', with these blanks\n"
+            "x:2:3: error: the line '# grammar: name' is missing\n  #\tgrammar: g\n   \t^\n"
+            "  hint: write '# grammar: ', with these blanks\n");
 
   const auto early = ReadGolden("x", "contact 1 2 a=b\ncontact 2 3 a=b\n");
   ASSERT_FALSE(early);

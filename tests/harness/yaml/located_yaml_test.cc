@@ -91,6 +91,13 @@ TEST(LocatedYaml, RefusesWhatIsAmbiguous) {
       {"a: ! x\n", "1:4: tags ('!name') are not supported | remove the tag\n"},
       {"a: 1\n---\nb: 2\n",
        "2:1: a second document begins here | one file holds one document; remove the '---'\n"},
+      {"# a grammar\ngrammar g\nuse contact\n",
+       "2:1: expected YAML, found a grammar | the name of a grammar's file ends in .grammar\n"},
+      {"a: [1]\nb:\u00A0[2]\nc: 3\n",
+       "2:3: not valid YAML: a character that looks like a blank, but is none | separate with "
+       "plain "
+       "spaces\n"},
+      {"a: 1\nb [2, 3]\nc: 3\n", "2:1: not valid YAML: a line without ':' | write 'KEY: VALUE'\n"},
       {"a: 1\nb:\t2\n", "2:3: tab character | indent and separate with spaces\n"},
       {"[1, 2]: 3\n", "1:1: a key must be a word, not a list or mapping\n"},
       {"~: 3\n", "1:1: a key is missing here\n"},
