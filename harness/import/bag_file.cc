@@ -39,8 +39,9 @@ class BagReader {
   explicit BagReader(LogFile& file) : file_(file) {}
 
   std::string Read() {
-    if (file_.ok() && file_.Take(kBagMagic.size()) != kBagMagic)
-      return "it is no bag of ROS 1, version 2.0: it does not begin as one";
+    const std::string magic = file_.ok() ? file_.Take(kBagMagic.size()) : std::string(kBagMagic);
+    if (magic.starts_with("\x89MCAP")) return "it is an MCAP file: call it .mcap";
+    if (magic != kBagMagic) return "it is no bag of ROS 1, version 2.0: it does not begin as one";
     while (file_.left() > 0 && file_.ok()) ReadRecord();
     return file_.problem();
   }

@@ -11,7 +11,7 @@ namespace {
 class LinkWalk {
  public:
   LinkWalk(const FrameLink& link, std::int64_t bridge_ns)
-      : link_(link), most_gap_ns_(std::max(bridge_ns, link.UsualStep_ns() * 3 / 2)) {}
+      : LinkWalk(link, bridge_ns, link.UsualStep_ns()) {}
 
   std::optional<TimedPose> At(std::int64_t ns) {
     const std::vector<TimedPose>& poses = link_.poses;
@@ -31,6 +31,9 @@ class LinkWalk {
   }
 
  private:
+  LinkWalk(const FrameLink& link, std::int64_t bridge_ns, std::int64_t step_ns)
+      : link_(link), most_gap_ns_(std::max(bridge_ns, step_ns + step_ns / 2)) {}
+
   const FrameLink& link_;
   const std::int64_t most_gap_ns_;
   std::size_t next_ = 0;

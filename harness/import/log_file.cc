@@ -41,14 +41,23 @@ bool LogFile::Admits(const char* what, std::uint64_t bytes) {
 bool LogFile::AdmitsChunk(std::uint64_t bytes) {
   if (!Admits("chunk", bytes)) return false;
   content_bytes_ += bytes;
-  if (content_bytes_ > kMaxLogContentBytes)
-    Fail(fmt::format("more than {} GiB of messages", kMaxLogContentBytes >> 30));
+  if (content_bytes_ > std::max(kMaxLogContentBytes, kMaxLogContentOfByte * size_))
+    Fail(fmt::format("its chunks become more than {} MiB and more than {} times the file",
+                     kMaxLogContentBytes >> 20, kMaxLogContentOfByte));
+  return ok();
+}
+
+bool LogFile::AdmitsMore(const char* what, std::size_t count) {
+  if (count >= kMaxLogChannels) Fail(fmt::format("more than {} {}s", kMaxLogChannels, what));
   return ok();
 }
 
 void LogFile::TakeChannel(const char* kind, std::uint32_t id, const LogChannel& channel) {
-  const auto [known, is_new] = channels_.try_emplace(id, channel);
-  if (is_new) return tell_(known->second);
+  const auto known = channels_.find(id);
+  if (known == channels_.end()) {
+    if (AdmitsMore(kind, channels_.size())) tell_(channels_.emplace(id, channel).first->second);
+    return;
+  }
   if (known->second.topic != channel.topic)
     Fail(fmt::format("{} {} is '{}' and '{}'", kind, id, known->second.topic, channel.topic));
 }

@@ -14,8 +14,10 @@ namespace prehend::harness::import {
 
 inline constexpr std::uint64_t kMaxLogBytes = std::uint64_t{8} << 30;
 inline constexpr std::uint64_t kMaxLogRecordBytes = std::uint64_t{64} << 20;
-/// Of all chunks, decompressed.
-inline constexpr std::uint64_t kMaxLogContentBytes = std::uint64_t{32} << 30;
+/// Of all chunks, decompressed: more than this, and more than so many times the file, is a bomb.
+inline constexpr std::uint64_t kMaxLogContentBytes = std::uint64_t{256} << 20;
+inline constexpr std::uint64_t kMaxLogContentOfByte = 100;
+inline constexpr std::size_t kMaxLogChannels = 10'000;
 /// Of a topic, an encoding, the name of a type.
 inline constexpr std::size_t kMaxLogNameBytes = 1000;
 
@@ -57,6 +59,8 @@ class LogFile {
   /// Whether a record, or a chunk once it is decompressed, is within the limits.
   bool Admits(const char* what, std::uint64_t bytes);
   bool AdmitsChunk(std::uint64_t bytes);
+  /// Whether one more than `count` channels, or types, is within the limits.
+  bool AdmitsMore(const char* what, std::size_t count);
 
   /// `kind`: "channel". A number must mean the same channel wherever it is declared.
   void TakeChannel(const char* kind, std::uint32_t id, const LogChannel& channel);

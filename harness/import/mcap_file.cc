@@ -30,8 +30,9 @@ class McapReader {
   explicit McapReader(LogFile& file) : file_(file) {}
 
   std::string Read() {
-    if (file_.ok() && file_.Take(kMagic.size()) != kMagic)
-      return "it is no MCAP file: it does not begin as one";
+    const std::string magic = file_.ok() ? file_.Take(kMagic.size()) : std::string(kMagic);
+    if (magic.starts_with("#ROSBAG")) return "it is a bag of ROS 1: call it .bag";
+    if (magic != kMagic) return "it is no MCAP file: it does not begin as one";
     while (!ended_ && file_.ok()) ReadRecord();
     return file_.problem();
   }
@@ -49,7 +50,7 @@ class McapReader {
           "recover' of the MCAP tools saves the rest");
     if (opcode == kFooter) {
       ended_ = true;
-      file_.Take(length);
+      file_.Skip(length);
       if (file_.Take(kMagic.size()) != kMagic) file_.Fail("the file is cut off in its last bytes");
       return;
     }
@@ -116,6 +117,7 @@ class McapReader {
 
   void TakeSchema(ByteReader& reader) {
     const auto id = reader.Number<std::uint16_t>();
+    if (!schemas_.contains(id) && !file_.AdmitsMore("schema", schemas_.size())) return;
     Schema& schema = schemas_[id];
     schema.name = NameIn(reader);
     schema.encoding = NameIn(reader);

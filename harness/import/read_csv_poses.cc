@@ -69,10 +69,12 @@ class CsvPoseReader {
       begin = end + 1;
       if (++line_ < map_.header_line) continue;
       if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-      if (line_ == map_.header_line)
+      if (line_ == map_.header_line) {
         TakeHeader(CsvCellsOf(line, separator_));
-      else if (line.find_first_not_of(" \t") != std::string_view::npos)
+        if (!problems_.empty()) return;
+      } else if (line.find_first_not_of(" \t") != std::string_view::npos) {
         TakeRow(CsvCellsOf(line, separator_));
+      }
       if (!map_errors_.empty()) return;
     }
     if (line_ < map_.header_line)
@@ -101,7 +103,33 @@ class CsvPoseReader {
         grammar::DiagnosticAt(poses.file, poses.text, place, std::move(message), std::move(hint)));
   }
 
+  /// A header that cannot be one, whatever the map says.
+  bool IsNoHeader(const std::vector<CsvCell>& cells) {
+    const std::string_view text = cells.front().text;
+    const std::size_t other = text.find_first_of(",;\t");
+    if (cells.size() == 1 && other != std::string_view::npos) {
+      const char* const name = text[other] == ','   ? "comma"
+                               : text[other] == ';' ? "semicolon"
+                                                    : "tab";
+      Complain({line_, cells.front().column + static_cast<int>(other)},
+               fmt::format("the names of the columns are separated by {}s", name),
+               fmt::format("the map says how: separator: {}", name));
+      return true;
+    }
+    const bool has_name = std::ranges::any_of(cells, [](const CsvCell& cell) {
+      double number = 0;
+      const char* const end = cell.text.data() + cell.text.size();
+      return std::from_chars(cell.text.data(), end, number).ptr != end;
+    });
+    if (has_name || std::ranges::all_of(cells, [](const CsvCell& c) { return c.text.empty(); }))
+      return false;
+    Complain({line_, cells.front().column}, "expected the names of the columns, found numbers",
+             "the map says on which line the names are: header_line: 1");
+    return true;
+  }
+
   void TakeHeader(const std::vector<CsvCell>& cells) {
+    if (IsNoHeader(cells)) return;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const std::string name(cells[i].text);
       names_.push_back(name);

@@ -20,7 +20,11 @@ namespace prehend::harness::import {
 namespace {
 
 constexpr std::size_t kMostSeries = 10'000, kMostPoses = 5'000'000;
+constexpr std::size_t kPosesOfAnyFile = 250'000;  ///< and one more for each four bytes of the file
+constexpr std::int64_t kLast_ns = std::int64_t{1} << 62;  ///< in the year 2116
 constexpr double kMostDuration_s = 1e5;
+constexpr std::size_t kMostDeep = 200;  ///< frames in frames
+constexpr std::ptrdiff_t kMostNamed = 4;
 constexpr std::int64_t kMostBack_ns = 1'000'000'000;  ///< more than this is another clock
 
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
@@ -48,6 +52,8 @@ class McapPoseReader {
     if (error || !std::filesystem::is_regular_file(poses.file))
       return Fail(std::filesystem::exists(poses.file) ? "is not a regular file" : "no such file");
     std::ifstream in(poses.file, std::ios::binary);
+    size_ = size;
+    most_poses_ = std::min<std::uint64_t>(kMostPoses, kPosesOfAnyFile + size / 4);
     const auto read = IsBag(poses.file) ? ReadBag : ReadMcap;
     const std::string why = read(
         in, size, [this](const LogMessage& message) { return TakeMessage(message); },
@@ -55,7 +61,7 @@ class McapPoseReader {
     if (!why.empty()) return Fail(why);
     if (map_errors_.empty()) FindBodies();
     if (map_errors_.empty()) Compose();
-    if (map_errors_.empty()) RefuseAbsentBodies(poses, map_, map_errors_);
+    if (map_errors_.empty() && problems_.empty()) RefuseAbsentBodies(poses, map_, map_errors_);
   }
 
   grammar::Diagnostics Problems() const {
@@ -99,7 +105,10 @@ class McapPoseReader {
     }
     if (tree_.links.size() + topics_.size() > kMostSeries)
       why = fmt::format("more than {} frames and bodies", kMostSeries);
-    if (poses_ > kMostPoses) why = fmt::format("more than {} poses", kMostPoses);
+    if (poses_ > most_poses_)
+      why = most_poses_ == kMostPoses
+                ? fmt::format("more than {} poses", kMostPoses)
+                : fmt::format("more than {} poses in a file of {} KiB", most_poses_, size_ >> 10);
     if (why.empty()) return "";
     return fmt::format("a message of '{}', logged at {:.6f} s: {}", ReadableName(topic),
                        Seconds(message.log_ns), why);
@@ -124,6 +133,9 @@ class McapPoseReader {
             "mcap: {{clock: log}}",
             pose.name);
     }
+    if (ns < 0 || ns > kLast_ns)
+      return fmt::format("'{}' has the time {:.0f} s; expected one of the years 1970 to 2116",
+                         pose.name, static_cast<double>(static_cast<std::uint64_t>(ns)) * 1e-9);
     if (!link.poses.empty() && ns < link.poses.back().ns - kMostBack_ns)
       return fmt::format(
           "the times of '{}' go back from {:.6f} to {:.6f} s: its clock was set, or "
@@ -228,8 +240,13 @@ class McapPoseReader {
           return Fail(fmt::format("'{}' has two poses at {:.6f} s", name, Seconds(*ns)));
       }
     }
+    for (std::size_t i = 0; i < found_.size(); ++i) RefuseRing(poses.bodies[i].name, *found_[i]);
+    if (!problems_.empty()) return;
     const std::optional<std::string> world = World();
     if (!world) return;
+    if (const auto link = tree_.links.find(*world); link != tree_.links.end())
+      RefuseRing(*world, link->second);
+    if (!problems_.empty()) return;
     const auto bridge_ns = static_cast<std::int64_t>(map_.bridge_s * 1e9);
     std::vector<std::vector<TimedPose>> all;
     std::optional<std::int64_t> first, last;
@@ -259,6 +276,27 @@ class McapPoseReader {
     }
   }
 
+  /// From a body to its root there are few frames.
+  void RefuseRing(const std::string& name, const FrameLink& body) {
+    std::vector<const std::string*> way = {&body.parent};
+    while (problems_.empty()) {
+      const auto parent = tree_.links.find(*way.back());
+      if (parent == tree_.links.end()) return;
+      const std::string& next = parent->second.parent;
+      const auto again = std::ranges::find_if(way, [&](const auto* of) { return *of == next; });
+      if (again != way.end()) {
+        std::string ring = fmt::format("'{}'", **again);
+        for (auto frame = again + 1; frame != way.end() && frame - again < kMostNamed; ++frame)
+          ring += fmt::format(" in '{}'", **frame);
+        return Fail(fmt::format("the frames are in a ring: {} in {}'{}' again", ring,
+                                way.end() - again > kMostNamed ? ".. in " : "", next));
+      }
+      if (way.size() >= kMostDeep)
+        return Fail(fmt::format("'{}' is in more than {} frames, one in another", name, kMostDeep));
+      way.push_back(&next);
+    }
+  }
+
   bool IsFixed(const FrameLink& body, const std::string& world) const {
     const FrameLink* link = &body;
     for (std::size_t depth = 0; link->fixed && depth <= tree_.links.size(); ++depth) {
@@ -278,6 +316,7 @@ class McapPoseReader {
   std::map<std::string, std::string> unread_;  ///< topics, with what they hold
   std::vector<const FrameLink*> found_;        ///< of each body
   std::size_t poses_ = 0;
+  std::uint64_t most_poses_ = kMostPoses, size_ = 0;
 };
 
 }  // namespace

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bags of ROS 1, written byte by byte from their specification
-// (http://wiki.ros.org/Bags/Format/2.0), become the same recording whatever their chunks are; what
+// Bags of ROS 1 become the same recording whatever their chunks are; what
 // is wrong with them is named, and nothing is written.
 #include <gtest/gtest.h>
 
 #include <functional>
 
+#include "tests/program/bag_writer.h"
 #include "tests/program/carried_cup.h"
 #include "tests/program/mcap_writer.h"
 #include "tests/program/program.h"
@@ -24,47 +24,13 @@ entities:
 )";
 constexpr std::uint64_t kEpoch_ns = 1'700'000'000'000'000'000;
 
-std::string Field(const std::string& name, const std::string& value) {
-  return WithLength(name + "=" + value);
-}
-
-std::string Record(std::uint8_t opcode, const std::string& fields, const std::string& data) {
-  return WithLength(fields + Field("op", std::string(1, static_cast<char>(opcode)))) +
-         WithLength(data);
-}
-
-std::string Connection(std::uint32_t id, const std::string& topic, const std::string& type) {
-  return Record(7, Field("conn", Bytes32(id)) + Field("topic", topic),
-                Field("topic", topic) + Field("type", type) + Field("md5sum", "*"));
-}
-
-std::string TimeOf(std::uint64_t ns) {
-  return Bytes32(static_cast<std::uint32_t>(ns / 1'000'000'000)) +
-         Bytes32(static_cast<std::uint32_t>(ns % 1'000'000'000));
-}
-
-std::string Message(std::uint32_t id, std::uint64_t ns, const std::string& data) {
-  return Record(2, Field("conn", Bytes32(id)) + Field("time", TimeOf(ns)), data);
-}
-
-std::string Chunk(const std::string& records, const std::string& compression) {
-  return Record(5,
-                Field("compression", compression) +
-                    Field("size", Bytes32(static_cast<std::uint32_t>(records.size()))),
-                compression == "lz4" ? AsLz4(records) : records);
-}
-
 /// Five seconds at 60 Hz: the cup as a frame of tf, the hand as a topic of poses; `compression` of
 /// its chunks, "": it has none.
 std::string Bag(const std::string& compression = "none",
                 const std::function<std::string(int, std::string)>& spoil = {}) {
-  std::string bag = "#ROSBAG V2.0\n";
-  bag += Record(3,
-                Field("index_pos", Bytes64(0)) + Field("conn_count", Bytes32(2)) +
-                    Field("chunk_count", Bytes32(0)),
-                std::string(100, ' '));
-  std::string records = Connection(0, "/tf", "tf2_msgs/TFMessage") +
-                        Connection(1, "/tracker/glove", "geometry_msgs/PoseStamped");
+  std::string bag = BagHead();
+  std::string records = BagConnection(0, "/tf", "tf2_msgs/TFMessage") +
+                        BagConnection(1, "/tracker/glove", "geometry_msgs/PoseStamped");
   for (int i = 0; i <= 300; ++i) {
     const std::uint64_t ns = kEpoch_ns + static_cast<std::uint64_t>(i) * 1'000'000'000 / 60;
     const Row cup = CupAt(i / 60.0), hand = HandAt(i / 60.0);
@@ -73,10 +39,10 @@ std::string Bag(const std::string& compression = "none",
     pose.Header(ns, "world").Pose({hand.x, hand.y, hand.z});
     std::string data = transforms.Bytes();
     if (spoil) data = spoil(i, data);
-    records += Message(0, ns, data) + Message(1, ns, pose.Bytes());
+    records += BagMessage(0, ns, data) + BagMessage(1, ns, pose.Bytes());
     if (i % 100 != 0) continue;
-    bag += compression.empty() ? records : Chunk(records, compression);
-    bag += Record(4, Field("conn", Bytes32(0)), "an index");
+    bag += BagChunk(records, compression);
+    bag += BagIndex(0);
     records.clear();
   }
   return bag;
@@ -124,6 +90,10 @@ TEST_F(ImportBag, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
     std::string bytes, says;
   };
   const std::vector<Fault> faults = {
+      {"MCAP",
+       "\x89"
+       "MCAP0\r\n 0000000000",
+       "run.bag: error: it is an MCAP file: call it .mcap"},
       {"no bag", "x" + good, "it is no bag of ROS 1, version 2.0"},
       {"an older bag", FirstReplaced(good, "V2.0", "V1.2"), "it is no bag of ROS 1, version 2.0"},
       {"cut off", good.substr(0, good.size() / 2), "the file is cut off"},

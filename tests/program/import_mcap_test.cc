@@ -303,6 +303,7 @@ TEST_F(ImportMcap, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
        kMap, "40 bytes too many for its type"},
       {"another compression", Replaced(good, "zstd", "gzip"), kMap,
        "a chunk with the compression 'gzip'; zstd, lz4 and none are read"},
+      {"a bag", "#ROSBAG V2.0\n", kMap, "run.mcap: error: it is a bag of ROS 1: call it .bag"},
       {"no MCAP", "once upon a time", kMap, "it is no MCAP file: it does not begin as one"},
       {"empty", "", kMap, "it is no MCAP file"},
       {"no such frame", good, Replaced(kMap, "from: mug", "from: mugg"), "did you mean 'mug'?"},
@@ -326,6 +327,70 @@ TEST_F(ImportMcap, ATypeThatIsNotReadIsNamedWhereItIsAskedFor) {
                           "read: foxglove.PoseInFrame (protobuf)"),
             std::string::npos)
       << said.err;
+}
+
+TEST_F(ImportMcap, TimesAreOfACenturyThatMakesSense) {
+  McapWriter writer;
+  const auto tf = writer.Channel("/tf", "cdr", "tf2_msgs/msg/TFMessage");
+  const std::string map = Replaced(kMap, "axes: z_up", "axes: z_up\nmcap: {clock: log}");
+  for (const std::uint64_t ns : {std::uint64_t{1}, std::uint64_t{1} << 63, ~std::uint64_t{0}}) {
+    McapWriter late = writer;
+    late.Message(tf, ns, Cdr().U32(1).Header(1, "world").Text("mug").Pose({0, 0, 1}).Bytes());
+    const Said said = Import(late.Bytes(), map);
+    EXPECT_EQ(said.exit_code, 2) << ns;
+    EXPECT_EQ(said.err.find("expected one of the years 1970 to 2116") != std::string::npos, ns > 1)
+        << said.err;
+  }
+}
+
+/// A second of frames, each in the next one.
+std::string Chain(const std::vector<std::string>& frames) {
+  McapWriter writer;
+  const auto tf = writer.Channel("/tf", "cdr", "tf2_msgs/msg/TFMessage");
+  for (int i = 0; i <= 60; ++i) {
+    Cdr message;
+    message.U32(static_cast<std::uint32_t>(frames.size() - 1));
+    for (std::size_t k = 1; k < frames.size(); ++k)
+      message.Header(TimeOf(i), frames[k]).Text(frames[k - 1]).Pose({0, 0, 1});
+    writer.Message(tf, TimeOf(i), message.Bytes());
+  }
+  return writer.Bytes();
+}
+
+TEST_F(ImportMcap, FramesInARingAndTooManyFramesAreNamed) {
+  std::vector<std::string> deep = {"glove", "mug"};
+  for (int i = 0; i < 250; ++i) deep.push_back("f" + std::to_string(i));
+  const std::vector<Fault> faults = {
+      {"a ring", Chain({"glove", "mug", "a", "b", "c", "a"}), kMap,
+       "run.mcap: error: the frames are in a ring: 'a' in 'b' in 'c' in 'a' again"},
+      {"itself", Chain({"glove", "mug", "a", "a"}), kMap,
+       "run.mcap: error: the frames are in a ring: 'a' in 'a' again"},
+      {"too deep", Chain(deep), kMap, "is in more than 200 frames, one in another"}};
+  for (const Fault& fault : faults) {
+    const Said said = Import(fault.bytes, fault.map);
+    EXPECT_EQ(said.exit_code, 2) << fault.name;
+    EXPECT_NE(said.err.find(fault.says), std::string::npos) << fault.name << "\n" << said.err;
+  }
+}
+
+TEST_F(ImportMcap, ChunksThatBecomeFarMoreThanTheFileAreRefused) {
+  constexpr std::size_t kBytes = 60'000'003;  // of records of nothing, each 9 bytes
+  const std::string chunk = McapWriter::ChunkOf(RunAsZstd('\0', kBytes), kBytes, "zstd");
+  std::string chunks;
+  for (int i = 0; i < 5; ++i) chunks += chunk;
+  const Said said = Import(McapWriter::FileOf(chunks, Chunks::kNone));
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_NE(said.err.find("its chunks become more than 256 MiB and more than 100 times the file"),
+            std::string::npos)
+      << said.err;
+}
+
+TEST_F(ImportMcap, ManyChannelsAreRefused) {
+  McapWriter writer;
+  for (int i = 0; i <= 10'000; ++i) writer.Channel("/t" + std::to_string(i), "json", "x");
+  const Said said = Import(writer.Bytes());
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_NE(said.err.find("more than 10000 schemas"), std::string::npos) << said.err;
 }
 
 TEST_F(ImportMcap, ABombIsRefused) {

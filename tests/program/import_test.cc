@@ -3,6 +3,7 @@
 // is written.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -183,6 +184,11 @@ struct Fault {
   std::string csv, map, says;
 };
 
+std::string Semicolons(std::string csv) {
+  std::ranges::replace(csv, ',', ';');
+  return csv;
+}
+
 TEST(Import, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
   const auto scaled = [](double factor) {
     return Csv([=](const char* name, Row row) {
@@ -238,6 +244,12 @@ TEST(Import, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
       {"no such key", Csv(), Replaced(kMap, "unit: m", "units: m"), "did you mean 'unit'?"},
       {"a column twice", Replaced(Csv(), "t,name,x,y,z", "t,name,x,y,x"), kMap,
        "poses.csv:1:12: error: a second column is called 'x'"},
+      {"semicolons", Semicolons(Csv()), kMap,
+       "poses.csv:1:2: error: the names of the columns are separated by semicolons"},
+      {"only numbers", "0,1,2,3,4\n1,1,2,3,4\n", kMap,
+       "poses.csv:1:1: error: expected the names of the columns, found numbers"},
+      {"UTF-16", std::string("\xFF\xFEt\0,\0", 6), kMap,
+       "poses.csv:1:1: error: expected UTF-8, found UTF-16"},
       {"no rows", "t,name,x,y,z,qw,qx,qy,qz\n", kMap, "0 rows; a recording has at least 2"},
       {"empty", "", kMap, "poses.csv: error: the file is empty"},
   };

@@ -42,6 +42,19 @@ std::string AsZstd(const std::string& text) {
 
 }  // namespace
 
+std::string RunAsZstd(char byte, std::size_t times) {
+  constexpr std::size_t kMostOfBlock = 131'072;
+  std::string frame = Bytes32(0xFD2FB528) + "\xA0" + Bytes32(static_cast<std::uint32_t>(times));
+  for (std::size_t left = times; left > 0;) {
+    const std::size_t run = std::min(left, kMostOfBlock);
+    left -= run;
+    frame +=
+        Bytes32(static_cast<std::uint32_t>(run << 3) | 2u | (left == 0 ? 1u : 0u)).substr(0, 3);
+    frame += byte;
+  }
+  return frame;
+}
+
 // As blocks that are not compressed (LZ4 Frame Format Description 1.6); blocks of up to 256 KiB.
 std::string AsLz4(const std::string& text) {
   return std::string("\x04\x22\x4D\x18\x60\x50\xFB", 7) +
@@ -77,18 +90,18 @@ void McapWriter::Message(std::uint16_t channel, std::uint64_t log_ns, const std:
   records_ += Record(5, Bytes16(channel) + Bytes32(0) + Bytes64(log_ns) + Bytes64(log_ns) + data);
 }
 
-std::string McapWriter::ChunkOf(const std::string& records) const {
-  const std::string name = chunks_ == Chunks::kZstd ? "zstd" : chunks_ == Chunks::kLz4 ? "lz4" : "";
-  const std::string packed = chunks_ == Chunks::kZstd  ? AsZstd(records)
-                             : chunks_ == Chunks::kLz4 ? AsLz4(records)
-                                                       : records;
-  return Record(6, Bytes64(0) + Bytes64(0) + Bytes64(records.size()) + Bytes32(0) +
-                       WithLength(name) + Bytes64(packed.size()) + packed);
+std::string McapWriter::ChunkOf(const std::string& packed, std::size_t size,
+                                const std::string& name) {
+  return Record(6, Bytes64(0) + Bytes64(0) + Bytes64(size) + Bytes32(0) + WithLength(name) +
+                       Bytes64(packed.size()) + packed);
 }
 
-std::string McapWriter::Bytes() const {
+std::string McapWriter::FileOf(const std::string& records, Chunks chunks) {
+  std::string data = records;
+  if (chunks == Chunks::kPlain) data = ChunkOf(records, records.size(), "");
+  if (chunks == Chunks::kZstd) data = ChunkOf(AsZstd(records), records.size(), "zstd");
+  if (chunks == Chunks::kLz4) data = ChunkOf(AsLz4(records), records.size(), "lz4");
   const std::string magic("\x89MCAP0\r\n", 8);
-  const std::string data = chunks_ == Chunks::kNone ? records_ : ChunkOf(records_);
   return magic + Record(1, WithLength("ros2") + WithLength("prehend")) + data +
          Record(15, Bytes32(0)) + Record(2, Bytes64(0) + Bytes64(0) + Bytes32(0)) + magic;
 }

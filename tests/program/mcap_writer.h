@@ -19,21 +19,28 @@ std::string WithLength(const std::string& text);
 /// A frame of LZ4.
 std::string AsLz4(const std::string& text);
 
+/// A frame of ZSTD in which a byte comes again and again; it is 30,000 times smaller.
+std::string RunAsZstd(char byte, std::size_t times);
+
 class McapWriter {
  public:
   enum class Chunks { kNone, kPlain, kZstd, kLz4 };
   explicit McapWriter(Chunks chunks = Chunks::kNone) : chunks_(chunks) {}
+
+  /// The file of these records, whatever they are.
+  static std::string FileOf(const std::string& records, Chunks chunks);
+  /// A chunk whose content is packed already.
+  static std::string ChunkOf(const std::string& packed, std::size_t size, const std::string& name);
 
   /// Returns its number.
   std::uint16_t Channel(const std::string& topic, const std::string& encoding,
                         const std::string& schema);
   void Message(std::uint16_t channel, std::uint64_t log_ns, const std::string& data);
   /// The whole file.
-  std::string Bytes() const;
+  std::string Bytes() const { return FileOf(records_, chunks_); }
+  const std::string& records() const { return records_; }
 
  private:
-  std::string ChunkOf(const std::string& records) const;
-
   Chunks chunks_;
   std::uint16_t channels_ = 0;
   std::string records_;
