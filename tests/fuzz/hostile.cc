@@ -15,6 +15,8 @@
 #include <map>
 
 #include "tests/fuzz/hostile_files.h"
+#include "tests/fuzz/logs.h"
+#include "tests/program/bag_writer.h"
 #include "tests/program/mcap_writer.h"
 
 namespace {
@@ -23,6 +25,11 @@ namespace fs = std::filesystem;
 using prehend::fuzz::HostileFile;
 using prehend::fuzz::Kind;
 
+/// What files of poses mean.
+const std::map<Kind, std::string> kMaps = {{Kind::kPoses, "bodies"},
+                                           {Kind::kBvh, "bvh_bodies"},
+                                           {Kind::kMcap, "mcap_bodies"},
+                                           {Kind::kBag, "mcap_bodies"}};
 constexpr double kMost_s = 5;
 constexpr long kMost_KiB = 300'000'000 / 1024;
 
@@ -96,31 +103,22 @@ script:
   - right_hand: {wait_s: 0.1}
 )";
 
-/// A second of the bodies of docs/motion_capture/mcap_bodies.yaml, not compressed.
-std::string Transforms() {
-  using prehend::house::Cdr;
-  prehend::house::McapWriter writer;
-  const auto tf = writer.Channel("/tf", "cdr", "tf2_msgs/msg/TFMessage");
-  const auto json = writer.Channel("/more", "json", "foxglove.PoseInFrame");
-  for (int i = 0; i <= 60; ++i) {
-    const std::uint64_t ns = 1'000'000'000 + static_cast<std::uint64_t>(i) * 16'666'667;
-    const double lift = 0.01 * std::min(i, 60 - i);
-    writer.Message(tf, ns,
-                   Cdr()
-                       .U32(2)
-                       .Header(ns, "map")
-                       .Text("carton")
-                       .Pose({0.1, 0, 0.86 + lift})
-                       .Header(ns, "map")
-                       .Text("glove")
-                       .Pose({0, 0, 0.86 + lift})
-                       .Bytes());
-    writer.Message(json, ns,
-                   "{\"timestamp\": {\"sec\": 1, \"nsec\": " + std::to_string(i) +
-                       "}, \"frame_id\": \"map\", \"pose\": {\"position\": {\"x\": 0, \"y\": 0, "
-                       "\"z\": 1}, \"orientation\": {\"x\": 0, \"y\": 0, \"z\": 0, \"w\": 1}}}");
-  }
-  return writer.Bytes();
+/// In chunks of every kind.
+std::vector<std::string> McapFiles() {
+  using prehend::house::McapWriter;
+  std::vector<std::string> files;
+  for (const auto chunks : {McapWriter::Chunks::kNone, McapWriter::Chunks::kPlain,
+                            McapWriter::Chunks::kZstd, McapWriter::Chunks::kLz4})
+    files.push_back(McapWriter::FileOf(prehend::fuzz::McapRecords(), chunks));
+  return files;
+}
+
+std::vector<std::string> BagFiles() {
+  std::vector<std::string> files;
+  for (const char* compression : {"", "none", "lz4"})
+    files.push_back(prehend::house::BagHead() +
+                    prehend::house::BagChunk(prehend::fuzz::BagRecords(), compression));
+  return files;
 }
 
 }  // namespace
@@ -147,7 +145,8 @@ int main(int argc, char** argv) {
   }
   std::map<Kind, std::vector<std::string>> made = {
       {Kind::kRecording, {lines, lines.substr(0, lines.size() / 3)}},
-      {Kind::kMcap, {Transforms()}}};
+      {Kind::kMcap, McapFiles()},
+      {Kind::kBag, BagFiles()}};
   for (const auto& [kind, file] : {std::pair(Kind::kEaf, folder / "seed.eaf"),
                                    std::pair(Kind::kTextGrid, folder / "seed.TextGrid")}) {
     Run({program, "resegment", recording.string(), "--labels", file.string()}, folder);
@@ -174,14 +173,12 @@ int main(int argc, char** argv) {
       words = {program, "run", path.string(), "--time-limit-s", "4", "--memory-limit-mb", "250"};
     } else if (file.kind == Kind::kGrammar && i % 3 == 0) {
       words = {program, "resegment", recording.string(), "--grammar", path.string()};
-    } else if (file.kind == Kind::kPoses || file.kind == Kind::kBvh || file.kind == Kind::kMcap) {
-      constexpr const char* kMaps[] = {"bodies", "bvh_bodies", "mcap_bodies"};
-      const int of = static_cast<int>(file.kind) - static_cast<int>(Kind::kPoses);
+    } else if (const auto map = kMaps.find(file.kind); map != kMaps.end()) {
       words = {program,
                "import",
                path.string(),
                "--map",
-               source + "/docs/motion_capture/" + kMaps[of] + ".yaml",
+               source + "/docs/motion_capture/" + map->second + ".yaml",
                "--check"};
     } else if (file.kind == Kind::kPosesMap) {
       constexpr const char* kPoses[] = {"poses.csv", "take.bvh", "run.mcap"};

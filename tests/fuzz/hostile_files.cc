@@ -8,6 +8,9 @@
 #include <iterator>
 #include <utility>
 
+#include "tests/program/bag_writer.h"
+#include "tests/program/mcap_writer.h"
+
 namespace prehend::fuzz {
 namespace {
 
@@ -106,8 +109,8 @@ std::pair<std::size_t, std::size_t> RunAround(const std::string& text, std::size
 }  // namespace
 
 std::string EndingOf(Kind kind) {
-  constexpr const char* kEndings[] = {".yaml", ".grammar", ".timeline", ".jsonl", ".csv",
-                                      ".bvh",  ".mcap",    ".yaml",     ".eaf",   ".TextGrid"};
+  constexpr const char* kEndings[] = {".yaml", ".grammar", ".timeline", ".jsonl",    ".csv", ".bvh",
+                                      ".mcap", ".yaml",    ".eaf",      ".TextGrid", ".bag"};
   return kEndings[static_cast<int>(kind)];
 }
 
@@ -207,6 +210,83 @@ std::string HostileFiles::Damage(std::string& text, Kind kind) {
   }
 }
 
+HostileFile HostileFiles::McapFlood(std::size_t many) {
+  using house::McapWriter;
+  HostileFile file{.kind = Kind::kMcap, .what = "flood", .text = {}};
+  constexpr McapWriter::Chunks kChunks[] = {McapWriter::Chunks::kNone, McapWriter::Chunks::kPlain,
+                                            McapWriter::Chunks::kZstd, McapWriter::Chunks::kLz4};
+  const auto chunks = kChunks[Below(4)];
+  McapWriter writer;
+  switch (Below(4)) {
+    case 0:  // headers
+      file.text = "\x89MCAP0\r\n" + Numbered(many, [](const std::string&) {
+                    return std::string("\x01\0\0\0\0\0\0\0\0", 9);
+                  });
+      return file;
+    case 1: {  // a bomb: chunks of nothing, each 64 MB of a file of 2 KB
+      constexpr std::size_t kBytes = 64'000'000 / 9 * 9;
+      const std::string chunk = McapWriter::ChunkOf(house::RunAsZstd('\0', kBytes), kBytes, "zstd");
+      file.what = "bomb";
+      file.text = McapWriter::FileOf(Times(chunk, std::min<std::size_t>(many, 480)),
+                                     McapWriter::Chunks::kNone);
+      return file;
+    }
+    case 2:
+      for (std::size_t i = 0; i < std::min<std::size_t>(many, 60'000); ++i) {
+        if (writer.records().size() > kMost_bytes - 500) break;
+        writer.Channel("/t" + std::to_string(i), "cdr", "tf2_msgs/msg/TFMessage");
+      }
+      break;
+    default: {  // frames in frames in frames
+      const auto tf = writer.Channel("/tf", "cdr", "tf2_msgs/msg/TFMessage");
+      const bool ring = Below(2) == 0;
+      for (std::size_t i = 0; i < many && writer.records().size() < kMost_bytes - 500; ++i) {
+        const std::size_t in = ring ? (i + 1) % (1 + many % 7) : i + 1;
+        const std::string child = i == 0 ? "carton" : "f" + std::to_string(ring ? i % 7 : i);
+        writer.Message(tf, Below(2) == 0 ? 1'000'000'000 : random_(),
+                       house::Cdr()
+                           .U32(1)
+                           .Header(1'000'000'000 + i / 2, "f" + std::to_string(in))
+                           .Text(child)
+                           .Pose({0, 0, 1})
+                           .Bytes());
+      }
+    }
+  }
+  file.text = McapWriter::FileOf(writer.records(), chunks);
+  return file;
+}
+
+HostileFile HostileFiles::BagFlood(std::size_t many) {
+  HostileFile file{.kind = Kind::kBag, .what = "flood", .text = house::BagHead()};
+  constexpr const char* kCompressions[] = {"", "none", "lz4"};
+  const std::string compression = kCompressions[Below(3)];
+  switch (Below(3)) {
+    case 0:
+      file.text += house::BagChunk(Numbered(many,
+                                            [](const std::string& i) {
+                                              return house::BagConnection(
+                                                  static_cast<std::uint32_t>(std::stoul(i)),
+                                                  "/t" + i, "tf2_msgs/TFMessage");
+                                            }),
+                                   compression);
+      break;
+    case 1:  // chunks in a chunk
+      for (std::size_t i = 0; i < std::min<std::size_t>(many, 2000); ++i)
+        file.text = house::BagChunk(file.text, compression);
+      break;
+    default:
+      file.text += house::BagChunk(house::BagConnection(0, "/tf", "tf2_msgs/TFMessage") +
+                                       Numbered(many,
+                                                [](const std::string& i) {
+                                                  return house::BagMessage(0, std::stoul(i),
+                                                                           std::string(4, '\0'));
+                                                }),
+                                   compression);
+  }
+  return file;
+}
+
 // One thing, a hundred thousand times.
 HostileFile HostileFiles::Flood(Kind kind) {
   const std::size_t many = std::size_t{10} << Below(15);  // 10 to 163,840
@@ -299,7 +379,9 @@ HostileFile HostileFiles::Flood(Kind kind) {
                                return (i == "0" ? "ROOT r" : "JOINT j") + i + " {\n";
                              });
     case Kind::kMcap:
-      return list("\x89MCAP0\r\n", "", [](S) { return std::string("\x01\0\0\0\0\0\0\0\0", 9); });
+      return McapFlood(many);
+    case Kind::kBag:
+      return BagFlood(many);
     case Kind::kPosesMap:
       return list("import: 1\nunit: m\naxes: y_up\nentities:\n", "",
                   [](S i) { return "  e" + i + ": {from: b" + i + ", size_m: [1, 1, 1]}\n"; });

@@ -22,9 +22,10 @@ enum class Kind {
   kMcap,
   kPosesMap,  ///< what a file of poses means
   kEaf,
-  kTextGrid
+  kTextGrid,
+  kBag
 };
-inline constexpr int kKinds = 10;
+inline constexpr int kKinds = 11;
 
 /// With the dot: ".yaml".
 std::string EndingOf(Kind kind);
@@ -37,7 +38,7 @@ struct HostileFile {
 
 class HostileFiles {
  public:
-  /// `made` has texts of the kinds that are not in the source tree: recordings, MCAP, labels.
+  /// `made` has texts of the kinds that are not in the source tree: recordings, logs, labels.
   HostileFiles(const std::filesystem::path& source, std::map<Kind, std::vector<std::string>> made,
                std::uint64_t seed);
 
@@ -53,6 +54,8 @@ class HostileFiles {
   }
   HostileFile Damaged(Kind kind);
   HostileFile Flood(Kind kind);
+  HostileFile McapFlood(std::size_t many);
+  HostileFile BagFlood(std::size_t many);
   std::string Damage(std::string& text, Kind kind);
 
   std::mt19937_64 random_;
