@@ -14,7 +14,6 @@
 namespace prehend::harness::episodes {
 namespace {
 
-constexpr Word kSignBit = Word{1} << 63;
 constexpr std::size_t kPosition = 0, kRotation = 3, kVelocity = 7, kSpin = 10, kMotionColumns = 13;
 
 /// How a column is guessed; the number is in the file.
@@ -30,10 +29,6 @@ enum class Guess : std::uint8_t {
 
 double AsDouble(Word word) { return std::bit_cast<double>(word); }
 Word AsWord(double value) { return std::bit_cast<Word>(value); }
-
-/// Neighbouring doubles become neighbouring integers.
-Word Ordered(Word word) { return word & kSignBit ? ~word : word | kSignBit; }
-Word FromOrdered(Word word) { return word & kSignBit ? word & ~kSignBit : ~word; }
 
 /// Of each row the one that it continues, or -1.
 class Order {
@@ -201,21 +196,35 @@ class Encoder {
   void AddDistances(std::span<const Word> words, Guess guess) {
     const std::size_t begin = distances_.size();
     distances_.resize(begin + words.size() - 1);
-    const std::size_t values = guess == Guess::kBefore   ? 1
-                               : guess == Guess::kLinear ? 2
-                               : guess == Guess::kSquare ? 3
-                                                         : 4;
-    double x[4] = {};  // the last values, the latest first
-    for (std::size_t row = 1; row < words.size(); ++row) {
-      const Word before = words[row - 1];
-      x[3] = x[2];
-      x[2] = x[1];
-      x[1] = x[0];
-      x[0] = AsDouble(before);
-      const double next = values == 1 ? 0 : Polynomial(x, std::min(values, row));
-      distances_[begin + row - 1] =
-          Distance(words[row], values > 1 && std::isfinite(next) ? AsWord(next) : before);
+    const std::span<Word> to = std::span(distances_).subspan(begin);
+    switch (guess) {
+      case Guess::kLinear:
+        return PolynomialDistances<2>(words, to);
+      case Guess::kSquare:
+        return PolynomialDistances<3>(words, to);
+      case Guess::kCube:
+        return PolynomialDistances<4>(words, to);
+      default:
+        for (std::size_t row = 1; row < words.size(); ++row)
+          to[row - 1] = Distance(words[row], words[row - 1]);
     }
+  }
+
+  template <std::size_t values>
+  static void PolynomialDistances(std::span<const Word> words, std::span<Word> to) {
+    const std::size_t few = std::min(values, words.size());
+    for (std::size_t row = 1; row < few; ++row)
+      to[row - 1] = Distance(words[row], PolynomialAt(words, row, row));
+    for (std::size_t row = few; row < words.size(); ++row)
+      to[row - 1] = Distance(words[row], PolynomialAt(words, row, values));
+  }
+
+  /// The guess of a row from so many rows above it, each of which continues the next one.
+  static Word PolynomialAt(std::span<const Word> words, std::size_t row, std::size_t values) {
+    double x[4] = {};  // the latest first
+    for (std::size_t i = 0; i < values; ++i) x[i] = AsDouble(words[row - 1 - i]);
+    const double guess = Polynomial(x, values);
+    return std::isfinite(guess) ? AsWord(guess) : words[row - 1];
   }
 
   /// How many bits the distances have, of some rows.
@@ -223,6 +232,20 @@ class Encoder {
     constexpr std::size_t kSamples = 48;
     const std::size_t step = std::max<std::size_t>(1, columns_.rows / kSamples);
     Word bits = 0;
+    const std::span<const Word> words = columns_.Column(column);
+    const std::size_t values = guess == Guess::kBefore   ? 1
+                               : guess == Guess::kLinear ? 2
+                               : guess == Guess::kSquare ? 3
+                               : guess == Guess::kCube   ? 4
+                                                         : 0;
+    if (!order_.IsGiven() && values > 0) {
+      for (std::size_t row = std::max<std::size_t>(step - 1, 1); row < words.size(); row += step) {
+        const Word guessed =
+            values == 1 ? words[row - 1] : PolynomialAt(words, row, std::min(values, row));
+        bits += static_cast<Word>(std::bit_width(Distance(words[row], guessed)));
+      }
+      return bits;
+    }
     for (std::size_t row = step - 1; row < columns_.rows; row += step) {
       if (order_.Before(row) >= 0)
         bits += static_cast<Word>(
@@ -413,15 +436,6 @@ class Decoder {
 };
 
 }  // namespace
-
-Word Distance(Word word, Word guess) {
-  const Word difference = Ordered(word) - Ordered(guess);
-  return (difference << 1) ^ (difference & kSignBit ? ~Word{0} : Word{0});
-}
-Word AtDistance(Word guess, Word distance) {
-  const Word difference = (distance >> 1) ^ (distance & 1 ? ~Word{0} : Word{0});
-  return FromOrdered(Ordered(guess) + difference);
-}
 
 void Encode(const Columns& columns, const Guesses& guesses, std::string& bytes) {
   if (columns.rows == 0) return;

@@ -36,10 +36,20 @@ struct Columns {
   }
 };
 
+/// Neighbouring doubles become neighbouring integers.
+inline Word Ordered(Word word) { return word >> 63 ? ~word : word | Word{1} << 63; }
+inline Word FromOrdered(Word word) { return word >> 63 ? word & ~(Word{1} << 63) : ~word; }
+
 /// How many representable doubles lie between a word and its guess, small for both signs.
-Word Distance(Word word, Word guess);
+inline Word Distance(Word word, Word guess) {
+  const Word difference = Ordered(word) - Ordered(guess);
+  return (difference << 1) ^ (difference >> 63 ? ~Word{0} : Word{0});
+}
 /// The word again.
-Word AtDistance(Word guess, Word distance);
+inline Word AtDistance(Word guess, Word distance) {
+  const Word difference = (distance >> 1) ^ (distance & 1 ? ~Word{0} : Word{0});
+  return FromOrdered(Ordered(guess) + difference);
+}
 
 /// What is known of the columns before they are decoded.
 struct Guesses {

@@ -56,7 +56,6 @@ double LengthOf(const Vector3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z
 [[gnu::always_inline]] inline Wide Root(const Wide& x) {
   return Wide{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
 }
-[[gnu::always_inline]] inline bool ArePositive(double x) { return x > 0; }
 [[gnu::always_inline]] inline bool ArePositive(const Wide& x) {
   return x[0] > 0 && x[1] > 0 && x[2] > 0 && x[3] > 0;
 }
