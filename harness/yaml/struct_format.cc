@@ -31,7 +31,8 @@ std::string ReportUnknownKey(const YamlNode& child, const std::string& title,
                              const std::vector<std::pair<std::string, std::string>>& remedies,
                              DiagnosticList& errors) {
   const std::string message = fmt::format("unknown key '{}' in {}", child.key, title);
-  for (const auto& [key, remedy] : remedies) {
+  for (const auto& [key, said] : remedies) {
+    const std::string& remedy = said;  // clang 14 captures no structured binding
     if (child.key != key) continue;
     errors.Add(child.key_where, message, remedy);
     const auto named = std::ranges::find_if(known, [&](const std::string& other) {
