@@ -133,12 +133,16 @@ ExitCode WriteLabels(const ParsedOptions& options, const CommandContext& context
                     fmt::format("--labels writes one recording; {} are selected", takes->size()));
   Result<labels::Take> take = labels::OpenTake(takes->front(), context.root);
   if (!take) return Complain(context, take.error());
-  Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
-  if (!settings) return Complain(context, settings.error());
-  const grammar::CompileResult compiled =
-      LoadGrammar(context.root, options.TextOr("--grammar", take->grammar), *settings);
-  if (!compiled.program) return Complain(context, compiled.diagnostics);
-  const Result<grammar::Timeline> found = take->segment(compiled.program);
+  std::shared_ptr<const grammar::Program> program = take->program;
+  if (!program || options.Has("--grammar") || options.Has("--set")) {
+    Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
+    if (!settings) return Complain(context, settings.error());
+    const grammar::CompileResult compiled =
+        LoadGrammar(context.root, options.TextOr("--grammar", take->grammar), *settings);
+    if (!compiled.program) return Complain(context, compiled.diagnostics);
+    program = compiled.program;
+  }
+  const Result<grammar::Timeline> found = take->segment(program);
   if (!found) return Complain(context, found.error());
   const std::string& file = options.Text("--labels");
   const std::string problem = WriteTextFile(

@@ -83,8 +83,12 @@ Result<Take> OpenEpisode(const TakeName& name, const std::string& root) {
                 [&](std::int64_t tick) { return sensing.Due(tick); });
   if (!problem.empty()) return failed(problem);
   const grammar::Tick end = row->ticks + 1;
-  Take take{
-      .entities = {}, .ticks_per_second = scenario->scene.world.rate_hz, .end = end, .segment = {}};
+  Take take{.entities = {},
+            .grammar = scenario->grammar,
+            .program = loaded->program,
+            .ticks_per_second = scenario->scene.world.rate_hz,
+            .end = end,
+            .segment = {}};
   for (const physics::Body& body : scenario->scene.bodies) take.entities.push_back(body.name);
   for (const physics::Hand& hand : scenario->scene.hands) take.entities.push_back(hand.name);
   take.segment = [=](std::shared_ptr<const grammar::Program> program) -> Result<grammar::Timeline> {

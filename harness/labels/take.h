@@ -20,7 +20,8 @@ using TakeName = episodes::EpisodeName;
 
 struct Take {
   std::vector<std::string> entities;
-  std::string grammar;  ///< its own
+  std::string grammar;                                   ///< its own
+  std::shared_ptr<const grammar::Program> program = {};  ///< of a run, that grammar as it was
   grammar::Tick ticks_per_second = 1, end = 1;
   std::function<Result<grammar::Timeline>(std::shared_ptr<const grammar::Program>)> segment;
 };

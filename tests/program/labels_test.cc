@@ -113,6 +113,13 @@ TEST_F(Labelled, WhatIsWrittenIsReadAgain) {
   EXPECT_FALSE(fs::exists(Path("out.txt")));
 }
 
+TEST_F(Labelled, ARunIsWrittenByItsOwnGrammar) {
+  ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", Path("milk.episodes")}).exit_code, 0);
+  const Said said = Prehend({"resegment", Path("milk.episodes"), "--labels", Path("milk.csv")});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_TRUE(Has(ReadFile(Path("milk.csv")), "picking_up")) << ReadFile(Path("milk.csv"));
+}
+
 TEST_F(Labelled, EpisodesAndScenariosOfASuiteTakeLabelsToo) {
   const std::string file = Path("a.episodes");
   for (const char* scenario : {"pick_and_place/milk_carton_wrap", "slide/hop_divides_a_slide"})
