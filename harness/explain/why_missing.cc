@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "harness/explain/phrasing.h"
 #include "harness/timeline/event_text.h"
@@ -113,12 +114,35 @@ MissingReasons::Blame MissingReasons::OfInstance(InstanceId instance, const Wind
   return OfForm(instance, window, depth);
 }
 
+const grammar::CandidateLog& MissingReasons::RunsOf(InstanceId instance) {
+  const grammar::CandidateLog& noted = past_.OutcomesOf(instance);
+  const auto* rule = past_.RuleOf(instance).If<UntilSinceRule>();
+  if (rule == nullptr) return noted;
+  const auto [found, is_new] = runs_until_.try_emplace(instance, noted);
+  grammar::CandidateLog& runs = found->second;
+  if (!is_new) return runs;
+  std::set<FrameNumber> ends;
+  for (const CandidateOutcome& outcome : noted) ends.insert(outcome.span.end.frame);
+  for (FrameNumber frame = 0; frame < past_.frames(); ++frame) {
+    if (ends.contains(frame) || !past_.Truth(rule->until, {.instance = instance, .frame = frame}))
+      continue;
+    const grammar::Moment end{frame, past_.TickOf(frame)};
+    runs.push_back({.kind = CandidateOutcome::Kind::kNothingBack,
+                    .instance = instance,
+                    .span = {end, end},
+                    .decided = end.tick});
+  }
+  std::ranges::stable_sort(runs, {},
+                           [](const CandidateOutcome& outcome) { return outcome.span.end.tick; });
+  return runs;
+}
+
 // Of the runs within the window that came to nothing, the one that was nearest to being an
 // interval.
 const CandidateOutcome* MissingReasons::NearestRun(InstanceId instance, const Window& window) {
   const CandidateOutcome* nearest = nullptr;
   double closeness = 0;
-  for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
+  for (const CandidateOutcome& outcome : RunsOf(instance)) {
     const bool within =
         outcome.span.begin.frame <= window.last && outcome.span.end.frame >= window.first;
     if (outcome.kind == CandidateOutcome::Kind::kInterval || !within) continue;

@@ -4,6 +4,8 @@
 // to. Tested by tests/harness/explain/explain_test.cc
 #pragma once
 
+#include <map>
+
 #include "harness/explain/why_event.h"
 
 namespace prehend::harness::explain {
@@ -35,6 +37,9 @@ class MissingReasons {
   Window Within(const Window& window, grammar::FrameNumber frame);
 
   Blame OfInstance(grammar::InstanceId instance, const Window& window, int depth);
+  /// What became of the runs of a binding, and every `until` that nothing led to. The monitor notes
+  /// none of these while something that every run needs is false.
+  const grammar::CandidateLog& RunsOf(grammar::InstanceId instance);
   const grammar::CandidateOutcome* NearestRun(grammar::InstanceId instance, const Window& window);
   double RunCloseness(const grammar::CandidateOutcome& outcome);
   /// "to touching(hand, cup) ends", "without touching(hand, cup) begins"
@@ -70,6 +75,7 @@ class MissingReasons {
   grammar::ReplayMonitor& past_;
   Clauses clauses_;
   EventReasons events_;
+  std::map<grammar::InstanceId, grammar::CandidateLog> runs_until_;  ///< RunsOf() `until .. since`
 };
 
 }  // namespace prehend::harness::explain

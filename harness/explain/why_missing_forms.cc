@@ -269,7 +269,7 @@ std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(InstanceId insta
                                                                 int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const double back_s = rule.As<UntilSinceRule>().back_s;
-  for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
+  for (const CandidateOutcome& outcome : RunsOf(instance)) {
     if (outcome.span.end.frame <= at) continue;
     const bool reaches = outcome.span.end.tick - past_.TickOf(at) <= past_.AtMostTicks(back_s);
     const bool is_interval = outcome.kind == CandidateOutcome::Kind::kInterval;

@@ -373,6 +373,26 @@ TEST(ExplainMissing, NothingBeforeIsToldOfTheEndThatCameClosest) {
             "since height(cup) > 1 m: is 600 mm, 400 mm below 1 m, at 0.1600 s");
 }
 
+// A thrown cup: while nothing holds it, the monitor does not look for an end of `placed`.
+TEST(ExplainMissing, AnEndThatTheMonitorNeedNotWatchIsACandidate) {
+  for (const char* asked : {"placed", "placed@0.15s", "placed@0.2s"}) {
+    Stage stage(
+        "condition low(c: Cup) while height(c) < 20 cm\n"
+        "event placed(h: Hand, c: Cup) until low(c) begins since touching(h, c) at most 1 s back");
+    stage.Show(2);
+    stage.CupUpAt(0.5);
+    stage.Touch(true);
+    stage.Show(10);
+    stage.Touch(false);
+    stage.Show(10);
+    stage.CupUpAt(0.1);
+    stage.Show(100);
+    const WhyMissing why = WhyNot(stage.Finish(), asked);
+    EXPECT_EQ(why.because, "since touching(cup, hand): had ended at 0.1200 s") << asked;
+    EXPECT_EQ(why.reasons.front().how, "nothing before its end at 0.2200 s") << asked;
+  }
+}
+
 // 120 ms is too far for what looks back 100 ms.
 TEST(ExplainMissing, AnEndThatDoesNotReachBackIsNoReason) {
   Stage stage(
