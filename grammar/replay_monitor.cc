@@ -152,8 +152,10 @@ Evaluator::View ReplayMonitor::State::View(const Moment& at) {
   return view;
 }
 
-bool ReplayMonitor::Truth(NodeId node, const Moment& at) {
-  return state_->engine.evaluator().Truth(node, state_->View(at)) == Kleene::kTrue;
+bool ReplayMonitor::Is(bool truth, NodeId node, const Moment& at) {
+  Evaluator::View view = state_->View(at);
+  view.negated = !truth;
+  return (state_->engine.evaluator().Truth(node, view) == Kleene::kTrue) == truth;
 }
 
 std::optional<double> ReplayMonitor::Number(NodeId node, const Moment& at) {

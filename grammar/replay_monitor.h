@@ -72,7 +72,9 @@ class ReplayMonitor {
     std::optional<FrameNumber> begin = std::nullopt;
     std::optional<FrameNumber> end = std::nullopt;
   };
-  bool Truth(NodeId node, const Moment& at);
+  bool Truth(NodeId node, const Moment& at) { return Is(true, node, at); }
+  /// Whether the node is true, or is not. Of what is not tracked, it is neither.
+  bool Is(bool truth, NodeId node, const Moment& at);
   std::optional<double> Number(NodeId node, const Moment& at);
   std::optional<Reach> ReachOf(NodeId node, const Moment& at);
 

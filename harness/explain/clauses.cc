@@ -42,9 +42,9 @@ void Clauses::Split(grammar::NodeId node, const Moment& at, bool truth, std::vec
   const Node& n = NodeAt(node);
   if (n.op == Op::kNot) return Split(n.args[0], at, !truth, out);
   if (n.op != Op::kAnd && n.op != Op::kOr) return out.push_back({node, truth});
-  const bool is_fulfilled_choice = IsChoice(node, truth) && past_.Truth(node, at) == truth;
+  const bool is_fulfilled_choice = IsChoice(node, truth) && past_.Is(truth, node, at);
   for (const grammar::NodeId arg : {n.args[0], n.args[1]}) {
-    if (!is_fulfilled_choice || past_.Truth(arg, at) == truth) Split(arg, at, truth, out);
+    if (!is_fulfilled_choice || past_.Is(truth, arg, at)) Split(arg, at, truth, out);
   }
 }
 
@@ -75,14 +75,7 @@ std::optional<Clauses::Measured> Clauses::Measure(grammar::NodeId node, const Mo
 }
 
 bool Clauses::IsNotTracked(grammar::NodeId node, const Moment& at) {
-  const Node& n = NodeAt(node);
-  if (IsRegion(n.op)) {
-    const auto reach = past_.ReachOf(node, at);
-    return reach && std::isnan(reach->distance_m + reach->radius_m);
-  }
-  if (!IsComparison(n.op)) return false;
-  return std::isnan(past_.Number(n.args[0], at).value_or(0)) ||
-         std::isnan(past_.Number(n.args[1], at).value_or(0));
+  return !past_.Is(true, node, at) && !past_.Is(false, node, at);
 }
 
 Reason Clauses::Measurement(const Clause& clause, const Moment& at,
@@ -95,8 +88,7 @@ Reason Clauses::Measurement(const Clause& clause, const Moment& at,
                 .reading = {},
                 .because = {}};
   const std::optional<Measured> now = Measure(clause.node, at);
-  if (!now && IsNotTracked(clause.node, at))
-    reason.how = "is unknown: what it measures is not tracked";
+  if (IsNotTracked(clause.node, at)) reason.how = "is unknown: what it measures is not tracked";
   if (!now) return reason;
   const std::string unit =
       now->dimension == grammar::kPlain ? "" : grammar::DimensionText(now->dimension);
@@ -139,7 +131,7 @@ std::string Clauses::Since(grammar::NodeId node, const Moment& at, bool truth) {
       AsksFor(past_.program(), node, Op::kAtBegin) && at.begin ? *at.begin : 0;
   FrameNumber first = at.frame;
   Moment earlier = at;
-  for (earlier.frame = at.frame - 1; earlier.frame >= floor && past_.Truth(node, earlier) == truth;
+  for (earlier.frame = at.frame - 1; earlier.frame >= floor && past_.Is(truth, node, earlier);
        --earlier.frame) {
     first = earlier.frame;
   }
@@ -149,7 +141,7 @@ std::string Clauses::Since(grammar::NodeId node, const Moment& at, bool truth) {
 Reason Clauses::Leaf(grammar::NodeId node, const Moment& at, bool truth, bool brief) {
   Moment earlier = at;
   --earlier.frame;
-  const bool turned = at.frame > 0 && past_.Truth(node, earlier) != truth;
+  const bool turned = at.frame > 0 && !past_.Is(truth, node, earlier);
   Reason reason = Measurement({node, truth}, at, turned ? Measure(node, earlier) : std::nullopt);
   reason.mark = turned || at.frame == 0 ? Mark::kTurned : Mark::kHeld;
   if (reason.how.empty())
@@ -259,7 +251,7 @@ void Clauses::Collect(grammar::NodeId node, const Moment& at, bool truth, const 
     case Op::kAnd:
     case Op::kOr:
       for (const grammar::NodeId arg : {n.args[0], n.args[1]}) {
-        if (past_.Truth(arg, at) == truth) Collect(arg, at, truth, follow, brief, out);
+        if (past_.Is(truth, arg, at)) Collect(arg, at, truth, follow, brief, out);
       }
       return;
     case Op::kBegins:
@@ -309,7 +301,7 @@ Reason Clauses::Told(const Clause& clause, const Moment& at) {
     reason = Measurement(clause, at, std::nullopt);
     if (reason.how.empty()) reason.how = now ? "true" : "false" + WhenInstead(n, at);
   }
-  reason.mark = now == clause.truth ? Mark::kHeld : Mark::kFailed;
+  reason.mark = past_.Is(clause.truth, clause.node, at) ? Mark::kHeld : Mark::kFailed;
   if (reason.mark == Mark::kFailed && reason.reading)
     reason.reading->course = Course(clause.node, at);
   return reason;
@@ -335,7 +327,7 @@ double Clauses::NearestMember(InstanceId any_instance, FrameNumber frame, int de
 double Clauses::Nearness(grammar::NodeId node, const Moment& at, bool truth, int depth) {
   constexpr int kMaxDepth = 6;
   const Node& n = NodeAt(node);
-  if (past_.Truth(node, at) == truth) return 1;
+  if (past_.Is(truth, node, at)) return 1;
   if (n.op == Op::kNot) return Nearness(n.args[0], at, !truth, depth);
   if (n.op == Op::kAnd || n.op == Op::kOr) {
     const double left = Nearness(n.args[0], at, truth, depth);

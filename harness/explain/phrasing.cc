@@ -86,7 +86,10 @@ std::string Source(const std::string& file, const Place& place) {
                      place.line);
 }
 
-std::string ClauseText(ReplayMonitor& past, InstanceId instance, grammar::NodeId node) {
+namespace {
+
+// Of what the grammar says in one expression; of a chain of conditions nothing.
+std::string WrittenText(ReplayMonitor& past, InstanceId instance, grammar::NodeId node) {
   const std::string& written = NoteOf(past.program(), node).text;
   std::string text;
   for (std::size_t i = 0; i < written.size(); ++i) {
@@ -99,6 +102,26 @@ std::string ClauseText(ReplayMonitor& past, InstanceId instance, grammar::NodeId
     text += past.entity_table().entities[past.EntitiesOf(instance)[written[i + 1] - '0']].name;
     i += 2;
   }
+  return text;
+}
+
+}  // namespace
+
+std::string ClauseText(ReplayMonitor& past, InstanceId instance, grammar::NodeId node) {
+  using grammar::Op;
+  const grammar::Node& n = past.program().nodes[node];
+  std::string text = WrittenText(past, instance, node);
+  if (!text.empty()) return text;
+  const auto part = [&](grammar::NodeId arg) {
+    const Op op = past.program().nodes[arg].op;
+    const bool needs_brackets =
+        (op == Op::kAnd || op == Op::kOr) && op != n.op && NoteOf(past.program(), arg).text.empty();
+    const std::string inner = ClauseText(past, instance, arg);
+    return needs_brackets ? "(" + inner + ")" : inner;
+  };
+  if (n.op == Op::kNot) return "not " + part(n.args[0]);
+  if (n.op == Op::kAnd) return part(n.args[0]) + " and " + part(n.args[1]);
+  if (n.op == Op::kOr) return part(n.args[0]) + " or " + part(n.args[1]);
   return text;
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // See harness/explain/why_missing.h. Runs that were given up, and the choice of what to blame.
-// Tested by tests/harness/explain/explain_test.cc
+// Tested by tests/harness/explain/why_missing_test.cc
 #include "harness/explain/why_missing.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -37,17 +38,6 @@ const Reason* FirstFailure(const Reasons& reasons) {
     return inner != nullptr ? inner : &reason;
   }
   return nullptr;
-}
-
-// How far the first clause that failed is from its limit, as a share; infinite where nothing was
-// measured.
-double Missed(const Reason& reason) {
-  const Reason* inner = FirstFailure(reason.because);
-  const Reason* failure = inner != nullptr ? inner : &reason;
-  if (!failure->reading) return std::numeric_limits<double>::infinity();
-  const double scale =
-      std::max(std::abs(failure->reading->value), std::abs(failure->reading->limit));
-  return scale > 0 ? std::abs(failure->reading->value - failure->reading->limit) / scale : 0;
 }
 
 }  // namespace
@@ -206,16 +196,47 @@ std::string MissingReasons::HowLate(const CandidateOutcome& outcome) {
   return "nor later";
 }
 
-// What is required, as it was at the end; of alternatives, the one that came closest at any time of
-// the run stands first.
+MissingReasons::Weighed MissingReasons::Weigh(Reason reason) {
+  Weighed told{.reasons = {std::move(reason)}};
+  const Reason* failure = FirstFailure(told.reasons);
+  if (failure == nullptr) return told;
+  told.missed = std::numeric_limits<double>::infinity();
+  if (const std::optional<Reading>& reading = failure->reading) {
+    const double scale = std::max(std::abs(reading->value), std::abs(reading->limit));
+    told.missed = scale > 0 ? std::abs(reading->value - reading->limit) / scale : 0;
+  }
+  return told;
+}
+
+MissingReasons::Weighed MissingReasons::Weigh(
+    grammar::NodeId node, const Moment& at, bool truth,
+    const std::function<Weighed(const Clauses::Clause&)>& tell) {
+  const grammar::Node& n = past_.program().nodes[node];
+  if (n.op == grammar::Op::kNot) return Weigh(n.args[0], at, !truth, tell);
+  if (n.op != grammar::Op::kAnd && n.op != grammar::Op::kOr) return tell({node, truth});
+  const bool is_choice = clauses_.IsChoice(node, truth);
+  const bool is_fulfilled = past_.Is(truth, node, at);
+  Weighed all{.reasons = {}, .missed = is_choice ? std::numeric_limits<double>::infinity() : 0};
+  for (const grammar::NodeId arg : {n.args[0], n.args[1]}) {
+    if (is_choice && is_fulfilled && !past_.Is(truth, arg, at)) continue;
+    Weighed part = Weigh(arg, at, truth, tell);
+    if (part.reasons.empty()) continue;
+    const bool stands_first = is_choice ? part.missed < all.missed : part.missed > all.missed;
+    if (stands_first) all.missed = part.missed;
+    all.reasons.insert(stands_first ? all.reasons.begin() : all.reasons.end(),
+                       std::make_move_iterator(part.reasons.begin()),
+                       std::make_move_iterator(part.reasons.end()));
+  }
+  return all;
+}
+
+// What is required, as it was at the end.
 Reasons MissingReasons::Requirement(const CandidateOutcome& outcome, int depth) {
-  const grammar::NodeId node = past_.RuleOf(outcome.instance).requirement;
   const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
   const Moment at{
       .instance = outcome.instance, .frame = last, .begin = outcome.span.begin.frame, .end = last};
   const Window run{outcome.span.begin.frame, last};
-  Reasons told;
-  for (const Clauses::Clause& clause : clauses_.Split(node, at, true)) {
+  const auto tell = [&](const Clauses::Clause& clause) {
     Reason reason = clauses_.Told(clause, at);
     const grammar::Node& n = past_.program().nodes[clause.node];
     const InstanceId target = n.op == grammar::Op::kHolds && clause.truth
@@ -224,10 +245,9 @@ Reasons MissingReasons::Requirement(const CandidateOutcome& outcome, int depth) 
     if (reason.mark == Mark::kFailed && target != kNone)
       reason.because = OfInstance(target, run, depth + 1).reasons;
     reason.what = "requires " + reason.what;
-    told.push_back(std::move(reason));
-  }
-  if (clauses_.IsChoice(node, true)) std::ranges::stable_sort(told, {}, Missed);
-  return told;
+    return Weigh(std::move(reason));
+  };
+  return Weigh(past_.RuleOf(outcome.instance).requirement, at, true, tell).reasons;
 }
 
 // Where the conditions that should have begun at the end came closest within the run.
@@ -236,20 +256,19 @@ Reasons MissingReasons::EndThatNeverCame(const CandidateOutcome& outcome, FrameN
   if (rule.absence) return {};
   const FrameNumber last = std::min({outcome.span.end.frame, past_.frames() - 1, look_until});
   const Moment end{.instance = outcome.instance, .frame = last, .begin = outcome.span.begin.frame};
-  Reasons told;
-  for (const Clauses::Clause& clause : clauses_.Split(rule.to, end, true)) {
+  const auto tell = [&](const Clauses::Clause& clause) {
     const grammar::Node& moment = past_.program().nodes[clause.node];
-    if (moment.op != grammar::Op::kBegins || !clause.truth) continue;
+    if (moment.op != grammar::Op::kBegins || !clause.truth) return Weighed{};
     Moment at = end;
     at.frame = Closest(moment.args[0], at, {outcome.span.begin.frame, last});
-    for (Reason& reason : clauses_.State(moment.args[0], at, true)) {
-      if (!reason.reading) continue;
+    return Weigh(moment.args[0], at, true, [&](const Clauses::Clause& part) {
+      Reason reason = clauses_.Told(part, at);
+      if (!reason.reading) return Weighed{};
       reason.what = "to " + reason.what;
-      told.push_back(std::move(reason));
-    }
-  }
-  if (clauses_.IsChoice(rule.to, true)) std::ranges::stable_sort(told, {}, Missed);
-  return told;
+      return Weigh(std::move(reason));
+    });
+  };
+  return Weigh(rule.to, end, true, tell).reasons;
 }
 
 MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int depth,

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Why an interval that was expected is none: the run that nearly was one and what it lacked, or
 // else the first clause that failed where the condition came closest, into the rules that it refers
-// to. Tested by tests/harness/explain/explain_test.cc
+// to. Tested by tests/harness/explain/why_missing_test.cc
 #pragma once
 
+#include <functional>
 #include <map>
 
 #include "harness/explain/why_event.h"
@@ -48,6 +49,17 @@ class MissingReasons {
   /// `look_until`: what came later than that could not have helped.
   Blame OfRun(const grammar::CandidateOutcome& outcome, int depth,
               grammar::FrameNumber look_until = grammar::kNever);
+  /// Clauses, and how far they are from being as they have to be, as a share of a limit; infinite
+  /// where nothing was measured.
+  struct Weighed {
+    Reasons reasons;
+    double missed = 0;
+  };
+  static Weighed Weigh(Reason reason);
+  /// The clauses of a node. What stands in its way is first: of alternatives the one that missed by
+  /// least, of what is needed together the one that missed by most.
+  Weighed Weigh(grammar::NodeId node, const Moment& at, bool truth,
+                const std::function<Weighed(const Clauses::Clause&)>& tell);
   Reasons Requirement(const grammar::CandidateOutcome& outcome, int depth);
   Reasons EndThatNeverCame(const grammar::CandidateOutcome& outcome,
                            grammar::FrameNumber look_until);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where there was no run: which clause kept each form from beginning one.
-// Tested by tests/harness/explain/explain_test.cc
+// Tested by tests/harness/explain/why_missing_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -211,10 +211,9 @@ MissingReasons::Blame MissingReasons::OfFromTo(InstanceId instance, const Window
   Reason reason = Failed(Label(past_, instance), "", {});
   reason.where = Source(rule.file, rule.place);
   if (from < 0) {
-    const std::string text = ClauseText(past_, instance, opens);
     Blame blame = OfMoment(opens, instance, window, depth);
     reason.how = "nothing began it";
-    reason.because = {Failed(text.empty() ? "its begin condition" : "from " + text,
+    reason.because = {Failed("from " + ClauseText(past_, instance, opens),
                              "did not become true by " + clauses_.Time(until),
                              std::move(blame.reasons))};
     return {{std::move(reason)}, 0.5 * blame.closeness};
@@ -300,7 +299,6 @@ MissingReasons::Blame MissingReasons::OfUntil(InstanceId instance, const Window&
   const Window rest = window.at ? Window{*window.at, past_.frames() - 1} : window;
   Blame blame = OfMoment(part.until, instance, rest, depth);
   const bool whole = rest.first == 0 && rest.last >= past_.frames() - 1;
-  const std::string text = ClauseText(past_, instance, part.until);
   const std::string when = whole ? "never became true"
                            : window.at
                                ? "did not become true at or after " + clauses_.Time(rest.first)
@@ -309,7 +307,7 @@ MissingReasons::Blame MissingReasons::OfUntil(InstanceId instance, const Window&
   Reason reason = Failed(Label(past_, instance), "nothing ended it");
   reason.where = Source(rule.file, rule.place);
   reason.because = {
-      Failed(text.empty() ? "its end condition" : "until " + text, when, std::move(blame.reasons))};
+      Failed("until " + ClauseText(past_, instance, part.until), when, std::move(blame.reasons))};
   if (part.approach) reason.because.push_back(ClosestApproach(instance, window));
   return {{std::move(reason)}, 0.5 * blame.closeness};
 }

@@ -16,6 +16,8 @@
 
 namespace prehend::harness::explain::testing {
 
+inline constexpr const char* kSlide = "slide/carton_slides_then_is_transported";
+
 /// `name` is skill/name; `settings` as for --set.
 inline grammar::ReplayMonitor& Played(const std::string& name,
                                       const std::vector<std::string>& settings = {}) {
@@ -91,6 +93,18 @@ inline const Reason* Find(const Reasons& reasons, const std::string& clause) {
     if (const Reason* inner = Find(reason.because, clause)) return inner;
   }
   return nullptr;
+}
+
+/// The reason is there, so marked; its reading, if it has one, is on the right side of its limit.
+inline void ExpectReason(const Reasons& reasons, const std::string& clause, Reason::Mark mark,
+                         std::optional<bool> above = {}) {
+  const Reason* reason = Find(reasons, clause);
+  ASSERT_NE(reason, nullptr) << clause;
+  EXPECT_EQ(reason->mark, mark) << clause << ": " << reason->how;
+  ASSERT_EQ(reason->reading.has_value(), above.has_value()) << clause;
+  if (above) {
+    EXPECT_EQ(reason->reading->value >= reason->reading->limit, *above) << reason->how;
+  }
 }
 
 }  // namespace prehend::harness::explain::testing
