@@ -14,7 +14,9 @@
 #include <sleef.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 
 #define PREHEND_UNARY(name, sleef)                    \
   double name(double x) noexcept { return sleef(x); } \
@@ -22,6 +24,23 @@
 #define PREHEND_BINARY(name, sleef)                                \
   double name(double a, double b) noexcept { return sleef(a, b); } \
   float name##f(float a, float b) noexcept { return static_cast<float>(sleef(a, b)); }
+
+namespace {
+
+/// Bullet asks for the same power for every body in every tick (damping).
+double PowerOf(double a, double b) {
+  struct Known {
+    double a = 1, b = 1, power = 1;
+  };
+  thread_local Known last;
+  const auto same = [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+  };
+  if (!same(a, last.a) || !same(b, last.b)) last = {a, b, Sleef_cinz_powd1_u10purec(a, b)};
+  return last.power;
+}
+
+}  // namespace
 
 extern "C" {
 PREHEND_UNARY(sin, Sleef_cinz_sind1_u10purec)
@@ -37,7 +56,7 @@ PREHEND_UNARY(log2, Sleef_cinz_log2d1_u10purec)
 PREHEND_UNARY(log10, Sleef_cinz_log10d1_u10purec)
 PREHEND_UNARY(cbrt, Sleef_cinz_cbrtd1_u10purec)
 PREHEND_BINARY(atan2, Sleef_cinz_atan2d1_u10purec)
-PREHEND_BINARY(pow, Sleef_cinz_powd1_u10purec)
+PREHEND_BINARY(pow, PowerOf)
 PREHEND_BINARY(hypot, Sleef_cinz_hypotd1_u05purec)
 
 void sincos(double x, double* sine, double* cosine) noexcept {

@@ -56,7 +56,10 @@ void BulletDynamics::updateAabbs() {
 }
 
 void BulletDynamics::predictUnconstraintMotion(btScalar dt_s) {
-  btDiscreteDynamicsWorld::predictUnconstraintMotion(dt_s);
+  for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
+    btRigidBody& body = *m_nonStaticRigidBodies[i];
+    if (!body.isStaticOrKinematicObject()) body.applyDamping(dt_s);
+  }
 }
 
 void BulletDynamics::SetTightBox(btCollisionObject& object) {

@@ -23,8 +23,10 @@ class BulletDynamics final : public btMultiBodyDynamicsWorld {
   /// Also finds the contacts between grains.
   void performDiscreteCollisionDetection() override;
   void updateAabbs() override;
-  /// Without Bullet's prediction of multibodies, which only continuous collision detection reads.
+  /// Damps bodies. Without Bullet's two predictions of where they will be, which only continuous
+  /// collision detection reads: it is off.
   void predictUnconstraintMotion(btScalar dt_s) override;
+  void createPredictiveContacts(btScalar) override {}
   /// Whether a body was awake in the last step. If not, it was skipped as a whole.
   bool any_awake() const { return any_awake_; }
   /// Whether the last step woke a body.
