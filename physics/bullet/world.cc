@@ -40,9 +40,10 @@ constexpr int kSolverIterations = 50;
 constexpr double kErrorReduction = 0.2;
 /// Penetration deeper than this is corrected without adding velocity.
 constexpr double kSplitImpulseThreshold_m = -0.0005;
-/// Islands are solved one by one and not merged into batches: a sleeping neighbour must not change
-/// a result.
-constexpr int kSolverBatch = 2;
+/// The solver is given islands until they have more contacts and joints together. Our parts solve
+/// bodies of different islands side by side; no result depends on which they are. With stock Bullet
+/// islands are solved one by one.
+constexpr int kSolverBatch = 64, kStockSolverBatch = 2;
 
 // Collision groups. Fixed bodies do not collide with each other; every hand has its own bit, from
 // kFirstHandGroup on.
@@ -129,7 +130,8 @@ void BulletWorld::Configure() {
   info.m_splitImpulse = true;
   info.m_splitImpulsePenetrationThreshold = kSplitImpulseThreshold_m;
   info.m_restitutionVelocityThreshold = kMinImpact_m_per_s;
-  info.m_minimumSolverBatchSize = kSolverBatch;
+  info.m_minimumSolverBatchSize =
+      scene_.world.engine == Engine::kBulletStock ? kStockSolverBatch : kSolverBatch;
   info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
   info.m_solverMode &= ~SOLVER_RANDMIZE_ORDER;
 }

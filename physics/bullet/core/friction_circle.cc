@@ -17,29 +17,6 @@ constexpr int kMostSteps = 30;        ///< Newton's method takes 1 to 4
 
 btScalar SquaredLength(const RowPair& a) { return a.first * a.first + a.second * a.second; }
 
-/// As FrictionWithin(), in principal directions, of a `wanted` beyond the limit.
-RowPair OnTheCircle(btScalar limit, const PrincipalResponse& response, const RowPair& wanted,
-                    btScalar squared_length) {
-  // (K + slip I) x = K wanted, |x| = limit. 1/|x| is nearly linear in `slip`, and Newton's method
-  // on it approaches the solution from below; equal responses are solved by the first guess.
-  const RowPair right{response.first() * wanted.first, response.second() * wanted.second};
-  btScalar slip =
-      std::min(response.first(), response.second()) * (std::sqrt(squared_length) / limit - 1);
-  RowPair x;
-  btScalar length = 0;
-  for (int step = 0; step < kMostSteps; ++step) {
-    const btScalar first = 1 / (response.first() + slip), second = 1 / (response.second() + slip);
-    x = {right.first * first, right.second * second};
-    const btScalar square = SquaredLength(x);
-    length = std::sqrt(square);
-    if (length <= limit * (1 + kAccuracy)) break;
-    const btScalar slope = x.first * x.first * first + x.second * x.second * second;
-    slip += square * (length - limit) / (slope * limit);
-  }
-  const btScalar scale = limit / length;
-  return {x.first * scale, x.second * scale};
-}
-
 }  // namespace
 
 PrincipalResponse::PrincipalResponse(btScalar first, btScalar coupling, btScalar second)
@@ -59,12 +36,34 @@ PrincipalResponse::PrincipalResponse(btScalar first, btScalar coupling, btScalar
   moves_ = first_ > 0 && second_ > 0 && std::isfinite(first_) && std::isfinite(second_);
 }
 
+RowPair OnTheCircle(btScalar limit, const RowPair& response, const RowPair& wanted,
+                    btScalar squared_length) {
+  // (K + slip I) x = K wanted, |x| = limit. 1/|x| is nearly linear in `slip`, and Newton's method
+  // on it approaches the solution from below; equal responses are solved by the first guess.
+  const RowPair right{response.first * wanted.first, response.second * wanted.second};
+  btScalar slip =
+      std::min(response.first, response.second) * (std::sqrt(squared_length) / limit - 1);
+  RowPair x;
+  btScalar length = 0;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const btScalar first = 1 / (response.first + slip), second = 1 / (response.second + slip);
+    x = {right.first * first, right.second * second};
+    const btScalar square = SquaredLength(x);
+    length = std::sqrt(square);
+    if (length <= limit * (1 + kAccuracy)) break;
+    const btScalar slope = x.first * x.first * first + x.second * x.second * second;
+    slip += square * (length - limit) / (slope * limit);
+  }
+  const btScalar scale = limit / length;
+  return {x.first * scale, x.second * scale};
+}
+
 RowPair FrictionWithin(btScalar limit, const PrincipalResponse& response, const RowPair& wanted) {
   if (limit <= 0) return {};
   const btScalar squared_length = SquaredLength(wanted);
   if (squared_length <= limit * limit) return wanted;
-  return response.ToRows(
-      OnTheCircle(limit, response, response.ToPrincipal(wanted), squared_length));
+  return response.ToRows(OnTheCircle(limit, {response.first(), response.second()},
+                                     response.ToPrincipal(wanted), squared_length));
 }
 
 RowPair FrictionChange(const RowPair& impulse, btScalar limit, const PrincipalResponse& response,
@@ -77,7 +76,8 @@ RowPair FrictionChange(const RowPair& impulse, btScalar limit, const PrincipalRe
   const RowPair wanted{before.first + change.first, before.second + change.second};
   const btScalar squared_length = SquaredLength(wanted);
   if (squared_length > limit * limit) {
-    const RowPair sum = OnTheCircle(limit, response, wanted, squared_length);
+    const RowPair sum =
+        OnTheCircle(limit, {response.first(), response.second()}, wanted, squared_length);
     change = {sum.first - before.first, sum.second - before.second};
   }
   return response.ToRows(change);

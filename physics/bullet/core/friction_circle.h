@@ -31,6 +31,9 @@ class PrincipalResponse {
   bool moves() const { return moves_; }
   btScalar first() const { return first_; }
   btScalar second() const { return second_; }
+  /// Of the angle by which these directions are turned.
+  btScalar cosine() const { return cosine_; }
+  btScalar sine() const { return sine_; }
   RowPair ToPrincipal(const RowPair& rows) const {
     return {cosine_ * rows.first - sine_ * rows.second, sine_ * rows.first + cosine_ * rows.second};
   }
@@ -48,6 +51,10 @@ class PrincipalResponse {
 /// `response`: `wanted` if it is within the limit, else the impulse on the circle that is opposite
 /// to the remaining sliding velocity. Relative error of |x| at most 1e-9. Zero if limit <= 0.
 RowPair FrictionWithin(btScalar limit, const PrincipalResponse& response, const RowPair& wanted);
+
+/// The same of a `wanted` beyond the limit, which is positive. All are along principal directions.
+RowPair OnTheCircle(btScalar limit, const RowPair& response, const RowPair& wanted,
+                    btScalar squared_length);
 
 /// Change of the impulse of a contact's friction rows: afterwards its length is at most `limit`,
 /// and it removes as much of `speed_errors` (wanted minus present speed along each row) as that

@@ -37,10 +37,11 @@ void RigidRows::Setup(const Pools& pools) {
     pushes_[At(i)] = SixOf(body.internalGetPushVelocity(), body.internalGetTurnVelocity());
   }
   others_.clear();
+  FindLoneBodies(pools);
   Flatten(pools, pools.joints, 1, joints_);
   Flatten(pools, pools.contacts, 1, contacts_);
   for (Row& row : contacts_) row.most = kNoLimit;
-  pressures_.resize(contacts_.size());
+  pressures_.resize(At(pools.contacts.size()));
   for (std::size_t i = 0; i < contacts_.size(); ++i)
     pressures_[At(order_[i])] = &contacts_[i].impulse;
   TakePenetrations(pools);
@@ -52,6 +53,26 @@ void RigidRows::Setup(const Pools& pools) {
   ComputeResponses(rolling_, kRollingRows, rolling_responses_);
 }
 
+void RigidRows::FindLoneBodies(const Pools& pools) {
+  lone_.resize(speeds_.size());
+  for (std::size_t i = 0; i < lone_.size(); ++i) {
+    const btSolverBody& body = pools.bodies[static_cast<int>(i)];
+    lone_[i] = Moves(body) && !IsGrain(body) && !pools.shared[i];
+  }
+  for (const btConstraintArray* rows : {&pools.joints, &pools.contacts, &pools.rolling}) {
+    for (int i = 0; i < rows->size(); ++i) {
+      const int a = (*rows)[i].m_solverBodyIdA, b = (*rows)[i].m_solverBodyIdB;
+      if (rows != &pools.contacts || (Moves(pools.bodies[a]) && Moves(pools.bodies[b])))
+        lone_[At(a)] = lone_[At(b)] = 0;
+    }
+  }
+  lone_bodies_.Setup(lone_, pools.bodies, speeds_, pools.contacts, pools.frictions);
+}
+
+bool RigidRows::IsLone(const btSolverConstraint& source) const {
+  return lone_[At(source.m_solverBodyIdA)] || lone_[At(source.m_solverBodyIdB)];
+}
+
 void RigidRows::Arrange(const btConstraintArray& sources, std::size_t group,
                         const btAlignedObjectArray<btSolverBody>& bodies) {
   const std::size_t count = At(sources.size()) / group;
@@ -59,8 +80,12 @@ void RigidRows::Arrange(const btConstraintArray& sources, std::size_t group,
   bodys_level_.assign(At(bodies.size()), -1);
   level_.resize(count);
   next_.assign(count + 1, 0);
+  std::size_t arranged = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const btSolverConstraint& source = sources[static_cast<int>(i * group)];
+    level_[i] = -1;
+    if (IsLone(source)) continue;
+    ++arranged;
     int level = 0;
     for (const int body : {source.m_solverBodyIdA, source.m_solverBodyIdB})
       if (Moves(bodies[body])) level = std::max(level, bodys_level_[At(body)] + 1);
@@ -69,8 +94,9 @@ void RigidRows::Arrange(const btConstraintArray& sources, std::size_t group,
     ++next_[At(level) + 1];
   }
   for (std::size_t level = 1; level <= count; ++level) next_[level] += next_[level - 1];
-  order_.resize(count * group);
+  order_.resize(arranged * group);
   for (std::size_t i = 0; i < count; ++i) {
+    if (level_[i] < 0) continue;
     const std::size_t place = At(next_[At(level_[i])]++);
     for (std::size_t k = 0; k < group; ++k)
       order_[place * group + k] = static_cast<int>(i * group + k);
@@ -113,33 +139,35 @@ RigidRows::Row RigidRows::MakeRow(const btSolverConstraint& source, const Pools&
 
 void RigidRows::TakePenetrations(const Pools& pools) {
   penetrations_.clear();
-  for (const Row& contact : contacts_) {
-    const btSolverConstraint& source = *contact.source;
-    if (source.m_rhsPenetration == 0) continue;
+  const auto take = [&](const btSolverConstraint& source) {
+    if (source.m_rhsPenetration == 0) return;
     Row& row = penetrations_.emplace_back(MakeRow(source, pools, pushes_));
     row.wanted = source.m_rhsPenetration;
     row.impulse = source.m_appliedPushImpulse;
     row.most = kNoLimit;
-  }
+  };
+  for (const Row& contact : contacts_) take(*contact.source);
+  for (int i = 0; i < pools.contacts.size(); ++i)
+    if (IsLone(pools.contacts[i])) take(pools.contacts[i]);
 }
 
-const RigidSide* RigidRows::OtherOf(const Row& row) const {
+inline const RigidSide* RigidRows::OtherOf(const Row& row) const {
   return row.other < 0 ? nullptr : &others_[At(row.other)];
 }
 
-btScalar RigidRows::WantedChange(const Row& row) const {
+inline btScalar RigidRows::WantedChange(const Row& row) const {
   btScalar change = row.wanted - row.impulse * row.softness;
   change -= row.side.SpeedAlong() * row.inverse_mass;
   if (const RigidSide* other = OtherOf(row)) change -= other->SpeedAlong() * row.inverse_mass;
   return change;
 }
 
-void RigidRows::Push(Row& row, btScalar change) {
+inline void RigidRows::Push(Row& row, btScalar change) {
   row.side.Push(change);
   if (const RigidSide* other = OtherOf(row)) other->Push(change);
 }
 
-btScalar RigidRows::Solve(Row& row) {
+inline btScalar RigidRows::Solve(Row& row) {
   btScalar change = WantedChange(row);
   btScalar sum = row.impulse + change;
   if (sum < row.least) {
@@ -183,6 +211,7 @@ btScalar RigidRows::SolvePair(Row& first, Row& second, btScalar limit,
 }
 
 btScalar RigidRows::Solve(int iteration, int contact_iterations) {
+  if (iteration == 0) lone_bodies_.Solve(contact_iterations);
   btScalar largest = 0;
   for (Row& row : joints_)
     if (iteration < row.iterations) largest = std::max(largest, Solve(row));
@@ -227,6 +256,7 @@ btScalar RigidRows::SolvePenetrations() {
 void RigidRows::WriteBack(const Pools& pools) const {
   for (const Rows* rows : {&joints_, &contacts_, &frictions_, &rolling_})
     for (const Row& row : *rows) row.source->m_appliedImpulse = row.impulse;
+  lone_bodies_.WriteBack();
   for (int i = 0; i < pools.bodies.size(); ++i) {
     btSolverBody& body = pools.bodies[i];
     if (!Moves(body)) continue;

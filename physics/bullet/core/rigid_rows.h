@@ -3,66 +3,19 @@
 // same arithmetic, except that friction and rolling friction are limited by circles
 // (physics/bullet/core/friction_circle.h). Every row is first written out flat, a side that does
 // not move costs nothing, and rows without a common body are adjacent, so that none waits for its
-// neighbour's result. Tested by tests/physics/bullet/solver_test.cc
+// neighbour's result. Bodies that touch only what does not move are left to LoneBodies. Tested by
+// tests/physics/bullet/solver_test.cc
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
-#include <BulletDynamics/ConstraintSolver/btSolverBody.h>
 
 #include <vector>
 
 #include "physics/bullet/core/friction_circle.h"
-#include "physics/bullet/core/multibody_inertia.h"
+#include "physics/bullet/core/lone_bodies.h"
+#include "physics/bullet/core/rigid_side.h"
 
 namespace prehend::physics {
-
-/// Linear parts, then angular parts.
-inline Six SixOf(const btVector3& linear, const btVector3& angular) {
-  return {linear.x(), linear.y(), linear.z(), angular.x(), angular.y(), angular.z()};
-}
-
-/// One rigid body of a row: what the row reads and changes of it. Sums are in Bullet's order, to
-/// the last bit.
-struct RigidSide {
-  Six* speeds = nullptr;  ///< solver's change of the body's speeds; null: fixed
-  Six jacobian{};
-  Six response{};  ///< change of the speeds by a unit impulse
-
-  btScalar SpeedAlong() const {
-    if (!speeds) return 0;
-    const Six &j = jacobian, &v = *speeds;
-    return (j[0] * v[0] + j[1] * v[1] + j[2] * v[2]) + (j[3] * v[3] + j[4] * v[4] + j[5] * v[5]);
-  }
-
-  /// Change of this side's speed along its row by a unit impulse of `other`, a side on the same
-  /// body.
-  btScalar SpeedBy(const RigidSide& other) const {
-    if (!speeds) return 0;
-    const Six &j = jacobian, &v = other.response;
-    return (j[0] * v[0] + j[1] * v[1] + j[2] * v[2]) + (j[3] * v[3] + j[4] * v[4] + j[5] * v[5]);
-  }
-
-  void Push(btScalar impulse) const {
-    if (!speeds) return;
-    btScalar* const __restrict v = speeds->data();
-    const btScalar* const __restrict r = response.data();
-    for (std::size_t i = 0; i < 6; ++i) v[i] += r[i] * impulse;
-  }
-};
-
-inline bool Moves(const btSolverBody& body) {
-  return body.m_originalBody && !body.internalGetInvMass().isZero();
-}
-
-/// `speeds`: the solver's change of the body's speeds.
-inline RigidSide MakeRigidSide(const btSolverBody& body, Six& speeds, const btVector3& linear,
-                               const btVector3& angular, const btVector3& angular_response) {
-  if (!Moves(body)) return {};
-  return {.speeds = &speeds,
-          .jacobian = SixOf(linear, angular),
-          .response = SixOf(linear * body.internalGetInvMass() * body.m_linearFactor,
-                            angular_response * body.m_angularFactor)};
-}
 
 /// Requires rows in a fixed order, friction rows after all contact rows (Bullet's defaults), and
 /// two friction directions.
@@ -72,6 +25,7 @@ class RigidRows {
   struct Pools {
     btAlignedObjectArray<btSolverBody>& bodies;
     btConstraintArray &joints, &contacts, &frictions, &rolling;
+    const std::vector<char>& shared;  ///< by body: other rows change its speeds, too
   };
   void Setup(const Pools& pools);
 
@@ -104,18 +58,20 @@ class RigidRows {
   };
   using Rows = std::vector<Row>;
 
+  void FindLoneBodies(const Pools& pools);
+  bool IsLone(const btSolverConstraint& source) const;
   /// Computes the order of groups of `group` rows, which have the same bodies. Groups with a common
-  /// body keep their order, and so do the rows of a group.
+  /// body keep their order, and so do the rows of a group. Groups of lone bodies are left out.
   void Arrange(const btConstraintArray& sources, std::size_t group,
                const btAlignedObjectArray<btSolverBody>& bodies);
   void Flatten(const Pools& pools, const btConstraintArray& sources, std::size_t group, Rows& rows);
   Row MakeRow(const btSolverConstraint& source, const Pools& pools, std::vector<Six>& speeds);
   void TakePenetrations(const Pools& pools);
-  const RigidSide* OtherOf(const Row& row) const;
+  [[gnu::always_inline]] const RigidSide* OtherOf(const Row& row) const;
   /// Change of the impulse that gives the wanted speed, without limits.
-  btScalar WantedChange(const Row& row) const;
-  void Push(Row& row, btScalar change);
-  btScalar Solve(Row& row);
+  [[gnu::always_inline]] btScalar WantedChange(const Row& row) const;
+  [[gnu::always_inline]] void Push(Row& row, btScalar change);
+  [[gnu::always_inline]] btScalar Solve(Row& row);
   btScalar Coupling(const Row& first, const Row& second) const;
   /// Two rows of friction of one contact, whose impulses together are at most `limit`.
   btScalar SolvePair(Row& first, Row& second, btScalar limit, const PrincipalResponse& response);
@@ -125,6 +81,8 @@ class RigidRows {
   /// Of the last two of every `group` rows.
   void ComputeResponses(const Rows& rows, std::size_t group, Responses& responses) const;
 
+  std::vector<char> lone_;  ///< by body
+  LoneBodies lone_bodies_;
   Rows joints_, contacts_, frictions_, rolling_, penetrations_;
   Responses friction_responses_, rolling_responses_;  ///< by pair of rows
   btScalar grains_change_ = 0;  ///< largest squared change of a speed, when they were last solved

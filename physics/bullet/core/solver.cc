@@ -6,12 +6,21 @@
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 
 #include <algorithm>
+#include <cstring>
 #include <tuple>
 
 #include "physics/bullet/core/restitution.h"
 
 namespace prehend::physics {
 namespace {
+
+using Two = btScalar __attribute__((vector_size(2 * sizeof(btScalar))));
+
+Two Load(const btScalar* two) {
+  Two loaded;
+  std::memcpy(&loaded, two, sizeof loaded);
+  return loaded;
+}
 
 /// Clamps an impulse that changes from `old` by `change` to `sum`.
 void Clamp(btScalar least, btScalar most, btScalar old, btScalar& sum, btScalar& change) {
@@ -51,6 +60,7 @@ btScalar BulletSolver::solveGroupCacheFriendlySetup(
   const MultibodyInertias::Use use(inertias_);
   const btScalar result = btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(
       bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, drawer);
+  FindShared();
   rigid_.Setup(RigidPools());
   if (grain_contacts_)
     grains_.Setup(grain_contacts_->contacts(), m_tmpSolverBodyPool, rigid_, info);
@@ -146,12 +156,15 @@ BulletSolver::Side BulletSolver::MakeSide(btMultiBody& multibody, const btScalar
   side.rigid.speeds = &use.base;
   side.rigid.response = inertia.BaseResponse(side.rigid.jacobian);
   side.first_joint = use.first_joint + limbs.first;
-  side.joint_count = limbs.end - limbs.first;
+  const std::size_t count = limbs.end - limbs.first;
+  side.joint_count = count + count % 2;
   side.coefficients = coefficients_.size();
-  for (std::size_t i = limbs.first; i < limbs.end; ++i)
-    coefficients_.push_back(jacobian[6 + inertia.JointAt(i)]);
-  for (std::size_t i = limbs.first; i < limbs.end; ++i)
-    coefficients_.push_back(inertia.JointResponse(i, jacobian));
+  coefficients_.resize(side.coefficients + 2 * side.joint_count);
+  btScalar* const elements = coefficients_.data() + side.coefficients;
+  for (std::size_t i = 0; i < count; ++i) {
+    elements[i] = jacobian[6 + inertia.JointAt(limbs.first + i)];
+    elements[side.joint_count + i] = inertia.JointResponse(limbs.first + i, jacobian);
+  }
   return side;
 }
 
@@ -183,7 +196,8 @@ BulletSolver::MultibodyUse& BulletSolver::UseOf(btMultiBody& multibody, int spee
   multibody.setPosUpdated(false);
   const MultibodyInertia& inertia = inertias_.Of(multibody);
   const std::size_t first_joint = joint_speeds_.size();
-  joint_speeds_.resize(first_joint + inertia.joint_count());
+  // One more, which always stays zero, for a limb with an odd number of joints.
+  joint_speeds_.resize(first_joint + inertia.joint_count() + 1);
   return multibodies_.emplace_back(
       MultibodyUse{&multibody, &inertia, speeds, first_joint, /*base=*/{}});
 }
@@ -194,11 +208,14 @@ void BulletSolver::ApplySpeeds(const MultibodyUse& use) {
   use.multibody->applyDeltaVeeMultiDof2(speeds, 1);
 }
 
-btScalar BulletSolver::SpeedAlong(const Side& side) const {
+inline btScalar BulletSolver::SpeedAlong(const Side& side) const {
   btScalar speed = side.rigid.SpeedAlong();
   const btScalar* const factors = coefficients_.data() + side.coefficients;
   const btScalar* const speeds = joint_speeds_.data() + side.first_joint;
-  for (std::size_t i = 0; i < side.joint_count; ++i) speed += factors[i] * speeds[i];
+  for (std::size_t i = 0; i < side.joint_count; i += 2) {
+    const Two product = Load(factors + i) * Load(speeds + i);
+    speed = speed + product[0] + product[1];
+  }
   return speed;
 }
 
@@ -206,19 +223,21 @@ btScalar BulletSolver::Pressure(const Row& friction) const {
   return normals_[static_cast<std::size_t>(friction.normal)].impulse;
 }
 
-btScalar BulletSolver::SpeedError(const Row& row) const {
+inline btScalar BulletSolver::SpeedError(const Row& row) const {
   return row.wanted - row.impulse * row.softness - SpeedAlong(row.a) - SpeedAlong(row.b);
 }
 
-void BulletSolver::Push(const Side& side, btScalar impulse) {
+inline void BulletSolver::Push(const Side& side, btScalar impulse) {
   side.rigid.Push(impulse);
-  const btScalar* const __restrict responses =
-      coefficients_.data() + side.coefficients + side.joint_count;
-  btScalar* const __restrict speeds = joint_speeds_.data() + side.first_joint;
-  for (std::size_t i = 0; i < side.joint_count; ++i) speeds[i] += responses[i] * impulse;
+  const btScalar* const responses = coefficients_.data() + side.coefficients + side.joint_count;
+  btScalar* const speeds = joint_speeds_.data() + side.first_joint;
+  for (std::size_t i = 0; i < side.joint_count; i += 2) {
+    const Two changed = Load(speeds + i) + Load(responses + i) * impulse;
+    std::memcpy(speeds + i, &changed, sizeof changed);
+  }
 }
 
-void BulletSolver::Push(const Row& row, btScalar impulse) {
+inline void BulletSolver::Push(const Row& row, btScalar impulse) {
   if (impulse == 0) return;
   Push(row.a, impulse);
   Push(row.b, impulse);
@@ -258,7 +277,20 @@ RigidRows::Pools BulletSolver::RigidPools() {
           .joints = m_tmpSolverNonContactConstraintPool,
           .contacts = m_tmpSolverContactConstraintPool,
           .frictions = m_tmpSolverContactFrictionConstraintPool,
-          .rolling = m_tmpSolverContactRollingFrictionConstraintPool};
+          .rolling = m_tmpSolverContactRollingFrictionConstraintPool,
+          .shared = shared_};
+}
+
+void BulletSolver::FindShared() {
+  shared_.assign(static_cast<std::size_t>(m_tmpSolverBodyPool.size()), 0);
+  const auto mark = [&](int body) { shared_[static_cast<std::size_t>(body)] = 1; };
+  for (const btMultiBodyConstraintArray* rows :
+       {&m_multiBodyNonContactConstraints, &m_multiBodyNormalContactConstraints})
+    for (int i = 0; i < rows->size(); ++i) {
+      const btMultiBodySolverConstraint& row = (*rows)[i];
+      if (!row.m_multiBodyA && row.m_solverBodyIdA >= 0) mark(row.m_solverBodyIdA);
+      if (!row.m_multiBodyB && row.m_solverBodyIdB >= 0) mark(row.m_solverBodyIdB);
+    }
 }
 
 void BulletSolver::solveGroupCacheFriendlySplitImpulseIterations(btCollisionObject**, int,

@@ -60,7 +60,7 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
     RigidSide rigid;
     std::size_t first_joint = 0, joint_count = 0;  ///< in joint_speeds_
     /// Of the joints in coefficients_: elements of the Jacobian, then changes of speed by a unit
-    /// impulse.
+    /// impulse. Two joints are done at once: if their number is odd, one more has zeros.
     std::size_t coefficients = 0;
   };
   struct Row {
@@ -75,6 +75,8 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   using Rows = std::vector<Row>;
 
   RigidRows::Pools RigidPools();
+  /// Marks rigid bodies that take part in rows of a multibody.
+  void FindShared();
   /// Makes rows without a common body neighbours, so that none waits for its neighbour's result.
   /// Rows with a common body keep their order, and with it every bit of the results.
   void Interleave(Rows& rows);
@@ -83,13 +85,13 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
                 const btVector3& linear, const btVector3& angular,
                 const btVector3& angular_response);
   Side MakeSide(btMultiBody& multibody, const btScalar* jacobian, int speeds);
-  btScalar SpeedAlong(const Side& side) const;
+  [[gnu::always_inline]] btScalar SpeedAlong(const Side& side) const;
   /// Impulse of the contact of a friction row.
   btScalar Pressure(const Row& friction) const;
   /// Wanted minus present speed along the row.
-  btScalar SpeedError(const Row& row) const;
-  void Push(const Side& side, btScalar impulse);
-  void Push(const Row& row, btScalar impulse);
+  [[gnu::always_inline]] btScalar SpeedError(const Row& row) const;
+  [[gnu::always_inline]] void Push(const Side& side, btScalar impulse);
+  [[gnu::always_inline]] void Push(const Row& row, btScalar impulse);
   btScalar Solve(Row& row);
   /// Change of speed along the row of `first` by a unit impulse along the row of `second`.
   btScalar Coupling(const Side& first, const Side& second) const;
@@ -109,6 +111,7 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   MultibodyUse& UseOf(btMultiBody& multibody, int speeds);
   void ApplySpeeds(const MultibodyUse& use);
 
+  std::vector<char> shared_;  ///< by rigid body
   RigidRows rigid_;
   GrainContacts* grain_contacts_ = nullptr;
   GrainRows grains_;

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies that touch only what does not move: a thing on a table. No row has two of them, so each is
+// solved by itself, all iterations at once, several of them side by side. The bits are those of
+// RigidRows, which solves all others. Only for physics/bullet/core. Tested by
+// tests/physics/bullet/lone_bodies_test.cc
+#pragma once
+
+#include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
+
+#include <array>
+#include <vector>
+
+#include "physics/bullet/core/rigid_side.h"
+#include "physics/bullet/core/wide.h"
+
+namespace prehend::physics {
+
+class LoneBodies {
+ public:
+  /// Of Bullet's bodies those that are marked as `lone`, with their `speeds`, and of its rows those
+  /// that have such a body. They must outlive the other calls.
+  void Setup(const std::vector<char>& lone, const btAlignedObjectArray<btSolverBody>& bodies,
+             std::vector<Six>& speeds, const btConstraintArray& contacts,
+             const btConstraintArray& frictions);
+
+  /// Solves each row `iterations` times, or until nothing changes any more.
+  void Solve(int iterations);
+  /// Writes impulses to Bullet's rows.
+  void WriteBack() const;
+
+ private:
+  /// Bullet's rows of a contact.
+  struct Contact {
+    const btSolverConstraint *normal = nullptr, *first_friction, *second_friction;
+  };
+  struct Body {
+    int index;
+    const btSolverBody* body;
+    Six* speeds;
+    std::size_t first, count;  ///< of contacts_
+  };
+  template <std::size_t lanes>
+  struct Row {
+    std::array<Wide<lanes>, 6> jacobian, response;
+    Wide<lanes> wanted, softness, inverse_mass, mass, impulse;
+  };
+  /// A contact of each lane. A lane that has fewer contacts has rows that change nothing.
+  template <std::size_t lanes>
+  struct Contacts {
+    Row<lanes> normal, first, second;
+    Wide<lanes> least, friction;
+    Wide<lanes> cosine, sine, first_response, second_response;  ///< of PrincipalResponse
+    Marks<lanes> moves;
+    std::array<Contact, lanes> sources;
+  };
+  template <std::size_t lanes>
+  struct Block {
+    std::array<Six*, lanes> speeds;
+    std::size_t first, count;  ///< of Blocks::contacts
+  };
+  template <std::size_t lanes>
+  struct Blocks {
+    std::vector<Block<lanes>> blocks;
+    std::vector<Contacts<lanes>> contacts;
+
+    void Clear();
+    /// At most as many bodies as there are lanes, the one with most contacts first.
+    void Add(const Body* bodies, std::size_t count, const std::vector<Contact>& contacts);
+    void Solve(int iterations);
+    void WriteBack() const;
+  };
+  static RigidSide SideOf(const Body& body, const btSolverConstraint& source);
+  template <std::size_t lanes>
+  static void SetRow(Row<lanes>& row, std::size_t lane, const RigidSide& side,
+                     const btSolverConstraint& source);
+  template <std::size_t lanes>
+  static void SetContact(Contacts<lanes>& contacts, std::size_t lane, const Body& body,
+                         const Contact& contact);
+  template <std::size_t lanes>
+  static bool SolveOnce(Contacts<lanes>* contacts, std::size_t count,
+                        std::array<Wide<lanes>, 6>& v);
+  void Arrange();
+
+  std::vector<std::size_t> place_;  ///< by body: of its next contact
+  std::vector<Body> bodies_;
+  std::vector<Contact> contacts_;  ///< by body
+  Blocks<8> eight_;
+  Blocks<4> four_;
+  Blocks<2> two_;
+};
+
+}  // namespace prehend::physics
