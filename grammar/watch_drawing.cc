@@ -3,7 +3,11 @@
 #include "grammar/watch_drawing.h"
 
 #include <algorithm>
+#include <functional>
+#include <map>
+#include <utility>
 
+#include "grammar/base/wording.h"
 #include "grammar/check_laws.h"
 #include "grammar/contents.h"
 #include "grammar/monitor.h"
@@ -36,6 +40,77 @@ std::vector<std::string> SplitRoles(const std::string& text) {
   }
   return roles;
 }
+
+/// What keeps an expected event from ever being recognised.
+class ExpectedEvent {
+ public:
+  /// `label` is "grasping(hand, cup)".
+  ExpectedEvent(const EventSignature& event, const DrawnEpisode& drawn, const std::string& label)
+      : event_(event), entities_(drawn.entity_table) {
+    const std::size_t open = label.find('(');
+    roles_ = SplitRoles(label.substr(open + 1, label.size() - open - 2));
+  }
+
+  using Complain = std::function<void(std::string message, std::string hint)>;
+  void Check(const Complain& complain) const {
+    if (roles_.size() != event_.roles.size()) {
+      return complain("'" + event_.name + "' has " + CountOf(Number(event_.roles), "role") +
+                          ", found " + std::to_string(roles_.size()),
+                      "");
+    }
+    std::vector<std::string> names;
+    for (const EntityInfo& entity : entities_) names.push_back(entity.name);
+    bool are_there = true;
+    for (const std::string& role : roles_) {
+      if (std::ranges::find(names, role) != names.end()) continue;
+      complain("nobody is called '" + role + "'", DidYouMean(role, names));
+      are_there = false;
+    }
+    if (!are_there) return;
+    for (std::size_t i = 0; i < roles_.size(); ++i) {
+      if (std::ranges::count(roles_, roles_[i]) > 1)
+        return complain("'" + roles_[i] + "' cannot have two roles of '" + event_.name + "'", "");
+      if (Takes(i, roles_[i])) continue;
+      return complain("'" + roles_[i] + "' is never '" + event_.roles[i] + "' of '" + event_.name +
+                          "', which takes " + WithArticle(event_.classes[i]),
+                      Remedy(i));
+    }
+    if (event_.symmetric && roles_[0] > roles_[1])
+      complain("the first two roles of '" + event_.name + "' stand in alphabetical order",
+               "did you mean '" + Exchanged(0, 1) + "'?");
+  }
+
+ private:
+  static long long Number(const std::vector<std::string>& all) {
+    return static_cast<long long>(all.size());
+  }
+  bool Takes(std::size_t role, const std::string& name) const {
+    const auto entity = std::ranges::find(entities_, name, &EntityInfo::name);
+    return std::ranges::count(entity->classes, event_.classes[role]) > 0;
+  }
+  std::string Exchanged(std::size_t one, std::size_t other) const {
+    std::vector<std::string> roles = roles_;
+    std::swap(roles[one], roles[other]);
+    std::string label = event_.name + "(";
+    for (const std::string& role : roles) label += (&role == &roles.front() ? "" : ", ") + role;
+    return label + ")";
+  }
+  std::string Remedy(std::size_t role) const {
+    for (std::size_t other = 0; other < roles_.size(); ++other) {
+      if (other != role && Takes(role, roles_[other]) && Takes(other, roles_[role]))
+        return "did you mean '" + Exchanged(role, other) + "'?";
+    }
+    std::string who;
+    for (const EntityInfo& entity : entities_) {
+      if (Takes(role, entity.name)) who += (who.empty() ? "" : ", ") + entity.name;
+    }
+    return who.empty() ? "the drawing has none" : "that can be " + who;
+  }
+
+  const EventSignature& event_;
+  const std::vector<EntityInfo>& entities_;
+  std::vector<std::string> roles_;
+};
 
 }  // namespace
 
@@ -75,15 +150,20 @@ std::vector<DrawnRow> DrawWatched(const Program& program, const DrawnEpisode& dr
 Diagnostics CheckExpected(const Program& program, const DrawnEpisode& drawn,
                           const GrammarText& file) {
   Diagnostics diagnostics;
-  std::vector<std::string> laws, names;
+  std::vector<std::string> laws;
+  std::map<std::string, int> lines;  // of the rows so far
   for (const Law& law : program.laws) laws.push_back(law.name);
-  for (const EntityInfo& entity : drawn.entity_table) names.push_back(entity.name);
   const std::vector<EventSignature> events = EventSignatures(program);
   for (const DrawnRow& row : drawn.expected) {
     const auto complain = [&](std::string message, std::string hint) {
       diagnostics.push_back(
           DiagnosticAt(file.file, file.text, {row.line, 1}, std::move(message), std::move(hint)));
     };
+    const auto [first, is_new] = lines.try_emplace(row.name, row.line);
+    if (!is_new) {
+      complain("'" + row.name + "' is drawn in line " + std::to_string(first->second) + " already",
+               "all its intervals stand in one row");
+    }
     if (row.name.starts_with(kViolated)) {
       const std::string law = row.name.substr(kViolated.size());
       if (std::ranges::find(laws, law) == laws.end())
@@ -103,17 +183,7 @@ Diagnostics CheckExpected(const Program& program, const DrawnEpisode& drawn,
                "for example: grasping(hand, cup)");
       continue;
     }
-    const std::vector<std::string> roles =
-        SplitRoles(row.name.substr(bracket + 1, row.name.size() - bracket - 2));
-    if (roles.size() != event->roles.size()) {
-      complain("'" + name + "' has " + std::to_string(event->roles.size()) + " roles, found " +
-                   std::to_string(roles.size()),
-               "");
-    }
-    for (const std::string& role : roles) {
-      if (std::ranges::find(names, role) == names.end())
-        complain("nobody is called '" + role + "'", DidYouMean(role, names));
-    }
+    ExpectedEvent(*event, drawn, row.name).Check(complain);
   }
   return diagnostics;
 }

@@ -8,15 +8,12 @@
 #include <utility>
 
 #include "grammar/drawing/drawn_episode.h"
+#include "grammar/drawing/drawn_facts.h"
 
 namespace prehend::grammar {
 namespace {
 
-int Digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 10;
-  return 0;
-}
+int Digit(char cell) { return DrawnNumber(cell).value_or(0); }
 
 // A row's value at a time, in the row's own unit, straight between columns.
 double Interpolate(const std::string& cells, Tick tick) {
@@ -141,18 +138,13 @@ Touch& DrawnFrames::TouchOf(int a, int b) {
 }
 
 void DrawnFrames::AddTouch(int a, int b, const std::string& how, char cell) {
-  Touch touch{.a = a, .b = b, .up_on_a = 0, .up_on_b = 0, .normal_force_n = 1};
+  Touch& touch = TouchOf(a, b);
   if (how == "on") {
-    touch.up_on_a = 1;
-    touch.up_on_b = -1;
+    touch.up_on_a = a < b ? 1 : -1;
+    touch.up_on_b = a < b ? -1 : 1;
   } else if (how == "holds") {
-    touch.sensor_sets = (1U << std::min(Digit(cell), 31)) - 1;
+    touch.sensor_sets |= static_cast<std::uint32_t>((std::uint64_t{1} << Digit(cell)) - 1);
   }
-  if (touch.a > touch.b) {
-    std::swap(touch.a, touch.b);
-    std::swap(touch.up_on_a, touch.up_on_b);
-  }
-  touches_.push_back(touch);
 }
 
 // The mean of the steps of a jittered camera is the usual frame.

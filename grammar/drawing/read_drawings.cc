@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Line by line; what is wrong with a line does not stop the reading of the others.
 #include <algorithm>
-#include <array>
 #include <charconv>
+#include <map>
 #include <optional>
 #include <sstream>
 
+#include "grammar/base/wording.h"
 #include "grammar/drawing/drawn_episode.h"
+#include "grammar/drawing/drawn_facts.h"
 
 namespace prehend::grammar {
 namespace {
 
 constexpr std::size_t kMostEpisodes = 1000, kMostColumns = 10'000, kMostEntities = 64;
-constexpr std::array kAlone = {"x", "y", "z", "shakes", "grip", "joint", "percent", "tilt"};
-constexpr std::array kOfTwo = {"on", "beside", "holds", "presses", "looks", "circles"};
+constexpr std::size_t kMostSensorSets = 32;
+constexpr int kNobody = -1;
 
 std::string Trim(const std::string& text) {
   const auto begin = text.find_first_not_of(" \t");
@@ -26,6 +28,24 @@ std::vector<std::string> Words(const std::string& text) {
   std::istringstream stream(text);
   for (std::string word; stream >> word;) words.push_back(word);
   return words;
+}
+
+// "tap( hand,drum )" -> "tap(hand, drum)": one blank after a comma and between words, no other.
+std::string SingleSpaced(const std::string& text) {
+  const auto glues = [](char c) { return c == '(' || c == ')' || c == ','; };
+  std::string single;
+  bool blank = false;
+  for (const char c : text) {
+    if (c == ' ' || c == '\t') {
+      blank = true;
+      continue;
+    }
+    const bool between_words = blank && !single.empty() && !glues(single.back()) && !glues(c);
+    if (between_words || single.ends_with(',')) single += ' ';
+    single += c;
+    blank = false;
+  }
+  return single;
 }
 
 std::optional<double> NumberBefore(std::string_view text, std::string_view unit) {
@@ -90,13 +110,15 @@ class Reader {
     if (episodes_.size() == kMostEpisodes)
       Complain(0, "more than " + std::to_string(kMostEpisodes) + " drawings in one file");
     episodes_.push_back({.title = std::move(title), .line = line_});
+    tried_row_ = false;
+    set_.clear();
     for (const auto& [name, of_class] :
          {std::pair("hand", "Hand"), std::pair("cup", "Movable"), std::pair("table", "Fixed")})
       Now().entity_table.push_back(Member(name, of_class));
   }
 
   void FinishEpisode() {
-    if (!episodes_.empty() && Now().facts.empty()) {
+    if (!episodes_.empty() && !tried_row_) {
       diagnostics_.push_back(DiagnosticAt(file_.file, file_.text, {Now().line, 1},
                                           "this drawing has no row of facts",
                                           "for example: cup on table |####....|"));
@@ -122,6 +144,7 @@ class Reader {
     } else if (bar != std::string::npos) {
       ReadRow(bar);
     } else {
+      tried_row_ = true;
       Complain(0, "expected a row, found " + Quoted(Trim(text_)),
                "a row has its columns between bars: cup on table |####....|");
     }
@@ -163,6 +186,8 @@ class Reader {
       std::istringstream sets(detail);
       member.sensor_sets.clear();
       for (std::string set; std::getline(sets, set, '+');) member.sensor_sets.push_back(set);
+      if (member.sensor_sets.size() > kMostSensorSets)
+        Complain(column, "a hand has at most " + CountOf(kMostSensorSets, "sensor set"));
     } else {
       Complain(column, "what is " + Quoted(detail) + " of " + Quoted(member.name) + "?",
                "a mass (8kg), a strength (50N), what it is a part of (of=drawer), or the sensor "
@@ -177,10 +202,11 @@ class Reader {
   }
 
   void ReadRow(std::size_t bar) {
+    tried_row_ |= !Now().has_expected;
     const std::size_t end = text_.find('|', bar + 1);
     if (end == std::string::npos)
       return Complain(text_.size(), "expected '|' at the end of the row");
-    DrawnRow row{Trim(text_.substr(0, bar)), text_.substr(bar + 1, end - bar - 1), line_};
+    DrawnRow row{SingleSpaced(text_.substr(0, bar)), text_.substr(bar + 1, end - bar - 1), line_};
     if (row.cells.empty()) return Complain(bar + 1, "this row has no columns");
     if (row.cells.size() > kMostColumns)
       return Complain(bar + 1, "more than " + std::to_string(kMostColumns) + " columns");
@@ -220,12 +246,40 @@ class Reader {
       return Complain(0, "a fact is about somebody: who, what and perhaps whom",
                       "for example: cup on table |####....|, hand x |012345..|");
     const int who = CheckEntity(words[0]);
-    if (who == kNoEntity || !CheckVerb(words, who)) return;
+    if (who == kNoEntity) return;
+    const EntityInfo& one = Now().entity_table[static_cast<std::size_t>(who)];
+    const std::optional<DrawnFact> fact = CheckVerb(words, one);
+    if (!fact) return;
     for (std::size_t i = 0; i < row.cells.size(); ++i) {
-      const char cell = row.cells[i];
-      const bool known = (cell >= '0' && cell <= '9') || (cell >= 'a' && cell <= 'z') ||
-                         cell == '.' || cell == '#';
-      if (!known) return Complain(bar + 1 + i, "expected 0..9, a..z, '#' or '.' in a row of facts");
+      if (fact->Takes(row.cells[i])) continue;
+      return Complain(bar + 1 + i,
+                      Quoted(fact->name) + " takes " + fact->Characters() + ", found " +
+                          Quoted(row.cells.substr(i, 1)),
+                      fact->name != "holds" ? ""
+                                            : Quoted(one.name) + " has " +
+                                                  CountOf(one.sensor_sets.size(), "sensor set"));
+    }
+    CheckOthers(*fact, words, row, bar);
+  }
+
+  // Two rows cannot give something two values in one column.
+  void CheckOthers(const DrawnFact& fact, const std::vector<std::string>& words,
+                   const DrawnRow& row, std::size_t bar) {
+    const std::string whom = words.size() > 2 ? words[2] : "";
+    for (const std::string& value : ValuesSetBy(fact, words[0], whom)) {
+      std::vector<int>& by = set_[value];
+      by.resize(row.cells.size(), kNobody);
+      const int here = static_cast<int>(Now().facts.size());  // the row's index
+      for (std::size_t i = 0; i < row.cells.size(); ++i) {
+        if (!fact.Says(row.cells[i])) continue;
+        if (by[i] != kNobody) {
+          const DrawnRow& other = Now().facts[static_cast<std::size_t>(by[i])];
+          return Complain(bar + 1 + i, Quoted(row.name) + " and " + Quoted(other.name) +
+                                           " of line " + std::to_string(other.line) +
+                                           " cannot both be so at once");
+        }
+        by[i] = here;
+      }
     }
   }
 
@@ -239,33 +293,27 @@ class Reader {
     return kNoEntity;
   }
 
-  bool CheckVerb(const std::vector<std::string>& words, int who) {
+  std::optional<DrawnFact> CheckVerb(const std::vector<std::string>& words, const EntityInfo& one) {
     const std::string& what = words[1];
-    const EntityInfo& one = Now().entity_table[static_cast<std::size_t>(who)];
-    const bool alone = std::ranges::find(kAlone, what) != kAlone.end();
-    const bool of_two = std::ranges::find(kOfTwo, what) != kOfTwo.end() ||
-                        std::ranges::find(one.sensor_sets, what) != one.sensor_sets.end();
+    const std::vector<DrawnFact> facts = FactsOf(one);
+    const auto fact = std::ranges::find(facts, what, &DrawnFact::name);
     const std::size_t column = text_.find(what, text_.find(words[0]) + words[0].size());
-    const bool is_hand = one.classes.front() == "Hand";
-    if (!alone && !of_two) {
-      std::vector<std::string> known(kAlone.begin(), kAlone.end());
-      known.insert(known.end(), kOfTwo.begin(), kOfTwo.end());
-      known.insert(known.end(), one.sensor_sets.begin(), one.sensor_sets.end());
+    if (fact == facts.end()) {
+      std::vector<std::string> known;
+      for (const DrawnFact& other : facts) known.push_back(other.name);
       Complain(column, "unknown fact " + Quoted(what),
                DidYouMean(what, known, "docs/drawings.md lists them"));
-    } else if ((what == "grip" || what == "holds") && !is_hand) {
-      Complain(column, "only a hand has a grip and holds, and " + Quoted(one.name) + " is a " +
-                           one.classes.front());
-    } else if (words.size() != (alone ? 2 : 3)) {
-      Complain(column, Quoted(what) + (alone ? " is said of one" : " is said of two"),
-               alone ? "for example: " + one.name + " " + what + " |...|"
-                     : "for example: " + one.name + " " + what + " table |...|");
-    } else if (of_two && words[2] == words[0]) {
+    } else if (const std::string never = WhyNever(*fact, one); !never.empty()) {
+      Complain(column, never);
+    } else if (words.size() != (fact->of_two ? 3 : 2)) {
+      Complain(column, Quoted(what) + (fact->of_two ? " is said of two" : " is said of one"),
+               "for example: " + one.name + " " + what + (fact->of_two ? " table" : "") + " |...|");
+    } else if (fact->of_two && words[2] == words[0]) {
       Complain(column, Quoted(what) + " is said of two, and both are " + Quoted(words[0]));
-    } else {
-      return alone || CheckEntity(words[2]) != kNoEntity;
+    } else if (!fact->of_two || CheckEntity(words[2]) != kNoEntity) {
+      return *fact;
     }
-    return false;
+    return std::nullopt;
   }
 
   const GrammarText& file_;
@@ -273,6 +321,8 @@ class Reader {
   std::vector<DrawnEpisode> episodes_;
   std::string text_;
   int line_ = 0;
+  bool tried_row_ = false;                       ///< of the facts of this drawing, right or wrong
+  std::map<std::string, std::vector<int>> set_;  ///< value: which row gives it, by column
 };
 
 }  // namespace

@@ -71,6 +71,20 @@ TEST_F(TryCommand, MistakesHaveTheirPlaceAndExitCodeTwo) {
   EXPECT_EQ(Prehend({"try", "no_such", drawing}).exit_code, 2);
 }
 
+TEST_F(TryCommand, WhatCannotBeIsAMistakeAndNoDifference) {
+  const std::string grammar = File("taps.grammar", kGrammar);
+  const std::string head = "entities hand:Hand drum:Fixed\n";
+  const Said sets = Prehend({"try", grammar, File("sets.txt", head + "hand holds drum |.4.|\n")});
+  EXPECT_EQ(sets.exit_code, 2);
+  EXPECT_NE(sets.err.find(":2:19: error: 'holds' takes 0..3 or '.', found '4'"), std::string::npos)
+      << sets.err;
+  const Said swapped =
+      Prehend({"try", grammar,
+               File("swapped.txt", head + "hand holds drum |.2.|\n--\ntap(drum, hand) |.[.|\n")});
+  EXPECT_EQ(swapped.exit_code, 2);
+  EXPECT_NE(swapped.err.find("did you mean 'tap(hand, drum)'?"), std::string::npos) << swapped.err;
+}
+
 // What stands between two lines that begin with ```.
 std::vector<std::string> Blocks(const std::string& page) {
   std::vector<std::string> blocks;

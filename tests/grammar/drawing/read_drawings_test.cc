@@ -46,7 +46,7 @@ TEST(ReadDrawings, SaysWhatIsWrongWhere) {
             "       ^\n"
             "  hint: did you mean 'holds'?\n");
   EXPECT_EQ(Said("cup x |01|\ncup x |0!|\n"),
-            "d.txt:2:9: error: expected 0..9, a..z, '#' or '.' in a row of facts\n"
+            "d.txt:2:9: error: 'x' takes 0..9, a..z or '.', found '!'\n"
             "  cup x |0!|\n"
             "          ^\n");
   EXPECT_EQ(Said("cup x |0123|\n--\ngrasping(hand, cup) |.==.|\n"),
@@ -77,6 +77,83 @@ TEST(ReadDrawings, SaysWhatIsWrongWhere) {
             "d.txt:7:10: error: expected '|' at the end of the row\n"
             "  cup x |01\n"
             "           ^\n");
+}
+
+// A row that is wrong is a row: the drawing is not said to have none.
+TEST(ReadDrawings, ARowWithoutItsEndIsNamedAlone) {
+  EXPECT_EQ(Said("cup x |01\n"),
+            "d.txt:1:10: error: expected '|' at the end of the row\n"
+            "  cup x |01\n"
+            "           ^\n");
+  EXPECT_EQ(Said("cup x 01\n"),
+            "d.txt:1:1: error: expected a row, found 'cup x 01'\n"
+            "  cup x 01\n"
+            "  ^\n"
+            "  hint: a row has its columns between bars: cup on table |####....|\n");
+}
+
+struct Impossible {
+  const char* rows;
+  const char* said;
+};
+
+TEST(ReadDrawings, WhatCannotBeIsRefused) {
+  const std::string cast = "entities hand:Hand drum:Fixed door:Jointed anna:Person\n";
+  const Impossible cases[] = {
+      {"hand holds drum |.3x.|",
+       "2:20: 'holds' takes 0..3 or '.', found 'x'; 'hand' has 3 sensor sets"},
+      {"hand grip |.zz.|", "2:13: 'grip' takes 0..9, a, '#' or '.', found 'z'"},
+      {"door joint |0kl.|", "2:15: 'joint' takes 0..9, a..k or '.', found 'l'"},
+      {"drum shakes |.22.|", "2:15: 'shakes' takes '#' or '.', found '2'"},
+      {"hand presses drum |.#..|", "2:21: 'presses' takes 0..9, a..z or '.', found '#'"},
+      {"drum joint |0123|", "2:6: only a Jointed thing is open or closed, and 'drum' is a Fixed"},
+      {"hand looks drum |.##.|",
+       "2:6: only a person, a head or a camera looks, and 'hand' is a "
+       "Hand"},
+      {"drum z |0000|\nhand z |0000|\ndrum z |9999|",
+       "4:9: 'drum z' and 'drum z' of line 2 cannot both be so at once"},
+      {"door joint |0123|\ndoor percent |0123|",
+       "3:15: 'door percent' and 'door joint' of line 2 cannot both be so at once"},
+      {"drum circles door |..1.|\ndrum y |0123|",
+       "3:9: 'drum y' and 'drum circles door' of line 2 cannot both be so at once"},
+      {"door on drum |.##.|\ndrum beside door |..##|",
+       "3:21: 'drum beside door' and 'door on drum' of line 2 cannot both be so at once"},
+      {"anna looks drum |.##.|\nanna looks door |..##|",
+       "3:20: 'anna looks door' and 'anna looks drum' of line 2 cannot both be so at once"},
+  };
+  for (const Impossible& one : cases) {
+    Diagnostics diagnostics;
+    EXPECT_TRUE(ReadDrawings({"d.txt", cast + one.rows + "\n"}, diagnostics).empty()) << one.rows;
+    ASSERT_EQ(diagnostics.size(), 1U) << one.rows;
+    const Diagnostic& found = diagnostics[0];
+    EXPECT_EQ(std::to_string(found.place.line) + ":" + std::to_string(found.place.column) + ": " +
+                  found.message + (found.hint.empty() ? "" : "; " + found.hint),
+              one.said);
+  }
+}
+
+TEST(ReadDrawings, WhatIsSaidOfDifferentMomentsOrThingsIsNoContradiction) {
+  EXPECT_EQ(Said("entities hand:Hand cup:Movable table:Fixed anna:Person door:Door\n"
+                 "cup on table |##..|\ncup beside table |..##|\nhand holds cup |..22|\n"
+                 "hand palm cup |...#|\nhand presses cup |..9a|\nanna looks cup |##..|\n"
+                 "anna looks hand |..##|\ndoor joint |0k..|\nhand grip |.a#.|\n"),
+            "");
+}
+
+// However a pair is drawn, it is one touch.
+TEST(ReadDrawings, TheRowsOfAPairAreOneTouch) {
+  Diagnostics diagnostics;
+  const auto drawings = ReadDrawings(
+      {"d.txt", "hand presses cup |9|\nhand palm cup |#|\ncup on hand |#|\nhand holds cup |1|\n"},
+      diagnostics);
+  ASSERT_EQ(Format(diagnostics), "");
+  DrawnFrames frames(drawings[0]);
+  const Frame frame = frames.At(0);
+  ASSERT_EQ(frame.touches.size(), 1U);
+  EXPECT_EQ(frame.touches[0].normal_force_n, 9);
+  EXPECT_EQ(frame.touches[0].sensor_sets, 0b101U);
+  EXPECT_EQ(frame.touches[0].up_on_a, -1);
+  EXPECT_EQ(frame.touches[0].up_on_b, 1);
 }
 
 TEST(ReadDrawings, AFileMayHaveManyWithOrWithoutTitles) {
@@ -110,9 +187,38 @@ TEST(ReadDrawings, ExpectedRowsNameEventsAndEntities) {
     said += std::to_string(one.place.line) + ": " + one.message + "\n";
   EXPECT_EQ(said,
             "3: grammar 'g' has no event 'low'\n4: nobody is called 'cap'\n"
-            "5: 'high' has 1 roles, found 2\n"
+            "5: 'high' has 1 role, found 2\n"
             "6: expected an event with its roles, found 'high'\n"
             "7: grammar 'g' has no law 'it'\n");
+}
+
+// Below `--`, what can never be recognised is a mistake, not a difference.
+TEST(ReadDrawings, ExpectedEventsCanBe) {
+  const GrammarText file{
+      "d.txt",
+      "entities hand:Hand drum:Fixed cup:Movable\ncup x |01|\n--\ntap(drum,  hand) |..|\n"
+      "tap(hand, hand) |..|\nnear(drum,cup) |..|\nnear(cup, drum) |..|\ntap(cup, drum) |..|\n"
+      "tap(hand, drum) |..|\ntap( hand,drum ) |..|\n"};
+  Diagnostics diagnostics;
+  const auto drawings = ReadDrawings(file, diagnostics);
+  ASSERT_EQ(drawings.size(), 1U) << Format(diagnostics);
+  const auto program = testing::CompileText(
+      "grammar g\nevent tap(hand: Hand, object: Thing) while touching(hand, object)\n"
+      "symmetric event near(a: Thing, b: Thing) while distance(a, b) < 1 cm");
+  std::string said;
+  for (const Diagnostic& one : CheckExpected(*program, drawings[0], file)) {
+    said += std::to_string(one.place.line) + ": " + one.message +
+            (one.hint.empty() ? "\n" : "; " + one.hint + "\n");
+  }
+  EXPECT_EQ(said,
+            "4: 'drum' is never 'hand' of 'tap', which takes a Hand; did you mean 'tap(hand, "
+            "drum)'?\n"
+            "5: 'hand' cannot have two roles of 'tap'\n"
+            "6: the first two roles of 'near' stand in alphabetical order; did you mean 'near(cup, "
+            "drum)'?\n"
+            "8: 'cup' is never 'hand' of 'tap', which takes a Hand; that can be hand\n"
+            "10: 'tap(hand, drum)' is drawn in line 9 already; all its intervals stand in one "
+            "row\n");
 }
 
 }  // namespace
