@@ -5,6 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+
+#include "grammar/base/wording.h"
 
 namespace prehend::harness {
 namespace {
@@ -54,7 +57,10 @@ class FittingEvent {
     if (taken_[index])
       return Add(role.name, fmt::format("the role '{}' is given twice", event_.roles[index]));
     taken_[index] = true;
-    CheckClass(role, index);
+    const bool is_first = IsAnybody(role) || players_.insert(role.value.text).second;
+    if (is_first) return CheckClass(role, index);
+    Add(role.value,
+        fmt::format("'{}' cannot have two roles of '{}'", role.value.text, event_.name));
   }
 
   void AddUnknownRole(const ClaimRole& role) {
@@ -70,8 +76,8 @@ class FittingEvent {
     for (const std::string& name : event_.roles)
       head += (&name == &event_.roles.front() ? "" : ", ") + name;
     Add(role.value,
-        fmt::format("'{}' has {} role{}", event_.name, event_.roles.size(),
-                    event_.roles.size() == 1 ? "" : "s"),
+        fmt::format("'{}' has {}", event_.name,
+                    grammar::CountOf(static_cast<long long>(event_.roles.size()), "role")),
         "it is " + head + ")");
   }
 
@@ -83,8 +89,8 @@ class FittingEvent {
     const std::string& wanted = event_.classes[index];
     if (Takes(index, role.value.text)) return;
     Add(role.value,
-        fmt::format("'{}' is never '{}' of '{}', which takes a {}", role.value.text,
-                    event_.roles[index], event_.name, wanted),
+        fmt::format("'{}' is never '{}' of '{}', which takes {}", role.value.text,
+                    event_.roles[index], event_.name, grammar::WithArticle(wanted)),
         Remedy(index));
   }
 
@@ -123,6 +129,7 @@ class FittingEvent {
   const ClaimedEvent& claimed_;
   const ClaimableEvents& known_;
   std::vector<bool> taken_;
+  std::set<std::string> players_;
   std::vector<ClaimProblem> problems_;
 };
 

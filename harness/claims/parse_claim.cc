@@ -104,6 +104,34 @@ class ClaimParser {
  private:
   void ParseQuantity(Claim& claim) {
     if (FailAtQuantity()) return;
+    const std::size_t begin = next_.offset;
+    TakeQuantity(claim);
+    if (problem_ || next_.offset == begin || !IsQuantity()) return;
+    const std::string_view first = Trimmed(text_.substr(begin, next_.offset - begin));
+    Fail(next_.offset,
+         fmt::format("a claim has one quantity, found '{}' after '{}'", next_.text, first),
+         fmt::format("leave out '{}' or '{}'", first, next_.text));
+  }
+
+  /// Whether a quantity begins here. A word before a relation is an event.
+  bool IsQuantity() {
+    const bool may_be = next_.text == "no" || next_.text == "every" || next_.text == "exactly" ||
+                        next_.text == "at" || next_.IsNumber() || NumberNamed(next_.text);
+    return may_be && IsBeforeAnother();
+  }
+
+  /// Whether a name or a number follows that is no relation.
+  bool IsBeforeAnother() {
+    const Token first = next_;
+    const std::size_t after = at_;
+    Advance();
+    const bool is = (next_.IsName() || next_.IsNumber()) && !IsRelation(next_.text);
+    at_ = after;
+    next_ = first;
+    return is;
+  }
+
+  void TakeQuantity(Claim& claim) {
     if (Accept("no")) {
       claim.quantity = Quantity::kExactly;
       claim.number = 0;
@@ -148,20 +176,30 @@ class ClaimParser {
                                            {"more", "at least "},
                                            {"fewer", "at most "},
                                            {"less", "at most "},
-                                           {"up", "at most "}};
+                                           {"up", "at most "},
+                                           {"both", "two "},
+                                           {"many", "at least two "},
+                                           {"few", ""},
+                                           {"dozen", "12 "},
+                                           {"thirteen", "13 "},
+                                           {"fourteen", "14 "},
+                                           {"fifteen", "15 "},
+                                           {"sixteen", "16 "},
+                                           {"seventeen", "17 "},
+                                           {"eighteen", "18 "},
+                                           {"nineteen", "19 "},
+                                           {"twenty", "20 "},
+                                           {"thirty", "30 "},
+                                           {"forty", "40 "},
+                                           {"fifty", "50 "},
+                                           {"hundred", "100 "}};
     const auto instead = std::ranges::find(kInstead, next_.text, &Instead::said);
-    if (instead == std::end(kInstead)) return false;
+    if (instead == std::end(kInstead) || !IsBeforeAnother()) return false;
     const Token first = next_;
-    const std::size_t after = at_;
     Advance();
-    const bool is_quantity = (next_.IsName() || next_.IsNumber()) && !IsRelation(next_.text);
-    if (is_quantity) {
-      Fail(first.offset, "expected a quantity or an event, found '" + std::string(first.text) + "'",
-           RemedyForQuantity(first.text, instead->ours));
-    }
-    at_ = after;
-    next_ = first;
-    return is_quantity;
+    Fail(first.offset, "expected a quantity or an event, found '" + std::string(first.text) + "'",
+         RemedyForQuantity(first.text, instead->ours));
+    return true;
   }
 
   /// `next_` is what follows the word.

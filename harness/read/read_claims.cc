@@ -21,12 +21,19 @@ std::string_view LineFrom(const Where& where, const YamlDocument& document) {
   return rest;
 }
 
-/// Finds out where the letters of a claim stand in the file.
-void Locate(Claim& claim, const YamlDocument& document) {
-  const std::string_view line = LineFrom(claim.where, document);
+/// Finds out where the letters of a claim stand in the file; returns what stands behind them in the
+/// line, if that is known.
+std::string_view Locate(Claim& claim, const YamlDocument& document) {
+  std::string_view line = LineFrom(claim.where, document);
   const bool quoted = line.starts_with('"') || line.starts_with('\'');
   if (quoted) ++claim.where.place.column;
-  claim.on_one_line = line.substr(quoted ? 1 : 0).starts_with(claim.text);
+  line.remove_prefix(quoted ? 1 : 0);
+  claim.on_one_line = line.starts_with(claim.text);
+  return claim.on_one_line ? line.substr(claim.text.size()) : "";
+}
+
+bool HasOpenBracket(std::string_view claim) {
+  return std::ranges::count(claim, '(') > std::ranges::count(claim, ')');
 }
 
 }  // namespace
@@ -34,13 +41,19 @@ void Locate(Claim& claim, const YamlDocument& document) {
 std::vector<Claim> ReadClaims(const std::vector<Located<std::string>>& written,
                               const YamlDocument& document, DiagnosticList& errors) {
   std::vector<Claim> claims;
-  for (const Located<std::string>& text : written) {
-    auto parsed = ParseClaim(text.value);
-    Claim claim = parsed ? std::move(*parsed) : Claim{.text = text.value};
-    claim.where = text.where;
-    Locate(claim, document);
+  for (auto text = written.begin(); text != written.end(); ++text) {
+    auto parsed = ParseClaim(text->value);
+    Claim claim = parsed ? std::move(*parsed) : Claim{.text = text->value};
+    claim.where = text->where;
+    const std::string_view behind = Locate(claim, document);
     if (parsed) {
       claims.push_back(std::move(claim));
+    } else if (HasOpenBracket(claim.text) && behind.starts_with(',')) {
+      // In a list in brackets YAML ends a claim at its comma.
+      std::string whole = claim.text;
+      while (HasOpenBracket(whole) && text + 1 != written.end()) whole += ", " + (++text)->value;
+      errors.Add(claim.where, "expects: the comma of a claim ends it in '[..]'",
+                 "with quotes: \"" + whole + "\", or one claim per line, each after '- '");
     } else {
       errors.Add(PlaceIn(claim, parsed.error().offset), "expects: " + parsed.error().message,
                  parsed.error().hint);

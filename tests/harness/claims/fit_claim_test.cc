@@ -62,6 +62,8 @@ TEST(FitClaim, WhatTheGrammarDoesNotHaveIsAMisfit) {
             "8: 'sliding' has no role 'objekt' | "
             "did you mean 'object'?\n");
   EXPECT_EQ(Misfit("sliding(hand, hand=hand)"), "14: the role 'hand' is given twice\n");
+  EXPECT_EQ(Misfit("no contact(cup, cup)"), "16: 'cup' cannot have two roles of 'contact'\n");
+  EXPECT_EQ(Misfit("contact(any, any)"), "");
   EXPECT_EQ(Misfit("sliding(style=wrap)"), "8: 'sliding' has no style\n");
   EXPECT_EQ(Misfit("no sliding(hand, table)"),
             "17: 'table' is never 'object' of 'sliding', which takes a Movable | "

@@ -141,6 +141,18 @@ TEST(ParseClaim, WordsThatPeopleTryGetTheRemedy) {
   EXPECT_EQ(Problem("exactly sliding"),
             "8: expected a number, found 'sliding' | at least 2 grasping");
 
+  EXPECT_EQ(Problem("thirteen sliding(hand, cup)"),
+            quantity("thirteen") + "write: 13 sliding(hand, cup)");
+  EXPECT_EQ(Problem("twenty then sliding"), "") << "an event's name";
+  EXPECT_EQ(Problem("no one sliding"),
+            "3: a claim has one quantity, found 'one' after 'no' | leave out 'no' or 'one'");
+  EXPECT_EQ(Problem("every no sliding"),
+            "6: a claim has one quantity, found 'no' after 'every' | leave out 'every' or 'no'");
+  EXPECT_EQ(Problem("at least 2 exactly 3 sliding"),
+            "11: a claim has one quantity, found 'exactly' after 'at least 2' | leave out 'at "
+            "least 2' or 'exactly'");
+  EXPECT_EQ(Problem("no one then sliding"), "") << "an event's name";
+
   const std::string relation =
       "expected 'then', 'while', 'lies inside' or one of Allen's relations, found ";
   EXPECT_EQ(Problem("sliding(hand, cup) and no grasping"),

@@ -43,6 +43,15 @@ TEST(ReadClaims, ErrorsPointAtTheLetter) {
             "--set:1:25: expects: expected an event, found the end\n");
 }
 
+// YAML splits it there; what it makes of the pieces is not the mistake.
+TEST(ReadClaims, ACommaInBracketsNeedsQuotes) {
+  EXPECT_EQ(Brief(ErrorsOf(
+                ReadWith("expects: [no sliding, one grasping(right_hand, milk), sliding(]\n"))),
+            "3:23: expects: the comma of a claim ends it in '[..]' | with quotes: \"one "
+            "grasping(right_hand, milk)\", or one claim per line, each after '- '\n"
+            "3:63: expects: expected an entity or 'any', found the end\n");
+}
+
 TEST(ReadClaims, HaveLimits) {
   std::string many = "expects:\n";
   for (int i = 0; i < 65; ++i) many += "  - no sliding\n";
