@@ -388,9 +388,19 @@ class DefinitionLowering {
           network.Constrain(left, right, kApart | Bit(Allen::kEquals));
       }
     }
+    const AllenNetwork nothing_said = network;
     for (std::size_t i = 0; i < composition.clauses.size(); ++i) {
       const ComposeRule::Clause& clause = composition.clauses[i];
       if (network.Constrain(clause.left, clause.right, clause.relations)) continue;
+      AllenNetwork alone = nothing_said;
+      if (!alone.Constrain(clause.left, clause.right, clause.relations)) {
+        const ast::Relation& relation = d_.relations[i];
+        return lowering_.Complain(relation.place, "this relation is never true",
+                                  clause.left == clause.right
+                                      ? "'" + relation.left + "' equals itself"
+                                      : "'" + relation.left + "' and '" + relation.right +
+                                            "' are the same event, whose intervals do not overlap");
+      }
       return lowering_.Complain(d_.relations[i].place,
                                 "this relation is never true together with what stands before it",
                                 "draw the parts below each other; intervals of one event do not "

@@ -106,6 +106,20 @@ Expr ExpressionParser::ParseSum() {
   return left;
 }
 
+Expr ExpressionParser::ParseSumBefore(std::string_view word) {
+  struct NoUnit {
+    NoUnit(ExpressionParser& parser, std::string_view word) : parser_(parser) {
+      parser_.no_unit_ = word;
+    }
+    ~NoUnit() { parser_.no_unit_ = {}; }
+    NoUnit(const NoUnit&) = delete;
+    NoUnit& operator=(const NoUnit&) = delete;
+    ExpressionParser& parser_;
+  };
+  const NoUnit no_unit(*this, word);
+  return ParseSum();
+}
+
 Expr ExpressionParser::ParseProduct() {
   Expr left = ParseNegation();
   while (At("*") || At("/")) {
@@ -145,12 +159,12 @@ Expr ExpressionParser::ParsePrimary() {
     return Make(Expr::Kind::kText, token.place, Take().text, {});
   if (Accept("(")) {
     Expr inner = ParseExpr();
-    Expect(")");
+    ExpectToClose(token);
     return inner;
   }
   if (Accept("any")) return ParseAny(token.place);
   std::string name = ExpectName("a condition, a signal or a value");
-  if (Accept("(")) return ParseCall(token);
+  if (At("(")) return ParseCall(token);
   return Make(Expr::Kind::kName, token.place, std::move(name), {});
 }
 
@@ -165,13 +179,14 @@ Expr ExpressionParser::ParseAny(Place place) {
 }
 
 Expr ExpressionParser::ParseCall(const Token& name) {
+  const Token bracket = Take();
   std::vector<Expr> args;
   if (!At(")")) {
     do {
       args.push_back(ParseExpr());
     } while (Accept(","));
   }
-  Expect(")");
+  ExpectToClose(bracket);
   return Make(Expr::Kind::kCall, name.place, name.text, std::move(args));
 }
 
@@ -191,7 +206,8 @@ bool ExpressionParser::AtUnit(std::size_t ahead) const {
 // `3 cm`, `3 cm/s`, `3/s`. A name after a number can only be a unit or the next word of the
 // language.
 void ExpressionParser::ParseUnit(Quantity& quantity) {
-  const bool starts = Peek().kind == Token::Kind::kName && !IsReserved(Peek().text);
+  const bool starts =
+      Peek().kind == Token::Kind::kName && !IsReserved(Peek().text) && Peek().text != no_unit_;
   if (!starts && !(At("/") && AtUnit(1))) return;
   double si = 1;
   quantity.dimension = ParseDimension(si);

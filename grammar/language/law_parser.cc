@@ -8,6 +8,7 @@ using ast::Law;
 
 std::vector<ast::Role> LawParser::ParseRoles(std::string hint) {
   std::vector<ast::Role> roles;
+  const Token bracket = Peek();
   Expect("(", std::move(hint));
   do {
     const Place place = Peek().place;
@@ -15,7 +16,7 @@ std::vector<ast::Role> LawParser::ParseRoles(std::string hint) {
     Expect(":", "every role has a class: object: Movable");
     roles.push_back({std::move(name), ExpectName("a class"), place});
   } while (Accept(","));
-  Expect(")");
+  ExpectToClose(bracket);
   return roles;
 }
 

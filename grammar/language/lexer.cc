@@ -58,7 +58,8 @@ class Lexer {
 
   std::vector<Token> Run() {
     for (SkipBlanks(); at_ < text().size(); SkipBlanks()) Next();
-    tokens_.push_back({.kind = Token::Kind::kEnd, .text = "", .place = Here()});
+    tokens_.push_back(
+        {.kind = Token::Kind::kEnd, .text = "", .place = tokens_.empty() ? Here() : behind_last_});
     return std::move(tokens_);
   }
 
@@ -105,6 +106,7 @@ class Lexer {
   void Take(Token::Kind kind, std::size_t length, double number = 0) {
     tokens_.push_back({kind, std::string(text().substr(at_, length)), Here(), number});
     at_ += length;
+    behind_last_ = Here();
   }
 
   void TakeNumber() {
@@ -123,6 +125,7 @@ class Lexer {
     tokens_.push_back(
         {Token::Kind::kText, std::string(text().substr(at_ + 1, length - 1)), Here()});
     at_ += length + (closed ? 1 : 0);
+    behind_last_ = Here();
   }
 
   void TakeSymbol() {
@@ -170,6 +173,7 @@ class Lexer {
   std::size_t at_ = 0;
   std::size_t line_begin_ = 0;
   int line_ = 1;
+  Place behind_last_;  ///< the last token: where what is missing at the end was to stand
 };
 
 }  // namespace

@@ -111,11 +111,12 @@ class Parser : public LawParser {
     ast::Define define;
     define.place = Peek().place;
     define.name = ExpectName("the name of a value or test");
+    const Token bracket = Peek();
     if (Accept("(")) {
       do {
         ParseParameter(define);
       } while (Accept(","));
-      Expect(")");
+      ExpectToClose(bracket);
     }
     Expect("=");
     define.body = ParseExpr();
@@ -291,7 +292,7 @@ class Parser : public LawParser {
     } while (Accept("or"));
     Expect("at", kExample);
     Expect("least", kExample);
-    definition.at_least = ParseSum();
+    definition.at_least = ParseSumBefore("gap");
     Expect(",", kExample);
     Expect("gap", kExample);
     ExpectAtMost();
@@ -417,9 +418,10 @@ class Parser : public LawParser {
     }
     Expect("=");
     Expect("style", "a style comes from the hand: with style = style(hand)");
+    const Token bracket = Peek();
     Expect("(");
     Expr role = ParsePrimary();
-    Expect(")");
+    ExpectToClose(bracket);
     Once(definition.style, std::move(role), name);
   }
 };

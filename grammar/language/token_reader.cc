@@ -93,6 +93,15 @@ void TokenReader::Expect(std::string_view text, std::string hint) {
     Fail("expected '" + std::string(text) + "', found " + Found(), std::move(hint));
 }
 
+// Where the line does not show the bracket, or what is missing may be missing anywhere, its place
+// is told.
+void TokenReader::ExpectToClose(const Token& bracket) {
+  const bool is_far = AtEnd() || Peek().place.line != bracket.place.line;
+  Expect(")", !is_far ? ""
+                      : "the '(' in line " + std::to_string(bracket.place.line) + ", column " +
+                            std::to_string(bracket.place.column) + " is not closed");
+}
+
 void TokenReader::ExpectAtMost() {
   Expect("at");
   Expect("most");

@@ -36,6 +36,8 @@ class TokenReader {
   [[noreturn]] void FailAt(Place place, std::string message, std::string hint = {});
   void Expect(std::string_view text, std::string hint = {});
   void ExpectAtMost();
+  /// The ')' of this '('.
+  void ExpectToClose(const Token& bracket);
   std::string ExpectName(std::string_view what);
   /// How it is said here when the next token is a word of other languages; "did you mean 'event'?"
   /// when it is nearly one of this language.
