@@ -9,9 +9,11 @@
 #include "physics/motion/stage_clock.h"
 #include "physics/motion/tracker.h"
 #include "physics/person/person_player.h"
+#include "physics/scene/mirror_image.h"
 #include "physics/scene/run_limits.h"
 #include "physics/scene/state_hash.h"
 #include "physics/step_watch.h"
+#include "physics/world/mirrored_world.h"
 
 namespace prehend::physics {
 namespace {
@@ -20,11 +22,14 @@ namespace {
 /// memory.
 constexpr double kMaxRun_s = 1800;
 
-std::unique_ptr<World> MakeWorld(const Scene& scene, const std::vector<int>& styles) {
+std::unique_ptr<World> MakeWorld(const Scene& scene, const Script& script) {
+  const std::vector<int> styles = ScriptPlayer::FirstStyles(scene, script);
   switch (scene.world.engine) {
     case Engine::kBox2d:
       return MakeBox2dWorld(scene, styles);
     case Engine::kBullet:
+      if (scene.world.planar || !LeftHandLeads(scene, script)) break;
+      return MirrorImageOf(MakeBulletWorld(InMirror(scene), styles));
     case Engine::kBulletStock:
       break;
   }
@@ -37,7 +42,7 @@ struct Simulation::State {
   State(Scene s, Script t)
       : scene(std::move(s)),
         too_long(DurationOf(t) > kMaxRun_s),
-        world(MakeWorld(scene, ScriptPlayer::FirstStyles(scene, t))),
+        world(MakeWorld(scene, t)),
         player(scene, std::move(t)),
         watch(scene, player.script()) {
     AddTrackers();

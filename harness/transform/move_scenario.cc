@@ -6,22 +6,16 @@
 #include <cmath>
 #include <utility>
 
+#include "physics/scene/mirror_image.h"
+
 namespace prehend::harness {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using physics::AxisInMirror;
+using physics::InMirror;
 using physics::Pose;
-
-Vector3d InMirror(const Vector3d& v) { return {v.x(), -v.y(), v.z()}; }
-
-/// Of rotations, and of what turns about an axis.
-Vector3d AxisInMirror(const Vector3d& v) { return -InMirror(v); }
-
-Pose InMirror(const Pose& X) {
-  const Vector3d axis = AxisInMirror(X.q.vec());
-  return {InMirror(X.p_m), Eigen::Quaterniond(X.q.w(), axis.x(), axis.y(), axis.z())};
-}
 
 /// What a motion does to the parts of a scenario.
 struct Mover : WorldMotion {
@@ -29,7 +23,7 @@ struct Mover : WorldMotion {
   Vector3d Axis(const Vector3d& v) const { return X.q * (mirrors ? AxisInMirror(v) : v); }
   /// Of a rotation about the world's axes.
   Eigen::Quaterniond Turn(const Eigen::Quaterniond& q) const {
-    return X.q * (mirrors ? InMirror(Pose{{0, 0, 0}, q}).q : q) * X.q.conjugate();
+    return X.q * (mirrors ? InMirror(q) : q) * X.q.conjugate();
   }
   Vector3d Point(const Vector3d& p) const { return X.p_m + Direction(p); }
   Pose Of(const Pose& X_WB) const { return X * (mirrors ? InMirror(X_WB) : X_WB); }
@@ -45,17 +39,7 @@ void Move(const Mover& motion, physics::Body& body) {
   if (body.grains)
     for (Vector3d& p_WG_m : body.grains->p_WG_m) p_WG_m = motion.Point(p_WG_m);
   if (!motion.mirrors) return;
-  for (physics::PlacedShape& placed : body.shapes) {
-    placed.X_BS = InMirror(placed.X_BS);
-    auto* const hull = std::get_if<physics::Hull>(&placed.shape);
-    if (!hull) continue;
-    for (Vector3d& corner_m : hull->corners_m) corner_m = InMirror(corner_m);
-    for (physics::Hull::Face& face : hull->faces) {
-      std::ranges::reverse(face.corners);  // counter-clockwise again
-      face.nhat_S = InMirror(face.nhat_S);
-    }
-    hull->X_SC = InMirror(hull->X_SC);
-  }
+  for (physics::PlacedShape& placed : body.shapes) placed = InMirror(std::move(placed));
 }
 
 void Move(const Mover& motion, physics::Joint& joint) {

@@ -70,19 +70,23 @@ Eigen::Vector3d Horizontal(double yaw_rad) { return {std::cos(yaw_rad), std::sin
 double YawOf(const Eigen::Vector3d& v) { return std::atan2(v.y(), v.x()); }
 
 /// Horizontal directions in which the object may be gripped or approached: normals of its faces, or
-/// all around; in a planar scene the two directions along the plane.
-std::vector<double> YawsOf(const Body& body, const Pose& X_WB, double hand_yaw_rad, bool planar) {
+/// all around; in a planar scene the two directions along the plane. For a left hand they are the
+/// mirror image, to the last bit and in their order, of those of a right one (`side` -1, else 1).
+std::vector<double> YawsOf(const Body& body, const Pose& X_WB, double hand_yaw_rad, bool planar,
+                           int side) {
   if (planar) return {0, kPi};
   std::vector<double> yaws;
+  const auto add = [&](double first_yaw, double further) {
+    yaws.push_back(side * (side * first_yaw + further));
+  };
   if (IsRoundAboutVertical(body, X_WB)) {
-    for (int i = 0; i < kRoundDirections; ++i)
-      yaws.push_back(hand_yaw_rad + 2 * kPi * i / kRoundDirections);
+    for (int i = 0; i < kRoundDirections; ++i) add(hand_yaw_rad, 2 * kPi * i / kRoundDirections);
     return yaws;
   }
   const Eigen::Vector3d x = X_WB.q * Eigen::Vector3d::UnitX(),
-                        y = X_WB.q * Eigen::Vector3d::UnitY();
+                        y = X_WB.q * Eigen::Vector3d(0, side, 0);
   const double face_yaw = std::abs(x.z()) < std::abs(y.z()) ? YawOf(x) : YawOf(y);
-  for (int i = 0; i < 4; ++i) yaws.push_back(face_yaw + kPi / 2 * i);
+  for (int i = 0; i < 4; ++i) add(face_yaw, kPi / 2 * i);
   return yaws;
 }
 
@@ -158,6 +162,7 @@ class CandidateList {
         planar_(scene.world.planar),
         hand_(scene.hands[static_cast<std::size_t>(query.hand)].model),
         style_(hand_.styles[static_cast<std::size_t>(query.style)]),
+        side_(hand_.left ? -1 : 1),
         target_(scene.bodies[static_cast<std::size_t>(query.object)],
                 now.bodies[static_cast<std::size_t>(query.object)].X_WB, query.point_m),
         ground_(scene, now, query.object),
@@ -178,6 +183,7 @@ class CandidateList {
   const bool planar_;
   const HandModel& hand_;
   const GraspStyle& style_;
+  const int side_;  ///< -1 of a left hand, else 1
   const Target target_;
   const Ground ground_;
   const bool mounted_;  ///< held by a joint: not resting on a support
@@ -210,7 +216,7 @@ Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quater
       (raised_m * Eigen::Vector3d::UnitZ() - (depth - approach.pads_m) * toward_W).norm();
   candidate.X_WH.p_m += query_.offset_m;
   const Eigen::Vector3d turn = RotationVector(q * query_.from.X_WH.q.conjugate());
-  candidate.cost = turn.norm() - kInward * (hand_.left ? -turn.z() : turn.z());
+  candidate.cost = turn.norm() - kInward * side_ * turn.z();
   candidate.too_wide_m = std::max(0.0, 2 * half_grip - style_.opening_m);
   if (candidate.too_wide_m > 0) candidate.cost += kTooWide;
   candidate.width_m = WidthAlong(target_.body, target_.X_WB, grip_W);
@@ -221,7 +227,7 @@ std::vector<Candidate> CandidateList::FromAbove() const {
   std::vector<Candidate> candidates;
   if (!style_.above) return candidates;
   const double hand_yaw = YawOf(query_.from.X_WH.q * style_.grip_axis);
-  for (const double yaw : YawsOf(target_.body, target_.X_WB, hand_yaw, planar_)) {
+  for (const double yaw : YawsOf(target_.body, target_.X_WB, hand_yaw, planar_, side_)) {
     const Eigen::Quaterniond q = RotationFromPairs(style_.above->toward, style_.grip_axis,
                                                    -Eigen::Vector3d::UnitZ(), Horizontal(yaw));
     candidates.push_back(Make(*style_.above, q));
@@ -246,9 +252,9 @@ std::vector<Candidate> CandidateList::FromSide() const {
   inwards.z() = 0;
   const bool at_rim = inwards.norm() > kAtPoint_m;
   for (const double yaw :
-       YawsOf(target_.body, target_.X_WB, YawOf(at_rim ? inwards : way), planar_)) {
+       YawsOf(target_.body, target_.X_WB, YawOf(at_rim ? inwards : way), planar_, side_)) {
     const Eigen::Vector3d toward_W = Horizontal(yaw);
-    const Eigen::Vector3d across_W = Eigen::Vector3d::UnitZ().cross(toward_W);
+    const Eigen::Vector3d across_W = side_ * Eigen::Vector3d::UnitZ().cross(toward_W);
     // An approach from the far side has to go round the object.
     const double around =
         above_it ? 0 : std::acos(std::clamp(toward_W.dot(way.normalized()), -1.0, 1.0));

@@ -12,17 +12,17 @@ namespace {
 /// A contact survives this many ticks without an impulse: 8 ms at 480 Hz.
 constexpr int kHoldTicks = 4;
 
-/// A ball in the seam of two shapes touches both at one point, so the position alone does not
-/// define an order.
-bool PointLess(const ContactPoint& l, const ContactPoint& r) {
+}  // namespace
+
+bool ComesBefore(const ContactPoint& l, const ContactPoint& r) {
+  // A ball in the seam of two shapes touches both at one point, so the position alone does not
+  // define an order.
   const auto key = [](const ContactPoint& point) {
-    return std::tuple(point.p_W_m.x(), point.p_W_m.y(), point.p_W_m.z(), point.normal_impulse_n_s,
-                      point.distance_m);
+    return std::tuple(point.a, point.b, point.p_W_m.x(), point.p_W_m.y(), point.p_W_m.z(),
+                      point.normal_impulse_n_s, point.distance_m);
   };
   return key(l) < key(r);
 }
-
-}  // namespace
 
 void TouchingPairs::BeginTick(const std::vector<char>& rests) {
   if (rests != rests_) {
@@ -50,7 +50,7 @@ void TouchingPairs::Add(ContactPoint point) {
 void TouchingPairs::EndTick() {
   for (auto& [key, pair] : pairs_) {
     if (pair.seen) {
-      std::sort(pair.points.begin(), pair.points.end(), PointLess);
+      std::sort(pair.points.begin(), pair.points.end(), ComesBefore);
       continue;
     }
     ++pair.quiet_ticks;

@@ -15,6 +15,9 @@
 
 namespace prehend::physics {
 
+/// The order of contact points in snapshots: by (a, b, point).
+bool ComesBefore(const ContactPoint& l, const ContactPoint& r);
+
 class TouchingPairs {
  public:
   /// Call before the points of a tick are added. `rests`: by body of the scene, whether it is fixed
