@@ -12,6 +12,8 @@
 namespace prehend::physics {
 namespace {
 
+constexpr std::size_t kLanes = GrainBlock::kLanes;
+
 std::size_t At(int index) { return static_cast<std::size_t>(index); }
 
 void Copy(const btVector3& from, btScalar* to) {
@@ -30,16 +32,16 @@ int GrainRows::SolverBodyOf(const btRigidBody& grain,
 void GrainRows::Setup(std::vector<GrainContact>& contacts,
                       const btAlignedObjectArray<btSolverBody>& bodies, RigidRows& rigid,
                       const btContactSolverInfo& info) {
-  unarranged_.clear();
+  rows_.clear();
   bodies_.clear();
   penetrations_.clear();
   for (GrainContact& contact : contacts) {
     const int a = SolverBodyOf(*contact.a, bodies), b = SolverBodyOf(*contact.b, bodies);
     if (a < 0 || b < 0) continue;
-    unarranged_.push_back(
+    rows_.push_back(
         MakeRow(contact, bodies[a], bodies[b], rigid.SpeedsOf(a), rigid.SpeedsOf(b), info));
     bodies_.push_back({At(a), At(b)});
-    const Row& row = unarranged_.back();
+    const Row& row = rows_.back();
     if (contact.gap_m > info.m_splitImpulsePenetrationThreshold) continue;
     penetrations_.push_back({.a = &rigid.PushesOf(a),
                              .b = &rigid.PushesOf(b),
@@ -100,7 +102,7 @@ GrainRows::Row GrainRows::MakeRow(GrainContact& contact, const btSolverBody& a,
 }
 
 void GrainRows::Arrange(std::size_t body_count) {
-  const std::size_t count = unarranged_.size();
+  const std::size_t count = rows_.size();
   // The level of a row is one above the highest of the earlier rows that share a grain with it.
   bodys_level_.assign(body_count, 0);
   level_.resize(count);
@@ -111,55 +113,47 @@ void GrainRows::Arrange(std::size_t body_count) {
     bodys_level_[a] = bodys_level_[b] = level_[i] + 1;
     ++next_[level_[i] + 1];
   }
-  for (std::size_t level = 1; level <= count; ++level) next_[level] += next_[level - 1];
-  rows_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) rows_[next_[level_[i]]++] = unarranged_[i];
-}
-
-btScalar GrainRows::SolveRow(Row& row) {
-  btScalar* const a = row.a->data();
-  btScalar* const b = row.b->data();
-  const btScalar nx = row.n[0], ny = row.n[1], nz = row.n[2];
-  btScalar x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-  // The normal.
-  const btScalar along = nx * x + ny * y + nz * z;
-  btScalar push = (row.wanted - along) * row.normal_mass;
-  const btScalar pressure = std::max(row.impulse + push, btScalar(0));
-  push = pressure - row.impulse;
-  row.impulse = pressure;
-  const btScalar pushed = along + 2 * row.inverse_mass * push;
-  // Across it: the same without its part along the normal, and with the surfaces' turning.
-  const btScalar u = a[3] + b[3], v = a[4] + b[4], w = a[5] + b[5];
-  x += row.slip[0] - along * nx - row.radius * (v * nz - w * ny);
-  y += row.slip[1] - along * ny - row.radius * (w * nx - u * nz);
-  z += row.slip[2] - along * nz - row.radius * (u * ny - v * nx);
-  btScalar fx = row.sliding[0] - x * row.sliding_mass;
-  btScalar fy = row.sliding[1] - y * row.sliding_mass;
-  btScalar fz = row.sliding[2] - z * row.sliding_mass;
-  const btScalar limit = row.friction * pressure, squared = fx * fx + fy * fy + fz * fz;
-  if (squared > limit * limit) {
-    const btScalar scale = limit / std::sqrt(squared);
-    fx *= scale, fy *= scale, fz *= scale;
+  first_block_.resize(count + 1);
+  std::size_t blocks = 0;
+  for (std::size_t level = 0; level < count; ++level) {
+    first_block_[level] = blocks;
+    blocks += (next_[level + 1] + kLanes - 1) / kLanes;
   }
-  const btScalar dx = fx - row.sliding[0], dy = fy - row.sliding[1], dz = fz - row.sliding[2];
-  row.sliding[0] = fx, row.sliding[1] = fy, row.sliding[2] = fz;
-  const btScalar m = row.inverse_mass, t = row.turn;
-  const btScalar px = m * (push * nx + dx), py = m * (push * ny + dy), pz = m * (push * nz + dz);
-  a[0] += px, a[1] += py, a[2] += pz;
-  b[0] -= px, b[1] -= py, b[2] -= pz;
-  // Both surfaces are turned the same way: the arm and the impulse change sign together.
-  const btScalar tx = t * (ny * dz - nz * dy), ty = t * (nz * dx - nx * dz),
-                 tz = t * (nx * dy - ny * dx);
-  a[3] -= tx, a[4] -= ty, a[5] -= tz;
-  b[3] -= tx, b[4] -= ty, b[5] -= tz;
-  const btScalar changed = pushed - along, slid = row.sliding_response;
-  return std::max(changed * changed, (dx * dx + dy * dy + dz * dz) * slid * slid);
+  blocks_.assign(blocks, GrainBlock{});
+  sources_.assign(blocks, {});
+  for (GrainBlock& block : blocks_)
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      block.a[lane] = block.b[lane] = nothing_.data();
+  next_.assign(count + 1, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t place = next_[level_[i]]++;
+    const std::size_t block = first_block_[level_[i]] + place / kLanes;
+    Put(rows_[i], blocks_[block], place % kLanes);
+    sources_[block][place % kLanes] = rows_[i].source;
+  }
 }
 
-btScalar GrainRows::Solve() {
-  btScalar largest = 0;
-  for (Row& row : rows_) largest = std::max(largest, SolveRow(row));
-  return largest;
+void GrainRows::Put(const Row& row, GrainBlock& block, std::size_t lane) {
+  block.a[lane] = row.a->data();
+  block.b[lane] = row.b->data();
+  for (std::size_t i = 0; i < 3; ++i) {
+    block.n[i][lane] = row.n[i];
+    block.slip[i][lane] = row.slip[i];
+    block.sliding[i][lane] = row.sliding[i];
+  }
+  block.wanted[lane] = row.wanted;
+  block.normal_mass[lane] = row.normal_mass;
+  block.sliding_mass[lane] = row.sliding_mass;
+  block.sliding_response[lane] = row.sliding_response;
+  block.inverse_mass[lane] = row.inverse_mass;
+  block.turn[lane] = row.turn;
+  block.radius[lane] = row.radius;
+  block.friction[lane] = row.friction;
+  block.impulse[lane] = row.impulse;
+}
+
+btScalar GrainRows::Solve(const Kernels& kernels) {
+  return kernels.solve_grains(blocks_.data(), blocks_.size());
 }
 
 btScalar GrainRows::SolvePenetrations() {
@@ -182,7 +176,9 @@ btScalar GrainRows::SolvePenetrations() {
 }
 
 void GrainRows::WriteBack() const {
-  for (const Row& row : rows_) row.source->impulse = row.impulse;
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      if (sources_[i][lane]) sources_[i][lane]->impulse = blocks_[i].impulse[lane];
 }
 
 }  // namespace prehend::physics

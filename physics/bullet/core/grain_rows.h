@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows of contacts between grains: equal spheres, for which most of a row is known beforehand.
 // A normal impulse turns neither of two spheres, and their friction resists sliding equally in all
-// directions, so that its circle (physics/bullet/core/friction_circle.h) is met by scaling. Only
+// directions, so that its circle (physics/bullet/lanes/friction_circle.h) is met by scaling. Only
 // for physics/bullet. Tested by tests/physics/bullet/grain_contacts_test.cc
 #pragma once
 
@@ -12,6 +12,7 @@
 
 #include "physics/bullet/core/grain_contacts.h"
 #include "physics/bullet/core/rigid_rows.h"
+#include "physics/bullet/lanes/kernels.h"
 
 namespace prehend::physics {
 
@@ -23,7 +24,8 @@ class GrainRows {
   void Setup(std::vector<GrainContact>& contacts, const btAlignedObjectArray<btSolverBody>& bodies,
              RigidRows& rigid, const btContactSolverInfo& info);
   /// Solves each contact once. Returns the largest squared change of a speed.
-  btScalar Solve();
+  btScalar Solve() { return Solve(BestKernels()); }
+  btScalar Solve(const Kernels& kernels);
   /// The same for contacts that only correct penetration ("split impulse").
   btScalar SolvePenetrations();
   /// Hands the impulses to the next tick.
@@ -52,14 +54,17 @@ class GrainRows {
                           const btAlignedObjectArray<btSolverBody>& bodies);
   Row MakeRow(GrainContact& contact, const btSolverBody& a, const btSolverBody& b, Six& a_speeds,
               Six& b_speeds, const btContactSolverInfo& info) const;
-  /// Makes rows without a common grain neighbours, so that none waits for its neighbour's result.
+  /// Distributes rows to blocks. Rows with a common grain keep their order.
   void Arrange(std::size_t body_count);
-  static btScalar SolveRow(Row& row);
+  static void Put(const Row& row, GrainBlock& block, std::size_t lane);
 
-  std::vector<Row> rows_, unarranged_;
-  std::vector<std::array<std::size_t, 2>> bodies_;  ///< of unarranged_
+  std::vector<Row> rows_;
+  std::vector<std::array<std::size_t, 2>> bodies_;  ///< of rows_
+  std::vector<GrainBlock> blocks_;
+  std::vector<std::array<GrainContact*, GrainBlock::kLanes>> sources_;  ///< of blocks_
+  Six nothing_{};  ///< the speeds of lanes without a row
   std::vector<Penetration> penetrations_;
-  std::vector<std::size_t> level_, next_, bodys_level_;  ///< of Arrange()
+  std::vector<std::size_t> level_, next_, bodys_level_, first_block_;  ///< of Arrange()
 };
 
 }  // namespace prehend::physics

@@ -1,52 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// One body per lane; speeds stay in registers for all rows of a body. Tested by
+// One body per lane; the loops are in physics/bullet/lanes/kernel_loops.h. Tested by
 // tests/physics/bullet/lone_bodies_test.cc
 #include "physics/bullet/core/lone_bodies.h"
 
 #include <algorithm>
 
-#include "physics/bullet/core/friction_circle.h"
+#include "physics/bullet/lanes/friction_circle.h"
 
 namespace prehend::physics {
 namespace {
 
 std::size_t At(int index) { return static_cast<std::size_t>(index); }
-
-/// RigidSide::SpeedAlong()
-template <std::size_t n, typename Row>
-[[gnu::always_inline]] inline Wide<n> SpeedAlong(const Row& row, const std::array<Wide<n>, 6>& v) {
-  const std::array<Wide<n>, 6>& j = row.jacobian;
-  return (j[0] * v[0] + j[1] * v[1] + j[2] * v[2]) + (j[3] * v[3] + j[4] * v[4] + j[5] * v[5]);
-}
-
-/// Change of the impulse that gives the wanted speed, without limits.
-template <std::size_t n, typename Row>
-[[gnu::always_inline]] inline Wide<n> WantedChange(const Row& row,
-                                                   const std::array<Wide<n>, 6>& v) {
-  return (row.wanted - row.impulse * row.softness) - SpeedAlong(row, v) * row.inverse_mass;
-}
-
-template <std::size_t n, typename Row>
-[[gnu::always_inline]] inline void Push(const Row& row, const Wide<n>& change,
-                                        std::array<Wide<n>, 6>& v) {
-  const std::array<Wide<n>, 6>& r = row.response;
-  v[0] = v[0] + r[0] * change;
-  v[1] = v[1] + r[1] * change;
-  v[2] = v[2] + r[2] * change;
-  v[3] = v[3] + r[3] * change;
-  v[4] = v[4] + r[4] * change;
-  v[5] = v[5] + r[5] * change;
-}
-
-template <std::size_t n>
-struct WidePair {
-  Wide<n> first, second;
-};
-
-template <std::size_t n>
-[[gnu::always_inline]] inline Wide<n> SquaredLength(const WidePair<n>& a) {
-  return a.first * a.first + a.second * a.second;
-}
 
 }  // namespace
 
@@ -103,18 +67,23 @@ template <std::size_t lanes>
 void LoneBodies::Blocks<lanes>::Clear() {
   blocks.clear();
   contacts.clear();
+  sources.clear();
 }
 
 template <std::size_t lanes>
 void LoneBodies::Blocks<lanes>::Add(const Body* bodies, std::size_t count,
-                                    const std::vector<Contact>& sources) {
+                                    const std::vector<Contact>& all) {
   Block<lanes>& block = blocks.emplace_back(Block<lanes>{{}, contacts.size(), bodies[0].count});
-  contacts.resize(contacts.size() + block.count);
+  contacts.resize(block.first + block.count);
+  sources.resize(contacts.size());
   for (std::size_t lane = 0; lane < count; ++lane) {
     const Body& body = bodies[lane];
     block.speeds[lane] = body.speeds;
-    for (std::size_t i = 0; i < body.count; ++i)
-      SetContact(contacts[block.first + i], lane, body, sources[body.first + i]);
+    for (std::size_t i = 0; i < body.count; ++i) {
+      const Contact& contact = all[body.first + i];
+      SetContact(contacts[block.first + i], lane, body, contact);
+      sources[block.first + i][lane] = contact;
+    }
   }
 }
 
@@ -127,21 +96,21 @@ RigidSide LoneBodies::SideOf(const Body& body, const btSolverConstraint& source)
 }
 
 template <std::size_t lanes>
-void LoneBodies::SetRow(Row<lanes>& row, std::size_t lane, const RigidSide& side,
+void LoneBodies::SetRow(LoneRow<lanes>& row, std::size_t lane, const RigidSide& side,
                         const btSolverConstraint& source) {
   for (std::size_t i = 0; i < 6; ++i) {
-    row.jacobian[i].Put(lane, side.jacobian[i]);
-    row.response[i].Put(lane, side.response[i]);
+    row.jacobian[i][lane] = side.jacobian[i];
+    row.response[i][lane] = side.response[i];
   }
-  row.wanted.Put(lane, source.m_rhs);
-  row.softness.Put(lane, source.m_cfm);
-  row.inverse_mass.Put(lane, source.m_jacDiagABInv);
-  row.mass.Put(lane, 1 / source.m_jacDiagABInv);
-  row.impulse.Put(lane, source.m_appliedImpulse);
+  row.wanted[lane] = source.m_rhs;
+  row.softness[lane] = source.m_cfm;
+  row.inverse_mass[lane] = source.m_jacDiagABInv;
+  row.mass[lane] = 1 / source.m_jacDiagABInv;
+  row.impulse[lane] = source.m_appliedImpulse;
 }
 
 template <std::size_t lanes>
-void LoneBodies::SetContact(Contacts<lanes>& contacts, std::size_t lane, const Body& body,
+void LoneBodies::SetContact(LoneContacts<lanes>& contacts, std::size_t lane, const Body& body,
                             const Contact& contact) {
   const auto side_of = [&](const btSolverConstraint& source) { return SideOf(body, source); };
   const RigidSide first = side_of(*contact.first_friction),
@@ -149,114 +118,48 @@ void LoneBodies::SetContact(Contacts<lanes>& contacts, std::size_t lane, const B
   SetRow(contacts.normal, lane, side_of(*contact.normal), *contact.normal);
   SetRow(contacts.first, lane, first, *contact.first_friction);
   SetRow(contacts.second, lane, second, *contact.second_friction);
-  contacts.least.Put(lane, contact.normal->m_lowerLimit);
-  contacts.friction.Put(lane, contact.first_friction->m_friction);
-  const PrincipalResponse response(contacts.first.mass.At(lane), first.SpeedBy(second),
-                                   contacts.second.mass.At(lane));
-  contacts.cosine.Put(lane, response.cosine());
-  contacts.sine.Put(lane, response.sine());
-  contacts.first_response.Put(lane, response.first());
-  contacts.second_response.Put(lane, response.second());
-  contacts.moves.Put(lane, response.moves());
-  contacts.sources[lane] = contact;
+  contacts.least[lane] = contact.normal->m_lowerLimit;
+  contacts.friction[lane] = contact.first_friction->m_friction;
+  const PrincipalResponse response(contacts.first.mass[lane], first.SpeedBy(second),
+                                   contacts.second.mass[lane]);
+  contacts.cosine[lane] = response.cosine();
+  contacts.sine[lane] = response.sine();
+  contacts.first_response[lane] = response.first();
+  contacts.second_response[lane] = response.second();
+  contacts.moves[lane] = response.moves() ? 1 : 0;
 }
 
 template <std::size_t lanes>
-bool LoneBodies::SolveOnce(Contacts<lanes>* contacts, std::size_t count,
-                           std::array<Wide<lanes>, 6>& v) {
-  using Values = Wide<lanes>;
-  const Values zero{};
-  Marks<lanes> changed{};
-  for (std::size_t i = 0; i < count; ++i) {
-    Contacts<lanes>& contact = contacts[i];
-    Row<lanes>& row = contact.normal;
-    Values change = WantedChange(row, v);
-    Values sum = row.impulse + change;
-    const Marks<lanes> pulls = sum < contact.least;
-    change = Select(pulls, contact.least - row.impulse, change);
-    row.impulse = Select(pulls, contact.least, sum);
-    Push(row, change, v);
-    const Values speed = change * row.mass;
-    changed = changed | (speed * speed > zero);
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    Contacts<lanes>& contact = contacts[i];
-    Row<lanes>&first = contact.first, &second = contact.second;
-    const Marks<lanes> pressed = contact.normal.impulse > zero;
-    if (!Any(pressed)) continue;
-    const Values &cosine = contact.cosine, &sine = contact.sine;
-    const auto to_principal = [&](const Values& a, const Values& b) {
-      return WidePair<lanes>{cosine * a - sine * b, sine * a + cosine * b};
-    };
-    // FrictionChange() of each lane.
-    const Values limit = contact.friction * contact.normal.impulse;
-    const WidePair<lanes> errors =
-        to_principal(WantedChange(first, v) * first.mass, WantedChange(second, v) * second.mass);
-    WidePair<lanes> change{errors.first / contact.first_response,
-                           errors.second / contact.second_response};
-    const WidePair<lanes> before = to_principal(first.impulse, second.impulse);
-    const WidePair<lanes> wanted{before.first + change.first, before.second + change.second};
-    const Values squared_length = SquaredLength(wanted);
-    const Marks<lanes> usual = pressed & contact.moves & (limit > zero);
-    const Marks<lanes> slides = usual & (squared_length > limit * limit);
-    if (Any(slides)) {
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        if (!slides.At(lane)) continue;
-        const RowPair sum = OnTheCircle(
-            limit.At(lane), {contact.first_response.At(lane), contact.second_response.At(lane)},
-            {wanted.first.At(lane), wanted.second.At(lane)}, squared_length.At(lane));
-        change.first.Put(lane, sum.first - before.first.At(lane));
-        change.second.Put(lane, sum.second - before.second.At(lane));
-      }
-    }
-    // Without any friction impulses end; rows that cannot move or are not pressed stay.
-    const Marks<lanes> ends = pressed & contact.moves;
-    const Values by_first = Select(usual, cosine * change.first + sine * change.second,
-                                   Select(ends, -first.impulse, zero));
-    const Values by_second = Select(usual, cosine * change.second - sine * change.first,
-                                    Select(ends, -second.impulse, zero));
-    first.impulse = first.impulse + by_first;
-    second.impulse = second.impulse + by_second;
-    Push(first, by_first, v);
-    Push(second, by_second, v);
-    const Values first_speed = by_first * first.mass, second_speed = by_second * second.mass;
-    changed = changed | (first_speed * first_speed > zero) | (second_speed * second_speed > zero);
-  }
-  return Any(changed);
-}
-
-template <std::size_t lanes>
-void LoneBodies::Blocks<lanes>::Solve(int iterations) {
+void LoneBodies::Blocks<lanes>::Solve(Kernels::SolveLone<lanes> kernel, int iterations) {
   for (const Block<lanes>& block : blocks) {
-    std::array<Wide<lanes>, 6> v{};
+    std::array<Lanes<lanes>, 6> speeds;
     for (std::size_t lane = 0; lane < lanes; ++lane)
       if (block.speeds[lane])
-        for (std::size_t i = 0; i < 6; ++i) v[i].Put(lane, (*block.speeds[lane])[i]);
-    for (int i = 0; i < iterations; ++i)
-      if (!SolveOnce(contacts.data() + block.first, block.count, v)) break;
+        for (std::size_t i = 0; i < 6; ++i) speeds[i][lane] = (*block.speeds[lane])[i];
+    kernel(contacts.data() + block.first, block.count, speeds.data(), iterations);
     for (std::size_t lane = 0; lane < lanes; ++lane)
       if (block.speeds[lane])
-        for (std::size_t i = 0; i < 6; ++i) (*block.speeds[lane])[i] = v[i].At(lane);
+        for (std::size_t i = 0; i < 6; ++i) (*block.speeds[lane])[i] = speeds[i][lane];
   }
 }
 
 template <std::size_t lanes>
 void LoneBodies::Blocks<lanes>::WriteBack() const {
-  for (const Contacts<lanes>& contact : contacts) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const Contact& source = contact.sources[lane];
+      const Contact& source = sources[i][lane];
       if (!source.normal) continue;
-      source.normal->m_appliedImpulse = contact.normal.impulse.At(lane);
-      source.first_friction->m_appliedImpulse = contact.first.impulse.At(lane);
-      source.second_friction->m_appliedImpulse = contact.second.impulse.At(lane);
+      source.normal->m_appliedImpulse = contacts[i].normal.impulse[lane];
+      source.first_friction->m_appliedImpulse = contacts[i].first.impulse[lane];
+      source.second_friction->m_appliedImpulse = contacts[i].second.impulse[lane];
     }
   }
 }
 
-void LoneBodies::Solve(int iterations) {
-  eight_.Solve(iterations);
-  four_.Solve(iterations);
-  two_.Solve(iterations);
+void LoneBodies::Solve(int iterations, const Kernels& kernels) {
+  eight_.Solve(kernels.solve_eight, iterations);
+  four_.Solve(kernels.solve_four, iterations);
+  two_.Solve(kernels.solve_two, iterations);
 }
 
 void LoneBodies::WriteBack() const {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "physics/bullet/core/rigid_side.h"
-#include "physics/bullet/core/wide.h"
+#include "physics/bullet/lanes/kernels.h"
 
 namespace prehend::physics {
 
@@ -23,8 +23,10 @@ class LoneBodies {
              std::vector<Six>& speeds, const btConstraintArray& contacts,
              const btConstraintArray& frictions);
 
-  /// Solves each row `iterations` times, or until nothing changes any more.
-  void Solve(int iterations);
+  /// Solves each row `iterations` times, or until nothing changes any more; the bits do not depend
+  /// on the processor.
+  void Solve(int iterations) { Solve(iterations, BestKernels()); }
+  void Solve(int iterations, const Kernels& kernels);
   /// Writes impulses to Bullet's rows.
   void WriteBack() const;
 
@@ -40,20 +42,6 @@ class LoneBodies {
     std::size_t first, count;  ///< of contacts_
   };
   template <std::size_t lanes>
-  struct Row {
-    std::array<Wide<lanes>, 6> jacobian, response;
-    Wide<lanes> wanted, softness, inverse_mass, mass, impulse;
-  };
-  /// A contact of each lane. A lane that has fewer contacts has rows that change nothing.
-  template <std::size_t lanes>
-  struct Contacts {
-    Row<lanes> normal, first, second;
-    Wide<lanes> least, friction;
-    Wide<lanes> cosine, sine, first_response, second_response;  ///< of PrincipalResponse
-    Marks<lanes> moves;
-    std::array<Contact, lanes> sources;
-  };
-  template <std::size_t lanes>
   struct Block {
     std::array<Six*, lanes> speeds;
     std::size_t first, count;  ///< of Blocks::contacts
@@ -61,24 +49,22 @@ class LoneBodies {
   template <std::size_t lanes>
   struct Blocks {
     std::vector<Block<lanes>> blocks;
-    std::vector<Contacts<lanes>> contacts;
+    std::vector<LoneContacts<lanes>> contacts;
+    std::vector<std::array<Contact, lanes>> sources;  ///< of contacts
 
     void Clear();
     /// At most as many bodies as there are lanes, the one with most contacts first.
     void Add(const Body* bodies, std::size_t count, const std::vector<Contact>& contacts);
-    void Solve(int iterations);
+    void Solve(Kernels::SolveLone<lanes> kernel, int iterations);
     void WriteBack() const;
   };
   static RigidSide SideOf(const Body& body, const btSolverConstraint& source);
   template <std::size_t lanes>
-  static void SetRow(Row<lanes>& row, std::size_t lane, const RigidSide& side,
+  static void SetRow(LoneRow<lanes>& row, std::size_t lane, const RigidSide& side,
                      const btSolverConstraint& source);
   template <std::size_t lanes>
-  static void SetContact(Contacts<lanes>& contacts, std::size_t lane, const Body& body,
+  static void SetContact(LoneContacts<lanes>& contacts, std::size_t lane, const Body& body,
                          const Contact& contact);
-  template <std::size_t lanes>
-  static bool SolveOnce(Contacts<lanes>* contacts, std::size_t count,
-                        std::array<Wide<lanes>, 6>& v);
   void Arrange();
 
   std::vector<std::size_t> place_;  ///< by body: of its next contact

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows between rigid bodies of btSequentialImpulseConstraintSolver, made faster. Same rows,
 // same arithmetic, except that friction and rolling friction are limited by circles
-// (physics/bullet/core/friction_circle.h). Every row is first written out flat, a side that does
+// (physics/bullet/lanes/friction_circle.h). Every row is first written out flat, a side that does
 // not move costs nothing, and rows without a common body are adjacent, so that none waits for its
 // neighbour's result. Bodies that touch only what does not move are left to LoneBodies. Tested by
 // tests/physics/bullet/solver_test.cc
@@ -11,9 +11,9 @@
 
 #include <vector>
 
-#include "physics/bullet/core/friction_circle.h"
 #include "physics/bullet/core/lone_bodies.h"
 #include "physics/bullet/core/rigid_side.h"
+#include "physics/bullet/lanes/friction_circle.h"
 
 namespace prehend::physics {
 

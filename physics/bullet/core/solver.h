@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bullet's solver of multibodies, made faster for hands (physics/bullet/core/rigid_rows.h does the
 // same for rigid bodies). Same rows and same arithmetic, except for friction, which is limited by a
-// circle (physics/bullet/core/friction_circle.h), and for bodies that bounce. Every row is first
+// circle (physics/bullet/lanes/friction_circle.h), and for bodies that bounce. Every row is first
 // written out flat, with the few non-zero elements of its Jacobian (a joint motor has one, a
 // finger's contact 10 of 22); rows whose impulse does not change write nothing; and velocities are
 // written to the multibody once per step. Tested by tests/physics/bullet/solver_test.cc
@@ -12,10 +12,10 @@
 #include <deque>
 #include <vector>
 
-#include "physics/bullet/core/friction_circle.h"
 #include "physics/bullet/core/grain_rows.h"
 #include "physics/bullet/core/multibody_inertia.h"
 #include "physics/bullet/core/rigid_rows.h"
+#include "physics/bullet/lanes/friction_circle.h"
 
 namespace prehend::physics {
 

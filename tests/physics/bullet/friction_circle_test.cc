@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "physics/bullet/core/friction_circle.h"
+#include "physics/bullet/lanes/friction_circle.h"
 
 #include <gtest/gtest.h>
 

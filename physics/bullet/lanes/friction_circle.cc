@@ -2,7 +2,7 @@
 // A trust-region problem in two dimensions. Method: J. More and D. Sorensen, "Computing a Trust
 // Region Step", SIAM J. Sci. Stat. Comput. 4(3), 1983, algorithm 3.2. Only sums, products,
 // quotients and roots: the result has the same bits on every processor.
-#include "physics/bullet/core/friction_circle.h"
+#include "physics/bullet/lanes/friction_circle.h"
 
 #include <algorithm>
 #include <cmath>
