@@ -53,6 +53,7 @@ physics::TimedPose TimedPoseOf(const PoseYaml& pose) {
 struct StepMaker {
   const std::vector<std::string>& entities;
   const physics::Scene& scene;
+  bool is_hand;                     ///< false: there is no such actor
   const physics::HandModel* model;  ///< null when the hand is not known
   const Named<StepYaml>& written;
   DiagnosticList& errors;
@@ -124,9 +125,10 @@ struct StepMaker {
   }
   template <class PersonYaml>
   physics::Step operator()(const PersonYaml&) const {
-    errors.Add(written.name_where,
-               fmt::format("'{}' is a hand; this step is for persons", written.name),
-               "hands reach, close, move; persons look, walk, lean");
+    if (is_hand)
+      errors.Add(written.name_where,
+                 fmt::format("'{}' is a hand; this step is for persons", written.name),
+                 "hands reach, close, move; persons look, walk, lean");
     return {};
   }
 
@@ -368,7 +370,7 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
       const bool known = hand >= 0 && hand < static_cast<int>(scene.hands.size());
       const physics::HandModel* model =
           known ? &scene.hands[static_cast<std::size_t>(hand)].model : nullptr;
-      const StepMaker maker{entities, scene, model, named, errors};
+      const StepMaker maker{entities, scene, hand >= 0, model, named, errors};
       physics::Step step = std::visit(maker, named.value);
       step.until = maker.UntilOf();
       step.delay_s = TimingOf(named.value).delay_s;

@@ -94,6 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Files, PersonsRefused, testing::Values(
     Bad{"in_the_milk", "{person: body, at_m: [0.15, 0.1, 0]}", "", "10:30: 'anna_abdomen' starts inside 'milk', 48 mm deep | move the person\n10:30: 'anna_pelvis' starts inside 'milk', 108 mm deep | move the person\n10:30: 'anna_right_thigh' starts inside 'milk', 25 mm deep | move the person\n10:30: 'anna_left_thigh' starts inside 'milk', 25 mm deep | move the person\n"},
     Bad{"hand_step", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {close_to: 1}", "12:5: 'anna' is a person; this step is for hands | persons look, walk, turn, lean, move a limb; their hands are actors of their own\n"},
     Bad{"person_step", "{person: head, at_m: [-0.9, 0, 0]}", "right_hand: {lean_deg: 10}", "12:5: 'right_hand' is a hand; this step is for persons | hands reach, close, move; persons look, walk, lean\n"},
+    Bad{"nobody", "{person: head, at_m: [-0.9, 0, 0]}", "bert: {look_at: mlik}", "12:5: no actor is called 'bert' | known: right_hand, anna\n"},
     Bad{"look_at_herself", "{person: body, at_m: [-0.9, 0, 0]}", "anna: {look_at: anna_left_foot}",
         "12:21: look_at: 'anna' cannot look at herself | name a thing, a hand or another person, or give a point with look_at_m\n"},
     Bad{"look_at", "{person: head, at_m: [-0.9, 0, 0]}", "anna: {look_at: mlik}", "12:21: look_at: no entity is called 'mlik' | did you mean 'milk'?\n"},
