@@ -48,19 +48,20 @@ grammar::Timeline AsInOriginal(const Names& names, const grammar::Program& progr
 }
 
 struct Play {
-  Findings broken;                       ///< what is wrong whatever a golden says
+  Findings failed;                       ///< to come to its end
+  std::vector<ClaimVerdict> claims;      ///< of what the scenario expects, here as there
   Findings differs;                      ///< from the golden
   std::optional<Comparison> comparison;  ///< of a play that came to its end
 };
 
-/// What the events contradict of what the scenario expects, here as there.
-Findings ClaimsBroken(const std::string& name, const LoadedRun& loaded,
-                      const grammar::Timeline& timeline) {
-  Findings findings = ClaimFindings(JudgeClaims(loaded, timeline));
-  for (Finding& finding : findings) {
-    finding.reason = name + ": " + finding.reason;
-    finding.details = name + ": " + finding.details;
-  }
+/// What is wrong with it whatever a golden says.
+Findings BrokenIn(const Play& play, Transform transform) {
+  const std::string name(NameOf(transform));
+  Findings findings = play.failed;
+  for (Finding& finding : ClaimFindings(play.claims))
+    findings.push_back({.exit_code = finding.exit_code,
+                        .reason = name + ": " + finding.reason,
+                        .details = name + ": " + finding.details});
   return findings;
 }
 
@@ -83,12 +84,14 @@ tl::expected<Play, std::string> PlayAfter(Transform transform, const LoadedRun& 
   const std::string name(NameOf(transform));
   const RunResult run = RunScenario(there->scenario, loaded.program);
   if (run.status.kind != physics::RunStatus::Kind::kCompleted)
-    return Play{.broken = {{.reason = name + ": the simulation failed",
+    return Play{.failed = {{.reason = name + ": the simulation failed",
                             .details = name + ": " + StatusText(run) + "\n"}},
+                .claims = {},
                 .differs = {},
                 .comparison = {}};
   const grammar::Timeline timeline = AsInOriginal(there->names, *loaded.program, run.timeline);
-  Play play{.broken = ClaimsBroken(name, loaded, timeline),
+  Play play{.failed = {},
+            .claims = JudgeClaims(loaded, timeline),
             .differs = {},
             .comparison = Compare(here, timeline,
                                   ToleranceAfter(transform, loaded.scenario, there->scenario))};
@@ -133,8 +136,9 @@ Ensemble PlayEnsemble(const LoadedRun& loaded, const grammar::Timeline& here,
     auto play = PlayAfter(transform, loaded, golden);
     if (!play) continue;
     ++ensemble.plays;
-    if (!play->broken.empty()) ++ensemble.plays_broken;
-    Append(ensemble.broken, std::move(play->broken));
+    Findings broken = BrokenIn(*play, transform);
+    if (!broken.empty()) ++ensemble.plays_broken;
+    Append(ensemble.broken, std::move(broken));
     Append(ensemble.differences, std::move(play->differs));
     if (!play->comparison) continue;
     const auto offsets = OffsetsOf(*play->comparison, golden);
@@ -171,6 +175,8 @@ std::string TextOfNotCompared(const std::vector<TransformVerdict>& verdicts) {
 TransformJudgement JudgeTransforms(const CheckedRun& checked, const Golden& here,
                                    const std::vector<Transform>& transforms) {
   TransformJudgement judgement;
+  const std::vector<ClaimVerdict> claims_here =
+      JudgeClaims(checked.loaded, checked.result.timeline);
   for (const Transform transform : transforms) {
     TransformVerdict& verdict = judgement.verdicts.emplace_back(
         TransformVerdict{std::string(NameOf(transform)), kSameStory, ""});
@@ -181,7 +187,10 @@ TransformJudgement JudgeTransforms(const CheckedRun& checked, const Golden& here
     }
     // All but other names change rounding or the order of computations.
     const bool may_differ = !here.unsteady.empty() && transform != Transform::kRename;
-    Findings& findings = play->broken;
+    // A claim that does not hold here either says nothing of the transform.
+    for (std::size_t i = play->claims.size(); i-- > 0;)
+      if (IsContradicted(claims_here[i])) play->claims.erase(play->claims.begin() + i);
+    Findings findings = BrokenIn(*play, transform);
     if (!may_differ) Append(findings, std::move(play->differs));
     if (!findings.empty()) {
       verdict = {verdict.transform, kOtherStory, findings.front().reason};

@@ -48,7 +48,7 @@ struct TransformJudgement {
 /// Plays the scenario once per transform that leaves its story the same. `here` is the
 /// untransformed run, with the tolerances of its golden. Where the golden is marked as unsteady,
 /// events that differ after a transform that changes rounding are no finding; a claim that is
-/// broken is one all the same.
+/// broken is one all the same, if it holds in the untransformed run.
 TransformJudgement JudgeTransforms(const CheckedRun& checked, const Golden& here,
                                    const std::vector<Transform>& transforms);
 
