@@ -2,7 +2,7 @@
 // Friction is a motor of speed 0 with limited strength. Tested by tests/physics/box2d/world_test.cc
 #include "physics/box2d/joint.h"
 
-#include "physics/scene/joint_spring.h"
+#include "physics/world/joint_spring.h"
 
 namespace prehend::physics {
 namespace {

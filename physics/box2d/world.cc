@@ -7,8 +7,8 @@
 #include "physics/box2d/hand.h"
 #include "physics/box2d/joint.h"
 #include "physics/scene/joint.h"
-#include "physics/scene/joint_spring.h"
 #include "physics/scene/welded_bodies.h"
+#include "physics/world/joint_spring.h"
 #include "physics/world/sleep_tracker.h"
 
 namespace prehend::physics {

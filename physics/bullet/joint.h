@@ -7,8 +7,8 @@
 
 #include <memory>
 
-#include "physics/scene/joint_spring.h"
 #include "physics/scene/scene.h"
+#include "physics/world/joint_spring.h"
 
 namespace prehend::physics {
 

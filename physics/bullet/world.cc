@@ -22,8 +22,8 @@
 #include "physics/bullet/joint.h"
 #include "physics/bullet/sight_ray.h"
 #include "physics/scene/joint.h"
-#include "physics/scene/joint_spring.h"
 #include "physics/scene/welded_bodies.h"
+#include "physics/world/joint_spring.h"
 #include "physics/world/sleep_tracker.h"
 
 // The only process-wide setting of Bullet that is changed; every world sets the same constant.

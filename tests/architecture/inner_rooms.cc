@@ -29,7 +29,7 @@ const Arrows& ProjectArrows() {
       {"physics/box2d", {"physics/hand", "physics/scene", "physics/world"}},
       {"physics",
        {"physics/box2d", "physics/bullet", "physics/hand", "physics/motion", "physics/person",
-        "physics/scene"}},
+        "physics/scene", "physics/world"}},
 
       {"render/gl", {"physics/scene"}},
       {"render", {"physics/scene", "render/gl"}},
@@ -42,7 +42,7 @@ const Arrows& ProjectArrows() {
       {"harness/claims", {"grammar", "grammar/base", "harness/base", "harness/timeline"}},
       {"harness/scenario",
        {"grammar/base", "harness/base", "harness/claims", "physics/motion", "physics/scene"}},
-      {"harness/transform", {"harness/scenario"}},
+      {"harness/transform", {"harness/scenario", "physics/scene"}},
       {"harness/yaml", {"harness/base"}},
       {"harness/golden", {"grammar/base", "harness/base", "harness/timeline"}},
       {"harness/motion", {"harness/base", "harness/yaml", "physics/motion", "physics/scene"}},

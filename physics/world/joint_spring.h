@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Spring and damping of a slider or a hinge: a force that both engines apply from outside, once per
-// tick. No engine involved. Tested by tests/physics/scene/joint_spring_test.cc
+// tick. No engine involved. Tested by tests/physics/world/joint_spring_test.cc
 #pragma once
 
 #include <Eigen/Core>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The effective inertia of the joint's free axis, by a Cholesky decomposition of order six. Tested
-// by tests/physics/scene/joint_spring_test.cc
-#include "physics/scene/joint_spring.h"
+// by tests/physics/world/joint_spring_test.cc
+#include "physics/world/joint_spring.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Springs and damping of joints against closed forms, for bodies of 2 cm to 1 m, in both engines.
-#include "physics/scene/joint_spring.h"
+#include "physics/world/joint_spring.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTick_s = 1.0 / 480;
-constexpr double kGravity = 9.81;
+constexpr double kOneTick_s = 1.0 / 480;
+constexpr double kFall_m_per_s2 = 9.81;
 
 class JointSpringTest : public testing::TestWithParam<Engine> {
  protected:
@@ -28,7 +28,7 @@ class JointSpringTest : public testing::TestWithParam<Engine> {
     const auto world = MakeWorld(scene);
     std::vector<double> positions;
     Snapshot snapshot;
-    while (snapshot.tick < end_s / kTick_s) {
+    while (snapshot.tick < end_s / kOneTick_s) {
       world->Step({});
       world->Describe(snapshot);
       positions.push_back(snapshot.joints[0].position);
@@ -69,9 +69,9 @@ Scene Sprung(double size_m, double mass_kg, double spring, const Vector3d& axis_
 /// It swings about `rest` with this frequency, starting from 0, within 1 % of the way, and half a
 /// tick early or late.
 void ExpectSwing(const std::vector<double>& positions, double rest, double rad_per_s) {
-  const double late = rad_per_s * kTick_s;
+  const double late = rad_per_s * kOneTick_s;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const double phase = rad_per_s * kTick_s * static_cast<double>(i + 1);
+    const double phase = rad_per_s * kOneTick_s * static_cast<double>(i + 1);
     ASSERT_NEAR(positions[i], rest * (1 - std::cos(phase)), rest * (0.01 + late / 2)) << i;
   }
 }
@@ -92,7 +92,7 @@ TEST_P(JointSpringTest, ASliderRestsWhereSpringAndWeightAgree) {
     for (const double size_m : {0.02, 1.0}) {
       Scene scene = Sprung(size_m, 0.5, 50, axis_W);
       scene.joints[0].damping = 2 * std::sqrt(0.5 * 50);  // critical
-      const double sag_m = -axis_W.z() * 0.5 * kGravity / 50;
+      const double sag_m = -axis_W.z() * 0.5 * kFall_m_per_s2 / 50;
       EXPECT_NEAR(Positions(scene, 1.5).back(), 0.05 + sag_m, 0.01 * std::abs(sag_m));
     }
 }
@@ -149,9 +149,9 @@ TEST_P(JointSpringTest, JointsThatShareABodyDoNotReadEachOthersPush) {
     joint->rest = 0;
   }
   scene.joints.insert(scene.joints.begin(), lower);
-  EXPECT_NEAR(Positions(scene, 4).back(), kGravity / 100, 0.001);
+  EXPECT_NEAR(Positions(scene, 4).back(), kFall_m_per_s2 / 100, 0.001);
   std::swap(scene.joints[0], scene.joints[1]);
-  EXPECT_NEAR(Positions(scene, 4).back(), 2 * kGravity / 400, 0.001);
+  EXPECT_NEAR(Positions(scene, 4).back(), 2 * kFall_m_per_s2 / 400, 0.001);
 }
 
 TEST_P(JointSpringTest, ManyThatPullAtALightBodyDoNotExplode) {
@@ -189,7 +189,8 @@ TEST(JointSpringLawTest, ATooStiffSpringHasTheInertiaThatTheJointLeavesItToMove)
   const double inertia = 1 / (1 + apart_m * apart_m / (2 * moment));
   const Joint joint{.kind = JointKind::kSlider, .spring = 1e9, .rest = 1};
   const JointPlace place{0, Vector3d::UnitX(), {0, 0, 0}};
-  EXPECT_NEAR(SpringForce(joint, place, 1, base, body, kTick_s) * kTick_s * kTick_s, inertia, 1e-9);
+  EXPECT_NEAR(SpringForce(joint, place, 1, base, body, kOneTick_s) * kOneTick_s * kOneTick_s,
+              inertia, 1e-9);
 }
 
 }  // namespace
