@@ -265,7 +265,11 @@ Command RunCommand() {
             .placeholder = "FILE",
             .is_output = true},
            {.name = "--measure", .help = "print where the time went, and the peak memory"}},
-      .run = RunOne};
+      .run = RunOne,
+      .note =
+          "It shows and does not judge: claims that the events contradict are printed, and the "
+          "exit\n"
+          "code is 0 all the same. 'check' judges."};
 }
 
 }  // namespace prehend::harness

@@ -39,6 +39,7 @@ struct Command {
   std::vector<std::string> examples;  ///< without the program's name
   std::vector<Option> options;
   std::function<ExitCode(const ParsedOptions& options, const CommandContext& context)> run = {};
+  std::string note = {};  ///< said at the end of its --help
 };
 
 Command ListCommand();

@@ -40,6 +40,7 @@ void Declare(const Command& command, CLI::App& app) {
   std::string footer = "Examples:";
   for (const std::string& example : command.examples)
     footer += "\n  " + ProgramName() + " " + example;
+  if (!command.note.empty()) footer += "\n\n" + command.note;
   declared->footer(footer);
   declared->allow_extras();
   for (const Option& option : command.options) Declare(option, *declared);

@@ -419,6 +419,7 @@ TEST_F(GoldenWorkflow, WhatContradictsAClaimIsNotAccepted) {
   const Said run = Do("run carton_rests");
   EXPECT_EQ(run.exit_code, 0) << "a run shows what happens, a check judges it";
   EXPECT_EQ(run.err, contradiction + "\n  no grasping\n");
+  EXPECT_NE(Do("run --help").out.find("It shows and does not judge"), std::string::npos);
   EXPECT_EQ(Json::parse(Do("run carton_rests --json").out)["claims"][1]["found"], "found none");
   const Said checked = Do("check --no-pictures");
   EXPECT_EQ(checked.exit_code, 1);
