@@ -132,7 +132,7 @@ void LoneBodies::SetContact(LoneContacts<lanes>& contacts, std::size_t lane, con
 template <std::size_t lanes>
 void LoneBodies::Blocks<lanes>::Solve(Kernels::SolveLone<lanes> kernel, int iterations) {
   for (const Block<lanes>& block : blocks) {
-    std::array<Lanes<lanes>, 6> speeds;
+    std::array<Lanes<lanes>, 6> speeds{};
     for (std::size_t lane = 0; lane < lanes; ++lane)
       if (block.speeds[lane])
         for (std::size_t i = 0; i < 6; ++i) speeds[i][lane] = (*block.speeds[lane])[i];

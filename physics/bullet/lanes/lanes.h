@@ -7,9 +7,10 @@
 
 namespace prehend::physics {
 
+/// Without a constructor: one would be an inline function, compiled for several processors.
 template <std::size_t n>
 struct alignas(n * sizeof(double)) Lanes {
-  double values[n] = {};
+  double values[n];
 
   double& operator[](std::size_t lane) { return values[lane]; }
   double operator[](std::size_t lane) const { return values[lane]; }

@@ -46,7 +46,7 @@ class Numbers {
   }
   template <std::size_t n>
   LoneContacts<n> Contacts() {
-    LoneContacts<n> contacts;
+    LoneContacts<n> contacts{};
     Fill(contacts.normal), Fill(contacts.first), Fill(contacts.second);
     Fill(contacts.friction, -0.1, 0.6);
     for (std::size_t lane = 0; lane < n; ++lane) {
@@ -59,7 +59,7 @@ class Numbers {
     return contacts;
   }
   GrainBlock Grains(std::vector<std::array<btScalar, 6>>& speeds, std::size_t first) {
-    GrainBlock block;
+    GrainBlock block{};
     for (std::size_t lane = 0; lane < GrainBlock::kLanes; ++lane) {
       block.a[lane] = speeds[first + 2 * lane].data();
       block.b[lane] = speeds[first + 2 * lane + 1].data();
@@ -83,7 +83,7 @@ std::vector<double> Solved(unsigned seed, Kernels::SolveLone<n> kernel) {
   Numbers numbers(seed);
   std::vector<LoneContacts<n>> contacts;
   for (int i = 0; i < 5; ++i) contacts.push_back(numbers.Contacts<n>());
-  std::array<Lanes<n>, 6> speeds;
+  std::array<Lanes<n>, 6> speeds{};
   for (Lanes<n>& speed : speeds) numbers.Fill(speed, -0.1, 0.1);
   kernel(contacts.data(), contacts.size(), speeds.data(), 20);
   std::vector<double> all;
