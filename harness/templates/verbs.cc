@@ -186,10 +186,10 @@ const std::vector<Verb>& Verbs() {
        R"(  right_hand: {hand: human_right, at_m: [-0.2, -0.2, 1.0]}
   left_hand: {hand: human_left, at_m: [-0.2, 0.35, 1.1]}
 )",
-       R"(  - right_hand: {reach: @o@, from: side, point_m: [0, 0, -0.055]}   # below its middle
+       R"(  - right_hand: {reach: @o@, from: side, point_m: [-0.008, 0, -0.05]}   # below its middle, on the near side
   - right_hand: {close_to: 1}
   - right_hand: {lift_by_m: 0.2}
-  - left_hand: {reach: @o@, from: side, point_m: [0, 0, 0.06]}      # above it
+  - left_hand: {reach: @o@, from: side, point_m: [-0.008, 0, 0.06]}   # above it
   - left_hand: {close_to: 1}
   - right_hand: {open_to: 0}
   - right_hand: {retreat_by_m: 0.2}

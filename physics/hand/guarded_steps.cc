@@ -128,7 +128,25 @@ void ScriptPlayer::NoteTheGrip(std::size_t hand, const Snapshot& now) {
   const bool met = state.waiting && state.waiting->met;
   if (!grip || grip->trigger < kClosed || met || !state.closes) return;
   std::string note = NoteAboutGrip(scene_, now, static_cast<int>(hand), state.object);
-  if (!note.empty()) notes_.push_back({now.tick, static_cast<int>(hand), std::move(note)});
+  if (note.empty()) return;
+  notes_.push_back({now.tick, static_cast<int>(hand), std::move(note)});
+  hands_[hand].doubt = Doubt{now.tick, state.object};
+}
+
+void ScriptPlayer::WithdrawNotes(const Snapshot& now) {
+  for (std::size_t h = 0; h < hands_.size(); ++h) {
+    std::optional<Doubt>& doubt = hands_[h].doubt;
+    if (!doubt) continue;
+    const int hand = static_cast<int>(h);
+    if (hands_[h].object != doubt->object || TargetOf(hands_[h]).trigger < kClosed) {
+      doubt.reset();
+    } else if (IsHeldBySides(scene_, now, hand, doubt->object)) {
+      std::erase_if(notes_, [&](const ScriptNote& note) {
+        return note.tick == doubt->tick && note.hand == hand;
+      });
+      doubt.reset();
+    }
+  }
 }
 
 /// Follows the force.

@@ -554,6 +554,7 @@ const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
   Watch(now);
   WatchGuards(now);
   Press(now);
+  WithdrawNotes(now);
   Progress(now);
   while (problem_.empty() && EndStage(now)) {
     StartStage();

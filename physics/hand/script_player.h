@@ -92,6 +92,11 @@ class ScriptPlayer {
     double present_n = 0;  ///< a mean over some 20 ms
     double depth_m = 0;    ///< how far the target has gone
   };
+  /// A note says that the hand has closed without holding `object`.
+  struct Doubt {
+    std::int64_t tick = 0;  ///< of the note
+    int object = 0;         ///< index into Scene::bodies
+  };
   struct HandState {
     TargetState target;  ///< present target, or the one at the end of the motion
     Trajectory motion{TargetState{}};
@@ -110,6 +115,7 @@ class ScriptPlayer {
     std::int64_t late_ticks = 0;  ///< by which it lasts longer than planned
     std::string written_at = {};  ///< the present step
     bool closes = false;          ///< with the present step the trigger rises
+    std::optional<Doubt> doubt = std::nullopt;
   };
   class Resolver;
 
@@ -138,6 +144,8 @@ class ScriptPlayer {
   void CheckGuard(std::size_t hand, const Snapshot& now);
   /// Notes that a hand has closed beside what it reached for.
   void NoteTheGrip(std::size_t hand, const Snapshot& now);
+  /// Fingers follow late: a hand that takes hold after all, before it opens, needs no note.
+  void WithdrawNotes(const Snapshot& now);
   void Press(const Snapshot& now);
   bool IsTouched(int hand, int thing, const Snapshot& now) const;
   double GapTo(int hand, int thing, const Snapshot& now) const;

@@ -82,6 +82,10 @@ std::string NoteAboutReach(const Scene& scene, const Snapshot& now, const ReachQ
   return notes;
 }
 
+bool IsHeldBySides(const Scene& scene, const Snapshot& now, int hand, int object) {
+  return SidesThatTouch(scene, now, hand, object).size() >= 2;
+}
+
 std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, int hand, int object) {
   const std::set<std::string> sides = SidesThatTouch(scene, now, hand, object);
   if (sides.size() >= 2) return "";

@@ -17,6 +17,9 @@ namespace prehend::physics {
 std::string NoteAboutReach(const Scene& scene, const Snapshot& now, const ReachQuery& query,
                            const ReachPlan& plan);
 
+/// Whether two sides of the hand touch `object`, an index into Scene::bodies: it holds it.
+bool IsHeldBySides(const Scene& scene, const Snapshot& now, int hand, int object);
+
 /// About a hand that has closed, at the end of the step: that it touches `object`, an index into
 /// Scene::bodies, with one side only or not at all.
 std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, int hand, int object);

@@ -70,6 +70,7 @@ TEST_F(New, DoesWhatTheNameSays) {
   const Said checked = Do({"check", "--no-pictures"});
   EXPECT_EQ(checked.exit_code, 5) << "pending, and no claim is wrong\n" << checked.out;
   EXPECT_FALSE(Has(checked.out, "failed  ")) << checked.out;
+  EXPECT_FALSE(Has(checked.out, "note: ")) << checked.out;
 }
 
 TEST_F(New, SaysWhichWordsItLeavesOut) {

@@ -172,6 +172,21 @@ TEST(ScriptPlayerTest, NotesAHandThatClosesBesideItsThing) {
                   "'offset_m' too large, has object moved, or is it too thin for this style?"});
 }
 
+// The fingers arrive after the end of a short step.
+TEST(ScriptPlayerTest, AHandThatTakesHoldLaterIsNotNoted) {
+  const auto notes = [](const ScriptStage& after) {
+    const Scene scene = MakeScene({});
+    const Script script{
+        .stages = {One(ReachStep{"object"}, 0.6), One(TriggerStep{1}, 0.01), after}};
+    Simulation simulation(scene, script);
+    while (simulation.Step()) {
+    }
+    return simulation.notes().size();
+  };
+  EXPECT_EQ(notes(One(WaitStep{}, 0.6)), 0u);
+  EXPECT_EQ(notes(One(TriggerStep{0}, 0.01)), 1u) << "it opened before";
+}
+
 TEST(ScriptPlayerTest, ABeatLastsAsLongAsItsLongestStep) {
   Scene scene = MakeScene({});
   scene.hands.push_back({"other", LibraryHand("human_left"), {{-0.3, 0.3, 1.1}}});
