@@ -24,10 +24,12 @@ constexpr int kWanted = 2;
 /// Grammars that no golden needs to watch, each with its reason.
 const std::set<std::string> kExceptedGrammars = {
     "original_2020",  // the baseline: `score` and tests/harness/score compare it with the others
-    // They stand in for `contact` and `grasp` where a recording has poses only, and a scenario has
-    // more: judged by tests/grammar/motion_test.cc and tests/program/facts_from_motion.py.
+    // They stand in for `contact`, `grasp` and `stirring` where a recording has poses only, and a
+    // scenario has more: judged by tests/grammar/motion_test.cc, motion_in_hands_test.cc and
+    // tests/program/facts_from_motion.py.
     "contact_from_motion",
     "grasp_from_motion",
+    "stirring_from_motion",
 };
 
 /// Grammars that define no event: others use what they define.
