@@ -54,7 +54,7 @@ class ExpectedEvent {
   using Complain = std::function<void(std::string message, std::string hint)>;
   void Check(const Complain& complain) const {
     if (roles_.size() != event_.roles.size()) {
-      return complain("'" + event_.name + "' has " + CountOf(Number(event_.roles), "role") +
+      return complain("'" + event_.name + "' has " + CountOf(event_.roles.size(), "role") +
                           ", found " + std::to_string(roles_.size()),
                       "");
     }
@@ -81,9 +81,6 @@ class ExpectedEvent {
   }
 
  private:
-  static long long Number(const std::vector<std::string>& all) {
-    return static_cast<long long>(all.size());
-  }
   bool Takes(std::size_t role, const std::string& name) const {
     const auto entity = std::ranges::find(entities_, name, &EntityInfo::name);
     return std::ranges::count(entity->classes, event_.classes[role]) > 0;

@@ -23,10 +23,6 @@ std::string Plural(long long count, std::string_view noun) {
   return text + (hisses ? "es" : "s");
 }
 
-std::string CountOf(long long count, std::string_view noun) {
-  return std::to_string(count) + " " + Plural(count, noun);
-}
-
 std::string WithArticle(std::string_view noun) {
   const bool an = !noun.empty() && (IsVowel(noun.front()) || noun.front() == '8');
   return (an ? "an " : "a ") + std::string(noun);

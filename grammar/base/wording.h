@@ -3,17 +3,20 @@
 // Tested by tests/grammar/base/wording_test.cc
 #pragma once
 
+#include <concepts>
 #include <string>
 #include <string_view>
 
 namespace prehend::grammar {
 
-/// "1 row", "3 rows", "0 entries", "2 faulty lines". The last word of the noun has a regular
-/// plural.
-std::string CountOf(long long count, std::string_view noun);
-
-/// The noun alone: "row" for 1, else "rows".
+/// "row" for 1, else "rows", "entries", "faulty lines". The last word has a regular plural.
 std::string Plural(long long count, std::string_view noun);
+
+/// "1 row", "3 rows".
+template <std::integral Count>
+std::string CountOf(Count count, std::string_view noun) {
+  return std::to_string(count) + " " + Plural(static_cast<long long>(count), noun);
+}
 
 /// "a Thing", "an Object", "an 8 cm cube".
 std::string WithArticle(std::string_view noun);

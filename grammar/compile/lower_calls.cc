@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "grammar/base/wording.h"
 #include "grammar/compile/lower.h"
 #include "grammar/compile/value_ranges.h"
 
@@ -70,8 +71,8 @@ std::optional<int> Lowering::RoleArgument(const Expr& expr, std::string_view wan
   const std::string& class_name = rule().roles[role].class_name;
   if (!ClassesMeet(class_name, wanted_class)) {
     Complain(expr.place,
-             Quoted(callee) + " takes a " + std::string(wanted_class) + " here, but " +
-                 Quoted(expr.text) + " is a " + class_name,
+             Quoted(callee) + " takes " + WithArticle(wanted_class) + " here, but " +
+                 Quoted(expr.text) + " is " + WithArticle(class_name),
              wanted_class == "Jointed"
                  ? "what hangs on a slider or a hinge is Jointed: " + expr.text + ": Jointed"
                  : "");
@@ -118,9 +119,9 @@ Lowering::Typed Lowering::LowerRuleCall(RuleId rule, const Expr& expr) {
       }
       NoteClass(symbols_.program, classes[i], source_->file, expr.args[i].args[0].place);
       if (ClassesMeet(classes[i], wanted[i].class_name)) continue;
-      return Bad(expr.args[i].args[0].place, Quoted(expr.text) + " takes a " +
-                                                 wanted[i].class_name + " here, and no " +
-                                                 classes[i] + " is one");
+      return Bad(expr.args[i].args[0].place, Quoted(expr.text) + " takes " +
+                                                 WithArticle(wanted[i].class_name) +
+                                                 " here, and no " + classes[i] + " is one");
     }
     const std::optional<int> role = RoleArgument(expr.args[i], wanted[i].class_name, expr.text);
     if (!role) return {.bad = true};
@@ -220,7 +221,7 @@ Lowering::Typed Lowering::LowerDefine(const DefineSource& source, const Expr& ex
   symbols_.used_defines.insert(define.name);
   if (define.parameters.size() != expr.args.size()) {
     return Bad(expr.place, Quoted(define.name) + " takes " +
-                               std::to_string(define.parameters.size()) + " arguments, found " +
+                               CountOf(define.parameters.size(), "argument") + ", found " +
                                std::to_string(expr.args.size()));
   }
   Scope scope{
@@ -294,13 +295,14 @@ Lowering::Typed Lowering::LowerIs(const Expr& expr) {
   const bool both_known = IsBuiltinClass(class_name) && IsBuiltinClass(expr.args[1].text);
   if ((scope_ == nullptr || checking_) && both_known &&
       !ClassesMeet(class_name, expr.args[1].text)) {
-    return Bad(expr.place, "this is never true: " + Quoted(expr.args[0].text) + " is a " +
-                               class_name + ", and no " + class_name + " is a " +
-                               expr.args[1].text);
+    return Bad(expr.place, "this is never true: " + Quoted(expr.args[0].text) + " is " +
+                               WithArticle(class_name) + ", and no " + class_name + " is " +
+                               WithArticle(expr.args[1].text));
   }
   NoteClass(symbols_.program, expr.args[1].text, source_->file, expr.args[1].place);
   if (scope_ == nullptr && !checking_ && ClassImplies(class_name, expr.args[1].text)) {
-    Doubt(expr.place, "this is always true: " + Quoted(expr.args[0].text) + " is a " + class_name,
+    Doubt(expr.place,
+          "this is always true: " + Quoted(expr.args[0].text) + " is " + WithArticle(class_name),
           "leave it out", false);
     return Decided(Verdict::kAlways, {static_cast<int>(doubts_.size()) - 1});
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "grammar/base/wording.h"
 #include "grammar/compile/allen_network.h"
 #include "grammar/compile/contradictions.h"
 
@@ -87,8 +88,8 @@ class DefinitionLowering {
       return lowering_.Complain(
           d_.place,
           "'otherwise' is when no other event holds, and no other event of this file is "
-          "about a " +
-              roles.front().class_name,
+          "about " +
+              WithArticle(roles.front().class_name),
           "define such events, or say what must not hold: while not X");
     }
     const NodeId none = lowering_.Truth({.kind = ast::Expr::Kind::kUnary,

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "grammar/base/wording.h"
+
 namespace prehend::grammar {
 namespace {
 
@@ -116,8 +118,8 @@ class LawLowering {
     }
     const int index = static_cast<int>(role - law_.roles.begin());
     if (!ClassesMeet(role->class_name, wanted)) {
-      Complain(arg.place, Quoted(expr.text) + " takes a " + wanted + " here, but " +
-                              Quoted(arg.text) + " is a " + role->class_name);
+      Complain(arg.place, Quoted(expr.text) + " takes " + WithArticle(wanted) + " here, but " +
+                              Quoted(arg.text) + " is " + WithArticle(role->class_name));
       return false;
     }
     const bool twice = std::ranges::any_of(
@@ -145,7 +147,7 @@ class LawLowering {
     }
     NoteClass(symbols_.program, named.text, source_.file, named.place);
     if (!ClassesMeet(named.text, wanted)) {
-      Complain(named.place, Quoted(expr.text) + " takes a " + wanted + " here, and no " +
+      Complain(named.place, Quoted(expr.text) + " takes " + WithArticle(wanted) + " here, and no " +
                                 named.text + " is one");
       return false;
     }
