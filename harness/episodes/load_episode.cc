@@ -92,11 +92,12 @@ Result<Episode> ReadWhole(const EpisodeFile& file, const EpisodeRow& episode) {
 
 /// Of a recording: what the grammar recognises, and with `frames` the scene that stands in for it.
 Result<RunResult> ResegmentRecording(const EpisodeFile& file, const EpisodeRow& episode,
-                                     const LoadedRun& loaded, bool frames) {
+                                     const LoadedRun& loaded, bool frames, MissingFacts* missing) {
   Result<Episode> recording = ReadWhole(file, episode);
   if (!recording) return tl::unexpected(std::move(recording.error()));
   auto segmented = SegmentEpisode(*recording, loaded.program, file.path());
   if (!segmented) return tl::unexpected(std::move(segmented.error()));
+  if (missing != nullptr) *missing = std::move(segmented->missing);
   RunResult run = BlankResult(episode, loaded);
   run.timeline = std::move(segmented->timeline);
   run.state_hash = HashOfText(episode.state_hash);
@@ -189,8 +190,8 @@ Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow&
 }
 
 Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
-                            const LoadedRun& loaded) {
-  if (!episode.simulated) return ResegmentRecording(file, episode, loaded, false);
+                            const LoadedRun& loaded, MissingFacts* missing) {
+  if (!episode.simulated) return ResegmentRecording(file, episode, loaded, false, missing);
   RunResult run = BlankResult(episode, loaded);
   Segmenter segmenter(loaded);
   if (segmenter.error().empty()) {
@@ -212,7 +213,7 @@ Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
 
 Result<RunResult> Replay(const EpisodeFile& file, const EpisodeRow& episode,
                          const LoadedRun& loaded) {
-  if (!episode.simulated) return ResegmentRecording(file, episode, loaded, true);
+  if (!episode.simulated) return ResegmentRecording(file, episode, loaded, true, nullptr);
   Result<RunResult> run = Resegment(file, episode, loaded);
   if (!run) return run;
   physics::StateHash hash;

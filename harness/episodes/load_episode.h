@@ -55,9 +55,10 @@ class EpisodeLoader {
 };
 
 /// What the grammar recognises in the episode; its frames are not kept. An episode that is not
-/// finished has the status "failed".
+/// finished has the status "failed". `missing`, unless null: of a recording, what the grammar
+/// misses.
 Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
-                            const LoadedRun& loaded);
+                            const LoadedRun& loaded, MissingFacts* missing = nullptr);
 
 /// The same, with every frame: as RunScenario() with RunOptions::record returned it. Of a recording
 /// the frames are those of its stand-in: for pictures, not to be sensed.

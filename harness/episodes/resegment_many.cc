@@ -80,19 +80,15 @@ class Worker {
     if (row == file_->episodes().end()) return {{"problem", "the episode is gone\n"}};
     const Result<LoadedRun> loaded = loader_.Load(*file_, *row, request_.choice);
     if (!loaded) return {{"problem", grammar::Format(loaded.error())}};
-    const Result<RunResult> run =
-        request_.replay ? Replay(*file_, *row, *loaded) : Resegment(*file_, *row, *loaded);
+    MissingFacts missing;
+    const Result<RunResult> run = request_.replay ? Replay(*file_, *row, *loaded)
+                                                  : Resegment(*file_, *row, *loaded, &missing);
     if (!run) return {{"problem", grammar::Format(run.error())}};
-    std::string warnings = grammar::Format(loaded->warnings);
-    if (!row->simulated && !request_.replay) {
-      const auto segmented = SegmentRecorded(*file_, *row, *loaded);
-      if (segmented) warnings += segmented->missing.warnings;
-    }
     Json said = {{"table", RunTable(*run)},
                  {"json", RunJson(loaded->scenario, *run).dump()},
                  {"completed", run->status.kind == physics::RunStatus::Kind::kCompleted},
                  {"finished", row->status != kRecording},
-                 {"warnings", warnings}};
+                 {"warnings", grammar::Format(loaded->warnings) + missing.warnings}};
     if (!request_.compare || row->status == kRecording) return said;
     const Result<grammar::Timeline> recorded = file_->TimelineOf(*row);
     if (!recorded) return {{"problem", grammar::Format(recorded.error())}};
