@@ -12,7 +12,7 @@ Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
       entity_table_(std::move(entity_table)),
       entity_count_(static_cast<int>(entity_table_.entities.size())),
       history_(entity_table_),
-      instances_(*program_, entity_table_),
+      instances_(*program_, entity_table_, *this),
       evaluator_(*program_, entity_table_, history_, instances_),
       thresholds_(program_->thresholds),
       recalls_touches_(program_->recalls_touches || program_->asks_touches),
@@ -29,8 +29,13 @@ Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
     rule_ticks_.push_back(grammar::TicksOf(rule, history_));
     past_.LookBack(rule, history_);
     nearness_.push_back(NearnessOf(rule));
+    follows_.push_back(WhenItFollows(rule));
     any_rests = any_rests || nearness_.back() != kNone;
   }
+  turns_.resize(program_->rules.size());
+  may_rest_.resize(program_->rules.size());
+  for (std::size_t turn = 0; turn < program_->schedule.size(); ++turn)
+    turns_[program_->schedule[turn]] = static_cast<int>(turn);
   if (any_rests) history_.MeasureWays(entity_table_);
   instances_.BindUnguarded();
   for (InstanceId i(0); i < instances_.end_id(); ++i) Wake(i);
@@ -49,6 +54,7 @@ NodeId Engine::NearnessOf(const Rule& rule) const {
 
 void Engine::Wake(InstanceId index) {
   RuleInstance& instance = instances_[index];
+  if (instance.follows) StopWaiting(instance);
   if (instance.awake || instance.rule == kNone) return;
   instance.awake = true;
   instances_.RestNoMore(index);
@@ -66,7 +72,7 @@ void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
     const RuleInstance& instance = instances_[watch.instance];
     const double rests_until_m = instances_.RestsUntil_m(watch.instance);
     if (instance.awake || (rests_until_m > 0 && Ways_m(instance) < rests_until_m)) continue;
-    if (MayWake(instances_[watch.instance])) Wake(watch.instance);
+    if (MayWake(instance) && !instances_.NeedsOneThatRests(instance)) Wake(watch.instance);
   }
 }
 
@@ -83,13 +89,19 @@ double Engine::Ways_m(const RuleInstance& instance) const {
 }
 
 // An instance whose entities are too far apart for its condition rests until they have got nearer:
-// most pairs in a room have nothing to do with each other, though all of them move.
+// most pairs in a room have nothing to do with each other, though all of them move. So does one
+// that is open, until they are too far apart.
 bool Engine::RestsFarApart(RuleInstance& instance) {
   const NodeId condition = nearness_[instance.rule];
-  if (instance.open || condition == kNone || log_ != nullptr) return false;
-  const double apart_m = evaluator_.FalseFor_m(condition, instance, history_.now());
+  if (condition == kNone || log_ != nullptr) return false;
+  const auto* holds = RuleOf(instance).If<WhileRule>();
+  if (instance.open && (holds == nullptr || holds->until != kNone)) return false;
+  double apart_m = instance.open ? evaluator_.TrueFor_m(condition, instance, history_.now())
+                                 : evaluator_.FalseFor_m(condition, instance, history_.now());
   if (apart_m <= 0) return false;
-  instances_.RestUntil_m(instance.index, Ways_m(instance) + apart_m);
+  for (std::size_t role = 0; role < RuleOf(instance).roles.size(); ++role)
+    apart_m -= history_.Tremble_m(instance.entities[role]);
+  if (apart_m > 0) instances_.RestUntil_m(instance.index, Ways_m(instance) + apart_m);
   return true;
 }
 
@@ -236,17 +248,21 @@ void Engine::StepRule(RuleId rule) {
     const FrameNumber known = instance.known;
     const bool leaves = StepOrRest(instance);
     if (instance.awaited && instance.known != known) Tell(instance);
+    if (instance.followed && known <= history_.now() && instance.known > history_.now())
+      AskWhetherFollowersRest(instance);
     return leaves;
   });
 }
 
 // Whether it need not be stepped in the next frame.
 bool Engine::StepOrRest(RuleInstance& instance) {
+  const Edges edges = instance.followed ? EdgesOf(instance) : Edges();
   if (LooksTheSame(instance)) {
     Rest(instance);
     return true;
   }
   StepInstance(instance);
+  if (instance.followed && EdgesOf(instance) != edges) TellFollowers(instance);
   NotifyIfChanged(instance);
   if (MayRest(instance)) {
     Rest(instance);

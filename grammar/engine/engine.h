@@ -18,6 +18,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,7 +36,7 @@
 
 namespace prehend::grammar {
 
-class Engine {
+class Engine final : private Followers {
  public:
   Engine(std::shared_ptr<const Program> program, EntityTable entity_table);
   Engine(const Engine&) = delete;  // the members refer to each other
@@ -132,16 +133,63 @@ class Engine {
   void Tell(RuleInstance& instance);
   void StopWaiting(RuleInstance& instance);
   void HoldLooks(const RuleInstance& instance);
+  FrameNumber HeldBy(const RuleInstance& instance) const {
+    return instance.follows ? following_[instance.index].held : OldestNeeded(instance);
+  }
   bool IsHeld(const RememberedPast::Held& held) const {
     const RuleInstance& instance = instances_[held.instance];
-    return instance.awake && OldestNeeded(instance) == held.frame;
+    return instance.awake && HeldBy(instance) == held.frame;
   }
+  void Hold(const RuleInstance& instance);
+  FrameNumber HeldFrom(const RememberedPast::Held& held);
   FrameNumber FirstLook(int entity) {
     return past_.FirstLook(entity, history_, [this](const auto& held) { return IsHeld(held); });
   }
   bool IsAtTheKnown(const RuleInstance& instance) const;
   void SkipUnchanged(RuleInstance& instance) const;
   FrameNumber NextChange(const RuleInstance& instance, FrameNumber after) const;
+
+  // Following others (likewise).
+  struct Follows {
+    bool closed = false;          // while it is not open it asks about nothing but others
+    bool open = false;            // likewise, while it is
+    std::vector<int> slots = {};  // `until`: the references that it asks for
+  };
+  struct Following {            // of an instance that does so
+    FrameNumber held = 0;       // the first frame that is kept for it
+    FrameNumber resumes = 0;    // the first one that it steps when it follows no more
+    FrameNumber known_in = -1;  // in this frame it was seen how far it is known
+    int cost = 0;               // so many instances may have to be asked for that
+  };
+  struct Bound {
+    bool holds = false;
+    FrameNumber known = 0;
+  };
+  struct Edges {  // the last ones of its truth
+    FrameNumber begin = kNever, last_begin = kNever, last_end = kNever;
+    bool operator==(const Edges&) const = default;
+  };
+  static Edges EdgesOf(const RuleInstance& instance) {
+    Edges edges;
+    if (instance.open && instance.certain) edges.begin = instance.begin.frame;
+    if (instance.past.empty()) return edges;
+    edges.last_begin = instance.past.back().begin.frame;
+    edges.last_end = instance.past.back().end.frame;
+    return edges;
+  }
+  template <typename Visit>
+  void ForEachFollowed(const RuleInstance& instance, const Visit& visit) const;
+  std::optional<Bound> BoundOf(NodeId node, const RuleInstance& instance) const;
+  bool MayBeKnownNow(const RuleInstance& instance) const;
+  bool AsksOnlyOthers(NodeId node) const;
+  bool IsUnknownUntilTheEnd(NodeId node) const;
+  Follows WhenItFollows(const Rule& rule) const;
+  bool MayFollow(RuleInstance& instance, FrameNumber resumes);
+  bool Follow(RuleInstance& instance);
+  FrameNumber KnownOf(InstanceId follower) override;
+  void TellFollowers(RuleInstance& instance);
+  void AskWhetherFollowersRest(RuleInstance& instance);
+  void LetFollowersRest(RuleId rule);
 
   // The forms; each looks at one frame and says whether it could decide it.
   void StepInstance(RuleInstance& instance);
@@ -214,6 +262,12 @@ class Engine {
   IdVector<RuleId, RuleTicks> rule_ticks_;
   IdVector<RuleId, NodeId>
       nearness_;  // a condition that entities far apart do not fulfil, or kNone
+  IdVector<RuleId, Follows> follows_;
+  IdVector<RuleId, int> turns_;                // when a rule is stepped in a frame
+  IdVector<InstanceId, Following> following_;  // up to the last one that ever did
+  bool some_may_rest_ = false;
+  IdVector<RuleId, std::vector<InstanceId>> may_rest_;  // followers to be looked at in that turn
+  int turn_ = -1;  // twice that of the rule that is stepped now; one more: of its followers
   Thresholds thresholds_;
   bool recalls_touches_ = false;     // which thresholds they had crossed
   bool keeps_touches_ = false;       // and all that they measured

@@ -87,6 +87,7 @@ void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
 FrameNumber Engine::Settled(const RuleInstance& instance) const {
   // A composition rests though its parts do not, as each of their intervals wakes it.
   if (RuleOf(instance).form() == Form::kCompose && !instance.awake) return PartsSettled(instance);
+  if (instance.follows) instances_.KnownOf(instance);  // brings it up to date
   FrameNumber settled = instance.awake ? instance.next - 1 : finishing_ ? kNever : history_.now();
   if (instance.in_gap) settled = std::min(settled, instance.gap.frame - 1);
   for (const Pending& pending : instance.pending)

@@ -116,20 +116,27 @@ void Engine::PassBy(Tick tick) {
   if (history_.now() % kFramesBetweenForgetting != 0) return;
   past_.BeginFrame(history_.now());
   Forget();
+  turn_ = -1;
 }
 
 void Engine::EndFrame() {
   for (const RuleId rule : program_->schedule) {
+    turn_ = 2 * turns_[rule];
+    if (some_may_rest_ && !may_rest_[rule].empty()) LetFollowersRest(rule);
     if (!awake_[rule].empty()) StepRule(rule);
   }
+  some_may_rest_ = false;
   Forget();
+  turn_ = -1;
   if (instances_.TooMany()) error_ = instances_.WhyTooMany();
   SortNewEvents();
 }
 
 void Engine::Forget() {
   if (log_ != nullptr) return;
-  past_.NeedHeld([this](const RememberedPast::Held& held) { return IsHeld(held); });
+  turn_ = 2 * static_cast<int>(turns_.size());  // everybody has had it
+  past_.NeedHeld([this](const RememberedPast::Held& held) { return IsHeld(held); },
+                 [this](const RememberedPast::Held& held) { return HeldFrom(held); });
   past_.Forget(history_);
   idle_.FreeOld();
 }
@@ -262,6 +269,7 @@ void Engine::BeginTouch(RuleInstance& touching) {
   touching.As<TouchingState>().place = touching_.size();
   touching_.push_back(touching.index);
   touching.reported = Kleene::kTrue;
+  if (touching.followed) TellFollowers(touching);
   NotifyWatchers(touching);
 }
 
@@ -293,6 +301,7 @@ void Engine::BeginOrEnd(RuleInstance& instance) {
   }
   instance.known = kNever;
   instance.reported = Known(instance.open);
+  if (instance.followed) TellFollowers(instance);
   NotifyWatchers(instance);
 }
 
@@ -305,6 +314,7 @@ void Engine::Part(InstanceId touching) {
   instances_[touching_.back()].As<TouchingState>().place = state.place;
   touching_.pop_back();
   instance.reported = Kleene::kFalse;
+  if (instance.followed) TellFollowers(instance);
   NotifyWatchers(instance);
   RestOn(instance);
 }

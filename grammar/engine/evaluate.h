@@ -71,6 +71,8 @@ class Evaluator {
   /// A condition that is false at a frame stays so until the entities of its roles have moved by
   /// more than this, all their ways added. 0 if it may be true, or this cannot be told.
   double FalseFor_m(NodeId node, RuleInstance& instance, FrameNumber frame) const;
+  /// Likewise of one that is true.
+  double TrueFor_m(NodeId node, RuleInstance& instance, FrameNumber frame) const;
   /// Whether FalseFor_m() may tell something of it.
   bool NeedsNearness(NodeId node) const;
 
@@ -105,6 +107,8 @@ class Evaluator {
   double OutOfBox_m(int a, int b, FrameNumber frame) const;
   double OutOfReach_m(const Node& node, RuleInstance& instance, FrameNumber frame) const;
   double OffTop_m(int a, int b, double most_m, FrameNumber frame) const;
+  double AlongAxes_m(int a, int b, double away_m, FrameNumber frame) const;
+  double OnTop_m(int a, int b, double most_m, FrameNumber frame) const;
   double Gap(int hand, int object, FrameNumber frame) const;
   double ClosingSpeed(int hand, int object, FrameNumber frame) const;
   double SurfaceSpeed(int hand, FrameNumber frame) const;

@@ -265,26 +265,78 @@ double Evaluator::OutOfBox_m(int a, int b, FrameNumber frame) const {
   return (away_m.cwiseAbs() - box.half_size_m).cwiseMax(0).norm();
 }
 
+// What is measured along axes of b turns with it: what is so far away moves by that times the
+// angle. No other side of b becomes its top while it stands nearly upright and turns by less than
+// `kTurn_rad`.
+double Evaluator::AlongAxes_m(int a, int b, double away_m, FrameNumber frame) const {
+  constexpr double kTurn_rad = 0.2, kMore = 1.1;
+  const Vector3d between_m = history_.Look(a, frame).p_WB_m - history_.Look(b, frame).p_WB_m;
+  const double far_m =
+      between_m.norm() + history_.Bound_m(a) + history_.Bound_m(b) + std::abs(away_m);
+  return std::min(away_m * History::kArm_m / (History::kArm_m + kMore * far_m),
+                  kTurn_rad * History::kArm_m / kMore);
+}
+
+namespace {
+
+constexpr double kNearlyUp = 0.9;
+
+}  // namespace
+
 // How far a and b may move until a's clearance above b may be at most `most_m`. Beside b it is
-// endless. It is measured along axes of b, which turn with it: by an angle of at most b's way per
-// the ball around b that b fills, and what is seen along an axis that turns moves by this angle
-// times how far away it is. No other side of b becomes its top while it stands nearly upright.
+// endless.
 double Evaluator::OffTop_m(int a, int b, double most_m, FrameNumber frame) const {
-  constexpr double kNearlyUp = 0.9, kTurn_rad = 0.2, kMore = 1.1;
-  const EntitySample& at = history_.Look(a, frame);
-  const EntitySample& on = history_.Look(b, frame);
   SolidPart box_a, box_b;
   const auto upper = PartsOf(entity_table_.entities[static_cast<std::size_t>(a)], box_a);
   const auto lower = PartsOf(entity_table_.entities[static_cast<std::size_t>(b)], box_b);
   double away_m = std::numeric_limits<double>::infinity();
   for (const SolidPart& part : lower) {
-    const OverPart over = Over(at, upper, on, part);
+    const OverPart over = Over(history_.Look(a, frame), upper, history_.Look(b, frame), part);
     if (!(over.up > kNearlyUp)) return 0;
     away_m = std::min(away_m, std::max(over.beside_m, std::abs(over.above_m) - most_m));
   }
-  const double ball_a_m = history_.Bound_m(a), ball_b_m = history_.Bound_m(b);
-  const double far_m = (at.p_WB_m - on.p_WB_m).norm() + ball_a_m + ball_b_m + away_m;
-  return std::min(away_m * ball_b_m / (ball_b_m + kMore * far_m), kTurn_rad * ball_b_m / kMore);
+  return AlongAxes_m(a, b, away_m, frame);
+}
+
+// Until it may be more: as long as a is below or above one part of b, and near its top.
+double Evaluator::OnTop_m(int a, int b, double most_m, FrameNumber frame) const {
+  SolidPart box_a, box_b;
+  const auto upper = PartsOf(entity_table_.entities[static_cast<std::size_t>(a)], box_a);
+  const auto lower = PartsOf(entity_table_.entities[static_cast<std::size_t>(b)], box_b);
+  double left_m = -1;
+  for (const SolidPart& part : lower) {
+    const OverPart over = Over(history_.Look(a, frame), upper, history_.Look(b, frame), part);
+    if (over.up > kNearlyUp)
+      left_m = std::max(left_m, std::min(-over.beside_m, most_m - std::abs(over.above_m)));
+  }
+  return left_m > 0 ? AlongAxes_m(a, b, left_m, frame) : 0;
+}
+
+double Evaluator::TrueFor_m(NodeId index, RuleInstance& instance, FrameNumber frame) const {
+  const Node& node = program_.nodes[index];
+  if (node.op == Op::kAnd || node.op == Op::kOr) {
+    const double left_m = TrueFor_m(node.args[0], instance, frame);
+    if (node.op == Op::kAnd && left_m == 0) return 0;
+    const double right_m = TrueFor_m(node.args[1], instance, frame);
+    return node.op == Op::kAnd ? std::min(left_m, right_m) : std::max(left_m, right_m);
+  }
+  if (!IsAtMost(node) || !NeedsNearness(index)) return 0;
+  for (std::size_t role = 0; role < program_.rules[instance.rule].roles.size(); ++role) {
+    if (!IsTracked(instance.entities[role], frame)) return 0;
+  }
+  const View view{instance, frame};
+  const Node& value = program_.nodes[node.args[0]];
+  const double most_m = program_.nodes[node.args[1]].number;
+  double left_m = 0;
+  if (value.op == Op::kDistance) {
+    const std::optional<double> distance_m = Compute(value, view);
+    left_m = distance_m ? most_m - *distance_m : 0;
+  } else {
+    const Node& clearance = program_.nodes[value.args[0]];
+    left_m = OnTop_m(Entity(clearance, view, 0), Entity(clearance, view, 1), most_m, frame);
+  }
+  left_m -= kSafe_m;
+  return left_m > 0 ? left_m : 0;  // nor if it is no number
 }
 
 }  // namespace prehend::grammar

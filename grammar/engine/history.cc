@@ -20,7 +20,7 @@ History::History(const EntityTable& entity_table)
       hand_of_entity_(entity_table.entities.size(), -1) {}
 
 void History::MeasureWays(const EntityTable& entity_table) {
-  ways_m_.assign(entity_table.entities.size(), 0);
+  ways_m_.resize(entity_table.entities.size());
   bounds_m_.reserve(entity_table.entities.size());
   for (const EntityInfo& entity : entity_table.entities) bounds_m_.push_back(BoundOf_m(entity));
 }
@@ -34,12 +34,28 @@ void History::SetSample(int entity, const EntitySample& look, FrameNumber first)
   RingBuffer<PoseAtFrame>& samples = looks_[entity].samples;
   ForgetSamples(samples, first);
   if (samples.empty() && now() > 0) samples.PushBack() = {};  // what it was before anybody said
-  if (!ways_m_.empty())
-    ways_m_[entity] += samples.empty() ? kFar_m : StepOf(entity, samples.back().look, look);
+  if (!ways_m_.empty() && samples.empty()) {
+    ways_m_[entity].way_m += kFar_m;
+    ways_m_[entity].place = look;
+  } else if (!ways_m_.empty()) {
+    Move(entity, look);
+  }
   PoseAtFrame& sample = samples.PushBack();
   sample.frame = now();
   sample.look = look;
   looks_[entity].GiveBack();
+}
+
+void History::Move(int entity, const EntitySample& to) {
+  Way& way = ways_m_[entity];
+  const double away_m = StepOf(entity, way.place, to);
+  if (!way.moved && away_m > 0) {
+    way.moved = true;
+    way.way_m += 2 * kTremble_m;  // of which nobody knew so far
+  }
+  if (away_m <= kTremble_m) return;
+  way.way_m += away_m;
+  way.place = to;
 }
 
 // A bound for all of its points: what turns by an angle moves them by at most four times the sine
@@ -49,7 +65,8 @@ double History::StepOf(int entity, const EntitySample& from, const EntitySample&
   const auto& before = from.q_WB.coeffs();
   const auto& after = to.q_WB.coeffs();
   const double turned = std::min((after - before).norm(), (after + before).norm());
-  const double step_m = (to.p_WB_m - from.p_WB_m).norm() + 2 * turned * bounds_m_[entity];
+  const double step_m =
+      (to.p_WB_m - from.p_WB_m).norm() + 2 * turned * std::max(bounds_m_[entity], kArm_m);
   return std::isnan(step_m) ? kFar_m : step_m;
 }
 

@@ -127,9 +127,13 @@ class History {
     const int hand = hand_of_entity_[entity];
     return hand < 0 ? look : std::min(look, FirstAfter(hands_[hand].samples, after));
   }
-  /// How far the entity has moved so far: between two frames no point of it gets farther than the
-  /// difference. Where it is lost or found it counts as far.
-  double Way_m(int entity) const { return ways_m_[entity]; }
+  /// How far the entity has moved so far, without its trembling: between two frames no point of it
+  /// within kArm_m or Bound_m() of its origin gets farther than the difference and Tremble_m(), nor
+  /// does it turn by more than that per kArm_m. Where it is lost or found it counts as far.
+  double Way_m(int entity) const { return ways_m_[entity].way_m; }
+  /// 0 as long as it has never moved.
+  double Tremble_m(int entity) const { return ways_m_[entity].moved ? 2 * kTremble_m : 0; }
+  static constexpr double kArm_m = 2.5;
   /// It lies in a ball of this radius around its origin.
   double Bound_m(int entity) const { return bounds_m_[entity]; }
   bool Shows(int hand) const { return hand_of_entity_[hand] >= 0; }
@@ -144,6 +148,15 @@ class History {
     EntitySample look;
   };
 
+  /// As long as it stays near a place, it trembles, and has no way.
+  struct Way {
+    double way_m = 0;
+    EntitySample place;
+    bool moved = false;
+  };
+  static constexpr double kTremble_m = 0.005;
+
+  void Move(int entity, const EntitySample& to);
   double StepOf(int entity, const EntitySample& from, const EntitySample& to) const;
 
   double ticks_per_second_;
@@ -153,7 +166,7 @@ class History {
   RingBuffer<Tick> ticks_;
   EntitySample not_seen_yet_;
   std::vector<Looks<PoseAtFrame>> looks_;  // by entity
-  std::vector<double> ways_m_;             // likewise, if anybody asks
+  std::vector<Way> ways_m_;                // likewise, if anybody asks
   std::vector<double> bounds_m_;           // likewise: it lies in such a ball around its origin
   std::vector<Looks<HandAtFrame>> hands_;  // by hand, in order of first sight
   std::vector<int> hand_of_entity_;        // index into hands_ or -1

@@ -31,15 +31,29 @@ FormState StateFor(Form form) {
 
 }  // namespace
 
+namespace {
+
+void CollectNeeded(const Program& program, NodeId index, std::vector<int>& references) {
+  const Node& node = program.nodes[index];
+  if (node.op == Op::kHolds) references.push_back(node.slot);
+  if (node.op != Op::kAnd) return;
+  CollectNeeded(program, node.args[0], references);
+  CollectNeeded(program, node.args[1], references);
+}
+
+}  // namespace
+
 void TouchingState::Reset() {
   touched = -1;
   crossings.Clear();
   touches.Clear();
 }
 
-RuleInstances::RuleInstances(const Program& program, const EntityTable& entity_table)
+RuleInstances::RuleInstances(const Program& program, const EntityTable& entity_table,
+                             Followers& followers)
     : program_(program),
       entity_table_(entity_table),
+      followers_(followers),
       guarded_(program.rules.size()),
       pose_watchers_(entity_table.entities.size()),
       grip_watchers_(entity_table.entities.size()),
@@ -52,6 +66,10 @@ RuleInstances::RuleInstances(const Program& program, const EntityTable& entity_t
   }
   for (const Rule& rule : program.rules) {
     symmetric_.push_back(rule.symmetric ? 1 : 0);
+    std::vector<int>& needs = needs_[needs_.push_back({})];
+    if (const auto* holds = rule.If<WhileRule>();
+        holds != nullptr && holds->at_least == 0 && program.waits)
+      CollectNeeded(program, holds->condition, needs);
     std::vector<std::vector<bool>>& roles = fits_[fits_.push_back({})];
     for (const RuleRole& role : rule.roles) {
       std::vector<bool>& entities = roles.emplace_back();
@@ -300,7 +318,7 @@ void RuleInstances::Free(InstanceId index, std::vector<InstanceId>& orphans) {
   std::visit([](auto& state) { state.Reset(); }, instance.of_form);
   instance.watchers.clear();
   instance.past.Clear();
-  instance.dependents_made = instance.awaited = false;
+  instance.dependents_made = instance.awaited = instance.followed = false;
   instance.reported = Kleene::kFalse;
   instance.moment = kNever;
   RestNoMore(index);

@@ -5,7 +5,9 @@
 // condition is what it was, and it is not looked at until something that it is made of changes. So
 // each instance knows the instances that ask about it (its watchers), and each entity the instances
 // that look at it. An instance that is awake *waits* if it cannot decide its next frame before one
-// that it asks about can: it is not looked at until that one tells more. An instance exists from
+// that it asks about can: it is not looked at until that one tells more. If it asks about nothing
+// but others, it may *follow* them: it is as it was, as far as they are known, and not looked at
+// until one of them begins or ends. An instance exists from
 // when its guard first held, or when another one first asked about it, until nothing about it is
 // true, open, undecided or within the remembered past. Its place is used again, by a rule with the
 // same kind of state, so that memory is used again too. Tested by tests/grammar/monitor_test.cc and
@@ -133,9 +135,11 @@ struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is 
   bool dependents_made = false;      ///< the instances that this one guards are there
   bool idle_queued : 1 = false;      ///< waits to be freed
   bool waits : 1 = false;            ///< awake, but not stepped until one it asks about tells more
+  bool follows : 1 = false;          ///< waits, and is as it was until one of those begins or ends
+  bool followed : 1 = false;         ///< some instance follows this one
   bool awaited = false;              ///< some instance waits for this one to tell more
   Kleene reported = Kleene::kFalse;  ///< the truth at the newest frame, as far as the watchers know
-  FrameNumber known = kNever;        ///< truth is final before this frame
+  FrameNumber known = kNever;        ///< truth is final before this frame; see KnownOf()
   Moment begin;
   FrameNumber moment =
       kNever;  ///< Rule::opened_by: nothing begins after this frame until its next change
@@ -186,9 +190,18 @@ struct Watch {
   int role = kNone;
 };
 
+/// Says how far an instance is known that follows others.
+class Followers {
+ public:
+  virtual FrameNumber KnownOf(InstanceId follower) = 0;
+
+ protected:
+  ~Followers() = default;
+};
+
 class RuleInstances {
  public:
-  RuleInstances(const Program& program, const EntityTable& entity_table);
+  RuleInstances(const Program& program, const EntityTable& entity_table, Followers& followers);
 
   /// Binds the rules that have no guard.
   void BindUnguarded();
@@ -260,13 +273,30 @@ class RuleInstances {
   /// The instances that look at an entity, and those that look at nothing but its grip.
   const std::vector<Watch>& PoseWatchers(int entity) const { return pose_watchers_[entity]; }
   const std::vector<Watch>& GripWatchers(int entity) const { return grip_watchers_[entity]; }
+  /// It is not open, and something that must be true for it to begin is false, and known to be:
+  /// that one's begin wakes it, if nothing else does.
+  bool NeedsOneThatRests(const RuleInstance& instance) const {
+    if (instance.open) return false;
+    for (const int slot : needs_[instance.rule]) {
+      const InstanceId needed = instance.references[static_cast<std::size_t>(slot)];
+      if (needed != kNone && !instances_[needed].awake && !instances_[needed].open) return true;
+    }
+    return false;
+  }
   /// The instance's guard is false, and known to be.
   bool GuardRests(const RuleInstance& instance) const;
 
+  /// The truth of the instance is final before this frame.
+  FrameNumber KnownOf(const RuleInstance& instance) const {
+    return instance.follows ? followers_.KnownOf(instance.index) : instance.known;
+  }
+  bool IsKnownAt(const RuleInstance& instance, FrameNumber frame) const {
+    return frame < instance.known || (instance.follows && frame < KnownOf(instance));
+  }
   Kleene TruthAt(InstanceId index, FrameNumber frame) const {
     if (index == kNone) return Kleene::kFalse;
     const RuleInstance& instance = instances_[index];
-    if (frame >= instance.known) return Kleene::kUnknown;
+    if (!IsKnownAt(instance, frame)) return Kleene::kUnknown;
     if (instance.open && instance.certain && frame >= instance.begin.frame) return Kleene::kTrue;
     return AnyPast(instance, [frame](const Span& past) {
       return frame >= past.begin.frame && frame < past.end.frame;
@@ -285,14 +315,14 @@ class RuleInstances {
   Kleene BeginsAt(InstanceId index, FrameNumber frame) const {
     if (index == kNone) return Kleene::kFalse;
     const RuleInstance& instance = instances_[index];
-    if (frame >= instance.known) return Kleene::kUnknown;
+    if (!IsKnownAt(instance, frame)) return Kleene::kUnknown;
     if (instance.open && instance.certain && frame == instance.begin.frame) return Kleene::kTrue;
     return AnyPast(instance, [frame](const Span& past) { return past.begin.frame == frame; });
   }
   Kleene EndsAt(InstanceId index, FrameNumber frame) const {
     if (index == kNone) return Kleene::kFalse;
     const RuleInstance& instance = instances_[index];
-    if (frame >= instance.known) return Kleene::kUnknown;
+    if (!IsKnownAt(instance, frame)) return Kleene::kUnknown;
     return AnyPast(instance, [frame](const Span& past) { return past.end.frame == frame; });
   }
 
@@ -329,14 +359,17 @@ class RuleInstances {
   void Unlink(InstanceId instance, InstanceId watcher, std::vector<InstanceId>& orphans);
   const Program& program_;
   const EntityTable& entity_table_;
+  Followers& followers_;
   StableBlocks<InstanceId, RuleInstance>
       instances_;                     // an instance stays where it is when others are made
   std::vector<float> rests_until_m_;  // up to the last one that rested; empty if none ever did
   std::array<std::vector<InstanceId>, std::variant_size_v<FormState>> free_;  // by kind of state
   int free_count_ = 0;
   InstanceIndex<InstanceKey> index_;
-  InstanceIndex<PairKey> touches_;                         // the instances of kTouchingRule
-  IdVector<RuleId, std::vector<RuleId>> guarded_;          // the rules that a rule guards
+  InstanceIndex<PairKey> touches_;                 // the instances of kTouchingRule
+  IdVector<RuleId, std::vector<RuleId>> guarded_;  // the rules that a rule guards
+  IdVector<RuleId, std::vector<int>>
+      needs_;  // `while`: references that must be true for it to begin
   IdVector<RuleId, std::vector<std::vector<bool>>> fits_;  // by role and entity
   std::vector<std::vector<Watch>> pose_watchers_;          // by entity
   std::vector<std::vector<Watch>> grip_watchers_;

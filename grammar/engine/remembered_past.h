@@ -61,14 +61,21 @@ class RememberedPast {
     if (held.size() == held.capacity()) MakeRoom(held, is_held);
     held.push_back({{frame, instance}, FirstToKeep(history, frame)});
   }
-  /// is_held(held): whether the instance still holds that frame.
-  template <typename IsHeld>
-  void NeedHeld(const IsHeld& is_held) {
-    while (!held_.empty() && !is_held(held_.front())) {
+  /// is_held(held): whether the instance still holds that frame; from(held): from where on it does
+  /// so from now on.
+  template <typename IsHeld, typename From>
+  void NeedHeld(const IsHeld& is_held, const From& from) {
+    while (!held_.empty()) {
+      const Held oldest = held_.front();
+      const bool is_needed = is_held(oldest);
+      const FrameNumber first = is_needed ? from(oldest) : oldest.frame;
+      if (is_needed && first == oldest.frame) return Need(first);
       std::ranges::pop_heap(held_, Later);
       held_.pop_back();
+      if (!is_needed) continue;
+      held_.push_back({first, oldest.instance});
+      std::ranges::push_heap(held_, Later);
     }
-    if (!held_.empty()) Need(held_.front().frame);
   }
   /// The first frame whose look of this entity somebody may ask for.
   template <typename IsHeld>
