@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "grammar/base/wording.h"
 #include "harness/command/command.h"
 #include "harness/knowledge/write_knowledge.h"
 
@@ -30,9 +31,10 @@ ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& contex
       *episodes,
       {.root = context.root, .folder = folder, .owl = asked("owl"), .neem = asked("neem")});
   if (!written) return Complain(context, written.error());
-  context.out << fmt::format("{}: {} episodes of {} tasks, {} events, {} statements\n", folder,
-                             written->episodes, written->tasks, written->events,
-                             written->statements);
+  context.out << fmt::format(
+      "{}: {} of {}, {}, {}\n", folder, grammar::CountOf(written->episodes, "episode"),
+      grammar::CountOf(written->tasks, "task"), grammar::CountOf(written->events, "event"),
+      grammar::CountOf(written->statements, "statement"));
   return ExitCode::kAgrees;
 }
 

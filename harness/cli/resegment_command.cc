@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "grammar/base/wording.h"
 #include "harness/base/atomic_file.h"
 #include "harness/command/command.h"
 #include "harness/episodes/resegment_many.h"
@@ -65,7 +66,8 @@ void Print(const std::vector<episodes::Resegmented>& results, bool compare,
     }
   }
   if (compare)
-    context.out << fmt::format("{} episodes, {} with differences\n", results.size(), differing);
+    context.out << fmt::format("{}, {} with differences\n",
+                               grammar::CountOf(results.size(), "episode"), differing);
 }
 
 void PrintJson(const std::vector<episodes::Resegmented>& results, const CommandContext& context) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 
+#include "grammar/base/wording.h"
 #include "harness/base/csv_cells.h"
 #include "harness/base/text_file.h"
 #include "harness/import/pose_file.h"
@@ -85,7 +86,8 @@ class CsvPoseReader {
     poses.last_s -= poses.first_s;
     poses.first_s = 0;
     if (poses.rows < 2)
-      return Complain({line_, 1}, fmt::format("{} rows; a recording has at least 2", poses.rows));
+      return Complain({line_, 1},
+                      grammar::CountOf(poses.rows, "row") + "; a recording has at least 2");
     RefuseAbsentBodies(poses, map_, map_errors_);
   }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grammar/base/wording.h"
 #include "harness/score/score.h"
 
 namespace prehend::harness::score {
@@ -124,8 +125,8 @@ std::string ScoreTable(const Score& score, double collar_s) {
   std::vector<Row> rows = {Header(collar_s)};
   for (const EventScore& event : score.events) rows.push_back(RowOf(event));
   rows.push_back(RowOf(score.total));
-  return fmt::format("{}, {} episodes\n{}{}{}", score.grammar, score.episodes, Aligned(rows),
-                     NotCoveredText(score), IgnoredText(score));
+  return fmt::format("{}, {}\n{}{}{}", score.grammar, grammar::CountOf(score.episodes, "episode"),
+                     Aligned(rows), NotCoveredText(score), IgnoredText(score));
 }
 
 std::string SideBySide(const std::vector<Score>& scores, double collar_s) {

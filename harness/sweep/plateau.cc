@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "grammar/base/wording.h"
 #include "harness/base/markup.h"
 
 namespace prehend::harness::sweep {
@@ -118,8 +119,9 @@ std::string CsvText(const std::vector<Axis>& axes, const std::vector<SweepPoint>
 std::string PlateauText(const std::vector<Axis>& axes, const SweepResult& result, double within) {
   const Plateau plateau = FindPlateau(axes, result.points, within);
   const SweepPoint& chosen = result.points[plateau.chosen];
-  std::string text = fmt::format("{} settings on {} episodes; the best F1 is {:.2f} %\n",
-                                 result.points.size(), result.episodes, 100 * plateau.best);
+  std::string text = fmt::format("{} on {}; the best F1 is {:.2f} %\n",
+                                 grammar::CountOf(result.points.size(), "setting"),
+                                 grammar::CountOf(result.episodes, "episode"), 100 * plateau.best);
   text += fmt::format("within {:g} % of it, around the setting named last: {} settings\n",
                       100 * within, plateau.members.size());
   for (std::size_t i = 0; i < axes.size(); ++i) {

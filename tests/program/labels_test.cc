@@ -58,7 +58,7 @@ TEST_F(Labelled, TheGrammarOfTheRecordingIsScoredUnlessAnotherIsNamed) {
   };
   const Said scored = run({"score", take});
   ASSERT_EQ(scored.exit_code, 0) << scored.err;
-  EXPECT_TRUE(Has(scored.out, "pick_and_place_from_motion, 1 episodes")) << scored.out;
+  EXPECT_TRUE(Has(scored.out, "pick_and_place_from_motion, 1 episode")) << scored.out;
   EXPECT_TRUE(Has(scored.out, "all              5      5  5")) << scored.out;
   EXPECT_FALSE(Has(scored.out, "original_2020")) << scored.out;
   const Said swept = run({"sweep", take, "--over", "hold_way=3mm..4mm:2", "--collar-ms", "1000"});

@@ -94,7 +94,47 @@ TEST_F(OwnProject, ItsEpisodesAreReadElsewhere) {
   fs::remove_all(kitchen_);
   const Said said = In(folder_, {"resegment", "held.episodes", "--compare", "recorded"});
   EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
-  EXPECT_TRUE(Has(said.out, "1 episodes, 0 with differences")) << said.out;
+  EXPECT_TRUE(Has(said.out, "1 episode, 0 with differences")) << said.out;
+}
+
+TEST_F(OwnProject, WritesKnowledgeWithTheTermsThatShip) {
+  ASSERT_EQ(Do({"run", "carton_is_held_still", "--record", "held.episodes"}).exit_code, 0);
+  const Said said = Do({"knowledge", "held.episodes", "-o", "kb"});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_TRUE(fs::exists(kitchen_ / "kb/prehend.ttl"));
+  const Said asked = Do({"ask", "kb", "member(X, [1])"});
+  EXPECT_FALSE(Has(asked.err, "prehend.pl")) << asked.err;
+}
+
+TEST_F(OwnProject, ItsMarkerAndItsFoldersAreNoPlaceForOutputs) {
+  const std::string marker = ReadFile(kitchen_ / "prehend.yaml");
+  for (const char* file : {"prehend.yaml", "golden/mine/a.timeline", "scenarios/mine/new.yaml"}) {
+    const Said said = Do({"run", "carton_is_held_still", "--record", file});
+    EXPECT_EQ(said.exit_code, 2) << file;
+    EXPECT_TRUE(Has(said.err, std::string("--record: ") + file)) << said.err;
+    EXPECT_TRUE(Has(said.err, "name another file")) << said.err;
+  }
+  EXPECT_EQ(Do({"check", "--report", "golden/report"}).exit_code, 2);
+  EXPECT_EQ(ReadFile(kitchen_ / "prehend.yaml"), marker);
+  EXPECT_FALSE(fs::exists(kitchen_ / "golden/mine"));
+}
+
+TEST_F(OwnProject, WhatIsOfNoProjectIsNotToBeAccepted) {
+  const fs::path nowhere = folder_ / "nowhere";
+  fs::create_directories(nowhere);
+  ASSERT_EQ(In(nowhere, {"new", "cup_is_lifted"}).exit_code, 0);
+  const Said said = In(nowhere, {"check", "cup_is_lifted.yaml", "--no-pictures"});
+  EXPECT_EQ(said.exit_code, 5) << said.out << said.err;
+  EXPECT_FALSE(Has(said.out, "then accept it")) << said.out;
+  EXPECT_TRUE(fs::exists(nowhere / "build/report/index.html")) << said.out;
+  const Said shipped = Do({"check", "milk_carton_wrap", "--no-pictures"});
+  EXPECT_FALSE(Has(shipped.out, "then accept it")) << shipped.out;
+}
+
+TEST_F(OwnProject, WhatRepeatsACheckHasItsTransforms) {
+  const Said said = Do({"check", "carton_is_held_still", "--no-pictures", "--transform", "shift",
+                        "--set", "entities.carton.mass_kg=0.41"});
+  EXPECT_TRUE(Has(said.out, " --transform shift")) << said.out << said.err;
 }
 
 }  // namespace
