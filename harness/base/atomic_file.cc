@@ -37,13 +37,13 @@ std::string WhyNotReplaceable(const fs::path& path) {
 /// By which an open file without a name can be opened and linked.
 fs::path NameOf(int file) { return "/proc/self/fd/" + std::to_string(file); }
 
+}  // namespace
+
 std::string MakeFolderOf(const fs::path& path) {
   std::error_code error;
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
   return error ? "cannot create " + path.parent_path().string() + ": " + error.message() : "";
 }
-
-}  // namespace
 
 AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
   if (path == "-") {
@@ -51,6 +51,7 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
     return;
   }
   problem_ = WhyNotReplaceable(path);
+  if (problem_.empty()) problem_ = MakeFolderOf(path);
   if (!problem_.empty()) return;
   std::error_code error;
   target_ = fs::weakly_canonical(path, error);
@@ -106,13 +107,9 @@ FolderLock::~FolderLock() {
   if (folder_ >= 0) close(folder_);
 }
 
-std::string WhyNotWritable(const fs::path& path) {
-  const std::string problem = MakeFolderOf(path);
-  return problem.empty() ? AtomicFile(path).problem() : problem;
-}
+std::string WhyNotWritable(const fs::path& path) { return AtomicFile(path).problem(); }
 
 std::string WriteTextFile(const fs::path& path, std::string_view text) {
-  if (std::string problem = MakeFolderOf(path); !problem.empty()) return problem;
   AtomicFile file(path);
   file.stream() << text;
   return file.Commit();

@@ -15,7 +15,7 @@ namespace prehend::harness {
 /// is safe from a crash of the program, not from a power cut.
 class AtomicFile {
  public:
-  /// The folder must exist. "-" is standard output, which is written directly.
+  /// Creates the folders above it. "-" is standard output, which is written directly.
   explicit AtomicFile(const std::filesystem::path& path);
   /// Without Commit() an older file is as it was.
   ~AtomicFile();
@@ -53,6 +53,9 @@ class FolderLock {
  private:
   int folder_ = -1;
 };
+
+/// Creates the folders above this path. Empty, or why that is not possible.
+std::string MakeFolderOf(const std::filesystem::path& path);
 
 /// Empty, or why an AtomicFile cannot be written there; creates the folders above it. For asking
 /// before long work.

@@ -384,6 +384,10 @@ std::string WhyNoOutput(const ParsedOptions& options) {
         "the timeline alone",
         output);
   if (why.empty()) why = AtomicFile(output).problem();
+  // A picture is a PNG, whatever its file is called.
+  if (why.empty() && !options.Has("--strip") && !options.Has("--against") &&
+      !output.ends_with(".png"))
+    why = fmt::format("found '{}', wanted a file NAME.png", output);
   return why.empty() ? "" : "--output: " + why;
 }
 
@@ -411,7 +415,9 @@ Command RenderCommand() {
                    "render milk_carton_wrap --against original_2020 -o two_grammars.png",
                    "render milk_carton_wrap --film milk.webp --speed 0.5"},
       .options = Joined(
-          Joined({EpisodeArgument(),
+          Joined({{.name = "scenario",
+                   .help = "a scenario (name, skill/name or file) or an episode file",
+                   .required = true},
                   EpisodeOption(),
                   {.name = "--output",
                    .help = "the PNG file; default: build/pictures/SKILL/NAME.png. --strip and\n"

@@ -114,7 +114,8 @@ std::optional<ExitCode> RefuseRecording(const std::string& typed, const CommandC
   if (!IsRecording(typed) || !std::filesystem::exists(typed, error)) return std::nullopt;
   return Complain(context, ExitCode::kBadInput,
                   typed + " is a recording, not a scenario; use '" + CommandText({"resegment"}) +
-                      "', 'explain', 'tracks' or 'check'");
+                      "', 'explain', 'tracks' or 'check', or make an episode of it: '" +
+                      CommandText({"import", typed, "-o", "NAME.episodes"}) + "'");
 }
 
 tl::expected<ScenarioFile, ExitCode> FindScenarioOrComplain(const std::string& typed,

@@ -97,8 +97,8 @@ TEST_F(CommandLine, UsageErrorsEndWithASuggestion) {
       {"check --changed --set lift_rise=1cm", 2,
        "prehend: --changed compares files; it cannot be combined with --grammar or --set\n"},
       {"check --filter tag:quiet --filter !*rests", 4, "prehend: no scenario is selected[^]*"},
-      {"run carton_rests --record no/such/folder/e.jsonl", 2,
-       "prehend: --record: cannot write no/such/folder/e.jsonl: [^]*"},
+      {"run carton_rests --record /dev/null/e.jsonl", 2,
+       "prehend: --record: cannot create /dev/null: Not a directory\n[^]*"},
       {"check --filter tag:none", 4,
        "prehend: --filter: no scenario has the tag 'none' \\('prehend list' shows all\\)\n"},
       {"check --filter tag:quite", 4,
@@ -129,8 +129,8 @@ TEST_F(CommandLine, UsageErrorsEndWithASuggestion) {
       {"render carton_rests --at soon", 2,
        "prehend: --at: 'soon' is not a time; write seconds[^]*"},
       {"render carton_rests --camera back", 2, "prehend: --camera: [^]*"},
-      {"render carton_rests --at 0 -o no/such/folder/a.png", 2,
-       "prehend: --output: cannot write no/such/folder/a.png: No such file or directory\n[^]*"},
+      {"render carton_rests --at 0 -o /dev/null/a.png", 2,
+       "prehend: --output: cannot create /dev/null: Not a directory\n[^]*"},
       {"run carton_rests --set entities.carton.mass=1", 2, "--set[^]*error: [^]*mass_kg[^]*"},
       {"run carton_rests --grammar none.grammar", 2, "none.grammar: error: [^]*"},
       {"accept carton_rests", 2,
@@ -166,7 +166,8 @@ TEST_F(CommandLine, ARecordingIsNotAScenario) {
     EXPECT_EQ(said.out, "");
     EXPECT_EQ(said.err, "prehend: " + file +
                             " is a recording, not a scenario; use 'prehend resegment', 'explain', "
-                            "'tracks' or 'check'\n");
+                            "'tracks' or 'check', or make an episode of it: 'prehend import " +
+                            file + " -o NAME.episodes'\n");
   }
 }
 

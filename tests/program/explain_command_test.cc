@@ -103,7 +103,7 @@ TEST(TracksCommand, WritesAWholeFileOrNothing) {
             some.out);
 
   for (const std::vector<std::string>& slip :
-       std::vector<std::vector<std::string>>{{"-o", "no/such/folder/milk.csv"},
+       std::vector<std::vector<std::string>>{{"-o", "/dev/null/milk.csv"},
                                              {"-o", folder.string() + "/milk.txt"},
                                              {"-o", "/dev/stdout"},
                                              {"--only", "graping"},

@@ -198,8 +198,7 @@ TEST(Recording, BadOnesEndWithExitCodeTwo) {
     EXPECT_EQ(said.out, "");
     EXPECT_NE(said.err.find(file), std::string::npos) << said.err;
   }
-  EXPECT_EQ(Prehend({"run", "milk_carton_wrap", "--record", "no/such/folder/x.jsonl"}).exit_code,
-            2);
+  EXPECT_EQ(Prehend({"run", "milk_carton_wrap", "--record", "/dev/null/x.jsonl"}).exit_code, 2);
 }
 
 TEST(Score, ATruthfulGrammarScoresFullMarksAndAChangedOneLess) {

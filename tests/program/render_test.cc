@@ -209,5 +209,27 @@ TEST_F(RenderScenes, FilmsAreWhatTheirNamesSay) {
   EXPECT_EQ(ReadFile(Path("a.mp4")).substr(4, 4), "ftyp");
 }
 
+TEST_F(Render, APictureIsAPngAndRecordingsBecomeEpisodesFirst) {
+  Refused({"--at", "1", "-o", Path("x.jpg")},
+          "--output: found '" + Path("x.jpg") + "', wanted a file NAME.png");
+  WriteFile(Path("a.jsonl"), "{}\n");
+  const Said said = Prehend({"render", Path("a.jsonl"), "--at", "1"});
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_TRUE(Has(
+      said.err, "make an episode of it: 'prehend import " + Path("a.jsonl") + " -o NAME.episodes'"))
+      << said.err;
+  EXPECT_FALSE(Has(Prehend({"render", "--help"}).out, "or a recording"));
+}
+
+TEST_F(Render, MissingFoldersAreMade) {
+  const Said said = Do({"--strip", "-o", Path("no/folder/a.svg")});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_TRUE(fs::exists(Path("no/folder/a.svg")));
+  EXPECT_EQ(
+      Prehend({"tracks", "milk_carton_wrap", "--only", "grasping", "-o", Path("no/other/a.csv")})
+          .exit_code,
+      0);
+}
+
 }  // namespace
 }  // namespace prehend::house
