@@ -29,6 +29,10 @@ std::string ContentHash(std::string_view bytes) {
   return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
 }
 
+std::uint64_t ContentHashAt(std::uint64_t place, std::string_view bytes) {
+  return XXH3_64bits_withSeed(bytes.data(), bytes.size(), place);
+}
+
 std::string FileHash(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return kNoFile;

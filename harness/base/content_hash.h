@@ -4,6 +4,7 @@
 // Tested by tests/harness/base/content_hash_test.cc
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
@@ -13,6 +14,8 @@ namespace prehend::harness {
 
 /// XXH3 of 64 bits as 16 hexadecimal digits. Protects against mistakes, not against attackers.
 std::string ContentHash(std::string_view bytes);
+/// The same as a number; another one for the same bytes in another place.
+std::uint64_t ContentHashAt(std::uint64_t place, std::string_view bytes);
 
 /// The hash of a file that does not exist or cannot be read.
 inline constexpr const char* kNoFile = "none";

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "harness/episodes/summed_pages.h"
+
 namespace prehend::harness::episodes {
 namespace {
 
@@ -30,6 +32,8 @@ constexpr int kPatience_ms = 60'000;
     default:
       break;
   }
+  if (sqlite3_extended_errcode(database) == SQLITE_IOERR_DATA)
+    throw DatabaseError("the file is damaged");
   const int system = sqlite3_system_errno(database);
   if (system == ENOSPC || system == EDQUOT) throw DatabaseError("the disk is full");
   if (system == EFBIG) throw DatabaseError("the file would become larger than it may");
@@ -158,7 +162,7 @@ Database Database::InMemory() {
 
 void Database::Open(const std::string& uri, int flags) {
   sqlite3* database = nullptr;
-  const int code = sqlite3_open_v2(uri.c_str(), &database, flags | SQLITE_OPEN_URI, nullptr);
+  const int code = sqlite3_open_v2(uri.c_str(), &database, flags | SQLITE_OPEN_URI, SummedPages());
   database_.reset(database);
   if (code != SQLITE_OK) {
     if (!database_) throw DatabaseError("out of memory");
@@ -169,6 +173,10 @@ void Database::Open(const std::string& uri, int flags) {
   // What a file says is data: no function or view of it may do anything else.
   sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  // For a new file; one that has tables stays as it is.
+  Execute("PRAGMA page_size=2048");
+  int sum = kBytesOfSum;
+  sqlite3_file_control(database_.get(), "main", SQLITE_FCNTL_RESERVE_BYTES, &sum);
 }
 
 void Database::Execute(const std::string& sql) const {

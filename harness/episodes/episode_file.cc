@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/episodes/schema.h"
+#include "harness/base/content_hash.h"
 #include "harness/episodes/write_rows.h"
 
 namespace prehend::harness::episodes {
@@ -47,17 +47,16 @@ EpisodeFile::EpisodeFile(std::string path, std::unique_ptr<State> state)
 EpisodeFile::~EpisodeFile() = default;
 EpisodeFile::EpisodeFile(EpisodeFile&&) noexcept = default;
 
-Result<EpisodeFile> EpisodeFile::Open(const std::string& path) {
-  return OpenVersion(path, kSchemaVersion);
-}
+Result<EpisodeFile> EpisodeFile::Open(const std::string& path) { return OpenAny(path, kReadable); }
 
 Result<EpisodeFile> EpisodeFile::OpenOld(const std::string& path) {
-  return OpenVersion(path, kOldestVersion);
+  return OpenAny(path, kMigratable);
 }
 
-Result<EpisodeFile> EpisodeFile::OpenVersion(const std::string& path, std::int64_t version) {
+Result<EpisodeFile> EpisodeFile::OpenAny(const std::string& path, Versions wanted) {
   try {
-    EpisodeFile file(path, std::make_unique<State>(State{OpenToRead(path, version)}));
+    EpisodeFile file(path, std::make_unique<State>(State{OpenToRead(path, wanted)}));
+    file.version_ = file.state_->database.Number("PRAGMA user_version");
     Statement find = file.state_->database.Prepare(
         "SELECT episode.id, episode.uuid, scenario, status, grammar, ticks_per_second,"
         " CASE status WHEN 'recording' THEN coalesce((SELECT max(last_tick) FROM chunk WHERE"
@@ -104,14 +103,14 @@ Result<TaskFiles> EpisodeFile::TaskOf(const EpisodeRow& episode) const {
       if (setting.is_string()) task.run.settings.push_back(setting);
     }
     Statement assets = state_->database.Prepare(
-        "SELECT path, bytes, content FROM task_asset JOIN asset USING(hash) WHERE task = ?");
+        "SELECT path, hash, content FROM task_asset JOIN asset USING(hash) WHERE task = ?");
     assets.Bind(id);
     Compressor compressor;
     while (assets.Step()) {
       const auto content = compressor.Unpack(assets.Bytes(2), kMostAssetBytes);
-      if (!content)
+      if (!content || ContentHash(*content) != assets.Text(1))
         return tl::unexpected(
-            Damage(path_, "the file is damaged: " + assets.Text(0) + " cannot be unpacked"));
+            Damage(path_, "the file is damaged: " + assets.Text(0) + " is not what it was"));
       task.files[assets.Text(0)] = std::string(*content);
     }
     return task;

@@ -14,6 +14,7 @@
 
 #include "grammar/base/timeline.h"
 #include "harness/base/result.h"
+#include "harness/episodes/schema.h"
 #include "harness/episodes/task_files.h"
 #include "harness/frames/frame_player.h"
 #include "physics/simulation.h"
@@ -58,12 +59,14 @@ struct KeptTask {
 class EpisodeFile {
  public:
   static Result<EpisodeFile> Open(const std::string& path);
-  /// A file of version 1, to be migrated.
+  /// A file of an older version, to be migrated.
   static Result<EpisodeFile> OpenOld(const std::string& path);
   ~EpisodeFile();
   EpisodeFile(EpisodeFile&&) noexcept;
 
   const std::string& path() const { return path_; }
+  /// Of its format.
+  std::int64_t version() const { return version_; }
   /// In the order in which they were begun.
   const std::vector<EpisodeRow>& episodes() const { return episodes_; }
 
@@ -85,9 +88,10 @@ class EpisodeFile {
   friend class EpisodeFrames;
   struct State;
   EpisodeFile(std::string path, std::unique_ptr<State> state);
-  static Result<EpisodeFile> OpenVersion(const std::string& path, std::int64_t version);
+  static Result<EpisodeFile> OpenAny(const std::string& path, Versions wanted);
 
   std::string path_;
+  std::int64_t version_ = kSchemaVersion;
   std::unique_ptr<State> state_;
   std::vector<EpisodeRow> episodes_;
 };

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "harness/episodes/load_episode.h"
@@ -37,7 +38,7 @@ class Migration {
     if (!loaded) throw DatabaseError(About(row) + ": " + grammar::Format(loaded.error().front()));
     FrameLayout layout = LayoutOf(loaded->scenario.scene);
     ChunkWriter writer(layout);
-    layout.version = 1;
+    layout.version = static_cast<int>(std::min<std::int64_t>(old_.version(), kFrameVersion));
     physics::StateHash hash;
     EpisodeFrames frames(old_, row, layout);
     const std::string damage = frames.Play([&](const physics::Snapshot& shown) {

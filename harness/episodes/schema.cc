@@ -12,6 +12,7 @@
 #include <random>
 #include <set>
 
+#include "harness/base/atomic_file.h"
 #include "harness/base/content_hash.h"
 #include "harness/base/shell_quote.h"
 
@@ -144,7 +145,7 @@ bool IsAsMade(const Database& database) {
   return made == kTables;
 }
 
-void RefuseOthers(const Database& database, const std::string& path, std::int64_t supported) {
+void RefuseOthers(const Database& database, const std::string& path, Versions these) {
   const std::int64_t application = database.Number("PRAGMA application_id");
   if (application != kApplicationId)
     throw DatabaseError("is an SQLite database of another program, not an episode file");
@@ -155,13 +156,13 @@ void RefuseOthers(const Database& database, const std::string& path, std::int64_
         version, kSchemaVersion));
   }
   if (version < 1) throw DatabaseError("is damaged: its format has no version");
-  if (version > supported)
+  if (version > these.last)
     throw DatabaseError(fmt::format("has version {} of the format already", version));
-  if (version < supported) {
+  if (version < these.first) {
     throw DatabaseError(
         fmt::format("has version {} of the format, this program reads version {}; '{}' writes a "
                     "file of it that can be read",
-                    version, supported, CommandText({"migrate", path, "-o", "NEW.episodes"})));
+                    version, these.last, CommandText({"migrate", path, "-o", "NEW.episodes"})));
   }
   if (IsAsMade(database)) return;
   // Tables and columns that a program reads must be there; what others added is left alone.
@@ -192,9 +193,10 @@ Database OpenToWrite(const std::string& path) {
   if (fs::exists(path, error) && !(fs::is_regular_file(path, error) && fs::is_empty(path, error))) {
     if (const std::string why = WhyNotEpisodes(path); !why.empty()) throw DatabaseError(why);
   }
+  if (const std::string why = MakeFolderOf(path); !why.empty()) throw DatabaseError(why);
   Database database(path, Database::Mode::kWrite);
   // It survives a crash of the program, not a power cut.
-  database.Execute("PRAGMA synchronous=OFF; PRAGMA page_size=2048; PRAGMA cache_size=-4000");
+  database.Execute("PRAGMA synchronous=OFF; PRAGMA cache_size=-4000");
   Transaction transaction(database);
   if (database.Number("SELECT count(*) FROM sqlite_master") == 0) {
     database.Execute(kTables);
@@ -202,11 +204,11 @@ Database OpenToWrite(const std::string& path) {
                                  kSchemaVersion));
   }
   transaction.Commit();
-  RefuseOthers(database, path, kSchemaVersion);
+  RefuseOthers(database, path, kReadable);
   return database;
 }
 
-Database OpenToRead(const std::string& path, std::int64_t wanted) {
+Database OpenToRead(const std::string& path, Versions wanted) {
   if (const std::string why = WhyNotEpisodes(path); !why.empty()) throw DatabaseError(why);
   std::error_code error;
   if (fs::exists(path + "-journal", error)) {

@@ -151,11 +151,13 @@ TEST(Episodes, BadUseIsExplained) {
   const Said check = Prehend({"check", kShort, "--record", text});
   EXPECT_EQ(check.exit_code, 2);
   EXPECT_EQ(check.err, "prehend: --record: " + text + cause);
-  const auto nowhere = (folder / "no_folder/a.episodes").string();
-  const Said lost = Prehend({"run", kShort, "--record", nowhere});
+  const auto below_file = text + "/a.episodes";
+  const Said lost = Prehend({"run", kShort, "--record", below_file});
   EXPECT_EQ(lost.exit_code, 2);
-  EXPECT_EQ(lost.err, "prehend: --record: " + nowhere +
-                          ": its folder cannot be written: No such file or directory\n");
+  EXPECT_EQ(lost.err,
+            "prehend: --record: " + below_file + ": cannot create " + text + ": Not a directory\n");
+  for (const char* name : {"no/folder/a.episodes", "no/other/a.jsonl"})
+    EXPECT_EQ(Prehend({"run", kShort, "--record", (folder / name).string()}).exit_code, 0);
   const Said other = Prehend({"check", kShort, "--record", (folder / "a.jsonl").string()});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_NE(other.err.find("wanted a file NAME.episodes"), std::string::npos) << other.err;
@@ -168,8 +170,9 @@ TEST(Episodes, BadUseIsExplained) {
 }
 
 TEST(Episodes, DamageIsNamedByEveryCommandThatLooksAtFrames) {
+  // Of a version without checksums, so that other programs can damage it.
   const auto file = (FreshFolder("damaged_episodes") / "a.episodes").string();
-  ASSERT_EQ(Prehend({"run", kShort, "--record", file}).exit_code, 0);
+  std::filesystem::copy_file(PREHEND_SOURCE_DIR "/tests/harness/episodes/version_2.episodes", file);
   const std::string damage =
       "sqlite3 '" + file + "' \"UPDATE part SET data = substr(data, 1, length(data) / 2)\"";
   ASSERT_EQ(std::system(damage.c_str()), 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The file version_1.episodes was written by a program of version 1 of the format: 0.6 s in which a
-// thing lies on a hand.
+// thing lies on a hand; version_2.episodes, the same, by one of version 2.
 #include "harness/episodes/migrate.h"
 
 #include <gtest/gtest.h>
@@ -72,17 +72,35 @@ TEST(Migrate, AnOldFileBecomesANewOneWithEveryFrame) {
   EXPECT_TRUE(Replay(*now, after, *loader.Load(*now, after)));
 }
 
+TEST(Migrate, AFileWithoutChecksumsIsReadAndWrittenAndBecomesOneWithThem) {
+  const std::string file = NewFile(), old = file + ".old";
+  fs::copy_file(kSource + "/tests/harness/episodes/version_2.episodes", old);
+  const auto read = [](const std::string& path) {
+    const auto opened = EpisodeFile::Open(path);
+    EXPECT_TRUE(opened) << grammar::Format(ErrorsOf(opened));
+    const EpisodeRow& row = opened->episodes().front();
+    EpisodeLoader loader(kSource);
+    EXPECT_TRUE(Replay(*opened, row, *loader.Load(*opened, row)));
+    return opened->version();
+  };
+  EXPECT_EQ(read(old), 2);
+  (void)OpenToWrite(old);
+  EXPECT_EQ(read(old), 2) << "it stays what it is";
+  ASSERT_TRUE(MigrateFile(old, file, kSource));
+  EXPECT_EQ(read(file), 3);
+}
+
 TEST(Migrate, WhatIsOldOrNewIsSaid) {
   const std::string file = NewFile();
   const auto refused = EpisodeFile::Open(kOldFile);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().front().message,
-            "has version 1 of the format, this program reads version 2; 'prehend migrate " +
+            "has version 1 of the format, this program reads version 3; 'prehend migrate " +
                 kOldFile + " -o NEW.episodes' writes a file of it that can be read");
   ASSERT_TRUE(MigrateFile(kOldFile, file, kSource));
   EXPECT_EQ(MigrateFile(kOldFile, file, kSource).error().front().message, "is there already");
   EXPECT_EQ(MigrateFile(file, file + "2", kSource).error().front().message,
-            "has version 2 of the format already");
+            "has version 3 of the format already");
   EXPECT_FALSE(fs::exists(file + "2"));
 }
 
