@@ -282,8 +282,11 @@ void AddReplay(const CheckRequest& request, const CheckedRun& checked, ScenarioV
 
 ScenarioVerdict BlankVerdict(const CheckRequest& request) {
   ScenarioVerdict verdict{.scenario = request.id, .shows = {}};
-  verdict.command = RepeatCommand(request.id, request.run);
+  verdict.command = RepeatCommand(request);
   verdict.explain = ExplainCommand(request.id, request.run);
+  if (request.episode != 0)
+    verdict.explain = ExplainCommand(request.run.scenario_file, request.run) +
+                      fmt::format(" --episode {}", request.episode);
   return verdict;
 }
 
@@ -301,7 +304,7 @@ ScenarioVerdict VerdictOn(const CheckRequest& request, const CheckedRun& checked
     Append(judgement.findings,
            {{ExitCode::kFailure, "the simulation failed", StatusText(checked.result) + "\n"}});
     Conclude(judgement.findings, verdict);
-    verdict.command = Command("run", request.id, request.run);
+    if (request.episode == 0) verdict.command = Command("run", request.id, request.run);
     AddReplay(request, checked, verdict);
     return verdict;
   }
@@ -401,7 +404,7 @@ std::optional<ScenarioVerdict> CheckImported(const CheckRequest& request) {
   // `review` and `accept` take the recording itself, beside which its golden lies.
   if (verdict.verdict == Verdict::kPending)
     verdict.command = ReviewCommandOf(fs::path(request.root) / loaded->scenario.file)
-                          .value_or(RepeatCommand(request.id, request.run));
+                          .value_or(RepeatCommand(request));
   if (WantsReplay(request, verdict)) verdict.replay = ReplayData(loaded->scenario, *run);
   return verdict;
 }
@@ -431,7 +434,7 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   verdict.inputs = HashFiles(files);
   if (!loaded) {
     Conclude({{ExitCode::kBadInput, "cannot be read", Format(loaded.error())}}, verdict);
-    verdict.command = Command("validate", request.id, request.run);
+    if (request.episode == 0) verdict.command = Command("validate", request.id, request.run);
     return verdict;
   }
 
@@ -469,8 +472,12 @@ std::string ExplainCommand(const std::string& id, const RunRequest& changes) {
   return Command("explain", id, changes);
 }
 
-std::string RepeatCommand(const std::string& id, const RunRequest& changes) {
-  return Command("check", id, changes);
+std::string RepeatCommand(const CheckRequest& request) {
+  std::string command =
+      Command("check", request.episode == 0 ? request.id : request.run.scenario_file, request.run);
+  for (const Transform transform : request.transforms)
+    command += fmt::format(" --transform {}", NameOf(transform));
+  return command;
 }
 
 }  // namespace prehend::harness

@@ -46,7 +46,7 @@ ScenarioVerdict JudgeRun(const CheckRequest& request, LoadedRun loaded, RunResul
 /// The command that asks about a scenario's events, with the grammar and settings of `changes`.
 std::string ExplainCommand(const std::string& id, const RunRequest& changes);
 
-/// The command that repeats a verdict.
-std::string RepeatCommand(const std::string& id, const RunRequest& changes);
+/// The command that repeats a verdict: of the same scenario or episode, with the same changes.
+std::string RepeatCommand(const CheckRequest& request);
 
 }  // namespace prehend::harness

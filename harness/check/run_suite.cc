@@ -106,10 +106,10 @@ class Suite {
     return turns;
   }
 
-  WorkerJob Job(const Turn& turn, ProgressCounters::Tick& last_tick) const {
+  CheckRequest RequestOf(const Turn& turn) const {
     RunRequest run = request_.changes;
     run.scenario_file = scenarios_[turn.scenario].path;
-    const CheckRequest check{
+    return {
         .run = std::move(run),
         .episode = scenarios_[turn.scenario].episode,
         .id = Id(turn.scenario),
@@ -123,8 +123,12 @@ class Suite {
         .transforms = request_.transforms,
         .record_file = turn.repetition == 0 ? request_.record_file : "",
         .today = request_.today,
-        .program = program_,
-        .last_tick = &last_tick};
+        .program = program_};
+  }
+
+  WorkerJob Job(const Turn& turn, ProgressCounters::Tick& last_tick) const {
+    CheckRequest check = RequestOf(turn);
+    check.last_tick = &last_tick;
     // CBOR, since JSON has no infinite numbers and refuses bytes that are no UTF-8.
     return [check] {
       const std::vector<std::uint8_t> bytes = nlohmann::json::to_cbor(Packed(CheckScenario(check)));
@@ -147,7 +151,7 @@ class Suite {
       if (!result.stderr_tail.empty())
         verdict.details = "its standard error:\n" + ReadableText(result.stderr_tail);
       verdict.ticks = std::max<std::int64_t>(0, last_tick);
-      verdict.command = RepeatCommand(verdict.scenario, request_.changes) + HowText();
+      verdict.command = RepeatCommand(RequestOf({scenario})) + HowText();
     }
     verdict.seconds = result.seconds;
     verdict.peak_memory_kib = result.peak_memory_kib;
@@ -166,6 +170,8 @@ class Suite {
     for (std::size_t i = 0; i < runs_.size(); ++i) {
       if (runs_[i].empty()) continue;  // interrupted before it ended
       verdicts.push_back(MergeRepeats(runs_[i]));
+      if (verdicts.back().verdict == Verdict::kFlaky)
+        verdicts.back().command += fmt::format(" --repeat {}", request_.repeat);
       const ScenarioVerdict& merged = verdicts.back();
       if (merged.verdict == Verdict::kUnchanged || Changed() || !IsRemembered(i)) continue;
       costs_[merged.scenario] = merged.seconds;

@@ -5,6 +5,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <iterator>
@@ -62,7 +63,9 @@ bool IsFile(const std::string& typed) {
   std::error_code error;
   const bool is_there =
       std::filesystem::exists(typed, error) && !std::filesystem::is_directory(typed, error);
-  return is_there || typed.ends_with(".yaml") || typed.ends_with(".yml");
+  const auto ends_so = [&](const char* ending) { return typed.ends_with(ending); };
+  return is_there ||
+         std::ranges::any_of(std::array{".yaml", ".yml", ".jsonl", ".episodes"}, ends_so);
 }
 
 /// Why a pattern matches no scenario. For the name of a folder, the pattern of its scenarios is
@@ -84,12 +87,12 @@ std::string WhyNoMatch(const std::string& typed, const std::vector<ScenarioFile>
 
 /// The episodes of a file, each as the scenario that it was.
 std::vector<ScenarioFile> EpisodesOf(const std::string& path, const std::vector<ScenarioFile>& all,
-                                     std::string& problem) {
+                                     NoSelection& none) {
   std::vector<ScenarioFile> found;
   const auto file = episodes::EpisodeFile::Open(path);
-  if (!file) problem = path + ": " + file.error().front().message;
+  if (!file) none = {ExitCode::kBadInput, path + ": " + file.error().front().message};
   if (!file) return found;
-  if (file->episodes().empty()) problem = path + " has no episodes";
+  if (file->episodes().empty()) none.why = path + " has no episodes";
   for (const episodes::EpisodeRow& row : file->episodes()) {
     const std::size_t slash = std::min(row.scenario.rfind('/'), row.scenario.size());
     const bool has_skill = slash < row.scenario.size();
@@ -105,9 +108,9 @@ std::vector<ScenarioFile> EpisodesOf(const std::string& path, const std::vector<
 
 }  // namespace
 
-std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns,
-                                                 const std::vector<std::string>& filters,
-                                                 const std::string& root, std::string& problem) {
+tl::expected<ScenarioSelection, NoSelection> SelectScenarios(
+    const std::vector<std::string>& patterns, const std::vector<std::string>& filters,
+    const std::string& root) {
   const std::vector<ScenarioFile> all = ListScenarios(root);
   std::vector<ScenarioFile> named = patterns.empty() ? all : std::vector<ScenarioFile>();
   for (const std::string& pattern : patterns) {
@@ -120,15 +123,15 @@ std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>&
     }
     if (named.size() > before) continue;
     if (!IsFile(pattern)) {
-      problem = WhyNoMatch(pattern, all);
-      return std::nullopt;
+      return tl::unexpected(NoSelection{.why = WhyNoMatch(pattern, all)});
     }
     if (!episodes::IsEpisodeFile(pattern)) {
       named.push_back(ScenarioAt(all, pattern));
       continue;
     }
-    std::ranges::move(EpisodesOf(pattern, all, problem), std::back_inserter(named));
-    if (!problem.empty()) return std::nullopt;
+    NoSelection none;
+    std::ranges::move(EpisodesOf(pattern, all, none), std::back_inserter(named));
+    if (!none.why.empty()) return tl::unexpected(std::move(none));
   }
   std::ranges::sort(named, {}, [](const ScenarioFile& file) {
     return std::tuple(!file.in_project, file.skill, file.name, file.path, file.episode);
@@ -147,12 +150,11 @@ std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>&
                        });
   if (patterns.empty() && filters.empty()) selection.orphans = FindUnreferencedGoldens(all, root);
   if (!selection.scenarios.empty() || !selection.orphans.empty()) return selection;
-  problem = "no scenario is selected";
+  std::string problem = "no scenario is selected";
   for (const std::string& filter : filters) {
     if (const std::string why = WhyNonePasses(filter, all, library); !why.empty()) problem = why;
   }
-  problem += " ('prehend list' shows all)";
-  return std::nullopt;
+  return tl::unexpected(NoSelection{.why = problem + " ('prehend list' shows all)"});
 }
 
 std::optional<Shard> ParseShard(std::string_view text) {

@@ -5,8 +5,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tl/expected.hpp>
 #include <vector>
 
+#include "harness/base/exit_code.h"
 #include "harness/judge/unreferenced_goldens.h"
 #include "harness/run/find_scenario.h"
 
@@ -18,12 +20,18 @@ struct ScenarioSelection {
       orphans;  ///< only when neither patterns nor filters narrow the selection
 };
 
+/// Why nothing is selected; a file that is named and cannot be read is bad input.
+struct NoSelection {
+  ExitCode exit_code = ExitCode::kNothing;
+  std::string why;
+};
+
 /// `patterns` are globs over names and skill/name, or files; none means all. A scenario must pass
 /// each of `filters`, which are globs, too, or tag:NAME; with a leading '!' it must not match. If a
-/// pattern matches no scenario, or none is left, there is no value, and `problem` says why.
-std::optional<ScenarioSelection> SelectScenarios(const std::vector<std::string>& patterns,
-                                                 const std::vector<std::string>& filters,
-                                                 const std::string& root, std::string& problem);
+/// pattern matches no scenario, or none is left, nothing is selected.
+tl::expected<ScenarioSelection, NoSelection> SelectScenarios(
+    const std::vector<std::string>& patterns, const std::vector<std::string>& filters,
+    const std::string& root);
 
 /// One of `count` parts of a selection; each scenario is in exactly one of them.
 struct Shard {

@@ -32,11 +32,13 @@ std::string_view Name(Verdict verdict) {
   return "";
 }
 
-std::string_view CommandLabel(const ScenarioVerdict& verdict) {
+bool LeadsToReview(const ScenarioVerdict& verdict) {
   return verdict.verdict == Verdict::kPending &&
-                 verdict.command.starts_with(CommandText({"review"}))
-             ? "next"
-             : "again";
+         verdict.command.starts_with(CommandText({"review"}));
+}
+
+std::string_view CommandLabel(const ScenarioVerdict& verdict) {
+  return LeadsToReview(verdict) ? "next" : "again";
 }
 
 std::string MarginText(const ScenarioVerdict& verdict) {

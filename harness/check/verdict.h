@@ -82,6 +82,9 @@ struct ScenarioVerdict {
   bool DiffersFromGolden() const { return has_golden && comparison && !comparison->Agrees(); }
 };
 
+/// Whether it is pending and its command shows what can be accepted.
+bool LeadsToReview(const ScenarioVerdict& verdict);
+
 /// What stands before its command: "again", or "next" of one that leads on.
 std::string_view CommandLabel(const ScenarioVerdict& verdict);
 

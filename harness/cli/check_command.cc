@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/base/atomic_file.h"
+#include "harness/base/project_paths.h"
 #include "harness/base/shell_quote.h"
 #include "harness/check/causes.h"
 #include "harness/check/run_suite.h"
@@ -165,8 +166,10 @@ std::vector<Option> ResultOptions() {
       "What is written",
       {
           {.name = "--report",
-           .help = "folder for index.html and pictures; default: build/report",
-           .placeholder = "DIR"},
+           .help = "folder for index.html and pictures; default: build/report of the project,\n"
+                   "or, outside of it, of this folder",
+           .placeholder = "DIR",
+           .is_output = true},
           {.name = "--junit",
            .help = "also write the verdicts as JUnit XML; -: print it instead of text",
            .placeholder = "FILE",
@@ -197,13 +200,17 @@ std::uint64_t MemoryLimit_bytes(const ParsedOptions& options) {
 #endif
 }
 
+/// Who is somewhere else than in the project finds the report there.
+std::string DefaultReport(const std::string& root) {
+  return (IsCalledIn(root) ? fs::path(root) / "build/report" : fs::path("build/report")).string();
+}
+
 SuiteRequest RequestFrom(const ParsedOptions& options, const CommandContext& context,
                          ScenarioSelection selection) {
   SuiteRequest request{.selection = std::move(selection),
                        .changes = RequestOf(options, {}),
                        .root = context.root,
-                       .report_folder = options.TextOr(
-                           "--report", (fs::path(context.root) / "build/report").string()),
+                       .report_folder = options.TextOr("--report", DefaultReport(context.root)),
                        .record_file = options.Text("--record"),
                        .today = context.today,
                        .pictures = !options.Has("--no-pictures"),
@@ -275,12 +282,14 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, const TextOptions& 
   if (!page.empty()) context.out << "report: " << page << "\n";
   if (options.as_files_say && std::ranges::any_of(verdicts, &ScenarioVerdict::DiffersFromGolden))
     context.out << "If the new behaviour is intended: " << CommandText({"review"}) << "\n";
-  if (tally.pending > 0) {
-    context.out << fmt::format(
-        "{}: review {}, then accept {} with a reason\n",
-        tally.pending == 1 ? "1 new scenario has no golden"
-                           : fmt::format("{} new scenarios have no golden", tally.pending),
-        tally.pending == 1 ? "it" : "them", tally.pending == 1 ? "it" : "each");
+  // Others are of no golden of this project.
+  const auto acceptable = std::ranges::count_if(verdicts, LeadsToReview);
+  if (acceptable > 0) {
+    context.out << fmt::format("{}: review {}, then accept {} with a reason\n",
+                               acceptable == 1
+                                   ? "1 new scenario has no golden"
+                                   : fmt::format("{} new scenarios have no golden", acceptable),
+                               acceptable == 1 ? "it" : "them", acceptable == 1 ? "it" : "each");
   }
   if (tally.unchanged > 0)
     context.out << fmt::format("{} unchanged since the last pass: not run again\n",
@@ -341,10 +350,8 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
     return Complain(context, ExitCode::kBadInput,
                     "--junit - contradicts --json: both would be printed");
   }
-  std::string problem;
-  auto selection =
-      SelectScenarios(options.All("names"), options.All("--filter"), context.root, problem);
-  if (!selection) return Complain(context, ExitCode::kNothing, problem);
+  auto selection = SelectScenarios(options.All("names"), options.All("--filter"), context.root);
+  if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
   const auto played = std::ranges::find_if(selection->scenarios, [](const ScenarioFile& file) {
     return file.episode != 0 || IsRecording(file.path);
   });
@@ -362,7 +369,7 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   const SuiteRequest request = RequestFrom(options, context, std::move(*selection));
   const std::string page = (fs::path(request.report_folder) / "index.html").string();
   // Found out before the scenarios run, which takes long.
-  problem = WhyNotWritable(page);
+  std::string problem = WhyNotWritable(page);
   if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--report: " + problem);
   if (options.Has("--junit")) problem = WhyNotWritable(junit);
   if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--junit: " + problem);

@@ -105,10 +105,9 @@ std::vector<std::string> StylesOf(const Scenario& scenario) {
 
 /// Short ones first, which show little else.
 std::vector<ScenarioFile> ScenariosLike(const std::string& typed, const CommandContext& context) {
-  std::string problem;
-  auto selection = SelectScenarios({typed}, {}, context.root, problem);
+  auto selection = SelectScenarios({typed}, {}, context.root);
   if (!selection) {
-    Complain(context, ExitCode::kNothing, problem);
+    Complain(context, selection.error().exit_code, selection.error().why);
     return {};
   }
   std::ranges::stable_sort(selection->scenarios, {}, [](const ScenarioFile& file) {

@@ -22,10 +22,9 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   grammar::Diagnostics diagnostics;
   const ScenarioLibrary library = ProjectLibrary(context.root);
-  std::string problem;
   const auto selection =
-      SelectScenarios(options.All("names"), options.All("--filter"), context.root, problem);
-  if (!selection) return Complain(context, ExitCode::kNothing, problem);
+      SelectScenarios(options.All("names"), options.All("--filter"), context.root);
+  if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
   for (const ScenarioFile& file : selection->scenarios) {
     if (file.episode != 0)
       return Complain(context, ExitCode::kBadInput,

@@ -130,10 +130,9 @@ std::optional<Review> ReviewOfRecording(const std::string& file, const std::stri
 std::optional<std::vector<Review>> Reviews(const ParsedOptions& options,
                                            const CommandContext& context) {
   const std::vector<std::string> patterns = options.All("names");
-  std::string problem;
-  const auto selection = SelectScenarios(patterns, {}, context.root, problem);
+  const auto selection = SelectScenarios(patterns, {}, context.root);
   if (!selection && !patterns.empty()) {
-    Complain(context, ExitCode::kNothing, problem);
+    Complain(context, selection.error().exit_code, selection.error().why);
     return std::nullopt;
   }
   std::vector<std::string> pending = GoldenFiles(context.root).ListPending();

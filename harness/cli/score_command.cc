@@ -327,10 +327,9 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   for (const std::string& name : options.All("names")) {
     if (const auto refused = RefuseRecording(name, context)) return *refused;
   }
-  std::string problem;
   const auto selection =
-      SelectScenarios(options.All("names"), options.All("--filter"), context.root, problem);
-  if (!selection) return Complain(context, ExitCode::kNothing, problem);
+      SelectScenarios(options.All("names"), options.All("--filter"), context.root);
+  if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
 
   ExitCode worst = ExitCode::kAgrees;
   const auto by_grammar = JudgeAll(*selection, grammars, events, context, worst);

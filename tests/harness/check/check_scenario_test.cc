@@ -128,7 +128,7 @@ TEST_F(CheckScenarioTest, ItsCommandsRepeatGrammarAndSettings) {
       .scenario_file = {}, .grammar = "my rules.grammar", .settings = {"lift_rise=10cm"}};
   EXPECT_EQ(ExplainCommand("a/b", changes),
             "prehend explain a/b --grammar 'my rules.grammar' --set lift_rise=10cm");
-  EXPECT_EQ(RepeatCommand("a/b", {}), "prehend check a/b");
+  EXPECT_EQ(RepeatCommand({.id = "a/b"}), "prehend check a/b");
 }
 
 }  // namespace

@@ -38,9 +38,8 @@ class SelectScenariosTest : public testing::Test {
   /// Ids, or the problem.
   std::vector<std::string> Selected(const std::vector<std::string>& patterns,
                                     const std::vector<std::string>& filters = {}) const {
-    std::string problem;
-    const auto selection = SelectScenarios(patterns, filters, root_.string(), problem);
-    if (!selection) return {problem};
+    const auto selection = SelectScenarios(patterns, filters, root_.string());
+    if (!selection) return {selection.error().why};
     std::vector<std::string> ids;
     for (const ScenarioFile& file : selection->scenarios) ids.push_back(IdOf(file));
     return ids;
