@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/base/project_paths.h"
 #include "harness/command/command.h"
 #include "harness/command/moment_pictures.h"
 #include "harness/pictures/pictures.h"
@@ -32,8 +33,8 @@ Answered AskSwipl(const std::string& root, const std::string& folder, const std:
                   int most, double time_limit_s) {
   const ToolResult said =
       RunTool({"swipl", "-q", "-f", "none", fmt::format("--stack-limit={}m", kStack_MB), "-g",
-               "ask_main", "-t", "halt", root + "/harness/knowledge/prehend.pl", "--", folder,
-               std::to_string(most), fmt::format("{}", time_limit_s)},
+               "ask_main", "-t", "halt", InProjectOrShipped(root, "harness/knowledge/prehend.pl"),
+               "--", folder, std::to_string(most), fmt::format("{}", time_limit_s)},
               query,
               {.time_s = time_limit_s + kLoading_s,
                .memory_bytes = static_cast<std::size_t>(kMemory_MB * kMebibyte)});

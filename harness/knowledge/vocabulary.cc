@@ -4,12 +4,13 @@
 
 #include <cctype>
 
+#include "harness/base/project_paths.h"
 #include "harness/base/text_file.h"
 
 namespace prehend::harness::knowledge {
 namespace {
 
-constexpr const char* kTerminology = "/harness/knowledge/prehend.ttl";
+constexpr const char* kTerminology = "harness/knowledge/prehend.ttl";
 /// Every class of things that is built in is below it.
 constexpr const char* kRootOfThings = "knowrob:Entity";
 
@@ -31,7 +32,7 @@ std::string CamelCase(std::string_view words) {
 }
 
 Result<Vocabulary> Vocabulary::Load(const std::string& root) {
-  const std::string file = root + kTerminology;
+  const std::string file = InProjectOrShipped(root, kTerminology);
   Result<std::string> text = ReadTextFile(file);
   if (!text) return tl::unexpected(text.error());
   std::string problem;

@@ -25,7 +25,7 @@ struct EventTerm {
 
 class Vocabulary {
  public:
-  /// Reads ROOT/harness/knowledge/prehend.ttl.
+  /// Reads harness/knowledge/prehend.ttl of the project, or of what ships.
   static Result<Vocabulary> Load(const std::string& root);
 
   /// The terminology as it stands in its file.
