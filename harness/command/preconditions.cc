@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "harness/base/project_paths.h"
 #include "harness/base/text_file.h"
 
 namespace prehend::harness {
@@ -22,15 +23,17 @@ constexpr const char* kFolders[] = {"scenarios",   "golden",   "grammar", "physi
 
 bool IsBelow(const fs::path& file, const fs::path& folder) {
   std::error_code error;
-  const fs::path real_file = fs::weakly_canonical(file, error);
-  const fs::path real_folder = fs::weakly_canonical(folder, error);
+  const fs::path real_file = fs::weakly_canonical(fs::absolute(file), error);
+  const fs::path real_folder = fs::weakly_canonical(fs::absolute(folder), error);
   return std::ranges::mismatch(real_folder, real_file).in1 == real_folder.end();
 }
 
-std::optional<Refusal> RefuseToReplace(const Option& output, const std::string& file,
-                                       const std::string& what) {
-  return Refusal{ExitCode::kBadInput, fmt::format("{}: {} is {}; name another file", output.name,
-                                                  ReadableName(file), what)};
+std::optional<Refusal> RefuseToWrite(const Option& output, const std::string& file,
+                                     const std::string& what) {
+  std::error_code error;
+  return Refusal{ExitCode::kBadInput,
+                 fmt::format("{}: {} {} {}; name another file", output.name, ReadableName(file),
+                             fs::exists(file, error) ? "is" : "would be", what)};
 }
 
 }  // namespace
@@ -68,17 +71,19 @@ std::optional<Refusal> RefuseOutputsThatAreInputs(const std::string& root, const
   for (const Option& output : command.options) {
     if (!output.is_output) continue;
     for (const std::string& file : options.All(output.name)) {
+      if (file == "-") continue;
       std::error_code error;
-      if (!fs::is_regular_file(file, error)) continue;
+      if (IsBelow(file, fs::path(root) / kProjectFile))
+        return RefuseToWrite(output, file, "what makes a folder a project");
       for (const char* const folder : kFolders) {
         if (IsBelow(file, fs::path(root) / folder))
-          return RefuseToReplace(output, file, fmt::format("a file of the project's {}/", folder));
+          return RefuseToWrite(output, file, fmt::format("a file of the project's {}/", folder));
       }
       for (const Option& input : command.options) {
         if (input.is_output) continue;
         for (const std::string& other : options.All(input.name)) {
           if (fs::equivalent(file, other, error))
-            return RefuseToReplace(output, file, "what is read");
+            return RefuseToWrite(output, file, "what is read");
         }
       }
     }

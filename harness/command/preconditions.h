@@ -23,8 +23,8 @@ std::optional<Refusal> RefuseSmallStack();
 /// A folder of scenarios, goldens or libraries that cannot be read must not pass for an empty one.
 std::optional<Refusal> RefuseUnreadableFolders(const std::string& root);
 
-/// What a command writes (Option::is_output) must not replace what it reads, nor a file of the
-/// project's scenarios, goldens and libraries.
+/// What a command writes (Option::is_output) must not replace what it reads, and must not lie among
+/// the project's scenarios, goldens and libraries: people write these.
 std::optional<Refusal> RefuseOutputsThatAreInputs(const std::string& root, const Command& command,
                                                   const ParsedOptions& options);
 
