@@ -14,12 +14,10 @@ namespace prehend::harness {
 namespace {
 
 /// Says what the grammar will miss. Its exit code: kNothing if it can recognise nothing.
-ExitCode LookWith(const std::string& grammar_name, Episode& episode,
+ExitCode LookWith(const grammar::Program& program, Episode& episode,
                   const CommandContext& context) {
-  const grammar::CompileResult compiled = LoadGrammar(context.root, grammar_name);
-  if (!compiled.program) return Complain(context, compiled.diagnostics);
-  Warn(context, Warnings(*compiled.program, episode.header.entity_table));
-  const MissingFacts missing = FindMissingFacts(episode, *compiled.program);
+  Warn(context, Warnings(program, episode.header.entity_table));
+  const MissingFacts missing = FindMissingFacts(episode, program);
   context.err << missing.warnings;
   return missing.nothing_left ? ExitCode::kNothing : ExitCode::kAgrees;
 }
@@ -37,9 +35,10 @@ ExitCode ImportLines(const std::string& file, const ParsedOptions& options,
   Result<Episode> recording = ReadEpisode(file);
   if (!recording) return Complain(context, recording.error());
   const std::string grammar = options.Text("--grammar");
-  const ExitCode exit_code =
-      LookWith(grammar.empty() ? recording->header.grammar : grammar, *recording, context);
-  if (exit_code == ExitCode::kBadInput || options.Has("--check")) return exit_code;
+  const grammar::CompileResult compiled = LoadGrammarOf(recording->header, grammar, context.root);
+  if (!compiled.program) return Complain(context, compiled.diagnostics);
+  const ExitCode exit_code = LookWith(*compiled.program, *recording, context);
+  if (options.Has("--check")) return exit_code;
   const ExitCode written = WriteRecording(*recording, output, file, grammar, context);
   if (written != ExitCode::kAgrees) return written;
   context.out << fmt::format("{}: {}, {} frames\n", output, recording->header.episode,
@@ -64,11 +63,12 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
   Episode& episode = imported->episode;
   for (const std::string& warning : imported->warnings)
     context.err << "warning: " << warning << "\n";
-  ExitCode exit_code = ExitCode::kAgrees;
-  if (check || options.Has("--grammar")) {
-    exit_code = LookWith(options.TextOr("--grammar", episode.header.grammar), episode, context);
-    if (exit_code == ExitCode::kBadInput) return exit_code;
-  }
+  const grammar::CompileResult compiled =
+      LoadGrammarOf(episode.header, options.Text("--grammar"), context.root);
+  if (!compiled.program) return Complain(context, compiled.diagnostics);
+  const ExitCode exit_code = check || options.Has("--grammar")
+                                 ? LookWith(*compiled.program, episode, context)
+                                 : ExitCode::kAgrees;
   if (!check) {
     if (episodes::IsEpisodeFile(output)) BridgeLooks(episode);
     const ExitCode written =

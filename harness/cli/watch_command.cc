@@ -5,11 +5,13 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "grammar/base/wording.h"
 #include "grammar/name_events.h"
 #include "harness/command/command.h"
 #include "harness/run/load_grammar.h"
@@ -73,8 +75,8 @@ class Watcher {
   std::optional<ExitCode> Begin() {
     Result<grammar::Overrides> settings = ParameterSettings(options_.All("--set"));
     if (!settings) return Complain(context_, settings.error());
-    grammar::CompileResult compiled = LoadGrammar(
-        context_.root, options_.TextOr("--grammar", stream_.header().grammar), *settings);
+    grammar::CompileResult compiled =
+        LoadGrammarOf(stream_.header(), options_.Text("--grammar"), context_.root, *settings);
     if (!compiled.program) return Complain(context_, compiled.diagnostics);
     program_ = std::move(compiled.program);
     Warn(context_, Warnings(*program_, stream_.header().entity_table));
@@ -117,7 +119,8 @@ class Watcher {
           NameOf(options_), line_);
     if (skipped_ == 0) return ExitCode::kAgrees;
     return Complain(context_, ExitCode::kBadInput,
-                    fmt::format("{} faulty lines were skipped", skipped_));
+                    fmt::format("{} {} skipped", grammar::CountOf(skipped_, "faulty line"),
+                                skipped_ == 1 ? "was" : "were"));
   }
 
   const ParsedOptions& options_;
@@ -133,6 +136,9 @@ ExitCode RunWatch(const ParsedOptions& options, const CommandContext& context) {
   const std::string typed = options.Text("recording");
   Watcher watcher(options, context);
   if (typed == "-") return watcher.Watch(std::cin);
+  std::error_code error;
+  if (std::filesystem::is_directory(typed, error))
+    return Complain(context, ExitCode::kBadInput, typed + " is a directory, not a file");
   std::ifstream file(typed, std::ios::binary);
   if (!file)
     return Complain(context, ExitCode::kBadInput,

@@ -125,9 +125,8 @@ Result<ImportedRecording> ImportRecording(const ImportRequest& request, Episode&
   if (!kept) return tl::unexpected(std::move(kept.error()));
   recording.header = std::move(*kept);
   std::vector<std::string> grammars;
-  grammar::CompileResult compiled = LoadGrammar(
-      request.root, request.grammar.empty() ? recording.header.grammar : request.grammar, {},
-      &grammars);
+  grammar::CompileResult compiled =
+      LoadGrammarOf(recording.header, request.grammar, request.root, {}, &grammars);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
   auto segmented = SegmentEpisode(recording, std::move(compiled.program), request.source);
   if (!segmented) return tl::unexpected(std::move(segmented.error()));

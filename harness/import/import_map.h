@@ -63,7 +63,7 @@ struct MappedEntity {
 struct ImportMap {
   int version = 1;
   std::string episode;  ///< "": as the file of poses is called
-  std::string grammar = "pick_and_place_from_motion";
+  Located<std::string> grammar = {"pick_and_place_from_motion", {}};
   std::optional<Located<LengthUnit>> unit;         ///< this, or
   std::optional<Located<double>> metres_per_unit;  ///< this
   Located<int> up;                                 ///< an axis of the file: 0 x, 1 y, 2 z

@@ -8,10 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <span>
 
 #include "grammar/base/tracking.h"
+#include "grammar/base/wording.h"
 #include "harness/import/doubts.h"
 #include "harness/import/rests.h"
+#include "harness/yaml/error_at.h"
 
 namespace prehend::harness::import {
 namespace {
@@ -103,19 +106,38 @@ std::vector<Pose> Smoothed(const std::vector<Pose>& poses, double half_s) {
   return smooth;
 }
 
-/// The standard deviation of its position on each axis, as far as it is noise: half of all second
-/// differences are below its root of six times the median of a chi distribution of three axes.
-double Trembling_m(const std::vector<Pose>& poses) {
+/// How far a pose is off the polynomial of degree `order` - 1 through as many of its neighbours, as
+/// the standard deviation that noise on each axis would have: half of all are below that times the
+/// median of a chi distribution of three axes.
+double OffNeighbours_m(const std::vector<Pose>& poses, std::size_t order) {
   constexpr double kMedianOfThree = 1.538;
-  std::vector<double> bends;
-  for (std::size_t i = 2; i < poses.size(); ++i) {
-    if (poses[i].after_loss || poses[i - 1].after_loss) continue;
-    bends.push_back((poses[i].p - 2 * poses[i - 1].p + poses[i - 2].p).norm());
+  std::vector<double> off;
+  for (std::size_t last = order; last < poses.size(); ++last) {
+    const std::span<const Pose> some(&poses[last - order], order + 1);
+    if (std::ranges::any_of(some.subspan(1), &Pose::after_loss)) continue;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double squares = 0;
+    for (const Pose& pose : some) {
+      double weight = 1;
+      for (const Pose& other : some) {
+        if (&other != &pose)
+          weight *= (some.back().t_s - some.front().t_s) / (pose.t_s - other.t_s);
+      }
+      sum += weight * pose.p;
+      squares += weight * weight;
+    }
+    off.push_back(sum.norm() / std::sqrt(squares));
   }
-  if (bends.empty()) return 0;
-  const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
-  std::nth_element(bends.begin(), middle, bends.end());
-  return *middle / (std::sqrt(6.0) * kMedianOfThree);
+  return Median(std::move(off)) / kMedianOfThree;
+}
+
+/// The standard deviation of its position on each axis, as far as it is noise. A smooth path bends
+/// from frame to frame, but a polynomial through six neighbours follows it; what repeats faster
+/// than every four frames is off both.
+double Trembling_m(const std::vector<Pose>& poses) {
+  constexpr double kOfTrembling = 3.2;  // largest share of both that such repetition has
+  const double bends_m = OffNeighbours_m(poses, 2), rough_m = OffNeighbours_m(poses, 6);
+  return bends_m < kOfTrembling * rough_m ? bends_m : rough_m;
 }
 
 /// Whether nobody knows where it was at the time of the last At().
@@ -128,7 +150,7 @@ bool IsLost(const Track& track, double t_s) {
 class Importer {
  public:
   Importer(const PoseFile& file, const MapFile& map)
-      : file_(file), map_(map.map), errors_(map.document) {}
+      : file_(file), map_(map.map), document_(map.document), errors_(map.document) {}
 
   Result<Imported> Import() {
     Describe();
@@ -152,7 +174,9 @@ class Importer {
     imported_.duration_s = file_.last_s;
     EpisodeHeader& header = imported_.episode.header;
     header.episode = EpisodeName(map_, file_.file);
-    header.grammar = map_.grammar;
+    header.grammar = map_.grammar.value;
+    if (document_.root.Find("grammar"))
+      header.grammar_named = ErrorAt(document_, map_.grammar.where);
     header.bridge_s = map_.bridge_s;
     header.entity_table.ticks_per_second = map_.ticks_per_second;
     for (const Named<MappedEntity>& entity : map_.entities) {
@@ -182,8 +206,9 @@ class Importer {
       track.poses = Converted(body, e);
       MarkGaps(body, e, track, report);
       WarnOfMotion(body, entity, track.poses, report);
+      const double trembling_m = Trembling_m(track.poses);
       if (map_.smooth_s > 0) track.poses = Smoothed(track.poses, map_.smooth_s / 2);
-      NoteTrembling(track.poses, report);
+      NoteTrembling(trembling_m, track.poses, report);
     }
     for (const Pose& pose : track.poses) report.extent.extend(pose.p);
     if (report.extent.min().minCoeff() < -kFarthest_m ||
@@ -239,8 +264,8 @@ class Importer {
     track.lost_after = take(poses.back().t_s, file_.last_s, false);
     if (report.lost == 0) return;
     const std::string text = fmt::format(
-        "'{}' is not tracked for {:.3f} s from {:.3f} s on; in all {} such times, {:.3f} s",
-        report.from, longest_s, longest_from_s, report.lost, report.lost_s);
+        "'{}' is not tracked for {:.3f} s from {:.3f} s on; in all {}, {:.3f} s", report.from,
+        longest_s, longest_from_s, grammar::CountOf(report.lost, "such time"), report.lost_s);
     if (map_.lost == Lost::kHold) return Warn(text + ": it is held where it was, at rest");
     if (map_.lost == Lost::kUnknown) return Warn(text + ": nobody knows where it is");
     errors_.Add(entity.from->where, text,
@@ -268,11 +293,12 @@ class Importer {
       worst = i;
     }
     if (jumps > 0)
-      Warn(fmt::format("{}: '{}' jumps {} times, here {:.3f} m in {:.4f} s ({:.0f} m/s)",
+      Warn(fmt::format("{}: '{}' jumps {}, here {:.3f} m in {:.4f} s ({:.0f} m/s)",
                        body.samples[worst].line > 0
                            ? fmt::format("{}:{}", file_.file, body.samples[worst].line)
                            : fmt::format("{}, {:.3f} s", file_.file, poses[worst].t_s),
-                       report.from, jumps, (poses[worst].p - poses[worst - 1].p).norm(),
+                       report.from, grammar::CountOf(jumps, "time"),
+                       (poses[worst].p - poses[worst - 1].p).norm(),
                        poses[worst].t_s - poses[worst - 1].t_s, fastest));
     if (uneven * 10 > poses.size())
       Warn(fmt::format("'{}': {} of {} steps are more than 20 % off the usual {:.4f} s",
@@ -282,23 +308,25 @@ class Importer {
                        extent.diagonal().norm() * 1e3));
   }
 
-  void NoteTrembling(const std::vector<Pose>& poses, const EntityReport& report) {
-    const double trembling_m = Trembling_m(poses);
+  /// `as_read_m`: how much it trembles in the file, which decides over how long to take means.
+  void NoteTrembling(double as_read_m, const std::vector<Pose>& poses, const EntityReport& report) {
+    const double trembling_m = map_.smooth_s > 0 ? Trembling_m(poses) : as_read_m;
     if (trembling_m <= kTrembles_m) return;
     trembling_.push_back("'" + report.from + "'");
     trembles_m_ = std::max(trembles_m_, trembling_m);
+    smooth_s_ = std::max(smooth_s_, std::ceil(10 * as_read_m / kTrembles_m / report.rate_hz) / 10);
   }
 
   /// One line for all: the remedy is one for the file.
   void WarnOfTrembling() {
     if (trembling_.empty()) return;
     const bool one = trembling_.size() == 1;
-    Warn(
-        fmt::format("{} {} by {}{:.1f} mm from frame to frame, which hides how {}; smooth_s: {:g} "
-                    "takes means over that long",
-                    fmt::join(trembling_, ", "), one ? "trembles" : "tremble", one ? "" : "up to ",
-                    1e3 * trembles_m_, one ? "it moves" : "they move",
-                    map_.smooth_s > 0 ? 2 * map_.smooth_s : 0.2));
+    Warn(fmt::format("{} {} by {}{:.1f} mm from frame to frame, which hides how {}{}",
+                     fmt::join(trembling_, ", "), one ? "trembles" : "tremble", one ? "" : "up to ",
+                     1e3 * trembles_m_, one ? "it moves" : "they move",
+                     smooth_s_ > map_.smooth_s
+                         ? fmt::format("; smooth_s: {:g} takes means over that long", smooth_s_)
+                         : ""));
   }
 
   std::int64_t TickOf(double t_s) const {
@@ -379,12 +407,14 @@ class Importer {
 
   const PoseFile& file_;
   const ImportMap& map_;
+  const YamlDocument& document_;
   DiagnosticList errors_;
   Imported imported_;
   std::vector<Track> tracks_;
   std::map<std::int64_t, double> times_;
   std::vector<std::string> trembling_;
   double trembles_m_ = 0;  ///< the most
+  double smooth_s_ = 0.2;  ///< over so long means no longer tremble
 };
 
 }  // namespace

@@ -128,6 +128,22 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
   return {nullptr, std::move(unreadable)};
 }
 
+grammar::CompileResult LoadGrammarOf(const EpisodeHeader& recording, const std::string& asked,
+                                     const std::string& root, const grammar::Overrides& overrides,
+                                     std::vector<std::string>* files) {
+  const std::string& own = recording.grammar;
+  grammar::CompileResult compiled =
+      LoadGrammar(root, asked.empty() ? own : asked, overrides, files);
+  const bool is_name = GrammarFile(root, own) != own && own.find('+') == std::string::npos;
+  if (compiled.program || !asked.empty() || !is_name || recording.grammar_named.file.empty() ||
+      std::ranges::count(GrammarNames(root), own) > 0)
+    return compiled;
+  grammar::Diagnostic unknown = recording.grammar_named;
+  unknown.message = fmt::format("grammar: no grammar is called '{}'", own);
+  unknown.hint = compiled.diagnostics.front().hint;
+  return {nullptr, {std::move(unknown)}};
+}
+
 namespace {
 
 /// Whether the file ships with the program and no scenario names it: `use` of another grammar took

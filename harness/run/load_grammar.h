@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grammar/monitor.h"
+#include "harness/sense/episode_file.h"
 
 namespace prehend::harness {
 
@@ -20,6 +21,13 @@ std::string GrammarFile(const std::string& root, const std::string& name_or_path
 grammar::CompileResult LoadGrammar(const std::string& root, const std::string& name_or_path,
                                    const grammar::Overrides& overrides = {},
                                    std::vector<std::string>* files = nullptr);
+
+/// The same of a recording: what it names unless another one is `asked` for. A name that no grammar
+/// has is an error where the recording, or the map that made it, says it.
+grammar::CompileResult LoadGrammarOf(const EpisodeHeader& recording, const std::string& asked,
+                                     const std::string& root,
+                                     const grammar::Overrides& overrides = {},
+                                     std::vector<std::string>* files = nullptr);
 
 /// What is allowed but is probably a mistake: names that are not used; classes that no entity has,
 /// so that their rules never apply.

@@ -24,6 +24,22 @@ std::string GapsOfPlaced(const Episode& episode, const std::vector<bool>& placed
   return GapsText(episode.header.entity_table, gaps);
 }
 
+/// A hand that is not marked as one looks like a thing.
+std::string WithoutHands(const std::vector<grammar::EntityInfo>& entities,
+                         const grammar::Program& program) {
+  const auto has_hand = [](const auto& one) { return std::ranges::count(one.classes, "Hand") > 0; };
+  if (std::ranges::any_of(entities, has_hand)) return "";
+  std::vector<std::string> events;
+  for (const grammar::EventSignature& event : grammar::EventSignatures(program)) {
+    if (has_hand(event)) events.push_back(event.name);
+  }
+  if (events.empty()) return "";
+  return fmt::format(
+      "warning: no entity is a Hand, so what hands do is never recognised: {}\n"
+      "  hint: 'hand: true' in a map of poses, '\"hand\": true' in a recording\n",
+      fmt::join(events, ", "));
+}
+
 /// Whether contacts and grasps are made of motion already.
 bool UsesMotion(const grammar::Program& program) {
   return std::ranges::any_of(program.rules, [](const grammar::Rule& rule) {
@@ -59,6 +75,7 @@ MissingFacts FindMissingFacts(Episode& episode, const grammar::Program& program)
         entities[i].name);
   }
   missing.warnings += GapsOfPlaced(episode, placed);
+  missing.warnings += WithoutHands(entities, program);
   const auto never = grammar::FindNeverRecognised(program, facts);
   std::map<std::string_view, std::vector<std::string>> events;
   for (const grammar::NeverRecognised& one : never) events[one.fact].push_back(one.event);

@@ -52,8 +52,7 @@ Result<EpisodeSource> OpenRecording(const std::string& file, const std::string& 
   Result<grammar::Overrides> parameters = ParameterSettings(settings);
   if (!parameters) return tl::unexpected(std::move(parameters.error()));
   const EpisodeHeader& header = episode->header;
-  grammar::CompileResult compiled =
-      LoadGrammar(root, grammar.empty() ? header.grammar : grammar, *parameters);
+  grammar::CompileResult compiled = LoadGrammarOf(header, grammar, root, *parameters);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
   EpisodeSource source{.name = header.episode,
                        .program = std::move(compiled.program),

@@ -28,9 +28,8 @@ Result<SegmentedRecording> SegmentRecording(const RunRequest& request, const std
   if (!episode) return tl::unexpected(std::move(episode.error()));
   const Result<grammar::Overrides> parameters = ParameterSettings(request.settings);
   if (!parameters) return tl::unexpected(parameters.error());
-  const std::string& own = episode->header.grammar;
   grammar::CompileResult compiled =
-      LoadGrammar(root, request.grammar.empty() ? own : request.grammar, *parameters);
+      LoadGrammarOf(episode->header, request.grammar, root, *parameters);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
   return SegmentEpisode(*episode, std::move(compiled.program), request.scenario_file);
 }

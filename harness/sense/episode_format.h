@@ -56,7 +56,7 @@ struct MemberEntry {
 struct HeaderEntry {
   int version = kEpisodeVersion;
   std::string episode;
-  std::string grammar = kDefaultGrammar;
+  Located<std::string> grammar = {kDefaultGrammar, {}};
   std::int64_t ticks_per_second = 0;
   double bridge_s = kBridge_s;
   std::vector<std::string> styles;

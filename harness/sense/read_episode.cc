@@ -19,6 +19,7 @@
 #include "harness/sense/episode_format.h"
 #include "harness/sense/episode_stream.h"
 #include "harness/sense/scan_frame.h"
+#include "harness/yaml/error_at.h"
 #include "harness/yaml/located_json.h"
 
 namespace prehend::harness {
@@ -51,7 +52,12 @@ class EpisodeReader {
     DiagnosticList errors(*document);
     if (!header_) {
       HeaderEntry header;
-      if (episode::HeaderFormat().Read(document->root, errors, header)) TakeHeader(header, errors);
+      if (episode::HeaderFormat().Read(document->root, errors, header)) {
+        TakeHeader(header, errors);
+        if (document->root.Find("grammar"))
+          episode.header.grammar_named = ErrorAt(*document, header.grammar.where);
+        episode.header.grammar_named.place.line = line_;
+      }
       header_ = true;
     } else {
       LineEntry line;
@@ -137,7 +143,7 @@ class EpisodeReader {
 
   void TakeHeader(const HeaderEntry& header, DiagnosticList& errors) {
     episode.header.episode = header.episode;
-    episode.header.grammar = header.grammar;
+    episode.header.grammar = header.grammar.value;
     grammar::EntityTable& entity_table = episode.header.entity_table;
     entity_table.ticks_per_second = header.ticks_per_second;
     entity_table.styles = header.styles;

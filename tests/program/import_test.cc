@@ -523,7 +523,7 @@ TEST(Import, WhatARecordingDoesNotHaveIsSaid) {
   EXPECT_EQ(Prehend({"import", (folder / "poses.csv").string(), "-o", takes}).err,
             "prehend: " + (folder / "poses.csv").string() +
                 " needs --map, a file that says what it means (docs/motion-capture.md)\n");
-  EXPECT_EQ(Prehend({"import", lines, "-o", "/nowhere/takes.episodes"}).exit_code, 2);
+  EXPECT_EQ(Prehend({"import", lines, "-o", "/proc/nowhere/takes.episodes"}).exit_code, 2);
 }
 
 }  // namespace

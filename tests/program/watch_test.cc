@@ -102,5 +102,12 @@ TEST(Watch, AProducerThatIsLostEndsTheEpisode) {
   EXPECT_NE(none.err.find("cut.jsonl:1:1: error: "), std::string::npos) << none.err;
 }
 
+TEST(Watch, AFolderIsNoFile) {
+  const auto folder = FreshFolder("watched_folder").string();
+  const Said said = Prehend({"watch", folder});
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_EQ(said.err.find("prehend: " + folder + " is a directory, not a file\n"), 0u) << said.err;
+}
+
 }  // namespace
 }  // namespace prehend::house

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a file of poses or its map may lack, and what is no fault: noise against smooth motion,
+// hands, grammars, quotes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+Said Import(const std::filesystem::path& folder, const std::string& csv, const std::string& map,
+            const std::vector<std::string>& more = {}) {
+  WriteFile(folder / "poses.csv", csv);
+  WriteFile(folder / "map.yaml", map);
+  std::vector<std::string> words = {"import", (folder / "poses.csv").string(), "--map",
+                                    (folder / "map.yaml").string()};
+  words.insert(words.end(), more.begin(), more.end());
+  if (more.empty()) words.insert(words.end(), {"-o", (folder / "take.jsonl").string()});
+  return Prehend(words);
+}
+
+/// Of a hand that swings to and fro once a second.
+std::string SwingingCsv(double rate_hz, double noise_m = 0) {
+  std::string csv = "cup_x,cup_y,cup_z,hand_x,hand_y,hand_z\n";
+  unsigned random = 1;
+  const auto noise = [&] {  // roughly normal
+    double sum = 0;
+    for (int i = 0; i < 12; ++i) {
+      random = random * 1664525u + 1013904223u;
+      sum += random / 4294967296.0 - 0.5;
+    }
+    return noise_m * sum;
+  };
+  for (int i = 0; i < 6 * rate_hz; ++i) {
+    char text[200];
+    std::snprintf(text, sizeof text, "0.3,0.2,0.75,%.6f,%.6f,%.6f\n",
+                  0.3 * std::sin(2 * M_PI * i / rate_hz) + noise(), 0.1 + noise(), 1 + noise());
+    csv += text;
+  }
+  return csv;
+}
+
+std::string SwingingMap(const char* rate_hz, const std::string& hand = "hand: true, ") {
+  return std::string("import: 1\nunit: m\naxes: z_up\ntime_unit: frame\nrate_hz: ") + rate_hz +
+         "\ncolumns: {position: ['{}_x', '{}_y', '{}_z']}\nentities:\n"
+         "  cup: {from: cup, size_m: [0.07, 0.07, 0.1]}\n  right_hand: {from: hand, " +
+         hand + "size_m: [0.09, 0.08, 0.03]}\n";
+}
+
+TEST(ImportDoubts, ASmoothPathDoesNotTremble) {
+  const auto folder = FreshFolder("import_doubts");
+  for (const char* rate_hz : {"15", "25", "30", "120"}) {
+    const Said said =
+        Import(folder, SwingingCsv(std::stod(rate_hz)), SwingingMap(rate_hz), {"--check"});
+    EXPECT_EQ(said.err.find("tremble"), std::string::npos) << rate_hz << ": " << said.err;
+  }
+}
+
+TEST(ImportDoubts, NoiseOnASmoothPathTremblesAndItsRemedyHelps) {
+  const auto folder = FreshFolder("import_doubts");
+  const std::string csv = SwingingCsv(30, 0.008);
+  const Said rough = Import(folder, csv, SwingingMap("30"), {"--check"});
+  EXPECT_NE(rough.err.find("'hand' trembles by"), std::string::npos) << rough.err;
+  const std::size_t at = rough.err.find("smooth_s: ");
+  ASSERT_NE(at, std::string::npos) << rough.err;
+  const Said smooth =
+      Import(folder, csv, SwingingMap("30") + rough.err.substr(at, 13) + "\n", {"--check"});
+  EXPECT_EQ(smooth.err.find("tremble"), std::string::npos) << smooth.err;
+}
+
+TEST(ImportDoubts, AMapWithoutHandsIsWarnedOf) {
+  const auto folder = FreshFolder("import_doubts");
+  const Said said = Import(folder, SwingingCsv(30), SwingingMap("30", ""), {"--check"});
+  EXPECT_NE(said.err.find("warning: no entity is a Hand, so what hands do is never recognised: "),
+            std::string::npos)
+      << said.err;
+  EXPECT_NE(said.err.find("grasping"), std::string::npos) << said.err;
+}
+
+TEST(ImportDoubts, AGrammarThatDoesNotExistIsWrongWhereItIsNamed) {
+  const auto folder = FreshFolder("import_doubts");
+  const Said said = Import(folder, SwingingCsv(30), "grammar: contat\n" + SwingingMap("30"));
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_NE(said.err.find("map.yaml:1:10: error: grammar: no grammar is called 'contat'"),
+            std::string::npos)
+      << said.err;
+  EXPECT_NE(said.err.find("did you mean 'contact'?"), std::string::npos) << said.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "take.jsonl"));
+
+  ASSERT_EQ(Import(folder, SwingingCsv(30), SwingingMap("30")).exit_code, 0);
+  const auto take = folder / "take.jsonl";
+  WriteFile(take, Replaced(ReadFile(take), "\"pick_and_place_from_motion\"", "\"contat\""));
+  for (const char* command : {"resegment", "explain", "watch", "check"}) {
+    const Said read = Prehend({command, take.string()});
+    EXPECT_EQ(read.exit_code, 2) << command;
+    EXPECT_NE((read.out + read.err).find("take.jsonl:1:"), std::string::npos)
+        << command << read.out << read.err;
+    EXPECT_NE((read.out + read.err).find("no grammar is called 'contat'"), std::string::npos)
+        << command << read.out << read.err;
+  }
+}
+
+TEST(ImportDoubts, BracesWithoutQuotesAreExplained) {
+  const auto folder = FreshFolder("import_doubts");
+  const Said said =
+      Import(folder, SwingingCsv(30),
+             Replaced(SwingingMap("30"), "['{}_x', '{}_y', '{}_z']", "[{}_x, {}_y, {}_z]"));
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_NE(said.err.find("text cannot begin with '{}', which is an empty mapping"),
+            std::string::npos)
+      << said.err;
+}
+
+}  // namespace
+}  // namespace prehend::house
