@@ -8,11 +8,12 @@
 namespace prehend::harness {
 
 struct CsvCell {
-  std::string_view text;  ///< without blanks and quotes around it
-  int column = 1;         ///< in bytes, from 1
+  std::string_view text;        ///< without blanks and quotes around it
+  int column = 1;               ///< in bytes, from 1
+  std::string_view fault = {};  ///< what is wrong with its quotes, or ""
 };
 
-/// A cell may stand in quotes, and then hold separators.
+/// A cell may stand in quotes, and then hold separators; two quotes are one that does not end it.
 std::vector<CsvCell> CsvCellsOf(std::string_view line, char separator);
 
 }  // namespace prehend::harness

@@ -9,8 +9,10 @@
 #include <cmath>
 #include <set>
 
+#include "grammar/base/wording.h"
 #include "harness/timeline/event_text.h"
 #include "harness/yaml/diagnostic_list.h"
+#include "harness/yaml/error_at.h"
 #include "harness/yaml/yaml_scalar.h"
 
 namespace prehend::harness::labels {
@@ -148,7 +150,7 @@ class MapReader {
         errors_.Add(node.where, node.key + ": expected the name of an entity, or 'ignore', found " +
                                     Describe(node));
       else
-        map_.entities[node.key] = SaysIgnore(node) ? "" : node.text;
+        map_.entities[node.key] = {SaysIgnore(node) ? "" : node.text, node.where};
     }
   }
 
@@ -184,7 +186,7 @@ class MapReader {
       errors_.Add(node.where,
                   node.key + ": expected the name of an entity, found " + Describe(node));
     else
-      meaning.roles.push_back({node.key, node.text});
+      meaning.roles.push_back({node.key, node.text}), meaning.entities[node.text] = node.where;
   }
 
   void ReadLabelNodes(const YamlNode& labels) {
@@ -224,6 +226,16 @@ class MapReader {
   const Events& events_;
   DiagnosticList errors_;
 };
+
+/// Between double quotes.
+std::string AsYaml(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
 
 std::string Trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t\n"), end = text.find_last_not_of(" \t\n");
@@ -303,6 +315,7 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
     for (const Label& label : file.labels) {
       const std::string text = Trimmed(label.text);
       grammar::NamedEvent named;
+      std::map<std::string, Where> in_map;
       if (!map) {
         std::string problem;
         const auto event = EventIn(text, events, problem);
@@ -318,7 +331,7 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
           for (const auto& [name, _] : map->tiers) known.push_back(name);
           const std::string near = grammar::NearestName(label.tier, known);
           complain(label, fmt::format("the map has no tier '{}'", label.tier),
-                   near.empty() ? fmt::format("tiers: {{{}: ignore}}", label.tier)
+                   near.empty() ? fmt::format("tiers: {{{}: ignore}}", AsYaml(label.tier))
                                 : "did you mean '" + near + "'?");
           continue;
         }
@@ -329,7 +342,7 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
           for (const auto& [name, _] : map->labels) known.push_back(name);
           const std::string near = grammar::NearestName(text, known);
           complain(label, fmt::format("the map has no label '{}'", text),
-                   near.empty() ? fmt::format("labels: {{\"{}\": ignore}}", text)
+                   near.empty() ? fmt::format("labels: {{{}: ignore}}", AsYaml(text))
                                 : "did you mean '" + near + "'?");
           continue;
         }
@@ -343,10 +356,17 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
               std::ranges::find(named.roles, role.name, &grammar::Role::name) != named.roles.end();
           if (has_it && !given) named.roles.push_back(role);
         };
+        in_map = meaning->second.entities;
+        if (tier != map->tiers.end())
+          in_map.insert(tier->second.entities.begin(), tier->second.entities.end());
         bool is_left_out = false;
         for (grammar::Role role : label.roles) {
           const auto entity = map->entities.find(role.value);
-          if (entity != map->entities.end()) role.value = entity->second;
+          in_map.erase(role.value);
+          if (entity != map->entities.end()) {
+            role.value = entity->second.value;
+            in_map[role.value] = entity->second.where;
+          }
           is_left_out = is_left_out || role.value.empty();
           add(role);
         }
@@ -356,8 +376,8 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
       }
       compare(named);
       const double offset_s = map ? map->offset_s : 0;
-      of_file.push_back(
-          {label.begin_s + offset_s, label.end_s + offset_s, std::move(named), label.place});
+      of_file.push_back({label.begin_s + offset_s, label.end_s + offset_s, std::move(named),
+                         label.place, std::move(in_map)});
     }
   }
   // What labels could name: without one of them, what is recognised of it is too much.
@@ -374,12 +394,27 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
     if (event.symmetric && roles.size() == 1) roles.clear();
   }
   if (!problems.empty()) return tl::unexpected(std::move(problems));
+  for (const auto& [name, _] : reading.compared_)
+    reading.signatures_.emplace(name, *FindEvent(events, name));
+  if (map) reading.map_ = map->document;
   reading.files_ = std::move(files);
   return reading;
 }
 
+grammar::Diagnostic LabelReading::At(const LabelFile& labels, const LabelledEvent& label,
+                                     const std::string& entity, std::string message,
+                                     std::string hint) const {
+  const auto where = label.in_map.find(entity);
+  if (where == label.in_map.end())
+    return labels.At(label.place, std::move(message), std::move(hint));
+  grammar::Diagnostic in_map = ErrorAt(*map_, where->second);
+  in_map.message = std::move(message);
+  in_map.hint = std::move(hint);
+  return in_map;
+}
+
 Result<grammar::Timeline> LabelReading::Truth(std::size_t file,
-                                              const std::vector<std::string>& entities,
+                                              const std::vector<grammar::EntityInfo>& entities,
                                               grammar::Tick ticks_per_second,
                                               grammar::Tick end) const {
   const LabelFile& labels = files_[file];
@@ -389,12 +424,33 @@ Result<grammar::Timeline> LabelReading::Truth(std::size_t file,
   for (const LabelledEvent& label : events_[file]) {
     if (problems.size() >= kMostComplaints) break;
     for (const grammar::Role& role : label.event.roles) {
-      if (std::ranges::find(entities, role.value) != entities.end()) continue;
-      const std::string near = grammar::NearestName(role.value, entities);
-      problems.push_back(
-          labels.At(label.place, fmt::format("the recording has no entity '{}'", role.value),
-                    near.empty() ? fmt::format("it has {}", fmt::join(entities, ", "))
-                                 : "did you mean '" + near + "'?"));
+      const EventSignature& event = signatures_.at(label.event.event);
+      const auto index =
+          static_cast<std::size_t>(std::ranges::find(event.roles, role.name) - event.roles.begin());
+      const auto takes = [&](const grammar::EntityInfo& entity) {
+        return std::ranges::find(entity.classes, event.classes[index]) != entity.classes.end();
+      };
+      const auto entity = std::ranges::find(entities, role.value, &grammar::EntityInfo::name);
+      if (entity != entities.end() && takes(*entity)) continue;
+      std::vector<std::string> names;
+      for (const grammar::EntityInfo& other : entities)
+        if (entity == entities.end() || takes(other)) names.push_back(other.name);
+      const std::string near = grammar::NearestName(role.value, names);
+      const grammar::Diagnostic problem =
+          At(labels, label, role.value,
+             entity == entities.end()
+                 ? fmt::format("the recording has no entity '{}'", role.value)
+                 : fmt::format("'{}' is never '{}' of '{}', which takes {}", role.value, role.name,
+                               event.name, grammar::WithArticle(event.classes[index])),
+             !near.empty()   ? "did you mean '" + near + "'?"
+             : names.empty() ? fmt::format("the recording has no {}", event.classes[index])
+                             : fmt::format("it has {}", fmt::join(names, ", ")));
+      // A mistake in the map is one for all labels.
+      const auto is_same = [&](const grammar::Diagnostic& other) {
+        return other.file == problem.file && other.place.line == problem.place.line &&
+               other.place.column == problem.place.column;
+      };
+      if (std::ranges::none_of(problems, is_same)) problems.push_back(problem);
     }
     if (label.begin_s < -kMostBeyondEnd_s || label.end_s > end_s + kMostBeyondEnd_s) {
       problems.push_back(labels.At(

@@ -9,8 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "grammar/base/frame.h"
 #include "grammar/base/timeline.h"
 #include "grammar/contents.h"
+#include "harness/base/located.h"
 #include "harness/labels/read_labels.h"
 #include "harness/yaml/located_yaml.h"
 
@@ -21,6 +23,7 @@ struct Meaning {
   bool ignored = false;
   std::string event;
   std::vector<grammar::Role> roles;
+  std::map<std::string, Where> entities;  ///< where its roles' values stand
   Where where;
 };
 
@@ -30,7 +33,7 @@ struct LabelMap {
   double join_s = 0;    ///< labels of one event with no longer pause between them are one
   CsvReading csv;
   /// What the columns of roles hold, as entities; "": labels of it are left out.
-  std::map<std::string, std::string> entities;
+  std::map<std::string, Located<std::string>> entities;
   std::map<std::string, Meaning> labels;
   std::map<std::string, Meaning> tiers;  ///< empty: tiers mean nothing
 };
@@ -55,8 +58,9 @@ class LabelReading {
   double offset_s() const { return offset_s_; }
 
   /// The events of the file with this index in a take of these entities and this length. Errors
-  /// are entities that it does not have, and labels beyond its end.
-  Result<grammar::Timeline> Truth(std::size_t file, const std::vector<std::string>& entities,
+  /// are entities that it does not have or that cannot have such a role, and labels beyond its end.
+  Result<grammar::Timeline> Truth(std::size_t file,
+                                  const std::vector<grammar::EntityInfo>& entities,
                                   grammar::Tick ticks_per_second, grammar::Tick end) const;
 
  private:
@@ -64,10 +68,16 @@ class LabelReading {
     double begin_s = 0, end_s = 0;
     grammar::NamedEvent event;
     grammar::Place place;
+    std::map<std::string, Where> in_map;  ///< of the entities that the map names, not the label
   };
+  /// What is wrong with a role of a label, in the file that says it.
+  grammar::Diagnostic At(const LabelFile& labels, const LabelledEvent& label,
+                         const std::string& entity, std::string message, std::string hint) const;
   std::vector<LabelFile> files_;
   std::vector<std::vector<LabelledEvent>> events_;  ///< per file
   ComparedRoles compared_;
+  std::map<std::string, grammar::EventSignature> signatures_;  ///< of the compared events
+  std::optional<YamlDocument> map_;
   double join_s_ = 0, offset_s_ = 0;
 };
 

@@ -172,7 +172,13 @@ struct CsvColumns {
   }
 
   bool IsComplete() const { return begin && end && label; }
-  std::size_t last() const { return std::max({begin->seat, end->seat, *label}); }
+  /// Of all columns that are read.
+  std::vector<std::size_t> Seats() const {
+    std::vector<std::size_t> seats = {begin->seat, end->seat, *label};
+    if (tier) seats.push_back(*tier);
+    for (const auto& [_, seat] : roles) seats.push_back(seat);
+    return seats;
+  }
 };
 
 /// The columns, or why they cannot be read.
@@ -210,6 +216,9 @@ Result<CsvColumns> ColumnsOf(const LabelFile& file, const std::vector<std::strin
     return problem(found + "; wanted one for the begin, the end and the label of each row",
                    "begin_s,end_s,label or begin_ms,end_ms,label, and 'tier' if you like; or name "
                    "yours in the map: columns: {begin: t0, end: t1, label: what}");
+  for (const std::size_t seat : columns.Seats())
+    if (std::ranges::count(words, words[seat]) > 1)
+      return problem(fmt::format("{}: two columns are called '{}'", found, words[seat]), "");
   for (std::optional<TimeColumn>* column : {&columns.begin, &columns.end}) {
     if (how.unit_s > 0 || how.in_frames)
       **column = {.seat = (*column)->seat, .unit_s = how.unit_s, .in_frames = how.in_frames};
@@ -292,7 +301,14 @@ Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
     }
     if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
     const std::vector<CsvCell> cells = CsvCellsOf(line, separator);
-    if (cells.size() <= columns.last()) {
+    const auto faulty =
+        std::ranges::find_if(cells, [](const CsvCell& cell) { return !cell.fault.empty(); });
+    if (faulty != cells.end()) {
+      problems.push_back(file.At({line_number, faulty->column},
+                                 fmt::format("the cell '{}': {}", faulty->text, faulty->fault)));
+      continue;
+    }
+    if (cells.size() != words.size()) {
       problems.push_back(file.At(
           {line_number, 1}, fmt::format("found {} cells, wanted {}", cells.size(), words.size())));
       continue;
@@ -311,15 +327,14 @@ Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
     const auto from_s = seconds(*columns.begin), to_s = seconds(*columns.end);
     const CsvCell& label = cells[*columns.label];
     if (!from_s || !to_s || label.text.empty()) continue;
-    const bool has_tier = columns.tier && *columns.tier < cells.size();
     file.labels.push_back({.begin_s = *from_s,
                            .end_s = *to_s,
                            .text = std::string(label.text),
-                           .tier = has_tier ? std::string(cells[*columns.tier].text) : "",
+                           .tier = columns.tier ? std::string(cells[*columns.tier].text) : "",
                            .place = {line_number, label.column},
                            .roles = {}});
     for (const auto& [role, seat] : columns.roles)
-      if (seat < cells.size() && !cells[seat].text.empty())
+      if (!cells[seat].text.empty())
         file.labels.back().roles.push_back({role, std::string(cells[seat].text)});
   }
   return problems;

@@ -75,16 +75,17 @@ class Reader {
   }
 
   double Number(const char* what) {
+    std::string_view word;
     while (problem_.empty()) {
-      const std::string_view word = Word();
+      const bool is_value = word == "=";  // what stands before it is only words
+      word = Word();
       if (word.empty()) break;
       double number = 0;
       const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
       if (error == std::errc() && end == word.data() + word.size() && std::isfinite(number))
         return number;
-      if (word.front() == '"' || word.front() == '<') {
+      if (is_value || word.front() == '"' || word.front() == '<')
         Fail(place_, fmt::format("found {}, wanted {}", word, what));
-      }
     }
     Fail(place_, fmt::format("the file ends before {}", what));
     return 0;

@@ -14,6 +14,7 @@
 #include "harness/episodes/recordings.h"
 #include "harness/episodes/schema.h"
 #include "harness/labels/read_labels.h"
+#include "harness/sense/entity_table.h"
 #include "harness/sense/episode_file.h"
 #include "harness/sense/episode_stream.h"
 #include "harness/sense/sensing.h"
@@ -31,7 +32,7 @@ Result<Take> TakeOf(Episode read, const std::string& file) {
             .ticks_per_second = table.ticks_per_second,
             .end = episode->end_tick,
             .segment = {}};
-  for (const auto& entity : table.entities) take.entities.push_back(entity.name);
+  take.entities = table.entities;
   take.segment = [episode, file](
                      std::shared_ptr<const grammar::Program> program) -> Result<grammar::Timeline> {
     const grammar::EntityTable& entities = episode->header.entity_table;
@@ -89,8 +90,7 @@ Result<Take> OpenEpisode(const TakeName& name, const std::string& root) {
             .ticks_per_second = scenario->scene.world.rate_hz,
             .end = end,
             .segment = {}};
-  for (const physics::Body& body : scenario->scene.bodies) take.entities.push_back(body.name);
-  for (const physics::Hand& hand : scenario->scene.hands) take.entities.push_back(hand.name);
+  take.entities = MakeEntityTable(*scenario).entities;
   take.segment = [=](std::shared_ptr<const grammar::Program> program) -> Result<grammar::Timeline> {
     return Resegment(*scenario, *frames, std::move(program), end);
   };

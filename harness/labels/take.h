@@ -19,7 +19,7 @@ namespace prehend::harness::labels {
 using TakeName = episodes::EpisodeName;
 
 struct Take {
-  std::vector<std::string> entities;
+  std::vector<grammar::EntityInfo> entities;
   std::string grammar;                                   ///< its own
   std::shared_ptr<const grammar::Program> program = {};  ///< of a run, that grammar as it was
   grammar::Tick ticks_per_second = 1, end = 1;

@@ -94,16 +94,23 @@ class FaultyLabels : public testing::Test {
 };
 
 TEST_F(FaultyLabels, OfCsv) {
-  ExpectEachFaultNamed("l.csv", kCsv,
-                       {{"0.5,1.5", "500,1500", "the recording ends after 3 s"},
-                        {"0.5,1.5", "nan,1.5", "found 'nan', wanted a number"},
-                        {"0.5,1.5", "0.5,1e999", "found '1e999', wanted a number"},
-                        {"0.5,1.5", "1.5,0.5", "'near' ends before it begins"},
-                        {"0.5,1.5,near", "0.5,1.5", "found the label 'right', wanted an event"},
-                        {"\n2,2.5,near,right\n", "\n2,2.", "found 2 cells, wanted 4"},
-                        {"1.5,near", "1.5,naer", "naer"},
-                        {"begin_s", "when", "wanted one for the begin, the end and the label"},
-                        {"0.5,1.5", "-5,1.5", "the label lies at -5 to 1.5 s"}});
+  ExpectEachFaultNamed(
+      "l.csv", kCsv,
+      {{"0.5,1.5", "500,1500", "the recording ends after 3 s"},
+       {"0.5,1.5", "nan,1.5", "found 'nan', wanted a number"},
+       {"0.5,1.5", "0.5,1e999", "found '1e999', wanted a number"},
+       {"0.5,1.5", "1.5,0.5", "'near' ends before it begins"},
+       {"0.5,1.5,near", "0.5,1.5", "found 3 cells, wanted 4"},
+       {"\n2,2.5,near,right\n", "\n2,2.", "found 2 cells, wanted 4"},
+       {"\n2,2.5,near,right\n", "\n2,2.5,near\n", "found 3 cells, wanted 4"},
+       {"\n2,2.5,near,right\n", "\n2,2.5,near,right,more\n", "found 5 cells, wanted 4"},
+       {"\n2,2.5,near,right\n", "\n2,2.5,\"near,right\n", "its quote is not closed"},
+       {"\n2,2.5,near,right\n", "\n2,2.5,\"near\" x,right\n",
+        "there is more after its closing quote"},
+       {"label,tier", "label,label", "two columns are called 'label'"},
+       {"1.5,near", "1.5,naer", "naer"},
+       {"begin_s", "when", "wanted one for the begin, the end and the label"},
+       {"0.5,1.5", "-5,1.5", "the label lies at -5 to 1.5 s"}});
 }
 
 TEST_F(FaultyLabels, OfElan) {
@@ -126,6 +133,7 @@ TEST_F(FaultyLabels, OfPraat) {
                         {"xmax = 1.5", "xmax = 1500", "the recording ends after 3 s"},
                         {"xmax = 1.5", "xmax = \"nan\"", "wanted the end of a label"},
                         {"xmax = 1.5", "xmax = 0.2", "ends before it begins"},
+                        {"xmax = 1.5", "xmax = abc", "found abc, wanted the end of a label"},
                         {"xmin = 0.5", "xmin = 0.3", "before the one before it ends, at 0.5 s"},
                         {"\"IntervalTier\"", "\"PitchTier\"", "found a tier of class 'PitchTier'"},
                         {"intervals: size = 2", "intervals: size = 3", "the file ends before"},

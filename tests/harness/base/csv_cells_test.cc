@@ -29,5 +29,12 @@ TEST(CsvCells, KnowTheirPlace) {
   EXPECT_EQ(cells[1].column, 6);
 }
 
+TEST(CsvCells, AFaultOfQuotesIsNamed) {
+  EXPECT_EQ(CsvCellsOf("a,\"b,c", ',')[1].fault, "its quote is not closed");
+  EXPECT_EQ(CsvCellsOf("a,\"b\" x,c", ',')[1].fault, "there is more after its closing quote");
+  EXPECT_EQ(CsvCellsOf("\"b \"\"c\"\", d\" ,e", ',')[0].fault, "");
+  EXPECT_EQ(CsvCellsOf("\"b \"\"c\"\", d\" ,e", ',').size(), 2u);
+}
+
 }  // namespace
 }  // namespace prehend::harness

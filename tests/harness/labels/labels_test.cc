@@ -22,9 +22,16 @@ namespace fs = std::filesystem;
 using grammar::EventSignature;
 
 const std::vector<EventSignature> kEvents = {
-    {.name = "reaching", .roles = {"hand", "object"}},
-    {.name = "grasping", .roles = {"hand", "object"}, .has_style = true},
-    {.name = "contact", .roles = {"a", "b"}, .symmetric = true}};
+    {.name = "reaching", .roles = {"hand", "object"}, .classes = {"Hand", "Thing"}},
+    {.name = "grasping",
+     .roles = {"hand", "object"},
+     .classes = {"Hand", "Thing"},
+     .has_style = true},
+    {.name = "contact", .roles = {"a", "b"}, .classes = {"Entity", "Entity"}, .symmetric = true}};
+
+const grammar::EntityInfo kHand = {.name = "right_hand", .classes = {"Hand", "Entity"}},
+                          kCup = {.name = "cup", .classes = {"Thing", "Entity"}},
+                          kTable = {.name = "table", .classes = {"Thing", "Entity"}};
 
 class Labels : public testing::Test {
  protected:
@@ -68,7 +75,7 @@ class Labels : public testing::Test {
 };
 
 grammar::Timeline TruthOf(const Result<LabelReading>& reading) {
-  const auto truth = reading->Truth(0, {"right_hand", "cup", "table"}, 100, 1000);
+  const auto truth = reading->Truth(0, {kHand, kCup, kTable}, 100, 1000);
   if (!truth) ADD_FAILURE() << grammar::Format(truth.error());
   return truth ? *truth : grammar::Timeline{};
 }
@@ -457,7 +464,7 @@ TEST_F(Labels, UnknownLabelsTiersEntitiesAndTimesAreNamed) {
     const auto file = ReadLabels(File("a.csv", "begin_s,end_s,label,tier\n" + row + "\n"));
     const auto reading = LabelReading::Of({*file}, meaning, kEvents);
     if (!reading) return grammar::Format(reading.error().front());
-    const auto truth = reading->Truth(0, {"right_hand", "table"}, 100, 1000);
+    const auto truth = reading->Truth(0, {kHand, kTable}, 100, 1000);
     return truth ? std::string() : grammar::Format(truth.error().front());
   };
   const auto has = [](const std::string& text, const char* part) {
@@ -497,6 +504,26 @@ TEST_F(Labels, WhatIsWrittenIsReadAgain) {
     ASSERT_TRUE(reading) << grammar::Format(reading.error());
     EXPECT_EQ(Text(TruthOf(reading)), Text(timeline)) << ending;
   }
+}
+
+TEST_F(Labels, AnEntityThatTheMapNamesIsWrongThere) {
+  const auto problems = [&](const std::string& map_text) {
+    const auto map = Map(map_text);
+    const auto file =
+        ReadLabels(File("a.csv", "begin_s,end_s,label,tier\n0,1,hold,right\n2,3,hold,right\n"));
+    const auto truth =
+        LabelReading::Of({*file}, &*map, kEvents)->Truth(0, {kHand, kCup, kTable}, 100, 1000);
+    std::string text;
+    for (const grammar::Diagnostic& problem : truth ? grammar::Diagnostics{} : truth.error())
+      text += fmt::format("{}:{}:{} {} | {}\n", fs::path(problem.file).filename().string(),
+                          problem.place.line, problem.place.column, problem.message, problem.hint);
+    return text;
+  };
+  EXPECT_EQ(problems("labels:\n  hold: {event: grasping, object: cupp}\n"),
+            "map.yaml:2:35 the recording has no entity 'cupp' | did you mean 'cup'?\n");
+  EXPECT_EQ(problems("tiers:\n  right: {hand: cup}\nlabels:\n  hold: {event: grasping}\n"),
+            "map.yaml:2:17 'cup' is never 'hand' of 'grasping', which takes a Hand | it has "
+            "right_hand\n");
 }
 
 }  // namespace
