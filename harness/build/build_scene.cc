@@ -228,6 +228,16 @@ std::vector<physics::Body> PlaceBodies(const ScenarioYaml& entry, DiagnosticList
   return std::move(stacking.bodies);
 }
 
+constexpr int kMostRate_hz = 4800;  // of 'rate_hz', docs/scenario-format.md
+
+/// The least rate from this one on at which the hand is stable; "" if none is.
+std::string RateRemedy(const physics::HandModel& model, int rate_hz) {
+  while (rate_hz <= kMostRate_hz && !physics::CheckGains(model, rate_hz).empty()) ++rate_hz;
+  return rate_hz > kMostRate_hz
+             ? ""
+             : fmt::format("it is stable from 'world: {{rate_hz: {}}}' on", rate_hz);
+}
+
 physics::Hand PlaceHand(const Named<HandActorYaml>& actor, physics::HandModel model, int rate_hz,
                         DiagnosticList& errors) {
   if (actor.value.gains) {
@@ -236,7 +246,7 @@ physics::Hand PlaceHand(const Named<HandActorYaml>& actor, physics::HandModel mo
   }
   if (const std::string unstable = physics::CheckGains(model, rate_hz); !unstable.empty()) {
     errors.Add(actor.value.gains ? actor.value.gains->where : actor.value.hand.where,
-               fmt::format("actor '{}' cannot be stable: {}", actor.name, unstable));
+               fmt::format("actor '{}': {}", actor.name, unstable), RateRemedy(model, rate_hz));
   }
   physics::Hand hand{
       .name = actor.name,

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "grammar/base/wording.h"
 #include "harness/command/command.h"
 #include "harness/knowledge/write_knowledge.h"
 
@@ -31,10 +30,9 @@ ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& contex
       *episodes,
       {.root = context.root, .folder = folder, .owl = asked("owl"), .neem = asked("neem")});
   if (!written) return Complain(context, written.error());
-  context.out << fmt::format(
-      "{}: {} of {}, {}, {}\n", folder, grammar::CountOf(written->episodes, "episode"),
-      grammar::CountOf(written->tasks, "task"), grammar::CountOf(written->events, "event"),
-      grammar::CountOf(written->statements, "statement"));
+  context.out << fmt::format("{}: {} episodes of {} tasks, {} events, {} statements\n", folder,
+                             written->episodes, written->tasks, written->events,
+                             written->statements);
   return ExitCode::kAgrees;
 }
 

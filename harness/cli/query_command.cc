@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend query: questions to recorded episodes. Tested by tests/program/query_test.cc
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -125,6 +126,23 @@ EventQuestion EventQuestionOf(const ParsedOptions& options) {
   return question;
 }
 
+/// Why no event can have one of the roles that are asked for, or "".
+std::string UnknownRole(const EventQuestion& question, const std::set<std::string>& known) {
+  for (const auto& [option, conditions] :
+       {std::pair{"--role", &question.roles}, std::pair{"--class", &question.classes},
+        std::pair{"--part-of", &question.parts_of}}) {
+    for (const episodes::RoleCondition& condition : *conditions) {
+      if (known.empty() || condition.role == "any" || known.contains(condition.role)) continue;
+      const std::vector<std::string> names(known.begin(), known.end());
+      const std::string near = grammar::NearestName(condition.role, names);
+      return fmt::format("{}: no event has a role '{}'; {}", option, condition.role,
+                         near.empty() ? fmt::format("there are: {}", fmt::join(names, ", "))
+                                      : fmt::format("did you mean '{}'?", near));
+    }
+  }
+  return "";
+}
+
 ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--json") && options.Has("--csv"))
     return Complain(context, ExitCode::kBadInput, "--json contradicts --csv; give one of them");
@@ -132,11 +150,19 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
     return Complain(context, ExitCode::kBadInput, "--show: this build draws no pictures");
   const EventQuestion question = EventQuestionOf(options);
   std::vector<EventAnswer> answers;
+  episodes::KnownNames known;
   for (const std::string& path : options.All("files")) {
-    auto found = episodes::Ask(path, question);
+    auto found = episodes::Ask(path, question, known);
     if (!found) return Complain(context, found.error());
     answers.insert(answers.end(), found->begin(), found->end());
   }
+  if (const std::string why = UnknownRole(question, known.roles); !why.empty())
+    return Complain(context, ExitCode::kBadInput, why);
+  const std::vector<std::string> events(known.events.begin(), known.events.end());
+  if (const std::string near = grammar::NearestName(question.event, events);
+      answers.empty() && !known.events.contains(question.event) && !near.empty())
+    context.err << fmt::format("prehend: no event is called '{}'; did you mean '{}'?\n",
+                               question.event, near);
   MomentPictures drawn;
   if (options.Has("--show")) {
     std::vector<Moment> moments;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "grammar/base/wording.h"
 #include "harness/base/atomic_file.h"
 #include "harness/base/shell_quote.h"
 #include "harness/base/text_file.h"
@@ -74,8 +73,8 @@ ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) 
   problem = WriteTextFile(page, ReportHtml(verdicts, header));
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   const Tally tally = Count(verdicts);
-  context.out << fmt::format("{}: {}, {} passed, {} failed, {} without golden\n", page,
-                             grammar::CountOf(verdicts.size(), "episode"), tally.passed,
+  context.out << fmt::format("{}: {} episode{}, {} passed, {} failed, {} without golden\n", page,
+                             verdicts.size(), verdicts.size() == 1 ? "" : "s", tally.passed,
                              tally.failed, tally.pending);
   // What differs or ended badly is on the page; what cannot be read is not.
   const auto unread = std::ranges::find(verdicts, ExitCode::kBadInput, &ScenarioVerdict::exit_code);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "grammar/base/wording.h"
 #include "harness/base/atomic_file.h"
 #include "harness/command/command.h"
 #include "harness/episodes/resegment_many.h"
@@ -66,8 +65,8 @@ void Print(const std::vector<episodes::Resegmented>& results, bool compare,
     }
   }
   if (compare)
-    context.out << fmt::format("{}, {} with differences\n",
-                               grammar::CountOf(results.size(), "episode"), differing);
+    context.out << fmt::format("{} episode{}, {} with differences\n", results.size(),
+                               results.size() == 1 ? "" : "s", differing);
 }
 
 void PrintJson(const std::vector<episodes::Resegmented>& results, const CommandContext& context) {

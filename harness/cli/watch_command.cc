@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "grammar/base/wording.h"
 #include "grammar/name_events.h"
 #include "harness/command/command.h"
 #include "harness/run/load_grammar.h"
@@ -118,9 +117,9 @@ class Watcher {
           "prehend: {} ended after line {} without 'end_tick': what was open ends there\n",
           NameOf(options_), line_);
     if (skipped_ == 0) return ExitCode::kAgrees;
-    return Complain(context_, ExitCode::kBadInput,
-                    fmt::format("{} {} skipped", grammar::CountOf(skipped_, "faulty line"),
-                                skipped_ == 1 ? "was" : "were"));
+    return Complain(
+        context_, ExitCode::kBadInput,
+        fmt::format("{} faulty {} skipped", skipped_, skipped_ == 1 ? "line was" : "lines were"));
   }
 
   const ParsedOptions& options_;

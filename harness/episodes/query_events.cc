@@ -157,7 +157,8 @@ std::optional<EventQuestion::Relation> ParseRelation(std::string_view text, std:
   return EventQuestion::Relation{name, std::string(text.substr(blank + 1))};
 }
 
-Result<std::vector<EventAnswer>> Ask(const std::string& path, const EventQuestion& question) {
+Result<std::vector<EventAnswer>> Ask(const std::string& path, const EventQuestion& question,
+                                     KnownNames& known) {
   const Result<EpisodeFile> file = EpisodeFile::Open(path);
   if (!file) return tl::unexpected(file.error());
   std::vector<EventAnswer> answers;
@@ -173,6 +174,8 @@ Result<std::vector<EventAnswer>> Ask(const std::string& path, const EventQuestio
     if (!entities) return tl::unexpected(entities.error());
     const Asker asker(question, *entities, *timeline);
     for (const grammar::NamedEvent& event : timeline->events) {
+      known.events.insert(event.event);
+      for (const grammar::Role& role : event.roles) known.roles.insert(role.name);
       if (!asker.Holds(event)) continue;
       EventAnswer& answer = answers.emplace_back();
       answer = {path, row.id, row.scenario, row.ticks_per_second, event, {}};

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,7 +54,13 @@ std::vector<const grammar::NamedEvent*> PartsOf(const grammar::NamedEvent& whole
                                                 const grammar::Timeline& timeline,
                                                 const std::vector<KeptEntity>& entities);
 
-/// The answers in one file, in the order of episodes and time.
-Result<std::vector<EventAnswer>> Ask(const std::string& file, const EventQuestion& question);
+/// What the events of files are called, and their roles.
+struct KnownNames {
+  std::set<std::string> events, roles;
+};
+
+/// The answers in one file, in the order of episodes and time. `known` gets the names in it.
+Result<std::vector<EventAnswer>> Ask(const std::string& file, const EventQuestion& question,
+                                     KnownNames& known);
 
 }  // namespace prehend::harness::episodes

@@ -81,6 +81,9 @@ std::string ColumnRemedy(const std::string& name) {
   std::vector<std::string> names;
   for (const auto& [known, column] : KnownColumns()) names.push_back(known);
   const std::string nearest = grammar::NearestName(name, names);
+  for (const std::string& known : names)
+    if (!name.empty() && known.starts_with(name + "_"))
+      return fmt::format("did you mean '{}'?", known);
   if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
   if (name.empty()) return "a comma too many";
   if (name.find_first_of(";\t") != std::string::npos) return "commas separate columns and values";
@@ -106,7 +109,8 @@ class CsvReader {
     }
     if (!diagnostics.empty()) return;
     if (track.samples.size() < 2)
-      Complain({line_, 1}, fmt::format("{} rows; a motion has at least 2", track.samples.size()));
+      Complain({line_, 1}, fmt::format("{} row{}; a motion has at least 2", track.samples.size(),
+                                       track.samples.size() == 1 ? "" : "s"));
   }
 
   MotionTrack track;
@@ -134,7 +138,7 @@ class CsvReader {
       const std::string name(cell.text);
       const auto known = KnownColumns().find(name);
       if (known == KnownColumns().end()) {
-        Complain({line_, cell.column}, fmt::format("no column is called '{}'", name),
+        Complain({line_, cell.column}, fmt::format("'{}' is no column of a motion", name),
                  ColumnRemedy(name));
         continue;
       }

@@ -253,6 +253,12 @@ std::pair<std::string, std::string> InPlainWords(const std::string& message, std
     return {"not valid YAML: a second ':' in one value",
             "text with ': ' in it goes in quotes, like \"first: second\""};
   }
+  const std::size_t braces = line.find("{}");
+  if (braces != std::string_view::npos && braces + 2 < line.size() &&
+      std::string_view(" ,]}").find(line[braces + 2]) == std::string_view::npos) {
+    return {"not valid YAML: text cannot begin with '{}', which is an empty mapping",
+            "text with '{}' in it goes in quotes, like \"{}_x\""};
+  }
   if (message == "end of map not found" &&
       before.find_first_not_of(' ') != std::string_view::npos) {
     return {"not valid YAML: unexpected text after the value before it",

@@ -173,7 +173,9 @@ ValueFormat<double> Number(double lowest, double highest) {
 }
 
 ErasedFormat ErasedInteger(std::int64_t lowest, std::int64_t highest, const IntegerAccess& access) {
-  const std::string wanted = fmt::format("a whole number from {} to {}", lowest, highest);
+  const std::string wanted = lowest == highest
+                                 ? fmt::format("{}", lowest)
+                                 : fmt::format("a whole number from {} to {}", lowest, highest);
   return {.schema = [=]() -> Json {
             return {{"type", "integer"}, {"minimum", lowest}, {"maximum", highest}};
           },

@@ -110,7 +110,9 @@ Diagnostics ApplyOverride(const std::string& assignment, const SchemaJson& schem
   const int source = static_cast<int>(document.sources.size()) - 1;
   YamlNode* node = &document.root;
   const SchemaJson* known = &schema;  // about `node`
+  std::size_t last_step = 0;
   for (std::size_t begin = 0; begin <= equals;) {
+    last_step = begin;
     const std::size_t end = std::min(assignment.find('.', begin), equals);
     const std::string step = assignment.substr(begin, end - begin);
     auto* child = const_cast<YamlNode*>(ChildOf(*node, step));
@@ -134,7 +136,7 @@ Diagnostics ApplyOverride(const std::string& assignment, const SchemaJson& schem
   YamlNode value = std::move(parsed->root);
   value.key = node->key;
   Relocate(value, source, static_cast<int>(equals) + 1);
-  value.key_where = {source, {1, 1}};
+  value.key_where = {source, {1, static_cast<int>(last_step) + 1}};
   *node = std::move(value);
   return {};
 }

@@ -134,5 +134,20 @@ TEST(Query, EachAnswerIsDrawn) {
             "file,episode,scenario,event,begin_s,end_s,roles,picture");
 }
 
+TEST(Query, UnknownNamesAreNamed) {
+  const auto file = (FreshFolder("query_names") / "a.episodes").string();
+  ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", file}).exit_code, 0);
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"--role", "hnd=right_hand"}, {"--class", "hnd=Hand"}, {"--part-of", "hnd=table"}}) {
+    const Said said = Prehend({"query", file, words[0], words[1]});
+    EXPECT_EQ(said.exit_code, 2);
+    EXPECT_EQ(said.err,
+              "prehend: " + words[0] + ": no event has a role 'hnd'; did you mean 'hand'?\n");
+  }
+  const Said typo = Prehend({"query", file, "--event", "graping"});
+  EXPECT_EQ(typo.exit_code, 4);
+  EXPECT_EQ(typo.err, "prehend: no event is called 'graping'; did you mean 'grasping'?\n");
+}
+
 }  // namespace
 }  // namespace prehend::house

@@ -77,14 +77,15 @@ TEST_P(MotionCsvRefuses, WithItsPlace) { EXPECT_EQ(CsvErrors(GetParam().text), G
 
 // clang-format off
 INSTANTIATE_TEST_SUITE_P(Files, MotionCsvRefuses, testing::Values(
-    BadCsv{"unit", "t_s,x_inch,y_m,z_m\n0,0,0,0\n1,0,0,0\n", "m.csv:1:5: no column is called 'x_inch' | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"},
-    BadCsv{"typo", "t_s,x_m,y_m,z_m,triger\n0,0,0,0,0\n1,0,0,0,0\n", "m.csv:1:17: no column is called 'triger' | did you mean 'trigger'?\n"},
+    BadCsv{"unit", "t_s,x_inch,y_m,z_m\n0,0,0,0\n1,0,0,0\n", "m.csv:1:5: 'x_inch' is no column of a motion | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"},
+    BadCsv{"unit_left_out", "t,x_m,y_m,z_m\n0,0,0,0\n1,0,0,0\n", "m.csv:1:1: 't' is no column of a motion | did you mean 't_s'?\n"},
+    BadCsv{"typo", "t_s,x_m,y_m,z_m,triger\n0,0,0,0,0\n1,0,0,0,0\n", "m.csv:1:17: 'triger' is no column of a motion | did you mean 'trigger'?\n"},
     BadCsv{"twice", "t_s,x_m,x_mm,y_m,z_m\n0,0,0,0,0\n", "m.csv:1:9: 'x' is given twice\n"},
-    BadCsv{"no_header", "0,0,0,1\n", "m.csv:1:1: no column is called '0' | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"
-                                     "m.csv:1:3: no column is called '0' | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"
-                                     "m.csv:1:5: no column is called '0' | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"
-                                     "m.csv:1:7: no column is called '1' | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"},
-    BadCsv{"semicolons", "t_s;x_m;y_m;z_m\n0;0;0;1\n", "m.csv:1:1: no column is called 't_s;x_m;y_m;z_m' | commas separate columns and values\n"},
+    BadCsv{"no_header", "0,0,0,1\n", "m.csv:1:1: '0' is no column of a motion | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"
+                                     "m.csv:1:3: '0' is no column of a motion | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"
+                                     "m.csv:1:5: '0' is no column of a motion | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"
+                                     "m.csv:1:7: '1' is no column of a motion | the header is like t_s,x_m,y_m,z_m,qw,qx,qy,qz,trigger\n"},
+    BadCsv{"semicolons", "t_s;x_m;y_m;z_m\n0;0;0;1\n", "m.csv:1:1: 't_s;x_m;y_m;z_m' is no column of a motion | commas separate columns and values\n"},
     BadCsv{"incomplete", "t_s,x_m,y_m\n0,0,0\n", "m.csv:1:1: the header needs t_s (or t_ms), x_m, y_m and z_m (or _cm, _mm); missing: z\n"},
     BadCsv{"half_quaternion", "t_s,x_m,y_m,z_m,qw,qx\n0,0,0,0,1,0\n", "m.csv:1:1: a quaternion needs qw, qx, qy and qz; missing: qy, qz\n"},
     BadCsv{"two_orientations", "t_s,x_m,y_m,z_m,qw,qx,qy,qz,yaw_deg\n0,0,0,0,1,0,0,0,0\n", "m.csv:1:1: an orientation is either qw,qx,qy,qz or roll_deg,pitch_deg,yaw_deg\n"},
@@ -95,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Files, MotionCsvRefuses, testing::Values(
     BadCsv{"far", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,0,1000\n", "m.csv:3:7: z: 1000 m is beyond 100 m | does the unit match the header?\n"},
     BadCsv{"no_unit_quaternion", "t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,1,1,0,0\n1,0,0,0,1,0,0,0\n", "m.csv:2:9: qw, qx, qy, qz: expected a unit quaternion, found one of length 1.414\n"},
     BadCsv{"trigger", "t_s,x_m,y_m,z_m,trigger\n0,0,0,0,0\n1,0,0,0,1.5\n", "m.csv:3:9: trigger: expected a number from 0 to 1, found 1.5\n"},
-    BadCsv{"one_row", "t_s,x_m,y_m,z_m\n0,0,0,0\n", "m.csv:2:1: 1 rows; a motion has at least 2\n"}),
+    BadCsv{"one_row", "t_s,x_m,y_m,z_m\n0,0,0,0\n", "m.csv:2:1: 1 row; a motion has at least 2\n"}),
     [](const auto& test) { return test.param.name; });
 // clang-format on
 
