@@ -136,7 +136,7 @@ Command TryCommand() {
                        .help = "files with drawings: docs/drawings.md",
                        .required = true,
                        .repeatable = true},
-                      SettingsOption(),
+                      ParametersOption(),
                       {.name = "--json", .help = "print one JSON object instead of lines"}},
           .run = RunTry};
 }

@@ -94,6 +94,13 @@ Option GrammarOption() {
           .placeholder = "NAME|FILE"};
 }
 
+Option ParametersOption() {
+  return {.name = "--set",
+          .help = "set a parameter of the grammar (reach_radius=25cm); may be repeated",
+          .placeholder = "NAME=VALUE",
+          .repeatable = true};
+}
+
 Option SettingsOption() {
   return {.name = "--set",
           .help =

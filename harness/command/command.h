@@ -84,7 +84,8 @@ int CoreCount();
 Option ScenarioArgument();
 Option EpisodeArgument();  ///< a scenario, an episode file or a recording
 Option GrammarOption();
-Option SettingsOption();
+Option SettingsOption();    ///< of a grammar and a scenario
+Option ParametersOption();  ///< of a grammar alone
 RunRequest RequestOf(const ParsedOptions& options, const std::string& scenario_file);
 
 /// Reports a file that is a recording where a scenario is wanted; nothing of any other.
