@@ -140,19 +140,25 @@ class DoubtFinder {
     double highest_m = 0;
     std::string example;
   };
-  Lifts LiftsAlong(int axis) const {
+  Lifts LiftsAlong(const Eigen::Vector3d& direction) const {
     Lifts lifts;
     for (const Named<MappedEntity>& entity : map_.entities) {
       if (!entity.value.from || entity.value.hand) continue;
       const PoseBody& body = BodyOf(entity.value);
       Eigen::AlignedBox3d extent;
-      for (const PoseSample& sample : body.samples) extent.extend(sample.p * scale_);
+      Eigen::AlignedBox1d heights;
+      const auto height = [&](const PoseSample& sample) {
+        return sample.p.dot(direction) * scale_;
+      };
+      for (const PoseSample& sample : body.samples) {
+        extent.extend(sample.p * scale_);
+        heights.extend(Eigen::Matrix<double, 1, 1>(height(sample)));
+      }
       if (extent.diagonal().norm() < 0.1) continue;
       ++lifts.moving;
-      const double begin = body.samples.front().p[axis] * scale_,
-                   end = body.samples.back().p[axis] * scale_;
-      const double rise_m = extent.max()[axis] - std::max(begin, end);
-      const double dip_m = std::min(begin, end) - extent.min()[axis];
+      const double begin = height(body.samples.front()), end = height(body.samples.back());
+      const double rise_m = heights.max().x() - std::max(begin, end);
+      const double dip_m = std::min(begin, end) - heights.min().x();
       if (rise_m < kLift_m || dip_m > kDip_m) continue;
       ++lifts.lifted;
       if (rise_m <= lifts.highest_m) continue;
@@ -163,28 +169,32 @@ class DoubtFinder {
   }
 
   void Up() {
-    const int up = map_.up.value;
+    const Eigen::Vector3d up = map_.Up();
+    int nearest = 0;  // of the file's axes to up
+    up.cwiseAbs().maxCoeff(&nearest);
+    const std::string stated_up = map_.up ? "up" : std::string(1, kAxes[nearest]);
     if (poses_.stature) {
       int tallest = 0;
       poses_.stature->maxCoeff(&tallest);
-      if (tallest != up)
-        Add(map_.up.where, Doubt::kAxes,
+      const double along_up = poses_.stature->dot(up);
+      if (tallest != nearest && along_up < 0.7 * poses_.stature->norm())
+        Add(map_.UpWhere(), Doubt::kAxes,
             fmt::format("the head is {:.2f} m from the feet along {}, and {:.2f} m along {}: {} "
                         "looks up",
-                        (*poses_.stature)[tallest] * scale_, kAxes[tallest],
-                        (*poses_.stature)[up] * scale_, kAxes[up], kAxes[tallest]),
+                        (*poses_.stature)[tallest] * scale_, kAxes[tallest], along_up * scale_,
+                        stated_up, kAxes[tallest]),
             fmt::format("axes: {}_up", kAxes[tallest]));
       return;
     }
     const Lifts stated = LiftsAlong(up);
     if (stated.moving == 0 || stated.lifted > 0) return;
     for (const int axis : {1, 2, 0}) {
-      const Lifts other = LiftsAlong(axis);
-      if (axis == up || other.lifted < other.moving) continue;
-      Add(map_.up.where, Doubt::kAxes,
+      const Lifts other = LiftsAlong(Eigen::Vector3d::Unit(axis));
+      if (axis == nearest || other.lifted < other.moving) continue;
+      Add(map_.UpWhere(), Doubt::kAxes,
           fmt::format("nothing is lifted along {}, but '{}' rises {:.2f} m along {} and comes "
                       "down again: {} looks up",
-                      kAxes[up], other.example, other.highest_m, kAxes[axis], kAxes[axis]),
+                      stated_up, other.example, other.highest_m, kAxes[axis], kAxes[axis]),
           fmt::format("axes: {}_up", kAxes[axis]));
       return;
     }
@@ -217,11 +227,7 @@ class DoubtFinder {
   }
 
   /// z up, as in the recording.
-  Eigen::Vector3d Upright(const Eigen::Vector3d& p) const {
-    if (map_.up.value == 0) return {p.y(), p.z(), p.x()};
-    if (map_.up.value == 1) return {p.x(), -p.z(), p.y()};
-    return p;
-  }
+  Eigen::Vector3d Upright(const Eigen::Vector3d& p) const { return map_.WorldTurn() * p; }
 
   /// A body that stands as when it was defined has w near 1.
   void Order() {

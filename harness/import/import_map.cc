@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -16,6 +17,7 @@ namespace prehend::harness::import {
 namespace {
 
 constexpr double kMaxPosition_m = 1e4;
+constexpr double kMostTilt_deg = 60;  ///< of `up` from `axes`: farther is another axis
 
 ValueFormat<Columns> ColumnsFormat() {
   const auto name = WithPlace(Text(200));
@@ -86,8 +88,10 @@ ValueFormat<ImportMap> MapFormat() {
       .Optional("metres_per_unit", &M::metres_per_unit, Number(1e-6, 1e3),
                 "The same as a number, where it is none of these.")
       .ExactlyOneOf({"unit", "metres_per_unit"})
-      .Required("axes", &M::up, Choice<int>({{"x_up", 0}, {"y_up", 1}, {"z_up", 2}}),
-                "Which axis of the file points up.")
+      .Optional("axes", &M::axes, Choice<int>({{"x_up", 0}, {"y_up", 1}, {"z_up", 2}}),
+                "Which axis of the file points up. This, or up, or both.")
+      .Optional("up", &M::up, Vector<3>(-1e6, 1e6),
+                "The direction of up in the file's axes, of any length, where no axis points up.")
       .Optional(
           "quaternion_order", &M::quaternion_order,
           Choice<QuaternionOrder>(
@@ -172,10 +176,30 @@ void CheckColumns(const ImportMap& map, const YamlNode& root, DiagnosticList& er
     errors.Add(map.time_unit->where, "time_unit: frame needs rate_hz");
 }
 
+void CheckUp(const ImportMap& map, const YamlNode& root, DiagnosticList& errors) {
+  if (!map.axes && !map.up)
+    return errors.Add(root.where, "'axes' is missing: which axis of the file points up",
+                      "axes: x_up, y_up or z_up; or, where none does, up: [0, -0.82, -0.57], the "
+                      "direction of up in the file's axes");
+  if (!map.up) return;
+  if (map.up->value.norm() < 1e-6)
+    return errors.Add(map.up->where, "expected the direction of up, found a vector of length 0",
+                      "the direction in the file's axes, of any length: up: [0, 1, 0.2]");
+  if (!map.axes) return;
+  const double degrees = std::acos(map.up->value.normalized()[map.axes->value]) * 180 / EIGEN_PI;
+  if (degrees > kMostTilt_deg)
+    errors.Add(map.up->where,
+               fmt::format("up is {:.0f} degrees away from the {} of the file, which 'axes' says "
+                           "points up",
+                           degrees, "xyz"[map.axes->value]),
+               "leave out 'axes', or correct one of the two");
+}
+
 /// Rules across keys.
 void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
               DiagnosticList& errors) {
   const bool is_csv = format == PoseFormat::kCsv;
+  CheckUp(map, root, errors);
   if (is_csv) {
     CheckColumns(map, root, errors);
   } else {
@@ -220,6 +244,25 @@ double ImportMap::MetresPerUnit() const {
   if (metres_per_unit) return metres_per_unit->value;
   constexpr std::array kMetres = {1.0, 1e-2, 1e-3, 0.0254};
   return kMetres[static_cast<std::size_t>(unit->value)];
+}
+
+Eigen::Quaterniond ImportMap::AxesTurn() const {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  if (axes && axes->value == 0) turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+  if (axes && axes->value == 1) turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return Eigen::Quaterniond(turn);
+}
+
+Eigen::Quaterniond ImportMap::WorldTurn() const {
+  const Eigen::Quaterniond turn = AxesTurn();
+  if (!up) return turn;
+  return Eigen::Quaterniond::FromTwoVectors(turn * up->value.normalized(),
+                                            Eigen::Vector3d::UnitZ()) *
+         turn;
+}
+
+Eigen::Vector3d ImportMap::Up() const {
+  return up ? Eigen::Vector3d(up->value.normalized()) : Eigen::Vector3d::Unit(axes->value);
 }
 
 bool IsBag(const std::string& poses_path) { return EndingOf(poses_path) == ".bag"; }

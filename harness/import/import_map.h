@@ -3,7 +3,7 @@
 // by tests/program/import_test.cc
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <optional>
 #include <string>
@@ -66,7 +66,8 @@ struct ImportMap {
   Located<std::string> grammar = {"pick_and_place_from_motion", {}};
   std::optional<Located<LengthUnit>> unit;         ///< this, or
   std::optional<Located<double>> metres_per_unit;  ///< this
-  Located<int> up;                                 ///< an axis of the file: 0 x, 1 y, 2 z
+  std::optional<Located<int>> axes;  ///< which axis of the file is up: 0 x, 1 y, 2 z; this or
+  std::optional<Located<Eigen::Vector3d>> up;  ///< the direction of up in the file's axes, or both
   std::optional<Located<QuaternionOrder>> quaternion_order;
   std::optional<Located<TimeUnit>> time_unit;  ///< of CSV only
   std::optional<Located<double>> rate_hz;
@@ -85,6 +86,15 @@ struct ImportMap {
 
   bool IsSure(Doubt doubt) const;
   double MetresPerUnit() const;
+  /// From the file's axes to those of which `axes` is z: of positions, and of bodies' own axes.
+  Eigen::Quaterniond AxesTurn() const;
+  /// From the file's axes to the recording's, z up: of positions. `up` turns the world, the
+  /// shortest way, and not the bodies' own axes.
+  Eigen::Quaterniond WorldTurn() const;
+  /// In the file's axes.
+  Eigen::Vector3d Up() const;
+  /// Where the map says what is up.
+  const Where& UpWhere() const { return up ? up->where : axes->where; }
   /// Where the map says it.
   const Where& UnitWhere() const { return unit ? unit->where : metres_per_unit->where; }
 };

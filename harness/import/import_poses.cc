@@ -13,6 +13,7 @@
 #include "grammar/base/tracking.h"
 #include "grammar/base/wording.h"
 #include "harness/import/doubts.h"
+#include "harness/import/rest_plane.h"
 #include "harness/import/rests.h"
 #include "harness/yaml/error_at.h"
 
@@ -34,14 +35,6 @@ std::string EpisodeName(const ImportMap& map, const std::string& path) {
   }
   if (name.empty() || (name[0] >= '0' && name[0] <= '9')) name = "take_" + name;
   return name;
-}
-
-/// From the file's axes to z up.
-Eigen::Quaterniond TurnOf(int up) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  if (up == 0) turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
-  if (up == 1) turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-  return Eigen::Quaterniond(turn);
 }
 
 struct Pose {
@@ -162,6 +155,9 @@ class Importer {
           {.file = file_.file, .place = {}, .message = problem, .source_line = {}, .hint = {}}});
     AddFrames();
     if (std::string text = RestOnNothing(imported_.episode); !text.empty()) Warn(std::move(text));
+    if (std::string text = TiltOfRests(imported_.episode, map_.WorldTurn()); !text.empty())
+      Warn(std::move(text));
+    WarnOfNoOrientations();
     for (const std::string& body : file_.unused)
       Warn(fmt::format("the file has '{}', which the map does not mention", body));
     return std::move(imported_);
@@ -220,9 +216,9 @@ class Importer {
   }
 
   std::vector<Pose> Converted(const PoseBody& body, const MappedEntity& entity) const {
-    const Eigen::Quaterniond turn = TurnOf(map_.up.value);
+    const Eigen::Quaterniond turn = map_.WorldTurn(), axes = map_.AxesTurn();
     const double scale = map_.MetresPerUnit();
-    const auto upright = [&](const Eigen::Quaterniond& q) { return turn * q * turn.conjugate(); };
+    const auto upright = [&](const Eigen::Quaterniond& q) { return turn * q * axes.conjugate(); };
     Eigen::Quaterniond rest = Eigen::Quaterniond::Identity();
     if (entity.upright_at_s) {
       const double t_s = entity.upright_at_s->value;
@@ -327,6 +323,18 @@ class Importer {
                      smooth_s_ > map_.smooth_s
                          ? fmt::format("; smooth_s: {:g} takes means over that long", smooth_s_)
                          : ""));
+  }
+
+  /// What nobody can judge without them.
+  void WarnOfNoOrientations() {
+    if (file_.has_orientations) return;
+    std::size_t poses = 0;
+    for (const PoseBody& body : file_.bodies) poses += body.samples.size();
+    Warn(
+        fmt::format("the file has positions only, {} of {} {}, and no orientations: every tilt(..) "
+                    "is 0, so no pouring is recognised, hold_tips cannot tell what is tipped in a "
+                    "hand from what was put down, and up is always up in a thing (boxes, offset_m)",
+                    poses, file_.bodies.size(), file_.bodies.size() == 1 ? "body" : "bodies"));
   }
 
   std::int64_t TickOf(double t_s) const {

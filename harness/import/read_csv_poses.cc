@@ -58,7 +58,8 @@ class CsvPoseReader {
     separator_ = kSeparators[static_cast<std::size_t>(map_.separator)];
     poses.bodies = BodiesOf(map_, map_errors_);
     for (std::size_t i = 0; i < poses.bodies.size(); ++i) index_.emplace(poses.bodies[i].name, i);
-    if (!map_.columns.quaternion.empty()) poses.quaternion_order = map_.quaternion_order->value;
+    poses.has_orientations = !map_.columns.quaternion.empty();
+    if (poses.has_orientations) poses.quaternion_order = map_.quaternion_order->value;
   }
 
   void Read() {

@@ -25,6 +25,11 @@ constexpr std::int64_t kLast_ns = std::int64_t{1} << 62;  ///< in the year 2116
 constexpr double kMostDuration_s = 1e5;
 constexpr std::size_t kMostDeep = 200;  ///< frames in frames
 constexpr std::ptrdiff_t kMostNamed = 4;
+constexpr std::size_t kMostTopics = 20;  ///< that an error names
+constexpr const char* kReadTypes =
+    "read are PoseStamped, PoseArray, TransformStamped and TFMessage of ROS as JSON, CDR or ROS 1, "
+    "and PoseInFrame, PosesInFrame, FrameTransform and FrameTransforms of Foxglove as JSON "
+    "(docs/motion-capture.md)";
 constexpr std::int64_t kMostBack_ns = 1'000'000'000;  ///< more than this is another clock
 
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
@@ -189,20 +194,38 @@ class McapPoseReader {
 
   void RefuseUnknown(const Located<std::string>& from) {
     if (const auto unread = unread_.find(from.value); unread != unread_.end())
-      return map_errors_.Add(
-          from.where,
-          fmt::format("the messages of '{}' are of a type that is not read: {}", from.value,
-                      unread->second),
-          "read are poses and transforms of Foxglove as JSON and of ROS as JSON, CDR or ROS 1 "
-          "(docs/motion-capture.md)");
+      return map_errors_.Add(from.where,
+                             fmt::format("the messages of '{}' are of a type that is not read: {}",
+                                         from.value, unread->second),
+                             kReadTypes);
     std::vector<std::string> names;
     for (const auto* series : {&topics_, &tree_.links}) {
       for (const auto& [name, link] : *series) names.push_back(name);
     }
+    if (names.empty() && !unread_.empty()) return RefuseAllTypes(from);
     map_errors_.AddUnknownName(
         from.where,
         fmt::format("no topic of poses, no body and no frame is called '{}'", from.value),
         from.value, names);
+  }
+
+  /// Once for all bodies.
+  void RefuseAllTypes(const Located<std::string>& from) {
+    if (!map_errors_.empty()) return;
+    std::string topics;
+    std::size_t named = 0;
+    for (const auto& [topic, type] : unread_) {
+      if (named++ == kMostTopics) break;
+      topics += fmt::format("{}'{}': {}", topics.empty() ? "" : ", ", ReadableName(topic),
+                            ReadableName(type));
+    }
+    if (unread_.size() > kMostTopics)
+      topics += fmt::format(" and {} more", unread_.size() - kMostTopics);
+    map_errors_.Add(
+        from.where,
+        fmt::format("the file has no topic of a type that is read, so no '{}'; it has {}",
+                    from.value, topics),
+        kReadTypes);
   }
 
   /// The frame that is the recording's, or "" after an error.

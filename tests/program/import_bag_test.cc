@@ -117,5 +117,22 @@ TEST_F(ImportBag, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
   }
 }
 
+TEST_F(ImportBag, TopicsOfTypesThatAreNotReadAreNamedWithTheirTypes) {
+  std::string records = BagConnection(0, "/markers", "vicon_bridge/Markers") +
+                        BagConnection(1, "/odom", "nav_msgs/Odometry");
+  const Said said = Import(BagHead() + records + BagMessage(0, kEpoch_ns, "some bytes"));
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_NE(
+      said.err.find(
+          "map.yaml:7:15: error: the file has no topic of a type that is read, so no 'mug'; it "
+          "has '/markers': vicon_bridge/Markers (ros1), '/odom': nav_msgs/Odometry (ros1)\n"),
+      std::string::npos)
+      << said.err;
+  EXPECT_NE(said.err.find("hint: read are PoseStamped, PoseArray, TransformStamped and TFMessage"),
+            std::string::npos)
+      << said.err;
+  EXPECT_EQ(said.err.find("/tracker"), std::string::npos) << "said once\n" << said.err;
+}
+
 }  // namespace
 }  // namespace prehend::house

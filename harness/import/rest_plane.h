@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plane on which things rest, where that is not level: the frame of the tracker does not stand
+// upright. Tested by tests/program/import_up_test.cc
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+
+#include "harness/sense/episode_file.h"
+
+namespace prehend::harness::import {
+
+/// Says by how much the plane is tilted on which most things rest, how well it is known, and what
+/// the map could say; "" where that is less than 5 degrees, or too few places tell. `turn`: from
+/// the file's axes to the recording's.
+std::string TiltOfRests(const Episode& episode, const Eigen::Quaterniond& turn);
+
+}  // namespace prehend::harness::import
