@@ -18,6 +18,7 @@
 #include "harness/oracle/oracle.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/load_grammar.h"
+#include "harness/run/load_run.h"
 #include "harness/score/closed_form_score.h"
 #include "harness/score/score_json.h"
 #include "harness/score/score_scenario.h"
@@ -58,12 +59,14 @@ std::string Judged(const ScoreRequest& request) {
 std::vector<std::vector<EpisodeToScore>> JudgeAll(const ScenarioSelection& selection,
                                                   const std::vector<std::string>& grammars,
                                                   const std::vector<std::string>& events,
+                                                  const grammar::Overrides& settings,
                                                   const CommandContext& context, ExitCode& worst) {
   std::vector<WorkerJob> jobs;
   std::vector<std::string> ids;
   for (const ScenarioFile& file : selection.scenarios) {
     ids.push_back(IdOf(file));
-    const ScoreRequest request{file.path, file.episode, ids.back(), context.root, grammars, events};
+    const ScoreRequest request{file.path, file.episode, ids.back(), context.root,
+                               grammars,  events,       settings};
     jobs.push_back([request] { return Judged(request); });
   }
   const WorkerLimits limits{.jobs = CoreCount(), .time_limit_s = kTimeLimit_s};
@@ -206,6 +209,8 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
                     options.Has("names") ? "--episode: no episode matches"
                                          : "--truth: which recordings? score take1.jsonl --truth "
                                            "take1.csv");
+  const Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
+  if (!settings) return Complain(context, settings.error());
   std::vector<std::string> grammars = options.All("--grammar");
   if (grammars.empty()) {
     Result<std::string> own = labels::OwnGrammar(*takes);
@@ -222,11 +227,13 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
     opened.push_back(std::move(*take));
   }
   for (std::size_t g = 0; g < grammars.size(); ++g) {
-    const grammar::CompileResult compiled = LoadGrammar(context.root, grammars[g]);
+    const grammar::CompileResult compiled = LoadGrammar(context.root, grammars[g], *settings);
     if (!compiled.program) return Complain(context, compiled.diagnostics);
-    const auto truths = labels::ReadTruths(*takes, options.All("--truth"), options.Text("--map"),
-                                           *compiled.program);
+    const auto truths = labels::ReadTruths(
+        *takes, options.All("--truth"), options.Text("--map"), *compiled.program,
+        options.Has("--skip-bad-labels") ? labels::Backward::kSkip : labels::Backward::kRefuse);
     if (!truths) return Complain(context, truths.error());
+    if (g == 0) context.err << labels::BackwardWarning(*truths);
     std::vector<std::pair<grammar::Timeline, grammar::Timeline>> compared;
     for (std::size_t i = 0; i < opened.size(); ++i) {
       const labels::Take& take = opened[i];
@@ -303,8 +310,13 @@ ExitCode RunClosedForms(const std::vector<ClosedFormWitness>& recognisers,
 ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--truth")) return RunLabels(options, context);
   std::vector<std::string> grammars = options.All("--grammar");
-  if (grammars.empty()) grammars = {kDefaultGrammar, "original_2020"};
-  for (const char* of_labels : {"--map", "--episode"}) {
+  // The baseline keeps the authors' numbers.
+  if (grammars.empty())
+    grammars = options.Has("--set") ? std::vector<std::string>{kDefaultGrammar}
+                                    : std::vector<std::string>{kDefaultGrammar, "original_2020"};
+  const Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
+  if (!settings) return Complain(context, settings.error());
+  for (const char* of_labels : {"--map", "--episode", "--skip-bad-labels"}) {
     if (options.Has(of_labels))
       return Complain(context, ExitCode::kBadInput,
                       fmt::format("{} needs --truth: where are the labels?", of_labels));
@@ -315,7 +327,7 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   std::vector<std::vector<std::string>> not_covered;
   std::vector<ClosedFormWitness> recognisers;
   for (const std::string& name : grammars) {
-    const grammar::CompileResult compiled = LoadGrammar(context.root, name);
+    const grammar::CompileResult compiled = LoadGrammar(context.root, name, *settings);
     if (!compiled.program) return Complain(context, compiled.diagnostics);
     not_covered.push_back(NotCovered(*compiled.program, events));
     recognisers.push_back(GrammarWitness(name, compiled.program));
@@ -332,7 +344,7 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
 
   ExitCode worst = ExitCode::kAgrees;
-  const auto by_grammar = JudgeAll(*selection, grammars, events, context, worst);
+  const auto by_grammar = JudgeAll(*selection, grammars, events, *settings, context, worst);
   if (by_grammar.front().empty()) return worst;  // no table of nothing
   const double collar_s = options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
   std::vector<score::Score> scores;
@@ -362,56 +374,65 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
 }  // namespace
 
 Command ScoreCommand() {
-  return {.name = "score",
-          .summary = "Score grammars against what physically happened",
-          .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
-                       "score --grammar my/rules.grammar --events grasping,sliding",
-                       "score 'slide/*' --collar-ms 20 --json", "score --closed-form",
-                       "score take1.jsonl take2.jsonl --truth labels --map labels.yaml --grammar "
-                       "pick_and_place_from_motion"},
-          .options = {{.name = "names",
-                       .help = "names, skill/name, globs or files; default: all scenarios",
-                       .repeatable = true},
-                      {.name = "--filter",
-                       .help = "keep those that match this glob or have the tag; as of 'check'",
-                       .placeholder = "[!]GLOB|[!]tag:NAME",
-                       .repeatable = true},
-                      {.name = "--grammar",
-                       .help = "a grammar to score; may be repeated; default: pick_and_place and\n"
-                               "original_2020; with --truth that of the recordings",
-                       .placeholder = "NAME|FILE",
-                       .repeatable = true},
-                      {.name = "--truth",
-                       .help = "labels by people (.csv, .eaf, .TextGrid) of the recordings or\n"
-                               "episode files that are named, one file for each or a folder\n"
-                               "(docs/labels.md); may be repeated",
-                       .placeholder = "FILE|FOLDER",
-                       .repeatable = true},
-                      {.name = "--map",
-                       .help = "what the labels mean: a YAML file; without it labels are events,\n"
-                               "like grasping(right_hand, cup)",
-                       .placeholder = "FILE"},
-                      {.name = "--episode",
-                       .help = "with --truth: only these episodes of episode files",
-                       .placeholder = "WHICH"},
-                      {.name = "--events",
-                       .help = "score only these events; default: all that docs/events.md defines",
-                       .placeholder = "NAME,..",
-                       .repeatable = true},
-                      {.name = "--collar-ms",
-                       .help = fmt::format("tolerance of a boundary for the scores at a collar; "
-                                           "default: {}",
-                                           kDefaultCollar_ms),
-                       .placeholder = "MS",
-                       .rule = NumbersFrom(0, 10000)},
-                      {.name = "--differences",
-                       .help = "list every event that differs from what a witness says, or\n"
-                               "from the labels"},
-                      {.name = "--closed-form",
-                       .help = "score on recordings whose events are known on paper, instead of\n"
-                               "scenarios; the oracle is scored, too (docs/closed-form.md)"},
-                      {.name = "--json", .help = "print one JSON object instead of tables"}},
-          .run = RunScore};
+  return {
+      .name = "score",
+      .summary = "Score grammars against what physically happened",
+      .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
+                   "score --grammar my/rules.grammar --events grasping,sliding",
+                   "score 'slide/*' --collar-ms 20 --json", "score --closed-form",
+                   "score take1.jsonl take2.jsonl --truth labels --map labels.yaml --grammar "
+                   "pick_and_place_from_motion"},
+      .options = {{.name = "names",
+                   .help = "names, skill/name, globs or files; default: all scenarios",
+                   .repeatable = true},
+                  {.name = "--filter",
+                   .help = "keep those that match this glob or have the tag; as of 'check'",
+                   .placeholder = "[!]GLOB|[!]tag:NAME",
+                   .repeatable = true},
+                  {.name = "--grammar",
+                   .help = "a grammar to score; may be repeated; default: pick_and_place and\n"
+                           "original_2020 (with --set the first alone); with --truth that of the\n"
+                           "recordings",
+                   .placeholder = "NAME|FILE",
+                   .repeatable = true},
+                  {.name = "--set",
+                   .help = "set a parameter of the grammars; may be repeated",
+                   .placeholder = "NAME=VALUE",
+                   .repeatable = true},
+                  {.name = "--truth",
+                   .help = "labels by people (.csv, .eaf, .TextGrid) of the recordings or\n"
+                           "episode files that are named, one file for each or a folder\n"
+                           "(docs/labels.md); may be repeated",
+                   .placeholder = "FILE|FOLDER",
+                   .repeatable = true},
+                  {.name = "--map",
+                   .help = "what the labels mean: a YAML file; without it labels are events,\n"
+                           "like grasping(right_hand, cup)",
+                   .placeholder = "FILE"},
+                  {.name = "--skip-bad-labels",
+                   .help = "with --truth: leave out labels that end before they begin, and\n"
+                           "count them"},
+                  {.name = "--episode",
+                   .help = "with --truth: only these episodes of episode files",
+                   .placeholder = "WHICH"},
+                  {.name = "--events",
+                   .help = "score only these events; default: all that docs/events.md defines",
+                   .placeholder = "NAME,..",
+                   .repeatable = true},
+                  {.name = "--collar-ms",
+                   .help = fmt::format("tolerance of a boundary for the scores at a collar; "
+                                       "default: {}",
+                                       kDefaultCollar_ms),
+                   .placeholder = "MS",
+                   .rule = NumbersFrom(0, 10000)},
+                  {.name = "--differences",
+                   .help = "list every event that differs from what a witness says, or\n"
+                           "from the labels"},
+                  {.name = "--closed-form",
+                   .help = "score on recordings whose events are known on paper, instead of\n"
+                           "scenarios; the oracle is scored, too (docs/closed-form.md)"},
+                  {.name = "--json", .help = "print one JSON object instead of tables"}},
+      .run = RunScore};
 }
 
 }  // namespace prehend::harness

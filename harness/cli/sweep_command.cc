@@ -61,11 +61,16 @@ std::optional<sweep::SweepRequest> RequestFrom(const ParsedOptions& options,
   }
   if (request.truth == sweep::Truth::kLabels) request.label_files = truths;
   request.label_map = options.Text("--map");
-  if (request.truth != sweep::Truth::kLabels && options.Has("--map")) {
-    Complain(context, ExitCode::kBadInput, "--map needs labels: --truth FILE or FOLDER");
+  for (const char* of_labels : {"--map", "--skip-bad-labels"}) {
+    if (request.truth == sweep::Truth::kLabels || !options.Has(of_labels)) continue;
+    Complain(context, ExitCode::kBadInput,
+             fmt::format("{} needs labels: --truth FILE or FOLDER", of_labels));
     return std::nullopt;
   }
   request.collar_s = options.NumberOr("--collar-ms", kDefaultSweepCollar_ms) / 1000;
+  // People agree to a few tenths of a second; goldens are exact.
+  request.by_overlap = request.truth == sweep::Truth::kLabels && !options.Has("--collar-ms");
+  request.skip_bad_labels = options.Has("--skip-bad-labels");
   request.jobs = options.IntOr("--jobs", CoreCount());
   for (const char* output : outputs) {
     const std::string why = options.Has(output) ? WhyNotWritable(options.Text(output)) : "";
@@ -110,6 +115,7 @@ std::optional<ExitCode> ComplainOf(const sweep::SweepResult& result,
   if (request.truth == sweep::Truth::kLabels && !result.left_out.empty())
     return Complain(context, ExitCode::kBadInput, result.left_out.front());
   if (!result.unread.empty()) return Complain(context, ExitCode::kBadInput, result.unread.front());
+  context.err << result.label_warning;
   for (const std::string& line : result.left_out)
     context.err << "prehend: left out: " << line << "\n";
   if (result.episodes == 0)
@@ -184,9 +190,15 @@ Option TruthOption() {
 Option MapOption() {
   return {.name = "--map", .help = "what labels mean: a YAML file", .placeholder = "FILE"};
 }
+Option SkipOption() {
+  return {.name = "--skip-bad-labels",
+          .help = "leave out labels that end before they begin, and count them"};
+}
 Option CollarOption() {
   return {.name = "--collar-ms",
-          .help = "an event is right if both boundaries are so near; default: 50",
+          .help =
+              "an event is right if both boundaries are so near; default: 50, and with labels\n"
+              "by people what has half of the union with its label in common (F1@50)",
           .placeholder = "MS",
           .rule = NumbersFrom(0, 1e6)};
 }
@@ -216,6 +228,7 @@ Command MarginsCommand() {
                        .repeatable = true},
                       TruthOption(),
                       MapOption(),
+                      SkipOption(),
                       CollarOption(),
                       {.name = "--within",
                        .help = "how many percent of F1 a score may be below the best; default: 1",
@@ -257,6 +270,7 @@ Command SweepCommand() {
                    .repeatable = true},
                   TruthOption(),
                   MapOption(),
+                  SkipOption(),
                   CollarOption(),
                   {.name = "--within",
                    .help = "the plateau: settings whose F1 is within so many percent of the "

@@ -53,6 +53,7 @@ class LabelReading {
   static Result<LabelReading> Of(std::vector<LabelFile> files, const LabelMap* map,
                                  const std::vector<grammar::EventSignature>& events);
 
+  const std::vector<LabelFile>& files() const { return files_; }
   const ComparedRoles& compared() const { return compared_; }
   /// What the map adds to all times.
   double offset_s() const { return offset_s_; }

@@ -231,6 +231,27 @@ Result<CsvColumns> ColumnsOf(const LabelFile& file, const std::vector<std::strin
   return columns;
 }
 
+/// Leaves them out, or says what is wrong with each.
+void TakeBackward(LabelFile& file, Backward how, Diagnostics& problems) {
+  const auto is_backward = [](const Label& label) { return label.end_s < label.begin_s; };
+  if (how == Backward::kSkip) {
+    file.backward = std::erase_if(file.labels, is_backward);
+    return;
+  }
+  const auto count = static_cast<std::size_t>(std::ranges::count_if(file.labels, is_backward));
+  std::size_t told = 0;
+  for (const Label& label : file.labels) {
+    if (!is_backward(label) || told == kMostBackward) continue;
+    problems.push_back(
+        file.At(label.place, fmt::format("'{}' ends before it begins: {:g} s to {:g} s", label.text,
+                                         label.begin_s, label.end_s)));
+    if (++told < std::min(count, kMostBackward)) continue;
+    problems.back().hint = fmt::format(
+        "{}--skip-bad-labels leaves out what ends before it begins",
+        count > told ? fmt::format("there are {} such labels in the file; ", count) : "");
+  }
+}
+
 }  // namespace
 
 grammar::Diagnostic LabelFile::At(Place place, std::string message, std::string hint) const {
@@ -248,7 +269,7 @@ bool IsLabelFile(const std::string& path) {
   });
 }
 
-Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv) {
+Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv, Backward backward) {
   Result<std::string> text = ReadAnyUtf(path);
   if (!text) return tl::unexpected(std::move(text.error()));
   LabelFile file{.file = path, .text = std::move(*text), .labels = {}};
@@ -266,13 +287,7 @@ Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv) {
     problems = {file.At({}, "no file of labels, which end in " +
                                 fmt::format("{}", fmt::join(LabelEndings(), ", ")))};
   }
-  for (const Label& label : file.labels) {
-    if (problems.size() >= kMostComplaints) break;
-    if (label.end_s < label.begin_s)
-      problems.push_back(
-          file.At(label.place, fmt::format("'{}' ends before it begins: {:g} s to {:g} s",
-                                           label.text, label.begin_s, label.end_s)));
-  }
+  TakeBackward(file, backward, problems);
   if (problems.empty() && file.labels.empty()) problems.push_back(file.At({}, "it has no labels"));
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   return file;

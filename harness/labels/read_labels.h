@@ -14,6 +14,8 @@ namespace prehend::harness::labels {
 
 /// Errors of one file that are told.
 inline constexpr std::size_t kMostComplaints = 12;
+/// Labels that end before they begin, of which each is told.
+inline constexpr std::size_t kMostBackward = 20;
 
 struct Label {
   double begin_s = 0, end_s = 0;
@@ -35,6 +37,7 @@ struct LabelFile {
   std::string file;
   std::string text;           ///< of the file as UTF-8, for messages
   std::vector<Label> labels;  ///< without empty ones, in the order of the file
+  std::size_t backward = 0;   ///< labels that end before they begin, which were left out
 
   grammar::Diagnostic At(grammar::Place place, std::string message, std::string hint = {}) const;
 };
@@ -44,8 +47,13 @@ bool IsLabelFile(const std::string& path);
 /// The endings above.
 const std::vector<std::string>& LabelEndings();
 
-/// Errors have file, line and column; at most a dozen. `csv`: of comma-separated values only.
-Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv = {});
+/// What is done with labels that end before they begin.
+enum class Backward { kRefuse, kSkip };
+
+/// Errors have file, line and column; at most a dozen, and twenty labels that end before they
+/// begin. `csv`: of comma-separated values only.
+Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv = {},
+                             Backward backward = Backward::kRefuse);
 
 // The readers of one format each; `text` is that of the file. They fill `file.labels`.
 /// Times are numbers, or 1:02:03.5 and 02:03.5.

@@ -12,9 +12,13 @@
 namespace prehend::harness::labels {
 
 /// `given`: files of labels or a folder; `map`: a file, or "" for none. What is read has one file
-/// per take.
+/// per take. Errors of all files are told together.
 Result<LabelReading> ReadTruths(const std::vector<TakeName>& takes,
                                 const std::vector<std::string>& given, const std::string& map,
-                                const grammar::Program& program);
+                                const grammar::Program& program,
+                                Backward backward = Backward::kRefuse);
+
+/// What a reading left out, as a line of warning; "" if it left out nothing.
+std::string BackwardWarning(const LabelReading& reading);
 
 }  // namespace prehend::harness::labels

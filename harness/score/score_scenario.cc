@@ -89,7 +89,7 @@ tl::expected<std::vector<score::EpisodeToScore>, ScoreFailure> EpisodesToScore(
     possible.push_back(Scored(truth, request.events));
   std::vector<score::EpisodeToScore> episodes;
   for (const std::string& name : request.grammars) {
-    const grammar::CompileResult compiled = LoadGrammar(request.root, name);
+    const grammar::CompileResult compiled = LoadGrammar(request.root, name, request.settings);
     if (!compiled.program) return tl::unexpected(ScoreFailure{compiled.diagnostics});
     const grammar::Timeline found = Resegment(scenario, run.recording, compiled.program, end);
     score::EpisodeToScore& episode = episodes.emplace_back();

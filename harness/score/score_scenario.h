@@ -7,6 +7,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "grammar/monitor.h"
 #include "harness/base/result.h"
 #include "harness/score/score.h"
 
@@ -19,6 +20,7 @@ struct ScoreRequest {
   std::string root;
   std::vector<std::string> grammars;  ///< names or paths
   std::vector<std::string> events;    ///< only these are scored; empty: all that the oracle defines
+  grammar::Overrides settings = {};   ///< of parameters of all grammars
 };
 
 /// Why an episode cannot be scored.

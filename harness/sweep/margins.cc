@@ -120,8 +120,11 @@ std::string MarginsText(const Margins& margins, double within) {
   for (const std::string& line : AlignColumns(rows)) text += line + "\n";
   text += fmt::format(
       "{} recording{}; each parameter from an eighth to eight times its value, the others as they "
-      "are;\na score stays if it is within {:g} percent of the best of its row\n",
-      margins.sweep.episodes, margins.sweep.episodes == 1 ? "" : "s", 100 * within);
+      "are;\na score stays if it is within {:g} percent of the best of its row\n{}\n",
+      margins.sweep.episodes, margins.sweep.episodes == 1 ? "" : "s", 100 * within,
+      margins.sweep.measure);
+  if (std::ranges::all_of(margins.margins, [](const Margin& margin) { return margin.best == 0; }))
+    return text + "every score is 0: no event is right with any value of any parameter\n";
   if (!idle.empty())
     text += fmt::format("without any effect on these recordings: {}\n", fmt::join(idle, ", "));
   if (!margins.without.empty())

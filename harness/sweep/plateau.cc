@@ -75,6 +75,7 @@ Plateau FindPlateau(const std::vector<Axis>& axes, const std::vector<SweepPoint>
                     double within) {
   Plateau plateau;
   for (const SweepPoint& point : points) plateau.best = std::max(plateau.best, point.f1);
+  if (plateau.best == 0) return plateau;
   std::vector<bool> good;
   for (const SweepPoint& point : points) good.push_back(point.f1 >= plateau.best - within);
   const std::vector<std::size_t> steps = StepsToWorse(axes, good);
@@ -119,9 +120,16 @@ std::string CsvText(const std::vector<Axis>& axes, const std::vector<SweepPoint>
 std::string PlateauText(const std::vector<Axis>& axes, const SweepResult& result, double within) {
   const Plateau plateau = FindPlateau(axes, result.points, within);
   const SweepPoint& chosen = result.points[plateau.chosen];
-  std::string text = fmt::format("{} on {}; the best F1 is {:.2f} %\n",
-                                 grammar::CountOf(result.points.size(), "setting"),
-                                 grammar::CountOf(result.episodes, "episode"), 100 * plateau.best);
+  const std::string measure = result.measure.empty() ? "" : result.measure + "\n";
+  const std::string tried =
+      fmt::format("{} on {}", grammar::CountOf(result.points.size(), "setting"),
+                  grammar::CountOf(result.episodes, "episode"));
+  if (plateau.members.empty())
+    return fmt::format(
+        "{}; every one scores 0: no event is right with any of them, so none is the best\n{}",
+        tried, measure);
+  std::string text =
+      fmt::format("{}; the best F1 is {:.2f} %\n{}", tried, 100 * plateau.best, measure);
   text += fmt::format("within {:g} % of it, around the setting named last: {} settings\n",
                       100 * within, plateau.members.size());
   for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -191,10 +199,10 @@ std::string HeatMapSvg(const std::vector<Axis>& axes, const std::vector<SweepPoi
                 {"width", fmt::format("{:g}", kCell - 2)},
                 {"height", fmt::format("{:g}", kHeight - 2)},
                 {"fill", ColorOf(share)},
-                {"stroke", i == plateau.chosen ? "#d00"
-                           : member            ? "#000"
-                                               : "none"},
-                {"stroke-width", i == plateau.chosen ? "3" : "1"}});
+                {"stroke", !member               ? "none"
+                           : i == plateau.chosen ? "#d00"
+                                                 : "#000"},
+                {"stroke-width", member && i == plateau.chosen ? "3" : "1"}});
     write(x + kCell / 2, y + kHeight / 2 + 4, fmt::format("{:.1f}", 100 * point.f1), "middle",
           share > 0.6 ? "#000" : "#fff");
   }
@@ -204,7 +212,10 @@ std::string HeatMapSvg(const std::vector<Axis>& axes, const std::vector<SweepPoi
   for (std::size_t row = 0; axes.size() > 1 && row < rows; ++row)
     write(kLeft - 6, kTop + kHeight * (count(row) + 0.5) + 4, axes[axes.size() - 2].ValueText(row),
           "end", "#222");
-  write(kLeft, height - 10, across.parameter + "; framed: the plateau; red: farthest from its edge",
+  write(kLeft, height - 10,
+        across.parameter + (plateau.members.empty()
+                                ? "; every setting scores 0"
+                                : "; framed: the plateau; red: farthest from its edge"),
         "start", "#222");
   return ToText(document, Layout::kIndented);
 }

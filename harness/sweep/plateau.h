@@ -12,7 +12,8 @@ namespace prehend::harness::sweep {
 
 /// The settings whose score is within a distance of the best, and that hang together with the
 /// chosen one: of all such settings the one that is farthest from any worse one, and from the
-/// border of what was tried; of equals the best, then the first.
+/// border of what was tried; of equals the best, then the first. Without members if no setting has
+/// a score above 0.
 struct Plateau {
   double best = 0;
   std::size_t chosen = 0;            ///< index of a point

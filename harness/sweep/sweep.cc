@@ -27,6 +27,7 @@ using Json = nlohmann::json;
 using Programs = std::vector<std::shared_ptr<const grammar::Program>>;
 
 constexpr double kTimeLimit_s = 3600;
+constexpr double kLeastOverlap = 0.5;  ///< F1@50
 constexpr std::size_t kSlicesPerJob = 4;
 
 /// Number and unit off a text: "10cm".
@@ -104,9 +105,12 @@ Json Judged(const grammar::Timeline& truth, grammar::Timeline found, const Sweep
         std::llround(1e6 * static_cast<double>(std::abs(offset)) / per_s));
   };
   const score::LabelledEpisode episode = score::Labelled(truth, found, ticks);
-  const score::Hits hits = score::MatchWithCollar(episode.whole.truth, episode.whole.prediction,
-                                                  request.collar_s * per_s, 0)
-                               .AsHits();
+  const score::Hits hits =
+      request.by_overlap
+          ? score::HitsByOverlap(episode.whole.truth, episode.whole.prediction, kLeastOverlap)
+          : score::MatchWithCollar(episode.whole.truth, episode.whole.prediction,
+                                   request.collar_s * per_s, 0)
+                .AsHits();
   Json begins = Json::array(), ends = Json::array(), latencies = Json::array();
   for (const LabelAgreement& label :
        Agree(truth, found, static_cast<grammar::Tick>(request.collar_s * per_s)).labels) {
@@ -234,14 +238,23 @@ std::optional<Axis> ParseAxis(const std::string& text, std::string& problem) {
   return axis;
 }
 
+std::string MeasureText(const SweepRequest& request) {
+  if (request.by_overlap)
+    return "F1@50: an event is right if it and its label have half of their union in common; "
+           "--collar-ms asks for both boundaries instead";
+  return fmt::format("F1: an event is right if both boundaries are within {:g} ms",
+                     1000 * request.collar_s);
+}
+
 Result<SweepResult> Sweep(const std::vector<episodes::EpisodeName>& episodes,
                           const SweepRequest& request) {
   const Result<Programs> programs = CompileAll(request);
   if (!programs) return tl::unexpected(programs.error());
   std::optional<labels::LabelReading> labels;
   if (request.truth == Truth::kLabels) {
-    Result<labels::LabelReading> read =
-        labels::ReadTruths(episodes, request.label_files, request.label_map, *programs->front());
+    Result<labels::LabelReading> read = labels::ReadTruths(
+        episodes, request.label_files, request.label_map, *programs->front(),
+        request.skip_bad_labels ? labels::Backward::kSkip : labels::Backward::kRefuse);
     if (!read) return tl::unexpected(std::move(read.error()));
     labels = std::move(*read);
   }
@@ -262,6 +275,8 @@ Result<SweepResult> Sweep(const std::vector<episodes::EpisodeName>& episodes,
   const auto said = RunInWorkers(jobs, {.jobs = request.jobs, .time_limit_s = kTimeLimit_s});
 
   SweepResult result;
+  result.measure = MeasureText(request);
+  if (labels) result.label_warning = labels::BackwardWarning(*labels);
   result.points.resize(programs->size());
   std::vector<std::vector<std::int64_t>> begins(programs->size()), ends(begins), latencies(begins);
   for (std::size_t slice = 0; slice < slices; ++slice) {

@@ -42,24 +42,31 @@ struct SweepRequest {
   std::vector<std::string> label_files;  ///< one per episode, or one folder
   std::string label_map;                 ///< "": labels are events
   double collar_s = 0.05;
+  bool by_overlap = false;  ///< right is not what lies within the collar, but what has half of the
+                            ///< union with its label in common
+  bool skip_bad_labels = false;  ///< leave out those that end before they begin
   int jobs = 1;
 };
 
 /// How one setting did, over all episodes.
 struct SweepPoint {
-  std::vector<std::size_t> at;  ///< per axis, the index of its value
-  int correct = 0, extra = 0,
-      missed = 0;  ///< events, right if both boundaries are within the collar
-  double f1 = 1;   ///< of these; 1 if there is nothing
+  std::vector<std::size_t> at;                      ///< per axis, the index of its value
+  int correct = 0, extra = 0, missed = 0;           ///< events
+  double f1 = 1;                                    ///< of these; 1 if there is nothing
   double begin_ms = 0, end_ms = 0, latency_ms = 0;  ///< medians of magnitudes; of the latency
 };
 
 struct SweepResult {
   std::vector<SweepPoint> points;  ///< the last axis is the fastest
   int episodes = 0;
+  std::string measure;                ///< "F1@50: .." for people
+  std::string label_warning;          ///< of labels that were left out, or ""
   std::vector<std::string> left_out;  ///< "SCENARIO: why"
   std::vector<std::string> unread;    ///< of these, what cannot be read
 };
+
+/// What makes an event right, for people.
+std::string MeasureText(const SweepRequest& request);
 
 /// One point per setting, or why the grammar cannot be compiled with one.
 Result<SweepResult> Sweep(const std::vector<episodes::EpisodeName>& episodes,

@@ -194,6 +194,16 @@ TEST_F(Labels, FaultyCsvIsNamed) {
   EXPECT_EQ(Problem("a.csv", head + "0,1\n"), "a.csv:2:1: error: found 2 cells, wanted 3");
   EXPECT_EQ(Problem("a.csv", head + "2,1,hold\n"),
             "a.csv:2:5: error: 'hold' ends before it begins: 2 s to 1 s");
+  std::string many = head;
+  for (int i = 0; i < 25; ++i) many += "2,1,hold\n";
+  const Result<LabelFile> backward = ReadLabels(File("a.csv", many));
+  ASSERT_FALSE(backward);
+  EXPECT_EQ(backward.error().size(), kMostBackward);
+  EXPECT_EQ(backward.error().back().place.line, 21);
+  EXPECT_EQ(
+      backward.error().back().hint,
+      "there are 25 such labels in the file; --skip-bad-labels leaves out what ends before it "
+      "begins");
   EXPECT_EQ(Problem("a.csv", head), "a.csv: error: it has no labels");
   EXPECT_EQ(Problem("a.csv", head + "0,1,h\xe9\n"), "a.csv:2:6: error: byte 0xe9 is not UTF-8");
   EXPECT_NE(Problem("a.csv", "").find("a.csv"), std::string::npos);

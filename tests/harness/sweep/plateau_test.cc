@@ -72,7 +72,8 @@ TEST(SweepPlateau, OfTwoParametersHangsTogether) {
   const Plateau plateau = FindPlateau(axes, points, 0.01);
   EXPECT_EQ(plateau.chosen, 12u);
   EXPECT_EQ(plateau.members.size(), 9u);
-  SweepResult result{.points = points, .episodes = 3, .left_out = {}};
+  SweepResult result{
+      .points = points, .episodes = 3, .measure = {}, .label_warning = {}, .left_out = {}};
   const std::string text = PlateauText(axes, result, 0.01);
   EXPECT_NE(text.find("x: 1 to 3"), std::string::npos) << text;
   EXPECT_NE(text.find("farthest from its edge, 2 steps: x = 2 y = 2"), std::string::npos) << text;
@@ -80,6 +81,17 @@ TEST(SweepPlateau, OfTwoParametersHangsTogether) {
   const std::string svg = HeatMapSvg(axes, points, plateau);
   EXPECT_NE(svg.find("stroke=\"#d00\""), std::string::npos);
   EXPECT_EQ(std::count(svg.begin(), svg.end(), '\n') > 50, true);
+}
+
+TEST(SweepPlateau, WhereEverySettingScoresZeroNoneIsTheBest) {
+  const std::vector<Axis> axes = {AxisOf("x=0..2:3")};
+  const auto points = Points(axes, {0, 0, 0});
+  EXPECT_TRUE(FindPlateau(axes, points, 0.005).members.empty());
+  const SweepResult result{
+      .points = points, .episodes = 1, .measure = {}, .label_warning = {}, .left_out = {}};
+  const std::string text = PlateauText(axes, result, 0.005);
+  EXPECT_NE(text.find("every one scores 0"), std::string::npos) << text;
+  EXPECT_EQ(text.find("farthest"), std::string::npos) << text;
 }
 
 }  // namespace
