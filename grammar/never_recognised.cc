@@ -137,6 +137,9 @@ class Judge {
       case Op::kForceBetween:
         if (!facts_.forces) return Missing{0, "forces"};
         break;
+      case Op::kTilt:
+        if (!facts_.orientations) return Missing{0, "orientations"};
+        break;
       case Op::kTouchSpeed:
         if (!facts_.touches) return Missing{0, "touches"};
         break;
@@ -170,7 +173,7 @@ class Judge {
 
 }  // namespace
 
-void FactsOfEpisode::Add(const Frame& frame) {
+void FactsOfEpisode::Add(const Frame& frame, const EntityTable& entities) {
   touches = touches || !frame.touches.empty();
   for (const Touch& touch : frame.touches) {
     sensor_sets = sensor_sets || touch.sensor_sets != 0;
@@ -178,6 +181,11 @@ void FactsOfEpisode::Add(const Frame& frame) {
   }
   for (const HandSample& hand : frame.hands) grips = grips || hand.trigger > 0;
   for (const EntitySample& look : frame.entities) gazes = gazes || look.gazes_at != kNoEntity;
+  for (std::size_t i = 0; i < frame.entities.size() && !orientations; ++i) {
+    const auto& classes = entities.entities[i].classes;
+    orientations = frame.entities[i].q_WB.vec() != Eigen::Vector3d(0, 0, 0) &&
+                   std::ranges::find(classes, "Fixed") == classes.end();
+  }
 }
 
 std::vector<NeverRecognised> FindNeverRecognised(const Program& program,

@@ -19,8 +19,9 @@ struct FactsOfEpisode {
   bool grips = false;
   bool gazes = false;
   bool forces = false;
+  bool orientations = false;  ///< something that can move does not stand upright and not turned
 
-  void Add(const Frame& frame);
+  void Add(const Frame& frame, const EntityTable& entities);
 };
 
 /// An event that asks for what the episode does not have.
@@ -28,7 +29,8 @@ struct NeverRecognised {
   std::string event;
   std::string file;
   Place place;
-  std::string_view fact;  ///< "touches", "sensor sets", "grips", "gazes", "forces"
+  std::string_view fact;  ///< "touches", "sensor sets", "grips", "gazes", "forces",
+                          ///< "orientations"
 };
 
 /// In the order of the grammar. An event that is not among them may be recognised, or may not.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "grammar/contents.h"
 #include "harness/base/default_grammar.h"
@@ -19,6 +20,7 @@
 #include "harness/process/worker_pool.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/load_run.h"
+#include "harness/run/missing_facts.h"
 #include "harness/score/closed_form_score.h"
 #include "harness/score/score_json.h"
 #include "harness/score/score_scenario.h"
@@ -194,6 +196,17 @@ std::string DifferencesOf(const EpisodeToScore& episode, double collar_s) {
   return lines.empty() ? "" : episode.scenario + ":\n" + lines;
 }
 
+/// Each event that is never recognised, once for all takes.
+void WarnOfMissingFacts(const std::vector<labels::Take>& takes, const grammar::Program& program,
+                        const CommandContext& context) {
+  std::set<std::string> said;
+  for (const labels::Take& take : takes) {
+    if (!take.recording) continue;
+    for (const std::string& warning : FindMissingFacts(*take.recording, program).never)
+      if (said.insert(warning).second) context.err << warning;
+  }
+}
+
 /// `score TAKES --truth LABELS`: against what people marked.
 ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) {
   for (const char* other : {"--filter", "--events", "--closed-form"}) {
@@ -235,6 +248,7 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
     if (!truths) return Complain(context, truths.error());
     if (g == 0) context.err << labels::BackwardWarning(*truths);
     std::vector<std::pair<grammar::Timeline, grammar::Timeline>> compared;
+    WarnOfMissingFacts(opened, *compiled.program, context);
     for (std::size_t i = 0; i < opened.size(); ++i) {
       const labels::Take& take = opened[i];
       const auto truth = truths->Truth(i, take.entities, take.ticks_per_second, take.end);

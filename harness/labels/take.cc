@@ -15,7 +15,6 @@
 #include "harness/episodes/schema.h"
 #include "harness/labels/read_labels.h"
 #include "harness/sense/entity_table.h"
-#include "harness/sense/episode_file.h"
 #include "harness/sense/episode_stream.h"
 #include "harness/sense/sensing.h"
 
@@ -31,6 +30,7 @@ Result<Take> TakeOf(Episode read, const std::string& file) {
             .grammar = episode->header.grammar,
             .ticks_per_second = table.ticks_per_second,
             .end = episode->end_tick,
+            .recording = episode,
             .segment = {}};
   take.entities = table.entities;
   take.segment = [episode, file](

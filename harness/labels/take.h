@@ -12,6 +12,7 @@
 #include "grammar/monitor.h"
 #include "harness/base/result.h"
 #include "harness/episodes/resegment_many.h"
+#include "harness/sense/episode_file.h"
 
 namespace prehend::harness::labels {
 
@@ -23,6 +24,7 @@ struct Take {
   std::string grammar;                                   ///< its own
   std::shared_ptr<const grammar::Program> program = {};  ///< of a run, that grammar as it was
   grammar::Tick ticks_per_second = 1, end = 1;
+  std::shared_ptr<Episode> recording = {};  ///< of what was not simulated
   std::function<Result<grammar::Timeline>(std::shared_ptr<const grammar::Program>)> segment;
 };
 

@@ -51,6 +51,9 @@ std::string_view RemedyFor(std::string_view fact, bool uses_motion) {
   if (fact == "gazes") return "give persons or heads 'gazes_at' in their samples";
   if (fact == "forces")
     return "motion does not show forces: give touches 'force_n', or leave these events out";
+  if (fact == "orientations")
+    return "nothing ever turns in it: give samples 'quat_wxyz'; of poses, name the columns of "
+           "quaternions in the map (docs/motion-capture.md)";
   if (uses_motion)
     return "these rules ask for what was measured; contact(a, b), supported_by(a, b) and "
            "grasping(a, b) are made of motion";
@@ -66,7 +69,7 @@ MissingFacts FindMissingFacts(Episode& episode, const grammar::Program& program)
   const std::vector<grammar::EntityInfo>& entities = episode.header.entity_table.entities;
   std::vector<bool> placed = episode.placed;
   placed.resize(entities.size());
-  for (EpisodeFrame& frame : episode.frames) facts.Add(frame.View());
+  for (EpisodeFrame& frame : episode.frames) facts.Add(frame.View(), episode.header.entity_table);
   for (std::size_t i = 0; i < entities.size(); ++i) {
     if (placed[i]) continue;
     missing.warnings += fmt::format(
@@ -81,14 +84,15 @@ MissingFacts FindMissingFacts(Episode& episode, const grammar::Program& program)
   for (const grammar::NeverRecognised& one : never) events[one.fact].push_back(one.event);
   for (const auto& [fact, names] : events) {
     const auto first = std::ranges::find(never, fact, &grammar::NeverRecognised::fact);
-    missing.warnings += fmt::format(
+    missing.never.push_back(fmt::format(
         "{}:{}:{}: warning: this recording has no {}, so '{}' is never recognised{}\n"
         "  hint: {}\n",
         ReadableName(first->file), first->place.line, first->place.column, fact, names.front(),
         names.size() == 1
             ? std::string()
             : fmt::format(", nor {}", fmt::join(names.begin() + 1, names.end(), ", ")),
-        RemedyFor(fact, UsesMotion(program)));
+        RemedyFor(fact, UsesMotion(program))));
+    missing.warnings += missing.never.back();
   }
   missing.nothing_left = never.size() == grammar::EventNames(program).size();
   return missing;

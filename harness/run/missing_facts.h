@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "grammar/monitor.h"
 #include "harness/sense/episode_file.h"
@@ -14,6 +15,8 @@ struct MissingFacts {
   /// Warnings of events that need facts which the recording does not have, and of entities of which
   /// it never says where they are; or "".
   std::string warnings;
+  /// Of these, those of events that are never recognised, a line and its hint each.
+  std::vector<std::string> never;
   bool nothing_left = false;  ///< no event is left that could be recognised
 };
 

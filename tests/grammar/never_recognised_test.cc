@@ -47,6 +47,14 @@ event story(h: Hand, x: Thing) compose a: fast(h), b: held(h, x) where a before 
       "");
 }
 
+TEST(NeverRecognised, WhatIsTippedNeedsOrientations) {
+  const auto program = testing::CompileText(
+      "grammar g\nevent tipped(x: Thing) while tilt(x) > 60 deg until tilt(x) < 45 deg\n"
+      "event upright(x: Thing) while tilt(x) < 10 deg\n");
+  EXPECT_EQ(Never(*program, {}), "tipped: orientations");
+  EXPECT_EQ(Never(*program, {.orientations = true}), "");
+}
+
 TEST(NeverRecognised, TheLibraryNeedsTouchesAndFactsFromMotionNeedNone) {
   const auto measured = testing::CompileLibrary("pick_and_place");
   EXPECT_EQ(FindNeverRecognised(*measured, {}).size(), EventNames(*measured).size());

@@ -66,5 +66,36 @@ TEST(MissingFacts, ForcesAreNotMadeOfMotion) {
   EXPECT_EQ(said.err.find("make these facts of motion"), std::string::npos) << said.err;
 }
 
+// Poses without a single orientation: nothing is ever tipped.
+TEST(MissingFacts, WithoutOrientationsThereIsNoPouring) {
+  const auto folder = FreshFolder("missing");
+  WriteFile(folder / "g.grammar", "grammar g\nuse contact from motion\nuse pouring\n");
+  WriteFile(folder / "labels.csv", "begin_s,end_s,label\n0.1,0.5,pouring\n");
+  const std::string poses = (folder / "poses.jsonl").string();
+  const std::vector<std::vector<std::string>> calls = {
+      {"resegment", poses}, {"score", poses, "--truth", (folder / "labels.csv").string()}};
+  const auto say = [&](const std::vector<std::string>& call, const std::string& text) {
+    WriteFile(folder / "poses.jsonl", text);
+    std::vector<std::string> words = call;
+    words.insert(words.end(), {"--grammar", (folder / "g.grammar").string()});
+    return Prehend(words).err;
+  };
+  const std::string warning =
+      "warning: this recording has no orientations, so 'pouring' is never recognised\n  hint: "
+      "nothing ever turns in it: give samples 'quat_wxyz'";
+  std::string turned = kPoses;
+  turned.replace(turned.find("\"at_m\": [0, 0, 0.07]"), 21,
+                 "\"at_m\": [0, 0, 0.07], \"quat_wxyz\": [0.8, 0.6, 0, 0]");
+  for (const auto& call : calls) {
+    const std::string said = say(call, kPoses);
+    EXPECT_NE(said.find(warning), std::string::npos) << said;
+    EXPECT_EQ(said.find("no orientations", said.find(warning) + warning.size()), std::string::npos)
+        << "said once\n"
+        << said;
+    const std::string with = say(call, turned);
+    EXPECT_EQ(with.find("orientations"), std::string::npos) << with;
+  }
+}
+
 }  // namespace
 }  // namespace prehend::house
