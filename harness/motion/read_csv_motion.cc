@@ -81,9 +81,11 @@ std::string ColumnRemedy(const std::string& name) {
   std::vector<std::string> names;
   for (const auto& [known, column] : KnownColumns()) names.push_back(known);
   const std::string nearest = grammar::NearestName(name, names);
-  for (const std::string& known : names)
-    if (!name.empty() && known.starts_with(name + "_"))
-      return fmt::format("did you mean '{}'?", known);
+  std::erase_if(names, [&](const std::string& known) { return !known.starts_with(name + "_"); });
+  if (!name.empty() && !names.empty())
+    return fmt::format(
+        "did you mean '{}'?",
+        *std::ranges::min_element(names, {}, [](const auto& n) { return n.size(); }));
   if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
   if (name.empty()) return "a comma too many";
   if (name.find_first_of(";\t") != std::string::npos) return "commas separate columns and values";

@@ -222,9 +222,10 @@ TEST(EpisodeFileOfMany, EveryDamagedByteIsReportedOrHarmless) {
 }
 
 TEST(EpisodeFileOfMany, WhatCannotBeWrittenIsReported) {
-  EXPECT_EQ(Record("/nowhere/a.episodes").problem.substr(0, 21), "/nowhere/a.episodes: ");
   const fs::path folder = Fresh("foreign");
   Spill(folder / "a.episodes", "name: x\n");
+  const std::string in_a_file = (folder / "a.episodes" / "b.episodes").string();
+  EXPECT_TRUE(Record(in_a_file).problem.starts_with(in_a_file + ": ")) << Record(in_a_file).problem;
   EXPECT_EQ(Record((folder / "a.episodes").string()).problem,
             (folder / "a.episodes").string() +
                 ": is no episode file: it does not begin as an SQLite database");

@@ -165,7 +165,7 @@ const Case kCases[] = {
       {"gains_unstable", "hand: human_right", "hand: human_right, gains: {translation: {derivative_n_s_per_m: 300}}", kAccepts,
        "9:42: actor 'right_hand': the translation derivative gain 300 cannot be stable: gain * dt / inertia = 300 * (1/480 s) / 0.6 kg = 1.04, which must stay below 1 (at most 285.1 here) | it is stable from 'world: {rate_hz: 501}' on\n"},
       {"gains_at_low_rate", "rate_hz: 480, sensing_hz: 240", "rate_hz: 90, sensing_hz: 90", kAccepts,
-       "9:22: actor 'right_hand': the translation derivative gain 120 cannot be stable: gain * dt / inertia = 120 * (1/90 s) / 0.6 kg = 2.22, which must stay below 1 (at most 53.46 here) | it is stable from 'world: {rate_hz: 403}' on\n"},
+       "9:22: actor 'right_hand': the translation derivative gain 120 cannot be stable: gain * dt / inertia = 120 * (1/90 s) / 0.6 kg = 2.22, which must stay below 1 (at most 53.46 here) | it is stable from 'world: {rate_hz: 217}' on\n"},
       {"unknown_actor", "- right_hand: {close_to", "- left_hand: {close_to", kAccepts,
        "12:5: no actor is called 'left_hand' | known: right_hand\n"},
       {"unknown_object", "reach: milk", "reach: milky", kAccepts,
