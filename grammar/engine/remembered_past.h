@@ -139,9 +139,9 @@ class RememberedPast {
     return from;
   }
 
-  // Likewise, what one that waits at `frame` may ask for.
+  // Likewise, what one that waits at `frame` may ask for, which may be the one to come.
   FrameNumber FirstToKeep(const History& history, FrameNumber frame) const {
-    const Tick earliest = history.At(frame).tick - longest_look_back_;
+    const Tick earliest = history.At(std::min(frame, history.now())).tick - longest_look_back_;
     FrameNumber from = history.FirstNotBefore(earliest) - 2;
     for (std::size_t i = 0; i < looks_.windows.size(); ++i) {
       from = std::max(from, history.first());

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "grammar/base/wording.h"
 #include "harness/command/command.h"
 #include "harness/knowledge/write_knowledge.h"
 
@@ -30,9 +31,11 @@ ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& contex
       *episodes,
       {.root = context.root, .folder = folder, .owl = asked("owl"), .neem = asked("neem")});
   if (!written) return Complain(context, written.error());
-  context.out << fmt::format("{}: {} episodes of {} tasks, {} events, {} statements\n", folder,
-                             written->episodes, written->tasks, written->events,
-                             written->statements);
+  using grammar::CountOf;
+  context.out << fmt::format("{}: {} of {}, {}, {}\n", folder,
+                             CountOf(written->episodes, "episode"), CountOf(written->tasks, "task"),
+                             CountOf(written->events, "event"),
+                             CountOf(written->statements, "statement"));
   return ExitCode::kAgrees;
 }
 
