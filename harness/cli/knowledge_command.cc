@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "grammar/base/wording.h"
 #include "harness/command/command.h"
 #include "harness/knowledge/write_knowledge.h"
 
@@ -31,11 +30,9 @@ ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& contex
       *episodes,
       {.root = context.root, .folder = folder, .owl = asked("owl"), .neem = asked("neem")});
   if (!written) return Complain(context, written.error());
-  using grammar::CountOf;
-  context.out << fmt::format("{}: {} of {}, {}, {}\n", folder,
-                             CountOf(written->episodes, "episode"), CountOf(written->tasks, "task"),
-                             CountOf(written->events, "event"),
-                             CountOf(written->statements, "statement"));
+  context.out << fmt::format("{}: {} episodes of {} tasks, {} events, {} statements\n", folder,
+                             written->episodes, written->tasks, written->events,
+                             written->statements);
   return ExitCode::kAgrees;
 }
 
