@@ -7,21 +7,11 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "tests/program/import_csv.h"
 #include "tests/program/program.h"
 
 namespace prehend::house {
 namespace {
-
-Said Import(const std::filesystem::path& folder, const std::string& csv, const std::string& map,
-            const std::vector<std::string>& more = {}) {
-  WriteFile(folder / "poses.csv", csv);
-  WriteFile(folder / "map.yaml", map);
-  std::vector<std::string> words = {"import", (folder / "poses.csv").string(), "--map",
-                                    (folder / "map.yaml").string()};
-  words.insert(words.end(), more.begin(), more.end());
-  if (more.empty()) words.insert(words.end(), {"-o", (folder / "take.jsonl").string()});
-  return Prehend(words);
-}
 
 /// Of a hand that swings to and fro once a second.
 std::string SwingingCsv(double rate_hz, double noise_m = 0) {
@@ -55,7 +45,7 @@ TEST(ImportDoubts, ASmoothPathDoesNotTremble) {
   const auto folder = FreshFolder("import_doubts");
   for (const char* rate_hz : {"15", "25", "30", "120"}) {
     const Said said =
-        Import(folder, SwingingCsv(std::stod(rate_hz)), SwingingMap(rate_hz), {"--check"});
+        ImportCsv(folder, SwingingCsv(std::stod(rate_hz)), SwingingMap(rate_hz), {"--check"});
     EXPECT_EQ(said.err.find("tremble"), std::string::npos) << rate_hz << ": " << said.err;
   }
 }
@@ -63,18 +53,18 @@ TEST(ImportDoubts, ASmoothPathDoesNotTremble) {
 TEST(ImportDoubts, NoiseOnASmoothPathTremblesAndItsRemedyHelps) {
   const auto folder = FreshFolder("import_doubts");
   const std::string csv = SwingingCsv(30, 0.008);
-  const Said rough = Import(folder, csv, SwingingMap("30"), {"--check"});
+  const Said rough = ImportCsv(folder, csv, SwingingMap("30"), {"--check"});
   EXPECT_NE(rough.err.find("'hand' trembles by"), std::string::npos) << rough.err;
   const std::size_t at = rough.err.find("smooth_s: ");
   ASSERT_NE(at, std::string::npos) << rough.err;
   const Said smooth =
-      Import(folder, csv, SwingingMap("30") + rough.err.substr(at, 13) + "\n", {"--check"});
+      ImportCsv(folder, csv, SwingingMap("30") + rough.err.substr(at, 13) + "\n", {"--check"});
   EXPECT_EQ(smooth.err.find("tremble"), std::string::npos) << smooth.err;
 }
 
 TEST(ImportDoubts, AMapWithoutHandsIsWarnedOf) {
   const auto folder = FreshFolder("import_doubts");
-  const Said said = Import(folder, SwingingCsv(30), SwingingMap("30", ""), {"--check"});
+  const Said said = ImportCsv(folder, SwingingCsv(30), SwingingMap("30", ""), {"--check"});
   EXPECT_NE(said.err.find("warning: no entity is a Hand, so what hands do is never recognised: "),
             std::string::npos)
       << said.err;
@@ -83,7 +73,7 @@ TEST(ImportDoubts, AMapWithoutHandsIsWarnedOf) {
 
 TEST(ImportDoubts, AGrammarThatDoesNotExistIsWrongWhereItIsNamed) {
   const auto folder = FreshFolder("import_doubts");
-  const Said said = Import(folder, SwingingCsv(30), "grammar: contat\n" + SwingingMap("30"));
+  const Said said = ImportCsv(folder, SwingingCsv(30), "grammar: contat\n" + SwingingMap("30"));
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_NE(said.err.find("map.yaml:1:10: error: grammar: no grammar is called 'contat'"),
             std::string::npos)
@@ -91,7 +81,7 @@ TEST(ImportDoubts, AGrammarThatDoesNotExistIsWrongWhereItIsNamed) {
   EXPECT_NE(said.err.find("did you mean 'contact'?"), std::string::npos) << said.err;
   EXPECT_FALSE(std::filesystem::exists(folder / "take.jsonl"));
 
-  ASSERT_EQ(Import(folder, SwingingCsv(30), SwingingMap("30")).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, SwingingCsv(30), SwingingMap("30")).exit_code, 0);
   const auto take = folder / "take.jsonl";
   WriteFile(take, Replaced(ReadFile(take), "\"pick_and_place_from_motion\"", "\"contat\""));
   for (const char* command : {"resegment", "explain", "watch", "check"}) {
@@ -107,8 +97,8 @@ TEST(ImportDoubts, AGrammarThatDoesNotExistIsWrongWhereItIsNamed) {
 TEST(ImportDoubts, BracesWithoutQuotesAreExplained) {
   const auto folder = FreshFolder("import_doubts");
   const Said said =
-      Import(folder, SwingingCsv(30),
-             Replaced(SwingingMap("30"), "['{}_x', '{}_y', '{}_z']", "[{}_x, {}_y, {}_z]"));
+      ImportCsv(folder, SwingingCsv(30),
+                Replaced(SwingingMap("30"), "['{}_x', '{}_y', '{}_z']", "[{}_x, {}_y, {}_z]"));
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_NE(said.err.find("text cannot begin with '{}', which is an empty mapping"),
             std::string::npos)

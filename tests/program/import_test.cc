@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "tests/program/carried_cup.h"
+#include "tests/program/import_csv.h"
 #include "tests/program/program.h"
 
 namespace prehend::house {
@@ -53,24 +54,13 @@ std::string Csv(const Writer& write = AsWritten) {
   return csv;
 }
 
-Said Import(const std::filesystem::path& folder, const std::string& csv, const std::string& map,
-            const std::vector<std::string>& more = {}) {
-  WriteFile(folder / "poses.csv", csv);
-  WriteFile(folder / "map.yaml", map);
-  std::vector<std::string> words = {"import", (folder / "poses.csv").string(), "--map",
-                                    (folder / "map.yaml").string()};
-  words.insert(words.end(), more.begin(), more.end());
-  if (more.empty()) words.insert(words.end(), {"-o", (folder / "take.jsonl").string()});
-  return Prehend(words);
-}
-
 std::string Events(const std::filesystem::path& folder) {
   return Prehend({"resegment", (folder / "take.jsonl").string()}).out;
 }
 
 TEST(Import, PosesBecomeARecordingInWhichACupIsCarried) {
   const auto folder = FreshFolder("import");
-  const Said said = Import(folder, Csv(), kMap);
+  const Said said = ImportCsv(folder, Csv(), kMap);
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_EQ(said.err, "");
   EXPECT_TRUE(said.out.starts_with("a_cup_is_carried: 301 frames, 5.000 s\n")) << said.out;
@@ -81,7 +71,7 @@ TEST(Import, PosesBecomeARecordingInWhichACupIsCarried) {
 
 TEST(Import, UnitsAxesOrdersAndLayoutsMakeNoDifference) {
   const auto folder = FreshFolder("import");
-  ASSERT_EQ(Import(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
   const std::string events = Events(folder);
 
   // Millimetres, y up, xyzw, milliseconds, semicolons.
@@ -97,7 +87,7 @@ TEST(Import, UnitsAxesOrdersAndLayoutsMakeNoDifference) {
   map = Replaced(map, "wxyz", "xyzw");
   map = Replaced(map, "time_unit: s", "time_unit: ms");
   map = Replaced(map, "[qw, qx, qy, qz]", "[qx, qy, qz, qw]");
-  const Said said = Import(folder, csv, map);
+  const Said said = ImportCsv(folder, csv, map);
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_EQ(Events(folder), events);
 
@@ -115,17 +105,17 @@ TEST(Import, UnitsAxesOrdersAndLayoutsMakeNoDifference) {
   map = Replaced(map, "  time: t\n", "  time: frame\n");
   map = Replaced(map, "['x', 'y', 'z']", "['{} x', '{} y', '{} z']");
   map = Replaced(map, "  quaternion: [qw, qx, qy, qz]\n", "");
-  const Said wide = Import(folder, csv, map);
+  const Said wide = ImportCsv(folder, csv, map);
   EXPECT_EQ(wide.exit_code, 0) << wide.err;
   EXPECT_EQ(Events(folder), events);
 }
 
 TEST(Import, AnOffsetIsInTheFrameOfTheBodyAsItStandsUpright) {
   const auto folder = FreshFolder("import");
-  ASSERT_EQ(Import(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
   const std::string events = Events(folder);
   // The cup's markers hang 5 cm above it, and its frame lies on its side.
-  const Said said = Import(
+  const Said said = ImportCsv(
       folder, Csv([](const char* name, Row row) {
         if (name[0] == 'G') return AsWritten(name, row);
         row.z += 0.05;
@@ -144,7 +134,7 @@ TEST(Import, AShortGapIsBridgedAndALongOneIsRefusedOrHeld) {
       return lost ? std::string() : AsWritten(name, row);
     });
   };
-  const Said bridged = Import(folder, without(2.5, 2.58), kMap);
+  const Said bridged = ImportCsv(folder, without(2.5, 2.58), kMap);
   EXPECT_EQ(bridged.exit_code, 0) << bridged.err;
   EXPECT_NE(
       bridged.out.find("cup              Mug                  297    59.9        1     0.083"),
@@ -152,7 +142,7 @@ TEST(Import, AShortGapIsBridgedAndALongOneIsRefusedOrHeld) {
       << bridged.out;
 
   std::filesystem::remove(folder / "take.jsonl");
-  const Said lost = Import(folder, without(2.2, 2.9), kMap);
+  const Said lost = ImportCsv(folder, without(2.2, 2.9), kMap);
   EXPECT_EQ(lost.exit_code, 2);
   EXPECT_NE(
       lost.err.find("map.yaml:14:15: error: 'Mug' is not tracked for 0.700 s from 2.200 s on"),
@@ -160,7 +150,7 @@ TEST(Import, AShortGapIsBridgedAndALongOneIsRefusedOrHeld) {
       << lost.err;
   EXPECT_FALSE(std::filesystem::exists(folder / "take.jsonl"));
 
-  const Said held = Import(folder, without(2.2, 2.9), std::string(kMap) + "lost: hold\n");
+  const Said held = ImportCsv(folder, without(2.2, 2.9), std::string(kMap) + "lost: hold\n");
   EXPECT_EQ(held.exit_code, 0) << held.err;
   EXPECT_NE(held.err.find("held where it was"), std::string::npos) << held.err;
   // It does not fly to where it is found again.
@@ -169,10 +159,10 @@ TEST(Import, AShortGapIsBridgedAndALongOneIsRefusedOrHeld) {
 
 TEST(Import, CheckWritesNothingAndSaysWhatAGrammarWillMiss) {
   const auto folder = FreshFolder("import");
-  const Said said = Import(folder, Csv(), kMap, {"--check"});
+  const Said said = ImportCsv(folder, Csv(), kMap, {"--check"});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_NE(said.out.find("Glove"), std::string::npos);
-  const Said touches = Import(folder, Csv(), kMap, {"--check", "--grammar", "pick_and_place"});
+  const Said touches = ImportCsv(folder, Csv(), kMap, {"--check", "--grammar", "pick_and_place"});
   EXPECT_EQ(touches.exit_code, 4);
   EXPECT_NE(touches.err.find("this recording has no touches"), std::string::npos) << touches.err;
   EXPECT_FALSE(std::filesystem::exists(folder / "take.jsonl"));
@@ -255,7 +245,7 @@ TEST(Import, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
   };
   for (const Fault& fault : faults) {
     const auto folder = FreshFolder("import");
-    const Said said = Import(folder, fault.csv, fault.map);
+    const Said said = ImportCsv(folder, fault.csv, fault.map);
     EXPECT_EQ(said.exit_code, 2) << fault.name << "\n" << said.out;
     EXPECT_NE(said.err.find(fault.says), std::string::npos) << fault.name << "\n" << said.err;
     EXPECT_FALSE(std::filesystem::exists(folder / "take.jsonl")) << fault.name;
@@ -264,7 +254,7 @@ TEST(Import, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
 
 TEST(Import, WhatTheMapIsSureOfIsNoError) {
   const auto folder = FreshFolder("import");
-  const Said said = Import(
+  const Said said = ImportCsv(
       folder, Csv(),
       Replaced(kMap, "at_m: [0, 0, 0.7]", "at_m: [5, 0, 0.7]") + std::string("sure: [place]\n"));
   EXPECT_EQ(said.exit_code, 0) << said.err;
@@ -275,7 +265,7 @@ TEST(Import, WhatTheMapIsSureOfIsNoError) {
 TEST(Import, ADoubtIsCalledAsThePageAndTheMapCallIt) {
   const auto folder = FreshFolder("import");
   for (const char* doubt : {"unit", "axes", "quaternion_order", "time", "place", "zero"}) {
-    const Said said = Import(folder, Csv(), std::string(kMap) + "sure: [" + doubt + "]\n");
+    const Said said = ImportCsv(folder, Csv(), std::string(kMap) + "sure: [" + doubt + "]\n");
     EXPECT_EQ(said.exit_code, 0) << doubt << said.err;
   }
 }
@@ -283,7 +273,7 @@ TEST(Import, ADoubtIsCalledAsThePageAndTheMapCallIt) {
 // As files of one body each, put together: the glove began a frame earlier.
 TEST(Import, OneBodyMayFollowTheOther) {
   const auto folder = FreshFolder("import");
-  ASSERT_EQ(Import(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
   const std::string in_turn = ReadFile(folder / "take.jsonl");
   std::string of_mug, of_glove;
   Csv([&](const char* name, Row row) {
@@ -291,11 +281,11 @@ TEST(Import, OneBodyMayFollowTheOther) {
     return std::string();
   });
   const std::string head = "t,name,x,y,z,qw,qx,qy,qz\n";
-  ASSERT_EQ(Import(folder, head + of_mug + of_glove, kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, head + of_mug + of_glove, kMap).exit_code, 0);
   EXPECT_EQ(ReadFile(folder / "take.jsonl"), in_turn);
   const std::size_t second = of_mug.find('\n') + 1;
-  const Said late = Import(folder, head + of_mug.substr(second) + of_glove,
-                           kMap + std::string("lost: unknown\n"), {"--check"});
+  const Said late = ImportCsv(folder, head + of_mug.substr(second) + of_glove,
+                              kMap + std::string("lost: unknown\n"), {"--check"});
   EXPECT_EQ(late.exit_code, 0) << late.err;
   EXPECT_TRUE(late.out.starts_with("a_cup_is_carried: 301 frames, 5.000 s\n")) << late.out;
 }
@@ -311,13 +301,13 @@ std::string TremblingCsv() {
 
 TEST(Import, AThingThatTremblesIsNamedAndMeansOverATimeMakeItSmooth) {
   const auto folder = FreshFolder("import");
-  const Said rough = Import(folder, TremblingCsv(), kMap);
+  const Said rough = ImportCsv(folder, TremblingCsv(), kMap);
   EXPECT_EQ(rough.exit_code, 0);
   EXPECT_NE(rough.err.find("warning: 'Mug' trembles by 4.2 mm from frame to frame, which hides how "
                            "it moves; smooth_s: 0.2 takes means over that long\n"),
             std::string::npos)
       << rough.err;
-  const Said smooth = Import(folder, TremblingCsv(), kMap + std::string("smooth_s: 0.2\n"));
+  const Said smooth = ImportCsv(folder, TremblingCsv(), kMap + std::string("smooth_s: 0.2\n"));
   EXPECT_EQ(smooth.exit_code, 0);
   EXPECT_EQ(smooth.err, "");
   const std::string events = Events(folder);
@@ -328,11 +318,11 @@ TEST(Import, AThingThatTremblesIsNamedAndMeansOverATimeMakeItSmooth) {
 TEST(Import, AllThatTrembleByAMillimetreAreNamedInOneLine) {
   const auto folder = FreshFolder("import");
   int frame = 0;
-  const Said rough = Import(folder, Csv([&frame](const char* name, Row row) {
-                              row.x += ++frame % 4 < 2 ? 0.001 : -0.001;
-                              return AsWritten(name, row);
-                            }),
-                            kMap);
+  const Said rough = ImportCsv(folder, Csv([&frame](const char* name, Row row) {
+                                 row.x += ++frame % 4 < 2 ? 0.001 : -0.001;
+                                 return AsWritten(name, row);
+                               }),
+                               kMap);
   EXPECT_EQ(rough.exit_code, 0);
   EXPECT_NE(rough.err.find("warning: 'Mug', 'Glove' tremble by up to 1.1 mm from frame to frame, "
                            "which hides how they move; smooth_s: 0.2 takes means over that long\n"),
@@ -349,9 +339,9 @@ TEST(Import, NothingIsSmoothedOverATimeInWhichItWasLost) {
     csv += AsWritten("Glove", {t, 0.125, 0, 0.875});
   }
   const std::string map = kMap + std::string("lost: unknown\n");
-  ASSERT_EQ(Import(folder, csv, map).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, csv, map).exit_code, 0);
   const std::string as_is = ReadFile(folder / "take.jsonl");
-  ASSERT_EQ(Import(folder, csv, map + "smooth_s: 0.5\n").exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, csv, map + "smooth_s: 0.5\n").exit_code, 0);
   EXPECT_EQ(ReadFile(folder / "take.jsonl"), as_is);
 }
 
@@ -360,7 +350,7 @@ TEST(Import, ThingsThatRestOnNothingAreNamedWithWhatTheMapCouldSay) {
   std::string map = kMap;
   const std::size_t table = map.find("  table:");
   map.erase(table, map.find('\n', table) + 1 - table);
-  const Said without = Import(folder, Csv(), map);
+  const Said without = ImportCsv(folder, Csv(), map);
   EXPECT_EQ(without.exit_code, 0) << without.err;
   const std::size_t begin = without.err.find("could be 'table:"),
                     end = without.err.find("'\n", begin);
@@ -374,12 +364,12 @@ TEST(Import, ThingsThatRestOnNothingAreNamedWithWhatTheMapCouldSay) {
 
   // The map that the warning proposes.
   const std::string proposed = without.err.substr(begin + 10, end - begin - 10);
-  const Said with = Import(folder, Csv(), map + "  " + proposed + "\n");
+  const Said with = ImportCsv(folder, Csv(), map + "  " + proposed + "\n");
   EXPECT_EQ(with.exit_code, 0) << with.err;
   EXPECT_EQ(with.err, "");
   EXPECT_NE(Events(folder).find("picking_up"), std::string::npos);
 
-  const Said low = Import(folder, Csv(), Replaced(kMap, "[0, 0, 0.7]", "[0, 0, 0.6]"));
+  const Said low = ImportCsv(folder, Csv(), Replaced(kMap, "[0, 0, 0.7]", "[0, 0, 0.6]"));
   EXPECT_NE(low.err.find("rests with the lowest point at 0.72 m"), std::string::npos) << low.err;
 }
 
@@ -472,8 +462,8 @@ TEST(Import, EpisodeFilesTakePosesAndRecordings) {
   const auto folder = FreshFolder("import");
   const std::string takes = (folder / "takes.episodes").string(),
                     lines = (folder / "take.jsonl").string();
-  ASSERT_EQ(Import(folder, Csv(), kMap).exit_code, 0);
-  EXPECT_EQ(Import(folder, Csv(), kMap, {"-o", takes}).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
+  EXPECT_EQ(ImportCsv(folder, Csv(), kMap, {"-o", takes}).exit_code, 0);
   const Said said = Prehend({"import", lines, "-o", takes});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_EQ(said.out, takes + ": a_cup_is_carried, 301 frames\n");
@@ -493,7 +483,7 @@ TEST(Import, EpisodesOfRecordingsAreCheckedAgainstTheGoldenBesideTheirSource) {
   const auto folder = FreshFolder("import");
   const std::string takes = (folder / "takes.episodes").string(),
                     lines = (folder / "take.jsonl").string();
-  ASSERT_EQ(Import(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
   ASSERT_EQ(Prehend({"import", lines, "-o", takes}).exit_code, 0);
   const Said pending = Prehend({"check", takes});
   EXPECT_EQ(pending.exit_code, 5) << "no golden yet";
@@ -509,7 +499,7 @@ TEST(Import, WhatARecordingDoesNotHaveIsSaid) {
   const auto folder = FreshFolder("import");
   const std::string takes = (folder / "takes.episodes").string(),
                     lines = (folder / "take.jsonl").string();
-  ASSERT_EQ(Import(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
   ASSERT_EQ(Prehend({"import", lines, "-o", takes}).exit_code, 0);
   const Said score = Prehend({"score", takes});
   EXPECT_EQ(score.exit_code, 2);
