@@ -11,12 +11,20 @@
 #include <set>
 
 #include "harness/base/text_file.h"
-#include "harness/import/bag_file.h"
 #include "harness/import/frame_tree.h"
 #include "harness/import/pose_file.h"
-#include "harness/import/pose_messages.h"
+#include "harness/messages/bag_file.h"
+#include "harness/messages/pose_messages.h"
 
 namespace prehend::harness::import {
+
+using messages::FormatOf;
+using messages::LogChannel;
+using messages::LogMessage;
+using messages::MessageContent;
+using messages::MessageFormat;
+using messages::MessagePose;
+
 namespace {
 
 constexpr std::size_t kMostSeries = 10'000, kMostPoses = 5'000'000;
@@ -59,7 +67,7 @@ class McapPoseReader {
     std::ifstream in(poses.file, std::ios::binary);
     size_ = size;
     most_poses_ = std::min<std::uint64_t>(kMostPoses, kPosesOfAnyFile + size / 4);
-    const auto read = IsBag(poses.file) ? ReadBag : ReadMcap;
+    const auto read = IsBag(poses.file) ? messages::ReadBag : messages::ReadMcap;
     const std::string why = read(
         in, size, [this](const LogMessage& message) { return TakeMessage(message); },
         [this](const LogChannel& channel) { TakeChannel(channel); });
@@ -97,7 +105,7 @@ class McapPoseReader {
     if (!format) return "";
     std::vector<MessagePose> read;
     const std::string& topic = message.channel.topic;
-    std::string why = DecodePoses(*format, message.data, read);
+    std::string why = messages::DecodePoses(*format, message.data, read);
     for (std::size_t i = 0; why.empty() && i < read.size(); ++i) {
       MessagePose& pose = read[i];
       const bool moves_frame = format->content == MessageContent::kTransform ||

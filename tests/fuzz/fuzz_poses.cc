@@ -8,11 +8,11 @@
 #include <sstream>
 #include <string>
 
-#include "harness/import/mcap_file.h"
-#include "harness/import/pose_messages.h"
+#include "harness/messages/mcap_file.h"
+#include "harness/messages/pose_messages.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace prehend::harness::import;
+  using namespace prehend::harness::messages;
   if (size == 0) return 0;
   std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   const int kind = data[0] % 16;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/import/log_file.h
-#include "harness/import/log_file.h"
+// See harness/messages/log_file.h
+#include "harness/messages/log_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace prehend::harness::import {
+namespace prehend::harness::messages {
 
 LogFile::LogFile(std::istream& in, std::uint64_t size, const TakesMessage& take,
                  const HearsOfChannel& tell)
@@ -74,4 +74,4 @@ void LogFile::TakeMessage(const LogMessage& message) {
   if (!why.empty()) Fail(why);
 }
 
-}  // namespace prehend::harness::import
+}  // namespace prehend::harness::messages

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace prehend::harness::import {
+namespace prehend::harness::messages {
 
 struct ByteReader {
   std::string_view bytes;
@@ -50,4 +50,4 @@ struct ByteReader {
   std::string_view Text() { return Bytes(Number<std::uint32_t>()); }
 };
 
-}  // namespace prehend::harness::import
+}  // namespace prehend::harness::messages

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "harness/import/mcap_file.h"
+#include "harness/messages/mcap_file.h"
 
-namespace prehend::harness::import {
+namespace prehend::harness::messages {
 
 enum class MessageContent {
   kPose,        ///< foxglove.PoseInFrame, geometry_msgs/PoseStamped
@@ -43,4 +43,4 @@ struct MessagePose {
 std::string DecodePoses(const MessageFormat& format, std::string_view data,
                         std::vector<MessagePose>& poses);
 
-}  // namespace prehend::harness::import
+}  // namespace prehend::harness::messages

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/import/pose_messages.h. Tested by tests/program/import_mcap_test.cc
-#include "harness/import/pose_messages.h"
+// See harness/messages/pose_messages.h. Tested by tests/program/import_mcap_test.cc
+#include "harness/messages/pose_messages.h"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/base/text_file.h"
-#include "harness/import/byte_reader.h"
+#include "harness/messages/byte_reader.h"
 
-namespace prehend::harness::import {
+namespace prehend::harness::messages {
 namespace {
 
 using Encoding = MessageFormat::Encoding;
@@ -252,4 +252,4 @@ std::string DecodePoses(const MessageFormat& format, std::string_view data,
                                             : BinaryDecoder(format, data, poses).Decode();
 }
 
-}  // namespace prehend::harness::import
+}  // namespace prehend::harness::messages

@@ -4,13 +4,13 @@
 // tests/program/import_bag_test.cc
 #pragma once
 
-#include "harness/import/log_file.h"
+#include "harness/messages/log_file.h"
 
-namespace prehend::harness::import {
+namespace prehend::harness::messages {
 
-/// As ReadMcap() (harness/import/mcap_file.h), with its limits. A connection is a channel whose
+/// As ReadMcap() (harness/messages/mcap_file.h), with its limits. A connection is a channel whose
 /// messages are encoded as "ros1".
 std::string ReadBag(std::istream& in, std::uint64_t size, const TakesMessage& take,
                     const HearsOfChannel& channels);
 
-}  // namespace prehend::harness::import
+}  // namespace prehend::harness::messages

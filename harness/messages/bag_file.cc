@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/import/bag_file.h. A record is a header of named fields, and data. Chunks hold the
+// See harness/messages/bag_file.h. A record is a header of named fields, and data. Chunks hold the
 // records of connections and messages.
-#include "harness/import/bag_file.h"
+#include "harness/messages/bag_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
-#include "harness/import/byte_reader.h"
-#include "harness/import/unpack.h"
+#include "harness/messages/byte_reader.h"
+#include "harness/messages/unpack.h"
 
-namespace prehend::harness::import {
+namespace prehend::harness::messages {
 namespace {
 
 constexpr std::string_view kBagMagic = "#ROSBAG V2.0\n";
@@ -153,4 +153,4 @@ std::string ReadBag(std::istream& in, std::uint64_t size, const TakesMessage& ta
   return BagReader(file).Read();
 }
 
-}  // namespace prehend::harness::import
+}  // namespace prehend::harness::messages

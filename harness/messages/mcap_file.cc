@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/import/mcap_file.h. Tested by tests/program/import_mcap_test.cc
-#include "harness/import/mcap_file.h"
+// See harness/messages/mcap_file.h. Tested by tests/program/import_mcap_test.cc
+#include "harness/messages/mcap_file.h"
 
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include <map>
 
-#include "harness/import/byte_reader.h"
-#include "harness/import/unpack.h"
+#include "harness/messages/byte_reader.h"
+#include "harness/messages/unpack.h"
 
-namespace prehend::harness::import {
+namespace prehend::harness::messages {
 namespace {
 
 constexpr std::string_view kMagic = "\x89MCAP0\r\n";
@@ -168,4 +168,4 @@ std::string ReadMcap(std::istream& in, std::uint64_t size, const TakesMessage& t
   return McapReader(file).Read();
 }
 
-}  // namespace prehend::harness::import
+}  // namespace prehend::harness::messages

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/import/unpack.h
-#include "harness/import/unpack.h"
+// See harness/messages/unpack.h
+#include "harness/messages/unpack.h"
 
 #include <lz4frame.h>
 #include <zstd.h>
 
 #include <memory>
 
-namespace prehend::harness::import {
+namespace prehend::harness::messages {
 
 std::string FromLz4(std::string_view packed, std::size_t size) {
   LZ4F_dctx* raw = nullptr;
@@ -32,4 +32,4 @@ std::string FromZstd(std::string_view packed, std::size_t size) {
   return ZSTD_decompress(out.data(), size, packed.data(), packed.size()) == size ? out : "";
 }
 
-}  // namespace prehend::harness::import
+}  // namespace prehend::harness::messages

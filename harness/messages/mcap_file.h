@@ -4,13 +4,13 @@
 // tests/program/import_mcap_test.cc
 #pragma once
 
-#include "harness/import/log_file.h"
+#include "harness/messages/log_file.h"
 
-namespace prehend::harness::import {
+namespace prehend::harness::messages {
 
 /// `size`: of the whole stream, bytes. Returns what is wrong with the file, with the byte at which
 /// it was seen, or "". `channels` hears of each channel, also of those without a message.
 std::string ReadMcap(std::istream& in, std::uint64_t size, const TakesMessage& take,
                      const HearsOfChannel& channels);
 
-}  // namespace prehend::harness::import
+}  // namespace prehend::harness::messages

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace prehend::harness::import {
+namespace prehend::harness::messages {
 
 inline constexpr std::uint64_t kMaxLogBytes = std::uint64_t{8} << 30;
 inline constexpr std::uint64_t kMaxLogRecordBytes = std::uint64_t{64} << 20;
@@ -78,4 +78,4 @@ class LogFile {
   std::string problem_;
 };
 
-}  // namespace prehend::harness::import
+}  // namespace prehend::harness::messages

@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
-namespace prehend::harness::import {
+namespace prehend::harness::messages {
 
 /// Frames of LZ4, one after another.
 std::string FromLz4(std::string_view packed, std::size_t size);
 std::string FromZstd(std::string_view packed, std::size_t size);
 
-}  // namespace prehend::harness::import
+}  // namespace prehend::harness::messages
