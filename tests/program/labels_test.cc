@@ -220,7 +220,7 @@ TEST_F(Labelled, ScoreSetsParameters) {
     return Prehend(all);
   };
   EXPECT_TRUE(Has(score("hold_way=4mm").out, "all              5      5  5"));
-  const Said never = score("hold_moves=9m/s");
+  const Said never = score("hold_shortest=9s");
   EXPECT_TRUE(Has(never.out, "all              5      0  .")) << never.out << never.err;
   const Said unknown = score("hold_mooves=9m/s");
   EXPECT_EQ(unknown.exit_code, 2);
