@@ -54,7 +54,15 @@ std::map<std::string, std::vector<Span>> Recognise(
       look.p_WB_m = poses[i].p_m;
       look.q_WB = poses[i].q;
     }
-    monitor.Advance({.tick = tick, .entities = looks, .hands = {}, .touches = {}}, events);
+    // A hand of which nothing else is known is a point.
+    std::vector<CollisionSphere> spheres(looks.size());
+    std::vector<HandSample> hands;
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      spheres[i].p_W_m = looks[i].p_WB_m;
+      if (entities.entities[i].classes.front() == "Hand")
+        hands.push_back({.entity = static_cast<int>(i), .collision_spheres = {&spheres[i], 1}});
+    }
+    monitor.Advance({.tick = tick, .entities = looks, .hands = hands, .touches = {}}, events);
   }
   monitor.Finish(end + 4, events);
   EXPECT_EQ(monitor.error(), "");
@@ -139,13 +147,15 @@ TEST(MotionInHands, ALargeThingThatTurnsInTheHandStaysInIt) {
   ExpectSpans(found.at("grasping(hand, board)"), {{1.1, 5.35}}, 0.15);
 }
 
-std::shared_ptr<const Program> Stirring() {
-  const CompileResult compiled =
-      Compile({.file = "stirs.grammar",
-               .text = "grammar stirs\nuse contact from motion\nuse stirring from motion\n"},
-              testing::LibraryIncluder());
+std::shared_ptr<const Program> Compiled(const std::string& uses) {
+  const CompileResult compiled = Compile({.file = "mine.grammar", .text = "grammar mine\n" + uses},
+                                         testing::LibraryIncluder());
   EXPECT_TRUE(compiled.program) << Format(compiled.diagnostics);
   return compiled.program;
+}
+
+std::shared_ptr<const Program> Stirring() {
+  return Compiled("use contact from motion\nuse stirring from motion\n");
 }
 
 /// A spoon is put into a bowl at 2 s, is moved `stroke` about there until 7 s, and is taken out.
@@ -203,6 +213,124 @@ TEST(MotionInHands, CarryingSpoonAndBowlToAndFroIsNoStirring) {
       [](double s) { return Vector3d((Smooth(s, 2, 2.2) - Smooth(s, 6.8, 7)) * ToAndFro(s)); });
   ASSERT_TRUE(found.contains("grasping(hand, spoon)"));
   EXPECT_FALSE(found.contains("stirring(hand, spoon, bowl)"));
+}
+
+/// A hand is 25 cm beside a heavy crate, comes to `gap_m` from it at 1.0 s, leaves at 3.0 s.
+std::vector<Span> GraspsOfWhatStays(double gap_m, double from_m = 0.25) {
+  const auto found = Recognise(
+      testing::CompileLibrary("pick_and_place_from_motion"),
+      {Thing("crate", {0.1, 0.1, 0.1}), Hand("hand")}, 4, [&](double s) {
+        const double away_m = from_m - gap_m;
+        const double x_m = 0.1 + gap_m + away_m * (1 - Smooth(s, 0.4, 1) + Smooth(s, 3, 3.6));
+        return std::vector<Pose>{{Vector3d(0, 0, 0.1)}, {Vector3d(x_m, 0, 0.1)}};
+      });
+  return found.contains("grasping(hand, crate)") ? found.at("grasping(hand, crate)")
+                                                 : std::vector<Span>{};
+}
+
+TEST(MotionInHands, AHandThatComesStaysAndLeavesHeldItStill) {
+  ExpectSpans(GraspsOfWhatStays(0.06), {{1, 3}}, 0.1);
+}
+
+TEST(MotionInHands, AHandThatStaysFartherAwayHoldsNothing) {
+  EXPECT_TRUE(GraspsOfWhatStays(0.12).empty());
+}
+
+TEST(MotionInHands, AHandThatWasThereHoldsNothing) {
+  EXPECT_TRUE(GraspsOfWhatStays(0.06, 0.075).empty());
+}
+
+// The hand touches a box, waits for 1.5 s, and lifts it at 2.5 s.
+TEST(MotionInHands, ARestBeforeTheLiftIsNoGrasp) {
+  const auto found =
+      Recognise(testing::CompileLibrary("pick_and_place_from_motion"),
+                {Thing("box", {0.05, 0.05, 0.05}), Hand("hand")}, 5, [&](double s) {
+                  const Vector3d box(0, 0, 0.05 + 0.3 * (Smooth(s, 2.5, 3.1)));
+                  return std::vector<Pose>{
+                      {box}, {box + Vector3d(0.07 + 0.4 * (1 - Smooth(s, 0.3, 1)), 0, 0)}};
+                });
+  ASSERT_TRUE(found.contains("grasping(hand, box)"));
+  ExpectSpans(found.at("grasping(hand, box)"), {{2.5, 5}}, 0.1);
+}
+
+// The hand lies still. For a frame its tracker is 4 cm off.
+TEST(MotionInHands, AnErrorOfAFrameIsNoParting) {
+  const auto found =
+      Recognise(testing::CompileLibrary("pick_and_place_from_motion"),
+                {Thing("box", {0.05, 0.05, 0.05}), Hand("hand")}, 5, [&](double s) {
+                  const Vector3d box(0.3 * Smooth(s, 2.6, 3.4), 0, 0.05);
+                  const double off_m = s > 3.9 && s < 3.91 ? 0.04 : 0;
+                  const Vector3d away(0.4 * (1 - Smooth(s, 0.3, 1) + Smooth(s, 4.3, 4.9)), 0, 0);
+                  return std::vector<Pose>{{box}, {box + away + Vector3d(0.07 + off_m, 0, 0)}};
+                });
+  ASSERT_TRUE(found.contains("grasping(hand, box)"));
+  ExpectSpans(found.at("grasping(hand, box)"), {{2.7, 4.4}}, 0.15);
+}
+
+/// Two hands at a bowl: a whisk, whose orientation counts from lying, stirs in it from 2 to 7 s,
+/// tipped by 70 degrees. A bottle is tipped by 110 degrees over it from 3.5 to 5.5 s, and shaken.
+std::map<std::string, std::vector<Span>> StirredAndPouredInto() {
+  return Recognise(
+      Compiled("use contact from motion\nuse stirring from motion\nuse pouring from motion\n"),
+      {Thing("whisk", {0.02, 0.02, 0.1}), Thing("bottle", {0.04, 0.04, 0.12}),
+       Thing("bowl", {0.1, 0.1, 0.05}), Hand("left"), Hand("right")},
+      9, [&](double s) {
+        const double used = Smooth(s, 1.3, 1.9) - Smooth(s, 7.1, 7.7);
+        const double round = 2 * std::numbers::pi * 1.3 * s;
+        const double stirs = Smooth(s, 1.9, 2.1) - Smooth(s, 6.8, 7);
+        const Vector3d whisk = Vector3d(0.4 * (1 - used), 0, 0.1 + 0.1 * used) +
+                               0.03 * stirs * Vector3d(std::sin(round), std::cos(round), 0);
+        const Quaterniond leaning(Eigen::AngleAxisd(1.22 * used, Vector3d::UnitX()));
+        const double there = Smooth(s, 2.8, 3.5) - Smooth(s, 5.6, 6.3);
+        const double shakes = 0.02 * std::sin(2 * std::numbers::pi * 2 * s) *
+                              (Smooth(s, 3.5, 3.6) - Smooth(s, 5.4, 5.5));
+        const Vector3d bottle(-0.4 + 0.3 * there + shakes, 0.02 * there, 0.12 + 0.15 * there);
+        const double tip = 1.92 * (Smooth(s, 3.3, 3.7) - Smooth(s, 5.3, 5.7));
+        const Quaterniond tipped(Eigen::AngleAxisd(tip, Vector3d::UnitY()));
+        const Vector3d away(0, 0.4 * (1 - Smooth(s, 0, 0.8) + Smooth(s, 8, 8.7)), 0);
+        return std::vector<Pose>{{whisk, leaning},
+                                 {bottle, tipped},
+                                 {Vector3d(0, 0, 0.05)},
+                                 {bottle + Vector3d(-0.07, 0, 0) - away, tipped},
+                                 {whisk + Vector3d(0.05, 0, 0.05) + away, leaning}};
+      });
+}
+
+TEST(MotionInHands, WhatStirsDoesNotPourAndWhatPoursDoesNotStir) {
+  const auto found = StirredAndPouredInto();
+  ASSERT_TRUE(found.contains("stirring(right, whisk, bowl)"));
+  ExpectSpans(found.at("stirring(right, whisk, bowl)"), {{2, 7}}, 0.5);
+  ASSERT_TRUE(found.contains("pouring(left, bottle, bowl)"));
+  ExpectSpans(found.at("pouring(left, bottle, bowl)"), {{3.5, 5.6}}, 0.3);
+  for (const auto& [event, spans] : found)
+    EXPECT_TRUE(!event.starts_with("stirring") || event == "stirring(right, whisk, bowl)") << event;
+  for (const auto& [event, spans] : found)
+    EXPECT_TRUE(!event.starts_with("pouring") || event == "pouring(left, bottle, bowl)") << event;
+}
+
+// The same hands, from the first to the last frame: each does one thing at a time.
+TEST(MotionInHands, EachHandHasItsActions) {
+  const auto found =
+      Recognise(testing::CompileLibrary("hand_actions_from_motion"),
+                {Thing("box", {0.05, 0.05, 0.05}), Hand("hand")}, 8, [&](double s) {
+                  const Vector3d box(0.3 * (Smooth(s, 2, 2.8) + Smooth(s, 4, 4.8)), 0,
+                                     0.05 + 0.2 * (Smooth(s, 2, 2.6) - Smooth(s, 4.2, 4.8)));
+                  const Vector3d away(0, 0.4 * (1 - Smooth(s, 1, 1.9) + Smooth(s, 5, 5.8)), 0);
+                  return std::vector<Pose>{{box}, {box + Vector3d(0, 0.07, 0) + away}};
+                });
+  const std::map<std::string, Span> wanted = {{"going_to(hand, box)", {1, 2}},
+                                              {"lifting(hand, box)", {2, 2.8}},
+                                              {"holding(hand, box)", {2.8, 4}},
+                                              {"placing(hand, box)", {4, 5}},
+                                              {"retreating(hand, box)", {5, 5.8}}};
+  for (const auto& [action, span] : wanted) {
+    ASSERT_TRUE(found.contains(action)) << action;
+    ASSERT_EQ(found.at(action).size(), 1) << action;
+    EXPECT_NEAR(found.at(action)[0].first, span.first, 0.15) << action;
+    EXPECT_NEAR(found.at(action)[0].second, span.second, 0.15) << action;
+  }
+  ASSERT_TRUE(found.contains("idling(hand)"));
+  ExpectSpans(found.at("idling(hand)"), {{0, 1}, {5.8, 8}}, 0.15);
 }
 
 }  // namespace

@@ -24,7 +24,10 @@ import made_takes
 
 KINDS = {"reaching", "grasping", "sliding", "picking_up", "transporting", "putting_down"}
 OF_PEOPLE = KINDS | {"pouring", "stirring"}
-GRAMMAR_OF_PEOPLE = "grammar {}\nuse {}\nuse pouring\nuse stirring\n"
+GRAMMARS_OF_PEOPLE = {
+    "facts": "grammar facts\nuse pick_and_place\nuse pouring\nuse stirring\n",
+    "seen": "grammar seen\nuse contact from motion\nuse stirring from motion\nuse pouring from motion\n"
+            "use pick_and_place_from_motion\n"}
 HZ = 60
 JITTER_M = 0.001
 
@@ -146,9 +149,9 @@ def f1(found, missed, extra):
 def people(prehend, takes):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        grammars = {"facts": folder / "facts.grammar", "seen": folder / "seen.grammar"}
-        grammars["facts"].write_text(GRAMMAR_OF_PEOPLE.format("facts", "pick_and_place"))
-        grammars["seen"].write_text(GRAMMAR_OF_PEOPLE.format("seen", "pick_and_place_from_motion"))
+        grammars = {name: folder / f"{name}.grammar" for name in GRAMMARS_OF_PEOPLE}
+        for name, file in grammars.items():
+            file.write_text(GRAMMARS_OF_PEOPLE[name])
         for number, (who, person) in enumerate(made_takes.PEOPLE.items()):
             counts = collections.defaultdict(lambda: [0, 0, 0])
             for take in range(takes):
