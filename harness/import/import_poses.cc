@@ -160,6 +160,7 @@ class Importer {
     WarnOfNoOrientations();
     for (const std::string& body : file_.unused)
       Warn(fmt::format("the file has '{}', which the map does not mention", body));
+    for (const std::string& note : file_.notes) Warn(note);
     return std::move(imported_);
   }
 
@@ -444,16 +445,18 @@ std::string ImportTable(const Imported& imported) {
   const Episode& episode = imported.episode;
   std::string table = fmt::format("{}: {} frames, {:.3f} s\n", episode.header.episode,
                                   episode.frames.size(), imported.duration_s);
-  table +=
-      fmt::format("{:<16} {:<16} {:>7} {:>7} {:>8} {:>9} {:>5} {:>7}  {:<14} {:<14} {}\n", "entity",
-                  "from", "poses", "Hz", "bridged", "s", "lost", "s", "x, m", "y, m", "z, m");
+  std::size_t width = 16;
+  for (const EntityReport& one : imported.entities) width = std::max(width, one.from.size());
+  table += fmt::format("{:<16} {:<{}} {:>7} {:>7} {:>8} {:>9} {:>5} {:>7}  {:<14} {:<14} {}\n",
+                       "entity", "from", width, "poses", "Hz", "bridged", "s", "lost", "s", "x, m",
+                       "y, m", "z, m");
   for (const EntityReport& one : imported.entities) {
     const auto range = [&](int axis) {
       return fmt::format("{:.2f}..{:.2f}", one.extent.min()[axis], one.extent.max()[axis]);
     };
     table += fmt::format(
-        "{:<16} {:<16} {:>7} {:>7.1f} {:>8} {:>9.3f} {:>5} {:>7.3f}  {:<14} {:<14} {}\n", one.name,
-        one.from.empty() ? "(the map)" : one.from, one.poses, one.rate_hz, one.bridged,
+        "{:<16} {:<{}} {:>7} {:>7.1f} {:>8} {:>9.3f} {:>5} {:>7.3f}  {:<14} {:<14} {}\n", one.name,
+        one.from.empty() ? "(the map)" : one.from, width, one.poses, one.rate_hz, one.bridged,
         one.bridged_s, one.lost, one.lost_s, range(0), range(1), range(2));
   }
   return table;

@@ -32,6 +32,7 @@ struct PoseFile {
   std::string text;                 ///< of the file, for messages
   std::vector<PoseBody> bodies;     ///< those of the map, in its order
   std::vector<std::string> unused;  ///< names of bodies that the map does not mention
+  std::vector<std::string> notes;   ///< what a user should know, one line each
   /// Of a skeleton: from its feet to its head, in the file's unit and axes.
   std::optional<Eigen::Vector3d> stature;
   std::optional<QuaternionOrder> quaternion_order;  ///< as they were read; none: there are none

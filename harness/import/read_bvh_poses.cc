@@ -44,7 +44,8 @@ Result<PoseFile> ReadBvhPoses(const std::string& path, const MapFile& map) {
   const Result<BvhFile> bvh = ReadBvh(path, kLimits);
   if (!bvh) return tl::unexpected(bvh.error());
   DiagnosticList errors(map.document);
-  PoseFile poses{.file = path, .text = {}, .bodies = BodiesOf(map.map, errors), .unused = {}};
+  PoseFile poses{
+      .file = path, .text = {}, .bodies = BodiesOf(map.map, errors), .unused = {}, .notes = {}};
   std::map<std::string, std::size_t> joints;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < bvh->joints.size(); ++i) {

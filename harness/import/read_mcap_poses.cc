@@ -10,42 +10,38 @@
 #include <fstream>
 #include <set>
 
+#include "grammar/base/wording.h"
 #include "harness/base/text_file.h"
-#include "harness/import/frame_tree.h"
+#include "harness/import/log_series.h"
 #include "harness/import/pose_file.h"
 #include "harness/messages/bag_file.h"
-#include "harness/messages/pose_messages.h"
+#include "harness/messages/mcap_file.h"
 
 namespace prehend::harness::import {
 
-using messages::FormatOf;
-using messages::LogChannel;
-using messages::LogMessage;
-using messages::MessageContent;
-using messages::MessageFormat;
-using messages::MessagePose;
-
 namespace {
 
-constexpr std::size_t kMostSeries = 10'000, kMostPoses = 5'000'000;
-constexpr std::size_t kPosesOfAnyFile = 250'000;  ///< and one more for each four bytes of the file
-constexpr std::int64_t kLast_ns = std::int64_t{1} << 62;  ///< in the year 2116
+using messages::MessageReader;
+
 constexpr double kMostDuration_s = 1e5;
 constexpr std::size_t kMostDeep = 200;  ///< frames in frames
 constexpr std::ptrdiff_t kMostNamed = 4;
 constexpr std::size_t kMostTopics = 20;  ///< that an error names
+constexpr std::size_t kMostListed = 12;  ///< bodies in a line
 constexpr const char* kReadTypes =
-    "read are PoseStamped, PoseArray, TransformStamped and TFMessage of ROS as JSON, CDR or ROS 1, "
-    "and PoseInFrame, PosesInFrame, FrameTransform and FrameTransforms of Foxglove as JSON "
-    "(docs/motion-capture.md)";
-constexpr std::int64_t kMostBack_ns = 1'000'000'000;  ///< more than this is another clock
+    "read are messages of ROS with a definition in which there is a pose, as CDR or ROS 1; "
+    "PoseStamped, PoseArray, TransformStamped and TFMessage of ROS, and PoseInFrame, PosesInFrame, "
+    "FrameTransform and FrameTransforms of Foxglove, as JSON (docs/motion-capture.md)";
 
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-/// Topics of tf may begin their names with a slash, and mean the same.
-std::string FrameName(std::string name) {
-  if (name.starts_with('/')) name.erase(0, 1);
-  return name;
+/// "'a', 'b' and 3 more".
+std::string Listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostListed); ++i)
+    text += fmt::format("{}'{}'", i == 0 ? "" : ", ", names[i]);
+  if (names.size() > kMostListed) text += fmt::format(" and {} more", names.size() - kMostListed);
+  return text;
 }
 
 class McapPoseReader {
@@ -54,9 +50,6 @@ class McapPoseReader {
       : map_(map.map), map_errors_(map.document) {
     poses.file = path;
     poses.bodies = BodiesOf(map_, map_errors_);
-    poses.quaternion_order =
-        map_.quaternion_order ? map_.quaternion_order->value : QuaternionOrder::kXyzw;
-    nan_is_missing_ = std::ranges::find(map_.missing, "nan") != map_.missing.end();
   }
 
   void Read() {
@@ -65,13 +58,15 @@ class McapPoseReader {
     if (error || !std::filesystem::is_regular_file(poses.file))
       return Fail(std::filesystem::exists(poses.file) ? "is not a regular file" : "no such file");
     std::ifstream in(poses.file, std::ios::binary);
-    size_ = size;
-    most_poses_ = std::min<std::uint64_t>(kMostPoses, kPosesOfAnyFile + size / 4);
+    LogSeries series(map_, size);
+    series_ = &series;
     const auto read = IsBag(poses.file) ? messages::ReadBag : messages::ReadMcap;
     const std::string why = read(
-        in, size, [this](const LogMessage& message) { return TakeMessage(message); },
-        [this](const LogChannel& channel) { TakeChannel(channel); });
+        in, size,
+        [&series](const messages::LogMessage& message) { return series.TakeMessage(message); },
+        [&series](const messages::LogChannel& channel) { series.TakeChannel(channel); });
     if (!why.empty()) return Fail(why);
+    poses.quaternion_order = series.quaternion_order();
     if (map_errors_.empty()) FindBodies();
     if (map_errors_.empty()) Compose();
     if (map_errors_.empty() && problems_.empty()) RefuseAbsentBodies(poses, map_, map_errors_);
@@ -94,127 +89,157 @@ class McapPoseReader {
                          .hint = {}});
   }
 
-  void TakeChannel(const LogChannel& channel) {
-    if (FormatOf(channel)) return;
-    unread_[channel.topic] = fmt::format(
-        "{} ({})", channel.schema.empty() ? "no schema" : channel.schema, channel.message_encoding);
-  }
-
-  std::string TakeMessage(const LogMessage& message) {
-    const std::optional<MessageFormat> format = FormatOf(message.channel);
-    if (!format) return "";
-    std::vector<MessagePose> read;
-    const std::string& topic = message.channel.topic;
-    std::string why = messages::DecodePoses(*format, message.data, read);
-    for (std::size_t i = 0; why.empty() && i < read.size(); ++i) {
-      MessagePose& pose = read[i];
-      const bool moves_frame = format->content == MessageContent::kTransform ||
-                               format->content == MessageContent::kTransforms;
-      if (format->content == MessageContent::kPose) pose.name = topic;
-      if (format->content == MessageContent::kPoses) pose.name = fmt::format("{}[{}]", topic, i);
-      if (pose.name.empty()) why = "a transform without 'child_frame_id'";
-      FrameLink& link = moves_frame ? tree_.links[FrameName(pose.name)] : topics_[pose.name];
-      if (why.empty()) why = TakePose(message, pose, link);
-    }
-    if (tree_.links.size() + topics_.size() > kMostSeries)
-      why = fmt::format("more than {} frames and bodies", kMostSeries);
-    if (poses_ > most_poses_)
-      why = most_poses_ == kMostPoses
-                ? fmt::format("more than {} poses", kMostPoses)
-                : fmt::format("more than {} poses in a file of {} KiB", most_poses_, size_ >> 10);
-    if (why.empty()) return "";
-    return fmt::format("a message of '{}', logged at {:.6f} s: {}", ReadableName(topic),
-                       Seconds(message.log_ns), why);
-  }
-
-  std::string TakePose(const LogMessage& message, const MessagePose& pose, FrameLink& link) {
-    const bool fixed = message.channel.topic.ends_with("tf_static");
-    const std::string frame = FrameName(pose.frame);
-    if (link.poses.empty()) {
-      link.parent = frame;
-      link.fixed = fixed;
-    } else if (link.parent != frame) {
-      return fmt::format("'{}' is in the frame '{}', and before it was in '{}'", pose.name, frame,
-                         link.parent);
-    }
-    std::int64_t ns = map_.mcap.clock == Clock::kPublish ? message.publish_ns : message.log_ns;
-    if (map_.mcap.clock == Clock::kHeader && pose.stamp_ns) {
-      ns = *pose.stamp_ns;
-      if (ns == 0 && !fixed)
-        return fmt::format(
-            "'{}' has the time 0 in its header; if it has no clock, the map says "
-            "mcap: {{clock: log}}",
-            pose.name);
-    }
-    if (ns < 0 || ns > kLast_ns)
-      return fmt::format("'{}' has the time {:.0f} s; expected one of the years 1970 to 2116",
-                         pose.name, static_cast<double>(static_cast<std::uint64_t>(ns)) * 1e-9);
-    if (!link.poses.empty() && ns < link.poses.back().ns - kMostBack_ns)
-      return fmt::format(
-          "the times of '{}' go back from {:.6f} to {:.6f} s: its clock was set, or "
-          "these are two recordings",
-          pose.name, Seconds(link.poses.back().ns), Seconds(ns));
-    if (pose.missing || (map_.zero_is_missing && pose.p.isZero(0))) return "";
-    if (!pose.p.allFinite() || !pose.xyzw.allFinite()) {
-      if (nan_is_missing_) return "";
-      return fmt::format(
-          "'{}' has a pose that is no number; if that means 'not tracked', the map "
-          "says missing: [nan]",
-          pose.name);
-    }
-    const double length = pose.xyzw.norm();
-    if (std::abs(length - 1) > kUnitTolerance)
-      return fmt::format("'{}': expected a unit quaternion, found one of length {:.4g}", pose.name,
-                         length);
-    const Eigen::Vector4d& v = pose.xyzw;
-    Eigen::Quaterniond q(v[3], v[0], v[1], v[2]);
-    if (poses.quaternion_order == QuaternionOrder::kWxyz)
-      q = Eigen::Quaterniond(v[0], v[1], v[2], v[3]);
-    link.poses.push_back({.ns = ns, .p = pose.p, .q = q.normalized()});
-    ++poses_;
-    return "";
-  }
-
   /// Of each body its topic or its frame.
   void FindBodies() {
+    bool has_frames = false, has_positions = false;
     for (const Named<MappedEntity>& entity : map_.entities) {
       if (!entity.value.from) continue;
       const Located<std::string>& from = *entity.value.from;
-      const auto topic = topics_.find(from.value);
-      const auto frame = tree_.links.find(FrameName(from.value));
-      if (topic != topics_.end() && frame != tree_.links.end())
+      const FrameLink* link = nullptr;
+      bool oriented = true;
+      if (const auto named = series_->named.find(from.value); named != series_->named.end())
+        link = &named->second;
+      const auto topic = TopicOf(from.value);
+      if (!link && topic != series_->topics.end()) link = LinkOf(from, *topic, oriented);
+      const auto frame = series_->tree.links.find(FrameName(from.value));
+      if (frame != series_->tree.links.end()) {
+        const bool same = topic != series_->topics.end() && topic->second.reader &&
+                          topic->second.reader->bodies() == MessageReader::Bodies::kFrames;
+        if (link && !same)
+          map_errors_.Add(
+              from.where,
+              fmt::format("'{}' is a topic of poses and a frame of transforms", from.value));
+        link = &frame->second;
+        has_frames = true;
+      }
+      if (!link) {
+        RefuseUnknown(from, topic);
+        continue;
+      }
+      has_positions = has_positions || !oriented;
+      found_.push_back(link);
+      oriented_.push_back(oriented);
+      if (!oriented && entity.value.upright_at_s)
         map_errors_.Add(
-            from.where,
-            fmt::format("'{}' is a topic of poses and a frame of transforms", from.value));
-      else if (topic != topics_.end())
-        found_.push_back(&topic->second);
-      else if (frame != tree_.links.end())
-        found_.push_back(&frame->second);
-      else
-        RefuseUnknown(from);
+            entity.value.upright_at_s->where,
+            fmt::format("upright_at_s: '{}' has no orientation in the file", from.value));
     }
+    if (map_errors_.empty()) AddNotes(has_frames, has_positions);
+  }
+
+  using Topics = std::map<std::string, LogTopic>;
+
+  /// The longest name that it begins with.
+  Topics::const_iterator TopicOf(const std::string& from) const {
+    for (std::size_t size = from.size(); size > 0; --size) {
+      if (size < from.size() && from[size] != '[' && from[size] != ':') continue;
+      const auto topic = series_->topics.find(from.substr(0, size));
+      const bool has_names = topic != series_->topics.end() && topic->second.reader &&
+                             topic->second.reader->bodies() == MessageReader::Bodies::kByName;
+      if (topic != series_->topics.end() && !has_names) return topic;
+    }
+    return series_->topics.end();
+  }
+
+  /// Null if there is none, or after an error.
+  const FrameLink* LinkOf(const Located<std::string>& from, const Topics::value_type& topic,
+                          bool& oriented) {
+    const auto asked = std::ranges::find(topic.second.asked, from.value, &AskedBody::from);
+    if (asked == topic.second.asked.end()) return nullptr;
+    const FrameLink* link = nullptr;
+    std::vector<std::string> names;
+    for (const auto& [field, candidate] : asked->links) {
+      if (!topic.second.seen.contains({field, asked->address.keys}) && candidate.poses.empty())
+        continue;
+      link = &candidate;
+      oriented = topic.second.reader->fields()[field].oriented;
+      names.push_back(messages::AddressOf(topic.first, topic.second.reader->fields(), field,
+                                          asked->address.keys));
+    }
+    if (names.size() > 1)
+      map_errors_.Add(from.where, fmt::format("'{}' can be {} bodies", from.value, names.size()),
+                      "write one of " + Listed(names));
+    return link;
+  }
+
+  /// What the map does not mention, and what a user may not expect.
+  void AddNotes(bool has_frames, bool has_positions) {
     std::set<std::string> used;
     for (const PoseBody& body : poses.bodies) used.insert(FrameName(body.name));
-    for (const auto& [name, link] : topics_) {
-      if (!used.contains(FrameName(name))) poses.unused.push_back(name);
+    std::vector<std::vector<std::string>> unused(2);
+    for (const auto& [name, link] : series_->named) {
+      if (!used.contains(FrameName(name))) unused[0].push_back(name);
+    }
+    for (const auto& [name, link] : series_->tree.links) {
+      if (!has_frames) unused[1].push_back(name);
+    }
+    for (const auto& [name, topic] : series_->topics) {
+      if (topic.lacks_times && map_.mcap.clock == Clock::kHeader)
+        poses.notes.push_back(fmt::format(
+            "the messages of '{}' have no time of their own: they count as measured when they were "
+            "logged",
+            name));
+      std::size_t repeats = 0;
+      for (const AskedBody& body : topic.asked) repeats = std::max(repeats, body.repeats);
+      if (repeats > 0)
+        poses.notes.push_back(fmt::format("bodies of '{}' are twice in {}: the last pose counts",
+                                          name, grammar::CountOf(repeats, "message")));
+      const bool is_tf = topic.reader && topic.reader->bodies() == MessageReader::Bodies::kFrames;
+      if (!is_tf) unused.push_back(topic.Names(name, /*unasked_only=*/true));
+    }
+    for (const std::vector<std::string>& names : unused) {
+      if (!names.empty())
+        poses.notes.push_back(
+            fmt::format("the file has {}, which the map does not mention", Listed(names)));
+    }
+    if (!has_positions) return;
+    poses.has_orientations = std::ranges::find(oriented_, true) != oriented_.end();
+    for (std::size_t i = 0; i < oriented_.size() && poses.has_orientations; ++i) {
+      if (!oriented_[i])
+        poses.notes.push_back(fmt::format(
+            "'{}' is a position without an orientation: it never turns or tilts (boxes, offset_m)",
+            poses.bodies[i].name));
     }
   }
 
-  void RefuseUnknown(const Located<std::string>& from) {
-    if (const auto unread = unread_.find(from.value); unread != unread_.end())
-      return map_errors_.Add(from.where,
-                             fmt::format("the messages of '{}' are of a type that is not read: {}",
-                                         from.value, unread->second),
-                             kReadTypes);
+  void RefuseUnknown(const Located<std::string>& from, Topics::const_iterator topic) {
+    if (topic != series_->topics.end()) return RefuseBody(from, *topic);
     std::vector<std::string> names;
-    for (const auto* series : {&topics_, &tree_.links}) {
+    for (const auto* series : {&series_->named, &series_->tree.links}) {
       for (const auto& [name, link] : *series) names.push_back(name);
     }
-    if (names.empty() && !unread_.empty()) return RefuseAllTypes(from);
+    bool is_read = !names.empty();
+    for (const auto& [name, one] : series_->topics) {
+      is_read = is_read || (one.reader && one.reader->bodies() != MessageReader::Bodies::kByName);
+      for (std::string& body : one.Names(name, /*unasked_only=*/false))
+        names.push_back(std::move(body));
+    }
+    if (!is_read && !series_->topics.empty()) return RefuseAllTypes(from);
     map_errors_.AddUnknownName(
         from.where,
         fmt::format("no topic of poses, no body and no frame is called '{}'", from.value),
         from.value, names);
+  }
+
+  /// Of a topic that is there.
+  void RefuseBody(const Located<std::string>& from, const Topics::value_type& entry) {
+    const auto& [name, topic] = entry;
+    if (!topic.reader)
+      return map_errors_.Add(from.where,
+                             fmt::format("the messages of '{}' are of a type that is not read: {}",
+                                         ReadableName(name), topic.why_not),
+                             kReadTypes);
+    const std::vector<std::string> names = topic.Names(name, /*unasked_only=*/false);
+    if (names.empty())
+      return map_errors_.Add(from.where,
+                             fmt::format("'{}' has no poses in the file", ReadableName(name)));
+    const std::string near = grammar::NearestName(from.value, names);
+    map_errors_.Add(
+        from.where,
+        from.value == name ? fmt::format("the messages of '{}' have several bodies", name)
+                           : fmt::format("'{}' has no body '{}'", name, from.value),
+        (near.empty() || from.value == name ? "" : fmt::format("did you mean '{}'? ", near)) +
+            "there is " + Listed(names));
   }
 
   /// Once for all bodies.
@@ -222,13 +247,13 @@ class McapPoseReader {
     if (!map_errors_.empty()) return;
     std::string topics;
     std::size_t named = 0;
-    for (const auto& [topic, type] : unread_) {
+    for (const auto& [name, topic] : series_->topics) {
       if (named++ == kMostTopics) break;
-      topics += fmt::format("{}'{}': {}", topics.empty() ? "" : ", ", ReadableName(topic),
-                            ReadableName(type));
+      topics += fmt::format("{}'{}': {}", topics.empty() ? "" : ", ", ReadableName(name),
+                            topic.reader ? "JSON" : topic.why_not);
     }
-    if (unread_.size() > kMostTopics)
-      topics += fmt::format(" and {} more", unread_.size() - kMostTopics);
+    if (series_->topics.size() > kMostTopics)
+      topics += fmt::format(" and {} more", series_->topics.size() - kMostTopics);
     map_errors_.Add(
         from.where,
         fmt::format("the file has no topic of a type that is read, so no '{}'; it has {}",
@@ -240,13 +265,13 @@ class McapPoseReader {
   std::optional<std::string> World() {
     std::map<std::string, std::string> roots;  // and a body of each
     for (std::size_t i = 0; i < found_.size(); ++i)
-      roots.emplace(tree_.RootOf(found_[i]->parent), poses.bodies[i].name);
+      roots.emplace(series_->tree.RootOf(found_[i]->parent), poses.bodies[i].name);
     const auto& given = map_.mcap.world;
     const std::string world = given ? FrameName(given->value) : roots.begin()->first;
-    const std::string root = tree_.RootOf(world);
+    const std::string root = series_->tree.RootOf(world);
     if (given && !roots.contains(root)) {
       std::vector<std::string> names;
-      for (const auto& [name, link] : tree_.links) names.push_back(name);
+      for (const auto& [name, link] : series_->tree.links) names.push_back(name);
       for (const auto& [name, body] : roots) names.push_back(name);
       map_errors_.AddUnknownName(given->where,
                                  fmt::format("no body is tracked in the frame '{}'", given->value),
@@ -264,25 +289,37 @@ class McapPoseReader {
     return world;
   }
 
+  bool Sort(const std::string& name, FrameLink& link) {
+    const auto ns = link.Sort();
+    if (ns) Fail(fmt::format("'{}' has two poses at {:.6f} s", name, Seconds(*ns)));
+    return !ns;
+  }
+
   void Compose() {
-    for (auto* series : {&topics_, &tree_.links}) {
+    for (auto* series : {&series_->named, &series_->tree.links}) {
       for (auto& [name, link] : *series) {
-        if (const auto ns = link.Sort())
-          return Fail(fmt::format("'{}' has two poses at {:.6f} s", name, Seconds(*ns)));
+        if (!Sort(name, link)) return;
+      }
+    }
+    for (auto& [name, topic] : series_->topics) {
+      for (AskedBody& body : topic.asked) {
+        for (auto& [field, link] : body.links) {
+          if (!Sort(body.from, link)) return;
+        }
       }
     }
     for (std::size_t i = 0; i < found_.size(); ++i) RefuseRing(poses.bodies[i].name, *found_[i]);
     if (!problems_.empty()) return;
     const std::optional<std::string> world = World();
     if (!world) return;
-    if (const auto link = tree_.links.find(*world); link != tree_.links.end())
+    if (const auto link = series_->tree.links.find(*world); link != series_->tree.links.end())
       RefuseRing(*world, link->second);
     if (!problems_.empty()) return;
     const auto bridge_ns = static_cast<std::int64_t>(map_.bridge_s * 1e9);
     std::vector<std::vector<TimedPose>> all;
     std::optional<std::int64_t> first, last;
     for (const FrameLink* body : found_) {
-      all.push_back(tree_.InFrame(*body, *world, bridge_ns));
+      all.push_back(series_->tree.InFrame(*body, *world, bridge_ns));
       if (all.back().size() < 2) continue;
       first = std::min(first.value_or(all.back().front().ns), all.back().front().ns);
       last = std::max(last.value_or(all.back().back().ns), all.back().back().ns);
@@ -311,8 +348,8 @@ class McapPoseReader {
   void RefuseRing(const std::string& name, const FrameLink& body) {
     std::vector<const std::string*> way = {&body.parent};
     while (problems_.empty()) {
-      const auto parent = tree_.links.find(*way.back());
-      if (parent == tree_.links.end()) return;
+      const auto parent = series_->tree.links.find(*way.back());
+      if (parent == series_->tree.links.end()) return;
       const std::string& next = parent->second.parent;
       const auto again = std::ranges::find_if(way, [&](const auto* of) { return *of == next; });
       if (again != way.end()) {
@@ -330,9 +367,9 @@ class McapPoseReader {
 
   bool IsFixed(const FrameLink& body, const std::string& world) const {
     const FrameLink* link = &body;
-    for (std::size_t depth = 0; link->fixed && depth <= tree_.links.size(); ++depth) {
-      const auto parent = tree_.links.find(link->parent);
-      if (link->parent == world || parent == tree_.links.end()) return true;
+    for (std::size_t depth = 0; link->fixed && depth <= series_->tree.links.size(); ++depth) {
+      const auto parent = series_->tree.links.find(link->parent);
+      if (link->parent == world || parent == series_->tree.links.end()) return true;
       link = &parent->second;
     }
     return false;
@@ -341,13 +378,9 @@ class McapPoseReader {
   const ImportMap& map_;
   DiagnosticList map_errors_;
   grammar::Diagnostics problems_;
-  bool nan_is_missing_ = false;
-  FrameTree tree_;
-  std::map<std::string, FrameLink> topics_;    ///< and named bodies
-  std::map<std::string, std::string> unread_;  ///< topics, with what they hold
-  std::vector<const FrameLink*> found_;        ///< of each body
-  std::size_t poses_ = 0;
-  std::uint64_t most_poses_ = kMostPoses, size_ = 0;
+  LogSeries* series_ = nullptr;
+  std::vector<const FrameLink*> found_;  ///< of each body
+  std::vector<bool> oriented_;           ///< of each body
 };
 
 }  // namespace

@@ -124,10 +124,14 @@ class BagReader {
       return file_.Fail("a connection without a topic or a type");
     if (std::max(topic->second.size(), type->second.size()) > kMaxLogNameBytes)
       return file_.Fail("a name of more than 1000 bytes");
+    const auto definition = of_topic.find("message_definition");
     const LogChannel channel{.topic = std::string(topic->second),
                              .message_encoding = "ros1",
                              .schema = std::string(type->second),
-                             .schema_encoding = "ros1msg"};
+                             .schema_encoding = "ros1msg",
+                             .definition = definition == of_topic.end()
+                                               ? std::string_view()
+                                               : file_.Keep(definition->second)};
     file_.TakeChannel("connection", id, channel);
   }
 

@@ -52,6 +52,17 @@ bool LogFile::AdmitsMore(const char* what, std::size_t count) {
   return ok();
 }
 
+std::string_view LogFile::Keep(std::string_view definition) {
+  const auto known = definitions_.find(definition);
+  if (known != definitions_.end()) return *known;
+  definition_bytes_ += definition.size();
+  if (definition_bytes_ > kMostDefinitionBytes) {
+    Fail(fmt::format("more than {} MiB of definitions of types", kMostDefinitionBytes >> 20));
+    return {};
+  }
+  return *definitions_.emplace(definition).first;
+}
+
 void LogFile::TakeChannel(const char* kind, std::uint32_t id, const LogChannel& channel) {
   const auto known = channels_.find(id);
   if (known == channels_.end()) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <istream>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -21,8 +22,12 @@ inline constexpr std::size_t kMaxLogChannels = 10'000;
 /// Of a topic, an encoding, the name of a type.
 inline constexpr std::size_t kMaxLogNameBytes = 1000;
 
+/// Of definitions of types, all of them that differ.
+inline constexpr std::size_t kMostDefinitionBytes = std::size_t{8} << 20;
+
 struct LogChannel {
   std::string topic, message_encoding, schema, schema_encoding;
+  std::string_view definition;  ///< of its type, in `schema_encoding`; lives as long as the file
 };
 
 /// Lives as long as the call that shows it.
@@ -62,6 +67,8 @@ class LogFile {
   /// Whether one more than `count` channels, or types, is within the limits.
   bool AdmitsMore(const char* what, std::size_t count);
 
+  /// A definition of a type, kept as long as the file.
+  std::string_view Keep(std::string_view definition);
   /// `kind`: "channel". A number must mean the same channel wherever it is declared.
   void TakeChannel(const char* kind, std::uint32_t id, const LogChannel& channel);
   /// Null if there is none: a problem.
@@ -75,6 +82,8 @@ class LogFile {
   const HearsOfChannel& tell_;
   std::uint64_t at_ = 0, record_at_ = 0, content_bytes_ = 0;
   std::map<std::uint32_t, LogChannel> channels_;
+  std::set<std::string, std::less<>> definitions_;
+  std::size_t definition_bytes_ = 0;
   std::string problem_;
 };
 

@@ -121,6 +121,8 @@ class McapReader {
     Schema& schema = schemas_[id];
     schema.name = NameIn(reader);
     schema.encoding = NameIn(reader);
+    const std::string_view definition = reader.Text();
+    if (reader.ok) schema.definition = file_.Keep(definition);
   }
 
   void TakeChannel(ByteReader& reader) {
@@ -135,6 +137,7 @@ class McapReader {
     if (schema != 0) {
       channel.schema = schemas_.at(schema).name;
       channel.schema_encoding = schemas_.at(schema).encoding;
+      channel.definition = schemas_.at(schema).definition;
     }
     file_.TakeChannel("channel", id, channel);
   }
@@ -154,6 +157,7 @@ class McapReader {
 
   struct Schema {
     std::string name, encoding;
+    std::string_view definition;
   };
   LogFile& file_;
   bool ended_ = false, summary_ = false;

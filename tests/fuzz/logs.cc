@@ -33,14 +33,39 @@ std::string Transforms(Cdr::Kind kind, int frame) {
       .Bytes();
 }
 
+/// A list of named bodies with markers, by a definition.
+constexpr const char* kBodies =
+    "std_msgs/Header header\nBody[] bodies\nfloat32[<=9] other\n===\nMSG: mine/Body\nstring name\n"
+    "Marker[] markers\ngeometry_msgs/Pose pose\nbool valid\n===\nMSG: mine/Marker\nint32 id\n"
+    "geometry_msgs/Point position\n";
+
+std::string Bodies(Cdr::Kind kind, int frame) {
+  return Cdr(kind)
+      .Header(TimeOf(frame), "map")
+      .U32(1)
+      .Text("cup")
+      .U32(1)
+      .U32(7)
+      .F64(0)
+      .F64(0)
+      .F64(1)
+      .Pose({0, 0, 1})
+      .Flag(true)
+      .U32(1)
+      .F32(0.5F)
+      .Bytes();
+}
+
 }  // namespace
 
 std::string McapRecords() {
   house::McapWriter writer;
   const auto tf = writer.Channel("/tf", "cdr", "tf2_msgs/msg/TFMessage");
   const auto json = writer.Channel("/more", "json", "foxglove.PoseInFrame");
+  const auto bodies = writer.Channel("/bodies", "cdr", "mine/msg/Bodies", kBodies);
   for (int i = 0; i <= kFrames; ++i) {
     const std::uint64_t ns = TimeOf(i);
+    writer.Message(bodies, ns, Bodies(Cdr::Kind::kLittle, i));
     writer.Message(tf, ns, Transforms(Cdr::Kind::kLittle, i));
     writer.Message(json, ns,
                    "{\"timestamp\": {\"sec\": 1, \"nsec\": " + std::to_string(i) +
@@ -52,9 +77,11 @@ std::string McapRecords() {
 
 std::string BagRecords() {
   std::string records = house::BagConnection(0, "/tf", "tf2_msgs/TFMessage") +
-                        house::BagConnection(1, "/tracker/more", "geometry_msgs/PoseStamped");
+                        house::BagConnection(1, "/tracker/more", "geometry_msgs/PoseStamped") +
+                        house::BagConnection(2, "/bodies", "mine/Bodies", kBodies);
   for (int i = 0; i <= kFrames; ++i) {
     records += house::BagMessage(0, TimeOf(i), Transforms(Cdr::Kind::kRos1, i));
+    records += house::BagMessage(2, TimeOf(i), Bodies(Cdr::Kind::kRos1, i));
     records += house::BagMessage(
         1, TimeOf(i), Cdr(Cdr::Kind::kRos1).Header(TimeOf(i), "map").Pose({0, 0.1, 1}).Bytes());
   }

@@ -22,9 +22,11 @@ std::string TimeOf(std::uint64_t ns) {
 
 }  // namespace
 
-std::string BagConnection(std::uint32_t id, const std::string& topic, const std::string& type) {
-  return Record(7, Field("conn", Bytes32(id)) + Field("topic", topic),
-                Field("topic", topic) + Field("type", type) + Field("md5sum", "*"));
+std::string BagConnection(std::uint32_t id, const std::string& topic, const std::string& type,
+                          const std::string& definition) {
+  std::string fields = Field("topic", topic) + Field("type", type) + Field("md5sum", "*");
+  if (!definition.empty()) fields += Field("message_definition", definition);
+  return Record(7, Field("conn", Bytes32(id)) + Field("topic", topic), fields);
 }
 
 std::string BagMessage(std::uint32_t id, std::uint64_t ns, const std::string& data) {

@@ -8,7 +8,8 @@
 
 namespace prehend::house {
 
-std::string BagConnection(std::uint32_t id, const std::string& topic, const std::string& type);
+std::string BagConnection(std::uint32_t id, const std::string& topic, const std::string& type,
+                          const std::string& definition = "");
 std::string BagMessage(std::uint32_t id, std::uint64_t ns, const std::string& data);
 /// `compression`: "none", "lz4", or "": the records, without a chunk.
 std::string BagChunk(const std::string& records, const std::string& compression);

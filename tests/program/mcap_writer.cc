@@ -78,9 +78,11 @@ std::string WithLength(const std::string& text) {
 }
 
 std::uint16_t McapWriter::Channel(const std::string& topic, const std::string& encoding,
-                                  const std::string& schema) {
+                                  const std::string& schema, const std::string& definition) {
   const std::uint16_t id = ++channels_;
-  records_ += Record(3, Bytes16(id) + WithLength(schema) + WithLength("ros2msg") + WithLength(""));
+  records_ += Record(3, Bytes16(id) + WithLength(schema) +
+                            WithLength(encoding == "ros1" ? "ros1msg" : "ros2msg") +
+                            WithLength(definition));
   records_ += Record(
       4, Bytes16(id) + Bytes16(id) + WithLength(topic) + WithLength(encoding) + WithLength(""));
   return id;
@@ -120,6 +122,17 @@ Cdr& Cdr::U32(std::uint32_t number) {
   Align(4);
   Append(Bytes32(number));
   return *this;
+}
+
+Cdr& Cdr::Flag(bool flag) {
+  body_ += flag ? '\1' : '\0';
+  return *this;
+}
+
+Cdr& Cdr::F32(float number) {
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &number, sizeof bits);
+  return U32(bits);
 }
 
 Cdr& Cdr::F64(double number) {

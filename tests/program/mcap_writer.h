@@ -32,9 +32,9 @@ class McapWriter {
   /// A chunk whose content is packed already.
   static std::string ChunkOf(const std::string& packed, std::size_t size, const std::string& name);
 
-  /// Returns its number.
+  /// Returns its number. `definition`: of the type, that of ROS 1 if the encoding is "ros1".
   std::uint16_t Channel(const std::string& topic, const std::string& encoding,
-                        const std::string& schema);
+                        const std::string& schema, const std::string& definition = "");
   void Message(std::uint16_t channel, std::uint64_t log_ns, const std::string& data);
   /// The whole file.
   std::string Bytes() const { return FileOf(records_, chunks_); }
@@ -51,7 +51,9 @@ class Cdr {
  public:
   enum class Kind { kLittle, kBig, kRos1 };
   explicit Cdr(Kind kind = Kind::kLittle) : kind_(kind) {}
+  Cdr& Flag(bool flag);
   Cdr& U32(std::uint32_t number);
+  Cdr& F32(float number);
   Cdr& F64(double number);
   Cdr& Text(const std::string& text);
   /// Time and frame.
