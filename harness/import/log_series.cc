@@ -56,7 +56,8 @@ std::vector<std::string> LogTopic::Names(const std::string& topic, bool unasked_
     const bool is_asked = std::ranges::any_of(asked, [&](const AskedBody& body) {
       return body.links.contains(field) && body.address.keys == keys;
     });
-    if (!is_asked || !unasked_only) names.push_back(AddressOf(topic, fields, field, keys));
+    if (!is_asked || !unasked_only)
+      names.push_back(AddressOf(ReadableName(topic), fields, field, keys));
   }
   return names;
 }
@@ -79,6 +80,7 @@ void LogSeries::TakeChannel(const LogChannel& channel) {
   if (!is_known || (!topic.reader && source.reader)) {
     topic.reader = source.reader;
     topic.why_not = why;
+    topic.of_frames = MessageReaders::IsOfFrames(channel);
     Ask(channel.topic, topic);
   }
   sources_.emplace(&channel, std::move(source));
@@ -95,7 +97,6 @@ void LogSeries::Ask(const std::string& topic_name, LogTopic& topic) {
     AskedBody body{.from = entity.value.from->value, .address = {}, .links = {}};
     const auto address =
         messages::ParseBodyAddress(std::string_view(body.from).substr(topic_name.size()));
-    topic.is_address = topic.is_address && address;
     if (!address) continue;
     body.address = *address;
     for (const std::size_t field : FieldsOf(body.address, fields)) {
@@ -222,8 +223,11 @@ std::string LogSeries::TakePose(const LogMessage& message, const MessagePose& po
   if (pose.oriented) {
     const double length = pose.xyzw.norm();
     if (std::abs(length - 1) > kUnitTolerance)
-      return fmt::format("'{}': expected a unit quaternion, found one of length {:.4g}", name,
-                         length);
+      return fmt::format(
+          "'{}': expected a unit quaternion, found one of length {:.4g}{}", name, length,
+          pose.p.isZero(0) ? "; if a body at exactly 0, 0, 0 is not tracked, the map "
+                             "says zero_is_missing: true"
+                           : "");
     const Eigen::Vector4d& v = pose.xyzw;
     q = Eigen::Quaterniond(v[3], v[0], v[1], v[2]);
     if (order_ == QuaternionOrder::kWxyz) q = Eigen::Quaterniond(v[0], v[1], v[2], v[3]);

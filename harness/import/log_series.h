@@ -34,7 +34,7 @@ struct LogTopic {
   std::shared_ptr<const messages::MessageReader> reader;  ///< null: it is not read, and
   std::string why_not;
   std::vector<AskedBody> asked;
-  bool is_address = true;    ///< what is asked of it; else it cannot be understood
+  bool of_frames = false;    ///< its type is that of tf
   std::vector<bool> wanted;  ///< which of its fields are asked for
   /// Fields and keys of bodies, not all of very many.
   std::set<std::pair<std::size_t, std::vector<std::string>>> seen;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <set>
 
 #include "grammar/base/wording.h"
@@ -27,7 +28,7 @@ constexpr double kMostDuration_s = 1e5;
 constexpr std::size_t kMostDeep = 200;  ///< frames in frames
 constexpr std::ptrdiff_t kMostNamed = 4;
 constexpr std::size_t kMostTopics = 20;  ///< that an error names
-constexpr std::size_t kMostListed = 12;  ///< bodies in a line
+constexpr std::size_t kMostListed = 20;  ///< bodies in a line
 constexpr const char* kReadTypes =
     "read are messages of ROS with a definition in which there is a pose, as CDR or ROS 1; "
     "PoseStamped, PoseArray, TransformStamped and TFMessage of ROS, and PoseInFrame, PosesInFrame, "
@@ -103,8 +104,7 @@ class McapPoseReader {
       if (!link && topic != series_->topics.end()) link = LinkOf(from, *topic, oriented);
       const auto frame = series_->tree.links.find(FrameName(from.value));
       if (frame != series_->tree.links.end()) {
-        const bool same = topic != series_->topics.end() && topic->second.reader &&
-                          topic->second.reader->bodies() == MessageReader::Bodies::kFrames;
+        const bool same = topic != series_->topics.end() && topic->second.of_frames;
         if (link && !same)
           map_errors_.Add(
               from.where,
@@ -164,6 +164,7 @@ class McapPoseReader {
 
   /// What the map does not mention, and what a user may not expect.
   void AddNotes(bool has_frames, bool has_positions) {
+    const auto note = [this](std::string text) { poses.notes.push_back(std::move(text)); };
     std::set<std::string> used;
     for (const PoseBody& body : poses.bodies) used.insert(FrameName(body.name));
     std::vector<std::vector<std::string>> unused(2);
@@ -175,28 +176,26 @@ class McapPoseReader {
     }
     for (const auto& [name, topic] : series_->topics) {
       if (topic.lacks_times && map_.mcap.clock == Clock::kHeader)
-        poses.notes.push_back(fmt::format(
-            "the messages of '{}' have no time of their own: they count as measured when they were "
-            "logged",
-            name));
+        note(
+            fmt::format("the messages of '{}' have no time of their own: they count as measured "
+                        "when they were logged",
+                        ReadableName(name)));
       std::size_t repeats = 0;
       for (const AskedBody& body : topic.asked) repeats = std::max(repeats, body.repeats);
       if (repeats > 0)
-        poses.notes.push_back(fmt::format("bodies of '{}' are twice in {}: the last pose counts",
-                                          name, grammar::CountOf(repeats, "message")));
-      const bool is_tf = topic.reader && topic.reader->bodies() == MessageReader::Bodies::kFrames;
-      if (!is_tf) unused.push_back(topic.Names(name, /*unasked_only=*/true));
+        note(fmt::format("bodies of '{}' are twice in {}: the last pose counts", ReadableName(name),
+                         grammar::CountOf(repeats, "message")));
+      if (!topic.of_frames) unused.push_back(topic.Names(name, /*unasked_only=*/true));
     }
     for (const std::vector<std::string>& names : unused) {
       if (!names.empty())
-        poses.notes.push_back(
-            fmt::format("the file has {}, which the map does not mention", Listed(names)));
+        note(fmt::format("the file has {}, which the map does not mention", Listed(names)));
     }
     if (!has_positions) return;
     poses.has_orientations = std::ranges::find(oriented_, true) != oriented_.end();
     for (std::size_t i = 0; i < oriented_.size() && poses.has_orientations; ++i) {
       if (!oriented_[i])
-        poses.notes.push_back(fmt::format(
+        note(fmt::format(
             "'{}' is a position without an orientation: it never turns or tilts (boxes, offset_m)",
             poses.bodies[i].name));
     }
@@ -204,21 +203,32 @@ class McapPoseReader {
 
   void RefuseUnknown(const Located<std::string>& from, Topics::const_iterator topic) {
     if (topic != series_->topics.end()) return RefuseBody(from, *topic);
-    std::vector<std::string> names;
+    std::vector<std::string> names, some;  // of each topic one
     for (const auto* series : {&series_->named, &series_->tree.links}) {
       for (const auto& [name, link] : *series) names.push_back(name);
     }
+    some = names;
     bool is_read = !names.empty();
     for (const auto& [name, one] : series_->topics) {
       is_read = is_read || (one.reader && one.reader->bodies() != MessageReader::Bodies::kByName);
-      for (std::string& body : one.Names(name, /*unasked_only=*/false))
-        names.push_back(std::move(body));
+      std::vector<std::string> bodies = one.Names(name, /*unasked_only=*/false);
+      if (!bodies.empty()) some.push_back(bodies.front());
+      std::ranges::move(bodies, std::back_inserter(names));
     }
     if (!is_read && !series_->topics.empty()) return RefuseAllTypes(from);
-    map_errors_.AddUnknownName(
+    const std::string near = grammar::NearestName(from.value, names);
+    std::string hint = "there is nothing that could stand here";
+    if (!near.empty())
+      hint = fmt::format("did you mean '{}'?", near);
+    else if (!names.empty())
+      hint = "there is " + Listed(names.size() > kMostListed ? some : names);
+    for (const auto& [name, one] : series_->topics) {
+      if (one.of_frames && !one.reader)
+        hint += fmt::format("; '{}' is not read: {}", ReadableName(name), one.why_not);
+    }
+    map_errors_.Add(
         from.where,
-        fmt::format("no topic of poses, no body and no frame is called '{}'", from.value),
-        from.value, names);
+        fmt::format("no topic of poses, no body and no frame is called '{}'", from.value), hint);
   }
 
   /// Of a topic that is there.

@@ -318,7 +318,7 @@ TEST_F(ImportMessages, WhatIsNotThereIsAnsweredWithWhatIs) {
                {"/natnet/frame[Mug", "'/natnet/frame' has no body '/natnet/frame[Mug'",
                 "did you mean '/natnet/frame[Mug]'? there is '/natnet/frame[Bowl]'"},
                {"/natnet", "no topic of poses, no body and no frame is called '/natnet'",
-                "known: /natnet/frame[Bowl], /natnet/frame[Glove], /natnet/frame[Mug]"}};
+                "there is '/natnet/frame[Bowl]', '/natnet/frame[Glove]', '/natnet/frame[Mug]'"}};
   for (const auto& [cup, says, hint] : cases) {
     const Said said = Import("run.bag", bag, Map(cup, "/natnet/frame[Glove]"));
     EXPECT_EQ(said.exit_code, 2) << cup;
@@ -388,6 +388,19 @@ TEST_F(ImportMessages, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
        Bag({NatNet(BothAndABowl),
             {"/natnet/frame", "nav_msgs/Odometry", kOdometry, Odometry("", Mug).message}}),
        "the messages of this topic are of two types"},
+      {"zeros",
+       with_message([](std::string good) { return good.replace(kName + 7, 56, 56, '\0'); }),
+       "found one of length 0; if a body at exactly 0, 0, 0 is not tracked, the map says "
+       "zero_is_missing: true"},
+      {"tf with a definition that is cut",
+       Bag({{"/tf", "tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[]",
+             Odometry("", Mug).message}}),
+       "'/tf': tf2_msgs/TFMessage (ros1); its definition, line 1: expected a type and a name"},
+      {"tf beside others",
+       Bag({{"/tf", "tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[]",
+             Odometry("", Mug).message},
+            Odometry("/odom", Mug)}),
+       "hint: there is '/odom'; '/tf' is not read: tf2_msgs/TFMessage (ros1); its definition"},
       {"another definition language",
        Replaced(Mcap({{"/natnet/frame", "a/B", "struct B {};", Odometry("", Mug).message}}),
                 "ros2msg", "ros2idl"),
