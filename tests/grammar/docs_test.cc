@@ -58,7 +58,7 @@ int RunExamples(const std::string& page) {
 
 TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
   EXPECT_EQ(RunExamples("grammar-tutorial.md"), 23);
-  EXPECT_EQ(RunExamples("cookbook.md"), 9);
+  EXPECT_EQ(RunExamples("cookbook.md"), 11);
   EXPECT_EQ(RunExamples("drawings.md"), 1);
   EXPECT_EQ(RunExamples("grammar-language.md"), 6);
 }
