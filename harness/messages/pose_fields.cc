@@ -114,7 +114,7 @@ class LayoutMaker {
       const DefinedField& field = type.fields[i];
       const std::string name = LowerCase(field.name);
       if (field.basic == Basic::kText && field.many == Many::kAny &&
-          IsOneOf(name, {"name", "names"}))
+          IsOneOf(name, {"name", "names", "frames", "labels"}))
         roles[i] = Role::kNames;
       if (field.many != Many::kOne) continue;
       if (field.basic == Basic::kMessage && ShortName(field.type) == "Header")
