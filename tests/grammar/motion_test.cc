@@ -29,10 +29,12 @@ Vector3d Between(const std::vector<At>& places, double s) {
 }
 
 // Touched at 1.0 s, lifted at 1.3 s, carried from 2.0 to 3.0 s, on the table at 3.5 s, released at
-// 3.7 s. The hand's markers are `offset_m` from where it holds.
+// 3.7 s. The hand's markers are `offset_m` from where it holds; the table is thought to be
+// `table_error_m` too high.
 std::map<std::string, std::pair<double, double>> Carried(const std::string& grammar,
                                                          const Vector3d& offset_m,
-                                                         double jitter_m = 0) {
+                                                         double jitter_m = 0,
+                                                         double table_error_m = 0) {
   const std::vector<At> cup = {{0, {0, 0, 0.05}},   {1.3, {0, 0, 0.05}},   {2, {0, 0, 0.19}},
                                {3, {0, 0.4, 0.19}}, {3.5, {0, 0.4, 0.05}}, {4, {0, 0.4, 0.05}}};
   const std::vector<At> hand = {{0, {0.4, 0, 0.3}},       {1, {0.06, 0, 0.06}},
@@ -49,7 +51,7 @@ std::map<std::string, std::pair<double, double>> Carried(const std::string& gram
   Monitor monitor(program, entities);
   std::vector<Event> events;
   std::vector<EntitySample> looks(3);
-  looks[0].p_WB_m.z() = -0.02;
+  looks[0].p_WB_m.z() = table_error_m - 0.02;
   std::mt19937_64 random(1);
   const auto jitter = [&] {
     double sum = 0;  // of twelve, nearly normal with a standard deviation of 1
@@ -106,6 +108,13 @@ TEST(Motion, OfACarriedCupIsSegmentedWithinAFrame) {
 TEST(Motion, MarkersMayBeFarFromWhatTheHandHolds) {
   for (const double away_m : {0.03, 0.08, 0.12})
     ExpectTruth(Carried("pick_and_place_from_motion", {away_m, 0, 0.02}), 1.01);
+}
+
+TEST(Motion, TheTableMayBeThreeCentimetresHigherOrLower) {
+  for (const double table_error_m : {-0.03, -0.01, 0.01, 0.03}) {
+    SCOPED_TRACE(table_error_m);
+    ExpectTruth(Carried("pick_and_place_from_motion", {0, 0, 0}, 0, table_error_m), 1.01);
+  }
 }
 
 TEST(Motion, ATrackerMayTrembleByAMillimetre) {

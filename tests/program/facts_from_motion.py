@@ -11,8 +11,13 @@ pick_and_place_from_motion makes of these, compared with what pick_and_place mak
 
 Takes of two people (tests/program/made_takes.py), seen by a tracker of marker clusters: F1@50 against what the shipped
 grammars make of all facts.
+
+    python3 tests/program/facts_from_motion.py build/test/prehend --trackers [TAKES]
+
+The same takes, seen by trackers of other rates and jitter, and beside tables that stand at another height than was measured.
 """
 import collections
+import copy
 import json
 import pathlib
 import random
@@ -146,32 +151,51 @@ def f1(found, missed, extra):
     return 100 * 2 * found / max(1, 2 * found + missed + extra)
 
 
-def people(prehend, takes):
+def count_takes(prehend, number, person, takes):
+    """Found, missed and extra events of a person's takes, by name, and of "all"."""
+    counts = collections.defaultdict(lambda: [0, 0, 0])
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        grammars = {name: folder / f"{name}.grammar" for name in GRAMMARS_OF_PEOPLE}
-        for name, file in grammars.items():
-            file.write_text(GRAMMARS_OF_PEOPLE[name])
-        for number, (who, person) in enumerate(made_takes.PEOPLE.items()):
-            counts = collections.defaultdict(lambda: [0, 0, 0])
-            for take in range(takes):
-                results = []
-                for lines, which in zip(made_takes.make(f"take_{take}", person, 10000 * number + take), grammars):
-                    file = folder / f"{which}.jsonl"
-                    file.write_text("".join(json.dumps(line) + "\n" for line in lines))
-                    results.append(events(prehend, file, grammars[which], OF_PEOPLE))
-                count(*results, counts)
-            counts["all"] = [sum(of[i] for of in counts.values()) for i in range(3)]
-            print(f"{who} person, {takes} takes\n\n| event | found | missed | extra | F1@50 |\n|---|---|---|---|---|")
-            for event, of in sorted(counts.items()):
-                print(f"| {event} | {of[0]} | {of[1]} | {of[2]} | {f1(*of):.1f} |")
-            print()
+        for which, text in GRAMMARS_OF_PEOPLE.items():
+            (folder / f"{which}.grammar").write_text(text)
+        for take in range(takes):
+            results = []
+            for lines, which in zip(made_takes.make(f"take_{take}", person, 10000 * number + take), GRAMMARS_OF_PEOPLE):
+                file = folder / f"{which}.jsonl"
+                file.write_text("".join(json.dumps(line) + "\n" for line in lines))
+                results.append(events(prehend, file, folder / f"{which}.grammar", OF_PEOPLE))
+            count(*results, counts)
+    counts["all"] = [sum(of[i] for of in counts.values()) for i in range(3)]
+    return counts
+
+
+def people(prehend, takes):
+    for number, (who, person) in enumerate(made_takes.PEOPLE.items()):
+        counts = count_takes(prehend, number, person, takes)
+        print(f"{who} person, {takes} takes\n\n| event | found | missed | extra | F1@50 |\n|---|---|---|---|---|")
+        for event, of in sorted(counts.items()):
+            print(f"| {event} | {of[0]} | {of[1]} | {of[2]} | {f1(*of):.1f} |")
+        print()
+
+
+def trackers(prehend, takes):
+    seen_by = [(hz, 1, 0) for hz in (15, 25, 30, 60, 120, 240)] + [(60, jitter_mm, 0) for jitter_mm in (0.3, 2)] \
+        + [(60, 1, error_cm) for error_cm in (-5, -3, 3, 5)]
+    print("| Hz | jitter, mm | table too high by, cm | first person, F1@50 | second person |\n|---|---|---|---|---|")
+    for hz, jitter_mm, error_cm in seen_by:
+        scores = []
+        for number, person in enumerate(made_takes.PEOPLE.values()):
+            other = copy.copy(person)
+            other.hz, other.jitter_m, other.table_error_m = hz, jitter_mm / 1000, error_cm / 100
+            scores.append(f1(*count_takes(prehend, number, other, takes)["all"]))
+        print(f"| {hz} | {jitter_mm} | {error_cm} | {scores[0]:.1f} | {scores[1]:.1f} |", flush=True)
 
 
 def main():
     prehend, rest = sys.argv[1], sys.argv[2:]
-    if rest[:1] == ["--people"]:
-        people(prehend, int(rest[1]) if len(rest) > 1 else 12)
+    if rest[:1] in (["--people"], ["--trackers"]):
+        of = people if rest[0] == "--people" else trackers
+        of(prehend, int(rest[1]) if len(rest) > 1 else 12)
     else:
         library(prehend, rest)
 
