@@ -237,7 +237,7 @@ TEST(MotionInHands, AHandThatStaysFartherAwayHoldsNothing) {
 }
 
 TEST(MotionInHands, AHandThatWasThereHoldsNothing) {
-  EXPECT_TRUE(GraspsOfWhatStays(0.06, 0.075).empty());
+  EXPECT_TRUE(GraspsOfWhatStays(0.06, 0.068).empty());
 }
 
 // The hand touches a box, waits for 1.5 s, and lifts it at 2.5 s.
