@@ -10,6 +10,7 @@
 #include "grammar/base/wording.h"
 #include "grammar/check_laws.h"
 #include "grammar/contents.h"
+#include "grammar/drawing/drawn_facts.h"
 #include "grammar/monitor.h"
 #include "grammar/name_events.h"
 
@@ -82,8 +83,10 @@ class ExpectedEvent {
 
  private:
   bool Takes(std::size_t role, const std::string& name) const {
-    const auto entity = std::ranges::find(entities_, name, &EntityInfo::name);
-    return std::ranges::count(entity->classes, event_.classes[role]) > 0;
+    return std::ranges::count(ClassesOf(name), event_.classes[role]) > 0;
+  }
+  const std::vector<std::string>& ClassesOf(const std::string& name) const {
+    return std::ranges::find(entities_, name, &EntityInfo::name)->classes;
   }
   std::string Exchanged(std::size_t one, std::size_t other) const {
     std::vector<std::string> roles = roles_;
@@ -101,7 +104,14 @@ class ExpectedEvent {
     for (const EntityInfo& entity : entities_) {
       if (Takes(role, entity.name)) who += (who.empty() ? "" : ", ") + entity.name;
     }
-    return who.empty() ? "the drawing has none" : "that can be " + who;
+    if (!who.empty()) return "that can be " + who;
+    // The one has a class of one's own without the usual one, or the usual one only.
+    const std::string &is = ClassesOf(roles_[role]).front(), &wanted = event_.classes[role];
+    if (IsUsualClass(is) && IsUsualClass(wanted)) return "the drawing has none";
+    std::string both = is + ":is=" + wanted;
+    if (IsUsualClass(wanted)) both = (wanted == "Thing" ? "Movable" : wanted) + ":is=" + is;
+    return "the drawing has none; an entity may be of several classes: " + roles_[role] + ":" +
+           both;
   }
 
   const EventSignature& event_;

@@ -67,6 +67,14 @@ EntityInfo Member(const std::string& name, const std::string& class_name) {
   return member;
 }
 
+/// As the language has them: "Knife", "sharp_knife2".
+bool IsClassName(const std::string& text) {
+  const auto is_letter = [](char c) { return (c | 0x20) >= 'a' && (c | 0x20) <= 'z'; };
+  return !text.empty() && is_letter(text.front()) && std::ranges::all_of(text, [&](char c) {
+    return is_letter(c) || c == '_' || (c >= '0' && c <= '9');
+  });
+}
+
 std::string Quoted(const std::string& text) { return "'" + text + "'"; }
 
 std::string DidYouMean(const std::string& word, const std::vector<std::string>& known,
@@ -163,6 +171,10 @@ class Reader {
         class_name.empty())
       return Complain(column, "expected NAME:CLASS, found " + Quoted(word),
                       "for example: cup:Movable");
+    if (!IsClassName(class_name))
+      return Complain(column + name.size() + 1, Quoted(class_name) + " is no name of a class",
+                      "for example: knife:Movable, or with classes of its own knife:Movable:is=" +
+                          std::string("Knife+Tool"));
     if (Find(name) != kNoEntity) return Complain(column, Quoted(name) + " is named twice");
     if (Now().entity_table.size() == kMostEntities)
       return Complain(column, "more than " + std::to_string(kMostEntities) + " entities");
@@ -172,12 +184,14 @@ class Reader {
     Now().entity_table.push_back(std::move(member));
   }
 
-  // "8kg", "50N", "of=drawer" or "thumb+index+middle".
+  // "8kg", "50N", "of=drawer", "is=Knife+Tool" or "thumb+index+middle".
   void ReadDetail(EntityInfo& member, const std::string& detail, std::size_t column) {
     if (detail.starts_with("of=")) {
       member.part_of = Find(detail.substr(3));
       if (member.part_of == kNoEntity)
         Complain(column + 3, "no entity before this one is called " + Quoted(detail.substr(3)));
+    } else if (detail.starts_with("is=")) {
+      ReadClasses(member, detail.substr(3), column + 3);
     } else if (const auto kg = NumberBefore(detail, "kg")) {
       member.mass_kg = *kg;
     } else if (const auto newtons = NumberBefore(detail, "N")) {
@@ -190,8 +204,20 @@ class Reader {
         Complain(column, "a hand has at most " + CountOf(kMostSensorSets, "sensor set"));
     } else {
       Complain(column, "what is " + Quoted(detail) + " of " + Quoted(member.name) + "?",
-               "a mass (8kg), a strength (50N), what it is a part of (of=drawer), or the sensor "
-               "sets of a hand (thumb+index)");
+               "a mass (8kg), a strength (50N), what it is a part of (of=drawer), further classes "
+               "(is=Knife+Tool), or the sensor sets of a hand (thumb+index)");
+    }
+  }
+
+  // "Knife+Tool"
+  void ReadClasses(EntityInfo& member, const std::string& names, std::size_t column) {
+    std::istringstream all(names + "+");
+    for (std::string name; std::getline(all, name, '+');) {
+      if (!IsClassName(name))
+        return Complain(column, Quoted(name) + " is no name of a class",
+                        "for example: knife:Movable:is=Knife+Tool");
+      if (std::ranges::count(member.classes, name) == 0) member.classes.push_back(name);
+      column += name.size() + 1;
     }
   }
 

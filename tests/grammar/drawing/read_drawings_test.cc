@@ -132,6 +132,38 @@ TEST(ReadDrawings, WhatCannotBeIsRefused) {
   }
 }
 
+TEST(ReadDrawings, AnEntityMayHaveFurtherClasses) {
+  Diagnostics diagnostics;
+  const auto drawings = ReadDrawings(
+      {"d.txt", "entities knife:Movable:is=Knife+Tool:1kg saw:Fixed:is=Thing\nknife x |01|\n"},
+      diagnostics);
+  ASSERT_EQ(drawings.size(), 1U) << Format(diagnostics);
+  const std::vector<EntityInfo>& all = drawings[0].entity_table;
+  EXPECT_EQ(all[0].classes,
+            (std::vector<std::string>{"Movable", "Thing", "Entity", "Knife", "Tool"}));
+  EXPECT_EQ(all[0].mass_kg, 1);
+  EXPECT_EQ(all[1].classes, (std::vector<std::string>{"Fixed", "Thing", "Entity"}));
+  EXPECT_EQ(Said("entities knife:Movable/Knife\nknife x |01|\n"),
+            "d.txt:1:16: error: 'Movable/Knife' is no name of a class\n"
+            "  entities knife:Movable/Knife\n"
+            "                 ^\n"
+            "  hint: for example: knife:Movable, or with classes of its own "
+            "knife:Movable:is=Knife+Tool\n"
+            "d.txt:2:1: error: nobody is called 'knife'\n"
+            "  knife x |01|\n"
+            "  ^\n"
+            "  hint: the line 'entities' names all\n");
+  for (const auto& [details, column] :
+       {std::pair("is=", "27"), std::pair("is=Knife+", "33"), std::pair("is=Knife+2nd", "33")}) {
+    const std::string said =
+        Said(std::string("entities knife:Movable:") + details + "\nknife x |01|\n");
+    EXPECT_TRUE(said.starts_with(std::string("d.txt:1:") + column + ": error: '")) << said;
+    EXPECT_NE(said.find("is no name of a class"), std::string::npos) << said;
+  }
+  EXPECT_NE(Said("entities knife:Movable:Knife\nknife x |01|\n").find("further classes (is="),
+            std::string::npos);
+}
+
 TEST(ReadDrawings, WhatIsSaidOfDifferentMomentsOrThingsIsNoContradiction) {
   EXPECT_EQ(Said("entities hand:Hand cup:Movable table:Fixed anna:Person door:Door\n"
                  "cup on table |##..|\ncup beside table |..##|\nhand holds cup |..22|\n"
@@ -219,6 +251,27 @@ TEST(ReadDrawings, ExpectedEventsCanBe) {
             "8: 'cup' is never 'hand' of 'tap', which takes a Hand; that can be hand\n"
             "10: 'tap(hand, drum)' is drawn in line 9 already; all its intervals stand in one "
             "row\n");
+}
+
+TEST(ReadDrawings, TheHintSaysHowAnEntityHasSeveralClasses) {
+  const auto program = testing::CompileText(
+      "grammar g\nevent cut(hand: Hand, knife: Knife, object: Thing) while touching(hand, knife)\n"
+      "  and touching(knife, object)");
+  const auto said = [&](const std::string& entities) {
+    const GrammarText file{"d.txt", "entities hand:Hand " + entities +
+                                        "\nhand x |01|\n--\ncut(hand, knife, bread) |..|\n"};
+    Diagnostics diagnostics;
+    const auto drawings = ReadDrawings(file, diagnostics);
+    EXPECT_EQ(drawings.size(), 1U) << Format(diagnostics);
+    std::string hints;
+    for (const Diagnostic& one : CheckExpected(*program, drawings.at(0), file)) hints += one.hint;
+    return hints;
+  };
+  const std::string several = "the drawing has none; an entity may be of several classes: ";
+  EXPECT_EQ(said("knife:Movable bread:Movable"), several + "knife:Movable:is=Knife");
+  EXPECT_EQ(said("knife:Knife bread:Bread"), several + "bread:Movable:is=Bread");
+  EXPECT_EQ(said("knife:Movable:is=Knife bread:Movable:is=Bread"), "");
+  EXPECT_EQ(said("knife:Movable:is=Knife bread:Person"), "that can be knife");
 }
 
 }  // namespace
