@@ -23,10 +23,10 @@ enum class Separator { kComma, kSemicolon, kTab };
 enum class Lost { kRefuse, kHold, kUnknown };
 enum class Clock { kHeader, kLog, kPublish };
 /// What looks wrong, and is accepted because the map says that it is right.
-enum class Doubt { kUnit, kAxes, kQuaternionOrder, kTime, kPlace, kZero };
+enum class Doubt { kUnit, kAxes, kQuaternionOrder, kTime, kPlace, kZero, kUpright };
 
-inline constexpr std::array kDoubtNames = {"unit", "axes",  "quaternion_order",
-                                           "time", "place", "zero"};
+inline constexpr std::array kDoubtNames = {"unit",  "axes", "quaternion_order", "time",
+                                           "place", "zero", "upright"};
 
 /// The names of columns. `{}` in a name stands for the body's name: then a row has all bodies.
 struct Columns {

@@ -15,6 +15,7 @@
 #include "harness/import/doubts.h"
 #include "harness/import/rest_plane.h"
 #include "harness/import/rests.h"
+#include "harness/import/standing.h"
 #include "harness/yaml/error_at.h"
 
 namespace prehend::harness::import {
@@ -154,9 +155,7 @@ class Importer {
       return tl::unexpected(grammar::Diagnostics{
           {.file = file_.file, .place = {}, .message = problem, .source_line = {}, .hint = {}}});
     AddFrames();
-    if (std::string text = RestOnNothing(imported_.episode); !text.empty()) Warn(std::move(text));
-    if (std::string text = TiltOfRests(imported_.episode, map_.WorldTurn()); !text.empty())
-      Warn(std::move(text));
+    WarnOfRests();
     WarnOfNoOrientations();
     for (const std::string& body : file_.unused)
       Warn(fmt::format("the file has '{}', which the map does not mention", body));
@@ -166,6 +165,17 @@ class Importer {
 
  private:
   void Warn(std::string text) { imported_.warnings.push_back(std::move(text)); }
+
+  void WarnOfRests() {
+    NotUpright turned;
+    if (!map_.IsSure(Doubt::kUpright)) turned = FindNotUpright(imported_.episode, map_);
+    for (std::string& text : turned.warnings) Warn(std::move(text));
+    if (std::string text = RestOnNothing(imported_.episode, turned.things); !text.empty())
+      Warn(std::move(text));
+    if (std::string text = TiltOfRests(imported_.episode, map_.WorldTurn(), turned.things);
+        !text.empty())
+      Warn(std::move(text));
+  }
 
   void Describe() {
     imported_.duration_s = file_.last_s;

@@ -51,7 +51,7 @@ struct SeenRests {
   std::vector<Eigen::Vector3d> hands;
 };
 
-SeenRests RestsIn(const Episode& episode) {
+SeenRests RestsIn(const Episode& episode, const std::set<std::size_t>& untrue) {
   SeenRests seen;
   const auto& entities = episode.header.entity_table.entities;
   const auto step = static_cast<grammar::Tick>(
@@ -65,7 +65,8 @@ SeenRests RestsIn(const Episode& episode) {
       const grammar::EntitySample &look = frame.entities[i], &old = last->entities[i];
       if (!grammar::IsTracked(look) || !grammar::IsTracked(old)) continue;
       if (entities[i].classes.front() == "Hand") seen.hands.push_back(look.p_WB_m);
-      if (std::ranges::find(entities[i].classes, "Movable") == entities[i].classes.end() ||
+      if (untrue.contains(i) ||
+          std::ranges::find(entities[i].classes, "Movable") == entities[i].classes.end() ||
           (look.p_WB_m - old.p_WB_m).norm() >= kSame_m || seen.places.size() >= kMostPlaces)
         continue;
       const bool is_known = std::ranges::any_of(seen.places, [&](const RestPlace& place) {
@@ -115,8 +116,9 @@ double OffPlane(const RestPlane& plane, const RestPlace& place) {
 
 }  // namespace
 
-std::string TiltOfRests(const Episode& episode, const Eigen::Quaterniond& turn) {
-  SeenRests seen = RestsIn(episode);
+std::string TiltOfRests(const Episode& episode, const Eigen::Quaterniond& turn,
+                        const std::set<std::size_t>& untrue) {
+  SeenRests seen = RestsIn(episode, untrue);
   const std::size_t all = seen.places.size();
   RestPlane plane;
   while (true) {

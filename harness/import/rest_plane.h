@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <set>
 #include <string>
 
 #include "harness/sense/episode_file.h"
@@ -12,7 +13,8 @@ namespace prehend::harness::import {
 
 /// Says by how much the plane is tilted on which most things rest, how well it is known, and what
 /// the map could say; "" where that is less than 5 degrees, or too few places tell. `turn`: from
-/// the file's axes to the recording's.
-std::string TiltOfRests(const Episode& episode, const Eigen::Quaterniond& turn);
+/// the file's axes to the recording's. Not of `untrue`, whose heights mean nothing.
+std::string TiltOfRests(const Episode& episode, const Eigen::Quaterniond& turn,
+                        const std::set<std::size_t>& untrue);
 
 }  // namespace prehend::harness::import

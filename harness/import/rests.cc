@@ -79,13 +79,13 @@ Rests RestsOf(const Episode& episode, std::size_t thing) {
 
 }  // namespace
 
-std::string RestOnNothing(const Episode& episode) {
+std::string RestOnNothing(const Episode& episode, const std::set<std::size_t>& untrue) {
   const auto& entities = episode.header.entity_table.entities;
   std::vector<std::string> names;
   std::vector<double> bottoms_m;
   Eigen::AlignedBox2d place;
   for (std::size_t i = 0; i < entities.size(); ++i) {
-    if (entities[i].classes.front() == "Hand" ||
+    if (untrue.contains(i) || entities[i].classes.front() == "Hand" ||
         std::ranges::find(entities[i].classes, "Movable") == entities[i].classes.end())
       continue;
     const Rests rests = RestsOf(episode, i);

@@ -3,6 +3,7 @@
 // tests/program/import_test.cc
 #pragma once
 
+#include <set>
 #include <string>
 
 #include "harness/sense/episode_file.h"
@@ -10,7 +11,7 @@
 namespace prehend::harness::import {
 
 /// Names the things that rest mostly where nothing is below them, at which height, and what the map
-/// could say; "" if there are none.
-std::string RestOnNothing(const Episode& episode);
+/// could say; "" if there are none. Not of `untrue`, whose boxes mean nothing.
+std::string RestOnNothing(const Episode& episode, const std::set<std::size_t>& untrue);
 
 }  // namespace prehend::harness::import
