@@ -3,6 +3,7 @@
 #include "harness/import/import_map.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -164,6 +165,19 @@ void CheckColumns(const ImportMap& map, const YamlNode& root, DiagnosticList& er
                    "has it");
     }
   }
+  std::vector<std::string> upright;
+  for (const Named<MappedEntity>& entity : map.entities) {
+    if (columns.quaternion.empty() && entity.value.from && entity.value.upright_at_s)
+      upright.push_back(entity.name);
+  }
+  if (!upright.empty())
+    errors.Add(
+        columns.position.front().where,
+        fmt::format("columns.quaternion is missing, and upright_at_s of {} needs bodies with "
+                    "orientations",
+                    fmt::join(upright, ", ")),
+        "quaternion: [the four columns, in quaternion_order]; or, if the file has positions "
+        "only, leave out upright_at_s");
   if (!columns.quaternion.empty() && !map.quaternion_order)
     errors.Add(columns.quaternion.front().where,
                "quaternion_order is missing: which of the four columns is w",
@@ -219,7 +233,7 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
     if (e.hand && (e.fixed || e.class_name != "Object"))
       errors.Add(entity.name_where,
                  fmt::format("'{}': a hand has no class and is not fixed", entity.name));
-    if (e.upright_at_s && (e.at_m || (is_csv && map.columns.quaternion.empty())))
+    if (e.upright_at_s && e.at_m)
       errors.Add(e.upright_at_s->where, "upright_at_s needs a body with orientations");
     if (e.ahead && !e.hand) errors.Add(e.ahead->where, "only a hand reaches 'ahead'");
     if (e.ahead && e.ahead->value.norm() < 0.1)

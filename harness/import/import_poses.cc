@@ -252,13 +252,14 @@ class Importer {
     const double usual_s = UsualStep_s(body);
     report.poses = poses.size();
     report.rate_hz = usual_s > 0 ? 1 / usual_s : 0;
-    double longest_s = 0, longest_from_s = 0;
+    double longest_s = 0, longest_from_s = 0, bridge_s = 0;
     const auto take = [&](double from_s, double until_s, bool within) {
       const double gap_s = until_s - from_s;
       if (gap_s <= kGap * usual_s) return false;
       const bool lost = gap_s > map_.bridge_s + 1e-9 || !within;
       (lost ? report.lost : report.bridged) += 1;
       (lost ? report.lost_s : report.bridged_s) += gap_s;
+      if (lost && within) bridge_s = std::max(bridge_s, std::ceil(100 * gap_s - 1e-6) / 100);
       if (lost && gap_s > longest_s) {
         longest_s = gap_s;
         longest_from_s = from_s;
@@ -276,9 +277,12 @@ class Importer {
     if (map_.lost == Lost::kHold) return Warn(text + ": it is held where it was, at rest");
     if (map_.lost == Lost::kUnknown) return Warn(text + ": nobody knows where it is");
     errors_.Add(entity.from->where, text,
-                fmt::format("bridge_s is {:g}: a longer one fills it with a straight line; lost: "
-                            "unknown says that nobody knows; lost: hold keeps it where it was",
-                            map_.bridge_s));
+                fmt::format("in the map: lost: unknown (nobody knows where it is meanwhile){}, or "
+                            "lost: hold (it stays where it was)",
+                            bridge_s > 0 ? fmt::format(", or bridge_s: {:g} (a straight line over "
+                                                       "the whole time)",
+                                                       bridge_s)
+                                         : ""));
   }
 
   void WarnOfMotion(const PoseBody& body, const Named<MappedEntity>& entity,

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "grammar/base/wording.h"
 #include "harness/base/csv_cells.h"
@@ -21,6 +22,8 @@ using grammar::Diagnostics;
 using grammar::Place;
 
 constexpr std::size_t kMostComplaints = 12;
+constexpr std::size_t kMostHeaderBytes = 100'000;
+constexpr int kMostPreamble = 100;  ///< lines in which the names of the columns are looked for
 
 double SecondsPer(const ImportMap& map) {
   switch (map.time_unit->value) {
@@ -131,8 +134,53 @@ class CsvPoseReader {
     return true;
   }
 
+  /// How many of the columns that the map names a line has.
+  std::size_t NamesIn(const std::vector<CsvCell>& cells) const {
+    const Columns& columns = map_.columns;
+    std::vector<std::string> wanted;
+    for (const auto* one : {&columns.time, &columns.body}) {
+      if (*one) wanted.push_back((*one)->value);
+    }
+    for (const auto* list : {&columns.position, &columns.quaternion}) {
+      for (const Located<std::string>& column : *list) {
+        if (columns.body) wanted.push_back(column.value);
+        for (const PoseBody& body : poses.bodies) {
+          if (!columns.body) wanted.push_back(WithBody(column.value, body.name));
+        }
+      }
+    }
+    std::set<std::string_view> found;
+    for (const CsvCell& cell : cells) found.insert(cell.text);
+    return static_cast<std::size_t>(std::ranges::count_if(
+        wanted, [&](const std::string& name) { return found.contains(name); }));
+  }
+
+  /// Another line has the names.
+  bool IsElsewhere(const std::vector<CsvCell>& cells) {
+    if (NamesIn(cells) > 0) return false;
+    std::size_t most = 1;
+    Place place;
+    const std::string_view text = poses.text;
+    for (std::size_t begin = 0, line = 1; begin < text.size() && line <= kMostPreamble; ++line) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size());
+      const std::vector<CsvCell> other =
+          CsvCellsOf(text.substr(begin, std::min(end - begin, kMostHeaderBytes)), separator_);
+      begin = end + 1;
+      const std::size_t names = NamesIn(other);
+      if (names <= most) continue;
+      most = names;
+      place = {static_cast<int>(line), other.front().column};
+    }
+    if (most == 1) return false;
+    Complain(place,
+             fmt::format("the names of the columns are on line {}, and not on line {}", place.line,
+                         line_),
+             fmt::format("in the map: header_line: {}", place.line));
+    return true;
+  }
+
   void TakeHeader(const std::vector<CsvCell>& cells) {
-    if (IsNoHeader(cells)) return;
+    if (IsElsewhere(cells) || IsNoHeader(cells)) return;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const std::string name(cells[i].text);
       names_.push_back(name);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <sstream>
 
 #include "tests/program/import_csv.h"
 #include "tests/program/program.h"
@@ -60,6 +61,66 @@ TEST(ImportDoubts, NoiseOnASmoothPathTremblesAndItsRemedyHelps) {
   const Said smooth =
       ImportCsv(folder, csv, SwingingMap("30") + rough.err.substr(at, 13) + "\n", {"--check"});
   EXPECT_EQ(smooth.err.find("tremble"), std::string::npos) << smooth.err;
+}
+
+/// The errors, without what comes after the first line of each.
+std::string ErrorsOf(const Said& said) {
+  std::string errors;
+  std::istringstream lines(said.err);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t at = line.find(": error: ");
+    if (at != std::string::npos) errors += line.substr(at + 9) + "\n";
+    if (line.starts_with("  hint: ")) errors += line + "\n";
+  }
+  return errors;
+}
+
+TEST(ImportDoubts, NamesOfColumnsOnAnotherLineAreFoundThere) {
+  const auto folder = FreshFolder("import_doubts");
+  const std::string csv = "Tracker 3,take 1\nrate,30\n" + SwingingCsv(30);
+  const Said first = ImportCsv(folder, csv, SwingingMap("30"));
+  EXPECT_EQ(ErrorsOf(first),
+            "the names of the columns are on line 3, and not on line 1\n"
+            "  hint: in the map: header_line: 3\n");
+  EXPECT_NE(first.err.find("poses.csv:3:1: error: "), std::string::npos) << first.err;
+  const Said later = ImportCsv(folder, csv, SwingingMap("30") + "header_line: 4\n");
+  EXPECT_EQ(ErrorsOf(later),
+            "the names of the columns are on line 3, and not on line 4\n"
+            "  hint: in the map: header_line: 3\n");
+  EXPECT_EQ(ImportCsv(folder, csv, SwingingMap("30") + "header_line: 3\n").exit_code, 0);
+}
+
+TEST(ImportDoubts, ALossSaysWhatWouldDo) {
+  const auto folder = FreshFolder("import_doubts");
+  std::string csv = SwingingCsv(30);
+  std::size_t at = 0;
+  for (int line = 0; line < 40; ++line) at = csv.find('\n', at) + 1;
+  for (int line = 0; line < 10; ++line) {
+    const std::size_t end = csv.find('\n', at);
+    csv.replace(at, end - at, "0.3,0.2,0.75,,,");
+    at = csv.find('\n', at) + 1;
+  }
+  const Said said = ImportCsv(folder, csv, SwingingMap("30"));
+  EXPECT_EQ(ErrorsOf(said),
+            "'hand' is not tracked for 0.367 s from 1.267 s on; in all 1 such time, 0.367 s\n"
+            "  hint: in the map: lost: unknown (nobody knows where it is meanwhile), or bridge_s: "
+            "0.37 (a straight line over the whole time), or lost: hold (it stays where it was)\n");
+  for (const char* remedy : {"lost: unknown\n", "bridge_s: 0.37\n", "lost: hold\n"})
+    EXPECT_EQ(ImportCsv(folder, csv, SwingingMap("30") + remedy).exit_code, 0) << remedy;
+}
+
+TEST(ImportDoubts, OrientationsThatAMapForgetsAreOneError) {
+  const auto folder = FreshFolder("import_doubts");
+  std::string map = SwingingMap("30");
+  map = Replaced(map, "0.1]}", "0.1], upright_at_s: 0}");
+  map = Replaced(map, "0.03]}", "0.03], upright_at_s: 0}");
+  const Said said = ImportCsv(folder, SwingingCsv(30), map);
+  EXPECT_EQ(ErrorsOf(said),
+            "columns.quaternion is missing, and upright_at_s of cup, right_hand needs bodies with "
+            "orientations\n"
+            "  hint: quaternion: [the four columns, in quaternion_order]; or, if the file has "
+            "positions only, leave out upright_at_s\n");
+  EXPECT_NE(said.err.find("map.yaml:6:"), std::string::npos) << said.err;
 }
 
 TEST(ImportDoubts, AMapWithoutHandsIsWarnedOf) {
