@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "harness/import/lengths.h"
+
 namespace prehend::harness::import {
 namespace {
 
@@ -19,6 +21,8 @@ constexpr double kLeastRate_hz = 2, kMostRate_hz = 2500;
 constexpr double kLift_m = 0.05;  ///< what is lifted gets so far up, and comes down again
 constexpr double kDip_m = 0.02;   ///< and does not get lower than where it stood
 constexpr double kNear_m = 0.5;   ///< something gets so near to what stands
+constexpr double kAt_m = 0.1;     ///< and so near with the right unit
+constexpr double kLeastHands_m = 0.15, kMostHands_m = 5;  ///< where hands go
 
 constexpr const char* kAxes = "xyz";
 
@@ -71,16 +75,19 @@ class DoubtFinder {
       Add(map_.rate_hz->where, Doubt::kTime,
           fmt::format("rate_hz: {:g}, but poses are {:.4g} s apart: {:.4g} Hz", map_.rate_hz->value,
                       step_s, rate_hz),
-          "correct rate_hz or time_unit");
+          poses_.counts_frames ? "the times look like frame numbers: time_unit: frame"
+                               : "correct rate_hz or time_unit");
     } else if (rate_hz < kLeastRate_hz || rate_hz > kMostRate_hz) {
       Add(TimeWhere(), Doubt::kTime,
           fmt::format("poses are {:.4g} s apart: {:.4g} Hz{}", step_s, rate_hz,
-                      Plausible(rate_hz * 1e3)   ? "; the times look like milliseconds"
+                      poses_.counts_frames       ? ""
+                      : Plausible(rate_hz * 1e3) ? "; the times look like milliseconds"
                       : Plausible(rate_hz * 1e6) ? "; the times look like microseconds"
                       : Plausible(rate_hz * 1e9) ? "; the times look like nanoseconds"
                       : Plausible(rate_hz / 1e3) ? "; the times look a thousand times longer"
                                                  : ""),
-          "correct time_unit");
+          poses_.counts_frames ? "the times look like frame numbers: time_unit: frame and rate_hz"
+                               : "correct time_unit");
     }
   }
 
@@ -200,30 +207,60 @@ class DoubtFinder {
     }
   }
 
-  void Near() {
-    double nearest_m = std::numeric_limits<double>::infinity();
-    const Named<MappedEntity>* nearest = nullptr;
+  struct Approach {
+    double distance_m = std::numeric_limits<double>::infinity();
+    const Named<MappedEntity>* standing = nullptr;
     const PoseBody* comes = nullptr;
+  };
+  /// How near what is tracked comes to what the map places.
+  Approach Nearest(double metres_per_unit) const {
+    Approach nearest;
     for (const Named<MappedEntity>& standing : map_.entities) {
       const MappedEntity& e = standing.value;
       if (!e.at_m) continue;
       const Eigen::Quaterniond q(e.quat_wxyz[0], e.quat_wxyz[1], e.quat_wxyz[2], e.quat_wxyz[3]);
       for (const PoseBody& body : poses_.bodies) {
         for (const PoseSample& sample : body.samples) {
-          const Eigen::Vector3d p_B = q.conjugate() * (Upright(sample.p * scale_) - *e.at_m);
+          const Eigen::Vector3d p_B =
+              q.conjugate() * (Upright(sample.p * metres_per_unit) - *e.at_m);
           const double distance_m = (p_B.cwiseAbs() - e.size_m / 2).cwiseMax(0).norm();
-          if (distance_m >= nearest_m) continue;
-          nearest_m = distance_m;
-          nearest = &standing;
-          comes = &body;
+          if (distance_m < nearest.distance_m) nearest = {distance_m, &standing, &body};
         }
       }
     }
-    if (!nearest || nearest_m <= kNear_m) return;
-    Add(nearest->name_where, Doubt::kPlace,
-        fmt::format("nothing tracked comes nearer to '{}' than {:.2f} m ('{}')", nearest->name,
-                    nearest_m, comes->name),
+    return nearest;
+  }
+
+  void Near() {
+    const Approach nearest = Nearest(scale_);
+    if (!nearest.standing || nearest.distance_m <= kNear_m) return;
+    const std::string text =
+        fmt::format("nothing tracked comes nearer to '{}' than {:.2f} m ('{}')",
+                    nearest.standing->name, nearest.distance_m, nearest.comes->name);
+    if (Asks(Doubt::kUnit)) {
+      if (const auto range = RangeTooSmall(poses_, map_))
+        return Add(map_.UnitWhere(), Doubt::kUnit, range->text + "; " + text, range->remedy);
+      if (const std::string unit = UnitThatComesNear(); !unit.empty())
+        return Add(map_.UnitWhere(), Doubt::kUnit,
+                   fmt::format("{}; in {} it would come to it", text, unit), "unit: " + unit);
+    }
+    Add(nearest.standing->name_where, Doubt::kPlace, text,
         "correct its at_m (z up, metres, after the change of axes), or unit, or axes");
+  }
+
+  /// Another unit in which something comes to what the map places, and hands go as far as hands do;
+  /// or "". Not inch: too near to others.
+  std::string UnitThatComesNear() const {
+    const double hands_m = ExtentOf(poses_, map_, true).diagonal().norm();
+    constexpr std::array<std::pair<const char*, double>, 3> kUnits = {
+        {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}}};
+    for (const auto& [unit, metres] : kUnits) {
+      const double would_m = hands_m / scale_ * metres;
+      if (metres != scale_ && would_m > kLeastHands_m && would_m < kMostHands_m &&
+          Nearest(metres).distance_m < kAt_m)
+        return unit;
+    }
+    return "";
   }
 
   /// z up, as in the recording.

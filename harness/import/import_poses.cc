@@ -13,6 +13,7 @@
 #include "grammar/base/tracking.h"
 #include "grammar/base/wording.h"
 #include "harness/import/doubts.h"
+#include "harness/import/lengths.h"
 #include "harness/import/rest_plane.h"
 #include "harness/import/rests.h"
 #include "harness/import/standing.h"
@@ -168,8 +169,14 @@ class Importer {
 
   void WarnOfRests() {
     NotUpright turned;
+    if (const auto range = RangeTooSmall(file_, map_); range && !map_.IsSure(Doubt::kUnit))
+      return Warn(
+          fmt::format("{}: {}; or, if it is right, sure: [unit]", range->text, range->remedy));
     if (!map_.IsSure(Doubt::kUpright)) turned = FindNotUpright(imported_.episode, map_);
     for (std::string& text : turned.warnings) Warn(std::move(text));
+    TooLarge large = ThingsTooLarge(map_);
+    for (std::string& text : large.warnings) Warn(std::move(text));
+    turned.things.merge(large.things);
     if (std::string text = RestOnNothing(imported_.episode, turned.things); !text.empty())
       Warn(std::move(text));
     if (std::string text = TiltOfRests(imported_.episode, map_.WorldTurn(), turned.things);

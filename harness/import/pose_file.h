@@ -37,6 +37,7 @@ struct PoseFile {
   std::optional<Eigen::Vector3d> stature;
   std::optional<QuaternionOrder> quaternion_order;  ///< as they were read; none: there are none
   bool has_orientations = true;                     ///< else only positions
+  bool counts_frames = false;  ///< its times, in a unit of time, are whole and grow by one each
   std::size_t rows = 0;
   double first_s = 0, last_s = 0;    ///< of all rows, also of those in which nothing is tracked
   std::optional<double> began_at_s;  ///< the file's own time of second 0, since 1970

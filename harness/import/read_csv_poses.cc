@@ -23,6 +23,7 @@ using grammar::Place;
 
 constexpr std::size_t kMostComplaints = 12;
 constexpr std::size_t kMostHeaderBytes = 100'000;
+constexpr std::size_t kLeastSteps = 20;
 constexpr int kMostPreamble = 100;  ///< lines in which the names of the columns are looked for
 
 double SecondsPer(const ImportMap& map) {
@@ -93,6 +94,7 @@ class CsvPoseReader {
       return Complain({line_, 1},
                       grammar::CountOf(poses.rows, "row") + "; a recording has at least 2");
     RefuseAbsentBodies(poses, map_, map_errors_);
+    DoubtTimes();
   }
 
   Diagnostics Problems() const {
@@ -269,6 +271,7 @@ class CsvPoseReader {
                       fmt::format("the times{} must increase from row to row: {:.6g} s after the "
                                   "first row comes after {:.6g} s",
                                   body_seat_ ? " of '" + name + "'" : "", t_s, before->second));
+    if (!is_first && time_seat_) CountStep((t_s - before->second) / SecondsPer(map_));
     before->second = t_s;
     poses.first_s = std::min(poses.first_s, t_s);
     poses.last_s = std::max(poses.last_s, t_s);
@@ -282,6 +285,26 @@ class CsvPoseReader {
     if (body != index_.end()) return TakePose(cells, shared_, t_s, poses.bodies[body->second]);
     if (std::ranges::find(poses.unused, name) == poses.unused.end() && poses.unused.size() < 1000)
       poses.unused.push_back(name);
+  }
+
+  /// In the file's unit of time.
+  void CountStep(double step) {
+    const double whole = std::round(step);
+    if (whole == 0 && body_seat_) return;
+    ++steps_;
+    whole_steps_ += whole >= 1 && std::abs(step - whole) < 1e-6;
+    unit_steps_ += whole == 1;
+  }
+
+  /// A tracker that takes one pose each millisecond has times as frames have numbers.
+  void DoubtTimes() {
+    poses.counts_frames = map_.time_unit->value != TimeUnit::kFrame && steps_ >= kLeastSteps &&
+                          whole_steps_ == steps_ && 10 * unit_steps_ >= 9 * steps_;
+    if (poses.counts_frames && !map_.rate_hz && !map_.IsSure(Doubt::kTime))
+      poses.notes.push_back(fmt::format(
+          "the times of '{}' are whole numbers that grow by 1 each: they look like frame numbers; "
+          "in the map: time_unit: frame, and rate_hz; or, if they are times, sure: [time]",
+          map_.columns.time->value));
   }
 
   bool IsMissing(const CsvCell& cell) const {
@@ -351,6 +374,7 @@ class CsvPoseReader {
   std::optional<std::size_t> time_seat_, body_seat_;
   std::optional<double> first_time_;
   std::map<std::string, double> last_times_s_;  ///< by body; of a row with all bodies under ""
+  std::size_t steps_ = 0, whole_steps_ = 0, unit_steps_ = 0;  ///< of times
   Seats shared_;
   std::vector<Seats> wide_;
 };

@@ -23,7 +23,8 @@ namespace {
 constexpr double kRest_s = 0.5;
 constexpr double kStill_m = 0.01;
 constexpr double kOnTop_m = 0.05;  ///< lie_about of grammar/library/contact_from_motion.grammar
-constexpr double kLeast_s = 1;     ///< a shorter rest says nothing
+constexpr double kHigh_m = 1.6;
+constexpr double kLeast_s = 1;  ///< a shorter rest says nothing
 
 Eigen::AlignedBox3d BoxOf(const grammar::EntityInfo& entity, const grammar::EntitySample& look) {
   const Eigen::Vector3d half = look.q_WB.toRotationMatrix().cwiseAbs() * entity.half_size_m;
@@ -104,9 +105,10 @@ std::string RestOnNothing(const Episode& episode, const std::set<std::size_t>& u
       "of "
       "that: no support, pick-up or put-down is recognised; what it stands on could be 'table: "
       "{{at_m: [{:.1f}, {:.1f}, {:.2f}], fixed: true, class: Table, size_m: [{:.1f}, {:.1f}, "
-      "0.04]}}'",
+      "0.04]}}'{}",
       fmt::join(names, ", "), names.size() == 1 ? "rests" : "rest", height_m, 100 * kOnTop_m,
-      Tenths(middle.x()), Tenths(middle.y()), height_m - 0.02, size.x(), size.y());
+      Tenths(middle.x()), Tenths(middle.y()), height_m - 0.02, size.x(), size.y(),
+      height_m > kHigh_m ? "; that is higher than people work: is unit right?" : "");
 }
 
 }  // namespace prehend::harness::import

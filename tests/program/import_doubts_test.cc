@@ -123,6 +123,86 @@ TEST(ImportDoubts, OrientationsThatAMapForgetsAreOneError) {
   EXPECT_NE(said.err.find("map.yaml:6:"), std::string::npos) << said.err;
 }
 
+/// The hand swings 0.6 m far.
+TEST(ImportDoubts, HandsThatStayWithinAHandsWidthMakeTheUnitDoubtful) {
+  const auto folder = FreshFolder("import_doubts");
+  const std::string range =
+      "all hands together stay within 0.06 m, and all that is tracked within 0.066 m; in m it "
+      "would be 0.6 m";
+  const std::string map = Replaced(SwingingMap("30"), "unit: m", "metres_per_unit: 0.1");
+  const Said said = ImportCsv(folder, SwingingCsv(30), map, {"--check"});
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_NE(said.err.find("warning: " + range + ": unit: m; or, if it is right, sure: [unit]\n"),
+            std::string::npos)
+      << said.err;
+  // A wrong unit and no wrong table.
+  EXPECT_EQ(said.err.find("'table: "), std::string::npos) << said.err;
+  const std::string table =
+      "  table: {at_m: [0, 0, 0.68], fixed: true, class: Table, size_m: [1, 1, 0.04]}\n";
+  const Said far = ImportCsv(folder, SwingingCsv(30), map + table);
+  EXPECT_EQ(ErrorsOf(far), range +
+                               "; nothing tracked comes nearer to 'table' than 0.56 m ('hand')\n"
+                               "  hint: unit: m; or, if it is right, sure: [unit]\n");
+  const Said right = ImportCsv(folder, SwingingCsv(30), SwingingMap("30") + table, {"--check"});
+  EXPECT_EQ(right.err.find("unit"), std::string::npos) << right.err;
+}
+
+TEST(ImportDoubts, AUnitInWhichTheTableIsReachedIsNamed) {
+  const auto folder = FreshFolder("import_doubts");
+  const std::string table =
+      "  table: {at_m: [0, 0, 0.68], fixed: true, class: Table, size_m: [1, 1, 0.04]}\n";
+  const Said said = ImportCsv(folder, SwingingCsv(30),
+                              Replaced(SwingingMap("30"), "unit: m", "metres_per_unit: 3") + table);
+  EXPECT_EQ(ErrorsOf(said),
+            "nothing tracked comes nearer to 'table' than 1.60 m ('cup'); in m it would come to "
+            "it\n  hint: unit: m; or, if it is right, sure: [unit]\n");
+}
+
+TEST(ImportDoubts, SizesThatNoHandMovesAreNamed) {
+  const auto folder = FreshFolder("import_doubts");
+  const Said said =
+      ImportCsv(folder, SwingingCsv(30),
+                Replaced(SwingingMap("30"), "[0.07, 0.07, 0.1]", "[7, 7, 10]"), {"--check"});
+  EXPECT_NE(said.err.find("warning: 'cup' is 7 x 7 x 10 m large, and size_m is in metres; if these "
+                          "are centimetres: size_m: [0.07, 0.07, 0.1]\n"),
+            std::string::npos)
+      << said.err;
+  EXPECT_EQ(said.err.find("'table: "), std::string::npos) << said.err;
+}
+
+TEST(ImportDoubts, TimesThatCountFramesAreNamed) {
+  const auto folder = FreshFolder("import_doubts");
+  std::string csv;
+  int frame = -1;
+  std::istringstream lines(SwingingCsv(30));
+  for (std::string line; std::getline(lines, line); ++frame)
+    csv += (frame < 0 ? "frame" : std::to_string(frame)) + "," + line + "\n";
+  const auto map = [](const std::string& unit, const std::string& rate) {
+    return Replaced(Replaced(Replaced(SwingingMap("30"), "time_unit: frame", "time_unit: " + unit),
+                             "rate_hz: 30\n", rate),
+                    "{position", "{time: frame, position");
+  };
+  const std::string doubt =
+      "warning: the times of 'frame' are whole numbers that grow by 1 each: they look like frame "
+      "numbers; in the map: time_unit: frame, and rate_hz; or, if they are times, sure: [time]\n";
+  const Said said = ImportCsv(folder, csv, map("ms", ""), {"--check"});
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_NE(said.err.find(doubt), std::string::npos) << said.err;
+  const Said sure = ImportCsv(folder, csv, map("ms", "sure: [time]\n"), {"--check"});
+  EXPECT_EQ(sure.err.find("frame numbers"), std::string::npos) << sure.err;
+  const Said frames = ImportCsv(folder, csv, map("frame", "rate_hz: 30\n"), {"--check"});
+  EXPECT_EQ(frames.err.find("frame numbers"), std::string::npos) << frames.err;
+  EXPECT_EQ(
+      ErrorsOf(ImportCsv(folder, csv, map("ms", "rate_hz: 30\n"))),
+      "rate_hz: 30, but poses are 0.001 s apart: 1000 Hz\n"
+      "  hint: the times look like frame numbers: time_unit: frame; or, if it is right, sure: "
+      "[time]\n");
+  EXPECT_EQ(ErrorsOf(ImportCsv(folder, csv, map("s", ""))),
+            "poses are 1 s apart: 1 Hz\n"
+            "  hint: the times look like frame numbers: time_unit: frame and rate_hz; or, if it is "
+            "right, sure: [time]\n");
+}
+
 TEST(ImportDoubts, AMapWithoutHandsIsWarnedOf) {
   const auto folder = FreshFolder("import_doubts");
   const Said said = ImportCsv(folder, SwingingCsv(30), SwingingMap("30", ""), {"--check"});
