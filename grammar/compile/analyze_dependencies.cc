@@ -351,6 +351,10 @@ void ChooseGuards(Program& program) {
     WatchEntities(program, rule);
     FindMeasured(program, rule);
 
+    rule.anchors_at_hand =
+        !rule.anchors.empty() && std::ranges::all_of(rule.anchors, [&](NodeId anchor) {
+          return Windows(program, anchor) == 0 || rule.anchors.size() == 1;
+        });
     const Approach* const approach = ApproachOf(rule);
     std::vector<NodeId> nodes = ConditionsOf(rule);
     nodes.push_back(rule.requirement);

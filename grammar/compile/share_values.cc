@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A value is described by its expression, with roles in the order in which it names them: that of
-// `speed(hand, 150 ms)` is the same in every rule, whatever the role is called there.
+// `speed(hand, 150 ms)` is the same in every rule, whatever the role is called there. A window is
+// the same whatever is asked for in it.
 #include "grammar/compile/share_values.h"
 
 #include <algorithm>
@@ -62,9 +63,54 @@ bool Describe(const Program& program, NodeId index, std::vector<int>& roles, std
   return true;
 }
 
+// What every value of the node is made of; kAtEnd itself, too. A window that is too short for a
+// value does not ask for it.
+bool NeedsEnd(const Program& program, NodeId index) {
+  if (index == kNone) return false;
+  const Node& node = program.nodes[index];
+  switch (node.op) {
+    case Op::kAtEnd:
+      return true;
+    case Op::kLess:
+    case Op::kLessEqual:
+    case Op::kGreater:
+    case Op::kGreaterEqual:
+    case Op::kEqual:
+    case Op::kNotEqual:
+    case Op::kInSphere:
+    case Op::kSolidInSphere:
+    case Op::kInCylinder:
+    case Op::kAdd:
+    case Op::kSubtract:
+    case Op::kMultiply:
+    case Op::kDivide:
+    case Op::kNegate:
+    case Op::kAbs:
+    case Op::kDistance:
+    case Op::kHeight:
+      return std::ranges::any_of(node.args, [&](NodeId arg) { return NeedsEnd(program, arg); });
+    default:
+      return false;
+  }
+}
+
+int WindowOf(Program& program, const Node& node) {
+  if (!HasWindow(node.op)) return kNone;
+  const bool inside = node.op >= Op::kMean && node.op <= Op::kMedian;
+  const TimeWindow window{.seconds = node.number, .inside = inside};
+  const auto found = std::ranges::find(program.windows, window);
+  const auto place = static_cast<int>(found - program.windows.begin());
+  if (found == program.windows.end()) program.windows.push_back(window);
+  return place;
+}
+
 }  // namespace
 
 void ShareValues(Program& program) {
+  for (const NodeId index : IdsOf(program.nodes)) {
+    program.nodes[index].window = WindowOf(program, program.nodes[index]);
+    program.nodes[index].needs_end = NeedsEnd(program, index);
+  }
   std::map<std::string, int> shared;
   for (const NodeId index : IdsOf(program.nodes)) {
     Node& node = program.nodes[index];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds signals that several rules ask for, so that the engine computes them once per frame.
+// Finds signals that several rules ask for, so that the engine computes them once per frame; and
+// what can be said of them without computing anything.
 #pragma once
 
 #include "grammar/program/program.h"
@@ -7,7 +8,8 @@
 namespace prehend::grammar {
 
 /// Gives nodes that have the same value for the same entities the same Node::shared. Only those
-/// that cost time: windows, clearances, gaps. After lowering.
+/// that cost time: windows, clearances, gaps. Sets Node::window and Node::needs_end, too. After
+/// lowering.
 void ShareValues(Program& program);
 
 }  // namespace prehend::grammar

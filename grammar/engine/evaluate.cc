@@ -43,6 +43,7 @@ bool IsPartOf(const EntityTable& entity_table, int part, int whole) {
 
 Kleene Evaluator::Truth(NodeId index, const View& view) const {
   const Node& node = program_.nodes[index];
+  if (node.needs_end && !view.end) return Kleene::kUnknown;
   switch (node.op) {
     case Op::kAnd: {
       const Kleene left = Truth(node.args[0], view);
@@ -91,6 +92,24 @@ Kleene Evaluator::Truth(NodeId index, const View& view) const {
       return Known(instances_.IsA(Entity(node, view, 0), program_.class_names[node.slot]));
     default:
       return Compare(node, view);
+  }
+}
+
+bool Evaluator::IsTrue(NodeId index, const View& view) const {
+  const Node& node = program_.nodes[index];
+  switch (node.op) {
+    case Op::kAnd:
+      return IsTrue(node.args[0], view) && IsTrue(node.args[1], view);
+    case Op::kOr:
+      return IsTrue(node.args[0], view) || IsTrue(node.args[1], view);
+    case Op::kBegins: {
+      View changing = view;
+      changing.negated = false;
+      const bool is_simple = program_.nodes[node.args[0]].op == Op::kHolds;
+      return (is_simple || IsTrue(node.args[0], changing)) && Truth(index, view) == Kleene::kTrue;
+    }
+    default:
+      return Truth(index, view) == Kleene::kTrue;
   }
 }
 
@@ -160,6 +179,15 @@ Kleene Evaluator::CompareMeasured(const ByThreshold& by, const View& view) const
 
 Kleene Evaluator::Compare(const Node& node, const View& view) const {
   if (node.by_threshold.value != kNone) return CompareMeasured(node.by_threshold, view);
+  const Node& of = program_.nodes[node.args[0]];
+  const Node& with = program_.nodes[node.args[1]];
+  const bool all_less = node.op == Op::kLess || node.op == Op::kLessEqual;
+  const bool all_greater = node.op == Op::kGreater || node.op == Op::kGreaterEqual;
+  if (with.op == Op::kNumber && of.shared != kNone &&
+      ((of.op == Op::kMaximum && all_less) || (of.op == Op::kMinimum && all_greater))) {
+    const Kleene all = AllInWindow(node, with.number, view);
+    if (all != Kleene::kTrue) return all;
+  }
   const std::optional<double> left = Number(node.args[0], view);
   if (!left) return Kleene::kUnknown;
   const std::optional<double> right = Number(node.args[1], view);
@@ -229,6 +257,8 @@ bool Evaluator::TooFarApart(NodeId index, RuleInstance& instance, FrameNumber ea
 
 std::optional<double> Evaluator::Number(NodeId index, const View& view) const {
   const Node& node = program_.nodes[index];
+  if (node.op == Op::kNumber) return node.number;
+  if (node.needs_end && !view.end) return std::nullopt;
   return node.shared == kNone ? Compute(node, view) : Shared(node, view);
 }
 
@@ -241,7 +271,7 @@ std::optional<double> Evaluator::Shared(const Node& node, const View& view) cons
   const auto place = static_cast<std::size_t>(view.frame) + 7 * static_cast<std::size_t>(a) +
                      61 * static_cast<std::size_t>(b + 1) +
                      509 * static_cast<std::size_t>(node.shared);
-  Computed& computed = computed_[place % computed_.size()];
+  Computed& computed = computed_[place % kComputed];
   const bool known = computed.frame == view.frame && computed.shared == node.shared &&
                      computed.a == a && computed.b == b;
   if (!known) {
@@ -263,6 +293,7 @@ std::optional<double> Evaluator::Compute(const Node& node, const View& view) con
       return view.instance.count;
     case Op::kAtBegin:
       if (!view.begin_known) return std::nullopt;
+      if (view.begin_at >= 0) return Number(AnchorOf(node, view), view.At(view.begin_at));
       return view.instance.anchors[3 * node.slot];
     case Op::kAtEnd:
       if (!view.end) return std::nullopt;
@@ -482,6 +513,7 @@ std::optional<Vector3d> Evaluator::Position(NodeId index, const View& view) cons
   switch (node.op) {
     case Op::kAtBegin:
       if (!view.begin_known) return std::nullopt;
+      if (view.begin_at >= 0) return Position(AnchorOf(node, view), view.At(view.begin_at));
       return Eigen::Map<const Vector3d>(view.instance.anchors.data() + 3 * node.slot);
     case Op::kAtEnd:
       if (!view.end) return std::nullopt;

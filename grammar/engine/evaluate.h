@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -28,22 +29,35 @@ class Evaluator {
         history_(history),
         instances_(instances),
         thresholds_(program.thresholds),
-        computed_(SharesValues(program) ? 1024 : 0) {}
+        computed_(SharesValues(program) ? kComputed : 0) {
+    for (const TimeWindow& window : program.windows) {
+      const double half_s = window.seconds / 2;
+      windows_.push_back(
+          {.half = window.inside ? history.AtMostTicks(half_s) : history.AtLeastTicks(half_s),
+           .inside = window.inside});
+    }
+  }
 
   /// Whose roles, at which frame, and at which frame the interval ends, if that is known.
   struct View {
     RuleInstance& instance;
     FrameNumber frame = 0;
     std::optional<FrameNumber> end = std::nullopt;
-    bool begin_known = true;  ///< values at the interval's begin, that is
-    bool negated = false;     ///< below a `not`: there, what nobody knows must not be false
-    View At(FrameNumber other) const { return {instance, other, end, begin_known, negated}; }
+    bool begin_known = true;    ///< values at the interval's begin, that is
+    bool negated = false;       ///< below a `not`: there, what nobody knows must not be false
+    FrameNumber begin_at = -1;  ///< if not negative: the anchors are those of this frame, and not
+                                ///< kept in the instance
+    View At(FrameNumber other) const {
+      return {instance, other, end, begin_known, negated, begin_at};
+    }
   };
 
   /// kUnknown while it depends on truths that are not final, on a begin or an end that is not
   /// known, or on frames to come. Of what is not tracked, neither a condition nor its opposite
   /// holds.
   Kleene Truth(NodeId node, const View& view) const;
+  /// Whether it is true and known to be; costs less where it is not.
+  bool IsTrue(NodeId node, const View& view) const;
   /// nullopt only for values at a begin or an end that is not known, or that depend on frames to
   /// come. Of what is not tracked it is no number (NaN).
   std::optional<double> Number(NodeId node, const View& view) const;
@@ -116,11 +130,19 @@ class Evaluator {
   bool IsInside(const Node& node, const View& view) const;
   bool IsNearest(const Node& node, const View& view) const;
   double Weight(int entity) const;
+  /// How something lies to a part of something else.
+  struct OverPart {
+    double above_m = 0;   ///< its lowest point, above the part's top
+    double beside_m = 0;  ///< how far it is beside it; below 0 it is below or above it
+    double up = 0;        ///< cosine between the part's top and up
+  };
+  const std::vector<OverPart>& OverParts(int a, int b, FrameNumber frame) const;
+  Kleene AllInWindow(const Node& node, double number, const View& view) const;
   struct Window {
     FrameNumber early = 0;
     FrameNumber late = 0;
   };
-  std::optional<Window> WindowAround(FrameNumber frame, double seconds) const;
+  std::optional<Window> WindowAround(const Node& node, FrameNumber frame) const;
   double SecondsBetween(FrameNumber early, FrameNumber late) const;
   Eigen::Vector2d WayOn(const Node& node, const View& view, FrameNumber early,
                         FrameNumber late) const;
@@ -142,6 +164,9 @@ class Evaluator {
   Eigen::Vector3d OfTouch(const Node& node, const View& view) const;
   const RuleInstance* Touching(const Node& node, const View& view, bool& swapped) const;
   const TouchSample* Touch(const Node& node, const View& view, bool& swapped) const;
+  NodeId AnchorOf(const Node& node, const View& view) const {
+    return program_.rules[view.instance.rule].anchors[static_cast<std::size_t>(node.slot)];
+  }
   int Entity(const Node& node, const View& view, int i) const {
     return view.instance.entities[node.roles[i]];
   }
@@ -157,6 +182,17 @@ class Evaluator {
   RuleInstances& instances_;
   Thresholds thresholds_;
   mutable bool depends_on_time_ = false;
+  /// A window of the program, around the last frames; the same for all bindings.
+  struct Windows {
+    Tick half = 0;
+    bool inside = false;
+    struct Known {
+      FrameNumber frame = -1;
+      Window window;
+    };
+    std::array<Known, 64> known = {};  ///< by frame
+  };
+  mutable std::vector<Windows> windows_;
   /// The last values that rules share.
   struct Computed {
     FrameNumber frame = -1;
@@ -164,8 +200,17 @@ class Evaluator {
     bool depends_on_time = false;
     double value = 0;
   };
-  mutable std::vector<Computed> computed_;     ///< empty if they share none
-  mutable std::vector<double> window_values_;  ///< kept for its memory
+  static constexpr std::size_t kComputed = 1024;  ///< a power of two
+  mutable std::vector<Computed> computed_;        ///< empty if they share none
+  mutable std::vector<double> window_values_;     ///< kept for its memory
+  /// How things lay to each other, last.
+  struct LastOver {
+    FrameNumber frame = -1;
+    int a = kNoEntity, b = kNoEntity;
+    std::vector<OverPart> parts;
+  };
+  static constexpr std::size_t kLastOver = 128;  ///< a power of two
+  mutable std::vector<LastOver> last_over_;      ///< empty until the first one
 };
 
 }  // namespace prehend::grammar

@@ -23,16 +23,25 @@ Vector3d Along(const Vector3d& v, const Vector3d& nhat) { return v - v.dot(nhat)
 }  // namespace
 
 // From the last frame that is half the window earlier to the first one that is half the window
-// later; at the episode's begin and end it is cut off. Nothing while the later frame is still to
-// come.
-std::optional<Evaluator::Window> Evaluator::WindowAround(FrameNumber frame, double seconds) const {
+// later, or those at most half of it before or after; at the episode's begin and end it is cut off.
+// Nothing while a frame of it is still to come.
+std::optional<Evaluator::Window> Evaluator::WindowAround(const Node& node,
+                                                         FrameNumber frame) const {
   depends_on_time_ = true;
+  Windows& windows = windows_[static_cast<std::size_t>(node.window)];
+  auto& known = windows.known[static_cast<std::size_t>(frame) % windows.known.size()];
+  if (known.frame == frame)  // of ticks that are forgotten the first one stands for all
+    return Window{std::max(known.window.early, history_.first()), known.window.late};
   const Tick now = history_.At(frame).tick;
-  const Tick half = history_.AtLeastTicks(seconds / 2);
-  const Window window{history_.LastNotAfter(now - half),
-                      std::min(history_.FirstNotBefore(now + half), history_.now())};
-  if (history_.At(window.late).tick < now + half && !history_.complete()) return std::nullopt;
-  return window;
+  const Tick early = now - windows.half;
+  const Tick late = now + windows.half;
+  if (history_.At(history_.now()).tick < late && !history_.complete()) return std::nullopt;
+  known.frame = frame;
+  known.window.early =
+      windows.inside ? history_.FirstNotBefore(early) : history_.LastNotAfter(early);
+  known.window.late = std::min(
+      windows.inside ? history_.LastNotAfter(late) : history_.FirstNotBefore(late), history_.now());
+  return known.window;
 }
 
 double Evaluator::SecondsBetween(FrameNumber early, FrameNumber late) const {
@@ -40,7 +49,7 @@ double Evaluator::SecondsBetween(FrameNumber early, FrameNumber late) const {
 }
 
 std::optional<double> Evaluator::Rate(const Node& node, const View& view) const {
-  const std::optional<Window> window = WindowAround(view.frame, node.number);
+  const std::optional<Window> window = WindowAround(node, view.frame);
   if (!window) return std::nullopt;
   if (window->early == window->late) return 0;
   const std::optional<double> before = Number(node.args[0], view.At(window->early));
@@ -51,7 +60,7 @@ std::optional<double> Evaluator::Rate(const Node& node, const View& view) const 
 
 // In the world, or as seen from a second entity.
 std::optional<double> Evaluator::SpeedOver(const Node& node, const View& view) const {
-  const std::optional<Window> window = WindowAround(view.frame, node.number);
+  const std::optional<Window> window = WindowAround(node, view.frame);
   if (!window) return std::nullopt;
   if (window->early == window->late) return 0;
   const int a = Entity(node, view, 0);
@@ -87,22 +96,44 @@ double OfValues(Op op, std::vector<double>& values) {
 // Of the values at the frames at most half the window before or after. Nothing while one of them
 // may still come.
 std::optional<double> Evaluator::OfWindow(const Node& node, const View& view) const {
-  depends_on_time_ = true;
-  const Tick now = history_.At(view.frame).tick;
-  const Tick half = history_.AtMostTicks(node.number / 2);
-  if (history_.At(history_.now()).tick < now + half && !history_.complete()) return std::nullopt;
-  const FrameNumber last = std::min(history_.LastNotAfter(now + half), history_.now());
+  const std::optional<Window> window = WindowAround(node, view.frame);
+  if (!window) return std::nullopt;
+  const FrameNumber last = window->late;
   std::vector<double> values = std::exchange(window_values_, {});  // a window may be in a window
   values.clear();
   std::optional<double> value = 0;
-  for (FrameNumber frame = history_.FirstNotBefore(now - half);
-       frame <= last && value && !std::isnan(*value); ++frame) {
-    value = Number(node.args[0], view.At(frame));
+  for (View at = view.At(window->early); at.frame <= last && value && !std::isnan(*value);
+       ++at.frame) {
+    value = Number(node.args[0], at);
     if (value) values.push_back(*value);
   }
   if (value && !std::isnan(*value)) value = OfValues(node.op, values);
   window_values_ = std::move(values);
   return value;
+}
+
+// Whether a value stays on one side of a number in a window: false if its last one does not, kTrue
+// if that must be computed. What is lost at times is no number at some of the frames.
+Kleene Evaluator::AllInWindow(const Node& node, double number, const View& view) const {
+  const Node& of = program_.nodes[node.args[0]];
+  const Node& value = program_.nodes[of.args[0]];
+  const bool is_signal = value.op == Op::kSpeedOver || value.op == Op::kRelativeSpeedOver ||
+                         value.op == Op::kDistance || value.op == Op::kHeight;
+  if (!is_signal) return Kleene::kTrue;
+  for (const int role : of.shared_roles) {
+    if (role != kNone && history_.WasLost(view.instance.entities[static_cast<std::size_t>(role)]))
+      return Kleene::kTrue;
+  }
+  const std::optional<Window> window = WindowAround(of, view.frame);
+  if (!window) return Kleene::kUnknown;
+  // If the value at the last frame is known, all of them are.
+  const std::optional<double> last = Number(of.args[0], view.At(window->late));
+  if (!last) return Kleene::kUnknown;
+  const bool is_beyond = node.op == Op::kLess        ? *last >= number
+                         : node.op == Op::kLessEqual ? *last > number
+                         : node.op == Op::kGreater   ? *last <= number
+                                                     : *last < number;
+  return is_beyond ? Kleene::kFalse : Kleene::kTrue;
 }
 
 // The way of a as seen from b between two frames, turned to where b is now, without its upright
@@ -117,7 +148,7 @@ Vector2d Evaluator::WayOn(const Node& node, const View& view, FrameNumber early,
 }
 
 std::optional<double> Evaluator::DriftAlong(const Node& node, const View& view) const {
-  const std::optional<Window> window = WindowAround(view.frame, node.number);
+  const std::optional<Window> window = WindowAround(node, view.frame);
   if (!window) return std::nullopt;
   if (window->early == window->late) return 0;
   const TouchPlace touch = TouchPlaceOf(node, view);
@@ -156,7 +187,7 @@ Evaluator::TouchPlace Evaluator::TouchPlaceOf(const Node& node, const View& view
 // The angle between the way in the first and the way in the second half of the window, per time
 // between their middles.
 std::optional<double> Evaluator::TurnRate(const Node& node, const View& view) const {
-  const std::optional<Window> window = WindowAround(view.frame, node.number);
+  const std::optional<Window> window = WindowAround(node, view.frame);
   if (!window) return std::nullopt;
   const Vector2d before = WayOn(node, view, window->early, view.frame);
   const Vector2d after = WayOn(node, view, view.frame, window->late);

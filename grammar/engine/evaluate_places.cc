@@ -117,20 +117,19 @@ double BoundOf_m(const EntityInfo& entity) {
 
 namespace {
 
-// How something lies to a part of something else.
-struct OverPart {
-  double above_m = 0;   // its lowest point, above the part's top
-  double beside_m = 0;  // how far it is beside it; below 0 it is below or above it
-  double up = 0;        // cosine between the part's top and up
+struct HowOver {
+  double above_m = 0;
+  double beside_m = 0;
+  double up = 0;
 };
 
-OverPart Over(const EntitySample& at, std::span<const SolidPart> upper, const EntitySample& on,
-              const SolidPart& part) {
+HowOver Over(const EntitySample& at, std::span<const SolidPart> upper, const EntitySample& on,
+             const SolidPart& part) {
   const Eigen::Quaterniond q_WS = on.q_WB * part.q_BS;
   const Vector3d p_WS_m = on.p_WB_m + on.q_WB * part.p_BS_m;
   const Vector3d up = q_WS.conjugate() * Vector3d::UnitZ();
   Eigen::Index top = 0;
-  OverPart over{.beside_m = -std::numeric_limits<double>::infinity()};
+  HowOver over{.beside_m = -std::numeric_limits<double>::infinity()};
   over.up = up.cwiseAbs().maxCoeff(&top);
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const double sign = up[axis] < 0 ? -1 : 1;
@@ -152,16 +151,34 @@ OverPart Over(const EntitySample& at, std::span<const SolidPart> upper, const En
 
 }  // namespace
 
+// Several rules ask for it.
+const std::vector<Evaluator::OverPart>& Evaluator::OverParts(int a, int b,
+                                                             FrameNumber frame) const {
+  if (last_over_.empty()) last_over_.resize(kLastOver);
+  const auto place = static_cast<std::size_t>(frame) + 31 * static_cast<std::size_t>(a) +
+                     7 * static_cast<std::size_t>(b);
+  LastOver& last = last_over_[place % kLastOver];
+  if (last.frame == frame && last.a == a && last.b == b) return last.parts;
+  last.frame = frame;
+  last.a = a;
+  last.b = b;
+  last.parts.clear();
+  SolidPart box_a, box_b;
+  const auto upper = PartsOf(entity_table_.entities[static_cast<std::size_t>(a)], box_a);
+  const auto lower = PartsOf(entity_table_.entities[static_cast<std::size_t>(b)], box_b);
+  for (const SolidPart& part : lower) {
+    const HowOver over = Over(history_.Look(a, frame), upper, history_.Look(b, frame), part);
+    last.parts.push_back({over.above_m, over.beside_m, over.up});
+  }
+  return last.parts;
+}
+
 // The top of a part is the side of its own box that looks up most. Of the parts of b below which or
 // above which a is, the one counts whose top is nearest to a's lowest point.
 double Evaluator::Clearance_m(int a, int b, FrameNumber frame) const {
   if (!IsTracked(a, frame) || !IsTracked(b, frame)) return std::numeric_limits<double>::quiet_NaN();
-  SolidPart box_a, box_b;
-  const auto upper = PartsOf(entity_table_.entities[static_cast<std::size_t>(a)], box_a);
-  const auto lower = PartsOf(entity_table_.entities[static_cast<std::size_t>(b)], box_b);
   double nearest_m = std::numeric_limits<double>::infinity();
-  for (const SolidPart& part : lower) {
-    const OverPart over = Over(history_.Look(a, frame), upper, history_.Look(b, frame), part);
+  for (const OverPart& over : OverParts(a, b, frame)) {
     if (over.beside_m < 0 && std::abs(over.above_m) < std::abs(nearest_m)) nearest_m = over.above_m;
   }
   return nearest_m;
@@ -286,12 +303,8 @@ constexpr double kNearlyUp = 0.9;
 // How far a and b may move until a's clearance above b may be at most `most_m`. Beside b it is
 // endless.
 double Evaluator::OffTop_m(int a, int b, double most_m, FrameNumber frame) const {
-  SolidPart box_a, box_b;
-  const auto upper = PartsOf(entity_table_.entities[static_cast<std::size_t>(a)], box_a);
-  const auto lower = PartsOf(entity_table_.entities[static_cast<std::size_t>(b)], box_b);
   double away_m = std::numeric_limits<double>::infinity();
-  for (const SolidPart& part : lower) {
-    const OverPart over = Over(history_.Look(a, frame), upper, history_.Look(b, frame), part);
+  for (const OverPart& over : OverParts(a, b, frame)) {
     if (!(over.up > kNearlyUp)) return 0;
     away_m = std::min(away_m, std::max(over.beside_m, std::abs(over.above_m) - most_m));
   }
@@ -300,12 +313,8 @@ double Evaluator::OffTop_m(int a, int b, double most_m, FrameNumber frame) const
 
 // Until it may be more: as long as a is below or above one part of b, and near its top.
 double Evaluator::OnTop_m(int a, int b, double most_m, FrameNumber frame) const {
-  SolidPart box_a, box_b;
-  const auto upper = PartsOf(entity_table_.entities[static_cast<std::size_t>(a)], box_a);
-  const auto lower = PartsOf(entity_table_.entities[static_cast<std::size_t>(b)], box_b);
   double left_m = -1;
-  for (const SolidPart& part : lower) {
-    const OverPart over = Over(history_.Look(a, frame), upper, history_.Look(b, frame), part);
+  for (const OverPart& over : OverParts(a, b, frame)) {
     if (over.up > kNearlyUp)
       left_m = std::max(left_m, std::min(-over.beside_m, most_m - std::abs(over.above_m)));
   }

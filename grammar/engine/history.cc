@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grammar/base/tracking.h"
+
 namespace prehend::grammar {
 namespace {
 
@@ -43,6 +45,7 @@ void History::SetSample(int entity, const EntitySample& look, FrameNumber first)
   PoseAtFrame& sample = samples.PushBack();
   sample.frame = now();
   sample.look = look;
+  if (!IsTracked(look)) looks_[entity].was_lost = true;
   looks_[entity].GiveBack();
 }
 

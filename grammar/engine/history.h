@@ -62,6 +62,7 @@ struct Looks {
   RingBuffer<Sample> samples;
   std::uint32_t most = 0;   ///< samples at once
   std::uint32_t count = 0;  ///< of samples; both since they were looked at last
+  bool was_lost = false;    ///< in one of them, ever
 
   /// After each new sample. Halves the memory when a quarter of it was enough for four times as
   /// many samples as fit into it.
@@ -116,6 +117,8 @@ class History {
   /// Prefetches what SetSample() needs, in two steps.
   void Fetch(int entity) const { __builtin_prefetch(&looks_[entity]); }
   void FetchSamples(int entity) const { looks_[entity].samples.FetchNext(); }
+  /// Whether some frame said that it is not tracked.
+  bool WasLost(int entity) const { return looks_[entity].was_lost; }
   /// Null if this entity is no hand.
   const HandAtFrame* Hand(int entity, FrameNumber frame) const {
     const int index = hand_of_entity_[entity];

@@ -117,6 +117,9 @@ struct Node {
   int name = kNone;                           ///< kSensorSet: index into Program::sensor_sets
   double number = 0;  ///< kNumber, kSensorSet, kTouchIn, kNormalIn, and the windows of kDriftAlong,
                       ///< kTurnRate, kRate .. kMedian
+  int window = kNone;      ///< index into Program::windows, of a node with a window
+  bool needs_end = false;  ///< a value or a comparison of values that is not known before the
+                           ///< interval's end is
   ByThreshold by_threshold = {};
   int shared = kNone;  ///< nodes with the same number have the same value for the same entities ..
   std::array<int, 2> shared_roles = {kNone, kNone};  ///< .. in these roles
@@ -325,6 +328,8 @@ struct Rule {
   double looks_around_s =
       0;            ///< its signals ask for poses so long before and after the frames it looks at
   int windows = 0;  ///< in so many windows, one in another
+  bool anchors_at_hand =
+      false;  ///< there are anchors, and it does not happen that some are known and others are not
 };
 
 /// The nodes of the conditions that make its form: `while`, `from`, `to`, `during`, `until`,
@@ -350,6 +355,13 @@ struct ProgramParam {
   Place place;
 };
 
+/// A window of time around a frame: from `seconds` / 2 before it to as much after it.
+struct TimeWindow {
+  double seconds = 0;
+  bool inside = false;  ///< the frames in it; else to those at its ends, or right beyond them
+  friend bool operator==(const TimeWindow&, const TimeWindow&) = default;
+};
+
 /// Rule 0 is always `touching`. Event::rule indexes `rules`; only the printed ones appear in
 /// output.
 struct Program {
@@ -367,6 +379,7 @@ struct Program {
   std::vector<Law> laws;  ///< in the order of the files
   std::vector<Threshold>
       thresholds;  ///< at most kMaxThresholds; what is compared with others counts as kAnyChange
+  std::vector<TimeWindow> windows;  ///< that nodes ask for, each once
   bool asks_touches = false;     ///< for values of a touch, not only for thresholds it has crossed
   bool recalls_touches = false;  ///< for thresholds that it had crossed in earlier frames
   bool waits = true;  ///< for what others decide later; false, in tests: steps each frame at once
