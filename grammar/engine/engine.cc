@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Construction, and when instances wake and rest. See grammar/engine/engine.h for the whole
-// algorithm.
+// Construction, and when instances wake, rest and wait for others. See grammar/engine/engine.h for
+// the whole algorithm.
 #include "grammar/engine/engine.h"
 
 #include <algorithm>
@@ -34,6 +34,7 @@ Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
   }
   turns_.resize(program_->rules.size());
   may_rest_.resize(program_->rules.size());
+  ahead_.resize(program_->rules.size());
   for (std::size_t turn = 0; turn < program_->schedule.size(); ++turn)
     turns_[program_->schedule[turn]] = static_cast<int>(turn);
   if (any_rests) history_.MeasureWays(entity_table_);
@@ -67,10 +68,13 @@ void Engine::Wake(InstanceId index) {
   ++awake_count_;
 }
 
-void Engine::WakeWatchers(const std::vector<Watch>& watchers) {
+void Engine::WakeWatchers(int entity, const std::vector<Watch>& watchers) {
   for (const Watch& watch : watchers) {
-    const RuleInstance& instance = instances_[watch.instance];
     const double rests_until_m = instances_.RestsUntil_m(watch.instance);
+    if (rests_until_m > 0 && watch.other != kNone &&
+        history_.Way_m(entity) + history_.Way_m(watch.other) < rests_until_m)
+      continue;  // most of them
+    const RuleInstance& instance = instances_[watch.instance];
     if (instance.awake || (rests_until_m > 0 && Ways_m(instance) < rests_until_m)) continue;
     if (MayWake(instance) && !instances_.NeedsOneThatRests(instance)) Wake(watch.instance);
   }
@@ -195,6 +199,7 @@ void Engine::NotifyIfChanged(RuleInstance& instance) {
 // alarm comes. A form that is not listed here never rests while it is open.
 bool Engine::MayRest(const RuleInstance& instance) {
   const Rule& rule = RuleOf(instance);
+  if (rule.form() == Form::kCompose && !rule.referenced && LacksAPart(instance)) return true;
   if (instance.next <= history_.now() || !instance.pending.empty() || evaluator_.depends_on_time())
     return false;
   switch (rule.form()) {
@@ -274,6 +279,103 @@ bool Engine::StepOrRest(RuleInstance& instance) {
   for (const Pending& pending : instance.pending) past_.Need(pending.next);
   if (RuleOf(instance).uses_looks && !past_.NeedLooks(needed)) HoldLooks(instance);
   return false;
+}
+
+// Waiting: an instance cannot decide a frame while the truth of another one is unknown there, and
+// the other one need not tell for long: the shortest duration of its interval, a gap that may be
+// bridged. If nothing but others can decide the frame, the instance waits; one that is awaited
+// tells when its truth becomes known further than before. The frames that were missed are then
+// stepped where something changes that the instance asks about; between two changes a step finds
+// what the last one found. That is what lets instances rest, too (MayRest()).
+
+// An instance could not decide its next frame. False if time may decide it: frames to come, the
+// confirmation of an interval.
+bool Engine::AwaitOthers(RuleInstance& instance) {
+  if (Follow(instance)) return true;
+  if (instance.next > history_.now() || !instance.pending.empty() || evaluator_.depends_on_time() ||
+      RuleOf(instance).form() == Form::kCompose || !program_->waits ||
+      (looks_at_all_ && RuleOf(instance).uses_looks))
+    return false;
+  ForEachReference(instance, [&](InstanceId index) {
+    RuleInstance& other = instances_[index];
+    if (instances_.KnownOf(other) > instance.next) return;
+    other.awaited = instance.waits = true;
+    if (!other.follows) return;
+    StopWaiting(other);
+    Hold(other);  // its turn in this frame is over
+  });
+  if (!instance.waits) return false;
+  Hold(instance);
+  return true;
+}
+
+void Engine::Hold(const RuleInstance& instance) {
+  past_.Hold(HeldBy(instance), instance.index, [this](const auto& held) { return IsHeld(held); });
+  if (RuleOf(instance).uses_looks) HoldLooks(instance);
+}
+
+// Of the entities that play its roles: it asks for no others.
+void Engine::HoldLooks(const RuleInstance& instance) {
+  for (std::size_t role = 0; role < RuleOf(instance).roles.size(); ++role) {
+    past_.HoldLooks(instance.entities[role], HeldBy(instance), instance.index, history_,
+                    [this](const auto& held) { return IsHeld(held); });
+  }
+}
+
+void Engine::Tell(RuleInstance& instance) {
+  instance.awaited = false;
+  for (const Watcher& watcher : instance.watchers) {
+    RuleInstance& watching = instances_[watcher.instance];
+    if (watching.waits && !watching.follows) StopWaiting(watching);
+  }
+}
+
+void Engine::StopWaiting(RuleInstance& instance) {
+  if (instance.follows) {
+    // Of this frame nothing was decided that counts: whoever was at rest may begin or end in it.
+    instance.next =
+        std::min(following_[instance.index].resumes, std::max<FrameNumber>(history_.now(), 0));
+    instance.known = std::min(instance.known, instance.next);
+  }
+  instance.waits = instance.follows = false;
+  awake_[instance.rule].push_back(instance.index);
+  ++awake_count_;
+}
+
+// Whether something that it asks about is known up to its next frame, and no further.
+bool Engine::IsAtTheKnown(const RuleInstance& instance) const {
+  bool is_there = false;
+  ForEachReference(instance, [&](InstanceId index) {
+    is_there = is_there || !instances_.IsKnownAt(instances_[index], instance.next);
+  });
+  return is_there;
+}
+
+// A frame was decided. Those that follow are left out as long as they cannot differ from it.
+void Engine::SkipUnchanged(RuleInstance& instance) const {
+  const FrameNumber now = history_.now();
+  if (instance.next >= now || evaluator_.depends_on_time() || !instance.pending.empty() ||
+      instance.in_gap || !program_->waits)
+    return;
+  const Form form = RuleOf(instance).form();
+  const bool has_deadline = instance.open && TicksOf(instance).within >= 0;
+  if (form == Form::kUntilSince || has_deadline || IsAtTheKnown(instance)) return;
+  instance.next = std::clamp(NextChange(instance, instance.next - 1), instance.next, now + 1);
+}
+
+// The first frame after this one where something changes that the instance asks about.
+FrameNumber Engine::NextChange(const RuleInstance& instance, FrameNumber after) const {
+  FrameNumber next = kNever;
+  ForEachReference(instance, [&](InstanceId index) {
+    const RuleInstance& other = instances_[index];
+    next = std::min({next, NextEdge(other, after), other.known > after ? other.known : kNever});
+  });
+  const Rule& rule = RuleOf(instance);
+  for (std::size_t role = 0; role < rule.roles.size(); ++role) {
+    if (rule.watches_pose[role] || rule.watches_grip[role])
+      next = std::min(next, history_.NextChange(instance.entities[role], after));
+  }
+  return next;
 }
 
 }  // namespace prehend::grammar

@@ -8,7 +8,7 @@
 // final. So an instance that waits (a gap that may be bridged, an approach that may end in a
 // landing) delays only the instances that ask about just those frames. Those wait, and are stepped
 // again when it tells more; the frames in between are stepped only where something changed
-// (grammar/engine/engine_waiting.cc). An instance rests as soon as its newest frame is decided and
+// (grammar/engine/engine.cc). An instance rests as soon as its newest frame is decided and
 // nothing but a change can decide otherwise: what it asks about wakes it. What time alone changes
 // is either an alarm (the end of a gap, the shortest duration) or, where a value moves by itself
 // (Evaluator::depends_on_time), keeps the instance awake. So a frame costs as much as changes in
@@ -67,8 +67,9 @@ class Engine final : private Followers {
   template <typename AnyFrame>
   bool BeginFrame(const AnyFrame& frame, std::vector<Event>& out);
   bool BringsNothing(const FrameChanges& changes) const {
-    return awake_count_ == 0 && changes.entities.empty() && changes.hands.empty() &&
-           changes.touches.empty() && changes.contact_ends.empty() && !alarms_.AnyDue(changes.tick);
+    return awake_count_ == 0 && ahead_count_ == 0 && changes.entities.empty() &&
+           changes.hands.empty() && changes.touches.empty() && changes.contact_ends.empty() &&
+           !alarms_.AnyDue(changes.tick);
   }
   void PassBy(Tick tick);
   void EndFrame();
@@ -89,7 +90,7 @@ class Engine final : private Followers {
 
   // Waking and resting.
   void Wake(InstanceId instance);
-  void WakeWatchers(const std::vector<Watch>& watchers);
+  void WakeWatchers(int entity, const std::vector<Watch>& watchers);
   bool MayWake(const RuleInstance& instance) const;
   NodeId NearnessOf(const Rule& rule) const;
   double Ways_m(const RuleInstance& instance) const;
@@ -128,7 +129,7 @@ class Engine final : private Followers {
     return instance.in_gap ? instance.gap.frame : instance.next;
   }
 
-  // Waiting for others (grammar/engine/engine_waiting.cc).
+  // Waiting for others (grammar/engine/engine.cc).
   bool AwaitOthers(RuleInstance& instance);
   void Tell(RuleInstance& instance);
   void StopWaiting(RuleInstance& instance);
@@ -149,15 +150,21 @@ class Engine final : private Followers {
   void SkipUnchanged(RuleInstance& instance) const;
   FrameNumber NextChange(const RuleInstance& instance, FrameNumber after) const;
 
-  // Following others (likewise).
+  // Following others (grammar/engine/engine_following.cc).
   struct Follows {
-    bool closed = false;          // while it is not open it asks about nothing but others
-    bool open = false;            // likewise, while it is
+    bool closed = false;          // while it is not open
+    bool open = false;            // while it is
+    bool closed_looks = false;    // while it is not open it looks at entities, too
+    bool open_looks = false;      // likewise, while it is
+    bool only_others = false;     // it never looks at entities
     std::vector<int> slots = {};  // `until`: the references that it asks for
   };
-  struct Following {            // of an instance that does so
-    FrameNumber held = 0;       // the first frame that is kept for it
-    FrameNumber resumes = 0;    // the first one that it steps when it follows no more
+  struct Following {               // of an instance that does so
+    FrameNumber held = 0;          // the first frame that is kept for it
+    FrameNumber resumes = 0;       // the first one that it steps when it follows no more
+    FrameNumber assumed = kNever;  // before this one nothing happens if the others stay as they are
+    bool asks_only_others = false;
+    bool is_listed = false;     // among those that look ahead
     FrameNumber known_in = -1;  // in this frame it was seen how far it is known
     int cost = 0;               // so many instances may have to be asked for that
   };
@@ -179,9 +186,14 @@ class Engine final : private Followers {
   }
   template <typename Visit>
   void ForEachFollowed(const RuleInstance& instance, const Visit& visit) const;
-  std::optional<Bound> BoundOf(NodeId node, const RuleInstance& instance) const;
-  bool MayBeKnownNow(const RuleInstance& instance) const;
+  static Bound Both(Bound a, Bound b);
+  Bound BoundOf(InstanceId index) const;
+  Bound BoundOf(NodeId node, RuleInstance& instance);
+  bool IsSettled(Bound one) const { return !one.holds && one.known > history_.now(); }
+  FrameNumber StaysUntil(RuleInstance& instance);
+  void CatchUp(RuleInstance& instance, FrameNumber end);
   bool AsksOnlyOthers(NodeId node) const;
+  bool AsksForTheNearest(const Rule& rule) const;
   bool IsUnknownUntilTheEnd(NodeId node) const;
   Follows WhenItFollows(const Rule& rule) const;
   bool MayFollow(RuleInstance& instance, FrameNumber resumes);
@@ -190,6 +202,8 @@ class Engine final : private Followers {
   void TellFollowers(RuleInstance& instance);
   void AskWhetherFollowersRest(RuleInstance& instance);
   void LetFollowersRest(RuleId rule);
+  void LookAhead(RuleId rule);
+  Kleene StaysAt(RuleInstance& instance, FrameNumber frame);
 
   // The forms; each looks at one frame and says whether it could decide it.
   void StepInstance(RuleInstance& instance);
@@ -207,6 +221,7 @@ class Engine final : private Followers {
   bool MeetDeadline(RuleInstance& instance, Moment now);
   bool StepUntil(RuleInstance& instance, FrameNumber frame);
 
+  bool EndIsQuiet(RuleInstance& instance, FrameNumber frame);
   bool LeadsHere(RuleInstance& instance, FrameNumber frame);
   WalkBack BeginOfWalk(RuleInstance& instance, FrameNumber end);
 
@@ -245,6 +260,7 @@ class Engine final : private Followers {
   void NotifyCompositions(const RuleInstance& part, const Span& span);
   FrameNumber Settled(const RuleInstance& instance) const;
   FrameNumber PartsSettled(const RuleInstance& composition) const;
+  static bool LacksAPart(const RuleInstance& composition);
   void StepCompose(RuleInstance& instance);
 
   const Rule& RuleOf(const RuleInstance& instance) const { return program_->rules[instance.rule]; }
@@ -266,7 +282,10 @@ class Engine final : private Followers {
   IdVector<RuleId, int> turns_;                // when a rule is stepped in a frame
   IdVector<InstanceId, Following> following_;  // up to the last one that ever did
   bool some_may_rest_ = false;
+  bool asks_followers_ = true;  // how far they are known; else that is guessed, at most too far
   IdVector<RuleId, std::vector<InstanceId>> may_rest_;  // followers to be looked at in that turn
+  IdVector<RuleId, std::vector<InstanceId>> ahead_;     // followers that look at entities, too
+  std::size_t ahead_count_ = 0;                         // of all rules
   int turn_ = -1;  // twice that of the rule that is stepped now; one more: of its followers
   Thresholds thresholds_;
   bool recalls_touches_ = false;     // which thresholds they had crossed

@@ -104,6 +104,18 @@ FrameNumber Engine::PartsSettled(const RuleInstance& composition) const {
   return settled;
 }
 
+// Of some part there is no interval, and of the others none that may be forgotten later: each new
+// one wakes it.
+bool Engine::LacksAPart(const RuleInstance& composition) {
+  const auto& parts = composition.As<ComposeState>().parts;
+  const auto is_settled = [&](const Span& span) {
+    return span.Complete().frame < composition.next;
+  };
+  return std::ranges::any_of(parts, [](const auto& spans) { return spans.empty(); }) &&
+         std::ranges::all_of(
+             parts, [&](const auto& spans) { return std::ranges::all_of(spans, is_settled); });
+}
+
 void Engine::StepCompose(RuleInstance& instance) {
   const Rule& rule = RuleOf(instance);
   auto& state = instance.As<ComposeState>();

@@ -269,8 +269,16 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
   if (opens == Kleene::kFalse) return true;
   // What `during` and `to` say of @begin refers to this very frame. Without it, too, they may say
   // that nothing begins: a begin that is an end at once is no interval.
-  const bool anchored = evaluator_.CaptureAnchors(instance, frame);
-  const Evaluator::View begin{.instance = instance, .frame = frame, .begin_known = anchored};
+  const bool looks_only = opens == Kleene::kUnknown && RuleOf(instance).anchors_at_hand;
+  const bool anchored = looks_only || evaluator_.CaptureAnchors(instance, frame);
+  const Evaluator::View begin{.instance = instance,
+                              .frame = frame,
+                              .begin_known = anchored,
+                              .begin_at = looks_only ? frame : -1};
+  if (opens == Kleene::kUnknown) {  // but it may be known that nothing begins
+    return (rule.during != kNone && evaluator_.Truth(rule.during, begin) == Kleene::kFalse) ||
+           evaluator_.IsTrue(rule.to, begin);
+  }
   if (rule.during != kNone) opens = And(opens, evaluator_.Truth(rule.during, begin));
   if (opens != Kleene::kFalse) opens = And(opens, Not(evaluator_.Truth(rule.to, begin)));
   if (opens == Kleene::kFalse) return true;
@@ -300,9 +308,11 @@ bool Engine::MeetDeadline(RuleInstance& instance, Moment now) {
 bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
   const auto& [until, since, approach, back_s] = RuleOf(instance).As<UntilSinceRule>();
   auto& state = instance.As<UntilSinceState>();
-  const Kleene ends = evaluator_.Truth(until, {instance, frame});
+  // Where nothing leads to, it does not matter whether an end is not known, or known to be none.
+  const bool is_quiet = EndIsQuiet(instance, frame) && !LeadsHere(instance, frame);
+  const Kleene ends = is_quiet ? Kleene::kUnknown : evaluator_.Truth(until, {instance, frame});
   if (ends == Kleene::kUnknown) {
-    if (LeadsHere(instance, frame)) return false;
+    if (!is_quiet && LeadsHere(instance, frame)) return false;
     // It does not matter whether an end is here; but at the next frame it may.
     evaluator_.MarkTimeDependent();
     if (log_ != nullptr) undecided_ends_.push_back({instance.index, frame});
@@ -328,6 +338,17 @@ bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
     ++state.approach_from;
   }
   return true;
+}
+
+// It ends where something begins or ends that follows others: as long as that does, there is no
+// end.
+bool Engine::EndIsQuiet(RuleInstance& instance, FrameNumber frame) {
+  const Node& until = program_->nodes[RuleOf(instance).As<UntilSinceRule>().until];
+  if (log_ != nullptr || (until.op != Op::kBegins && until.op != Op::kEnds)) return false;
+  const Node& of = program_->nodes[until.args[0]];
+  if (of.op != Op::kHolds) return false;
+  const InstanceId index = instance.references[static_cast<std::size_t>(of.slot)];
+  return index != kNone && instances_[index].follows && frame >= instances_[index].known;
 }
 
 // Whether an interval of any end could hold in the frame before this one. If not, none ends here,

@@ -122,6 +122,7 @@ void Engine::PassBy(Tick tick) {
 void Engine::EndFrame() {
   for (const RuleId rule : program_->schedule) {
     turn_ = 2 * turns_[rule];
+    if (!ahead_[rule].empty()) LookAhead(rule);
     if (some_may_rest_ && !may_rest_[rule].empty()) LetFollowersRest(rule);
     if (!awake_[rule].empty()) StepRule(rule);
   }
@@ -192,7 +193,7 @@ void Engine::NoteUndecidedEnds() {
 
 void Engine::Look(int entity, const EntitySample& look) {
   history_.SetSample(entity, look, FirstLook(entity));
-  WakeWatchers(instances_.PoseWatchers(entity));
+  WakeWatchers(entity, instances_.PoseWatchers(entity));
 }
 
 void Engine::Look(const HandSample& hand) {
@@ -210,7 +211,7 @@ void Engine::Look(const HandSample& hand) {
     if (same_grip || instance.awake || (RuleOf(instance).watches_grips & changed) == 0) continue;
     if (MayWake(instance) && !SaysTheSame(instance)) Wake(watch.instance);
   }
-  WakeWatchers(instances_.PoseWatchers(hand.entity));
+  WakeWatchers(hand.entity, instances_.PoseWatchers(hand.entity));
 }
 
 void Engine::ApplyContacts(std::span<const Touch> touches) {

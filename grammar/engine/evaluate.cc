@@ -43,7 +43,6 @@ bool IsPartOf(const EntityTable& entity_table, int part, int whole) {
 
 Kleene Evaluator::Truth(NodeId index, const View& view) const {
   const Node& node = program_.nodes[index];
-  if (node.needs_end && !view.end) return Kleene::kUnknown;
   switch (node.op) {
     case Op::kAnd: {
       const Kleene left = Truth(node.args[0], view);
@@ -66,6 +65,7 @@ Kleene Evaluator::Truth(NodeId index, const View& view) const {
     case Op::kInSphere:
     case Op::kSolidInSphere:
     case Op::kInCylinder: {
+      if (node.needs_end && !view.end) return Kleene::kUnknown;
       const std::optional<Reach> reach = ReachOf(node, view);
       if (!reach) return Kleene::kUnknown;
       if (std::isnan(reach->distance_m + reach->radius_m + reach->height_m + reach->most_height_m))
@@ -179,6 +179,7 @@ Kleene Evaluator::CompareMeasured(const ByThreshold& by, const View& view) const
 
 Kleene Evaluator::Compare(const Node& node, const View& view) const {
   if (node.by_threshold.value != kNone) return CompareMeasured(node.by_threshold, view);
+  if (node.needs_end && !view.end) return Kleene::kUnknown;
   const Node& of = program_.nodes[node.args[0]];
   const Node& with = program_.nodes[node.args[1]];
   const bool all_less = node.op == Op::kLess || node.op == Op::kLessEqual;

@@ -273,7 +273,8 @@ void RuleInstances::WatchEntities(RuleInstance& instance) {
     std::vector<Watch>& watchers =
         (rule.watches_pose[role] ? pose_watchers_ : grip_watchers_)[instance.entities[role]];
     instance.watch_places[role] = static_cast<int>(watchers.size());
-    watchers.push_back({instance.index, static_cast<int>(role)});
+    const int other = rule.roles.size() == 2 ? instance.entities[1 - role] : kNone;
+    watchers.push_back({instance.index, static_cast<int>(role), other});
   }
 }
 

@@ -188,6 +188,7 @@ struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is 
 struct Watch {
   InstanceId instance;
   int role = kNone;
+  int other = kNone;  ///< in its other role, if it has two
 };
 
 /// Says how far an instance is known that follows others.
@@ -197,6 +198,13 @@ class Followers {
 
  protected:
   ~Followers() = default;
+};
+
+/// What the truth of an instance is where it is not known yet, as far as that has been seen.
+enum class Beyond : std::uint8_t {
+  kAsAsked,    ///< those who follow others are asked how far they are known
+  kAsItWas,    ///< it goes on: nothing begins or ends
+  kAsUnknown,  ///< nobody is asked
 };
 
 class RuleInstances {
@@ -293,10 +301,16 @@ class RuleInstances {
   bool IsKnownAt(const RuleInstance& instance, FrameNumber frame) const {
     return frame < instance.known || (instance.follows && frame < KnownOf(instance));
   }
+  bool IsKnownBeyond(const RuleInstance& instance, FrameNumber frame) const {
+    return beyond_ == Beyond::kAsAsked && instance.follows && frame < KnownOf(instance);
+  }
   Kleene TruthAt(InstanceId index, FrameNumber frame) const {
     if (index == kNone) return Kleene::kFalse;
     const RuleInstance& instance = instances_[index];
-    if (!IsKnownAt(instance, frame)) return Kleene::kUnknown;
+    if (frame >= instance.known) {
+      if (beyond_ == Beyond::kAsItWas) return Known(instance.open && instance.certain);
+      if (!IsKnownBeyond(instance, frame)) return Kleene::kUnknown;
+    }
     if (instance.open && instance.certain && frame >= instance.begin.frame) return Kleene::kTrue;
     return AnyPast(instance, [frame](const Span& past) {
       return frame >= past.begin.frame && frame < past.end.frame;
@@ -315,16 +329,24 @@ class RuleInstances {
   Kleene BeginsAt(InstanceId index, FrameNumber frame) const {
     if (index == kNone) return Kleene::kFalse;
     const RuleInstance& instance = instances_[index];
-    if (!IsKnownAt(instance, frame)) return Kleene::kUnknown;
+    if (frame >= instance.known) {
+      if (beyond_ == Beyond::kAsItWas) return Kleene::kFalse;
+      if (!IsKnownBeyond(instance, frame)) return Kleene::kUnknown;
+    }
     if (instance.open && instance.certain && frame == instance.begin.frame) return Kleene::kTrue;
     return AnyPast(instance, [frame](const Span& past) { return past.begin.frame == frame; });
   }
   Kleene EndsAt(InstanceId index, FrameNumber frame) const {
     if (index == kNone) return Kleene::kFalse;
     const RuleInstance& instance = instances_[index];
-    if (!IsKnownAt(instance, frame)) return Kleene::kUnknown;
+    if (frame >= instance.known) {
+      if (beyond_ == Beyond::kAsItWas) return Kleene::kFalse;
+      if (!IsKnownBeyond(instance, frame)) return Kleene::kUnknown;
+    }
     return AnyPast(instance, [frame](const Span& past) { return past.end.frame == frame; });
   }
+
+  void Take(Beyond beyond) { beyond_ = beyond; }
 
   bool IsA(int entity, const std::string& class_name) const;
 
@@ -375,7 +397,37 @@ class RuleInstances {
   std::vector<std::vector<Watch>> grip_watchers_;
   std::vector<int> name_rank_;  // alphabetical order of entities
   IdVector<RuleId, char> symmetric_;
+  Beyond beyond_ = Beyond::kAsAsked;
   RuleId too_many_;  // the rule that would have had more than can be
 };
+
+/// Where the truth of an instance changes, after this frame.
+inline FrameNumber NextEdge(const RuleInstance& instance, FrameNumber after) {
+  FrameNumber next = kNever;
+  const auto consider = [&](FrameNumber frame) {
+    if (frame > after) next = std::min(next, frame);
+  };
+  if (instance.open) consider(instance.begin.frame);
+  for (std::size_t i = 0; i < instance.past.size(); ++i) {
+    consider(instance.past[i].begin.frame);
+    consider(instance.past[i].end.frame);
+  }
+  if (const auto* touching = instance.If<TouchingState>()) {
+    consider(FirstAfter(touching->crossings, after));
+    consider(FirstAfter(touching->touches, after));
+  }
+  return next;
+}
+
+/// Visits each instance that it has asked about.
+template <typename Visit>
+void ForEachReference(const RuleInstance& instance, const Visit& visit) {
+  if (const auto* any = instance.If<AnyState>()) {
+    for (const InstanceId member : any->members) visit(member);
+  }
+  for (const InstanceId reference : instance.references) {
+    if (reference != kNone) visit(reference);
+  }
+}
 
 }  // namespace prehend::grammar
