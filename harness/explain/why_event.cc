@@ -136,6 +136,69 @@ Reasons EventReasons::End(InstanceId instance, const CandidateOutcome& outcome, 
   return {};
 }
 
+Reasons EventReasons::CutOfWalk(InstanceId instance, const CandidateOutcome& outcome) {
+  const auto* rule = past_.RuleOf(instance).If<UntilSinceRule>();
+  if (rule == nullptr || !rule->approach) return {};
+  Reasons reasons;
+  if (outcome.walk.stop == WalkBack::Stop::kReceding)
+    reasons = {
+        Remark("the approach turns here: " + ClauseText(past_, instance, rule->approach->signal),
+               TurnText(instance, outcome))};
+  if (outcome.walk.stop == WalkBack::Stop::kIdle)
+    reasons = {Remark("it paused before that", PauseText(instance, outcome))};
+  for (Reason& reason : reasons) reason.mark = Mark::kTurned;
+  return reasons;
+}
+
+// "is 96 mm; at 1.9 s it was 71 mm, until 2.1 s it receded by 25 mm, and it may recede by .."
+std::string EventReasons::TurnText(InstanceId instance, const CandidateOutcome& outcome) {
+  const grammar::Approach& approach = *past_.RuleOf(instance).As<UntilSinceRule>().approach;
+  const FrameNumber at = outcome.walk.at, end = outcome.span.end.frame;
+  const auto signal = [&](FrameNumber frame) {
+    return past_.Number(approach.signal, {.instance = instance, .frame = frame, .end = end})
+        .value_or(0);
+  };
+  const auto text = [&](double value) {
+    return QuantityText(value, NoteOf(past_.program(), approach.signal).dimension);
+  };
+  FrameNumber top = at;
+  for (FrameNumber frame = at; frame <= std::min(end, past_.frames() - 1); ++frame) {
+    if (signal(frame) > signal(top)) top = frame;
+  }
+  // Medians over a while recede less than single values do.
+  const std::string receded = approach.over_s > 0
+                                  ? ""
+                                  : fmt::format(", until {} it receded by {}", clauses_.Time(top),
+                                                text(signal(top) - signal(at)));
+  return fmt::format("is {}; at {} it was {}{}, and it may recede by at most {}",
+                     text(signal(outcome.span.begin.frame)), clauses_.Time(at), text(signal(at)),
+                     receded, text(approach.slack));
+}
+
+std::string EventReasons::PauseText(InstanceId instance, const CandidateOutcome& outcome) {
+  const grammar::Approach& approach = *past_.RuleOf(instance).As<UntilSinceRule>().approach;
+  const FrameNumber after = outcome.walk.at, end = outcome.span.end.frame;
+  // Whether a trembling hand stays in its place is not asked again.
+  if (approach.hand != kNone) return "for more than " + Seconds(approach.idle_s);
+  const auto number = [&](grammar::NodeId node, FrameNumber frame) {
+    return past_.Number(node, {.instance = instance, .frame = frame, .end = end}).value_or(0);
+  };
+  const auto is_slow = [&](FrameNumber frame) {
+    const double speed =
+        approach.motion != kNone
+            ? number(approach.motion, frame + 1)
+            : (number(approach.signal, frame) - number(approach.signal, frame + 1)) /
+                  clauses_.Seconds(past_.TickOf(frame + 1) - past_.TickOf(frame));
+    return speed < approach.speed;
+  };
+  FrameNumber from = after;
+  while (from > 0 && is_slow(from - 1)) --from;
+  return fmt::format("from {} to {}, {}, and a pause may last {}", clauses_.Time(from),
+                     clauses_.Time(after),
+                     Seconds(clauses_.Seconds(past_.TickOf(after) - past_.TickOf(from))),
+                     Seconds(approach.idle_s));
+}
+
 // What stopped the walk back from the end.
 Reasons EventReasons::BeginOfWalk(InstanceId instance, const CandidateOutcome& outcome, int depth) {
   const UntilSinceRule& rule = past_.RuleOf(instance).As<UntilSinceRule>();
@@ -143,13 +206,6 @@ Reasons EventReasons::BeginOfWalk(InstanceId instance, const CandidateOutcome& o
   const FrameNumber begin = outcome.span.begin.frame;
   const FrameNumber end = outcome.span.end.frame;
   const FrameNumber at = outcome.walk.at;
-  const auto signal = [&](FrameNumber frame) {
-    return past_.Number(approach->signal, {.instance = instance, .frame = frame, .end = end})
-        .value_or(0);
-  };
-  const auto text = [&](double value) {
-    return QuantityText(value, NoteOf(past_.program(), approach->signal).dimension);
-  };
   Reasons reasons;
   switch (outcome.walk.stop) {
     case WalkBack::Stop::kFirstFrame:
@@ -166,16 +222,8 @@ Reasons EventReasons::BeginOfWalk(InstanceId instance, const CandidateOutcome& o
           Change(rule.since, {.instance = instance, .frame = at + 1, .end = end}, true, depth);
       break;
     case WalkBack::Stop::kReceding:
-      reasons = {Remark("the approach turns here: " + ClauseText(past_, instance, approach->signal),
-                        fmt::format("is {}; at {} it was {}, and it may recede by at most {}",
-                                    text(signal(begin)), clauses_.Time(at), text(signal(at)),
-                                    text(approach->slack)))};
-      reasons.front().mark = Mark::kTurned;
-      break;
     case WalkBack::Stop::kIdle:
-      reasons = {
-          Remark("it paused before", fmt::format("for more than {}", Seconds(approach->idle_s)))};
-      reasons.front().mark = Mark::kTurned;
+      reasons = CutOfWalk(instance, outcome);
       break;
   }
   const bool later = outcome.walk.stop != WalkBack::Stop::kReceding &&

@@ -23,6 +23,10 @@ class EventReasons {
   Reasons End(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,
               int depth = 0);
 
+  /// Of an interval that looks back along an approach: the turn or the pause before which it cannot
+  /// begin; nothing if it is cut by something else.
+  Reasons CutOfWalk(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome);
+
  private:
   Reasons BeginOfWalk(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,
                       int depth);
@@ -31,6 +35,8 @@ class EventReasons {
   Reasons BeginOrEndOfAny(grammar::InstanceId instance, grammar::FrameNumber frame, bool end,
                           int depth);
   Reasons Parts(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome, int depth);
+  std::string TurnText(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome);
+  std::string PauseText(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome);
   bool ChooseParts(grammar::InstanceId instance, const grammar::CandidateOutcome& whole,
                    std::vector<const grammar::CandidateOutcome*>& chosen);
   Reasons Counted(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome);

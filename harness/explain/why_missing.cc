@@ -358,6 +358,8 @@ MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int
       break;
     case CandidateOutcome::Kind::kNothingBack: {
       run.how = "nothing before its end at " + clauses_.Time(outcome.span.end.frame);
+      run.because = events_.CutOfWalk(instance, outcome);
+      for (Reason& cut : run.because) cut.mark = Mark::kFailed;
       const FrameNumber before = std::max<FrameNumber>(last - 1, 0);
       Reasons state = clauses_.State(rule.As<UntilSinceRule>().since,
                                      {.instance = instance, .frame = before, .end = last}, true);
@@ -375,6 +377,10 @@ MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int
                        outcome.kind == CandidateOutcome::Kind::kTooFew ||
                        outcome.kind == CandidateOutcome::Kind::kRefused;
   if (has_end) {
+    Reason began{.mark = Mark::kNote,
+                 .what = "it began there",
+                 .because = events_.CutOfWalk(instance, outcome)};
+    if (!began.because.empty()) run.because.push_back(std::move(began));
     Reason ended{.mark = Mark::kNote,
                  .what = "it ended there",
                  .because = events_.End(instance, outcome, kMaxDepth - 1)};

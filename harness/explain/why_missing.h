@@ -75,6 +75,8 @@ class MissingReasons {
 
   /// The clauses of a condition where they came closest to holding, the first failed one followed.
   Blame OfClauses(grammar::NodeId node, Moment at, const Window& window, int depth);
+  /// What a condition holds by that should not: references of its clauses, of `any` the bindings.
+  Reasons WhyItHolds(grammar::InstanceId instance, grammar::FrameNumber frame);
   void Follow(Reason& reason, grammar::InstanceId target, grammar::FrameNumber frame,
               const Window& window, int depth);
   Reason ClosestApproach(grammar::InstanceId instance, const Window& window);

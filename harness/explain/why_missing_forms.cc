@@ -126,6 +126,11 @@ MissingReasons::Blame MissingReasons::OfClauses(grammar::NodeId node, Moment at,
   for (const Clauses::Clause& clause : clauses_.Split(node, at, true)) {
     Reason reason = clauses_.Told(clause, at);
     const grammar::Node& n = past_.program().nodes[clause.node];
+    if (reason.mark == Mark::kFailed && n.op == Op::kHolds && !clause.truth) {
+      reason.because = WhyItHolds(past_.Referred(at.instance, n.slot), at.frame);
+      for (const Reason& by : reason.because)
+        reason.how += (&by == &reason.because.front() ? ", by " : " and ") + by.what;
+    }
     const bool follow = reason.mark == Mark::kFailed && !followed;
     followed |= reason.mark == Mark::kFailed;
     if (follow && n.op == Op::kHolds && clause.truth) {
@@ -134,6 +139,37 @@ MissingReasons::Blame MissingReasons::OfClauses(grammar::NodeId node, Moment at,
     blame.reasons.push_back(std::move(reason));
   }
   return blame;
+}
+
+Reasons MissingReasons::WhyItHolds(InstanceId instance, FrameNumber frame) {
+  Reasons reasons;
+  const auto add = [&](InstanceId target) {
+    const CandidateOutcome* holds = target == kNone ? nullptr : past_.Covering(target, frame);
+    if (holds == nullptr) return;
+    const Rule& rule = past_.RuleOf(target);
+    reasons.push_back(
+        {.mark = Mark::kHeld,
+         .what = Label(past_, target),
+         .how = "held " + IntervalText({holds->span.begin.tick, holds->span.end.tick},
+                                       past_.entity_table().ticks_per_second),
+         .where = rule.form() == Form::kTouching ? "" : Source(rule.file, rule.place)});
+  };
+  const auto add_all = [&](InstanceId target) {
+    if (target == kNone || past_.RuleOf(target).form() != Form::kAny) return add(target);
+    std::vector<InstanceId> members = past_.MembersOf(target);
+    std::ranges::sort(members, {}, [&](InstanceId member) { return past_.EntitiesOf(member); });
+    for (const InstanceId member : members) add(member);
+  };
+  if (instance == kNone) return reasons;
+  if (past_.RuleOf(instance).form() == Form::kAny) add_all(instance);
+  if (const auto* rule = past_.RuleOf(instance).If<grammar::WhileRule>()) {
+    const Moment at{.instance = instance, .frame = frame};
+    for (const Clauses::Clause& clause : clauses_.Split(rule->condition, at, true)) {
+      const grammar::Node& n = past_.program().nodes[clause.node];
+      if (n.op == Op::kHolds && clause.truth) add_all(past_.Referred(instance, n.slot));
+    }
+  }
+  return reasons;
 }
 
 // Into the rule that is to blame. What never held is looked for everywhere, if no moment was asked
@@ -145,7 +181,10 @@ void MissingReasons::Follow(Reason& reason, InstanceId target, FrameNumber frame
   Reasons behind =
       OfInstance(target, never && !window.at ? window : Within(window, frame), depth + 1).reasons;
   if (behind.size() == 1 && behind.front().what == reason.what) {
-    reason.how += "; " + behind.front().how;
+    // "begins at 2 s" and "begins at 2 s only"
+    reason.how = behind.front().how.starts_with(reason.how)
+                     ? behind.front().how
+                     : reason.how + "; " + behind.front().how;
     reason.where = behind.front().where;
     behind = Reasons(std::move(behind.front().because));
   }

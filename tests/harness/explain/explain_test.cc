@@ -21,6 +21,8 @@ TEST(Explain, AReachBeginsWhereTheApproachTurned) {
   EXPECT_EQ(why.began.front().what, "the approach turns here: gap(right_hand, milk)");
   EXPECT_NE(why.began.front().how.find("it may recede by at most 25 mm"), std::string::npos)
       << why.began.front().how;
+  EXPECT_NE(why.began.front().how.find(" s it receded by "), std::string::npos)
+      << why.began.front().how;
   ExpectReason(why.ended, "touching(milk, right_hand)", Mark::kTurned);
   EXPECT_NE(Find(why.counted, "confirmed by grasping(right_hand, milk)"), nullptr);
   EXPECT_NE(Find(why.waited, "grasping(right_hand, milk)"), nullptr);

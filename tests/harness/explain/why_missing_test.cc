@@ -235,6 +235,38 @@ TEST(ExplainMissing, NothingBefore) {
   EXPECT_EQ(why.because, "since speed(cup) > 1 m/s: is 0 mm/s, 1 m/s below 1 m/s, at 0.0400 s");
 }
 
+// It falls, rises by 20 cm, and is touched then.
+TEST(ExplainMissing, AnApproachThatReceded) {
+  Stage stage(
+      "event toward(h: Hand, c: Cup) until touching(h, c) begins since not touching(h, c)\n"
+      "  approaching height(c) receding at most 2 cm at most 1 s back");
+  for (const double z_m : {0.5, 0.1, 0.3}) {
+    stage.CupUpAt(z_m);
+    stage.Show(10);
+  }
+  stage.Touch(true);
+  stage.Show(5);
+  const WhyMissing why = WhyNot(stage.Finish(), "toward@0.05s");
+  EXPECT_EQ(why.because,
+            "the approach turns here: height(cup): is 300 mm; at 0.1900 s it was 100 mm, until "
+            "0.2000 s it receded by 200 mm, and it may recede by at most 20 mm");
+}
+
+TEST(ExplainMissing, WhatHeldInsteadIsNamed) {
+  Stage stage(
+      "condition near(h: Hand, c: Cup) while touching(h, c)\n"
+      "condition busy(c: Cup) while height(c) > 9 m or near(any, c)\n"
+      "event idle(c: Cup) while not busy(c)");
+  stage.Touch(true);
+  stage.Show(10);
+  const WhyMissing why = WhyNot(stage.Finish(), "idle cup @0.05s");
+  EXPECT_EQ(why.because, "busy(cup): held from the first frame on, by near(hand, cup)");
+  const Reason* held = Find(why.reasons, "near(hand, cup)");
+  ASSERT_NE(held, nullptr);
+  EXPECT_EQ(held->mark, Mark::kHeld);
+  EXPECT_EQ(held->how, "held 0.0000..0.1000 s");
+}
+
 // The first touch is the episode's first frame, and nothing can be before that.
 TEST(ExplainMissing, NothingBeforeIsToldOfTheEndThatCameClosest) {
   Stage stage(
