@@ -22,7 +22,8 @@ namespace {
 
 std::vector<Command> Commands() {
   // Ten times what the longest scenario takes on a slow machine; there may be many episodes.
-  constexpr double kOne_s = 600, kMany_s = 3600;
+  // Grammars are tried with hundreds of settings on them.
+  constexpr double kOne_s = 600, kMany_s = 3600, kSettings_s = 86'400;
   return {Limited(ListCommand(), kOne_s),
           Limited(ValidateCommand(), kOne_s),
           Limited(RunCommand(), kOne_s),
@@ -44,8 +45,8 @@ std::vector<Command> Commands() {
           Limited(MigrateCommand(), kMany_s),
           Limited(ReplayCommand(), kMany_s),
           Limited(ReportCommand(), kMany_s),
-          Limited(SweepCommand(), kMany_s),
-          Limited(MarginsCommand(), kMany_s),
+          Limited(SweepCommand(), kSettings_s),
+          Limited(MarginsCommand(), kSettings_s),
           Limited(FigureCommand(), kMany_s),
           Limited(KnowledgeCommand(), kMany_s),
           AskCommand(),

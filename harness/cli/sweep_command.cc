@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -107,14 +109,20 @@ tl::expected<std::vector<labels::TakeName>, ExitCode> EpisodesFrom(const ParsedO
   return *episodes;
 }
 
+/// Labels do not fit, or something cannot be read.
+bool IsRefused(const sweep::SweepResult& result, const sweep::SweepRequest& request) {
+  return !result.unread.empty() ||
+         (request.truth == sweep::Truth::kLabels && !result.left_out.empty());
+}
+
 /// Nothing if there is something to print. Labels that do not fit are bad input; of other truths
 /// what has none is left out.
 std::optional<ExitCode> ComplainOf(const sweep::SweepResult& result,
                                    const sweep::SweepRequest& request,
                                    const CommandContext& context) {
-  if (request.truth == sweep::Truth::kLabels && !result.left_out.empty())
-    return Complain(context, ExitCode::kBadInput, result.left_out.front());
-  if (!result.unread.empty()) return Complain(context, ExitCode::kBadInput, result.unread.front());
+  if (IsRefused(result, request))
+    return Complain(context, ExitCode::kBadInput,
+                    (result.unread.empty() ? result.left_out : result.unread).front());
   context.err << result.label_warning;
   for (const std::string& line : result.left_out)
     context.err << "prehend: left out: " << line << "\n";
@@ -123,18 +131,93 @@ std::optional<ExitCode> ComplainOf(const sweep::SweepResult& result,
   return std::nullopt;
 }
 
+/// "40 seconds", "12 minutes", "3.5 hours"
+std::string TimeText(double seconds) {
+  constexpr double kMinute_s = 60, kHour_s = 3600;
+  if (seconds < 1.5 * kMinute_s) return fmt::format("{:.0f} seconds", std::ceil(seconds));
+  if (seconds < 1.5 * kHour_s) return fmt::format("{:.0f} minutes", seconds / kMinute_s);
+  return fmt::format("{:.1f} hours", seconds / kHour_s);
+}
+
+/// Says once, after the first settings, how long all will take, unless that is soon; to a person
+/// also how far it is.
+class Progress {
+ public:
+  Progress(std::size_t episodes, const CommandContext& context)
+      : episodes_(episodes), context_(context) {}
+  ~Progress() {
+    if (said_ && context_.progress) context_.err << "\r\033[K" << std::flush;
+  }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void Tell(std::size_t done, std::size_t all) {
+    constexpr double kSoon_s = 2, kMeasured_s = 1;
+    const Clock::time_point now = Clock::now();
+    if (done > 0 && !first_) first_ = {now, done};
+    if (!first_ || done == first_->done) return;
+    // The first ones came with what happens once: grammars are compiled, recordings read.
+    const double measured_s = Seconds(now - first_->at);
+    const double more_s =
+        measured_s * static_cast<double>(all - done) / static_cast<double>(done - first_->done);
+    const double passed_s = Seconds(now - start_);
+    if (!said_ && (measured_s < kMeasured_s || passed_s + more_s < kSoon_s)) return;
+    if (!said_) {
+      const std::size_t settings = all / episodes_;
+      context_.err << fmt::format("prehend: {} setting{} on {} recording{}, about {}\n", settings,
+                                  settings == 1 ? "" : "s", episodes_, episodes_ == 1 ? "" : "s",
+                                  TimeText(passed_s + more_s))
+                   << std::flush;
+    }
+    said_ = true;
+    if (context_.progress)
+      context_.err << fmt::format("\r\033[K{} %, about {} more", 100 * done / all, TimeText(more_s))
+                   << std::flush;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Counted {
+    Clock::time_point at;
+    std::size_t done = 0;
+  };
+  static double Seconds(Clock::duration time) {
+    return std::chrono::duration<double>(time).count();
+  }
+
+  const std::size_t episodes_;
+  const CommandContext& context_;
+  const Clock::time_point start_ = Clock::now();
+  std::optional<Counted> first_;
+  bool said_ = false;
+};
+
+template <typename Measure>
+auto WithProgress(sweep::SweepRequest& request, std::size_t episodes, const CommandContext& context,
+                  const Measure& measure) {
+  Progress progress(episodes, context);
+  request.progress = [&](std::size_t done, std::size_t all) { progress.Tell(done, all); };
+  return measure();
+}
+
 ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context) {
   auto request = RequestFrom(options, {"--output"}, context);
   if (!request) return ExitCode::kBadInput;
   const auto episodes = EpisodesFrom(options, *request, context);
   if (!episodes) return episodes.error();
   const double within = options.NumberOr("--within", kDefaultMargin_percent) / 100;
-  const Result<sweep::Margins> margins = sweep::FindMargins(*episodes, *request, within);
+  std::string problem;
+  // After each parameter, so that it is there if somebody ends it.
+  const auto write = [&](const sweep::Margins& margins) {
+    if (options.Has("--output") && !IsRefused(margins.sweep, *request))
+      problem = WriteTextFile(options.Text("--output"), MarginsCsv(margins));
+  };
+  const auto margins = WithProgress(*request, episodes->size(), context, [&] {
+    return sweep::FindMargins(*episodes, *request, within, options.All("--only"), write);
+  });
   if (!margins) return Complain(context, margins.error());
-  if (const auto problem = ComplainOf(margins->sweep, *request, context)) return *problem;
+  if (const auto refused = ComplainOf(margins->sweep, *request, context)) return *refused;
   context.out << MarginsText(*margins, within);
-  const std::string problem =
-      options.Has("--output") ? WriteTextFile(options.Text("--output"), MarginsCsv(*margins)) : "";
   return problem.empty() ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, problem);
 }
 
@@ -160,7 +243,8 @@ ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
                     "--over is missing: which parameter? --over reach_radius=10cm..50cm:9");
   const auto episodes = EpisodesFrom(options, *request, context);
   if (!episodes) return episodes.error();
-  const Result<sweep::SweepResult> result = sweep::Sweep(*episodes, *request);
+  const auto result = WithProgress(*request, episodes->size(), context,
+                                   [&] { return sweep::Sweep(*episodes, *request); });
   if (!result) return Complain(context, result.error());
   if (const auto problem = ComplainOf(*result, *request, context)) return *problem;
 
@@ -226,6 +310,10 @@ Command MarginsCommand() {
                        .help = "set a parameter of the grammar; may be repeated",
                        .placeholder = "NAME=VALUE",
                        .repeatable = true},
+                      {.name = "--only",
+                       .help = "this parameter instead of all; may be repeated",
+                       .placeholder = "NAME",
+                       .repeatable = true},
                       TruthOption(),
                       MapOption(),
                       SkipOption(),
@@ -236,7 +324,7 @@ Command MarginsCommand() {
                        .rule = NumbersFrom(0, 100)},
                       EpisodeOption(),
                       {.name = "--output",
-                       .help = "also write a CSV file",
+                       .help = "also write a CSV file, again after each parameter",
                        .placeholder = "FILE",
                        .other_name = "-o",
                        .is_output = true},

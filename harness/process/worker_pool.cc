@@ -38,6 +38,9 @@ constexpr int kOutputExit = 73;
 /// Of the standard error of a failed worker, at most this much is kept.
 constexpr off_t kMaxStderrTail_bytes = 4000;
 
+/// While the parent waits, it has something to say at least so often.
+constexpr double kMeanwhile_s = 0.2;
+
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -163,8 +166,13 @@ struct Worker {
 
 class Pool {
  public:
-  Pool(const std::vector<WorkerJob>& jobs, const WorkerLimits& limits, Interrupt* interrupt)
-      : jobs_(jobs), limits_(limits), interrupt_(interrupt), results_(jobs.size()) {}
+  Pool(const std::vector<WorkerJob>& jobs, const WorkerLimits& limits, Interrupt* interrupt,
+       const std::function<void()>& meanwhile)
+      : jobs_(jobs),
+        limits_(limits),
+        interrupt_(interrupt),
+        meanwhile_(meanwhile),
+        results_(jobs.size()) {}
 
   std::vector<WorkerResult> Run(const std::function<void(std::size_t, const WorkerResult&)>& done) {
     while (next_ < jobs_.size() || !workers_.empty()) {
@@ -173,6 +181,7 @@ class Pool {
         Start(next_++, done);
       }
       WaitAndRead(done);
+      if (meanwhile_) meanwhile_();
       if (interrupt_ != nullptr && interrupt_->Came()) {
         KillAll();
         break;
@@ -230,7 +239,8 @@ class Pool {
 
   void WaitAndRead(const Done& done) {
     std::vector<pollfd> pipes;
-    double nearest_deadline_s = limits_.time_limit_s;
+    double nearest_deadline_s =
+        meanwhile_ ? std::min(kMeanwhile_s, limits_.time_limit_s) : limits_.time_limit_s;
     for (const Worker& worker : workers_) {
       pipes.push_back({.fd = worker.pipe, .events = POLLIN, .revents = 0});
       if (!worker.killed)
@@ -305,6 +315,7 @@ class Pool {
   const std::vector<WorkerJob>& jobs_;
   const WorkerLimits limits_;
   Interrupt* const interrupt_;
+  const std::function<void()>& meanwhile_;
   std::vector<WorkerResult> results_;
   std::vector<Worker> workers_;
   std::size_t next_ = 0;
@@ -365,8 +376,9 @@ LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& 
 
 std::vector<WorkerResult> RunInWorkers(
     const std::vector<WorkerJob>& jobs, const WorkerLimits& limits,
-    const std::function<void(std::size_t, const WorkerResult&)>& done, Interrupt* interrupt) {
-  return Pool(jobs, limits, interrupt).Run(done);
+    const std::function<void(std::size_t, const WorkerResult&)>& done, Interrupt* interrupt,
+    const std::function<void()>& meanwhile) {
+  return Pool(jobs, limits, interrupt, meanwhile).Run(done);
 }
 
 }  // namespace prehend::harness

@@ -37,7 +37,8 @@ using WorkerJob = std::function<std::string()>;
 
 /// The results, in the order of the jobs, which is also the order in which they start. The parent
 /// calls `done` for each job as it ends. When `interrupt` comes, the jobs that run are killed, no
-/// further one starts, and `done` is not called for either.
+/// further one starts, and `done` is not called for either. `meanwhile` is called in the parent,
+/// some times a second while it waits.
 ///
 /// A job ends as out of memory when `new` fails, wherever that is. When a library in C is refused
 /// memory, the job ends as that library ends it (a signal, an exit status), and the reason names
@@ -45,7 +46,7 @@ using WorkerJob = std::function<std::string()>;
 std::vector<WorkerResult> RunInWorkers(
     const std::vector<WorkerJob>& jobs, const WorkerLimits& limits,
     const std::function<void(std::size_t job, const WorkerResult&)>& done = {},
-    Interrupt* interrupt = nullptr);
+    Interrupt* interrupt = nullptr, const std::function<void()>& meanwhile = {});
 
 /// How a process ended that RunWithinLimits() started.
 struct LimitedEnd {

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "grammar/base/quantity.h"
+#include "grammar/base/wording.h"
 #include "grammar/describe.h"
 #include "harness/run/load_grammar.h"
 #include "harness/timeline/event_text.h"
@@ -66,6 +68,26 @@ Margin MarginOf(const Axis& axis, const std::vector<SweepPoint>& points, std::si
   return margin;
 }
 
+/// A parameter with the values that are tried.
+struct TriedAxis {
+  Axis axis;
+  std::size_t own = 0;  ///< index of its own value
+};
+
+std::optional<grammar::Diagnostics> UnknownAmong(const std::vector<std::string>& names,
+                                                 const std::vector<grammar::ProgramParam>& params) {
+  std::vector<std::string> known;
+  for (const grammar::ProgramParam& param : params) known.push_back(param.name);
+  for (const std::string& name : names) {
+    if (std::ranges::count(known, name) > 0) continue;
+    const std::string near = grammar::NearestName(name, known);
+    return grammar::Diagnostics{
+        {.message = fmt::format("--only: the grammar has no parameter '{}'", name),
+         .hint = near.empty() ? "" : fmt::format("did you mean '{}'?", near)}};
+  }
+  return std::nullopt;
+}
+
 /// Narrow ranges first; of all, what is not in its range.
 double Width(const Margin& margin) {
   if (margin.from.empty()) return 0;
@@ -76,26 +98,46 @@ double Width(const Margin& margin) {
 }  // namespace
 
 Result<Margins> FindMargins(const std::vector<episodes::EpisodeName>& episodes,
-                            SweepRequest request, double within) {
+                            SweepRequest request, double within,
+                            const std::vector<std::string>& only,
+                            const std::function<void(const Margins&)>& so_far) {
   const Result<grammar::Overrides> fixed = ParameterSettings(request.settings);
   if (!fixed) return tl::unexpected(fixed.error());
   const grammar::CompileResult compiled = LoadGrammar(request.root, request.grammar, *fixed);
   if (!compiled.program) return tl::unexpected(compiled.diagnostics);
+  const std::vector<grammar::ProgramParam> params = grammar::Describe(*compiled.program).params;
+  if (auto unknown = UnknownAmong(only, params)) return tl::unexpected(std::move(*unknown));
   Margins all;
-  for (const grammar::ProgramParam& param : grammar::Describe(*compiled.program).params) {
+  std::vector<TriedAxis> tried;
+  std::size_t settings = 0, before = 0;
+  for (const grammar::ProgramParam& param : params) {
+    if (!only.empty() && std::ranges::count(only, param.name) == 0) continue;
     if (param.value.value == 0) {
       all.without.push_back(param.name);
       continue;
     }
-    std::size_t own = 0;
-    request.axes = {AxisOf(param, request, *fixed, own)};
+    tried.emplace_back();
+    tried.back().axis = AxisOf(param, request, *fixed, tried.back().own);
+    settings += tried.back().axis.values.size();
+  }
+  // What is told is about all of them.
+  const auto progress = request.progress;
+  if (progress) {
+    request.progress = [&](std::size_t done, std::size_t) {
+      progress(before * episodes.size() + done, settings * episodes.size());
+    };
+  }
+  for (const TriedAxis& one : tried) {
+    request.axes = {one.axis};
     Result<SweepResult> swept = Sweep(episodes, request);
     if (!swept) return tl::unexpected(std::move(swept.error()));
-    all.margins.push_back(MarginOf(request.axes.front(), swept->points, own, within));
+    all.margins.push_back(MarginOf(one.axis, swept->points, one.own, within));
+    std::ranges::stable_sort(all.margins, {}, Width);
     all.sweep = std::move(*swept);
     if (all.sweep.episodes == 0) break;
+    if (so_far) so_far(all);
+    before += one.axis.values.size();
   }
-  std::ranges::stable_sort(all.margins, {}, Width);
   return all;
 }
 

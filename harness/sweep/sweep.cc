@@ -13,6 +13,7 @@
 #include "harness/golden/golden_files.h"
 #include "harness/labels/read_truths.h"
 #include "harness/oracle/oracle.h"
+#include "harness/process/progress_counters.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/load_grammar.h"
 #include "harness/score/labelled.h"
@@ -128,7 +129,7 @@ Json Judged(const grammar::Timeline& truth, grammar::Timeline found, const Sweep
 /// A recording under all settings; it has no physical truth, and its golden lies elsewhere.
 Json JudgedRecording(const episodes::EpisodeName& name, const episodes::EpisodeFile& file,
                      const episodes::EpisodeRow& row, const SweepRequest& request,
-                     const Programs& programs) {
+                     const Programs& programs, ProgressCounters::Tick& measured) {
   if (request.truth != Truth::kRecorded)
     return {{"out", "nothing was simulated; '--truth recorded' or labels fit a recording"}};
   const Result<labels::Take> take = labels::OpenTake(name, request.root);
@@ -140,13 +141,15 @@ Json JudgedRecording(const episodes::EpisodeName& name, const episodes::EpisodeF
     Result<grammar::Timeline> found = take->segment(program);
     if (!found) return {{"out", grammar::Format(found.error().front())}};
     points.push_back(Judged(*truth, std::move(*found), request, take->end));
+    ++measured;
   }
   return {{"points", std::move(points)}};
 }
 
 /// One episode under all settings.
 Json JudgedEpisode(const episodes::EpisodeName& name, const SweepRequest& request,
-                   const Programs& programs, episodes::EpisodeLoader& loader) {
+                   const Programs& programs, episodes::EpisodeLoader& loader,
+                   ProgressCounters::Tick& measured) {
   const auto file = episodes::EpisodeFile::Open(name.file);
   const auto unread = [&](const std::string& why) {
     return Json{{"out", name.file + ": " + why}, {"unread", true}};
@@ -156,7 +159,7 @@ Json JudgedEpisode(const episodes::EpisodeName& name, const SweepRequest& reques
   if (row == file->episodes().end()) return unread("it is gone");
   if (row->end.kind != physics::RunStatus::Kind::kCompleted)
     return {{"out", "it did not come to a good end"}};
-  if (!row->simulated) return JudgedRecording(name, *file, *row, request, programs);
+  if (!row->simulated) return JudgedRecording(name, *file, *row, request, programs, measured);
   const Result<LoadedRun> loaded = loader.Load(*file, *row);
   if (!loaded) return {{"out", loaded.error().front().message}};
   RunResult run;
@@ -175,15 +178,18 @@ Json JudgedEpisode(const episodes::EpisodeName& name, const SweepRequest& reques
     std::erase_if(run.recording,
                   [&](const physics::Snapshot& snapshot) { return !sensing.Due(snapshot.tick); });
   Json points = Json::array();
-  for (const auto& program : programs)
+  for (const auto& program : programs) {
     points.push_back(Judged(*truth, Resegment(scenario, run.recording, program, run.ticks + 1),
                             request, run.ticks + 1));
+    ++measured;
+  }
   return {{"points", std::move(points)}};
 }
 
 /// The same of a recording with labels by people.
 Json JudgedTake(const labels::TakeName& name, std::size_t index, const labels::LabelReading& labels,
-                const SweepRequest& request, const Programs& programs) {
+                const SweepRequest& request, const Programs& programs,
+                ProgressCounters::Tick& measured) {
   const Result<labels::Take> take = labels::OpenTake(name, request.root);
   if (!take) return {{"out", grammar::Format(take.error().front())}};
   const auto truth = labels.Truth(index, take->entities, take->ticks_per_second, take->end);
@@ -194,6 +200,7 @@ Json JudgedTake(const labels::TakeName& name, std::size_t index, const labels::L
     if (!found) return {{"out", grammar::Format(found.error().front())}};
     points.push_back(
         Judged(*truth, labels::Compared(*found, labels.compared()), request, take->end));
+    ++measured;
   }
   return {{"points", std::move(points)}};
 }
@@ -260,19 +267,26 @@ Result<SweepResult> Sweep(const std::vector<episodes::EpisodeName>& episodes,
   }
   const std::size_t slices =
       std::min(episodes.size(), kSlicesPerJob * static_cast<std::size_t>(request.jobs));
+  ProgressCounters counters(1);
+  ProgressCounters::Tick& measured = counters[0];
+  measured = 0;
   std::vector<WorkerJob> jobs;
   for (std::size_t slice = 0; slice < slices; ++slice) {
     jobs.push_back([&, slice] {
       episodes::EpisodeLoader loader(request.root);
       Json all = Json::array();
       for (std::size_t i = slice; i < episodes.size(); i += slices)
-        all.push_back(labels ? JudgedTake(episodes[i], i, *labels, request, *programs)
-                             : JudgedEpisode(episodes[i], request, *programs, loader));
+        all.push_back(labels ? JudgedTake(episodes[i], i, *labels, request, *programs, measured)
+                             : JudgedEpisode(episodes[i], request, *programs, loader, measured));
       const std::vector<std::uint8_t> bytes = Json::to_cbor(all);
       return std::string(bytes.begin(), bytes.end());
     });
   }
-  const auto said = RunInWorkers(jobs, {.jobs = request.jobs, .time_limit_s = kTimeLimit_s});
+  const std::function<void()> tell = [&] {
+    request.progress(static_cast<std::size_t>(measured.load()), programs->size() * episodes.size());
+  };
+  const auto said = RunInWorkers(jobs, {.jobs = request.jobs, .time_limit_s = kTimeLimit_s}, {},
+                                 nullptr, request.progress ? tell : std::function<void()>());
 
   SweepResult result;
   result.measure = MeasureText(request);

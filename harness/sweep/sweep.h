@@ -3,6 +3,7 @@
 // tests/program/sweep_test.cc
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,6 +47,9 @@ struct SweepRequest {
                             ///< union with its label in common
   bool skip_bad_labels = false;  ///< leave out those that end before they begin
   int jobs = 1;
+  /// Called some times a second with how many settings have been measured, each on one episode, of
+  /// how many.
+  std::function<void(std::size_t done, std::size_t all)> progress = {};
 };
 
 /// How one setting did, over all episodes.

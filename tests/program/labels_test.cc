@@ -145,6 +145,36 @@ TEST_F(Labelled, MarginsNameWhatIsAtAnEdge) {
   EXPECT_TRUE(ReadFile(Path("margins.csv")).starts_with("parameter,value,f1,from,to"));
 }
 
+TEST_F(Labelled, MarginsOfSomeParametersOnly) {
+  const auto margins = [&](const std::string& only) {
+    return Prehend({"margins", Take("milk.jsonl"), "--truth", docs_ + "/labels.csv", "--map", map_,
+                    "--only", "hold_way", "--only", only, "-o", Path("margins.csv")});
+  };
+  ASSERT_EQ(margins("touch_back").exit_code, 0);
+  std::istringstream lines(ReadFile(Path("margins.csv")));
+  std::vector<std::string> names;
+  for (std::string line; std::getline(lines, line);)
+    names.push_back(line.substr(0, line.find(',')));
+  std::ranges::sort(names);
+  EXPECT_EQ(names, (std::vector<std::string>{"hold_way", "parameter", "touch_back"}));
+  const Said unknown = margins("hold_wey");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_TRUE(Has(unknown.err,
+                  "--only: the grammar has no parameter 'hold_wey'\n  hint: did you "
+                  "mean 'hold_way'?"))
+      << unknown.err;
+}
+
+// More than two seconds, on any machine: 241 settings.
+TEST_F(Labelled, ALongSweepSaysHowLongItTakes) {
+  const Said said = Prehend({"sweep", Take("milk.jsonl"), "--truth", docs_ + "/labels.csv", "--map",
+                             map_, "--over", "hold_way=1mm..9mm:241", "-o", Path("sweep.csv")});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_TRUE(said.err.empty() || said.err.starts_with("prehend: 241 settings on 1 recording, "
+                                                       "about "))
+      << said.err;
+}
+
 TEST_F(Labelled, DifferencesAreListed) {
   const std::string take = Take("milk.jsonl");
   const auto score = [&](const std::string& labels) {
