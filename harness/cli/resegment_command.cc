@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "grammar/contents.h"
 #include "harness/base/atomic_file.h"
 #include "harness/command/command.h"
 #include "harness/episodes/resegment_many.h"
@@ -143,8 +144,20 @@ ExitCode WriteLabels(const ParsedOptions& options, const CommandContext& context
     if (!compiled.program) return Complain(context, compiled.diagnostics);
     program = compiled.program;
   }
-  const Result<grammar::Timeline> found = take->segment(program);
+  const std::vector<std::string> only = options.All("--events");
+  const std::vector<std::string> known = EventNames(*program);
+  for (const std::string& name : only) {
+    if (std::ranges::count(known, name) > 0) continue;
+    const std::string near = grammar::NearestName(name, known);
+    return Complain(context, ExitCode::kBadInput,
+                    fmt::format("--events: grammar '{}' has no event '{}'{}", GrammarName(*program),
+                                name, near.empty() ? "" : "; did you mean '" + near + "'?"));
+  }
+  Result<grammar::Timeline> found = take->segment(program);
   if (!found) return Complain(context, found.error());
+  std::erase_if(found->events, [&](const grammar::NamedEvent& event) {
+    return !only.empty() && std::ranges::count(only, event.event) == 0;
+  });
   const std::string& file = options.Text("--labels");
   const std::string problem = WriteTextFile(
       file, labels::LabelsText(file.substr(file.rfind('.')), *found, take->end, context.today));
@@ -163,6 +176,9 @@ ExitCode RunResegment(const ParsedOptions& options, const CommandContext& contex
     }
     return WriteLabels(options, context);
   }
+  if (options.Has("--events"))
+    return Complain(context, ExitCode::kBadInput,
+                    "--events chooses what --labels FILE writes; --labels is missing");
   const auto lines = std::ranges::find_if_not(files, episodes::IsEpisodeFile);
   if (lines == files.end()) return ResegmentEpisodes(options, context);
   for (const char* of_episodes : {"--episode", "--compare", "--jobs"}) {
@@ -220,6 +236,10 @@ Command ResegmentCommand() {
                    .placeholder = "FILE",
                    .rule = {.range = {}, .problem = LabelsProblem},
                    .is_output = true},
+                  {.name = "--events",
+                   .help = "with --labels: write this event instead of all; may be repeated",
+                   .placeholder = "NAME",
+                   .repeatable = true},
                   {.name = "--json", .help = "print one JSON object instead of a table"}},
       .run = RunResegment};
 }

@@ -107,6 +107,18 @@ TEST_F(Labelled, WhatIsWrittenIsReadAgain) {
     const auto total = nlohmann::json::parse(said.out)["grammars"][0]["total"];
     EXPECT_EQ(total["f1_50"], 1.0) << ending << total;
   }
+  const Said some = Prehend({"resegment", take, "--labels", Path("some.csv"), "--events",
+                             "grasping", "--events", "reaching"});
+  EXPECT_TRUE(Has(some.out, ": 2 labels")) << some.out << some.err;
+  EXPECT_FALSE(Has(ReadFile(Path("some.csv")), "putting_down"));
+  const Said unknown =
+      Prehend({"resegment", take, "--labels", Path("some.csv"), "--events", "graspin"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_TRUE(Has(unknown.err,
+                  "--events: grammar 'pick_and_place_from_motion' has no event "
+                  "'graspin'; did you mean 'grasping'?"))
+      << unknown.err;
+  EXPECT_EQ(Prehend({"resegment", take, "--events", "grasping"}).exit_code, 2);
   const Said other = Prehend({"resegment", take, "--labels", Path("out.txt")});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_TRUE(Has(other.err, "wanted a file .csv, .eaf or .TextGrid")) << other.err;
