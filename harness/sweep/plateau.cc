@@ -130,8 +130,9 @@ std::string PlateauText(const std::vector<Axis>& axes, const SweepResult& result
         tried, measure);
   std::string text =
       fmt::format("{}; the best F1 is {:.2f} %\n{}", tried, 100 * plateau.best, measure);
-  text += fmt::format("within {:g} % of it, around the setting named last: {} settings\n",
-                      100 * within, plateau.members.size());
+  text += fmt::format("within {:g} % of it, around the setting named last: {}\n", 100 * within,
+                      grammar::CountOf(plateau.members.size(), "setting"));
+  std::string warnings;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     std::size_t least = chosen.at[i], most = chosen.at[i];
     for (const std::size_t member : plateau.members) {
@@ -140,13 +141,21 @@ std::string PlateauText(const std::vector<Axis>& axes, const SweepResult& result
     }
     text += fmt::format("  {}: {} to {}\n", axes[i].parameter, axes[i].ValueText(least),
                         axes[i].ValueText(most));
+    const std::size_t last = axes[i].values.size() - 1;
+    const bool has_no_effect = least == 0 && most == last;
+    if (last == 0 || has_no_effect || (chosen.at[i] != 0 && chosen.at[i] != last)) continue;
+    warnings +=
+        fmt::format("warning: {} is best at the edge of what was tried, {}; try values beyond it\n",
+                    axes[i].parameter, axes[i].ValueText(chosen.at[i]));
   }
   text += fmt::format("farthest from its edge, {} step{}:", plateau.steps,
                       plateau.steps == 1 ? "" : "s");
   for (std::size_t i = 0; i < axes.size(); ++i)
     text += fmt::format(" {} = {}", axes[i].parameter, axes[i].ValueText(chosen.at[i]));
-  return text + fmt::format(" (F1 {:.2f} %, begin {:.1f} ms, end {:.1f} ms, latency {:.1f} ms)\n",
-                            100 * chosen.f1, chosen.begin_ms, chosen.end_ms, chosen.latency_ms);
+  return text +
+         fmt::format(" (F1 {:.2f} %, begin {:.1f} ms, end {:.1f} ms, latency {:.1f} ms)\n",
+                     100 * chosen.f1, chosen.begin_ms, chosen.end_ms, chosen.latency_ms) +
+         warnings;
 }
 
 std::string HeatMapSvg(const std::vector<Axis>& axes, const std::vector<SweepPoint>& points,

@@ -83,6 +83,31 @@ TEST(SweepPlateau, OfTwoParametersHangsTogether) {
   EXPECT_EQ(std::count(svg.begin(), svg.end(), '\n') > 50, true);
 }
 
+TEST(SweepPlateau, AtAnEdgeIsAWarning) {
+  const std::vector<Axis> axes = {AxisOf("x=0..4:5"), AxisOf("y=1cm..3cm:3")};
+  const auto points = Points(axes, {0, 0, 0,  //
+                                    0, 0, 0,  //
+                                    0, 0, 0,  //
+                                    0, 0, 0,  //
+                                    1, 1, 1});
+  const SweepResult result{
+      .points = points, .episodes = 3, .measure = {}, .label_warning = {}, .left_out = {}};
+  const std::string text = PlateauText(axes, result, 0.01);
+  EXPECT_NE(text.find("\nwarning: x is best at the edge of what was tried, 4; try values beyond "
+                      "it\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("warning: y"), std::string::npos) << "it has no effect: " << text;
+  const SweepResult one{.points = Points({axes[0]}, {0, 0, 1, 0, 0}),
+                        .episodes = 1,
+                        .measure = {},
+                        .label_warning = {},
+                        .left_out = {}};
+  const std::string inside = PlateauText({axes[0]}, one, 0.01);
+  EXPECT_NE(inside.find("named last: 1 setting\n"), std::string::npos) << inside;
+  EXPECT_EQ(inside.find("warning"), std::string::npos) << inside;
+}
+
 TEST(SweepPlateau, WhereEverySettingScoresZeroNoneIsTheBest) {
   const std::vector<Axis> axes = {AxisOf("x=0..2:3")};
   const auto points = Points(axes, {0, 0, 0});
