@@ -173,7 +173,7 @@ std::string ParamsText(const std::vector<ProgramParam>& params) {
   std::size_t value_width = 0;
   for (const ProgramParam& param : params) {
     name_width = std::max(name_width, param.name.size());
-    value_width = std::max(value_width, QuantityText(param.value).size());
+    value_width = std::max(value_width, ReadableQuantityText(param.value).size());
   }
   const auto padded = [](std::string text, std::size_t width) {
     return text.append(width - text.size(), ' ');
@@ -181,7 +181,7 @@ std::string ParamsText(const std::vector<ProgramParam>& params) {
   std::string text;
   for (const ProgramParam& param : params) {
     text += "param " + padded(param.name, name_width) + " = " +
-            padded(QuantityText(param.value), value_width) + "  # " + param.file + ":" +
+            padded(ReadableQuantityText(param.value), value_width) + "  # " + param.file + ":" +
             std::to_string(param.place.line) + (param.overridden ? ", overridden" : "") + "\n";
   }
   return text;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <numbers>
 
 namespace prehend::grammar {
@@ -22,6 +23,12 @@ void AppendPower(std::string& text, char sign, std::string_view name, int power)
     if (!text.empty() || sign == '/') text += sign;
     text += name;
   }
+}
+
+std::string Digits(double value) {
+  std::array<char, 32> digits{};
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  return {digits.data(), end};
 }
 
 }  // namespace
@@ -72,12 +79,27 @@ std::string DimensionText(const Dimension& dimension) {
 }
 
 std::string QuantityText(const Quantity& quantity) {
-  std::array<char, 32> digits{};
-  const auto [end, error] =
-      std::to_chars(digits.data(), digits.data() + digits.size(), quantity.value);
-  std::string text(digits.data(), end);
+  std::string text = Digits(quantity.value);
   if (quantity.dimension != kPlain) text += " " + DimensionText(quantity.dimension);
   return text;
+}
+
+std::string ReadableQuantityText(const Quantity& quantity) {
+  constexpr std::size_t kMostDigits = 12;
+  constexpr double kSteps = 1e6;  // numbers that people write have no more digits
+  const std::string in_si = QuantityText(quantity);
+  const std::string dimension = DimensionText(quantity.dimension);
+  if (Digits(quantity.value).size() <= kMostDigits) return in_si;
+  for (const Unit& unit : kUnits) {
+    // "m/s" in "cm/s": the first word is the one that is replaced.
+    const std::string base = DimensionText(unit.dimension);
+    const bool is_first = dimension == base || dimension.starts_with(base + "/");
+    if (!is_first) continue;
+    const double number = std::round(quantity.value / unit.si * kSteps) / kSteps;
+    if (number * unit.si == quantity.value)
+      return Digits(number) + " " + std::string(unit.name) + dimension.substr(base.size());
+  }
+  return in_si;
 }
 
 }  // namespace prehend::grammar

@@ -53,4 +53,7 @@ std::string DimensionText(const Dimension& dimension);
 /// "0.25 m", "0.3": the value in SI units, shortest form that reads back as the same number.
 std::string QuantityText(const Quantity& quantity);
 
+/// The same for people: "35 cm", where that reads as 0.35000000000000003 m.
+std::string ReadableQuantityText(const Quantity& quantity);
+
 }  // namespace prehend::grammar

@@ -22,6 +22,19 @@ TEST(Quantity, IsReadInSiUnitsAndShownAgain) {
   }
 }
 
+TEST(Quantity, IsReadableWhereOneUnitHasFewerDigitsThanAnother) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"35 cm", "35 cm"},       {"25 cm", "0.25 m"}, {"20 deg", "20 deg"}, {"35 cm/s", "35 cm/s"},
+      {"20 deg/s", "20 deg/s"}, {"2.9", "2.9"},      {"1 rad", "1 rad"},   {"60 ms", "0.06 s"}};
+  for (const auto& [text, shown] : cases) {
+    Diagnostics diagnostics;
+    const std::optional<Quantity> quantity = ParseQuantity({"v", text}, diagnostics);
+    ASSERT_TRUE(quantity) << text << Format(diagnostics);
+    EXPECT_EQ(ReadableQuantityText(*quantity), shown);
+  }
+  EXPECT_EQ(ReadableQuantityText({1.0 / 3, kMetres}), "0.3333333333333333 m");
+}
+
 TEST(Quantity, RefusesWhatIsNone) {
   for (const char* text : {"", "cm", "3 apples", "3 cm 4", "1e999", "\x01", "3 cm s"}) {
     Diagnostics diagnostics;
