@@ -96,6 +96,10 @@ ExitCode RunTry(const ParsedOptions& options, const CommandContext& context) {
     if (!watched.error.empty())
       return Complain(context, ExitCode::kFailure, tried.Name() + ": " + watched.error);
     tried.wanted = Sorted(tried.drawn.expected);
+    // A row without events says that there are none.
+    std::erase_if(tried.wanted, [](const DrawnRow& row) {
+      return row.cells.find_first_not_of('.') == std::string::npos;
+    });
     tried.found = Sorted(DrawWatched(*compiled.program, tried.drawn, watched.timeline));
   }
   const auto differ = std::ranges::count_if(all, [](const Tried& one) { return !one.Agrees(); });

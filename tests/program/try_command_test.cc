@@ -47,6 +47,19 @@ TEST_F(TryCommand, ADrawingAgreesOrDiffersRowByRow) {
   EXPECT_EQ(parsed["drawings"][0]["found"][0]["cells"], "..[=..............");
 }
 
+TEST_F(TryCommand, ARowWithoutEventsSaysThatThereAreNone) {
+  const std::string grammar = File("taps.grammar", kGrammar);
+  const std::string head = "entities hand:Hand drum:Fixed\nhand holds drum ";
+  const Said none =
+      Prehend({"try", grammar, File("none.txt", head + "|....|\n--\ntap(hand, drum) |....|\n")});
+  EXPECT_EQ(none.exit_code, 0) << none.out;
+  const Said one =
+      Prehend({"try", grammar, File("one.txt", head + "|.00.|\n--\ntap(hand, drum) |....|\n")});
+  EXPECT_EQ(one.exit_code, 1) << one.out;
+  EXPECT_NE(one.out.find("  found  tap(hand, drum)             |.[=.|\n"), std::string::npos)
+      << one.out;
+}
+
 TEST_F(TryCommand, ADrawingThatExpectsNothingShowsWhatThereIs) {
   const std::string grammar = File("taps.grammar", kGrammar);
   const std::string drawing =
@@ -112,7 +125,7 @@ TEST_F(TryCommand, TheCookbookIsRight) {
     EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
     EXPECT_EQ(said.err, "");
   }
-  EXPECT_EQ(tried, 9);
+  EXPECT_EQ(tried, 11);
 }
 
 }  // namespace
