@@ -362,9 +362,11 @@ ScenarioVerdict CheckRecording(const CheckRequest& request, const std::string& g
   Findings findings;
   if (!judged->golden) {
     findings.push_back({ExitCode::kPending, "no golden yet", ""});
-    if (AsItsFileSays(request)) verdict.command = Command("review", request.id, {});
+    if (request.run.settings.empty() && request.transforms.empty())
+      verdict.command = Command("review", request.id, request.run);
   } else if (!judged->comparison.Agrees()) {
     findings.push_back(DifferenceFinding(judged->comparison, verdict.explain));
+    findings.back().details += OtherGrammarText(*judged);
   }
   if (!findings.empty()) findings.back().details += judged->segmented.missing.warnings;
   if (verdict.has_golden) {

@@ -267,7 +267,9 @@ ExitCode AcceptRecording(const std::string& file, const ParsedOptions& options,
                       fmt::format("{} concerns scenarios; {} is a recording", of_play, file));
   }
   const FolderLock one_at_a_time(context.root);
-  const Result<JudgedRecording> judged = JudgeRecording({.scenario_file = file}, context.root);
+  const RunRequest request{
+      .scenario_file = file, .grammar = options.Text("--grammar"), .settings = {}};
+  const Result<JudgedRecording> judged = JudgeRecording(request, context.root);
   if (!judged) return Complain(context, judged.error());
   const SegmentedRecording& segmented = judged->segmented;
   context.err << segmented.missing.warnings;
@@ -279,7 +281,8 @@ ExitCode AcceptRecording(const std::string& file, const ParsedOptions& options,
     return Complain(context, ExitCode::kDiffers,
                     fmt::format("the reviewed golden was {}, but the recording now yields {}; "
                                 "nothing was accepted\n  if that is right: {}",
-                                options.Text("--reviewed"), now, AcceptCommandLine(file, now)));
+                                options.Text("--reviewed"), now,
+                                AcceptCommandLine(file, now, request.grammar)));
   if (judged->Agrees() && !options.Has("--derived")) {
     context.out << "nothing to accept: the recording agrees with " << golden_file << "\n";
     return ExitCode::kAgrees;
@@ -288,7 +291,7 @@ ExitCode AcceptRecording(const std::string& file, const ParsedOptions& options,
                                           {context.today, options.Text("--reason")});
   const std::string problem = WriteGoldenFile(golden_file, golden);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
-  context.out << ReviewText(*judged, ExplainCommand(file, {})) << "accepted: " << golden_file
+  context.out << ReviewText(*judged, ExplainCommand(file, request)) << "accepted: " << golden_file
               << "\n";
   return ExitCode::kAgrees;
 }
@@ -300,6 +303,11 @@ ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) 
   std::error_code error;
   if (IsRecording(typed) && std::filesystem::exists(typed, error))
     return AcceptRecording(typed, options, context);
+  if (options.Has("--grammar"))
+    return Complain(
+        context, ExitCode::kBadInput,
+        "--grammar concerns recordings; the golden of a scenario is of the grammar that "
+        "it names");
   if (typed.find_first_of("*?[") != std::string::npos)
     return Complain(
         context, ExitCode::kBadInput,
@@ -358,33 +366,36 @@ Command AcceptCommand() {
            "accept milk_carton_wrap --reason \"...\" --derived \"the reach begins with the hand's "
            "first motion\"",
            "accept milk_carton_wrap --pictures --reason \"the carton is seen in the hand\"",
-           "accept takes/take1.jsonl --reason \"compared with the video\""},
-      .options = {{.name = "scenario",
-                   .help = "a name, skill/name, or the file of a recording of a tracker",
-                   .required = true},
-                  {.name = "--reason",
-                   .help = "why this is right; is written into the golden",
-                   .placeholder = "TEXT"},
-                  {.name = "--derived",
-                   .help = "how the events follow from the definitions, one line each; the\n"
-                           "physical oracle's derivation is added; may be repeated",
-                   .placeholder = "TEXT",
-                   .repeatable = true},
-                  {.name = "--reviewed",
-                   .help = "accept only what 'review' printed with this fingerprint",
-                   .placeholder = "FINGERPRINT",
-                   .rule = {.problem = FingerprintProblem}},
-                  {.name = "--exact",
-                   .help = "take over boundaries that moved within their tolerance, too: after a\n"
-                           "change that moved many, or the next small one fails"},
-                  {.name = "--unsteady",
-                   .help =
-                       "why the events may differ when the scenario is played elsewhere (check\n"
-                       "--ensemble); is written into the golden; without it they may not",
-                   .placeholder = "TEXT"},
-                  {.name = "--pictures",
-                   .help =
-                       "accept the pictures, not the events; they are kept beside the timeline"}},
+           "accept takes/take1.jsonl --reason \"compared with the video\"",
+           "accept takes/take1.jsonl --grammar my.grammar --reason \"compared with the video\""},
+      .options =
+          {{.name = "scenario",
+            .help = "a name, skill/name, or the file of a recording of a tracker",
+            .required = true},
+           {.name = "--reason",
+            .help = "why this is right; is written into the golden",
+            .placeholder = "TEXT"},
+           {.name = "--derived",
+            .help = "how the events follow from the definitions, one line each; the\n"
+                    "physical oracle's derivation is added; may be repeated",
+            .placeholder = "TEXT",
+            .repeatable = true},
+           {.name = "--reviewed",
+            .help = "accept only what 'review' printed with this fingerprint",
+            .placeholder = "FINGERPRINT",
+            .rule = {.problem = FingerprintProblem}},
+           {.name = "--grammar",
+            .help = "of a recording of a tracker: this grammar instead of the one that it names",
+            .placeholder = "NAME|FILE"},
+           {.name = "--exact",
+            .help = "take over boundaries that moved within their tolerance, too: after a\n"
+                    "change that moved many, or the next small one fails"},
+           {.name = "--unsteady",
+            .help = "why the events may differ when the scenario is played elsewhere (check\n"
+                    "--ensemble); is written into the golden; without it they may not",
+            .placeholder = "TEXT"},
+           {.name = "--pictures",
+            .help = "accept the pictures, not the events; they are kept beside the timeline"}},
       .run = RunAccept};
 }
 

@@ -37,6 +37,7 @@ struct Review {
   std::vector<std::string> files =
       {};  ///< of a picture: golden, new, difference; of an orphan: what to remove
   std::string contradicts = {};  ///< the claims that the pending golden contradicts, or empty
+  std::string grammar = {};      ///< `--grammar` of a recording, or empty
 };
 
 /// How it follows from the definitions, where the golden says something else.
@@ -112,35 +113,49 @@ void AddReviews(const ScenarioFile& file, const std::string& root, bool is_pendi
 
 /// A recording, judged now: what it yields is not kept, since judging it again costs little.
 /// Nothing if it agrees with the golden beside it.
-std::optional<Review> ReviewOfRecording(const std::string& file, const std::string& root) {
+std::optional<Review> ReviewOfRecording(const RunRequest& request, const std::string& root) {
+  const std::string& file = request.scenario_file;
   Review review{.id = file, .kind = "unreadable", .text = {}};
-  const Result<JudgedRecording> judged = JudgeRecording({.scenario_file = file}, root);
+  const Result<JudgedRecording> judged = JudgeRecording(request, root);
   if (!judged) {
     review.text = Format(judged.error());
     return review;
   }
   if (judged->Agrees()) return std::nullopt;
   review.kind = judged->golden ? "changed" : "new";
-  review.text = judged->segmented.missing.warnings + ReviewText(*judged, ExplainCommand(file, {}));
+  review.text =
+      judged->segmented.missing.warnings + ReviewText(*judged, ExplainCommand(file, request));
+  review.grammar = request.grammar;
   review.fingerprint = Fingerprint(judged->proposed);
   return review;
 }
 
-/// Nothing when the selection is wrong, which has been reported then.
-std::optional<std::vector<Review>> Reviews(const ParsedOptions& options,
-                                           const CommandContext& context) {
+/// The exit code when the selection is wrong, which has been reported then.
+tl::expected<std::vector<Review>, ExitCode> Reviews(const ParsedOptions& options,
+                                                    const CommandContext& context) {
   const std::vector<std::string> patterns = options.All("names");
   const auto selection = SelectScenarios(patterns, {}, context.root);
   if (!selection && !patterns.empty()) {
     Complain(context, selection.error().exit_code, selection.error().why);
-    return std::nullopt;
+    return tl::unexpected(ExitCode::kNothing);
   }
+  const bool has_others =
+      !selection || std::ranges::any_of(selection->scenarios, [](const ScenarioFile& file) {
+        return file.episode != 0 || !IsRecording(file.path);
+      });
+  if (options.Has("--grammar") && (patterns.empty() || has_others))
+    return tl::unexpected(Complain(
+        context, ExitCode::kBadInput,
+        "--grammar concerns recordings; the golden of a scenario is of the grammar that it "
+        "names"));
   std::vector<std::string> pending = GoldenFiles(context.root).ListPending();
   const std::vector<KeptPicture> pictures = GoldenFiles(context.root).PendingPictures();
   std::vector<Review> reviews;
   for (const ScenarioFile& file : selection ? selection->scenarios : std::vector<ScenarioFile>()) {
     if (file.episode == 0 && IsRecording(file.path)) {
-      if (auto review = ReviewOfRecording(file.path, context.root))
+      const RunRequest request{
+          .scenario_file = file.path, .grammar = options.Text("--grammar"), .settings = {}};
+      if (auto review = ReviewOfRecording(request, context.root))
         reviews.push_back(std::move(*review));
       continue;
     }
@@ -171,7 +186,7 @@ std::string NextStep(const Review& review, bool engines_differ) {
   if (!review.contradicts.empty()) return kUntilClaimsHold;
   if (review.kind == "picture") return "if right: " + AcceptPicturesCommand(review.id);
   if (review.kind != "new" && review.kind != "changed") return "";
-  return "if right: " + AcceptCommandLine(review.id, review.fingerprint);
+  return "if right: " + AcceptCommandLine(review.id, review.fingerprint, review.grammar);
 }
 
 void Print(const std::vector<Review>& reviews, const CommandContext& context) {
@@ -196,7 +211,7 @@ void Print(const std::vector<Review>& reviews, const CommandContext& context) {
 
 ExitCode RunReview(const ParsedOptions& options, const CommandContext& context) {
   const auto reviews = Reviews(options, context);
-  if (!reviews) return ExitCode::kNothing;
+  if (!reviews) return reviews.error();
   if (options.Has("--json")) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const Review& review : *reviews)
@@ -224,6 +239,9 @@ Command ReviewCommand() {
             .help = "names, skill/name, globs, or files of recordings of trackers; default: all\n"
                     "that is pending",
             .repeatable = true},
+           {.name = "--grammar",
+            .help = "of recordings of trackers: this grammar instead of the one that they name",
+            .placeholder = "NAME|FILE"},
            {.name = "--json", .help = "print one JSON object instead of text"}},
       .run = RunReview};
 }

@@ -151,8 +151,11 @@ std::string EventLines(const Golden& golden) {
 
 std::string Fingerprint(const Golden& pending) { return ContentHash(WriteGolden(pending)); }
 
-std::string AcceptCommandLine(const std::string& scenario, const std::string& fingerprint) {
-  return CommandText({"accept", scenario, "--reviewed", fingerprint}) + " --reason \"...\"";
+std::string AcceptCommandLine(const std::string& scenario, const std::string& fingerprint,
+                              const std::string& grammar) {
+  std::vector<std::string> words = {"accept", scenario, "--reviewed", fingerprint};
+  if (!grammar.empty()) words.insert(words.end(), {"--grammar", grammar});
+  return CommandText(words) + " --reason \"...\"";
 }
 
 std::string AcceptPicturesCommand(const std::string& scenario) {

@@ -43,7 +43,9 @@ std::string EventLines(const Golden& golden);
 std::string Fingerprint(const Golden& pending);
 
 /// The command that accepts the pending golden with this fingerprint and nothing else.
-std::string AcceptCommandLine(const std::string& scenario, const std::string& fingerprint);
+/// `grammar`: of a recording that is segmented with another one than it names; or "".
+std::string AcceptCommandLine(const std::string& scenario, const std::string& fingerprint,
+                              const std::string& grammar = {});
 
 /// The command that accepts the pictures of a scenario.
 std::string AcceptPicturesCommand(const std::string& scenario);

@@ -2,6 +2,8 @@
 // See harness/judge/judge_recording.h. Tested by tests/program/golden_of_recording_test.cc
 #include "harness/judge/judge_recording.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <utility>
 
@@ -56,8 +58,18 @@ Result<JudgedRecording> JudgeSegmented(SegmentedRecording segmented,
   return judged;
 }
 
+std::string OtherGrammarText(const JudgedRecording& judged) {
+  const std::string now = GrammarName(*judged.segmented.program);
+  if (!judged.golden || judged.golden->grammar == now) return "";
+  return fmt::format(
+      "the golden is of grammar '{}', and this is what '{}' recognises; --grammar names another "
+      "one\n",
+      judged.golden->grammar, now);
+}
+
 std::string ReviewText(const JudgedRecording& judged, const std::string& explain) {
-  return judged.golden ? DifferenceText(judged.comparison, explain) : EventLines(judged.proposed);
+  if (!judged.golden) return EventLines(judged.proposed);
+  return DifferenceText(judged.comparison, explain) + OtherGrammarText(judged);
 }
 
 Golden AcceptedRecording(const JudgedRecording& judged, const std::vector<std::string>& derived,

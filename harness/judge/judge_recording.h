@@ -33,6 +33,9 @@ Result<JudgedRecording> JudgeRecording(const RunRequest& request, const std::str
 Result<JudgedRecording> JudgeSegmented(SegmentedRecording segmented,
                                        const std::string& golden_file);
 
+/// A line that says so if the golden is of another grammar than the recording was segmented with.
+std::string OtherGrammarText(const JudgedRecording& judged);
+
 /// What there is to accept: all events where there is no golden, else how they differ from it.
 /// `explain`: the command that asks about them.
 std::string ReviewText(const JudgedRecording& judged, const std::string& explain);

@@ -107,6 +107,37 @@ TEST_F(GoldenOfARecording, WhatIsWrongIsSaidAndNothingIsWritten) {
   EXPECT_TRUE(Has(ReadFile(golden_), "another"));
 }
 
+TEST_F(GoldenOfARecording, MayBeOfAnotherGrammarThanTheRecordingNames) {
+  const std::string own = (folder_ / "own.grammar").string();
+  WriteFile(own,
+            "grammar own\nevent far(hand: Hand, object: Movable)\n"
+            "  while distance(hand, object) > 20 cm\n");
+  EXPECT_TRUE(
+      Has(Check({"--grammar", own}).out, "next: prehend review " + take_ + " --grammar " + own));
+  const Said review = Prehend({"review", take_, "--grammar", own});
+  EXPECT_EQ(review.exit_code, 5) << review.err;
+  EXPECT_TRUE(Has(review.out, "far  0.00000  0.51250  hand=right_hand  object=milk")) << review.out;
+  EXPECT_TRUE(Has(review.out, " --grammar " + own + " --reason")) << review.out;
+  ASSERT_EQ(Accept({"--grammar", own, "--reason", "seen"}).exit_code, 0);
+  EXPECT_TRUE(Has(ReadFile(golden_), "# grammar: own\n")) << ReadFile(golden_);
+  EXPECT_EQ(Check({"--grammar", own}).exit_code, 0);
+  const Said without = Check();
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_TRUE(Has(without.out,
+                  "the golden is of grammar 'own', and this is what "
+                  "'pick_and_place_from_motion' recognises; --grammar names another "
+                  "one"))
+      << without.out;
+  const Said scenario =
+      Prehend({"accept", "milk_carton_wrap", "--grammar", own, "--reason", "x"}, {"CI="});
+  EXPECT_EQ(scenario.exit_code, 2);
+  EXPECT_TRUE(Has(scenario.err, "--grammar concerns recordings")) << scenario.err;
+  EXPECT_EQ(Prehend({"review", "milk_carton_wrap", "--grammar", own}).exit_code, 2);
+  const Said all = Prehend({"review", "--grammar", own});
+  EXPECT_EQ(all.exit_code, 2);
+  EXPECT_TRUE(Has(all.err, "--grammar concerns recordings")) << all.err;
+}
+
 TEST_F(GoldenOfARecording, RecordingsAndScenariosAreCheckedTogether) {
   ASSERT_EQ(Accept({"--reason", "seen"}).exit_code, 0);
   const Said both = Check({"milk_carton_wrap", "--no-pictures"});
