@@ -7,6 +7,7 @@
 #include "harness/command/write_recording.h"
 #include "harness/episodes/schema.h"
 #include "harness/import/import_poses.h"
+#include "harness/import/import_table.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/missing_facts.h"
 

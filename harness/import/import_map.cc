@@ -64,9 +64,12 @@ ValueFormat<MappedEntity> EntityFormat() {
                 "From the origin of its markers to its centre, in the body's frame, z up.")
       .Optional("upright_at_s", &E::upright_at_s, Number(0, 1e6),
                 "A time at which it stands upright: its orientation there counts as not turned.")
+      .Optional("axes_quat_wxyz", &E::axes_quat_wxyz, UnitQuaternion(),
+                "How it is turned, as it stands upright, in the axes of its markers.")
       .Optional("ahead", &E::ahead, Vector<3>(-1, 1),
                 "Where a hand reaches, in its own frame, z up.")
       .ExactlyOneOf({"from", "at_m"})
+      .AtMostOneOf({"upright_at_s", "axes_quat_wxyz"})
       .format();
 }
 
@@ -167,17 +170,17 @@ void CheckColumns(const ImportMap& map, const YamlNode& root, DiagnosticList& er
   }
   std::vector<std::string> upright;
   for (const Named<MappedEntity>& entity : map.entities) {
-    if (columns.quaternion.empty() && entity.value.from && entity.value.upright_at_s)
+    if (columns.quaternion.empty() && entity.value.from && SaysAxes(entity.value))
       upright.push_back(entity.name);
   }
   if (!upright.empty())
-    errors.Add(
-        columns.position.front().where,
-        fmt::format("columns.quaternion is missing, and upright_at_s of {} needs bodies with "
-                    "orientations",
-                    fmt::join(upright, ", ")),
-        "quaternion: [the four columns, in quaternion_order]; or, if the file has positions "
-        "only, leave out upright_at_s");
+    errors.Add(columns.position.front().where,
+               fmt::format("columns.quaternion is missing, and upright_at_s or axes_quat_wxyz of "
+                           "{} needs bodies with "
+                           "orientations",
+                           fmt::join(upright, ", ")),
+               "quaternion: [the four columns, in quaternion_order]; or, if the file has positions "
+               "only, leave these out");
   if (!columns.quaternion.empty() && !map.quaternion_order)
     errors.Add(columns.quaternion.front().where,
                "quaternion_order is missing: which of the four columns is w",
@@ -235,6 +238,8 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
                  fmt::format("'{}': a hand has no class and is not fixed", entity.name));
     if (e.upright_at_s && e.at_m)
       errors.Add(e.upright_at_s->where, "upright_at_s needs a body with orientations");
+    if (e.axes_quat_wxyz && e.at_m)
+      errors.Add(e.axes_quat_wxyz->where, "axes_quat_wxyz needs a body with orientations");
     if (e.ahead && !e.hand) errors.Add(e.ahead->where, "only a hand reaches 'ahead'");
     if (e.ahead && e.ahead->value.norm() < 0.1)
       errors.Add(e.ahead->where, "expected a direction, found one of length below 0.1");

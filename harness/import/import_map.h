@@ -55,9 +55,14 @@ struct MappedEntity {
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
   /// From the markers' origin to the entity's, in the body's frame, z up, metres.
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
-  std::optional<Located<double>> upright_at_s;    ///< when it stands as it is described, not turned
+  std::optional<Located<double>> upright_at_s;  ///< when it stands as it is described, not turned
+  /// How it is turned in its markers' axes, this or the time.
+  std::optional<Located<Eigen::Vector4d>> axes_quat_wxyz;
   std::optional<Located<Eigen::Vector3d>> ahead;  ///< of a hand: where it reaches, likewise; x
 };
+
+/// Whether the map says how it is turned in its markers' axes.
+inline bool SaysAxes(const MappedEntity& e) { return e.upright_at_s || e.axes_quat_wxyz; }
 
 /// The whole file.
 struct ImportMap {

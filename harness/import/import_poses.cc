@@ -212,12 +212,12 @@ class Importer {
     EntityReport report{.name = entity.name, .from = {}, .extent = {}};
     Track track;
     if (e.at_m) {
-      const Eigen::Quaterniond q(e.quat_wxyz[0], e.quat_wxyz[1], e.quat_wxyz[2], e.quat_wxyz[3]);
-      track.poses.push_back({.t_s = 0, .p = *e.at_m, .q = q.normalized()});
+      track.poses.push_back({.t_s = 0, .p = *e.at_m, .q = Quaternion(e.quat_wxyz)});
     } else {
       report.from = e.from->value;
       const PoseBody& body = *std::ranges::find(file_.bodies, report.from, &PoseBody::name);
       track.poses = Converted(body, e);
+      if (e.upright_at_s) report.axes = (map_.WorldTurn() * OrientationThen(body, e)).conjugate();
       MarkGaps(body, e, track, report);
       WarnOfMotion(body, entity, track.poses, report);
       const double trembling_m = Trembling_m(track.poses);
@@ -233,20 +233,30 @@ class Importer {
     tracks_.push_back(std::move(track));
   }
 
+  static Eigen::Quaterniond Quaternion(const Eigen::Vector4d& wxyz) {
+    return Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
+  }
+
+  /// At upright_at_s, as in the file.
+  static Eigen::Quaterniond OrientationThen(const PoseBody& body, const MappedEntity& entity) {
+    const double t_s = entity.upright_at_s->value;
+    const auto then = std::ranges::min_element(
+        body.samples, {}, [&](const PoseSample& sample) { return std::abs(sample.t_s - t_s); });
+    return then->q;
+  }
+
   std::vector<Pose> Converted(const PoseBody& body, const MappedEntity& entity) const {
     const Eigen::Quaterniond turn = map_.WorldTurn(), axes = map_.AxesTurn();
     const double scale = map_.MetresPerUnit();
     const auto upright = [&](const Eigen::Quaterniond& q) { return turn * q * axes.conjugate(); };
     Eigen::Quaterniond rest = Eigen::Quaterniond::Identity();
-    if (entity.upright_at_s) {
-      const double t_s = entity.upright_at_s->value;
-      const auto then = std::ranges::min_element(
-          body.samples, {}, [&](const PoseSample& sample) { return std::abs(sample.t_s - t_s); });
-      rest = upright(then->q).conjugate();
-    }
+    if (entity.upright_at_s) rest = upright(OrientationThen(body, entity)).conjugate();
     std::vector<Pose> poses;
     for (const PoseSample& sample : body.samples) {
-      const Eigen::Quaterniond q = (upright(sample.q) * rest).normalized();
+      const Eigen::Quaterniond q =
+          entity.axes_quat_wxyz
+              ? (turn * sample.q * Quaternion(entity.axes_quat_wxyz->value)).normalized()
+              : (upright(sample.q) * rest).normalized();
       poses.push_back(
           {.t_s = sample.t_s, .p = turn * (sample.p * scale) + q * entity.offset_m, .q = q});
     }
@@ -460,27 +470,6 @@ Result<Imported> ImportPoses(const std::string& poses_path, const std::string& m
   if (grammar::Diagnostics doubts = FindDoubts(*poses, *map); !doubts.empty())
     return tl::unexpected(std::move(doubts));
   return Importer(*poses, *map).Import();
-}
-
-std::string ImportTable(const Imported& imported) {
-  const Episode& episode = imported.episode;
-  std::string table = fmt::format("{}: {} frames, {:.3f} s\n", episode.header.episode,
-                                  episode.frames.size(), imported.duration_s);
-  std::size_t width = 16;
-  for (const EntityReport& one : imported.entities) width = std::max(width, one.from.size());
-  table += fmt::format("{:<16} {:<{}} {:>7} {:>7} {:>8} {:>9} {:>5} {:>7}  {:<14} {:<14} {}\n",
-                       "entity", "from", width, "poses", "Hz", "bridged", "s", "lost", "s", "x, m",
-                       "y, m", "z, m");
-  for (const EntityReport& one : imported.entities) {
-    const auto range = [&](int axis) {
-      return fmt::format("{:.2f}..{:.2f}", one.extent.min()[axis], one.extent.max()[axis]);
-    };
-    table += fmt::format(
-        "{:<16} {:<{}} {:>7} {:>7.1f} {:>8} {:>9.3f} {:>5} {:>7.3f}  {:<14} {:<14} {}\n", one.name,
-        one.from.empty() ? "(the map)" : one.from, width, one.poses, one.rate_hz, one.bridged,
-        one.bridged_s, one.lost, one.lost_s, range(0), range(1), range(2));
-  }
-  return table;
 }
 
 }  // namespace prehend::harness::import

@@ -3,6 +3,7 @@
 // tests/program/import_test.cc
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct EntityReport {
   std::size_t lost = 0;        ///< gaps in which it is held where it was
   double lost_s = 0;           ///< of them all
   Eigen::AlignedBox3d extent;  ///< of its origin, in the recording
+  /// How it is turned in its markers' axes, if the map says when it is upright.
+  std::optional<Eigen::Quaterniond> axes;
 };
 
 struct Imported {
@@ -32,8 +35,5 @@ struct Imported {
 
 /// Reads, doubts and converts. Nothing comes of a file with errors.
 Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path);
-
-/// Extents, rates and gaps, as a table for people.
-std::string ImportTable(const Imported& imported);
 
 }  // namespace prehend::harness::import

@@ -72,12 +72,11 @@ class StandingFinder {
       });
       if (rest.LiesOrIsUpsideDown() ? !StandsRather(rest) : alike) continue;
       found_.things.insert(rest.thing);
-      axes_are_any = axes_are_any || !map_.entities[rest.thing].value.upright_at_s;
+      axes_are_any = axes_are_any || !SaysAxes(map_.entities[rest.thing].value);
     }
     for (const Rest& rest : rests) {
       // What seems to lie has any axes, too, where the others have.
-      if (axes_are_any && rest.degrees > kUpright_deg &&
-          !map_.entities[rest.thing].value.upright_at_s)
+      if (axes_are_any && rest.degrees > kUpright_deg && !SaysAxes(map_.entities[rest.thing].value))
         found_.things.insert(rest.thing);
       if (found_.things.contains(rest.thing)) Warn(rest, rests.size() == 1);
     }
@@ -177,6 +176,8 @@ class StandingFinder {
     if (const auto& said = entity.value.upright_at_s)
       text += fmt::format("at its upright_at_s, {:g} s, it was turned otherwise than it rests; ",
                           said->value);
+    else if (entity.value.axes_quat_wxyz)
+      text += "its axes_quat_wxyz is not that of these markers; ";
     else
       text += "trackers give bodies any axes; ";
     text +=
@@ -191,7 +192,7 @@ class StandingFinder {
     std::vector<std::string> names;
     for (const Named<MappedEntity>& entity : map_.entities) {
       const MappedEntity& e = entity.value;
-      if (e.hand && !e.upright_at_s && (e.ahead || !e.offset_m.isZero(0)))
+      if (e.hand && !SaysAxes(e) && (e.ahead || !e.offset_m.isZero(0)))
         names.push_back("'" + entity.name + "'");
     }
     if (names.empty()) return;

@@ -116,10 +116,11 @@ TEST(ImportDoubts, OrientationsThatAMapForgetsAreOneError) {
   map = Replaced(map, "0.03]}", "0.03], upright_at_s: 0}");
   const Said said = ImportCsv(folder, SwingingCsv(30), map);
   EXPECT_EQ(ErrorsOf(said),
-            "columns.quaternion is missing, and upright_at_s of cup, right_hand needs bodies with "
+            "columns.quaternion is missing, and upright_at_s or axes_quat_wxyz of cup, right_hand "
+            "needs bodies with "
             "orientations\n"
             "  hint: quaternion: [the four columns, in quaternion_order]; or, if the file has "
-            "positions only, leave out upright_at_s\n");
+            "positions only, leave these out\n");
   EXPECT_NE(said.err.find("map.yaml:6:"), std::string::npos) << said.err;
 }
 

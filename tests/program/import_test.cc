@@ -126,6 +126,39 @@ TEST(Import, AnOffsetIsInTheFrameOfTheBodyAsItStandsUpright) {
   EXPECT_EQ(Events(folder), events);
 }
 
+TEST(Import, MarkersAxesHoldForEachTakeHoweverTheThingStands) {
+  const auto folder = FreshFolder("import");
+  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
+  const std::string events = Events(folder);
+  // The cup's markers are 5 cm beside it, their frame lies on its side, and in the second take it
+  // is turned round.
+  const auto take = [](double beside_m, const std::string& quaternion) {
+    return Csv([=](const char* name, Row row) {
+      if (name[0] == 'G') return AsWritten(name, row);
+      row.x += beside_m;
+      return Replaced(AsWritten(name, row), ",1,0,0,0\n", "," + quaternion + "\n");
+    });
+  };
+  const std::string first = take(0.05, "0.70710678,0.70710678,0,0");
+  const std::string second = take(-0.05, "0,0,0.70710678,0.70710678");
+  const auto map = [](const std::string& axes) {
+    return Replaced(kMap, "{from: Mug,", "{from: Mug, offset_m: [-0.05, 0, 0], " + axes + ",");
+  };
+  const Said told = ImportCsv(folder, first, map("upright_at_s: 0.5"));
+  EXPECT_EQ(Events(folder), events);
+  const std::string axes = "axes_quat_wxyz: [0.70711, -0.70711, 0.00000, 0.00000]";
+  EXPECT_NE(told.out.find("cup: upright_at_s of this file is " + axes + "\n"), std::string::npos)
+      << told.out;
+  for (const std::string& csv : {first, second}) {
+    const Said said = ImportCsv(folder, csv, map(axes));
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    EXPECT_EQ(Events(folder), events);
+  }
+  const Said both = ImportCsv(folder, first, map(axes + ", upright_at_s: 0"));
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_NE(both.err.find("axes_quat_wxyz"), std::string::npos) << both.err;
+}
+
 TEST(Import, AShortGapIsBridgedAndALongOneIsRefusedOrHeld) {
   const auto folder = FreshFolder("import");
   const auto without = [](double from_s, double until_s) {
