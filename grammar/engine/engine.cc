@@ -199,9 +199,8 @@ void Engine::NotifyIfChanged(RuleInstance& instance) {
 // alarm comes. A form that is not listed here never rests while it is open.
 bool Engine::MayRest(const RuleInstance& instance) {
   const Rule& rule = RuleOf(instance);
-  if (rule.form() == Form::kCompose && !rule.referenced && LacksAPart(instance)) return true;
   if (instance.next <= history_.now() || !instance.pending.empty() || evaluator_.depends_on_time())
-    return false;
+    return rule.form() == Form::kCompose && !rule.referenced && LacksAPart(instance);
   switch (rule.form()) {
     case Form::kCompose:
       return true;
@@ -366,15 +365,16 @@ void Engine::SkipUnchanged(RuleInstance& instance) const {
 // The first frame after this one where something changes that the instance asks about.
 FrameNumber Engine::NextChange(const RuleInstance& instance, FrameNumber after) const {
   FrameNumber next = kNever;
-  ForEachReference(instance, [&](InstanceId index) {
-    const RuleInstance& other = instances_[index];
-    next = std::min({next, NextEdge(other, after), other.known > after ? other.known : kNever});
-  });
   const Rule& rule = RuleOf(instance);
   for (std::size_t role = 0; role < rule.roles.size(); ++role) {
     if (rule.watches_pose[role] || rule.watches_grip[role])
       next = std::min(next, history_.NextChange(instance.entities[role], after));
   }
+  if (next == after + 1) return next;  // most things tremble
+  ForEachReference(instance, [&](InstanceId index) {
+    const RuleInstance& other = instances_[index];
+    next = std::min({next, NextEdge(other, after), other.known > after ? other.known : kNever});
+  });
   return next;
 }
 

@@ -43,10 +43,22 @@ const Sample& SampleAt(const RingBuffer<Sample>& samples, FrameNumber frame) {
 /// Of the first sample after `frame`; kNever if there is none.
 template <typename Sample>
 FrameNumber FirstAfter(const RingBuffer<Sample>& samples, FrameNumber frame) {
-  FrameNumber first = kNever;
-  for (std::size_t i = samples.size(); i-- > 0 && samples[i].frame > frame;)
-    first = samples[i].frame;
-  return first;
+  if (samples.empty() || samples.back().frame <= frame) return kNever;
+  if (samples.size() == 1 || samples[samples.size() - 2].frame <= frame)
+    return samples.back().frame;
+  const auto at_most = static_cast<std::size_t>(samples.back().frame - frame);
+  std::size_t low = samples.size() > at_most ? samples.size() - at_most : 0;
+  std::size_t high = samples.size() - 1;  // it is one of these
+  while (low < high) {
+    if (samples[low].frame > frame) return samples[low].frame;
+    const std::size_t middle = low + (high - low) / 2;
+    if (samples[middle].frame > frame) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return samples[low].frame;
 }
 
 /// Drops what only frames before `frame` need.

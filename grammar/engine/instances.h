@@ -408,7 +408,7 @@ inline FrameNumber NextEdge(const RuleInstance& instance, FrameNumber after) {
     if (frame > after) next = std::min(next, frame);
   };
   if (instance.open) consider(instance.begin.frame);
-  for (std::size_t i = 0; i < instance.past.size(); ++i) {
+  for (std::size_t i = instance.past.size(); i-- > 0 && instance.past[i].end.frame > after;) {
     consider(instance.past[i].begin.frame);
     consider(instance.past[i].end.frame);
   }
