@@ -56,6 +56,31 @@ TEST_F(NotTracked, AShortGapIsBridgedAndTheReportSaysSo) {
       "warning: 'cup' is not tracked in 1 gap: 0.080 s are bridged, in 0.000 s it is unknown\n");
 }
 
+// Of a hand that is lost for 2 s, from 1.0 s on, nobody knows whether it idles; for 0.5 s it does
+// what it did. Looks are bridged for 0.1 s.
+TEST_F(NotTracked, AHandThatIsLostForLongDoesNotIdle) {
+  const auto idling = [&](int lost, int found) {
+    std::string text =
+        "{\"recording\": 1, \"episode\": \"e\", \"ticks_per_second\": 1000, \"entities\": "
+        "{\"cup\": "
+        "{\"size_m\": [0.1, 0.1, 0.1]}, \"hand\": {\"hand\": true, \"size_m\": [0, 0, 0]}}}\n";
+    for (int i = 0; i < 200; ++i) {
+      text += "{\"tick\": " + std::to_string(20 * i) +
+              ", \"samples\": {\"cup\": {\"at_m\": [0, 0, 0.8]}, \"hand\": " +
+              (i >= lost && i < found ? "null" : "{\"at_m\": [1, 0, 1]}") + "}}\n";
+    }
+    WriteFile(folder_ / "take.jsonl", text + "{\"end_tick\": 4000}\n");
+    return Prehend({"resegment", (folder_ / "take.jsonl").string(), "--grammar",
+                    "hand_actions_from_motion"})
+        .out;
+  };
+  const std::string lost = idling(50, 150);
+  EXPECT_NE(lost.find("idling  0.0000   1.1000  hand=hand"), std::string::npos) << lost;
+  EXPECT_NE(lost.find("idling  3.0000   4.0000  hand=hand"), std::string::npos) << lost;
+  const std::string briefly = idling(50, 75);
+  EXPECT_NE(briefly.find("idling  0.0000   4.0000  hand=hand"), std::string::npos) << briefly;
+}
+
 TEST_F(NotTracked, WhatALongGapLeavesUnknownEndsAndNeitherDoesItsOppositeHold) {
   const Said said = Segment(Recording(40, 60));
   EXPECT_EQ(said.exit_code, 0) << said.err;
