@@ -9,6 +9,7 @@
 
 #include "tests/program/bag_writer.h"
 #include "tests/program/carried_cup.h"
+#include "tests/program/import_csv.h"
 #include "tests/program/mcap_writer.h"
 #include "tests/program/message_texts.h"
 #include "tests/program/program.h"
@@ -126,15 +127,8 @@ class ImportMessages : public testing::Test {
   Said Import(const std::string& file, const std::string& bytes, const std::string& map,
               bool check = false) const {
     std::filesystem::remove(folder_ / "take.jsonl");
-    WriteFile(folder_ / file, bytes);
-    WriteFile(folder_ / "map.yaml", map);
-    std::vector<std::string> words = {"import", (folder_ / file).string(), "--map",
-                                      (folder_ / "map.yaml").string()};
-    if (check)
-      words.push_back("--check");
-    else
-      words.insert(words.end(), {"-o", (folder_ / "take.jsonl").string()});
-    return Prehend(words);
+    return ImportFile(folder_, file, bytes, map,
+                      check ? std::vector<std::string>{"--check"} : std::vector<std::string>{});
   }
   std::string RecordingOf(const std::string& file, const std::string& bytes, const std::string& map,
                           const std::string& warnings = "") const {

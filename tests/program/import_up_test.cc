@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "tests/program/carried_cup.h"
+#include "tests/program/import_csv.h"
 #include "tests/program/program.h"
 
 namespace prehend::house {
@@ -70,15 +71,8 @@ class ImportUp : public testing::Test {
  protected:
   Said Import(const std::string& csv, const std::string& up, const std::string& tail = kTail,
               bool check = false) const {
-    WriteFile(folder_ / "poses.csv", csv);
-    WriteFile(folder_ / "map.yaml", kHead + up + tail);
-    std::vector<std::string> words = {"import", (folder_ / "poses.csv").string(), "--map",
-                                      (folder_ / "map.yaml").string()};
-    if (check)
-      words.push_back("--check");
-    else
-      words.insert(words.end(), {"-o", (folder_ / "take.jsonl").string()});
-    return Prehend(words);
+    return ImportCsv(folder_, csv, kHead + up + tail,
+                     check ? std::vector<std::string>{"--check"} : std::vector<std::string>{});
   }
   std::string Events() const {
     return Prehend({"resegment", (folder_ / "take.jsonl").string()}).out;
