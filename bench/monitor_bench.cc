@@ -13,6 +13,7 @@
 #include "harness/run/load_run.h"
 #include "harness/run/run_scenario.h"
 #include "harness/run/run_text.h"
+#include "harness/run/segment.h"
 #include "harness/speed/four_automata.h"
 #include "harness/speed/workload.h"
 #include "harness/speed/worlds.h"

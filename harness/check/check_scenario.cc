@@ -19,6 +19,7 @@
 #include "harness/check/last_pass.h"
 #include "harness/check/settings.h"
 #include "harness/check/state_trace.h"
+#include "harness/episode/find_episodes.h"
 #include "harness/episodes/load_episode.h"
 #include "harness/episodes/record_episode.h"
 #include "harness/golden/golden_files.h"
@@ -32,8 +33,8 @@
 #include "harness/judge/judge_transforms.h"
 #include "harness/pictures/pictures.h"
 #include "harness/replay/replay_data.h"
-#include "harness/run/open_episode.h"
 #include "harness/run/run_text.h"
+#include "harness/run/segment.h"
 
 namespace prehend::harness {
 namespace {
@@ -414,7 +415,7 @@ std::optional<ScenarioVerdict> CheckImported(const CheckRequest& request) {
 }  // namespace
 
 ScenarioVerdict CheckScenario(const CheckRequest& request) {
-  if (request.episode == 0 && IsRecording(request.run.scenario_file))
+  if (EpisodeKindOf(request.run.scenario_file) == EpisodeKind::kJsonLines)
     return CheckRecording(request, GoldenBeside(request.run.scenario_file),
                           JudgeRecording(request.run, request.root));
   if (auto verdict = CheckImported(request)) return std::move(*verdict);

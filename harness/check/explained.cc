@@ -30,21 +30,6 @@ void from_json(const nlohmann::json& packed, Explained& explained) {
 
 namespace {
 
-EpisodeSource SourceOf(const Scenario& scenario, const RunResult& run,
-                       std::shared_ptr<const grammar::Program> program) {
-  EpisodeSource source{.name = scenario.name,
-                       .program = std::move(program),
-                       .entity_table = MakeEntityTable(scenario),
-                       .play = {}};
-  source.play = [&](const EpisodeSource::Watcher& watch) {
-    Sensing sensing(scenario.scene, scenario.sensing);
-    for (const physics::Snapshot& snapshot : run.recording)
-      if (sensing.Due(snapshot.tick)) watch(sensing.Sense(snapshot));
-    return EpisodeSource::Played{run.ticks + 1, ""};
-  };
-  return source;
-}
-
 /// `golden_tick` as of a signal.
 void AddSignals(const explain::Reasons& reasons, grammar::Tick golden_tick,
                 std::vector<DecidingSignal>& signals) {
@@ -114,7 +99,14 @@ ExplainedDifference ExplainDifference(const Pairing& pairing, grammar::ReplayMon
 Explained Explain(const Scenario& scenario, const RunResult& run,
                   std::shared_ptr<const grammar::Program> program, const Comparison& comparison) {
   Explained explained;
-  const explain::Watched watched = explain::Watch(SourceOf(scenario, run, std::move(program)));
+  const explain::Watched watched =
+      explain::Watch(program, MakeEntityTable(scenario),
+                     [&](const std::function<void(const grammar::Frame&)>& look) {
+                       Sensing sensing(scenario.scene, scenario.sensing);
+                       for (const physics::Snapshot& snapshot : run.recording)
+                         if (sensing.Due(snapshot.tick)) look(sensing.Sense(snapshot));
+                       return Episode::End{run.ticks + 1, ""};
+                     });
   if (!watched.problem.empty()) return explained;
   grammar::ReplayMonitor& past = *watched.past;
   for (const explain::WhyEvent& why : explain::ExplainAll(past))

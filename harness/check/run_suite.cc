@@ -60,7 +60,7 @@ class Suite {
   bool InProject(std::size_t scenario) const { return scenarios_[scenario].in_project; }
 
   bool IsRemembered(std::size_t scenario) const {
-    return InProject(scenario) && scenarios_[scenario].episode == 0;
+    return InProject(scenario) && !scenarios_[scenario].episode;
   }
 
   bool Changed() const {
@@ -111,7 +111,7 @@ class Suite {
     run.scenario_file = scenarios_[turn.scenario].path;
     return {
         .run = std::move(run),
-        .episode = scenarios_[turn.scenario].episode,
+        .episode = scenarios_[turn.scenario].episode.value_or(0),
         .id = Id(turn.scenario),
         .root = request_.root,
         .report_folder = request_.report_folder,

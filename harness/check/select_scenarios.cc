@@ -11,8 +11,7 @@
 #include <iterator>
 #include <tuple>
 
-#include "harness/episodes/episode_file.h"
-#include "harness/episodes/schema.h"
+#include "harness/episode/find_episodes.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/project_library.h"
 
@@ -86,23 +85,13 @@ std::string WhyNoMatch(const std::string& typed, const std::vector<ScenarioFile>
 }
 
 /// The episodes of a file, each as the scenario that it was.
-std::vector<ScenarioFile> EpisodesOf(const std::string& path, const std::vector<ScenarioFile>& all,
-                                     NoSelection& none) {
+std::vector<ScenarioFile> KeptIn(const std::string& path, const std::vector<ScenarioFile>& all,
+                                 NoSelection& none) {
   std::vector<ScenarioFile> found;
-  const auto file = episodes::EpisodeFile::Open(path);
-  if (!file) none = {ExitCode::kBadInput, path + ": " + file.error().front().message};
-  if (!file) return found;
-  if (file->episodes().empty()) none.why = path + " has no episodes";
-  for (const episodes::EpisodeRow& row : file->episodes()) {
-    const std::size_t slash = std::min(row.scenario.rfind('/'), row.scenario.size());
-    const bool has_skill = slash < row.scenario.size();
-    const bool known = std::ranges::find(all, row.scenario, IdOf) != all.end();
-    found.push_back({.skill = has_skill ? row.scenario.substr(0, slash) : "",
-                     .name = has_skill ? row.scenario.substr(slash + 1) : row.scenario,
-                     .path = path,
-                     .in_project = known,
-                     .episode = row.id});
-  }
+  const auto kept = EpisodesOf(path);
+  if (!kept) none = {ExitCode::kBadInput, path + ": " + kept.error().front().message};
+  if (!kept) return found;
+  for (const EpisodeName& episode : *kept) found.push_back(ScenarioOf(episode, all));
   return found;
 }
 
@@ -125,12 +114,14 @@ tl::expected<ScenarioSelection, NoSelection> SelectScenarios(
     if (!IsFile(pattern)) {
       return tl::unexpected(NoSelection{.why = WhyNoMatch(pattern, all)});
     }
-    if (!episodes::IsEpisodeFile(pattern)) {
+    const EpisodeKind kind = EpisodeKindOf(pattern);
+    if (kind != EpisodeKind::kEpisodeFile) {
       named.push_back(ScenarioAt(all, pattern));
+      if (kind == EpisodeKind::kJsonLines) named.back().origin = Origin::kRecording;
       continue;
     }
     NoSelection none;
-    std::ranges::move(EpisodesOf(pattern, all, none), std::back_inserter(named));
+    std::ranges::move(KeptIn(pattern, all, none), std::back_inserter(named));
     if (!none.why.empty()) return tl::unexpected(std::move(none));
   }
   std::ranges::sort(named, {}, [](const ScenarioFile& file) {

@@ -16,6 +16,7 @@
 #include "harness/check/state_trace.h"
 #include "harness/cli/accept_pictures.h"
 #include "harness/command/command.h"
+#include "harness/episode/lacks.h"
 #include "harness/golden/compare.h"
 #include "harness/golden/golden_files.h"
 #include "harness/judge/accept_golden.h"
@@ -24,7 +25,6 @@
 #include "harness/judge/judge_claims.h"
 #include "harness/judge/judge_recording.h"
 #include "harness/judge/judge_transforms.h"
-#include "harness/run/open_episode.h"
 #include "harness/run/run_text.h"
 
 namespace prehend::harness {
@@ -301,8 +301,13 @@ ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) 
   if (!refusal.empty()) return Complain(context, ExitCode::kBadInput, refusal);
   const std::string typed = options.Text("scenario");
   std::error_code error;
-  if (IsRecording(typed) && std::filesystem::exists(typed, error))
+  if (EpisodeKindOf(typed) == EpisodeKind::kJsonLines && std::filesystem::exists(typed, error))
     return AcceptRecording(typed, options, context);
+  if (EpisodeKindOf(typed) == EpisodeKind::kEpisodeFile) {
+    const auto kept = FindEpisodes({&typed, 1}, "", context.root);
+    return kept ? Complain(context, ExitCode::kBadInput, Lack(*kept, Need::kGolden))
+                : Complain(context, kept.error());
+  }
   if (options.Has("--grammar"))
     return Complain(
         context, ExitCode::kBadInput,

@@ -14,12 +14,12 @@
 #include "harness/check/causes.h"
 #include "harness/check/run_suite.h"
 #include "harness/command/command.h"
+#include "harness/episode/find_episodes.h"
 #include "harness/episodes/record_episode.h"
 #include "harness/episodes/schema.h"
 #include "harness/report/junit.h"
 #include "harness/report/page_texts.h"
 #include "harness/report/report.h"
-#include "harness/run/open_episode.h"
 #include "harness/transform/transform.h"
 
 namespace prehend::harness {
@@ -353,7 +353,7 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   auto selection = SelectScenarios(options.All("names"), options.All("--filter"), context.root);
   if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
   const auto played = std::ranges::find_if(selection->scenarios, [](const ScenarioFile& file) {
-    return file.episode != 0 || IsRecording(file.path);
+    return EpisodeKindOf(file.path) != EpisodeKind::kScenario;
   });
   for (const char* of_play : {"--record", "--transform", "--ensemble", "--repeat"}) {
     if (played != selection->scenarios.end() && options.Has(of_play))

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "harness/command/command.h"
+#include "harness/command/typed_episode.h"
+#include "harness/episode/resegment_many.h"
 #include "harness/episodes/episode_file.h"
 #include "harness/episodes/migrate.h"
-#include "harness/episodes/resegment_many.h"
 #include "harness/timeline/event_text.h"
 
 namespace prehend::harness {
@@ -36,6 +36,11 @@ ExitCode RunEpisodes(const ParsedOptions& options, const CommandContext& context
       {"episode", "status", "seconds", "state_hash", "recorded_on", "scenario"}};
   Json json = Json::array();
   for (const std::string& path : options.All("files")) {
+    if (EpisodeKindOf(path) != EpisodeKind::kEpisodeFile) {
+      const auto other = FindEpisodes({&path, 1}, "", context.root);
+      return other ? Complain(context, ExitCode::kBadInput, Lack(*other, Need::kEpisodeFile))
+                   : Complain(context, other.error());
+    }
     const auto file = episodes::EpisodeFile::Open(path);
     if (!file) return Complain(context, file.error());
     for (const episodes::EpisodeRow& row : file->episodes()) {
@@ -71,22 +76,19 @@ Command EpisodesCommand() {
 namespace {
 
 ExitCode RunReplay(const ParsedOptions& options, const CommandContext& context) {
-  const auto selected = episodes::SelectEpisodes(options.All("files"), options.Text("--episode"));
-  if (!selected) return Complain(context, selected.error());
-  if (selected->empty())
-    return Complain(context, ExitCode::kNothing,
-                    fmt::format("--episode: no episode matches '{}'", options.Text("--episode")));
-  const std::vector<episodes::Resegmented> results =
-      episodes::ResegmentAll(*selected, {.root = context.root,
-                                         .choice = {},
-                                         .compare = true,
-                                         .replay = true,
-                                         .jobs = options.IntOr("--jobs", CoreCount())});
+  const auto selected = FindEpisodesOrComplain("files", options, context, {Need::kEpisodeFile});
+  if (!selected) return selected.error();
+  const std::vector<Resegmented> results =
+      ResegmentAll(*selected, {.root = context.root,
+                               .choice = {},
+                               .compare = true,
+                               .replay = true,
+                               .jobs = options.IntOr("--jobs", CoreCount())});
   ExitCode worst = ExitCode::kAgrees;
   std::size_t same = 0, unfinished = 0;
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const episodes::Resegmented& result : results) {
-    const std::string heading = fmt::format("episode {} of {}: {}\n", result.episode.id,
+  for (const Resegmented& result : results) {
+    const std::string heading = fmt::format("episode {} of {}: {}\n", *result.episode.number,
                                             result.episode.file, result.episode.scenario);
     if (!result.problem.empty()) {
       context.err << result.problem;
@@ -100,7 +102,7 @@ ExitCode RunReplay(const ParsedOptions& options, const CommandContext& context) 
       ++unfinished;
     }
     json.push_back({{"file", result.episode.file},
-                    {"episode", result.episode.id},
+                    {"episode", *result.episode.number},
                     {"scenario", result.episode.scenario},
                     {"finished", result.finished},
                     {"same", result.problem.empty() && result.differences.empty()}});

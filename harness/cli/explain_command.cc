@@ -8,7 +8,7 @@
 #include "harness/base/shell_quote.h"
 #include "harness/check/check_scenario.h"
 #include "harness/command/command.h"
-#include "harness/command/recorded_episode.h"
+#include "harness/command/typed_episode.h"
 #include "harness/explain/explain.h"
 #include "harness/explain/replay.h"
 #include "harness/run/run_text.h"
@@ -100,21 +100,22 @@ ExitCode RunExplain(const ParsedOptions& options, const CommandContext& context)
     return Complain(context, ExitCode::kBadInput,
                     "--event contradicts --expected; give one of them");
   }
-  const auto source = OpenEpisodeOrComplain(options, context);
-  if (!source) return source.error();
+  auto episode = OpenEpisodeOrComplain(options.Text("scenario"), options, context);
+  if (!episode) return episode.error();
 
   Question question;
   for (const auto& [option, ask] :
        {std::pair{"--event", &question.event}, std::pair{"--expected", &question.expected}}) {
     if (!options.Has(option)) continue;
     const Result<Ask> read =
-        explain::ParseAsk(option, options.Text(option), *source->program, source->entity_table);
+        explain::ParseAsk(option, options.Text(option), *episode->program(), episode->entities());
     if (!read) return Complain(context, read.error());
     *ask = *read;
   }
-  const explain::Watched watched = explain::Watch(*source);
+  const explain::Watched watched = explain::Watch(*episode);
   if (!watched.problem.empty()) return Complain(context, ExitCode::kBadInput, watched.problem);
-  const ExitCode code = Answer(options, context, source->name, question, *watched.past);
+  const ExitCode code =
+      Answer(options, context, episode->loaded().scenario.name, question, *watched.past);
   if (watched.failure.empty() || code != ExitCode::kAgrees) return code;
   return Complain(context, ExitCode::kFailure, watched.failure);
 }

@@ -12,7 +12,7 @@
 #include "harness/command/command.h"
 #include "harness/command/other_view.h"
 #include "harness/command/picture_options.h"
-#include "harness/command/recorded_episode.h"
+#include "harness/command/typed_episode.h"
 #include "harness/figures/comparison_sheet.h"
 #include "harness/pictures/svg_file.h"
 #include "harness/run/event_time.h"
@@ -60,14 +60,12 @@ std::string KindHelp() {
   return help;
 }
 
-/// Simulated, or read from an episode file.
-tl::expected<PlayedRun, ExitCode> PlayOrRead(const std::string& typed, const ParsedOptions& options,
-                                             const CommandContext& context) {
-  auto played = PlayOrReplay(typed, options, context);
-  if (!played) return played;
-  if (played->run.recording.empty())
-    return tl::unexpected(Complain(context, ExitCode::kFailure, StatusText(played->run)));
-  return played;
+/// Of any kind of episode.
+tl::expected<PlayedRun, ExitCode> PlayTyped(const std::string& typed, const ParsedOptions& options,
+                                            const CommandContext& context) {
+  auto episode = OpenEpisodeOrComplain(typed, options, context);
+  if (!episode) return tl::unexpected(episode.error());
+  return PlayOrComplain(std::move(*episode), context);
 }
 
 ExitCode WriteSheet(const figures::Sheet& sheet, const figures::SceneFormat& format,
@@ -130,7 +128,7 @@ ExitCode DrawGrasps(const std::string& typed, const ParsedOptions& options,
     const Result<LoadedRun> read = LoadRun(RequestOf(options, file.path), context.root);
     if (!read) return Complain(context, read.error());
     if (std::ranges::all_of(StylesOf(read->scenario), is_known)) continue;
-    auto one = PlayOrRead(file.path, options, context);
+    auto one = PlayTyped(file.path, options, context);
     if (!one) return one.error();
     auto held = figures::LongestGrasp(one->loaded.scenario, one->run);
     if (!held || is_known(held->style)) continue;
@@ -246,7 +244,7 @@ ExitCode RunFigure(const ParsedOptions& options, const CommandContext& context) 
   if (!problem.empty()) return Complain(context, ExitCode::kBadInput, problem);
   const std::string typed = options.TextOr("scenario", kind.scenario);
   if (std::string_view(kind.name) == "grasps") return DrawGrasps(typed, options, context);
-  const auto played = PlayOrRead(typed, options, context);
+  const auto played = PlayTyped(typed, options, context);
   if (!played) return played.error();
   problem = WhyNotShown(options, played->loaded.scenario, played->run);
   if (!problem.empty()) return Complain(context, ExitCode::kBadInput, problem);

@@ -15,7 +15,7 @@ namespace prehend::harness {
 namespace {
 
 /// Says what the grammar will miss. Its exit code: kNothing if it can recognise nothing.
-ExitCode LookWith(const grammar::Program& program, Episode& episode,
+ExitCode LookWith(const grammar::Program& program, Recording& episode,
                   const CommandContext& context) {
   Warn(context, Warnings(program, episode.header.entity_table));
   const MissingFacts missing = FindMissingFacts(episode, program);
@@ -33,7 +33,7 @@ ExitCode ImportLines(const std::string& file, const ParsedOptions& options,
   if (!options.Has("--check") && !episodes::IsEpisodeFile(output))
     return Complain(context, ExitCode::kBadInput,
                     file + " is a recording already; -o NAME.episodes keeps it as an episode");
-  Result<Episode> recording = ReadEpisode(file);
+  Result<Recording> recording = ReadRecording(file);
   if (!recording) return Complain(context, recording.error());
   const std::string grammar = options.Text("--grammar");
   const grammar::CompileResult compiled = LoadGrammarOf(recording->header, grammar, context.root);
@@ -53,7 +53,7 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
   if (check == !output.empty())
     return Complain(context, ExitCode::kBadInput,
                     "expected either -o, the recording to write, or --check, to write nothing");
-  if (IsRecording(poses)) return ImportLines(poses, options, context);
+  if (EpisodeKindOf(poses) == EpisodeKind::kJsonLines) return ImportLines(poses, options, context);
   if (!options.Has("--map"))
     return Complain(context, ExitCode::kBadInput,
                     poses +
@@ -61,7 +61,7 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
                         "(docs/motion-capture.md)");
   auto imported = import::ImportPoses(poses, options.Text("--map"));
   if (!imported) return Complain(context, imported.error());
-  Episode& episode = imported->episode;
+  Recording& episode = imported->episode;
   for (const std::string& warning : imported->warnings)
     context.err << "warning: " << warning << "\n";
   const grammar::CompileResult compiled =

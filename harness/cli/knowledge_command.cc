@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "harness/command/command.h"
+#include "harness/command/typed_episode.h"
 #include "harness/knowledge/write_knowledge.h"
 
 namespace prehend::harness {
@@ -16,11 +16,8 @@ std::string FormProblem(const std::string& text) {
 }
 
 ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& context) {
-  const auto episodes = episodes::SelectEpisodes(options.All("files"), options.Text("--episode"));
-  if (!episodes) return Complain(context, episodes.error());
-  if (episodes->empty())
-    return Complain(context, ExitCode::kNothing,
-                    fmt::format("--episode: no episode matches '{}'", options.Text("--episode")));
+  const auto episodes = FindEpisodesOrComplain("files", options, context, {Need::kBodies});
+  if (!episodes) return episodes.error();
   const std::vector<std::string> forms = options.All("--to");
   const auto asked = [&](const char* form) {
     return std::ranges::find(forms, form) != forms.end();

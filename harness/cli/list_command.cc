@@ -10,6 +10,7 @@
 #include "harness/base/shell_quote.h"
 #include "harness/check/select_scenarios.h"
 #include "harness/command/command.h"
+#include "harness/episode/lacks.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/project_library.h"
 #include "harness/timeline/event_text.h"
@@ -26,10 +27,12 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
       SelectScenarios(options.All("names"), options.All("--filter"), context.root);
   if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
   for (const ScenarioFile& file : selection->scenarios) {
-    if (file.episode != 0)
+    if (file.episode)
       return Complain(context, ExitCode::kBadInput,
                       "list shows scenarios; '" + CommandText({"episodes", file.path}) +
                           "' shows what an episode file has");
+    if (const std::string lack = Lacks(NameOf(file), Need::kScenario); !lack.empty())
+      return Complain(context, ExitCode::kBadInput, lack);
     Result<Scenario> read = ReadScenario(file.path, {}, library);
     std::ranges::copy(ErrorsOf(read), std::back_inserter(diagnostics));
     const Scenario scenario = std::move(read).value_or(Scenario{.shows = "(cannot be read)"});

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/command/command.h"
-#include "harness/command/recorded_episode.h"
+#include "harness/command/typed_episode.h"
 #include "harness/episodes/schema.h"
 #include "harness/run/event_time.h"
 #include "harness/run/run_text.h"
@@ -115,41 +115,28 @@ Json PosesJson(const Scenario& scenario, const physics::Snapshot& now, double ti
 }
 
 ExitCode RunPoses(const ParsedOptions& options, const CommandContext& context) {
-  const std::string typed = options.Text("scenario");
-  std::optional<RecordedEpisode> recorded;
-  Result<LoadedRun> loaded;
-  if (episodes::IsEpisodeFile(typed)) {
-    auto opened = OpenRecordedOrComplain(typed, options, context);
-    if (!opened) return opened.error();
-    recorded.emplace(std::move(*opened));
-    loaded = recorded->loaded;
-  } else {
-    const auto file = FindScenarioOrComplain(typed, context);
-    if (!file) return file.error();
-    loaded = LoadRun(RequestOf(options, file->path), context.root);
-  }
-  if (!loaded) return Complain(context, loaded.error());
+  auto episode = OpenEpisodeOrComplain(options.Text("scenario"), options, context);
+  if (!episode) return episode.error();
   const std::string at = options.TextOr("--at", "0");
-  if (const auto problem = WhyNoEventTime(at, *loaded->program))
+  if (const auto problem = WhyNoEventTime(at, *episode->program()))
     return Complain(context, ExitCode::kBadInput,
                     "--at: " + problem->message + "; " + problem->hint);
-  const Result<RunResult> run =
-      recorded ? episodes::Replay(recorded->file, recorded->row, *loaded)
-               : RunScenario(loaded->scenario, loaded->program, {.record = true});
-  if (!run) return Complain(context, run.error());
-  if (run->recording.empty()) return Complain(context, ExitCode::kFailure, StatusText(*run));
-  const FoundTime moment = FindEventTime(at, *run);
+  const auto played = PlayOrComplain(std::move(*episode), context);
+  if (!played) return played.error();
+  const RunResult& run = played->run;
+  const Scenario& scenario = played->loaded.scenario;
+  const FoundTime moment = FindEventTime(at, run);
   if (!moment.missed.empty())
     context.err << "prehend: warning: " << moment.missed << "; this is the end of the run\n";
   const auto found =
-      std::ranges::lower_bound(run->recording, moment.tick, {}, &physics::Snapshot::tick);
-  const physics::Snapshot& now = found == run->recording.end() ? run->recording.back() : *found;
+      std::ranges::lower_bound(run.recording, moment.tick, {}, &physics::Snapshot::tick);
+  const physics::Snapshot& now = found == run.recording.end() ? run.recording.back() : *found;
   const double time_s =
-      static_cast<double>(now.tick) / static_cast<double>(run->timeline.ticks_per_second);
+      static_cast<double>(now.tick) / static_cast<double>(run.timeline.ticks_per_second);
   if (options.Has("--json"))
-    context.out << PosesJson(loaded->scenario, now, time_s).dump(2) << "\n";
+    context.out << PosesJson(scenario, now, time_s).dump(2) << "\n";
   else
-    PrintPoses(loaded->scenario, now, time_s, context.out);
+    PrintPoses(scenario, now, time_s, context.out);
   return ExitCode::kAgrees;
 }
 

@@ -13,7 +13,7 @@
 #include "harness/command/command.h"
 #include "harness/command/other_view.h"
 #include "harness/command/picture_options.h"
-#include "harness/command/recorded_episode.h"
+#include "harness/command/typed_episode.h"
 #include "harness/episodes/schema.h"
 #include "harness/figures/comparison_sheet.h"
 #include "harness/golden/golden_files.h"
@@ -184,10 +184,10 @@ std::string WhyNotTogether(const ParsedOptions& options) {
 /// The run of a scenario or of an episode, with every frame.
 tl::expected<PlayedRun, ExitCode> Play(const ParsedOptions& options,
                                        const CommandContext& context) {
-  auto played = PlayOrReplay(options.Text("scenario"), options, context);
+  auto episode = OpenEpisodeOrComplain(options.Text("scenario"), options, context);
+  if (!episode) return tl::unexpected(episode.error());
+  auto played = PlayOrComplain(std::move(*episode), context);
   if (!played) return played;
-  if (played->run.recording.empty())
-    return tl::unexpected(Complain(context, ExitCode::kFailure, StatusText(played->run)));
   const std::string why = WhyNotShown(options, played->loaded.scenario, played->run);
   if (!why.empty()) return tl::unexpected(Complain(context, ExitCode::kBadInput, why));
   return played;
@@ -304,20 +304,9 @@ ExitCode RenderFilm(const ParsedOptions& options, const CommandContext& context)
 }
 
 ExitCode RenderPictures(const ParsedOptions& options, const CommandContext& context) {
-  const std::string typed = options.Text("scenario");
-  std::optional<RecordedEpisode> recorded;
-  Result<LoadedRun> loaded;
-  if (episodes::IsEpisodeFile(typed)) {
-    auto opened = OpenRecordedOrComplain(typed, options, context);
-    if (!opened) return opened.error();
-    recorded.emplace(std::move(*opened));
-    loaded = recorded->loaded;
-  } else {
-    const auto file = FindScenarioOrComplain(typed, context);
-    if (!file) return file.error();
-    loaded = LoadRun(RequestOf(options, file->path), context.root);
-  }
-  if (!loaded) return Complain(context, loaded.error());
+  auto episode = OpenEpisodeOrComplain(options.Text("scenario"), options, context);
+  if (!episode) return episode.error();
+  LoadedRun* loaded = &episode->loaded();
   auto asked = AskedPictures(options, loaded->scenario);
   for (const PictureYaml& entry : asked) {
     const auto problem = WhyNoEventTime(entry.at.value, *loaded->program);
@@ -338,9 +327,7 @@ ExitCode RenderPictures(const ParsedOptions& options, const CommandContext& cont
                     "the scenario defines no pictures; --at asks for one");
   }
 
-  const Result<RunResult> played =
-      recorded ? episodes::Replay(recorded->file, recorded->row, *loaded)
-               : RunScenario(loaded->scenario, loaded->program, {.record = true});
+  const Result<RunResult> played = episode->Run(true);
   if (!played) return Complain(context, played.error());
   const RunResult& run = *played;
   const PictureResult drawn = Draw(options, *loaded, run, context.root);

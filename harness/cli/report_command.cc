@@ -8,9 +8,7 @@
 #include "harness/base/shell_quote.h"
 #include "harness/base/text_file.h"
 #include "harness/check/run_suite.h"
-#include "harness/command/command.h"
-#include "harness/episodes/resegment_many.h"
-#include "harness/episodes/schema.h"
+#include "harness/command/typed_episode.h"
 #include "harness/report/report.h"
 
 namespace prehend::harness {
@@ -19,46 +17,19 @@ namespace {
 constexpr const char* kDefaultPage = "report.html";
 constexpr double kLongest_s = 600;  ///< for one episode
 
-/// Each episode as the scenario that it was; only those of the project have goldens.
-std::vector<ScenarioFile> ScenariosOf(const std::vector<episodes::EpisodeName>& chosen,
-                                      const std::string& root) {
-  const std::vector<ScenarioFile> all = ListScenarios(root);
-  std::vector<ScenarioFile> scenarios;
-  for (const episodes::EpisodeName& episode : chosen) {
-    const std::size_t slash = episode.scenario.rfind('/');
-    const bool has_skill = slash != std::string::npos;
-    const bool known = std::ranges::find(all, episode.scenario, IdOf) != all.end();
-    scenarios.push_back({.skill = has_skill ? episode.scenario.substr(0, slash) : "",
-                         .name = has_skill ? episode.scenario.substr(slash + 1) : episode.scenario,
-                         .path = episode.file,
-                         .in_project = known,
-                         .episode = episode.id});
-  }
-  return scenarios;
-}
-
 ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) {
-  for (const std::string& file : options.All("files")) {
-    if (!episodes::IsEpisodeFile(file))
-      return Complain(
-          context, ExitCode::kBadInput,
-          fmt::format("found '{}', wanted an episode file, NAME.episodes ('{}' records "
-                      "one)",
-                      file, CommandText({"run", "SCENARIO", "--record", "NAME.episodes"})));
-  }
-  const auto chosen = episodes::SelectEpisodes(options.All("files"), options.Text("--episode"));
-  if (!chosen) return Complain(context, chosen.error());
-  if (chosen->empty())
-    return Complain(context, ExitCode::kNothing,
-                    options.Has("--episode") ? fmt::format("--episode: no episode matches '{}'",
-                                                           options.Text("--episode"))
-                                             : "there are no episodes in it");
+  const auto chosen = FindEpisodesOrComplain("files", options, context);
+  if (!chosen) return chosen.error();
   const std::string page = options.TextOr("--output", kDefaultPage);
   std::string problem = WhyNotWritable(page);
   if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--output: " + problem);
 
+  const std::vector<ScenarioFile> all = ListScenarios(context.root);
+  ScenarioSelection selection;
+  for (const EpisodeName& episode : *chosen)
+    selection.scenarios.push_back(ScenarioOf(episode, all));
   SuiteRequest request{
-      .selection = {ScenariosOf(*chosen, context.root), {}},
+      .selection = std::move(selection),
       .changes = RequestOf(options, {}),
       .root = context.root,
       .today = context.today,

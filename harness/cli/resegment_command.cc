@@ -8,55 +8,33 @@
 
 #include "grammar/contents.h"
 #include "harness/base/atomic_file.h"
-#include "harness/command/command.h"
-#include "harness/episodes/resegment_many.h"
-#include "harness/episodes/schema.h"
+#include "harness/command/typed_episode.h"
+#include "harness/episode/open_episode.h"
+#include "harness/episode/resegment_many.h"
 #include "harness/labels/read_labels.h"
-#include "harness/labels/take.h"
 #include "harness/labels/write_labels.h"
-#include "harness/run/load_grammar.h"
 #include "harness/run/run_text.h"
-#include "harness/run/segment_recording.h"
 
 namespace prehend::harness {
 namespace {
 
-ExitCode ResegmentLines(const std::string& file, const ParsedOptions& options,
-                        const CommandContext& context) {
-  const Result<SegmentedRecording> segmented =
-      SegmentRecording(RequestOf(options, file), context.root);
-  if (!segmented) return Complain(context, segmented.error());
-  Warn(context, segmented->warnings);
-  context.err << segmented->missing.warnings;
-  RunResult run;
-  run.status.kind = physics::RunStatus::Kind::kCompleted;
-  run.ticks = segmented->end - 1;
-  run.is_unfinished = !segmented->says_its_end;
-  run.timeline = segmented->timeline;
-  const ExitCode exit_code =
-      segmented->missing.nothing_left ? ExitCode::kNothing : ExitCode::kAgrees;
-  if (!options.Has("--json")) {
-    context.out << RunTable(run);
-    return exit_code;
-  }
-  Scenario watched;
-  watched.name = segmented->name;
-  watched.grammar = GrammarName(*segmented->program);
-  OrderedJson json = RunJson(watched, run);
-  json.erase("state_hash");  // nothing was simulated
-  context.out << json.dump(2) << "\n";
-  return exit_code;
+/// "episode 3 of x.episodes"; of what is in no such file its name.
+std::string PlaceOf(const EpisodeName& episode) {
+  return episode.number ? fmt::format("episode {} of {}", *episode.number, episode.file)
+                        : episode.scenario;
+}
+
+std::string HeadingOf(const EpisodeName& episode) {
+  return PlaceOf(episode) + (episode.number ? ": " + episode.scenario : "") + "\n";
 }
 
 /// Results of one episode as `run` prints them, of several one after another; with a comparison
 /// only what differs.
-void Print(const std::vector<episodes::Resegmented>& results, bool compare,
-           const CommandContext& context) {
+void Print(const std::vector<Resegmented>& results, bool compare, const CommandContext& context) {
   std::size_t differing = 0;
-  for (const episodes::Resegmented& result : results) {
+  for (const Resegmented& result : results) {
     if (!result.problem.empty()) continue;
-    const std::string heading = fmt::format("episode {} of {}: {}\n", result.episode.id,
-                                            result.episode.file, result.episode.scenario);
+    const std::string heading = HeadingOf(result.episode);
     if (!compare) {
       if (results.size() > 1) context.out << (&result == &results.front() ? "" : "\n") << heading;
       context.out << result.table;
@@ -70,35 +48,34 @@ void Print(const std::vector<episodes::Resegmented>& results, bool compare,
                                results.size() == 1 ? "" : "s", differing);
 }
 
-void PrintJson(const std::vector<episodes::Resegmented>& results, const CommandContext& context) {
+void PrintJson(const std::vector<Resegmented>& results, const CommandContext& context) {
   OrderedJson all = OrderedJson::array();
-  for (const episodes::Resegmented& result : results) {
+  for (const Resegmented& result : results) {
     if (!result.problem.empty()) continue;
     OrderedJson json = OrderedJson::parse(result.json);
-    json["file"] = result.episode.file;
-    json["episode"] = result.episode.id;
+    if (result.episode.number) {
+      json["file"] = result.episode.file;
+      json["episode"] = *result.episode.number;
+    } else if (result.episode.origin == Origin::kRecording) {
+      json.erase("state_hash");  // nothing was simulated
+    }
     all.push_back(std::move(json));
   }
   if (results.size() == 1 && all.size() == 1) all = OrderedJson(all.front());
   context.out << all.dump(2) << "\n";
 }
 
-ExitCode ResegmentEpisodes(const ParsedOptions& options, const CommandContext& context) {
-  const auto selected =
-      episodes::SelectEpisodes(options.All("recording"), options.Text("--episode"));
-  if (!selected) return Complain(context, selected.error());
-  if (selected->empty())
-    return Complain(context, ExitCode::kNothing,
-                    fmt::format("--episode: no episode matches '{}'", options.Text("--episode")));
+ExitCode ResegmentEpisodes(const std::vector<EpisodeName>& selected, const ParsedOptions& options,
+                           const CommandContext& context) {
   const bool compare = options.Has("--compare");
-  const std::vector<episodes::Resegmented> results = episodes::ResegmentAll(
-      *selected, {.root = context.root,
-                  .choice = {options.Text("--grammar"), options.All("--set")},
-                  .compare = compare,
-                  .jobs = options.IntOr("--jobs", CoreCount())});
+  const std::vector<Resegmented> results =
+      ResegmentAll(selected, {.root = context.root,
+                              .choice = {options.Text("--grammar"), options.All("--set")},
+                              .compare = compare,
+                              .jobs = options.IntOr("--jobs", CoreCount())});
   ExitCode worst = ExitCode::kAgrees;
   std::string warned;
-  for (const episodes::Resegmented& result : results) {
+  for (const Resegmented& result : results) {
     if (result.warnings != warned) context.err << result.warnings;
     warned = result.warnings;
     if (!result.problem.empty()) {
@@ -106,7 +83,7 @@ ExitCode ResegmentEpisodes(const ParsedOptions& options, const CommandContext& c
       worst = ExitCode::kBadInput;
     } else if (!result.completed && worst == ExitCode::kAgrees) {
       context.err << fmt::format(
-          "prehend: episode {} of {} has no good end: {}", result.episode.id, result.episode.file,
+          "prehend: {} has no good end: {}", PlaceOf(result.episode),
           result.table.substr(result.table.rfind('\n', result.table.size() - 2) + 1));
       worst = ExitCode::kFailure;
     }
@@ -116,7 +93,9 @@ ExitCode ResegmentEpisodes(const ParsedOptions& options, const CommandContext& c
   else
     Print(results, compare, context);
   const bool differs = std::ranges::any_of(
-      results, [](const episodes::Resegmented& result) { return !result.differences.empty(); });
+      results, [](const Resegmented& result) { return !result.differences.empty(); });
+  if (worst == ExitCode::kAgrees && std::ranges::any_of(results, &Resegmented::nothing_left))
+    return ExitCode::kNothing;
   return worst == ExitCode::kAgrees && differs ? ExitCode::kDiffers : worst;
 }
 
@@ -127,23 +106,15 @@ std::string LabelsProblem(const std::string& file) {
 }
 
 /// `--labels`: the events of one recording for an annotation program.
-ExitCode WriteLabels(const ParsedOptions& options, const CommandContext& context) {
-  const auto takes = labels::TakesOf(options.All("recording"), options.Text("--episode"));
-  if (!takes) return Complain(context, takes.error());
-  if (takes->size() != 1)
-    return Complain(context, takes->empty() ? ExitCode::kNothing : ExitCode::kBadInput,
-                    fmt::format("--labels writes one recording; {} are selected", takes->size()));
-  Result<labels::Take> take = labels::OpenTake(takes->front(), context.root);
-  if (!take) return Complain(context, take.error());
-  std::shared_ptr<const grammar::Program> program = take->program;
-  if (!program || options.Has("--grammar") || options.Has("--set")) {
-    Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
-    if (!settings) return Complain(context, settings.error());
-    const grammar::CompileResult compiled =
-        LoadGrammar(context.root, options.TextOr("--grammar", take->grammar), *settings);
-    if (!compiled.program) return Complain(context, compiled.diagnostics);
-    program = compiled.program;
-  }
+ExitCode WriteLabels(const std::vector<EpisodeName>& selected, const ParsedOptions& options,
+                     const CommandContext& context) {
+  if (selected.size() != 1)
+    return Complain(context, ExitCode::kBadInput,
+                    fmt::format("--labels writes one recording; {} are selected", selected.size()));
+  Result<Episode> episode = OpenEpisode(
+      selected.front(), {options.Text("--grammar"), options.All("--set")}, context.root);
+  if (!episode) return Complain(context, episode.error());
+  const std::shared_ptr<const grammar::Program> program = episode->program();
   const std::vector<std::string> only = options.All("--events");
   const std::vector<std::string> known = EventNames(*program);
   for (const std::string& name : only) {
@@ -153,43 +124,37 @@ ExitCode WriteLabels(const ParsedOptions& options, const CommandContext& context
                     fmt::format("--events: grammar '{}' has no event '{}'{}", GrammarName(*program),
                                 name, near.empty() ? "" : "; did you mean '" + near + "'?"));
   }
-  Result<grammar::Timeline> found = take->segment(program);
+  Result<grammar::Timeline> found = episode->Segment(program);
   if (!found) return Complain(context, found.error());
   std::erase_if(found->events, [&](const grammar::NamedEvent& event) {
     return !only.empty() && std::ranges::count(only, event.event) == 0;
   });
   const std::string& file = options.Text("--labels");
   const std::string problem = WriteTextFile(
-      file, labels::LabelsText(file.substr(file.rfind('.')), *found, take->end, context.today));
+      file,
+      labels::LabelsText(file.substr(file.rfind('.')), *found, *episode->EndTick(), context.today));
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   context.out << fmt::format("{}: {} labels\n", file, found->events.size());
   return ExitCode::kAgrees;
 }
 
 ExitCode RunResegment(const ParsedOptions& options, const CommandContext& context) {
-  const std::vector<std::string>& files = options.All("recording");
   if (options.Has("--labels")) {
     for (const char* other : {"--compare", "--json", "--jobs"}) {
       if (options.Has(other))
         return Complain(context, ExitCode::kBadInput,
                         fmt::format("--labels writes a file of labels: {} does not apply", other));
     }
-    return WriteLabels(options, context);
   }
-  if (options.Has("--events"))
+  if (options.Has("--events") && !options.Has("--labels"))
     return Complain(context, ExitCode::kBadInput,
                     "--events chooses what --labels FILE writes; --labels is missing");
-  const auto lines = std::ranges::find_if_not(files, episodes::IsEpisodeFile);
-  if (lines == files.end()) return ResegmentEpisodes(options, context);
-  for (const char* of_episodes : {"--episode", "--compare", "--jobs"}) {
-    if (options.Has(of_episodes))
-      return Complain(context, ExitCode::kBadInput,
-                      fmt::format("{} needs episode files; {} is none", of_episodes, *lines));
-  }
-  if (files.size() > 1)
-    return Complain(context, ExitCode::kBadInput,
-                    *lines + " is no episode file; other recordings are read one at a time");
-  return ResegmentLines(files.front(), options, context);
+  const std::vector<Need> needs =
+      options.Has("--compare") ? std::vector<Need>{Need::kRecordedEvents} : std::vector<Need>{};
+  const auto selected = FindEpisodesOrComplain("recording", options, context, needs);
+  if (!selected) return selected.error();
+  return options.Has("--labels") ? WriteLabels(*selected, options, context)
+                                 : ResegmentEpisodes(*selected, options, context);
 }
 
 std::string CompareProblem(const std::string& value) {
@@ -208,8 +173,8 @@ Command ResegmentCommand() {
                    "resegment monday.episodes tuesday.episodes --compare recorded",
                    "resegment suite.episodes --episode 'slide/*' --set slide_speed=3cm/s"},
       .options = {{.name = "recording",
-                   .help = "episode files (docs/episodes.md), or one recording as JSON Lines\n"
-                           "(docs/recording-format.md)",
+                   .help = "episode files (docs/episodes.md), recordings as JSON Lines\n"
+                           "(docs/recording-format.md) or scenarios, which are played first",
                    .required = true,
                    .repeatable = true},
                   {.name = "--episode",

@@ -12,6 +12,7 @@
 #include "harness/check/check_scenario.h"
 #include "harness/check/select_scenarios.h"
 #include "harness/command/command.h"
+#include "harness/episode/find_episodes.h"
 #include "harness/golden/compare.h"
 #include "harness/golden/golden_files.h"
 #include "harness/judge/accept_golden.h"
@@ -20,7 +21,6 @@
 #include "harness/judge/judge_recording.h"
 #include "harness/judge/unreferenced_goldens.h"
 #include "harness/read/read_scenario.h"
-#include "harness/run/open_episode.h"
 #include "harness/run/project_library.h"
 
 namespace prehend::harness {
@@ -141,7 +141,7 @@ tl::expected<std::vector<Review>, ExitCode> Reviews(const ParsedOptions& options
   }
   const bool has_others =
       !selection || std::ranges::any_of(selection->scenarios, [](const ScenarioFile& file) {
-        return file.episode != 0 || !IsRecording(file.path);
+        return EpisodeKindOf(file.path) != EpisodeKind::kJsonLines;
       });
   if (options.Has("--grammar") && (patterns.empty() || has_others))
     return tl::unexpected(Complain(
@@ -152,7 +152,7 @@ tl::expected<std::vector<Review>, ExitCode> Reviews(const ParsedOptions& options
   const std::vector<KeptPicture> pictures = GoldenFiles(context.root).PendingPictures();
   std::vector<Review> reviews;
   for (const ScenarioFile& file : selection ? selection->scenarios : std::vector<ScenarioFile>()) {
-    if (file.episode == 0 && IsRecording(file.path)) {
+    if (EpisodeKindOf(file.path) == EpisodeKind::kJsonLines) {
       const RunRequest request{
           .scenario_file = file.path, .grammar = options.Text("--grammar"), .settings = {}};
       if (auto review = ReviewOfRecording(request, context.root))

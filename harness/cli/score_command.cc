@@ -13,7 +13,8 @@
 #include "harness/base/project_paths.h"
 #include "harness/check/select_scenarios.h"
 #include "harness/closed_form/closed_form.h"
-#include "harness/command/command.h"
+#include "harness/command/typed_episode.h"
+#include "harness/episode/open_episode.h"
 #include "harness/labels/clock_offset.h"
 #include "harness/labels/read_truths.h"
 #include "harness/oracle/oracle.h"
@@ -67,8 +68,7 @@ std::vector<std::vector<EpisodeToScore>> JudgeAll(const ScenarioSelection& selec
   std::vector<std::string> ids;
   for (const ScenarioFile& file : selection.scenarios) {
     ids.push_back(IdOf(file));
-    const ScoreRequest request{file.path, file.episode, ids.back(), context.root,
-                               grammars,  events,       settings};
+    const ScoreRequest request{NameOf(file), ids.back(), context.root, grammars, events, settings};
     jobs.push_back([request] { return Judged(request); });
   }
   const WorkerLimits limits{.jobs = CoreCount(), .time_limit_s = kTimeLimit_s};
@@ -197,12 +197,12 @@ std::string DifferencesOf(const EpisodeToScore& episode, double collar_s) {
 }
 
 /// Each event that is never recognised, once for all takes.
-void WarnOfMissingFacts(const std::vector<labels::Take>& takes, const grammar::Program& program,
+void WarnOfMissingFacts(std::vector<Episode>& episodes, const grammar::Program& program,
                         const CommandContext& context) {
   std::set<std::string> said;
-  for (const labels::Take& take : takes) {
-    if (!take.recording) continue;
-    for (const std::string& warning : FindMissingFacts(*take.recording, program).never)
+  for (Episode& episode : episodes) {
+    if (!episode.recording()) continue;
+    for (const std::string& warning : FindMissingFacts(*episode.recording(), program).never)
       if (said.insert(warning).second) context.err << warning;
   }
 }
@@ -215,47 +215,48 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
           context, ExitCode::kBadInput,
           fmt::format("--truth compares what the labels mean: {} does not apply", other));
   }
-  const auto takes = labels::TakesOf(options.All("names"), options.Text("--episode"));
-  if (!takes) return Complain(context, takes.error());
-  if (takes->empty())
+  if (!options.Has("names"))
     return Complain(context, ExitCode::kNothing,
-                    options.Has("names") ? "--episode: no episode matches"
-                                         : "--truth: which recordings? score take1.jsonl --truth "
-                                           "take1.csv");
+                    "--truth: which recordings? score take1.jsonl --truth take1.csv");
+  const auto names = FindEpisodesOrComplain("names", options, context);
+  if (!names) return names.error();
   const Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
   if (!settings) return Complain(context, settings.error());
   std::vector<std::string> grammars = options.All("--grammar");
   if (grammars.empty()) {
-    Result<std::string> own = labels::OwnGrammar(*takes);
+    Result<std::string> own = labels::OwnGrammar(*names);
     if (!own) return Complain(context, own.error());
     grammars.push_back(std::move(*own));
   }
   const double collar_s = options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
   std::vector<std::vector<EpisodeToScore>> all(grammars.size()), by_hand(grammars.size());
   std::vector<std::string> differences(grammars.size());
-  std::vector<labels::Take> opened;
-  for (const labels::TakeName& name : *takes) {
-    Result<labels::Take> take = labels::OpenTake(name, context.root);
-    if (!take) return Complain(context, take.error());
-    opened.push_back(std::move(*take));
+  std::vector<Episode> opened;
+  EpisodeOpener opener(context.root);
+  for (const EpisodeName& name : *names) {
+    Result<Episode> episode = opener.Open(name, {grammars.front(), options.All("--set")});
+    if (!episode) return Complain(context, episode.error());
+    opened.push_back(std::move(*episode));
   }
   for (std::size_t g = 0; g < grammars.size(); ++g) {
     const grammar::CompileResult compiled = LoadGrammar(context.root, grammars[g], *settings);
     if (!compiled.program) return Complain(context, compiled.diagnostics);
     const auto truths = labels::ReadTruths(
-        *takes, options.All("--truth"), options.Text("--map"), *compiled.program,
+        *names, options.All("--truth"), options.Text("--map"), *compiled.program,
         options.Has("--skip-bad-labels") ? labels::Backward::kSkip : labels::Backward::kRefuse);
     if (!truths) return Complain(context, truths.error());
     if (g == 0) context.err << labels::BackwardWarning(*truths);
     std::vector<std::pair<grammar::Timeline, grammar::Timeline>> compared;
     WarnOfMissingFacts(opened, *compiled.program, context);
     for (std::size_t i = 0; i < opened.size(); ++i) {
-      const labels::Take& take = opened[i];
-      const auto truth = truths->Truth(i, take.entities, take.ticks_per_second, take.end);
-      if (!truth) return Complain(context, truth.error());
-      const Result<grammar::Timeline> found = take.segment(compiled.program);
+      Episode& take = opened[i];
+      const grammar::EntityTable table = take.entities();
+      const Result<grammar::Timeline> found = take.Segment(compiled.program);
       if (!found) return Complain(context, found.error());
-      EpisodeToScore episode{.scenario = (*takes)[i].scenario, .ticks = take.end};
+      const grammar::Tick end = *take.EndTick();
+      const auto truth = truths->Truth(i, table.entities, table.ticks_per_second, end);
+      if (!truth) return Complain(context, truth.error());
+      EpisodeToScore episode{.scenario = (*names)[i].scenario, .ticks = end};
       episode.truth = *truth;
       episode.found = labels::Compared(*found, truths->compared());
       for (const grammar::NamedEvent& event : found->events)
@@ -350,13 +351,14 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
     recognisers.push_back(OracleWitness());
     return RunClosedForms(recognisers, options, context);
   }
-  for (const std::string& name : options.All("names")) {
-    if (const auto refused = RefuseRecording(name, context)) return *refused;
-  }
   const auto selection =
       SelectScenarios(options.All("names"), options.All("--filter"), context.root);
   if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
 
+  for (const ScenarioFile& file : selection->scenarios) {
+    if (const std::string lack = Lacks(NameOf(file), Need::kGroundTruth); !lack.empty())
+      return Complain(context, ExitCode::kBadInput, lack);
+  }
   ExitCode worst = ExitCode::kAgrees;
   const auto by_grammar = JudgeAll(*selection, grammars, events, *settings, context, worst);
   if (by_grammar.front().empty()) return worst;  // no table of nothing

@@ -11,10 +11,9 @@
 
 #include "harness/base/atomic_file.h"
 #include "harness/command/command.h"
-#include "harness/command/recorded_episode.h"
-#include "harness/episodes/schema.h"
+#include "harness/command/typed_episode.h"
+#include "harness/labels/label_files.h"
 #include "harness/labels/read_labels.h"
-#include "harness/labels/take.h"
 #include "harness/pictures/svg_file.h"
 #include "harness/sweep/margins.h"
 #include "harness/sweep/plateau.h"
@@ -85,22 +84,11 @@ std::optional<sweep::SweepRequest> RequestFrom(const ParsedOptions& options,
 
 /// The recordings, or the exit code after a complaint. Where no grammar was named, `request` gets
 /// theirs.
-tl::expected<std::vector<labels::TakeName>, ExitCode> EpisodesFrom(const ParsedOptions& options,
-                                                                   sweep::SweepRequest& request,
-                                                                   const CommandContext& context) {
-  const std::vector<std::string>& files = options.All("files");
-  const auto lines = std::ranges::find_if_not(files, episodes::IsEpisodeFile);
-  if (lines != files.end() && request.truth != sweep::Truth::kLabels)
-    return tl::unexpected(Complain(
-        context, ExitCode::kBadInput,
-        fmt::format("'{}' is no episode file: its events are known only from labels; --truth FILE",
-                    *lines)));
-  const auto episodes = labels::TakesOf(files, options.Text("--episode"));
-  if (!episodes) return tl::unexpected(Complain(context, episodes.error()));
-  if (episodes->empty())
-    return tl::unexpected(
-        Complain(context, ExitCode::kNothing,
-                 fmt::format("--episode: no episode matches '{}'", options.Text("--episode"))));
+tl::expected<std::vector<EpisodeName>, ExitCode> EpisodesFrom(const ParsedOptions& options,
+                                                              sweep::SweepRequest& request,
+                                                              const CommandContext& context) {
+  auto episodes = FindEpisodesOrComplain("files", options, context);
+  if (!episodes) return episodes;
   if (request.grammar.empty()) {
     Result<std::string> own = labels::OwnGrammar(*episodes);
     if (!own) return tl::unexpected(Complain(context, own.error()));

@@ -9,7 +9,7 @@
 #include "grammar/contents.h"
 #include "harness/base/atomic_file.h"
 #include "harness/command/command.h"
-#include "harness/command/recorded_episode.h"
+#include "harness/command/typed_episode.h"
 #include "harness/explain/replay.h"
 #include "harness/explain/tracks.h"
 
@@ -44,10 +44,10 @@ ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) 
     return Complain(context, ExitCode::kBadInput,
                     "--json contradicts an --output that ends with .csv");
   }
-  const auto source = OpenEpisodeOrComplain(options, context);
-  if (!source) return source.error();
+  auto episode = OpenEpisodeOrComplain(options.Text("scenario"), options, context);
+  if (!episode) return episode.error();
   const std::vector<std::string> only = options.All("--only");
-  const std::string unknown = UnknownTrack(only, *source->program);
+  const std::string unknown = UnknownTrack(only, *episode->program());
   if (!unknown.empty()) return Complain(context, ExitCode::kBadInput, unknown);
 
   // Found out before the episode is played.
@@ -56,13 +56,14 @@ ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) 
   if (file && !file->problem().empty())
     return Complain(context, ExitCode::kBadInput, "--output: " + file->problem());
 
-  const explain::Watched watched = explain::Watch(*source);
+  const explain::Watched watched = explain::Watch(*episode);
   if (!watched.problem.empty()) return Complain(context, ExitCode::kBadInput, watched.problem);
   const explain::Tracks tracks = explain::CollectTracks(*watched.past, {only.begin(), only.end()});
   if (!tracks.problem.empty()) return Complain(context, ExitCode::kBadInput, tracks.problem);
   std::ostream& out = file ? file->stream() : context.out;
   if (as_json) {
-    explain::WriteJson(tracks, source->name, GrammarName(*source->program), out);
+    explain::WriteJson(tracks, episode->loaded().scenario.name, GrammarName(*episode->program()),
+                       out);
   } else {
     explain::WriteCsv(tracks, out);
   }

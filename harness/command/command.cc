@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "harness/base/shell_quote.h"
+#include "harness/episode/lacks.h"
 #include "harness/process/worker_pool.h"
 
 namespace prehend::harness {
@@ -116,32 +117,24 @@ RunRequest RequestOf(const ParsedOptions& options, const std::string& scenario_f
           .settings = options.All("--set")};
 }
 
-std::optional<ExitCode> RefuseRecording(const std::string& typed, const CommandContext& context) {
-  std::error_code error;
-  if (!IsRecording(typed) || !std::filesystem::exists(typed, error)) return std::nullopt;
-  return Complain(context, ExitCode::kBadInput,
-                  typed + " is a recording, not a scenario; use '" + CommandText({"resegment"}) +
-                      "', 'explain', 'tracks' or 'check', or make an episode of it: '" +
-                      CommandText({"import", typed, "-o", "NAME.episodes"}) + "'");
-}
-
 tl::expected<ScenarioFile, ExitCode> FindScenarioOrComplain(const std::string& typed,
                                                             const CommandContext& context) {
-  if (const auto refused = RefuseRecording(typed, context)) return tl::unexpected(*refused);
-  const std::vector<ScenarioFile> scenarios = ListScenarios(context.root);
-  if (const auto path = FindScenario(scenarios, typed)) return ScenarioAt(scenarios, *path);
-  if (const auto path = FindScenario(ShippedScenarios(context.root), typed))
-    return ScenarioAt(scenarios, *path);
-  std::string message = "no scenario '" + typed + "'";
-  const std::string hint = HintForScenario(scenarios, typed);
-  if (!hint.empty()) message += "; " + hint;
-  message += " ('" + CommandText({"list"}) + "' shows all)";
+  const auto found = FindEpisodes({&typed, 1}, "", context.root);
+  if (!found) return tl::unexpected(Complain(context, found.error()));
+  const EpisodeName& first = found->front();
+  if (const std::string lack = Lacks(first, Need::kScenario); !lack.empty())
+    return tl::unexpected(Complain(context, ExitCode::kBadInput, lack));
+  return ScenarioAt(ListScenarios(context.root), first.file);
+}
+
+ExitCode Complain(const CommandContext& context, const NotFound& none) {
+  if (!none.diagnostics.empty()) return Complain(context, none.diagnostics);
   std::vector<std::string> corrected;
-  if (const std::string near = NearestScenario(scenarios, typed); !near.empty()) {
+  if (!none.nearest.empty()) {
     corrected = context.words;
-    std::ranges::replace(corrected, typed, near);
+    std::ranges::replace(corrected, none.typed, none.nearest);
   }
-  return tl::unexpected(ComplainWithCorrection(context, ExitCode::kNothing, message, corrected));
+  return ComplainWithCorrection(context, none.exit_code, none.message, corrected);
 }
 
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message) {

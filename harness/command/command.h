@@ -15,9 +15,9 @@
 #include "grammar/base/diagnostic.h"
 #include "harness/base/exit_code.h"
 #include "harness/command/options.h"
+#include "harness/episode/find_episodes.h"
 #include "harness/run/find_scenario.h"
 #include "harness/run/load_run.h"
-#include "harness/run/open_episode.h"
 
 namespace prehend::harness {
 
@@ -88,17 +88,16 @@ Option SettingsOption();    ///< of a grammar and a scenario
 Option ParametersOption();  ///< of a grammar alone
 RunRequest RequestOf(const ParsedOptions& options, const std::string& scenario_file);
 
-/// Reports a file that is a recording where a scenario is wanted; nothing of any other.
-std::optional<ExitCode> RefuseRecording(const std::string& typed, const CommandContext& context);
-
-/// The scenario that was typed, by name or path; otherwise, after reporting the nearest name, the
-/// exit code.
+/// The scenario that was typed, by name or path; otherwise, after reporting the nearest name, or
+/// what an episode of another kind lacks, the exit code.
 tl::expected<ScenarioFile, ExitCode> FindScenarioOrComplain(const std::string& typed,
                                                             const CommandContext& context);
 
 /// Prints "prehend: MESSAGE" to `err`, of a failure also the command that shows it again, and
 /// returns `code`.
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message);
+
+ExitCode Complain(const CommandContext& context, const NotFound& none);
 
 /// The same, with the words of the command that should have been typed.
 ExitCode ComplainWithCorrection(const CommandContext& context, ExitCode code,

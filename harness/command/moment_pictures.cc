@@ -8,14 +8,12 @@
 #include <filesystem>
 #include <optional>
 
-#include "harness/episodes/load_episode.h"
+#include "harness/episode/open_episode.h"
 #include "harness/pictures/pictures.h"
 
 namespace prehend::harness {
 namespace {
 
-using episodes::EpisodeFile;
-using episodes::EpisodeLoader;
 using episodes::EventAnswer;
 
 /// An episode, played.
@@ -24,22 +22,12 @@ struct Shown {
   RunResult run;
 };
 
-Result<Shown> Play(const Moment& moment, EpisodeLoader& loader) {
-  const Result<EpisodeFile> file = EpisodeFile::Open(moment.file);
-  if (!file) return tl::unexpected(file.error());
-  const auto row = std::ranges::find(file->episodes(), moment.episode, &episodes::EpisodeRow::id);
-  if (row == file->episodes().end()) {
-    return tl::unexpected(grammar::Diagnostics{{.file = moment.file,
-                                                .place = {},
-                                                .message = "the episode is gone",
-                                                .source_line = {},
-                                                .hint = {}}});
-  }
-  Result<LoadedRun> loaded = loader.Load(*file, *row);
-  if (!loaded) return tl::unexpected(loaded.error());
-  Result<RunResult> run = episodes::Replay(*file, *row, *loaded);
-  if (!run) return tl::unexpected(run.error());
-  return Shown{std::move(*loaded), std::move(*run)};
+Result<Shown> Play(const Moment& moment, EpisodeOpener& opener) {
+  Result<Episode> episode = opener.Open({.file = moment.file, .number = moment.episode});
+  if (!episode) return tl::unexpected(std::move(episode.error()));
+  Result<RunResult> run = episode->Run(true);
+  if (!run) return tl::unexpected(std::move(run.error()));
+  return Shown{std::move(episode->loaded()), std::move(*run)};
 }
 
 PictureFormat FormatOf(const Moment& moment, const physics::Scene& scene) {
@@ -88,13 +76,13 @@ MomentPictures DrawMoments(const std::vector<Moment>& moments, const std::string
     drawn.error = folder + " is not a folder, and cannot be made one";
     return drawn;
   }
-  EpisodeLoader loader(root);
+  EpisodeOpener opener(root);
   std::optional<Result<Shown>> shown;
   const Moment* last = nullptr;
   for (std::size_t i = 0; i < std::min(moments.size(), kMostMoments); ++i) {
     const Moment& moment = moments[i];
     if (!last || last->file != moment.file || last->episode != moment.episode)
-      shown.emplace(Play(moment, loader));
+      shown.emplace(Play(moment, opener));
     last = &moment;
     if (!*shown) {
       drawn.error = grammar::Format(shown->error());

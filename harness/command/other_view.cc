@@ -11,6 +11,7 @@
 #include "harness/judge/compare_engines.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/run_text.h"
+#include "harness/run/segment.h"
 
 namespace prehend::harness {
 namespace {

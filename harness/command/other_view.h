@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "harness/command/recorded_episode.h"
+#include "harness/command/typed_episode.h"
 #include "harness/golden/compare.h"
 
 namespace prehend::harness {

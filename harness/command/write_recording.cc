@@ -10,7 +10,7 @@
 
 namespace prehend::harness {
 
-ExitCode WriteRecording(Episode& recording, const std::string& output, const std::string& source,
+ExitCode WriteRecording(Recording& recording, const std::string& output, const std::string& source,
                         const std::string& grammar, const CommandContext& context) {
   if (episodes::IsEpisodeFile(output)) {
     if (const std::string problem = episodes::WhyNotRecordable(output); !problem.empty())

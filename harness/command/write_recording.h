@@ -13,7 +13,7 @@ namespace prehend::harness {
 /// Writes JSON Lines, or adds an episode where `output` is an episode file. `source`: what the
 /// recording was read from. `grammar`: the one whose events the episode has; empty: its own. Prints
 /// what is wrong.
-ExitCode WriteRecording(Episode& recording, const std::string& output, const std::string& source,
+ExitCode WriteRecording(Recording& recording, const std::string& output, const std::string& source,
                         const std::string& grammar, const CommandContext& context);
 
 }  // namespace prehend::harness

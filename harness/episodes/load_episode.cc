@@ -5,13 +5,13 @@
 #include <fmt/format.h>
 
 #include "grammar/contents.h"
-#include "grammar/name_events.h"
 #include "harness/episodes/recordings.h"
 #include "harness/episodes/stand_in.h"
 #include "harness/episodes/write_rows.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/project_library.h"
 #include "harness/run/run_text.h"
+#include "harness/run/segment.h"
 #include "harness/sense/entity_table.h"
 #include "harness/sense/sensing.h"
 #include "physics/scene/state_hash.h"
@@ -28,33 +28,6 @@ tl::unexpected<grammar::Diagnostics> Failure(const EpisodeFile& file, const Epis
        .source_line = {},
        .hint = {}}});
 }
-
-/// Senses frames and segments them.
-class Segmenter {
- public:
-  explicit Segmenter(const LoadedRun& loaded)
-      : loaded_(loaded),
-        table_(MakeEntityTable(loaded.scenario)),
-        sensing_(loaded.scenario.scene, loaded.scenario.sensing),
-        monitor_(loaded.program, table_) {}
-
-  const std::string& error() const { return monitor_.error(); }
-  bool IsDue(std::int64_t tick) const { return sensing_.Due(tick); }
-  void Look(const physics::Snapshot& snapshot) {
-    monitor_.AdvanceBy(sensing_.SenseChanges(snapshot), events_);
-  }
-  grammar::Timeline Finish(grammar::Tick end) {
-    monitor_.Finish(end, events_);
-    return grammar::NameEvents(*loaded_.program, table_, events_);
-  }
-
- private:
-  const LoadedRun& loaded_;
-  const grammar::EntityTable table_;
-  Sensing sensing_;
-  grammar::Monitor monitor_;
-  std::vector<grammar::Event> events_;
-};
 
 RunResult BlankResult(const EpisodeRow& episode, const LoadedRun& loaded) {
   RunResult run;
@@ -77,11 +50,8 @@ std::uint64_t HashOfText(const std::string& text) {
 
 }  // namespace
 
-namespace {
-
-/// The recording, if its frames are those that were recorded.
-Result<Episode> ReadWhole(const EpisodeFile& file, const EpisodeRow& episode) {
-  Result<Episode> recording = ReadRecording(file, episode);
+Result<Recording> ReadWhole(const EpisodeFile& file, const EpisodeRow& episode) {
+  Result<Recording> recording = ReadRecording(file, episode);
   if (!recording) return recording;
   const std::string hash = HashText(HashOfFrames(*recording));
   if (hash == episode.state_hash) return recording;
@@ -90,12 +60,14 @@ Result<Episode> ReadWhole(const EpisodeFile& file, const EpisodeRow& episode) {
                              hash, episode.state_hash));
 }
 
+namespace {
+
 /// Of a recording: what the grammar recognises, and with `frames` the scene that stands in for it.
 Result<RunResult> ResegmentRecording(const EpisodeFile& file, const EpisodeRow& episode,
                                      const LoadedRun& loaded, bool frames, MissingFacts* missing) {
-  Result<Episode> recording = ReadWhole(file, episode);
+  Result<Recording> recording = ReadWhole(file, episode);
   if (!recording) return tl::unexpected(std::move(recording.error()));
-  auto segmented = SegmentEpisode(*recording, loaded.program, file.path());
+  auto segmented = SegmentRecording(*recording, loaded.program, file.path());
   if (!segmented) return tl::unexpected(std::move(segmented.error()));
   if (missing != nullptr) *missing = std::move(segmented->missing);
   RunResult run = BlankResult(episode, loaded);
@@ -110,9 +82,9 @@ Result<RunResult> ResegmentRecording(const EpisodeFile& file, const EpisodeRow& 
 
 Result<SegmentedRecording> SegmentRecorded(const EpisodeFile& file, const EpisodeRow& episode,
                                            const LoadedRun& loaded) {
-  Result<Episode> recording = ReadWhole(file, episode);
+  Result<Recording> recording = ReadWhole(file, episode);
   if (!recording) return tl::unexpected(std::move(recording.error()));
-  return SegmentEpisode(*recording, loaded.program, file.path());
+  return SegmentRecording(*recording, loaded.program, file.path());
 }
 
 void EpisodeLoader::Refresh() {
@@ -193,17 +165,20 @@ Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
                             const LoadedRun& loaded, MissingFacts* missing) {
   if (!episode.simulated) return ResegmentRecording(file, episode, loaded, false, missing);
   RunResult run = BlankResult(episode, loaded);
-  Segmenter segmenter(loaded);
-  if (segmenter.error().empty()) {
-    EpisodeFrames frames(file, episode, LayoutOf(loaded.scenario.scene));
-    const std::string problem =
-        frames.Play([&](const physics::Snapshot& snapshot) { segmenter.Look(snapshot); },
-                    [&](std::int64_t tick) { return segmenter.IsDue(tick); });
-    if (!problem.empty()) return Failure(file, episode, problem);
-  }
-  run.timeline = segmenter.Finish(run.ticks + 1);
-  if (!segmenter.error().empty())
-    return Failure(file, episode, "the grammar cannot segment it: " + segmenter.error());
+  Sensing sensing(loaded.scenario.scene, loaded.scenario.sensing);
+  EpisodeFrames frames(file, episode, LayoutOf(loaded.scenario.scene));
+  std::string damage;
+  const FrameFeed play = [&](const std::function<void(const FrameNews&)>& take) {
+    damage = frames.Play(
+        [&](const physics::Snapshot& snapshot) { take(sensing.SenseChanges(snapshot)); },
+        [&](std::int64_t tick) { return sensing.Due(tick); });
+    return run.ticks + 1;
+  };
+  Segmentation segmentation = Segment(loaded.program, MakeEntityTable(loaded.scenario), play);
+  if (!damage.empty()) return Failure(file, episode, damage);
+  if (!segmentation.problem.empty())
+    return Failure(file, episode, "the grammar cannot segment it: " + segmentation.problem);
+  run.timeline = std::move(segmentation.timeline);
   run.state_hash = HashOfText(episode.state_hash);
   Result<std::vector<physics::ScriptNote>> notes = file.NotesOf(episode);
   if (!notes) return tl::unexpected(std::move(notes.error()));

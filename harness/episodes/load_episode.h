@@ -65,6 +65,9 @@ Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
 Result<RunResult> Replay(const EpisodeFile& file, const EpisodeRow& episode,
                          const LoadedRun& loaded);
 
+/// The frames of a recording, if they are those that were recorded.
+Result<Recording> ReadWhole(const EpisodeFile& file, const EpisodeRow& episode);
+
 /// Of a recording: what the grammar recognises, and what it misses.
 Result<SegmentedRecording> SegmentRecorded(const EpisodeFile& file, const EpisodeRow& episode,
                                            const LoadedRun& loaded);

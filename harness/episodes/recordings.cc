@@ -61,7 +61,7 @@ NewTask TaskOf(const ImportRequest& request, const EpisodeHeader& header,
   return task;
 }
 
-void WriteFrames(const Database& database, std::int64_t row, const Episode& recording) {
+void WriteFrames(const Database& database, std::int64_t row, const Recording& recording) {
   ChunkRows rows(database, row);
   Compressor compressor(9);
   std::span<const EpisodeFrame> left = recording.frames;
@@ -79,7 +79,7 @@ void WriteFrames(const Database& database, std::int64_t row, const Episode& reco
 
 }  // namespace
 
-std::uint64_t HashOfFrames(const Episode& recording) {
+std::uint64_t HashOfFrames(const Recording& recording) {
   physics::StateHash hash;
   const auto add = [&](double value) { hash.Add(&value, 1); };
   const auto add_integer = [&](std::int64_t value) { hash.Add(static_cast<std::uint64_t>(value)); };
@@ -119,7 +119,7 @@ std::uint64_t HashOfFrames(const Episode& recording) {
   return hash.value();
 }
 
-Result<ImportedRecording> ImportRecording(const ImportRequest& request, Episode& recording) {
+Result<ImportedRecording> ImportRecording(const ImportRequest& request, Recording& recording) {
   // What is segmented now is what is read later.
   Result<EpisodeHeader> kept = ReadFirstLine(request.source, FirstLine(recording.header));
   if (!kept) return tl::unexpected(std::move(kept.error()));
@@ -128,7 +128,7 @@ Result<ImportedRecording> ImportRecording(const ImportRequest& request, Episode&
   grammar::CompileResult compiled =
       LoadGrammarOf(recording.header, request.grammar, request.root, {}, &grammars);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
-  auto segmented = SegmentEpisode(recording, std::move(compiled.program), request.source);
+  auto segmented = SegmentRecording(recording, std::move(compiled.program), request.source);
   if (!segmented) return tl::unexpected(std::move(segmented.error()));
   ImportedRecording imported{.segmented = std::move(*segmented), .problem = {}};
   const EpisodeHeader& header = recording.header;
@@ -166,10 +166,10 @@ Result<EpisodeHeader> ReadRecordingHeader(const EpisodeFile& file, const Episode
   return ReadFirstLine(file.path() + ": " + kHeaderFile, header->second);
 }
 
-Result<Episode> ReadRecording(const EpisodeFile& file, const EpisodeRow& row) {
+Result<Recording> ReadRecording(const EpisodeFile& file, const EpisodeRow& row) {
   Result<EpisodeHeader> header = ReadRecordingHeader(file, row);
   if (!header) return tl::unexpected(std::move(header.error()));
-  Episode recording;
+  Recording recording;
   recording.header = std::move(*header);
   recording.end_tick = row.ticks + 1;
   recording.says_its_end = row.status == kCompleted;

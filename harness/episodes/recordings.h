@@ -30,15 +30,15 @@ struct ImportedRecording {
 
 /// Adds a recording to an episode file, with the events that the grammar recognises; all of it or
 /// nothing. Reports a grammar that cannot be read or cannot segment it.
-Result<ImportedRecording> ImportRecording(const ImportRequest& request, Episode& recording);
+Result<ImportedRecording> ImportRecording(const ImportRequest& request, Recording& recording);
 
 /// The recording again, bit by bit. Its first line went through JSON.
-Result<Episode> ReadRecording(const EpisodeFile& file, const EpisodeRow& row);
+Result<Recording> ReadRecording(const EpisodeFile& file, const EpisodeRow& row);
 
 /// Only its first line.
 Result<EpisodeHeader> ReadRecordingHeader(const EpisodeFile& file, const EpisodeRow& row);
 
 /// What EpisodeRow::state_hash is of a recording.
-std::uint64_t HashOfFrames(const Episode& recording);
+std::uint64_t HashOfFrames(const Recording& recording);
 
 }  // namespace prehend::harness::episodes

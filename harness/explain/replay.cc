@@ -6,16 +6,17 @@
 
 namespace prehend::harness::explain {
 
-Watched Watch(const EpisodeSource& source) {
+Watched Watch(const std::shared_ptr<const grammar::Program>& program,
+              const grammar::EntityTable& entities, const PlayFrames& play) {
   Watched watched;
-  watched.past = std::make_unique<grammar::ReplayMonitor>(source.program, source.entity_table);
+  watched.past = std::make_unique<grammar::ReplayMonitor>(program, entities);
   grammar::ReplayMonitor& past = *watched.past;
   bool too_long = false;
-  const EpisodeSource::Played played = source.play([&](const grammar::Frame& frame) {
+  const Episode::End played = play([&](const grammar::Frame& frame) {
     too_long = too_long || past.frames() >= kMaxFrames;
     if (!too_long) past.Advance(frame);
   });
-  past.Finish(played.end);
+  past.Finish(played.tick);
   watched.failure = played.failure;
   if (!past.error().empty()) {
     watched.problem = "the grammar cannot be evaluated on this episode: " + past.error();
@@ -27,6 +28,11 @@ Watched Watch(const EpisodeSource& source) {
     watched.problem = played.failure.empty() ? "the episode has no frames" : played.failure;
   }
   return watched;
+}
+
+Watched Watch(Episode& episode) {
+  return Watch(episode.program(), episode.entities(),
+               [&](const auto& look) { return episode.EachFrame(look); });
 }
 
 }  // namespace prehend::harness::explain

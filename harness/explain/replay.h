@@ -3,10 +3,12 @@
 // Tested by tests/harness/explain/explain_test.cc
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "grammar/replay_monitor.h"
-#include "harness/run/open_episode.h"
+#include "harness/episode/episode.h"
 
 namespace prehend::harness::explain {
 
@@ -19,6 +21,11 @@ struct Watched {
   std::string problem;  ///< empty, or why the grammar cannot watch this; then nothing may be asked
 };
 
-Watched Watch(const EpisodeSource& source);
+/// Calls its argument with every frame of an episode.
+using PlayFrames = std::function<Episode::End(const std::function<void(const grammar::Frame&)>&)>;
+
+Watched Watch(const std::shared_ptr<const grammar::Program>& program,
+              const grammar::EntityTable& entities, const PlayFrames& play);
+Watched Watch(Episode& episode);
 
 }  // namespace prehend::harness::explain

@@ -394,7 +394,7 @@ class Importer {
   }
 
   void AddFrames() {
-    Episode& episode = imported_.episode;
+    Recording& episode = imported_.episode;
     EpisodeFrame before;
     double before_s = 0;
     for (const auto& [tick, t_s] : times_) {

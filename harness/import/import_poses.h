@@ -27,7 +27,7 @@ struct EntityReport {
 };
 
 struct Imported {
-  Episode episode;
+  Recording episode;
   std::vector<EntityReport> entities;
   double duration_s = 0;
   std::vector<std::string> warnings;  ///< one line each

@@ -9,7 +9,7 @@
 namespace prehend::harness::import {
 
 std::string ImportTable(const Imported& imported) {
-  const Episode& episode = imported.episode;
+  const Recording& episode = imported.episode;
   std::string table = fmt::format("{}: {} frames, {:.3f} s\n", episode.header.episode,
                                   episode.frames.size(), imported.duration_s);
   std::size_t width = 16;

@@ -51,7 +51,7 @@ struct SeenRests {
   std::vector<Eigen::Vector3d> hands;
 };
 
-SeenRests RestsIn(const Episode& episode, const std::set<std::size_t>& untrue) {
+SeenRests RestsIn(const Recording& episode, const std::set<std::size_t>& untrue) {
   SeenRests seen;
   const auto& entities = episode.header.entity_table.entities;
   const auto step = static_cast<grammar::Tick>(
@@ -116,7 +116,7 @@ double OffPlane(const RestPlane& plane, const RestPlace& place) {
 
 }  // namespace
 
-std::string TiltOfRests(const Episode& episode, const Eigen::Quaterniond& turn,
+std::string TiltOfRests(const Recording& episode, const Eigen::Quaterniond& turn,
                         const std::set<std::size_t>& untrue) {
   SeenRests seen = RestsIn(episode, untrue);
   const std::size_t all = seen.places.size();

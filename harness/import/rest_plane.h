@@ -14,7 +14,7 @@ namespace prehend::harness::import {
 /// Says by how much the plane is tilted on which most things rest, how well it is known, and what
 /// the map could say; "" where that is less than 5 degrees, or too few places tell. `turn`: from
 /// the file's axes to the recording's. Not of `untrue`, whose heights mean nothing.
-std::string TiltOfRests(const Episode& episode, const Eigen::Quaterniond& turn,
+std::string TiltOfRests(const Recording& episode, const Eigen::Quaterniond& turn,
                         const std::set<std::size_t>& untrue);
 
 }  // namespace prehend::harness::import

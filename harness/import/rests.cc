@@ -46,7 +46,7 @@ struct Rests {
   Eigen::AlignedBox2d place;
 };
 
-Rests RestsOf(const Episode& episode, std::size_t thing) {
+Rests RestsOf(const Recording& episode, std::size_t thing) {
   Rests rests;
   const auto& entities = episode.header.entity_table.entities;
   const auto step = static_cast<grammar::Tick>(
@@ -80,7 +80,7 @@ Rests RestsOf(const Episode& episode, std::size_t thing) {
 
 }  // namespace
 
-std::string RestOnNothing(const Episode& episode, const std::set<std::size_t>& untrue) {
+std::string RestOnNothing(const Recording& episode, const std::set<std::size_t>& untrue) {
   const auto& entities = episode.header.entity_table.entities;
   std::vector<std::string> names;
   std::vector<double> bottoms_m;

@@ -12,6 +12,6 @@ namespace prehend::harness::import {
 
 /// Names the things that rest mostly where nothing is below them, at which height, and what the map
 /// could say; "" if there are none. Not of `untrue`, whose boxes mean nothing.
-std::string RestOnNothing(const Episode& episode, const std::set<std::size_t>& untrue);
+std::string RestOnNothing(const Recording& episode, const std::set<std::size_t>& untrue);
 
 }  // namespace prehend::harness::import

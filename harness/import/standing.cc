@@ -54,7 +54,7 @@ struct Rest {
 
 class StandingFinder {
  public:
-  StandingFinder(const Episode& episode, const ImportMap& map)
+  StandingFinder(const Recording& episode, const ImportMap& map)
       : episode_(episode), map_(map), entities_(episode.header.entity_table.entities) {}
 
   NotUpright Find() {
@@ -202,7 +202,7 @@ class StandingFinder {
         fmt::join(names, ", "), names.size() == 1 ? "has" : "have"));
   }
 
-  const Episode& episode_;
+  const Recording& episode_;
   const ImportMap& map_;
   const std::vector<grammar::EntityInfo>& entities_;
   NotUpright found_;
@@ -210,7 +210,7 @@ class StandingFinder {
 
 }  // namespace
 
-NotUpright FindNotUpright(const Episode& episode, const ImportMap& map) {
+NotUpright FindNotUpright(const Recording& episode, const ImportMap& map) {
   return StandingFinder(episode, map).Find();
 }
 

@@ -19,6 +19,6 @@ struct NotUpright {
 
 /// Names what rests neither upright nor, as far as can be told, on its side or on its head, and
 /// when it rests.
-NotUpright FindNotUpright(const Episode& episode, const ImportMap& map);
+NotUpright FindNotUpright(const Recording& episode, const ImportMap& map);
 
 }  // namespace prehend::harness::import

@@ -5,11 +5,10 @@
 #include <chrono>
 #include <filesystem>
 #include <map>
-#include <memory>
 
 #include "grammar/contents.h"
 #include "harness/base/atomic_file.h"
-#include "harness/episodes/load_episode.h"
+#include "harness/episode/open_episode.h"
 #include "harness/knowledge/episode_graph.h"
 #include "harness/knowledge/neem.h"
 #include "harness/process/run_tool.h"
@@ -40,7 +39,7 @@ std::int64_t MillisecondsOf(const std::string& day) {
 class KnowledgeWriter {
  public:
   KnowledgeWriter(const KnowledgeRequest& request, Vocabulary vocabulary)
-      : request_(request), vocabulary_(std::move(vocabulary)), loader_(request.root) {
+      : request_(request), vocabulary_(std::move(vocabulary)), opener_(request.root) {
     std::string ignored;
     hierarchy_.Add(ReadTurtle(vocabulary_.text(), ignored));
   }
@@ -48,29 +47,21 @@ class KnowledgeWriter {
   /// Returns what could not be read or written.
   grammar::Diagnostics WriteTerminology() { return WriteText("prehend", vocabulary_.text()); }
 
-  grammar::Diagnostics Write(const episodes::EpisodeName& name) {
-    if (!file_ || file_->path() != name.file) {
-      auto opened = episodes::EpisodeFile::Open(name.file);
-      if (!opened) return opened.error();
-      file_ = std::make_unique<episodes::EpisodeFile>(std::move(*opened));
-    }
-    const auto row = std::ranges::find(file_->episodes(), name.id, &episodes::EpisodeRow::id);
-    if (row == file_->episodes().end()) return Problem(name.file, "the episode is gone");
+  grammar::Diagnostics Write(const EpisodeName& name) {
+    Result<Episode> opened = opener_.Open(name);
+    if (!opened) return opened.error();
+    file_ = opened->file();
+    const episodes::EpisodeRow* row = opened->row();
     EpisodeOfTask episode{
         .row = *row, .file = fs::absolute(name.file).string(), .timeline = {}, .composed = {}};
-    if (!row->simulated)
-      return Problem(name.file, row->scenario +
-                                    ": it is a recording; knowledge is written of what "
-                                    "was simulated");
-    auto loaded = loader_.Load(*file_, *row);
-    if (!loaded) return loaded.error();
-    auto timeline = file_->TimelineOf(*row);
+    auto timeline = opened->Recorded();
     if (!timeline) return timeline.error();
     episode.timeline = std::move(*timeline);
-    for (const grammar::EventSignature& event : grammar::EventSignatures(*loaded->program))
+    for (const grammar::EventSignature& event : grammar::EventSignatures(*opened->program()))
       if (event.composed) episode.composed.insert(event.name);
 
-    episodes::EpisodeFrames frames(*file_, *row, episodes::LayoutOf(loaded->scenario.scene));
+    episodes::EpisodeFrames frames(*file_, *row,
+                                   episodes::LayoutOf(opened->loaded().scenario.scene));
     auto map = MapOf(*row, frames);
     if (!map) return map.error();
     const std::vector<Triple> triples = EpisodeTriples(episode, **map, vocabulary_);
@@ -190,23 +181,23 @@ class KnowledgeWriter {
   const KnowledgeRequest& request_;
   Vocabulary vocabulary_;
   Hierarchy hierarchy_;
-  episodes::EpisodeLoader loader_;
-  std::unique_ptr<episodes::EpisodeFile> file_;
-  std::map<std::string, WrittenMap> maps_;  ///< by the UUID of their task
+  EpisodeOpener opener_;
+  const episodes::EpisodeFile* file_ = nullptr;  ///< of the episode that is being written
+  std::map<std::string, WrittenMap> maps_;       ///< by the UUID of their task
   std::map<std::string, physics::Pose> last_;
   KnowledgeWritten written_;
 };
 
 }  // namespace
 
-Result<KnowledgeWritten> WriteKnowledge(const std::vector<episodes::EpisodeName>& episodes,
+Result<KnowledgeWritten> WriteKnowledge(const std::vector<EpisodeName>& episodes,
                                         const KnowledgeRequest& request) {
   Result<Vocabulary> vocabulary = Vocabulary::Load(request.root);
   if (!vocabulary) return tl::unexpected(vocabulary.error());
   KnowledgeWriter writer(request, std::move(*vocabulary));
   if (const grammar::Diagnostics bad = writer.WriteTerminology(); !bad.empty())
     return tl::unexpected(bad);
-  for (const episodes::EpisodeName& episode : episodes) {
+  for (const EpisodeName& episode : episodes) {
     if (const grammar::Diagnostics bad = writer.Write(episode); !bad.empty())
       return tl::unexpected(bad);
   }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "harness/base/result.h"
-#include "harness/episodes/resegment_many.h"
+#include "harness/run/episode_name.h"
 
 namespace prehend::harness::knowledge {
 
@@ -22,8 +22,9 @@ struct KnowledgeWritten {
   std::size_t episodes = 0, tasks = 0, events = 0, statements = 0;
 };
 
-/// Writes nothing of a file that cannot be read. Reports what cannot be written.
-Result<KnowledgeWritten> WriteKnowledge(const std::vector<episodes::EpisodeName>& episodes,
+/// `episodes` are runs kept in files. Writes nothing of a file that cannot be read. Reports what
+/// cannot be written.
+Result<KnowledgeWritten> WriteKnowledge(const std::vector<EpisodeName>& episodes,
                                         const KnowledgeRequest& request);
 
 }  // namespace prehend::harness::knowledge

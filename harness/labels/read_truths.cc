@@ -8,11 +8,11 @@
 
 namespace prehend::harness::labels {
 
-Result<LabelReading> ReadTruths(const std::vector<TakeName>& takes,
+Result<LabelReading> ReadTruths(const std::vector<EpisodeName>& episodes,
                                 const std::vector<std::string>& given, const std::string& map,
                                 const grammar::Program& program, Backward backward) {
   std::string problem;
-  const std::vector<std::string> paths = LabelFilesOf(takes, given, problem);
+  const std::vector<std::string> paths = LabelFilesOf(episodes, given, problem);
   if (!problem.empty())
     return tl::unexpected(
         grammar::Diagnostics{{.file = "--truth", .place = {}, .message = problem}});

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "harness/labels/label_files.h"
 #include "harness/labels/label_map.h"
-#include "harness/labels/take.h"
 
 namespace prehend::harness::labels {
 
 /// `given`: files of labels or a folder; `map`: a file, or "" for none. What is read has one file
-/// per take. Errors of all files are told together.
-Result<LabelReading> ReadTruths(const std::vector<TakeName>& takes,
+/// per episode. Errors of all files are told together.
+Result<LabelReading> ReadTruths(const std::vector<EpisodeName>& episodes,
                                 const std::vector<std::string>& given, const std::string& map,
                                 const grammar::Program& program,
                                 Backward backward = Backward::kRefuse);

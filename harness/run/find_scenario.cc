@@ -116,4 +116,21 @@ std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const st
   return near.empty() ? "" : fmt::format("did you mean '{}'?", near);
 }
 
+EpisodeName NameOf(const ScenarioFile& file) {
+  return {file.path, file.episode, IdOf(file), file.origin, ""};
+}
+
+ScenarioFile ScenarioOf(const EpisodeName& episode, const std::vector<ScenarioFile>& all) {
+  ScenarioFile file = ScenarioAt(all, episode.file);
+  file.origin = episode.origin;
+  if (!episode.number) return file;
+  const std::size_t slash = std::min(episode.scenario.rfind('/'), episode.scenario.size());
+  const bool has_skill = slash < episode.scenario.size();
+  file.skill = has_skill ? episode.scenario.substr(0, slash) : "";
+  file.name = has_skill ? episode.scenario.substr(slash + 1) : episode.scenario;
+  file.in_project = std::ranges::find(all, episode.scenario, IdOf) != all.end();
+  file.episode = episode.number;
+  return file;
+}
+
 }  // namespace prehend::harness

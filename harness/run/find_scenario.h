@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/run/episode_name.h"
+
 namespace prehend::harness {
 
 /// The folder of scenarios/ whose files are examples of errors.
@@ -17,9 +19,16 @@ struct ScenarioFile {
   std::string skill;  ///< its folder below scenarios/, as a ReadableName(), or ""
   std::string name;   ///< without ".yaml", likewise
   std::string path;
-  bool in_project = true;    ///< below root/scenarios, so that it has a golden
-  std::int64_t episode = 0;  ///< not 0: this one of the episode file at `path`, already played
+  bool in_project = true;  ///< below root/scenarios, so that it has a golden
+  /// In the episode file at `path`: already played, or a recording.
+  std::optional<std::int64_t> episode = {};
+  Origin origin = Origin::kScenario;
 };
+
+/// As an episode.
+EpisodeName NameOf(const ScenarioFile& file);
+/// An episode as the scenario that it is or was; only those of the project, `all`, have goldens.
+ScenarioFile ScenarioOf(const EpisodeName& episode, const std::vector<ScenarioFile>& all);
 
 /// All below root/scenarios, sorted by skill and name, without the folder `invalid`.
 std::vector<ScenarioFile> ListScenarios(const std::string& root);

@@ -16,7 +16,7 @@ namespace prehend::harness {
 namespace {
 
 /// What is not tracked for a while; of what never is, there is a warning of its own.
-std::string GapsOfPlaced(const Episode& episode, const std::vector<bool>& placed) {
+std::string GapsOfPlaced(const Recording& episode, const std::vector<bool>& placed) {
   std::vector<LookGaps> gaps = episode.gaps;
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     if (!placed[i]) gaps[i] = {};
@@ -63,7 +63,7 @@ std::string_view RemedyFor(std::string_view fact, bool uses_motion) {
 
 }  // namespace
 
-MissingFacts FindMissingFacts(Episode& episode, const grammar::Program& program) {
+MissingFacts FindMissingFacts(Recording& episode, const grammar::Program& program) {
   MissingFacts missing;
   grammar::FactsOfEpisode facts;
   const std::vector<grammar::EntityInfo>& entities = episode.header.entity_table.entities;

@@ -20,6 +20,6 @@ struct MissingFacts {
   bool nothing_left = false;  ///< no event is left that could be recognised
 };
 
-MissingFacts FindMissingFacts(Episode& episode, const grammar::Program& program);
+MissingFacts FindMissingFacts(Recording& episode, const grammar::Program& program);
 
 }  // namespace prehend::harness

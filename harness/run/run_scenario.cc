@@ -109,17 +109,4 @@ RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::P
   return run.Finish();
 }
 
-grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::Snapshot> recording,
-                            std::shared_ptr<const grammar::Program> program, grammar::Tick end) {
-  Sensing sensing(scenario.scene, scenario.sensing);
-  const grammar::EntityTable entity_table = MakeEntityTable(scenario);
-  grammar::Monitor monitor(program, entity_table);
-  std::vector<grammar::Event> events;
-  for (const physics::Snapshot& snapshot : recording) {
-    if (sensing.Due(snapshot.tick)) monitor.AdvanceBy(sensing.SenseChanges(snapshot), events);
-  }
-  monitor.Finish(end, events);
-  return grammar::NameEvents(*program, entity_table, events);
-}
-
 }  // namespace prehend::harness

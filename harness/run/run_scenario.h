@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -73,10 +72,5 @@ class ScenarioRun {
 /// Plays a scenario to its end.
 RunResult RunScenario(const Scenario& scenario, std::shared_ptr<const grammar::Program> program,
                       const RunOptions& options = {});
-
-/// What another grammar recognises in the same episode, without simulating it again. `recording`
-/// has a snapshot per tick, of which those are sensed that are due.
-grammar::Timeline Resegment(const Scenario& scenario, std::span<const physics::Snapshot> recording,
-                            std::shared_ptr<const grammar::Program> program, grammar::Tick end);
 
 }  // namespace prehend::harness

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "grammar/name_events.h"
 #include "harness/run/load_grammar.h"
+#include "harness/run/segment.h"
 
 namespace prehend::harness {
 namespace {
@@ -24,42 +24,52 @@ grammar::Tick MedianStep(const std::vector<EpisodeFrame>& frames) {
 }  // namespace
 
 Result<SegmentedRecording> SegmentRecording(const RunRequest& request, const std::string& root) {
-  Result<Episode> episode = ReadEpisode(request.scenario_file);
+  Result<Recording> episode = ReadRecording(request.scenario_file);
   if (!episode) return tl::unexpected(std::move(episode.error()));
   const Result<grammar::Overrides> parameters = ParameterSettings(request.settings);
   if (!parameters) return tl::unexpected(parameters.error());
   grammar::CompileResult compiled =
       LoadGrammarOf(episode->header, request.grammar, root, *parameters);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
-  return SegmentEpisode(*episode, std::move(compiled.program), request.scenario_file);
+  return SegmentRecording(*episode, std::move(compiled.program), request.scenario_file);
 }
 
-Result<SegmentedRecording> SegmentEpisode(Episode& episode,
-                                          std::shared_ptr<const grammar::Program> program,
-                                          const std::string& file) {
-  const grammar::EntityTable& entities = episode.header.entity_table;
-  SegmentedRecording segmented{.name = episode.header.episode,
+Result<SegmentedRecording> SegmentRecording(Recording& recording,
+                                            std::shared_ptr<const grammar::Program> program,
+                                            const std::string& file) {
+  const grammar::EntityTable& entities = recording.header.entity_table;
+  SegmentedRecording segmented{.name = recording.header.episode,
                                .program = program,
                                .timeline = {},
-                               .end = episode.end_tick,
-                               .frame_ticks = MedianStep(episode.frames),
-                               .says_its_end = episode.says_its_end,
+                               .end = recording.end_tick,
+                               .frame_ticks = MedianStep(recording.frames),
+                               .says_its_end = recording.says_its_end,
                                .warnings = Warnings(*program, entities),
-                               .missing = FindMissingFacts(episode, *program)};
-  grammar::Monitor monitor(program, entities);
-  std::vector<grammar::Event> events;
-  for (EpisodeFrame& frame : episode.frames) monitor.Advance(frame.View(), events);
-  monitor.Finish(episode.end_tick, events);
-  if (!monitor.error().empty()) {
+                               .missing = FindMissingFacts(recording, *program)};
+  Result<grammar::Timeline> timeline = SegmentFrames(recording, program, file);
+  if (!timeline) return tl::unexpected(std::move(timeline.error()));
+  segmented.timeline = std::move(*timeline);
+  return segmented;
+}
+
+Result<grammar::Timeline> SegmentFrames(Recording& recording,
+                                        const std::shared_ptr<const grammar::Program>& program,
+                                        const std::string& file) {
+  Segmentation segmentation = Segment(program, recording.header.entity_table,
+                                      [&](const std::function<void(const FrameNews&)>& take) {
+                                        for (EpisodeFrame& frame : recording.frames)
+                                          take(frame.View());
+                                        return recording.end_tick;
+                                      });
+  if (!segmentation.problem.empty()) {
     return tl::unexpected(grammar::Diagnostics{
         {.file = file,
          .place = {},
-         .message = "the grammar cannot segment this recording: " + monitor.error(),
+         .message = "the grammar cannot segment this recording: " + segmentation.problem,
          .source_line = {},
          .hint = {}}});
   }
-  segmented.timeline = grammar::NameEvents(*program, entities, events);
-  return segmented;
+  return std::move(segmentation.timeline);
 }
 
 }  // namespace prehend::harness

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "grammar/base/timeline.h"
 #include "harness/run/load_run.h"
 #include "harness/run/missing_facts.h"
 
@@ -26,8 +27,13 @@ struct SegmentedRecording {
 Result<SegmentedRecording> SegmentRecording(const RunRequest& request, const std::string& root);
 
 /// The same of a recording that has been read, and a grammar. `file` is for messages.
-Result<SegmentedRecording> SegmentEpisode(Episode& episode,
-                                          std::shared_ptr<const grammar::Program> program,
-                                          const std::string& file);
+Result<SegmentedRecording> SegmentRecording(Recording& recording,
+                                            std::shared_ptr<const grammar::Program> program,
+                                            const std::string& file);
+
+/// Only its events.
+Result<grammar::Timeline> SegmentFrames(Recording& recording,
+                                        const std::shared_ptr<const grammar::Program>& program,
+                                        const std::string& file);
 
 }  // namespace prehend::harness

@@ -11,6 +11,7 @@
 
 #include "harness/oracle/oracle.h"
 #include "harness/run/run_scenario.h"
+#include "harness/run/segment.h"
 
 namespace prehend::harness {
 namespace {

@@ -9,13 +9,13 @@
 
 #include "grammar/monitor.h"
 #include "harness/base/result.h"
+#include "harness/run/episode_name.h"
 #include "harness/score/score.h"
 
 namespace prehend::harness {
 
 struct ScoreRequest {
-  std::string scenario_file;
-  std::int64_t episode = 0;  ///< not 0: this one of the episode file `scenario_file`
+  EpisodeName episode;
   std::string id;
   std::string root;
   std::vector<std::string> grammars;  ///< names or paths

@@ -43,7 +43,7 @@ struct EpisodeFrame {
   grammar::Frame View();
 };
 
-struct Episode {
+struct Recording {
   EpisodeHeader header;
   std::vector<EpisodeFrame> frames;
   grammar::Tick end_tick = 0;  ///< the first tick after the episode
@@ -54,10 +54,10 @@ struct Episode {
 
 /// For frames that were not read from a file: what is not tracked for a short time is as it was
 /// seen last.
-void BridgeLooks(Episode& episode);
+void BridgeLooks(Recording& episode);
 
 /// Reports errors with file, line and column. The limits are those above.
-Result<Episode> ReadEpisode(const std::string& path);
+Result<Recording> ReadRecording(const std::string& path);
 
 /// Writes each frame as it comes.
 class EpisodeWriter {

@@ -41,7 +41,7 @@ class EpisodeReader {
       : file_(std::move(file)), line_format_(episode::LineFormat()) {}
 
   grammar::Diagnostics diagnostics;
-  Episode episode;
+  Recording episode;
 
   void TakeLine(const std::string& text) {
     ++line_;
@@ -470,7 +470,7 @@ grammar::Frame EpisodeFrame::View() {
   return {tick, entities, hands, touches};
 }
 
-void BridgeLooks(Episode& episode) {
+void BridgeLooks(Recording& episode) {
   LookBridge bridge = BridgeOf(episode.header);
   for (EpisodeFrame& frame : episode.frames) bridge.Fill(frame.tick, frame.entities);
   episode.gaps = bridge.Gaps();
@@ -501,12 +501,12 @@ std::string EpisodeStream::gaps() const {
 }
 bool EpisodeStream::says_its_end() const { return reader_->lines.episode.says_its_end; }
 grammar::Tick EpisodeStream::end_tick() const {
-  const Episode& episode = reader_->lines.episode;
+  const Recording& episode = reader_->lines.episode;
   if (episode.says_its_end) return episode.end_tick;
   return episode.frames.empty() ? 0 : episode.frames.back().tick + 1;
 }
 
-Result<Episode> ReadEpisode(const std::string& path) {
+Result<Recording> ReadRecording(const std::string& path) {
   episode::EpisodeReader reader(path);
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {

@@ -97,9 +97,8 @@ double Width(const Margin& margin) {
 
 }  // namespace
 
-Result<Margins> FindMargins(const std::vector<episodes::EpisodeName>& episodes,
-                            SweepRequest request, double within,
-                            const std::vector<std::string>& only,
+Result<Margins> FindMargins(const std::vector<EpisodeName>& episodes, SweepRequest request,
+                            double within, const std::vector<std::string>& only,
                             const std::function<void(const Margins&)>& so_far) {
   const Result<grammar::Overrides> fixed = ParameterSettings(request.settings);
   if (!fixed) return tl::unexpected(fixed.error());

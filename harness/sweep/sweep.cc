@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "grammar/contents.h"
+#include "harness/episode/lacks.h"
+#include "harness/episode/open_episode.h"
 #include "harness/golden/golden_files.h"
 #include "harness/labels/read_truths.h"
 #include "harness/oracle/oracle.h"
@@ -18,7 +20,6 @@
 #include "harness/run/load_grammar.h"
 #include "harness/score/labelled.h"
 #include "harness/score/overlap_metrics.h"
-#include "harness/sense/sensing.h"
 #include "harness/timeline/match_events.h"
 
 namespace prehend::harness::sweep {
@@ -68,24 +69,34 @@ Result<Programs> CompileAll(const SweepRequest& request) {
   return programs;
 }
 
+/// Why the episode has no such truth, or "".
+std::string WhyNoTruth(const Episode& episode, Truth truth) {
+  if (truth == Truth::kRecorded) return Lacks(episode.name(), Need::kRecordedEvents);
+  return truth == Truth::kLabels ? "" : Lacks(episode.name(), Need::kGroundTruth);
+}
+
 /// The true events, only those that the grammar prints; or why there are none.
-tl::expected<grammar::Timeline, std::string> TruthOf(const SweepRequest& request,
-                                                     const episodes::EpisodeFile& file,
-                                                     const episodes::EpisodeRow& row,
-                                                     const LoadedRun& loaded, const RunResult& run,
+tl::expected<grammar::Timeline, std::string> TruthOf(const SweepRequest& request, Episode& episode,
                                                      const grammar::Program& program) {
+  if (const std::string why = WhyNoTruth(episode, request.truth); !why.empty())
+    return tl::unexpected(why);
+  const EpisodeName& name = episode.name();
   grammar::Timeline truth;
   if (request.truth == Truth::kOracle) {
-    truth = TrueTimeline(loaded.scenario.scene, run.recording, run.ticks + 1);
-  } else if (row.grammar != GrammarName(program)) {
-    return tl::unexpected("its events are those of the grammar " + row.grammar);
+    const auto snapshots = episode.Snapshots();
+    if (!snapshots) return tl::unexpected(snapshots.error().front().message);
+    truth = TrueTimeline(episode.loaded().scenario.scene, *snapshots, *episode.EndTick());
+  } else if (name.number && name.grammar != GrammarName(program)) {
+    return tl::unexpected("its events are those of the grammar " + name.grammar);
   } else if (request.truth == Truth::kRecorded) {
-    Result<grammar::Timeline> recorded = file.TimelineOf(row);
+    Result<grammar::Timeline> recorded = episode.Recorded();
     if (!recorded) return tl::unexpected(recorded.error().front().message);
     truth = std::move(*recorded);
   } else {
-    const auto golden = GoldenFiles(request.root).ReadGoldenOf(row.scenario);
+    const auto golden = GoldenFiles(request.root).ReadGoldenOf(name.scenario);
     if (!golden || !*golden) return tl::unexpected(std::string("it has no golden"));
+    if (!name.number && (*golden)->grammar != GrammarName(program))
+      return tl::unexpected("its golden is of the grammar " + (*golden)->grammar);
     truth = ToTimeline(**golden);
   }
   std::erase_if(truth.events,
@@ -126,80 +137,32 @@ Json Judged(const grammar::Timeline& truth, grammar::Timeline found, const Sweep
           {"b", begins},       {"f", ends},       {"l", latencies}};
 }
 
-/// A recording under all settings; it has no physical truth, and its golden lies elsewhere.
-Json JudgedRecording(const episodes::EpisodeName& name, const episodes::EpisodeFile& file,
-                     const episodes::EpisodeRow& row, const SweepRequest& request,
-                     const Programs& programs, ProgressCounters::Tick& measured) {
-  if (request.truth != Truth::kRecorded)
-    return {{"out", "nothing was simulated; '--truth recorded' or labels fit a recording"}};
-  const Result<labels::Take> take = labels::OpenTake(name, request.root);
-  if (!take) return {{"out", grammar::Format(take.error().front())}, {"unread", true}};
-  const auto truth = TruthOf(request, file, row, {}, {}, *programs.front());
-  if (!truth) return {{"out", truth.error()}};
-  Json points = Json::array();
-  for (const auto& program : programs) {
-    Result<grammar::Timeline> found = take->segment(program);
-    if (!found) return {{"out", grammar::Format(found.error().front())}};
-    points.push_back(Judged(*truth, std::move(*found), request, take->end));
-    ++measured;
-  }
-  return {{"points", std::move(points)}};
-}
-
-/// One episode under all settings.
-Json JudgedEpisode(const episodes::EpisodeName& name, const SweepRequest& request,
-                   const Programs& programs, episodes::EpisodeLoader& loader,
+/// One episode under all settings. With labels these are its truth, at `index`.
+Json JudgedEpisode(const EpisodeName& name, std::size_t index,
+                   const std::optional<labels::LabelReading>& labels, const SweepRequest& request,
+                   const Programs& programs, EpisodeOpener& opener,
                    ProgressCounters::Tick& measured) {
-  const auto file = episodes::EpisodeFile::Open(name.file);
-  const auto unread = [&](const std::string& why) {
-    return Json{{"out", name.file + ": " + why}, {"unread", true}};
-  };
-  if (!file) return unread(file.error().front().message);
-  const auto row = std::ranges::find(file->episodes(), name.id, &episodes::EpisodeRow::id);
-  if (row == file->episodes().end()) return unread("it is gone");
-  if (row->end.kind != physics::RunStatus::Kind::kCompleted)
-    return {{"out", "it did not come to a good end"}};
-  if (!row->simulated) return JudgedRecording(name, *file, *row, request, programs, measured);
-  const Result<LoadedRun> loaded = loader.Load(*file, *row);
-  if (!loaded) return {{"out", loaded.error().front().message}};
-  RunResult run;
-  run.ticks = row->ticks;
-  const bool all = request.truth == Truth::kOracle;
-  const Scenario& scenario = loaded->scenario;
-  Sensing sensing(scenario.scene, scenario.sensing);
-  episodes::EpisodeFrames frames(*file, *row, episodes::LayoutOf(scenario.scene));
-  const std::string problem =
-      frames.Play([&](const physics::Snapshot& snapshot) { run.recording.push_back(snapshot); },
-                  [&](std::int64_t tick) { return all || sensing.Due(tick); });
-  if (!problem.empty()) return unread(problem);
-  const auto truth = TruthOf(request, *file, *row, *loaded, run, *programs.front());
-  if (!truth) return {{"out", truth.error()}};
-  if (all)
-    std::erase_if(run.recording,
-                  [&](const physics::Snapshot& snapshot) { return !sensing.Due(snapshot.tick); });
-  Json points = Json::array();
-  for (const auto& program : programs) {
-    points.push_back(Judged(*truth, Resegment(scenario, run.recording, program, run.ticks + 1),
-                            request, run.ticks + 1));
-    ++measured;
+  Result<Episode> episode = opener.Open(name, {request.grammar, request.settings});
+  if (!episode) return {{"out", grammar::Format(episode.error().front())}, {"unread", true}};
+  const Result<grammar::Tick> end = episode->EndTick();
+  if (!end) return {{"out", "it did not come to a good end"}};
+  tl::expected<grammar::Timeline, std::string> truth;
+  if (labels) {
+    const grammar::EntityTable table = episode->entities();
+    Result<grammar::Timeline> labelled =
+        labels->Truth(index, table.entities, table.ticks_per_second, *end);
+    if (!labelled) return {{"out", grammar::Format(labelled.error().front())}};
+    truth = std::move(*labelled);
+  } else {
+    truth = TruthOf(request, *episode, *programs.front());
   }
-  return {{"points", std::move(points)}};
-}
-
-/// The same of a recording with labels by people.
-Json JudgedTake(const labels::TakeName& name, std::size_t index, const labels::LabelReading& labels,
-                const SweepRequest& request, const Programs& programs,
-                ProgressCounters::Tick& measured) {
-  const Result<labels::Take> take = labels::OpenTake(name, request.root);
-  if (!take) return {{"out", grammar::Format(take.error().front())}};
-  const auto truth = labels.Truth(index, take->entities, take->ticks_per_second, take->end);
-  if (!truth) return {{"out", grammar::Format(truth.error().front())}};
+  if (!truth) return {{"out", truth.error()}};
   Json points = Json::array();
   for (const auto& program : programs) {
-    const Result<grammar::Timeline> found = take->segment(program);
-    if (!found) return {{"out", grammar::Format(found.error().front())}};
-    points.push_back(
-        Judged(*truth, labels::Compared(*found, labels.compared()), request, take->end));
+    Result<grammar::Timeline> found = episode->Segment(program);
+    if (!found) return {{"out", grammar::Format(found.error().front())}, {"unread", true}};
+    if (labels) found = labels::Compared(*found, labels->compared());
+    points.push_back(Judged(*truth, std::move(*found), request, *end));
     ++measured;
   }
   return {{"points", std::move(points)}};
@@ -253,8 +216,7 @@ std::string MeasureText(const SweepRequest& request) {
                      1000 * request.collar_s);
 }
 
-Result<SweepResult> Sweep(const std::vector<episodes::EpisodeName>& episodes,
-                          const SweepRequest& request) {
+Result<SweepResult> Sweep(const std::vector<EpisodeName>& episodes, const SweepRequest& request) {
   const Result<Programs> programs = CompileAll(request);
   if (!programs) return tl::unexpected(programs.error());
   std::optional<labels::LabelReading> labels;
@@ -273,11 +235,10 @@ Result<SweepResult> Sweep(const std::vector<episodes::EpisodeName>& episodes,
   std::vector<WorkerJob> jobs;
   for (std::size_t slice = 0; slice < slices; ++slice) {
     jobs.push_back([&, slice] {
-      episodes::EpisodeLoader loader(request.root);
+      EpisodeOpener opener(request.root);
       Json all = Json::array();
       for (std::size_t i = slice; i < episodes.size(); i += slices)
-        all.push_back(labels ? JudgedTake(episodes[i], i, *labels, request, *programs, measured)
-                             : JudgedEpisode(episodes[i], request, *programs, loader, measured));
+        all.push_back(JudgedEpisode(episodes[i], i, labels, request, *programs, opener, measured));
       const std::vector<std::uint8_t> bytes = Json::to_cbor(all);
       return std::string(bytes.begin(), bytes.end());
     });

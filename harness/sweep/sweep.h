@@ -10,7 +10,7 @@
 
 #include "grammar/monitor.h"
 #include "harness/base/result.h"
-#include "harness/episodes/resegment_many.h"
+#include "harness/run/episode_name.h"
 
 namespace prehend::harness::sweep {
 
@@ -73,7 +73,6 @@ struct SweepResult {
 std::string MeasureText(const SweepRequest& request);
 
 /// One point per setting, or why the grammar cannot be compiled with one.
-Result<SweepResult> Sweep(const std::vector<episodes::EpisodeName>& episodes,
-                          const SweepRequest& request);
+Result<SweepResult> Sweep(const std::vector<EpisodeName>& episodes, const SweepRequest& request);
 
 }  // namespace prehend::harness::sweep

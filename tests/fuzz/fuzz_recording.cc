@@ -26,11 +26,11 @@ class MemoryFile {
   ~MemoryFile() { close(descriptor_); }
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
-  Result<Episode> ReadAs(std::string_view bytes) {
+  Result<Recording> ReadAs(std::string_view bytes) {
     if (ftruncate(descriptor_, 0) != 0 ||
         pwrite(descriptor_, bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
       std::abort();
-    return ReadEpisode("/proc/self/fd/" + std::to_string(descriptor_));
+    return ReadRecording("/proc/self/fd/" + std::to_string(descriptor_));
   }
 
  private:
@@ -41,7 +41,7 @@ class MemoryFile {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static MemoryFile file;
-  Result<Episode> read = file.ReadAs({reinterpret_cast<const char*>(data), size});
+  Result<Recording> read = file.ReadAs({reinterpret_cast<const char*>(data), size});
   if (!read) {
     if (ErrorsOf(read).empty()) std::abort();  // refused without a word
     (void)Format(ErrorsOf(read));
@@ -51,7 +51,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   EpisodeWriter writer(written, read->header);
   for (EpisodeFrame& frame : read->frames) writer.Write(frame.View());
   writer.Finish(read->end_tick);
-  const Result<Episode> again = file.ReadAs(written.str());
+  const Result<Recording> again = file.ReadAs(written.str());
   if (!again || again->frames.size() != read->frames.size() || again->end_tick != read->end_tick)
     std::abort();  // something is lost
   return 0;

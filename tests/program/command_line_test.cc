@@ -160,15 +160,21 @@ TEST_F(CommandLine, UsageErrorsEndWithASuggestion) {
 TEST_F(CommandLine, ARecordingIsNotAScenario) {
   const std::string file = (root_ / "cup.jsonl").string();
   ASSERT_EQ(Do("run carton_rests --record " + file).exit_code, 0);
-  for (const std::string command : {"run ", "render ", "score ", "validate ", "new copy --like "}) {
+  for (const std::string command : {"run ", "validate ", "new copy --like "}) {
     const Said said = Do(command + file);
     EXPECT_EQ(said.exit_code, 2) << command;
     EXPECT_EQ(said.out, "");
     EXPECT_EQ(said.err, "prehend: " + file +
-                            " is a recording, not a scenario; use 'prehend resegment', 'explain', "
-                            "'tracks' or 'check', or make an episode of it: 'prehend import " +
-                            file + " -o NAME.episodes'\n");
+                            " is a recording, so there is no scenario to simulate; 'prehend "
+                            "resegment " +
+                            file + "' prints its events\n");
   }
+  const Said scored = Do("score " + file);
+  EXPECT_EQ(scored.exit_code, 2);
+  EXPECT_EQ(scored.err,
+            "prehend: " + file +
+                " was not simulated, so its physical truth is not known; score it against labels "
+                "by people: --truth (docs/labels.md)\n");
 }
 
 TEST_F(CommandLine, PrintedCommandsHaveTheNameThatTheProgramWasCalledBy) {

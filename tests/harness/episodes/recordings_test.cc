@@ -26,7 +26,7 @@ constexpr const char* kLines =
 /// A folder with the recording in a file, and the episode file.
 struct Imported {
   fs::path folder;
-  Episode recording;
+  Recording recording;
   ImportedRecording imported;
 
   explicit Imported(const std::string& end = "{\"end_tick\": 100}\n") {
@@ -34,7 +34,7 @@ struct Imported {
     fs::remove_all(folder);
     fs::create_directories(folder);
     std::ofstream(folder / "take.jsonl") << kLines << end;
-    recording = *ReadEpisode((folder / "take.jsonl").string());
+    recording = *harness::ReadRecording((folder / "take.jsonl").string());
     imported = *ImportRecording({.file = file(),
                                  .root = kProject,
                                  .source = (folder / "take.jsonl").string(),

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/episode/open_episode.h"
 #include "harness/explain/explain.h"
 #include "harness/explain/replay.h"
 #include "tests/grammar/scene.h"
@@ -27,10 +28,10 @@ inline grammar::ReplayMonitor& Played(const std::string& name,
   Watched& watched = played[key];
   if (!watched.past) {
     const std::string root = PREHEND_SOURCE_DIR;
-    const Result<EpisodeSource> source =
-        OpenScenario(root + "/scenarios/" + name + ".yaml", "", settings, root);
-    if (!source) throw std::runtime_error(Format(source.error()));
-    watched = Watch(*source);
+    Result<Episode> episode =
+        OpenEpisode({.file = root + "/scenarios/" + name + ".yaml"}, {"", settings}, root);
+    if (!episode) throw std::runtime_error(Format(episode.error()));
+    watched = Watch(*episode);
     EXPECT_EQ(watched.problem + watched.failure, "");
   }
   return *watched.past;

@@ -127,20 +127,20 @@ TEST(Explain, AClauseOfBothThresholdsIsToldOnce) {
 TEST(Explain, RememberingChangesNothing) {
   const std::string root = PREHEND_SOURCE_DIR;
   for (const std::string grammar : {"", "original_2020"}) {
-    const Result<EpisodeSource> source =
-        OpenScenario(root + "/scenarios/" + kSlide + ".yaml", grammar, {}, root);
-    ASSERT_TRUE(source);
-    grammar::Monitor monitor(source->program, source->entity_table);
-    grammar::ReplayMonitor past(source->program, source->entity_table);
+    Result<Episode> episode =
+        OpenEpisode({.file = root + "/scenarios/" + kSlide + ".yaml"}, {grammar, {}}, root);
+    ASSERT_TRUE(episode);
+    grammar::Monitor monitor(episode->program(), episode->entities());
+    grammar::ReplayMonitor past(episode->program(), episode->entities());
     std::vector<grammar::Event> events;
-    const auto played = source->play([&](const grammar::Frame& frame) {
+    const auto played = episode->EachFrame([&](const grammar::Frame& frame) {
       monitor.Advance(frame, events);
       past.Advance(frame);
     });
-    monitor.Finish(played.end, events);
-    past.Finish(played.end);
+    monitor.Finish(played.tick, events);
+    past.Finish(played.tick);
     const auto named = [&](const std::vector<grammar::Event>& all) {
-      return grammar::NameEvents(*source->program, source->entity_table, all).events;
+      return grammar::NameEvents(*episode->program(), episode->entities(), all).events;
     };
     const auto expected = named(events), remembered = named(past.events());
     ASSERT_EQ(remembered.size(), expected.size());

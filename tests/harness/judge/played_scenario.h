@@ -8,6 +8,7 @@
 #include "harness/run/find_scenario.h"
 #include "harness/run/load_run.h"
 #include "harness/run/run_scenario.h"
+#include "harness/run/segment.h"
 
 namespace prehend::harness {
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/run/load_run.h"
+#include "harness/run/segment.h"
 #include "harness/sense/entity_table.h"
 #include "harness/timeline/timeline_json.h"
 #include "tests/harness/judge/checked_run.h"

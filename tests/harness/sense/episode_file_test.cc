@@ -21,11 +21,11 @@ constexpr const char* kHeader =
     R"("hand": {"hand": true, "size_m": [0.1, 0.1, 0.03]}}})"
     "\n";
 
-Result<Episode> ReadText(const std::string& text) {
+Result<Recording> ReadText(const std::string& text) {
   const auto file = std::filesystem::temp_directory_path() /
                     ("prehend_episode_" + std::to_string(getpid()) + ".jsonl");
   std::ofstream(file, std::ios::binary) << text;
-  return ReadEpisode(file.string());
+  return ReadRecording(file.string());
 }
 
 /// Without the file's name.
@@ -87,7 +87,7 @@ TEST(EpisodeFile, IsReadAsItWasWritten) {
       R"("touches": [{"a": "cup", "b": "table", "up_on_a": 1, "force_n": 2, "at_m": [0.1, 0.2, 0.25], "normal": [0, 0, 1]}]})"
       "\n{\"end_tick\": 9}\n");
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
-  Episode episode = *read;
+  Recording episode = *read;
   std::ostringstream written;
   EpisodeWriter writer(written, episode.header);
   for (EpisodeFrame& frame : episode.frames) writer.Write(frame.View());
@@ -121,7 +121,7 @@ TEST(EpisodeFile, ClassesAndPartsOfAreReadAsTheyWereWritten) {
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
   std::ostringstream written;
   EpisodeWriter writer(written, read->header);
-  Episode episode = *read;
+  Recording episode = *read;
   writer.Write(episode.frames[0].View());
   const auto again = ReadText(written.str());
   ASSERT_TRUE(again) << Brief(ErrorsOf(again)) << written.str();
@@ -159,7 +159,7 @@ TEST(EpisodeFile, PartsAreReadAsTheyWereWritten) {
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
   std::ostringstream written;
   EpisodeWriter writer(written, read->header);
-  Episode episode = *read;
+  Recording episode = *read;
   writer.Write(episode.frames[0].View());
   const auto again = ReadText(written.str());
   ASSERT_TRUE(again) << Brief(ErrorsOf(again)) << written.str();

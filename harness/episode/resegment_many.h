@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many episodes of many files, segmented again on all cores. Tested by
+// Many episodes, segmented again on all cores. Tested by
 // tests/program/episodes_test.cc
 #pragma once
 
@@ -7,22 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "harness/episodes/load_episode.h"
+#include "harness/episode/episode.h"
 
-namespace prehend::harness::episodes {
-
-/// One episode of a file.
-struct EpisodeName {
-  std::string file;
-  std::int64_t id = 0;
-  std::string scenario;
-};
-
-/// The episodes of these files, in their order. `only`: a number, a scenario, or a glob of
-/// scenarios; empty: all. Reports files that cannot be read, and a file without episodes; not that
-/// nothing matches.
-Result<std::vector<EpisodeName>> SelectEpisodes(const std::vector<std::string>& files,
-                                                const std::string& only);
+namespace prehend::harness {
 
 struct ResegmentRequest {
   std::string root;
@@ -38,7 +25,8 @@ struct Resegmented {
   std::string json;         ///< the same as a JSON object
   std::string differences;  ///< lines "- event" (only recorded) and "+ event" (only now)
   std::string warnings;
-  std::string problem;  ///< empty, or why it could not be read or segmented
+  std::string problem;        ///< empty, or why it could not be read or segmented
+  bool nothing_left = false;  ///< no event of the grammar can be recognised in it
   bool completed = false;
   bool finished = false;  ///< its recording was not cut off
 };
@@ -47,4 +35,4 @@ struct Resegmented {
 std::vector<Resegmented> ResegmentAll(const std::vector<EpisodeName>& episodes,
                                       const ResegmentRequest& request);
 
-}  // namespace prehend::harness::episodes
+}  // namespace prehend::harness

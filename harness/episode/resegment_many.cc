@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episodes/resegment_many.h. Tested by tests/program/episodes_test.cc
-#include "harness/episodes/resegment_many.h"
+// See harness/episode/resegment_many.h. Tested by tests/program/episodes_test.cc
+#include "harness/episode/resegment_many.h"
 
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
+#include "harness/episode/open_episode.h"
 #include "harness/episodes/write_rows.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/run_text.h"
 
-namespace prehend::harness::episodes {
+namespace prehend::harness {
 namespace {
 
 using Json = nlohmann::json;
@@ -22,13 +22,6 @@ using Json = nlohmann::json;
 constexpr double kSliceTimeLimit_s = 3600;
 constexpr std::size_t kSlicesPerJob = 2;
 constexpr std::size_t kMostLines = 20;
-
-bool Matches(const EpisodeRow& row, const std::string& only) {
-  if (only.empty() || std::to_string(row.id) == only || row.scenario == only) return true;
-  const std::size_t slash = row.scenario.rfind('/');
-  if (slash != std::string::npos && row.scenario.substr(slash + 1) == only) return true;
-  return fnmatch(only.c_str(), row.scenario.c_str(), 0) == 0;
-}
 
 std::vector<std::string> LinesOf(const grammar::Timeline& timeline, const RunResult& run) {
   RunResult shown;
@@ -64,33 +57,26 @@ std::string Differences(const grammar::Timeline& recorded, const RunResult& run)
   return text;
 }
 
-/// Reads episodes of one file after another.
+/// Opens one episode after another.
 class Worker {
  public:
-  explicit Worker(const ResegmentRequest& request) : request_(request), loader_(request.root) {}
+  explicit Worker(const ResegmentRequest& request) : request_(request), opener_(request.root) {}
 
   Json Run(const EpisodeName& name) {
-    if (!file_ || file_->path() != name.file) {
-      file_.reset();
-      Result<EpisodeFile> opened = EpisodeFile::Open(name.file);
-      if (!opened) return {{"problem", grammar::Format(opened.error())}};
-      file_.emplace(std::move(*opened));
-    }
-    const auto row = std::ranges::find(file_->episodes(), name.id, &EpisodeRow::id);
-    if (row == file_->episodes().end()) return {{"problem", "the episode is gone\n"}};
-    const Result<LoadedRun> loaded = loader_.Load(*file_, *row, request_.choice);
-    if (!loaded) return {{"problem", grammar::Format(loaded.error())}};
-    MissingFacts missing;
-    const Result<RunResult> run = request_.replay ? Replay(*file_, *row, *loaded)
-                                                  : Resegment(*file_, *row, *loaded, &missing);
+    Result<Episode> episode = opener_.Open(name, request_.choice);
+    if (!episode) return {{"problem", grammar::Format(episode.error())}};
+    const Result<RunResult> run = episode->Run(request_.replay);
     if (!run) return {{"problem", grammar::Format(run.error())}};
-    Json said = {{"table", RunTable(*run)},
-                 {"json", RunJson(loaded->scenario, *run).dump()},
-                 {"completed", run->status.kind == physics::RunStatus::Kind::kCompleted},
-                 {"finished", row->status != kRecording},
-                 {"warnings", grammar::Format(loaded->warnings) + missing.warnings}};
-    if (!request_.compare || row->status == kRecording) return said;
-    const Result<grammar::Timeline> recorded = file_->TimelineOf(*row);
+    const bool is_finished = !episode->row() || episode->row()->status != episodes::kRecording;
+    Json said = {
+        {"table", RunTable(*run)},
+        {"json", RunJson(episode->loaded().scenario, *run).dump()},
+        {"completed", run->status.kind == physics::RunStatus::Kind::kCompleted},
+        {"nothing_left", episode->missing().nothing_left},
+        {"finished", is_finished},
+        {"warnings", grammar::Format(episode->loaded().warnings) + episode->missing().warnings}};
+    if (!request_.compare || !is_finished) return said;
+    const Result<grammar::Timeline> recorded = episode->Recorded();
     if (!recorded) return {{"problem", grammar::Format(recorded.error())}};
     said["differences"] = Differences(*recorded, *run);
     return said;
@@ -98,35 +84,10 @@ class Worker {
 
  private:
   const ResegmentRequest& request_;
-  EpisodeLoader loader_;
-  std::optional<EpisodeFile> file_;
+  EpisodeOpener opener_;
 };
 
 }  // namespace
-
-Result<std::vector<EpisodeName>> SelectEpisodes(const std::vector<std::string>& files,
-                                                const std::string& only) {
-  std::vector<EpisodeName> names;
-  grammar::Diagnostics problems;
-  for (const std::string& path : files) {
-    const Result<EpisodeFile> file = EpisodeFile::Open(path);
-    if (!file) {
-      problems.insert(problems.end(), file.error().begin(), file.error().end());
-      continue;
-    }
-    if (file->episodes().empty())
-      problems.push_back({.file = path,
-                          .place = {},
-                          .message = "has no episodes",
-                          .source_line = {},
-                          .hint = "its recording ended before the first one began"});
-    for (const EpisodeRow& row : file->episodes()) {
-      if (Matches(row, only)) names.push_back({path, row.id, row.scenario});
-    }
-  }
-  if (!problems.empty()) return tl::unexpected(std::move(problems));
-  return names;
-}
 
 std::vector<Resegmented> ResegmentAll(const std::vector<EpisodeName>& episodes,
                                       const ResegmentRequest& request) {
@@ -158,6 +119,7 @@ std::vector<Resegmented> ResegmentAll(const std::vector<EpisodeName>& episodes,
                     .differences = one.value("differences", ""),
                     .warnings = one.value("warnings", ""),
                     .problem = one.value("problem", ""),
+                    .nothing_left = one.value("nothing_left", false),
                     .completed = one.value("completed", false),
                     .finished = one.value("finished", false)};
     }
@@ -165,4 +127,4 @@ std::vector<Resegmented> ResegmentAll(const std::vector<EpisodeName>& episodes,
   return results;
 }
 
-}  // namespace prehend::harness::episodes
+}  // namespace prehend::harness
