@@ -12,7 +12,6 @@
 #include "harness/base/default_grammar.h"
 #include "harness/base/project_paths.h"
 #include "harness/check/select_scenarios.h"
-#include "harness/closed_form/closed_form.h"
 #include "harness/command/typed_episode.h"
 #include "harness/episode/open_episode.h"
 #include "harness/labels/clock_offset.h"
@@ -22,7 +21,6 @@
 #include "harness/run/load_grammar.h"
 #include "harness/run/load_run.h"
 #include "harness/run/missing_facts.h"
-#include "harness/score/closed_form_score.h"
 #include "harness/score/score_json.h"
 #include "harness/score/score_scenario.h"
 #include "harness/timeline/match_events.h"
@@ -133,11 +131,9 @@ std::vector<std::string> NotCovered(const grammar::Program& program,
   return silent;
 }
 
-/// Of the episodes the definitions and the claims; of the whole library also the closed forms.
-Result<std::vector<score::Witness>> WitnessesOf(
-    const std::vector<std::vector<EpisodeToScore>>& by_grammar,
-    const std::vector<std::string>& closed_forms,
-    const std::vector<ClosedFormWitness>& recognisers) {
+/// Of the episodes the definitions and the claims.
+std::vector<score::Witness> WitnessesOf(
+    const std::vector<std::vector<EpisodeToScore>>& by_grammar) {
   score::Witness definitions{"definitions", "events lie within the bands of docs/events.md", {}};
   score::Witness claims{"claims", "a run shows what its author said before it was played", {}};
   for (const std::vector<EpisodeToScore>& episodes : by_grammar) {
@@ -148,15 +144,7 @@ Result<std::vector<score::Witness>> WitnessesOf(
       claimed += episode.by_claims;
     }
   }
-  std::vector<score::Witness> witnesses = {std::move(definitions), std::move(claims)};
-  if (closed_forms.empty()) return witnesses;
-  const auto scores = ScoreOnClosedForms(closed_forms, recognisers);
-  if (!scores) return tl::unexpected(scores.error());
-  score::Witness& paper = witnesses.emplace_back(
-      score::Witness{"closed forms", "boundaries known on paper are found to the frame", {}});
-  for (const ClosedFormScore& score : *scores)
-    paper.of_grammars.push_back(score::ByClosedForms(score));
-  return witnesses;
+  return {std::move(definitions), std::move(claims)};
 }
 
 /// What differs, by grammar; of many differences the first ones.
@@ -209,7 +197,7 @@ void WarnOfMissingFacts(std::vector<Episode>& episodes, const grammar::Program& 
 
 /// `score TAKES --truth LABELS`: against what people marked.
 ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) {
-  for (const char* other : {"--filter", "--events", "--closed-form"}) {
+  for (const char* other : {"--filter", "--events"}) {
     if (options.Has(other))
       return Complain(
           context, ExitCode::kBadInput,
@@ -302,26 +290,6 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
   return ExitCode::kAgrees;
 }
 
-/// `score --closed-form`: the grammars and the oracle on recordings whose events are known.
-ExitCode RunClosedForms(const std::vector<ClosedFormWitness>& recognisers,
-                        const ParsedOptions& options, const CommandContext& context) {
-  for (const char* other : {"names", "--filter", "--events", "--collar-ms"}) {
-    if (options.Has(other))
-      return Complain(context, ExitCode::kBadInput,
-                      fmt::format("--closed-form scores all closed forms: {} does not apply",
-                                  std::string_view(other) == "names" ? "a name" : other));
-  }
-  const std::vector<std::string> files = ClosedFormFiles(context.root);
-  if (files.empty())
-    return Complain(context, ExitCode::kNothing,
-                    "there is nothing in " + context.root + "/closed_form");
-  const auto scores = ScoreOnClosedForms(files, recognisers);
-  if (!scores) return Complain(context, scores.error());
-  context.out << (options.Has("--json") ? ClosedFormJson(*scores).dump(2) + "\n"
-                                        : ClosedFormText(*scores));
-  return ExitCode::kAgrees;
-}
-
 ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--truth")) return RunLabels(options, context);
   std::vector<std::string> grammars = options.All("--grammar");
@@ -340,16 +308,10 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   if (const std::string unknown = UnknownEvent(events); !unknown.empty())
     return Complain(context, ExitCode::kBadInput, unknown);
   std::vector<std::vector<std::string>> not_covered;
-  std::vector<ClosedFormWitness> recognisers;
   for (const std::string& name : grammars) {
     const grammar::CompileResult compiled = LoadGrammar(context.root, name, *settings);
     if (!compiled.program) return Complain(context, compiled.diagnostics);
     not_covered.push_back(NotCovered(*compiled.program, events));
-    recognisers.push_back(GrammarWitness(name, compiled.program));
-  }
-  if (options.Has("--closed-form")) {
-    recognisers.push_back(OracleWitness());
-    return RunClosedForms(recognisers, options, context);
   }
   const auto selection =
       SelectScenarios(options.All("names"), options.All("--filter"), context.root);
@@ -368,13 +330,7 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
     scores.push_back(ScoreOf(grammars[g], by_grammar[g], collar_s));
     scores.back().not_covered = not_covered[g];
   }
-  const bool is_whole = options.All("names").empty() && options.All("--filter").empty() &&
-                        options.All("--events").empty();
-  const auto testified =
-      WitnessesOf(by_grammar, is_whole ? ClosedFormFiles(context.root) : std::vector<std::string>{},
-                  recognisers);
-  if (!testified) return Complain(context, testified.error());
-  const std::vector<score::Witness>& witnesses = *testified;
+  const std::vector<score::Witness> witnesses = WitnessesOf(by_grammar);
   if (options.Has("--json")) {
     nlohmann::ordered_json json = ScoresJson(scores, collar_s);
     json["witnesses"] = score::WitnessesJson(grammars, witnesses);
@@ -395,7 +351,7 @@ Command ScoreCommand() {
       .summary = "Score grammars against what physically happened",
       .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
                    "score --grammar my/rules.grammar --events grasping,sliding",
-                   "score 'slide/*' --collar-ms 20 --json", "score --closed-form",
+                   "score 'slide/*' --collar-ms 20 --json",
                    "score take1.jsonl take2.jsonl --truth labels --map labels.yaml --grammar "
                    "pick_and_place_from_motion"},
       .options = {{.name = "names",
@@ -444,9 +400,6 @@ Command ScoreCommand() {
                   {.name = "--differences",
                    .help = "list every event that differs from what a witness says, or\n"
                            "from the labels"},
-                  {.name = "--closed-form",
-                   .help = "score on recordings whose events are known on paper, instead of\n"
-                           "scenarios; the oracle is scored, too (docs/closed-form.md)"},
                   {.name = "--json", .help = "print one JSON object instead of tables"}},
       .run = RunScore};
 }

@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 /// Four times what 64 levels of brackets in a grammar were seen to need.
 constexpr rlim_t kStack_bytes = 1 << 20;
-constexpr const char* kFolders[] = {"scenarios",   "golden",   "grammar", "physics",
-                                    "closed_form", "grammars", "hands"};
+constexpr const char* kFolders[] = {"scenarios", "golden",   "grammar",
+                                    "physics",   "grammars", "hands"};
 
 bool IsBelow(const fs::path& file, const fs::path& folder) {
   std::error_code error;

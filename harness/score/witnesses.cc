@@ -74,17 +74,6 @@ Testimony ByClaims(const std::string& scenario, std::span<const ClaimVerdict> ve
   return testimony;
 }
 
-Testimony ByClosedForms(const ClosedFormScore& score) {
-  Testimony testimony;
-  for (const ClosedFormRow& row : score.rows) {
-    for (const JudgedEvent& event : row.events) {
-      testimony.by_event[event.label.substr(0, event.label.find('('))] +=
-          {.of = 2, .confirmed = event.begin.right + event.end.right};
-    }
-  }
-  return testimony;
-}
-
 std::string WitnessTable(const std::vector<std::string>& grammars,
                          const std::vector<Witness>& witnesses) {
   std::string text = "| witness |", rule = "|---|";

@@ -10,7 +10,6 @@
 
 #include "grammar/base/timeline.h"
 #include "harness/claims/judge_claims.h"
-#include "harness/score/closed_form_score.h"
 
 namespace prehend::harness::score {
 
@@ -36,9 +35,6 @@ Testimony ByDefinitions(const std::string& scenario, std::span<const grammar::Ti
 
 /// Claims that hold, of those that the grammar's events can decide.
 Testimony ByClaims(const std::string& scenario, std::span<const ClaimVerdict> verdicts);
-
-/// Boundaries that are right, of those that are known on paper or were recognised.
-Testimony ByClosedForms(const ClosedFormScore& score);
 
 /// One witness and what it says of each grammar.
 struct Witness {

@@ -53,8 +53,8 @@ const std::vector<LibraryRule>& LibraryRules() {
       {"fmt", std::regex("fmt/.*"), std::regex("(harness|tests|bench)/.*")},
       {"CLI11", std::regex("CLI/.*"), std::regex("harness/command/parse_arguments\\.cc")},
       {"pugixml", std::regex("pugixml\\.hpp"), std::regex("(harness|tests)/.*")},
-      {"muParser", std::regex("muParser.*"), std::regex("harness/closed_form/formula\\.cc")},
-      {"tl::expected", std::regex("tl/.*"), std::regex("harness/.*")},
+      {"muParser", std::regex("muParser.*"), std::regex("tests/witnesses/.*/formula\\.cc")},
+      {"tl::expected", std::regex("tl/.*"), std::regex("(harness|tests)/.*")},
       {"SLEEF", std::regex("sleef\\.h"), std::regex("physics/portable_math\\.cc")},
       {"xxHash", std::regex("xxhash\\.h"), std::regex("harness/(.*/)?content_hash\\.cc")},
       {"SQLite", std::regex("sqlite3\\.h"), std::regex("(harness/episodes|bench)/.*")},
@@ -140,8 +140,20 @@ TEST(Architecture, MedianFileIsShort) {
   EXPECT_LE(lengths[lengths.size() / 2], 200);
 }
 
+// A witness of its own: it never sees what it judges.
+TEST(Architecture, ClosedFormsSeeNeitherGrammarNorOracle) {
+  for (const SourceFile& file : SourceFiles({"tests/witnesses/closed_form"})) {
+    for (const Include& include : IncludesOf(file.text))
+      EXPECT_FALSE((include.header.starts_with("grammar/") &&
+                    !include.header.starts_with("grammar/base/")) ||
+                   include.header.starts_with("harness/oracle/") ||
+                   include.header.starts_with("harness/run/"))
+          << file.path << ":" << include.line << ": " << include.header;
+  }
+}
+
 TEST(Architecture, DataRoomsHoldNoCode) {
-  for (const char* room : {"scenarios", "golden", "closed_form"}) {
+  for (const char* room : {"scenarios", "golden", "tests/witnesses/stories"}) {
     for (const auto& entry :
          fs::recursive_directory_iterator(fs::path(PREHEND_SOURCE_DIR) / room)) {
       const auto extension = entry.path().extension();

@@ -91,57 +91,5 @@ TEST_F(ScoreCommand, WhatCannotBeReadIsBadInputAndNoTable) {
   EXPECT_NE(said.err.find("was not scored"), std::string::npos) << said.err;
 }
 
-constexpr const char* kStands = R"(closed_form: stands
-shows: A box stands.
-lasts_s: 1
-entities:
-  table: {box: {size_m: [1, 1, 0.04]}, fixed: true, at_m: [0, 0, -0.02]}
-  box: {box: {size_m: [0.1, 0.1, 0.1]}, mass_kg: 0.5, at_m: [0, 0, 0.05]}
-hands:
-  hand: {at_m: [1, 0, 1]}
-contacts:
-  - {between: [box, table], while: t < 0.6}
-sampled: [{hz: 60}]
-truth:
-  - contact(box, table): [0, 0.5]
-  - supported_by(box, table): [0, 0.6]
-)";
-
-TEST_F(ScoreCommand, ClosedFormsScoreGrammarsAndOracle) {
-  std::filesystem::create_directory(root_ / "closed_form");
-  WriteFile(root_ / "closed_form" / "stands.yaml", kStands);
-  const Said said = Do("score --closed-form --grammar contact");
-  ASSERT_EQ(said.exit_code, 0) << said.err;
-  EXPECT_NE(said.out.find("all                      3 of 4 (75.0 %)         3 of 4 (75.0 %)\n"),
-            std::string::npos)
-      << said.out;
-  EXPECT_NE(said.out.find("\nwrong in contact\n  stands: contact(box, table): in 1 of 1 samplings: "
-                          "end +100.0 ms\n\nwrong in oracle\n"),
-            std::string::npos)
-      << said.out;
-  const Json sent = Json::parse(Do("score --closed-form --json --grammar contact").out);
-  EXPECT_EQ(sent["closed_forms"][1]["name"], "oracle");
-  EXPECT_EQ(sent["closed_forms"][1]["right"], 3);
-  EXPECT_EQ(sent["closed_forms"][1]["wrong"][0]["end"]["expected_s"], 0.5);
-}
-
-TEST_F(ScoreCommand, ClosedFormsAreAllScoredOrNone) {
-  const Said none = Do("score --closed-form");
-  EXPECT_EQ(none.exit_code, 4);
-  EXPECT_NE(none.err.find("/closed_form"), std::string::npos) << none.err;
-  std::filesystem::create_directory(root_ / "closed_form");
-  WriteFile(root_ / "closed_form" / "stands.yaml", kStands);
-  const Said named = Do("score --closed-form carton_rests");
-  EXPECT_EQ(named.exit_code, 2);
-  EXPECT_NE(named.err.find("--closed-form scores all closed forms: a name does not apply"),
-            std::string::npos)
-      << named.err;
-  WriteFile(root_ / "closed_form" / "stands.yaml",
-            std::string(kStands) + "  - contact(box, tabel): [0, 1]\n");
-  const Said wrong = Do("score --closed-form");
-  EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_NE(wrong.err.find("error: unknown name 'tabel'"), std::string::npos) << wrong.err;
-}
-
 }  // namespace
 }  // namespace prehend::house

@@ -48,7 +48,7 @@ const std::vector<Mutant> kMutants = {
     {"the grip does not count", "grasp", "trigger(hand) < grip_on or ", "", ""},
     {"grasps are bridged too long", "grasp", "grasp_bridge = 60 ms", "grasp_bridge = 200 ms",
      "no finger of a scenario loses an object for so long while the grip is commanded; the closed "
-     "form grasp_ends_with_a_long_loss kills it (tests/harness/closed_form/closed_forms_test.cc)"},
+     "form grasp_ends_with_a_long_loss kills it (tests/witnesses/closed_forms_test.cc)"},
     {"a small retreat restarts the reach", "pick_and_place", "reach_slack  = 25 mm",
      "reach_slack  = 5 mm", ""},
     {"idling is reaching", "pick_and_place", "reach_idle   = 0.5 s", "reach_idle   = 5 s", ""},

@@ -46,16 +46,6 @@ TEST(ByClaims, LeavesOutWhatAGrammarCannotDecide) {
             (std::vector<std::string>{"slide/x  expects: '2 grasping' (x.yaml:6): found 3"}));
 }
 
-TEST(ByClosedForms, CountsBoundaries) {
-  ClosedFormScore score{.witness = "mine", .rows = {}};
-  JudgedEvent event{.label = "reaching(hand, cup)"};
-  event.begin.right = true;
-  score.rows.push_back({"story", "240 Hz", {event}});
-  const Testimony testimony = ByClosedForms(score);
-  EXPECT_EQ(testimony.by_event.at("reaching").of, 2);
-  EXPECT_EQ(testimony.by_event.at("reaching").confirmed, 1);
-}
-
 TEST(WitnessTable, HasARowPerWitness) {
   Testimony most;
   most.by_event["sliding"] = {.of = 8, .confirmed = 7};

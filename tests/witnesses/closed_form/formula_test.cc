@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/closed_form/formula.h"
+#include "tests/witnesses/closed_form/formula.h"
 
 #include <gtest/gtest.h>
 

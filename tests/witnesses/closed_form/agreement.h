@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well a timeline agrees with what is known on paper. Tested by
-// tests/harness/closed_form/agreement_test.cc
+// tests/witnesses/closed_form/agreement_test.cc
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "grammar/base/timeline.h"
-#include "harness/closed_form/closed_form.h"
+#include "tests/witnesses/closed_form/closed_form.h"
 
 namespace prehend::harness {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/closed_form/read_closed_form_test.cc
-#include "harness/closed_form/kinematics.h"
+// Tested by tests/witnesses/closed_form/read_closed_form_test.cc
+#include "tests/witnesses/closed_form/kinematics.h"
 
 #include <algorithm>
 #include <cmath>

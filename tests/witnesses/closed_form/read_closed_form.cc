@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/closed_form/read_closed_form_test.cc
+// Tested by tests/witnesses/closed_form/read_closed_form_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,9 +8,9 @@
 
 #include "harness/base/project_paths.h"
 #include "harness/build/build_scene.h"
-#include "harness/closed_form/closed_form.h"
-#include "harness/closed_form/kinematics.h"
-#include "harness/format/closed_form_yaml.h"
+#include "tests/witnesses/closed_form/closed_form.h"
+#include "tests/witnesses/closed_form/closed_form_yaml.h"
+#include "tests/witnesses/closed_form/kinematics.h"
 
 namespace prehend::harness {
 namespace {
@@ -286,8 +286,7 @@ Result<ClosedForm> ReadClosedFormText(const std::string& path, std::string text)
   return Reader(path, *document).Read();
 }
 
-std::vector<std::string> ClosedFormFiles(const std::string& root) {
-  const std::string folder = root + "/closed_form";
+std::vector<std::string> ClosedFormFiles(const std::string& folder) {
   std::vector<std::string> files;
   for (const std::string& name : NamesIn(folder, kEnding))
     files.push_back(folder + "/" + name + kEnding);

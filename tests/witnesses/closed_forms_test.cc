@@ -10,20 +10,21 @@
 #include <set>
 
 #include "harness/run/load_grammar.h"
-#include "harness/score/closed_form_score.h"
 #include "physics/scene/geometry.h"
+#include "tests/witnesses/closed_form_score.h"
 
 namespace prehend::harness {
 namespace {
 
 constexpr const char* kRoot = PREHEND_SOURCE_DIR;
+constexpr const char* kStories = PREHEND_SOURCE_DIR "/tests/witnesses/stories";
 
 ClosedFormWitness Grammar(const grammar::Overrides& overrides = {}) {
   return GrammarWitness("pick_and_place", LoadGrammar(kRoot, "pick_and_place", overrides).program);
 }
 
 std::vector<ClosedFormScore> Scores(const std::vector<ClosedFormWitness>& witnesses) {
-  const auto scores = ScoreOnClosedForms(ClosedFormFiles(kRoot), witnesses);
+  const auto scores = ScoreOnClosedForms(ClosedFormFiles(kStories), witnesses);
   EXPECT_TRUE(scores.has_value()) << grammar::Format(scores.error());
   return scores.value_or(std::vector<ClosedFormScore>{});
 }
@@ -37,7 +38,8 @@ std::set<std::string> WrongIn(const ClosedFormScore& score) {
   return wrong;
 }
 
-// What is wrong today; docs/closed-form.md explains each. An entry that became right has to go.
+// What is wrong today; tests/witnesses/README.md explains each. An entry that became right has to
+// go.
 const std::set<std::string> kWrongInOracle = {
     "idle_with_tremor_and_jitter: reaching(hand, box)",
 };
@@ -72,9 +74,9 @@ TEST(ClosedForms, AreAtLeastFortyStoriesAtAllRates) {
 }
 
 TEST(ClosedForms, AreAllOnThePage) {
-  std::ifstream file(std::string(kRoot) + "/docs/closed-form.md");
+  std::ifstream file(std::string(kRoot) + "/tests/witnesses/README.md");
   const std::string page(std::istreambuf_iterator<char>(file), {});
-  for (const std::string& path : ClosedFormFiles(kRoot)) {
+  for (const std::string& path : ClosedFormFiles(kStories)) {
     const std::string name = std::filesystem::path(path).stem();
     EXPECT_NE(page.find("| `" + name + "` |"), std::string::npos) << name;
   }
@@ -145,7 +147,7 @@ constexpr double kNear_m = 0.0021;
 
 TEST(ClosedForms, WhatAHandTouchesIsWhereItIs) {
   int touches = 0;
-  for (const std::string& file : ClosedFormFiles(kRoot)) {
+  for (const std::string& file : ClosedFormFiles(kStories)) {
     const auto form = ReadClosedForm(file);
     ASSERT_TRUE(form.has_value()) << grammar::Format(form.error());
     const ClosedFormRecording& recording = form->recordings.front();

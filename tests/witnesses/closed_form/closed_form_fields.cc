@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/closed_form/read_closed_form_test.cc
-#include "harness/format/closed_form_yaml.h"
+// Tested by tests/witnesses/closed_form/read_closed_form_test.cc
 #include "harness/format/scenario_formats.h"
 #include "harness/yaml/struct_format.h"
+#include "tests/witnesses/closed_form/closed_form_yaml.h"
 
 namespace prehend::harness {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Formulas in files: numbers, names, + - * / ^, comparisons, && and ||, `a ? b : c`, and functions.
-// muParser reads and computes them. Tested by tests/harness/closed_form/formula_test.cc
+// muParser reads and computes them. Tested by tests/witnesses/closed_form/formula_test.cc
 #pragma once
 
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings without physics, whose events are known on paper (docs/closed-form.md). They judge
-// grammar and oracle alike, and know neither. Tested by
-// tests/harness/closed_form/read_closed_form_test.cc
+// Recordings without physics, whose events are known on paper (tests/witnesses/README.md). They
+// judge grammar and oracle alike, and know neither. Tested by
+// tests/witnesses/closed_form/read_closed_form_test.cc
 #pragma once
 
 #include <string>
@@ -39,7 +39,7 @@ Result<ClosedForm> ReadClosedForm(const std::string& path);
 /// The same from a text.
 Result<ClosedForm> ReadClosedFormText(const std::string& path, std::string text);
 
-/// The files of root/closed_form, sorted.
-std::vector<std::string> ClosedFormFiles(const std::string& root);
+/// The files of a folder, sorted.
+std::vector<std::string> ClosedFormFiles(const std::string& folder);
 
 }  // namespace prehend::harness

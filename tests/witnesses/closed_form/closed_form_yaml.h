@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A closed form as written (docs/closed-form.md): a recording without physics, and the events in it
-// that are known on paper. harness/format/closed_form_fields.cc says how each field is called;
-// harness/closed_form/closed_form.h computes the recording. Tested by
-// tests/harness/closed_form/read_closed_form_test.cc
+// A closed form as written (tests/witnesses/README.md): a recording without physics, and the events
+// in it that are known on paper. tests/witnesses/closed_form/closed_form_fields.cc says how each
+// field is called; tests/witnesses/closed_form/closed_form.h computes the recording. Tested by
+// tests/witnesses/closed_form/read_closed_form_test.cc
 #pragma once
 
 #include <Eigen/Core>

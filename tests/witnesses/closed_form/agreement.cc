@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/closed_form/agreement_test.cc
-#include "harness/closed_form/agreement.h"
+// Tested by tests/witnesses/closed_form/agreement_test.cc
+#include "tests/witnesses/closed_form/agreement.h"
 
 #include <fmt/format.h>
 

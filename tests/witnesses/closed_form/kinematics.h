@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Snapshots of a world that moves by formulas. Tested by
-// tests/harness/closed_form/read_closed_form_test.cc
+// tests/witnesses/closed_form/read_closed_form_test.cc
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 #include "grammar/base/frame.h"
 #include "harness/base/located.h"
-#include "harness/closed_form/formula.h"
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
+#include "tests/witnesses/closed_form/formula.h"
 
 namespace prehend::harness {
 

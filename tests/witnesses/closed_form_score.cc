@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/score/closed_form_score.h"
+#include "tests/witnesses/closed_form_score.h"
 
 #include <fmt/format.h>
 
@@ -159,7 +159,7 @@ std::string ClosedFormText(const std::vector<ClosedFormScore>& scores) {
   for (const ClosedFormScore& score : scores) text += WrongText(score);
   return text + fmt::format(
                     "\nRight is within one frame of what docs/events.md gives on paper, in "
-                    "{} recordings (docs/closed-form.md).\n",
+                    "{} recordings (tests/witnesses/README.md).\n",
                     scores.front().rows.size());
 }
 
@@ -182,6 +182,36 @@ Json ClosedFormJson(const std::vector<ClosedFormScore>& scores) {
                    {"wrong", std::move(wrong)}});
   }
   return {{"closed_forms", std::move(all)}};
+}
+
+score::Testimony ByClosedForms(const ClosedFormScore& score) {
+  score::Testimony testimony;
+  for (const ClosedFormRow& row : score.rows)
+    for (const JudgedEvent& event : row.events)
+      testimony.by_event[NameOf(event)] +=
+          {.of = 2, .confirmed = event.begin.right + event.end.right};
+  return testimony;
+}
+
+std::string WitnessTableWith(const nlohmann::json& score,
+                             const std::vector<ClosedFormScore>& closed_forms) {
+  std::vector<std::string> grammars;
+  std::vector<score::Witness> witnesses;
+  for (const auto& row : score.at("witnesses")) {
+    score::Witness& witness = witnesses.emplace_back(row.at("witness"), row.at("proves"));
+    grammars.clear();
+    for (const auto& column : row.at("grammars")) {
+      grammars.push_back(column.at("grammar"));
+      witness.of_grammars.emplace_back().by_event["all"] = {.of = column.at("of"),
+                                                            .confirmed = column.at("confirmed")};
+    }
+  }
+  score::Witness& paper =
+      witnesses.emplace_back("closed forms", "boundaries known on paper are found to the frame");
+  for (const std::string& grammar : grammars)
+    paper.of_grammars.push_back(
+        ByClosedForms(*std::ranges::find(closed_forms, grammar, &ClosedFormScore::witness)));
+  return score::WitnessTable(grammars, witnesses);
 }
 
 }  // namespace prehend::harness

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/harness/closed_form/formula_test.cc
-#include "harness/closed_form/formula.h"
+// Tested by tests/witnesses/closed_form/formula_test.cc
+#include "tests/witnesses/closed_form/formula.h"
 
 #include <muParser.h>
 

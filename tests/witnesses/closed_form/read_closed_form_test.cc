@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "harness/closed_form/closed_form.h"
+#include "tests/witnesses/closed_form/closed_form.h"
 
 namespace prehend::harness {
 namespace {

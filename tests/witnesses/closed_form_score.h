@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grammars and the physical oracle, judged by the closed forms (docs/closed-form.md). Tested by
-// tests/harness/closed_form/closed_forms_test.cc
+// Grammars and the physical oracle, judged by the closed forms (tests/witnesses/README.md). Tested
+// by tests/witnesses/closed_forms_test.cc, closed_form_score_test.cc
 #pragma once
 
 #include <functional>
@@ -12,9 +12,10 @@
 #include "grammar/base/timeline.h"
 #include "grammar/monitor.h"
 #include "harness/base/result.h"
-#include "harness/closed_form/agreement.h"
-#include "harness/closed_form/closed_form.h"
 #include "harness/oracle/settings.h"
+#include "harness/score/witnesses.h"
+#include "tests/witnesses/closed_form/agreement.h"
+#include "tests/witnesses/closed_form/closed_form.h"
 
 namespace prehend::harness {
 
@@ -50,5 +51,13 @@ Result<std::vector<ClosedFormScore>> ScoreOnClosedForms(
 /// A table of the scores, and of each witness what it has wrong: one line per story and event.
 std::string ClosedFormText(const std::vector<ClosedFormScore>& scores);
 nlohmann::ordered_json ClosedFormJson(const std::vector<ClosedFormScore>& scores);
+
+/// Boundaries that are right, of those that are known on paper or were recognised.
+score::Testimony ByClosedForms(const ClosedFormScore& score);
+
+/// README's table: what `prehend score --json` says of each witness, and one more, the closed
+/// forms.
+std::string WitnessTableWith(const nlohmann::json& score,
+                             const std::vector<ClosedFormScore>& closed_forms);
 
 }  // namespace prehend::harness
