@@ -30,7 +30,6 @@
 #include "harness/judge/judge_invariants.h"
 #include "harness/judge/judge_pictures.h"
 #include "harness/judge/judge_recording.h"
-#include "harness/judge/judge_transforms.h"
 #include "harness/pictures/pictures.h"
 #include "harness/replay/replay_data.h"
 #include "harness/run/run_text.h"
@@ -318,15 +317,9 @@ ScenarioVerdict VerdictOn(const CheckRequest& request, const CheckedRun& checked
   if (request.episode == 0)
     Append(judgement.findings, JudgeOtherEngine(checked, judgement.engine_difference));
   JudgePictures(request, checked, judgement);
-  if (judgement.golden) {
-    TransformJudgement elsewhere =
-        JudgeTransforms(checked, judgement.golden->pending, request.transforms);
-    Append(judgement.findings, std::move(elsewhere.findings));
-    verdict.transforms = std::move(elsewhere.verdicts);
-  }
 
   Conclude(judgement.findings, verdict);
-  verdict.details += TextOfUndecided(verdict.claims) + TextOfNotCompared(verdict.transforms);
+  verdict.details += TextOfUndecided(verdict.claims);
   Store(request, checked, judgement, verdict.verdict == Verdict::kPassed);
   if (judgement.golden) {
     verdict.comparison = std::move(judgement.golden->comparison);
@@ -363,8 +356,7 @@ ScenarioVerdict CheckRecording(const CheckRequest& request, const std::string& g
   Findings findings;
   if (!judged->golden) {
     findings.push_back({ExitCode::kPending, "no golden yet", ""});
-    if (request.run.settings.empty() && request.transforms.empty())
-      verdict.command = Command("review", request.id, request.run);
+    if (request.run.settings.empty()) verdict.command = Command("review", request.id, request.run);
   } else if (!judged->comparison.Agrees()) {
     findings.push_back(DifferenceFinding(judged->comparison, verdict.explain));
     findings.back().details += OtherGrammarText(*judged);
@@ -476,11 +468,8 @@ std::string ExplainCommand(const std::string& id, const RunRequest& changes) {
 }
 
 std::string RepeatCommand(const CheckRequest& request) {
-  std::string command =
-      Command("check", request.episode == 0 ? request.id : request.run.scenario_file, request.run);
-  for (const Transform transform : request.transforms)
-    command += fmt::format(" --transform {}", NameOf(transform));
-  return command;
+  return Command("check", request.episode == 0 ? request.id : request.run.scenario_file,
+                 request.run);
 }
 
 }  // namespace prehend::harness

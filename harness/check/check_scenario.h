@@ -9,7 +9,6 @@
 #include "harness/check/verdict.h"
 #include "harness/process/progress_counters.h"
 #include "harness/run/load_run.h"
-#include "harness/transform/transform.h"
 
 namespace prehend::harness {
 
@@ -27,7 +26,6 @@ struct CheckRequest {
   bool pictures = true;
   bool leave_nothing_behind = false;  ///< no pending golden, no trace; only the verdict
   bool in_project = true;             ///< below scenarios/, so that it may have a golden
-  std::vector<Transform> transforms;  ///< after which its events must be the same
   std::string record_file;            ///< an episode file that gets the run; or empty
   std::string today;                  ///< YYYY-MM-DD, for that file
   std::string program;                ///< ProgramHash(), to find the cause of differences

@@ -120,7 +120,6 @@ class Suite {
         .pictures = request_.pictures && turn.repetition == 0,
         .leave_nothing_behind = Changed() || turn.repetition > 0 || !IsRemembered(turn.scenario),
         .in_project = InProject(turn.scenario),
-        .transforms = request_.transforms,
         .record_file = turn.repetition == 0 ? request_.record_file : "",
         .today = request_.today,
         .program = program_};

@@ -14,7 +14,6 @@
 #include "harness/check/verdict.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/load_run.h"
-#include "harness/transform/transform.h"
 
 namespace prehend::harness {
 
@@ -29,7 +28,6 @@ struct SuiteRequest {
   Replays replays = Replays::kNone;
   bool only_changed = false;  ///< skip what passed and depends on nothing that changed since
   int repeat = 1;
-  std::vector<Transform> transforms;          ///< of each scenario, whose events must not change
   std::optional<std::uint64_t> shuffle_seed;  ///< any order instead of the slowest first
   WorkerLimits limits;
 };

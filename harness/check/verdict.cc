@@ -150,31 +150,6 @@ std::string SmallestMarginText(const std::vector<ScenarioVerdict>& verdicts) {
   return text;
 }
 
-std::string TransformsText(const std::vector<ScenarioVerdict>& verdicts) {
-  std::vector<std::string> names;  // in the order in which they were asked for
-  std::map<std::string, std::map<std::string, int>> counts;
-  for (const ScenarioVerdict& verdict : verdicts) {
-    for (const TransformVerdict& transform : verdict.transforms) {
-      if (!counts.contains(transform.transform)) names.push_back(transform.transform);
-      ++counts[transform.transform][transform.says];
-    }
-  }
-  std::string text;
-  for (const std::string& name : names) {
-    std::map<std::string, int>& of = counts[name];
-    const int asked = of[kSameStory] + of[kOtherStory] + of[kMayDiffer];
-    text += fmt::format("{}: {} of {} scenarios tell the same story", name, of[kSameStory], asked);
-    const char* separator = "; ";
-    const auto add = [&](int count, const char* what) {
-      if (count > 0) text += fmt::format("{}{} {}", std::exchange(separator, ", "), count, what);
-    };
-    add(of[kMayDiffer], "may differ");
-    add(of[kNotApplied], "would be another story");
-    text += "\n";
-  }
-  return text;
-}
-
 ExitCode WorstOf(const std::vector<ScenarioVerdict>& verdicts) {
   if (verdicts.empty()) return ExitCode::kNothing;
   for (const ExitCode code :

@@ -16,7 +16,6 @@
 #include "harness/check/settings.h"
 #include "harness/claims/judge_claims.h"
 #include "harness/golden/compare.h"
-#include "harness/judge/judge_transforms.h"
 #include "harness/timeline/event_drawings.h"
 
 namespace prehend::harness {
@@ -56,12 +55,11 @@ struct ScenarioVerdict {
   std::string reason;                      ///< one line; empty when passed
   std::string details;             ///< differences, violations, diagnostics; several lines or empty
   std::vector<std::string> notes;  ///< NoteLines(): steps that did not do what they say
-  std::vector<ClaimVerdict> claims;          ///< of a run that completed
-  std::vector<TransformVerdict> transforms;  ///< that were asked for
-  std::optional<Comparison> comparison;      ///< with the golden; without one every event is extra
-  bool has_golden = false;                   ///< there is one, and it could be read
-  EventDrawings drawings;                    ///< how the grammar wants the comparison drawn
-  std::string explain;                       ///< the command that asks about the scenario's events
+  std::vector<ClaimVerdict> claims;      ///< of a run that completed
+  std::optional<Comparison> comparison;  ///< with the golden; without one every event is extra
+  bool has_golden = false;               ///< there is one, and it could be read
+  EventDrawings drawings;                ///< how the grammar wants the comparison drawn
+  std::string explain;                   ///< the command that asks about the scenario's events
   std::string cause;  ///< CauseText(): what the differences are attributed to; or empty
   std::vector<Attribution> attributions;  ///< one for each of comparison->Differing(), or none
   Settings settings;                      ///< what its files say, value by value
@@ -115,10 +113,6 @@ Tally Count(const std::vector<ScenarioVerdict>& verdicts);
 /// The smallest margin of all boundaries that are not exact:
 /// "smallest margin: 4.2 of 8.3 ms left at .. of SCENARIO"; "" when all are exact.
 std::string SmallestMarginText(const std::vector<ScenarioVerdict>& verdicts);
-
-/// "mirror: 250 of 262 scenarios tell the same story; 25 would be another story", a line for each
-/// transform that was asked for; or "".
-std::string TransformsText(const std::vector<ScenarioVerdict>& verdicts);
 
 /// How the whole check ends: the worst of its scenarios.
 ExitCode WorstOf(const std::vector<ScenarioVerdict>& verdicts);

@@ -50,13 +50,12 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Comparison, ticks_per_second, pairings, relat
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportedPicture, file, caption)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DisputedMoment, what, expected, recognised, in_golden, in_run)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, claim, place, says, found, times)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TransformVerdict, transform, says, why)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attribution, event, what, shift_ms, because, question)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, shows, verdict, exit_code, reason,
-                                   details, notes, claims, transforms, comparison, has_golden,
-                                   drawings, explain, cause, attributions, settings, command,
-                                   state_hash, ticks, seconds, peak_memory_kib, inputs, pictures,
-                                   not_recorded, picture_differences, disputed, explained, replay)
+                                   details, notes, claims, comparison, has_golden, drawings,
+                                   explain, cause, attributions, settings, command, state_hash,
+                                   ticks, seconds, peak_memory_kib, inputs, pictures, not_recorded,
+                                   picture_differences, disputed, explained, replay)
 
 namespace {
 
@@ -71,14 +70,6 @@ Json BoundariesJson(const Comparison& comparison) {
          {"tolerance_ms", MillisecondsOf(margin.tolerance, comparison.ticks_per_second)}});
   }
   return boundaries;
-}
-
-Json TransformsJson(const std::vector<TransformVerdict>& verdicts) {
-  Json transforms = Json::array();
-  for (const TransformVerdict& verdict : verdicts)
-    transforms.push_back(
-        {{"transform", verdict.transform}, {"verdict", verdict.says}, {"why", verdict.why}});
-  return transforms;
 }
 
 Json AttributionsJson(const std::vector<Attribution>& attributions) {
@@ -113,7 +104,6 @@ Json VerdictJson(const ScenarioVerdict& verdict) {
           {"details", verdict.details},
           {"notes", verdict.notes},
           {"claims", ClaimsJson(verdict.claims)},
-          {"transforms", TransformsJson(verdict.transforms)},
           {"differences", DifferencesJson(compared, verdict.explain)},
           {"relations", RelationsJson(compared)},
           {"blame", verdict.cause},

@@ -22,9 +22,9 @@
 #include "harness/judge/accept_golden.h"
 #include "harness/judge/compare_engines.h"
 #include "harness/judge/compare_with_oracle.h"
+#include "harness/judge/ensemble.h"
 #include "harness/judge/judge_claims.h"
 #include "harness/judge/judge_recording.h"
-#include "harness/judge/judge_transforms.h"
 #include "harness/run/run_text.h"
 
 namespace prehend::harness {
@@ -396,8 +396,8 @@ Command AcceptCommand() {
             .help = "take over boundaries that moved within their tolerance, too: after a\n"
                     "change that moved many, or the next small one fails"},
            {.name = "--unsteady",
-            .help = "why the events may differ when the scenario is played elsewhere (check\n"
-                    "--ensemble); is written into the golden; without it they may not",
+            .help = "why the events may differ when the scenario is played elsewhere, which\n"
+                    "accept does; is written into the golden; without it they may not",
             .placeholder = "TEXT"},
            {.name = "--pictures",
             .help = "accept the pictures, not the events; they are kept beside the timeline"}},

@@ -2,7 +2,6 @@
 // prehend check: the regression suite. Tested by tests/program/command_line_test.cc and
 // tests/program/runner_test.cc
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -20,7 +19,6 @@
 #include "harness/report/junit.h"
 #include "harness/report/page_texts.h"
 #include "harness/report/report.h"
-#include "harness/transform/transform.h"
 
 namespace prehend::harness {
 namespace {
@@ -43,32 +41,6 @@ std::string FilterProblem(const std::string& filter) {
 std::string ShardProblem(const std::string& shard) {
   return ParseShard(shard) ? ""
                            : "found '" + shard + "', wanted I/N, like 2/3 for the second of three";
-}
-
-std::string TransformProblem(const std::string& name) {
-  const auto known = std::ranges::find(TransformNames(), name, &TransformName::name);
-  if (known != TransformNames().end()) return "";
-  std::vector<std::string_view> names;
-  for (const TransformName& each : TransformNames()) names.push_back(each.name);
-  return fmt::format("found '{}', wanted one of {}", name, fmt::join(names, ", "));
-}
-
-std::string TransformHelp() {
-  std::string help =
-      "play each scenario once more after this change; its events must be the\nsame; may be "
-      "repeated";
-  for (const TransformName& each : TransformNames())
-    help += fmt::format("\n{}: {}", each.name, each.help);
-  return help;
-}
-
-std::vector<Transform> TransformsOf(const ParsedOptions& options) {
-  std::vector<Transform> transforms;
-  if (options.Has("--ensemble")) transforms = EnsembleTransforms();
-  for (const std::string& name : options.All("--transform"))
-    transforms.push_back(
-        std::ranges::find(TransformNames(), name, &TransformName::name)->transform);
-  return transforms;
 }
 
 /// Its limits are too large to be worth a place in the help.
@@ -128,14 +100,6 @@ std::vector<Option> RunningOptions() {
                    "differ is flaky and fails",
            .placeholder = "N",
            .rule = IntegersFrom(1, kMaxRepeats)},
-          {.name = "--transform",
-           .help = TransformHelp(),
-           .placeholder = "NAME",
-           .rule = {.problem = TransformProblem},
-           .repeatable = true},
-          {.name = "--ensemble",
-           .help = "the same as --transform nudge, shift, far, reorder and bystander: what the\n"
-                   "verdict rests on must not depend on rounding"},
           {.name = "--shuffle",
            .help = "run in a random order with this seed; default: the slowest first",
            .placeholder = "SEED",
@@ -217,7 +181,6 @@ SuiteRequest RequestFrom(const ParsedOptions& options, const CommandContext& con
                        .replays = ReplaysOf(options),
                        .only_changed = options.Has("--changed"),
                        .repeat = options.IntOr("--repeat", 1),
-                       .transforms = TransformsOf(options),
                        .shuffle_seed = {},
                        .limits = {}};
   if (options.Has("--shuffle")) request.shuffle_seed = options.UnsignedOr("--shuffle", 0);
@@ -274,8 +237,7 @@ void PrintText(const std::vector<ScenarioVerdict>& verdicts, const TextOptions& 
   const Tally tally = Count(verdicts);
   const std::string smallest = SmallestMarginText(verdicts);
   if (!smallest.empty()) context.out << smallest << "\n";
-  context.out << TransformsText(verdicts) << BrittleText(BrittlePasses(verdicts))
-              << CausesText(CausesOf(verdicts));
+  context.out << BrittleText(BrittlePasses(verdicts)) << CausesText(CausesOf(verdicts));
   if (brief)
     context.out << fmt::format("{} failures: details are in the report, or printed by --verbose\n",
                                failed);
@@ -340,11 +302,6 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
     return Complain(context, ExitCode::kBadInput,
                     "--changed compares files; it cannot be combined with --grammar or --set");
   }
-  if (options.Has("--changed") && !TransformsOf(options).empty()) {
-    return Complain(
-        context, ExitCode::kBadInput,
-        "--changed compares files; it cannot be combined with --transform or --ensemble");
-  }
   const std::string junit = options.Text("--junit");
   if (junit == "-" && options.Has("--json")) {
     return Complain(context, ExitCode::kBadInput,
@@ -355,7 +312,7 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   const auto played = std::ranges::find_if(selection->scenarios, [](const ScenarioFile& file) {
     return EpisodeKindOf(file.path) != EpisodeKind::kScenario;
   });
-  for (const char* of_play : {"--record", "--transform", "--ensemble", "--repeat"}) {
+  for (const char* of_play : {"--record", "--repeat"}) {
     if (played != selection->scenarios.end() && options.Has(of_play))
       return Complain(context, ExitCode::kBadInput,
                       fmt::format("{} plays scenarios; {} is a recording", of_play, played->path));

@@ -17,9 +17,9 @@
 //
 // NAME~NUMBER is a value of the event, which agrees within 5 % or 0.001; accepted=2 says that this
 // line is as the second of the accepted lines made it (otherwise the first). spread=0.0/12.5ms says
-// how far begin and end moved when the scenario was played elsewhere (EnsembleTransforms()); no
-// spread: not at all. Events that differ elsewhere need a line "# unsteady: "the reason"". Tested
-// by tests/harness/golden/golden_test.cc
+// how far begin and end moved when the scenario was played elsewhere
+// (harness/transform/transform.h); no spread: not at all. Events that differ elsewhere need a line
+// "# unsteady: "the reason"". Tested by tests/harness/golden/golden_test.cc
 #pragma once
 
 #include <optional>

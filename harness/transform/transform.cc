@@ -3,140 +3,146 @@
 #include "harness/transform/transform.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
-
-#include "harness/transform/change_entities.h"
-#include "harness/transform/move_scenario.h"
+#include <vector>
 
 namespace prehend::harness {
 namespace {
 
-using Refusal = tl::unexpected<std::string>;
+using Eigen::Vector3d;
 
-constexpr double kNudge_m = 1e-6, kShift_m = 1e-3, kTurn_deg = 37;
-
-Scenario Shifted(const Scenario& scenario, const Eigen::Vector3d& by_m) {
-  return Moved(scenario, {.X = {.p_m = by_m}});
-}
-
-bool IsDrawnInWorldAxes(const physics::TrackerSettings& tracking) {
-  return tracking.jitter_mm > 0 || tracking.jitter_deg > 0 || tracking.tremor_mm > 0;
-}
-
-/// Why the grammar would be shown other noise.
-std::string WhyNoisy(const Scenario& scenario, std::string_view how) {
-  return scenario.sensing.sensors.IsPerfect()
-             ? std::string()
-             : "the noise of its sensors is drawn " + std::string(how);
-}
-
-/// Why the scenario, turned or mirrored, is another story; "": it is not.
-std::string WhyDirected(const Scenario& scenario) {
-  if (scenario.scene.world.planar) return "it is planar";
-  for (const physics::Hand& hand : scenario.scene.hands) {
-    if (hand.tracking && IsDrawnInWorldAxes(*hand.tracking))
-      return "the noise of its tracker is drawn along the axes of the world";
+/// What is said of places in the world in the steps of a script.
+struct ShiftStep {
+  const Vector3d& by_m;
+  void operator()(std::vector<physics::TimedPose>& poses) const {
+    for (physics::TimedPose& pose : poses) pose.X_WH.p_m += by_m;
   }
-  return WhyNoisy(scenario, "along the axes of the world");
+  void operator()(physics::CarryStep& step) const { step.to_m += by_m.head<2>(); }
+  void operator()(physics::PosesStep& step) const {
+    for (std::size_t i = 0; i < step.poses.size(); ++i) {
+      const physics::PoseFrame frame = step.frames.empty() ? physics::PoseFrame{} : step.frames[i];
+      if (!frame.own_hand && frame.name.empty()) step.poses[i].X_WH.p_m += by_m;
+    }
+  }
+  void operator()(physics::LookAtStep& step) const {
+    if (auto* const point_m = std::get_if<Vector3d>(&step.target)) *point_m += by_m;
+  }
+  void operator()(physics::WalkStep& step) const { step.to_m += by_m.head<2>(); }
+  void operator()(physics::MoveLimbStep& step) const {
+    if (step.to_m) *step.to_m += by_m;
+  }
+  void operator()(physics::HeadPosesStep& step) const { (*this)(step.poses); }
+  void operator()(physics::BodyPosesStep& step) const {
+    for (physics::TimedPosture& timed : step.postures) timed.posture.hips_W_m += by_m;
+  }
+  template <typename Other>  // names no place
+  void operator()(Other&) const {}
+};
+
+/// `order[i]` is what becomes the i-th of `items`.
+template <typename T>
+std::vector<T> InOrder(const std::vector<T>& items, const std::vector<int>& order) {
+  std::vector<T> ordered;
+  for (const int index : order) ordered.push_back(items[static_cast<std::size_t>(index)]);
+  return ordered;
 }
 
-/// Why a copy would not be alone; "": it is.
-std::string WhyNoRoomForCopy(const Scenario& scenario) {
-  for (const physics::Body& body : scenario.scene.bodies) {
-    const physics::LocalBox box = physics::BoundingBox(body);
-    if (body.abstract == physics::Abstract::kNot &&
-        (body.X_WB * box.p_BC_m).norm() + box.half_size_m.norm() > kMostExtentBesideCopy_m)
-      return body.name + " reaches too far for a copy beside it";
-  }
-  return {};
+/// All bodies the other way round, but those of persons, which are consecutive.
+Scenario Reordered(Scenario scenario) {
+  physics::Scene& scene = scenario.scene;
+  std::vector<int> others;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (!scene.bodies[i].kinematic) others.push_back(static_cast<int>(i));
+  std::vector<int> order(scene.bodies.size());
+  std::iota(order.begin(), order.end(), 0);
+  for (std::size_t i = 0; i < others.size(); ++i)
+    order[static_cast<std::size_t>(others[i])] = others[others.size() - 1 - i];
+  std::vector<int> place(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    place[static_cast<std::size_t>(order[i])] = static_cast<int>(i);
+  const auto replace = [&](int& body) {
+    if (body >= 0) body = place[static_cast<std::size_t>(body)];
+  };
+  scene.bodies = InOrder(scene.bodies, order);
+  scenario.body_classes = InOrder(scenario.body_classes, order);
+  scenario.body_part_of = InOrder(scenario.body_part_of, order);
+  for (int& whole : scenario.body_part_of) replace(whole);
+  for (physics::Joint& joint : scene.joints) replace(joint.body), replace(joint.base);
+  for (Outcome& outcome : scenario.outcomes)
+    for (Outcome::Condition& condition : outcome.conditions)
+      replace(condition.body), replace(condition.vessel);
+  return scenario;
+}
+
+Scenario WithBystander(Scenario scenario) {
+  const auto add = [&](std::string name, const Vector3d& size_m, const Vector3d& p_m,
+                       double mass_kg) {
+    physics::Body body;
+    body.name = std::move(name);
+    body.shapes = {{.shape = physics::Box{size_m}, .X_BS = {}}};
+    body.fixed = mass_kg == 0;
+    body.mass_kg = mass_kg;
+    body.X_WB.p_m = p_m;
+    scenario.scene.bodies.push_back(std::move(body));
+    scenario.body_classes.emplace_back();
+    scenario.body_part_of.push_back(grammar::kNoEntity);
+  };
+  add("bystanders_slab", {1, 1, 0.1}, {-14, 0, -0.05}, 0);
+  add("bystander", {0.2, 0.2, 0.2}, {-14, 0, 0.1}, 1);
+  return scenario;
 }
 
 }  // namespace
-
-const std::vector<TransformName>& TransformNames() {
-  static const std::vector<TransformName> names = {
-      {Transform::kNudge, "nudge", "everything 1 um along x, so that only rounding changes"},
-      {Transform::kShift, "shift", "everything 1 mm along x"},
-      {Transform::kFar, "far", "everything 4 m along x and 2 m along y"},
-      {Transform::kTurn, "turn", "everything turned by 37 degrees about the vertical"},
-      {Transform::kMirror, "mirror", "mirrored: right hands become left ones"},
-      {Transform::kReorder, "reorder", "entities listed the other way round"},
-      {Transform::kBystander, "bystander", "a box lies asleep on a slab, 14 m away"},
-      {Transform::kRename, "rename", "other names, which the alphabet has the other way round"},
-      {Transform::kCopies, "copies", "a second copy, 13 m away, does the same at the same time"},
-      {Transform::kRate, "rate", "rate_hz doubled: physics in steps half as long"},
-      {Transform::kWatch, "watch", "sensing_hz doubled, at most rate_hz: the grammar sees more"},
-  };
-  return names;
-}
-
-const std::vector<Transform>& EnsembleTransforms() {
-  static const std::vector<Transform> transforms = {Transform::kNudge, Transform::kShift,
-                                                    Transform::kFar, Transform::kReorder,
-                                                    Transform::kBystander};
-  return transforms;
-}
 
 std::string_view NameOf(Transform transform) {
-  return std::ranges::find(TransformNames(), transform, &TransformName::transform)->name;
+  constexpr std::string_view kNames[] = {"nudge", "shift", "far", "reorder", "bystander"};
+  return kNames[static_cast<std::size_t>(transform)];
 }
 
-namespace {
-
-tl::expected<Scenario, std::string> Changed(const Scenario& scenario, Transform transform) {
-  const physics::WorldSettings& world = scenario.scene.world;
-  const std::string directed = WhyDirected(scenario);
-  const std::string listed = WhyNoisy(scenario, "for each entity by its place in the list");
-  Scenario changed = scenario;
+tl::expected<Scenario, std::string> Transformed(Scenario scenario, Transform transform) {
   switch (transform) {
     case Transform::kNudge:
-      return Shifted(scenario, {kNudge_m, 0, 0});
+      return Shifted(std::move(scenario), {1e-6, 0, 0});
     case Transform::kShift:
-      return Shifted(scenario, {kShift_m, 0, 0});
-    case Transform::kFar:
-      return Shifted(scenario, {4, world.planar ? 0. : 2., 0});
-    case Transform::kTurn:
-      if (!directed.empty()) return Refusal(directed);
-      return Moved(scenario, {.X = {.q = physics::FromRollPitchYaw({0, 0, kTurn_deg})}});
-    case Transform::kMirror:
-      if (!directed.empty()) return Refusal(directed);
-      if (!scenario.scene.persons.empty())
-        return Refusal("a person's right hand would be on the left");
-      return Moved(scenario, {.mirrors = true, .X = {}});
+      return Shifted(std::move(scenario), {1e-3, 0, 0});
+    case Transform::kFar: {
+      const double along_y_m = scenario.scene.world.planar ? 0 : 2;
+      return Shifted(std::move(scenario), {4, along_y_m, 0});
+    }
     case Transform::kReorder:
-      if (!listed.empty()) return Refusal(listed);
-      return Reordered(scenario);
     case Transform::kBystander:
-      if (!listed.empty()) return Refusal(listed);
-      return WithBystander(scenario);
-    case Transform::kRename:
-      return Renamed(scenario, NamesTurnedRound(scenario));
-    case Transform::kCopies:
-      if (!listed.empty()) return Refusal(listed);
-      if (const std::string why = WhyNoRoomForCopy(scenario); !why.empty()) return Refusal(why);
-      return WithCopy(scenario);
-    case Transform::kRate:
-      changed.scene.world.rate_hz *= 2;
-      return changed;
-    case Transform::kWatch:
-      if (scenario.sensing.sensing_hz == world.rate_hz)
-        return Refusal("the grammar sees every tick already");
-      changed.sensing.sensing_hz = std::min(2 * scenario.sensing.sensing_hz, world.rate_hz);
-      return changed;
+      break;
   }
-  return Refusal("unknown");
+  if (!scenario.sensing.sensors.IsPerfect())
+    return tl::unexpected<std::string>(
+        "the noise of its sensors is drawn for each entity by its place in the list");
+  return transform == Transform::kReorder ? Reordered(std::move(scenario))
+                                          : WithBystander(std::move(scenario));
 }
 
-}  // namespace
-
-tl::expected<TransformedScenario, std::string> Transformed(const Scenario& scenario,
-                                                           Transform transform) {
-  auto changed = Changed(scenario, transform);
-  if (!changed) return Refusal(changed.error());
-  TransformedScenario there{.scenario = std::move(*changed), .names = {}};
-  for (const auto& [written, turned_round] : NamesTurnedRound(scenario))
-    there.names[transform == Transform::kRename ? turned_round : written] = written;
-  return there;
+Scenario Shifted(Scenario scenario, const Vector3d& by_m) {
+  for (physics::Body& body : scenario.scene.bodies) {
+    body.X_WB.p_m += by_m;
+    if (body.grains)
+      for (Vector3d& p_WG_m : body.grains->p_WG_m) p_WG_m += by_m;
+  }
+  for (physics::Joint& joint : scenario.scene.joints) joint.pivot_W_m += by_m;
+  for (physics::Hand& hand : scenario.scene.hands) hand.X_WH.p_m += by_m;
+  for (physics::Person& person : scenario.scene.persons) person.X_WS.p_m += by_m;
+  for (physics::ScriptStage& stage : scenario.script.stages) {
+    for (physics::Step& step : stage.steps) std::visit(ShiftStep{by_m}, step.action);
+    for (physics::PersonStep& step : stage.person_steps) std::visit(ShiftStep{by_m}, step.action);
+  }
+  for (Outcome& outcome : scenario.outcomes) {
+    for (Outcome::Condition& condition : outcome.conditions) {
+      if (!condition.wanted.near_m) continue;
+      std::vector<double>& near_m = *condition.wanted.near_m;
+      for (std::size_t i = 0; i < near_m.size(); ++i)
+        near_m[i] += by_m[static_cast<Eigen::Index>(i)];
+    }
+  }
+  return scenario;
 }
 
 }  // namespace prehend::harness

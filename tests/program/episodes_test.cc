@@ -81,9 +81,9 @@ TEST(Episodes, EveryCommandTakesThem) {
   const Said which = Prehend({"explain", file});
   EXPECT_EQ(which.exit_code, 4);
   EXPECT_NE(which.err.find("has 2 such episodes; --episode selects one"), std::string::npos);
-  const Said again = Prehend({"check", file, "--ensemble"});
+  const Said again = Prehend({"check", file, "--repeat", "2"});
   EXPECT_EQ(again.exit_code, 2);
-  EXPECT_EQ(again.err, "prehend: --ensemble plays scenarios; " + file + " is a recording\n");
+  EXPECT_EQ(again.err, "prehend: --repeat plays scenarios; " + file + " is a recording\n");
 }
 
 TEST(Episodes, ThePictureOfAnEpisodeIsThatOfItsScenario) {

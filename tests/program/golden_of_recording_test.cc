@@ -88,11 +88,9 @@ TEST_F(GoldenOfARecording, ADifferenceIsShownWithItsCauseAndKeepsWhatPeopleWrote
 }
 
 TEST_F(GoldenOfARecording, WhatIsWrongIsSaidAndNothingIsWritten) {
-  for (const char* option : {"--ensemble", "--repeat=2"}) {
-    const Said played = Check({option});
-    EXPECT_EQ(played.exit_code, 2);
-    EXPECT_TRUE(Has(played.err, "plays scenarios; " + take_ + " is a recording")) << played.err;
-  }
+  const Said played = Check({"--repeat=2"});
+  EXPECT_EQ(played.exit_code, 2);
+  EXPECT_TRUE(Has(played.err, "plays scenarios; " + take_ + " is a recording")) << played.err;
   const Said unsteady = Accept({"--reason", "seen", "--unsteady", "why"});
   EXPECT_EQ(unsteady.exit_code, 2);
   EXPECT_FALSE(fs::exists(golden_));

@@ -131,11 +131,5 @@ TEST_F(OwnProject, WhatIsOfNoProjectIsNotToBeAccepted) {
   EXPECT_FALSE(Has(shipped.out, "then accept it")) << shipped.out;
 }
 
-TEST_F(OwnProject, WhatRepeatsACheckHasItsTransforms) {
-  const Said said = Do({"check", "carton_is_held_still", "--no-pictures", "--transform", "shift",
-                        "--set", "entities.carton.mass_kg=0.41"});
-  EXPECT_TRUE(Has(said.out, " --transform shift")) << said.out << said.err;
-}
-
 }  // namespace
 }  // namespace prehend::house

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grammars and the physical oracle, judged by the closed forms (tests/witnesses/README.md). Tested
-// by tests/witnesses/closed_forms_test.cc, closed_form_score_test.cc
+// Grammars and the physical oracle, judged by the closed forms (tests/witnesses/README.md).
+// Tested by tests/witnesses/closed_forms_test.cc and tests/witnesses/closed_form_score_test.cc
 #pragma once
 
 #include <functional>

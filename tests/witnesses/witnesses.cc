@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // witnesses: what judges grammars and is no part of the program (tests/witnesses/README.md).
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "harness/golden/golden_files.h"
+#include "harness/judge/judge_golden.h"
 #include "harness/run/load_grammar.h"
 #include "tests/witnesses/closed_form_score.h"
+#include "tests/witnesses/elsewhere/elsewhere.h"
 
 namespace prehend::harness {
 namespace {
@@ -16,9 +20,11 @@ constexpr const char* kRoot = PREHEND_SOURCE_DIR;
 constexpr const char* kStories = PREHEND_SOURCE_DIR "/tests/witnesses/stories";
 constexpr const char* kUsage = R"(usage: witnesses closed-forms [--json] [GRAMMAR..]
        witnesses table [PREHEND]
+       witnesses elsewhere SCENARIO TRANSFORM..
 closed-forms: grammars (default: pick_and_place and original_2020) and the oracle, on recordings
 whose events are known on paper. table: README's table of witnesses; plays the whole library with
-the program PREHEND (default: that of this build).
+the program PREHEND (default: that of this build). elsewhere: whether a scenario tells the same
+story after each transform, as JSON; tests/witnesses/elsewhere/same_elsewhere does it with the library.
 )";
 
 int Complain(const grammar::Diagnostics& diagnostics) {
@@ -60,11 +66,43 @@ int RunTable(const std::string& program) {
   return 0;
 }
 
+int RunElsewhere(const std::string& name, const std::vector<std::string>& transforms) {
+  for (const std::string& transform : transforms) {
+    if (std::ranges::find(TransformNames(), transform) != TransformNames().end()) continue;
+    std::cerr << transform << ": wanted one of";
+    for (const std::string& known : TransformNames()) std::cerr << " " << known;
+    std::cerr << "\n";
+    return 2;
+  }
+  auto loaded =
+      LoadRun({.scenario_file = std::string(kRoot) + "/scenarios/" + name + ".yaml"}, kRoot);
+  if (!loaded) return Complain(loaded.error());
+  const auto golden = GoldenFiles(kRoot).ReadGoldenOf(name);
+  if (!golden) return Complain(golden.error());
+  CheckedRun checked{.id = name, .loaded = std::move(*loaded), .result = {}, .explain = ""};
+  checked.result = RunScenario(checked.loaded.scenario, checked.loaded.program);
+  nlohmann::json verdicts = nlohmann::json::array();
+  if (checked.result.status.kind == physics::RunStatus::Kind::kCompleted) {
+    const Golden here = CompareWithGolden(*golden, checked).pending;
+    for (const std::string& transform : transforms) {
+      const TransformVerdict verdict = JudgeElsewhere(checked, here, transform);
+      verdicts.push_back({{"transform", transform},
+                          {"verdict", verdict.says},
+                          {"why", verdict.why},
+                          {"details", verdict.details}});
+    }
+  }
+  std::cout << nlohmann::json{{"scenario", name}, {"transforms", verdicts}}.dump() << "\n";
+  return 0;
+}
+
 int Run(const std::vector<std::string>& arguments) {
   const std::string what = arguments.empty() ? "" : arguments[0];
   if (what == "closed-forms") return RunClosedForms({arguments.begin() + 1, arguments.end()});
   if (what == "table" && arguments.size() <= 2)
     return RunTable(arguments.size() == 2 ? arguments[1] : PREHEND_BINARY_DIR "/prehend");
+  if (what == "elsewhere" && arguments.size() > 2)
+    return RunElsewhere(arguments[1], {arguments.begin() + 2, arguments.end()});
   std::cerr << kUsage;
   return 2;
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/transform/change_entities.h. Tested by tests/harness/transform/transform_test.cc
-#include "harness/transform/change_entities.h"
+// See tests/witnesses/elsewhere/change_entities.h. Tested by
+// tests/witnesses/elsewhere/elsewhere_test.cc
+#include "tests/witnesses/elsewhere/change_entities.h"
 
 #include <fmt/format.h>
 
-#include <numeric>
 #include <set>
 #include <utility>
 
-#include "harness/transform/move_scenario.h"
+#include "tests/witnesses/elsewhere/move_scenario.h"
 
 namespace prehend::harness {
 namespace {
@@ -16,14 +16,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kToCopy_m = 13;
-
-/// `order[i]` is what becomes the i-th of `items`.
-template <typename T>
-std::vector<T> InOrder(const std::vector<T>& items, const std::vector<int>& order) {
-  std::vector<T> ordered;
-  for (const int index : order) ordered.push_back(items[static_cast<std::size_t>(index)]);
-  return ordered;
-}
 
 template <typename T>
 void Append(const std::vector<T>& more, std::vector<T>& items) {
@@ -61,32 +53,6 @@ void RenameOrder(physics::StepOrder& order) {
 
 }  // namespace
 
-Scenario Reordered(Scenario scenario) {
-  physics::Scene& scene = scenario.scene;
-  std::vector<int> others;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    if (!scene.bodies[i].kinematic) others.push_back(static_cast<int>(i));
-  std::vector<int> order(scene.bodies.size());
-  std::iota(order.begin(), order.end(), 0);
-  for (std::size_t i = 0; i < others.size(); ++i)
-    order[static_cast<std::size_t>(others[i])] = others[others.size() - 1 - i];
-  std::vector<int> place(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    place[static_cast<std::size_t>(order[i])] = static_cast<int>(i);
-  const auto replace = [&](int& body) {
-    if (body >= 0) body = place[static_cast<std::size_t>(body)];
-  };
-  scene.bodies = InOrder(scene.bodies, order);
-  scenario.body_classes = InOrder(scenario.body_classes, order);
-  scenario.body_part_of = InOrder(scenario.body_part_of, order);
-  for (int& whole : scenario.body_part_of) replace(whole);
-  for (physics::Joint& joint : scene.joints) replace(joint.body), replace(joint.base);
-  for (Outcome& outcome : scenario.outcomes)
-    for (Outcome::Condition& condition : outcome.conditions)
-      replace(condition.body), replace(condition.vessel);
-  return scenario;
-}
-
 std::map<std::string, std::string> NamesTurnedRound(const Scenario& scenario) {
   std::set<std::string> written;
   for (const physics::Body& body : scenario.scene.bodies) written.insert(body.name);
@@ -110,24 +76,6 @@ Scenario Renamed(Scenario scenario, const std::map<std::string, std::string>& na
     }
     for (physics::PersonStep& step : stage.person_steps) std::visit(rename, step.action);
   }
-  return scenario;
-}
-
-Scenario WithBystander(Scenario scenario) {
-  const auto add = [&](std::string name, const Vector3d& size_m, const Vector3d& p_m,
-                       double mass_kg) {
-    physics::Body body;
-    body.name = std::move(name);
-    body.shapes = {{.shape = physics::Box{size_m}, .X_BS = {}}};
-    body.fixed = mass_kg == 0;
-    body.mass_kg = mass_kg;
-    body.X_WB.p_m = p_m;
-    scenario.scene.bodies.push_back(std::move(body));
-    scenario.body_classes.emplace_back();
-    scenario.body_part_of.push_back(grammar::kNoEntity);
-  };
-  add("bystanders_slab", {1, 1, 0.1}, {-14, 0, -0.05}, 0);
-  add("bystander", {0.2, 0.2, 0.2}, {-14, 0, 0.1}, 1);
   return scenario;
 }
 

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "harness/run/load_run.h"
-#include "harness/transform/move_scenario.h"
 #include "physics/scene/geometry.h"
 #include "physics/simulation.h"
+#include "tests/witnesses/elsewhere/move_scenario.h"
 
 namespace prehend::harness {
 namespace {

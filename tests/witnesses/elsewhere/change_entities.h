@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same scenario with its entities listed or called otherwise, or with others beside them.
-// Tested by tests/harness/transform/transform_test.cc
+// The same scenario with its entities called otherwise, or with a copy of them beside them.
+// Tested by tests/witnesses/elsewhere/elsewhere_test.cc
 #pragma once
 
 #include <map>
@@ -10,18 +10,12 @@
 
 namespace prehend::harness {
 
-/// All bodies the other way round, but those of persons, which are consecutive.
-Scenario Reordered(Scenario scenario);
-
 /// A new name for each body, hand and person, so that the alphabet has them the other way round.
 std::map<std::string, std::string> NamesTurnedRound(const Scenario& scenario);
 
 /// Every entity called as `names` says; those that are not in it keep their names. Not in `expects`
 /// and `pictures`, which are about the scenario as it was written.
 Scenario Renamed(Scenario scenario, const std::map<std::string, std::string>& names);
-
-/// A box that lies asleep on a slab, 14 m away.
-Scenario WithBystander(Scenario scenario);
 
 /// The largest extent that a thing may have beside its copy.
 inline constexpr double kMostExtentBesideCopy_m = 6;

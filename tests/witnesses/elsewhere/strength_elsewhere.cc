@@ -16,9 +16,9 @@
 #include "harness/run/load_run.h"
 #include "harness/run/outcome.h"
 #include "harness/run/run_trials.h"
-#include "harness/transform/move_scenario.h"
 #include "physics/scene/geometry.h"
 #include "physics/simulation.h"
+#include "tests/witnesses/elsewhere/move_scenario.h"
 
 namespace prehend::harness {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/transform/move_scenario.h. Tested by tests/harness/transform/transform_test.cc
-#include "harness/transform/move_scenario.h"
+// See tests/witnesses/elsewhere/move_scenario.h. Tested by
+// tests/witnesses/elsewhere/elsewhere_test.cc
+#include "tests/witnesses/elsewhere/move_scenario.h"
 
 #include <algorithm>
 #include <cmath>

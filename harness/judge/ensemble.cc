@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/judge/ensemble.h. Tested by tests/harness/judge/ensemble_test.cc
+#include "harness/judge/ensemble.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "harness/judge/judge_claims.h"
+#include "harness/run/run_scenario.h"
+#include "harness/run/run_text.h"
+#include "harness/timeline/event_text.h"
+#include "harness/transform/transform.h"
+
+namespace prehend::harness {
+namespace {
+
+/// Without the events of those who are not in the scenario.
+void LeaveOutOthers(const physics::Scene& scene, grammar::Timeline& timeline) {
+  std::set<std::string> names;
+  for (const physics::Body& body : scene.bodies) names.insert(body.name);
+  for (const physics::Hand& hand : scene.hands) names.insert(hand.name);
+  for (const physics::Person& person : scene.persons) names.insert(person.name);
+  std::erase_if(timeline.events, [&](const grammar::NamedEvent& event) {
+    return std::ranges::any_of(event.roles, [&](const grammar::Role& role) {
+      return !IsAttribute(role) && !names.contains(role.value);
+    });
+  });
+}
+
+/// Rounded as a golden is written.
+double Milliseconds(grammar::Tick ticks, grammar::Tick ticks_per_second) {
+  const double ms =
+      1000.0 * static_cast<double>(std::abs(ticks)) / static_cast<double>(ticks_per_second);
+  return std::round(10 * ms) / 10;
+}
+
+/// How far boundaries are from their golden lines, by line; nothing for events without partner.
+struct Offset {
+  grammar::Tick begin, end;
+};
+std::vector<std::optional<Offset>> OffsetsOf(const Comparison& comparison, const Golden& golden) {
+  std::vector<std::optional<Offset>> offsets(golden.events.size());
+  for (const Pairing& pairing : comparison.pairings)
+    if (pairing.expected && pairing.actual)
+      offsets[pairing.golden_line] = {pairing.begin_offset, pairing.end_offset};
+  return offsets;
+}
+
+}  // namespace
+
+Ensemble PlayEnsemble(const LoadedRun& loaded, const grammar::Timeline& here,
+                      const Golden& golden) {
+  Ensemble ensemble;
+  ensemble.spreads.resize(golden.events.size());
+  const auto offsets_here =
+      OffsetsOf(Compare(golden, here, DefaultTolerance(loaded.scenario)), golden);
+  for (const Transform transform : kTransforms) {
+    auto scenario = Transformed(loaded.scenario, transform);
+    if (!scenario) continue;
+    const std::string name(NameOf(transform));
+    PlayElsewhere play = Play({.name = name,
+                               .scenario = std::move(*scenario),
+                               .tolerance = DefaultTolerance(loaded.scenario)},
+                              loaded, golden);
+    ++ensemble.plays;
+    Findings broken = BrokenIn(play, name);
+    if (!broken.empty()) ++ensemble.plays_broken;
+    Append(ensemble.broken, std::move(broken));
+    Append(ensemble.differences, std::move(play.differs));
+    if (!play.comparison) continue;
+    const auto offsets = OffsetsOf(*play.comparison, golden);
+    for (std::size_t i = 0; i < offsets.size(); ++i) {
+      if (!offsets[i] || !offsets_here[i]) continue;
+      const auto widen = [&](grammar::Tick moved, double& spread_ms) {
+        spread_ms = std::max(spread_ms, Milliseconds(moved, here.ticks_per_second));
+      };
+      widen(offsets[i]->begin - offsets_here[i]->begin, ensemble.spreads[i].begin_ms);
+      widen(offsets[i]->end - offsets_here[i]->end, ensemble.spreads[i].end_ms);
+    }
+  }
+  return ensemble;
+}
+
+void KeepSpreads(const Ensemble& ensemble, Golden& golden) {
+  golden.ensemble_plays = ensemble.plays;
+  for (std::size_t i = 0; i < golden.events.size(); ++i) {
+    if (golden.events[i].spread == ensemble.spreads[i]) continue;
+    golden.events[i].spread = ensemble.spreads[i];
+    golden.events[i].as_written.clear();
+  }
+}
+
+PlayElsewhere Play(const Elsewhere& there, const LoadedRun& original, const Golden& here) {
+  PlayElsewhere play;
+  RunResult run = RunScenario(there.scenario, original.program);
+  if (run.status.kind != physics::RunStatus::Kind::kCompleted) {
+    play.failed = {{.reason = there.name + ": the simulation failed",
+                    .details = there.name + ": " + StatusText(run) + "\n"}};
+    return play;
+  }
+  if (there.rename_back) there.rename_back(run.timeline);
+  LeaveOutOthers(original.scenario.scene, run.timeline);
+  play.claims = JudgeClaims(original, run.timeline);
+  play.comparison = Compare(here, run.timeline, there.tolerance);
+  if (!play.comparison->Agrees())
+    play.differs = {{.reason = fmt::format("{}: {} of {} events differ", there.name,
+                                           play.comparison->Differing().size(),
+                                           play.comparison->pairings.size()),
+                     .details = "recognised after '" + there.name + "', expected as without it:\n" +
+                                DifferenceText(*play.comparison, "")}};
+  return play;
+}
+
+Findings BrokenIn(const PlayElsewhere& play, const std::string& name) {
+  Findings findings = play.failed;
+  for (Finding& finding : ClaimFindings(play.claims))
+    findings.push_back({.exit_code = finding.exit_code,
+                        .reason = name + ": " + finding.reason,
+                        .details = name + ": " + finding.details});
+  return findings;
+}
+
+}  // namespace prehend::harness
