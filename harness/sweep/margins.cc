@@ -13,6 +13,7 @@
 #include "grammar/base/wording.h"
 #include "grammar/describe.h"
 #include "harness/run/load_grammar.h"
+#include "harness/run/load_run.h"
 #include "harness/timeline/event_text.h"
 
 namespace prehend::harness::sweep {

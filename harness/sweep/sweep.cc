@@ -18,6 +18,7 @@
 #include "harness/process/progress_counters.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/load_grammar.h"
+#include "harness/run/load_run.h"
 #include "harness/score/labelled.h"
 #include "harness/score/overlap_metrics.h"
 #include "harness/timeline/match_events.h"
