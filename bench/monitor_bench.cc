@@ -8,15 +8,15 @@
 #include <algorithm>
 #include <string>
 
+#include "bench/yardsticks/four_automata.h"
+#include "bench/yardsticks/workload.h"
+#include "bench/yardsticks/worlds.h"
 #include "harness/base/project_paths.h"
 #include "harness/run/find_scenario.h"
 #include "harness/run/load_run.h"
 #include "harness/run/run_scenario.h"
 #include "harness/run/run_text.h"
 #include "harness/run/segment.h"
-#include "harness/speed/four_automata.h"
-#include "harness/speed/workload.h"
-#include "harness/speed/worlds.h"
 
 namespace prehend::harness {
 namespace {

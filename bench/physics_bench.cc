@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "bench/bullet_alone.h"
-#include "harness/speed/resting_boxes.h"
+#include "bench/yardsticks/resting_boxes.h"
 #include "physics/simulation.h"
 
 namespace prehend::harness {

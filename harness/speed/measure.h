@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast the monitor is on this machine: each figure is the best of several runs. Where there is
-// one, code by hand for the same rules runs beside it, in every frame and on change; the ratios can
-// be compared between machines. Tested by tests/harness/speed/workload_test.cc
+// How fast a grammar is evaluated on this machine; each figure is the best of several runs. Tested
+// by tests/program/command_line_test.cc
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "harness/base/result.h"
+#include "harness/episode/episode.h"
 
 namespace prehend::harness {
 
@@ -17,19 +15,13 @@ struct SpeedFigure {
   std::string unit;        ///< of one operation
   double operations = 0;   ///< in one run
   double seconds = 0;      ///< of one run
-  double baseline_s = 0;   ///< of the automata by hand in every frame, same run; 0: there are none
-  double on_change_s = 0;  ///< of the automata by hand on change, likewise
   double events = 0;       ///< in one run
-  double simulated_s = 0;  ///< of one run; 0: the workload has no real time
+  double simulated_s = 0;  ///< of one run
   double physics_s = 0;    ///< of the world in one run; 0: there is no world
-  double bytes = 0;        ///< of the monitor per object (of a binding: per binding) after the run;
-                           ///< 0: not measured
-  std::uint64_t hash = 0;  ///< of the recognised events; 0: there are none
-  bool agrees = true;      ///< with the automata by hand
 };
 
-/// Fails only if `root` lacks the scenario that is played. Takes seconds; with `quick` a fraction
-/// of one, for tests.
-Result<std::vector<SpeedFigure>> MeasureSpeed(const std::string& root, bool quick);
+/// The monitor alone on the frames of an episode; of a scenario also with sensing, beside its
+/// physics. With `quick` one run.
+std::vector<SpeedFigure> MeasureSpeed(Episode& episode, bool quick);
 
 }  // namespace prehend::harness

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Processor time, not wall time, because other programs may run on this machine.
-// Tested by tests/harness/speed/workload_test.cc
+// Tested by tests/bench/workload_test.cc
 #pragma once
 
 #include <ctime>

@@ -32,7 +32,7 @@ const std::map<std::string, std::vector<std::string>> kArrows = {
     {"physics", {}},
     {"render", {"physics/scene/"}},
     {"harness", {"grammar/", "physics/", "render/"}},
-    {"tests", {"grammar/", "physics/", "render/", "harness/", "tests/"}},
+    {"tests", {"grammar/", "physics/", "render/", "harness/", "tests/", "bench/"}},
     {"bench", {"grammar/", "physics/", "render/", "harness/"}},
 };
 

@@ -33,14 +33,12 @@ std::vector<std::string> NamesIn(const std::string& text, const std::set<std::st
   return found;
 }
 
-/// The oracle is a second opinion on the same events; the speed figures measure rules of their own;
-/// the default grammar has the name of the event that it is about. Examples in help texts may name
-/// events, as here texts are compared whole.
-/// HTML has an attribute of the name of an event, too.
+/// The oracle is a second opinion on the same events; the default grammar has the name of the event
+/// that it is about. Examples in help texts may name events, as here texts are compared whole. HTML
+/// has an attribute of the name of an event, too.
 bool MayNameEvents(const std::string& path) {
   return path == "harness/report/report.cc" || path == "harness/report/explanations.cc" ||
-         path.starts_with("harness/oracle/") || path.starts_with("harness/speed/") ||
-         path == "harness/base/default_grammar.h";
+         path.starts_with("harness/oracle/") || path == "harness/base/default_grammar.h";
 }
 
 TEST(EventNames, AreUnknownToTheProgram) {

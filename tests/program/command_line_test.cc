@@ -16,22 +16,18 @@ namespace fs = std::filesystem;
 
 using CommandLine = SmallProject;
 
-TEST_F(CommandLine, BenchAgreesWithTheAutomataByHand) {
-  const fs::path watched = "scenarios/pick_and_place/milk_carton_wrap.yaml";
-  fs::create_directories((root_ / watched).parent_path());
-  fs::copy(PREHEND_SOURCE_DIR / watched, root_ / watched);
-  const Said json = Do("bench --quick --json");
-  EXPECT_EQ(json.exit_code, 0) << json.err;
-  int compared = 0;
-  const auto report = nlohmann::json::parse(json.out);
-  for (const auto& figure : report["figures"]) {
-    EXPECT_GT(figure["operations_per_s"], 0) << figure;
-    if (!figure.contains("agrees_with_baseline")) continue;
-    EXPECT_TRUE(figure["agrees_with_baseline"]) << figure;
-    EXPECT_GT(figure["times_on_change"], 0) << figure;
-    ++compared;
+TEST_F(CommandLine, BenchMeasuresAGrammarOnAnEpisode) {
+  const std::string take = (root_ / "take.episodes").string();
+  ASSERT_EQ(Do("run carton_rests --record " + take).exit_code, 0);
+  for (const auto& [episode, rows] : {std::pair<std::string, int>{"carton_rests", 2}, {take, 1}}) {
+    const Said json = Do("bench " + episode + " --grammar contact --quick --json");
+    EXPECT_EQ(json.exit_code, 0) << json.err;
+    const auto figures = nlohmann::json::parse(json.out)["figures"];
+    ASSERT_EQ(figures.size(), rows);
+    EXPECT_EQ(figures[0]["what"], "contact on rest/carton_rests");
+    for (const auto& figure : figures) EXPECT_GT(figure["operations_per_s"], 0) << figure;
   }
-  EXPECT_EQ(compared, 10);
+  EXPECT_EQ(Do("bench no_such_scenario").exit_code, 4);
 }
 
 TEST_F(CommandLine, HelpIsEverywhere) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/speed/worlds.h"
+#include "bench/yardsticks/worlds.h"
 
 #include <random>
 #include <vector>

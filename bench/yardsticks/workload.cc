@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/speed/workload.h"
+#include "bench/yardsticks/workload.h"
 
 #include <fmt/format.h>
 

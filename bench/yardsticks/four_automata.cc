@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/speed/four_automata.h"
+#include "bench/yardsticks/four_automata.h"
 
 #include <bit>
 #include <vector>
 
+#include "bench/yardsticks/worlds.h"
 #include "harness/speed/stopwatch.h"
-#include "harness/speed/worlds.h"
 
 namespace prehend::harness {
 namespace {

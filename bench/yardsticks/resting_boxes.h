@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Many bodies without events: boxes that stand on a floor and fall asleep.
-// Tested by tests/harness/speed/workload_test.cc
+// Tested by tests/bench/workload_test.cc
 #pragma once
 
 #include "harness/scenario/scenario.h"

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Four rules of the kind that other monitors are measured with, as a grammar, and the events that
-// it recognises in a made-up world. harness/speed/four_automata.h has the same rules by hand.
-// Tested by tests/harness/speed/workload_test.cc
+// it recognises in a made-up world. bench/yardsticks/four_automata.h has the same rules by hand.
+// Tested by tests/bench/workload_test.cc
 #pragma once
 
 #include <cstdint>
 #include <memory>
 
+#include "bench/yardsticks/change_log.h"
 #include "grammar/monitor.h"
-#include "harness/speed/change_log.h"
 
 namespace prehend::harness {
 
@@ -39,8 +39,8 @@ struct Watched {
   double seconds = 0;        ///< for the frames after the warm-up
 };
 
-/// Plays a log of harness/speed/worlds.h to a monitor of the four rules. During the first `warm_up`
-/// frames, new instances are bound and memory is allocated.
+/// Plays a log of bench/yardsticks/worlds.h to a monitor of the four rules. During the first
+/// `warm_up` frames, new instances are bound and memory is allocated.
 Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::size_t warm_up = 0);
 
 }  // namespace prehend::harness

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Made-up worlds for the speed figures: the changes of each frame, without physics.
-// Tested by tests/harness/speed/workload_test.cc
+// Tested by tests/bench/workload_test.cc
 #pragma once
 
 #include <cstdint>
 
-#include "harness/speed/change_log.h"
+#include "bench/yardsticks/change_log.h"
 
 namespace prehend::harness {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/speed/resting_boxes.h"
+#include "bench/yardsticks/resting_boxes.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames in memory, each as its changes. They can be played to monitors any number of times.
-// Tested by tests/harness/speed/workload_test.cc
+// Tested by tests/bench/workload_test.cc
 #pragma once
 
 #include <cstddef>

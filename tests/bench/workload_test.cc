@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The speed figures measure the same thing twice: the grammar and the automata by hand recognise
 // the same.
-#include "harness/speed/workload.h"
+#include "bench/yardsticks/workload.h"
 
 #include <gtest/gtest.h>
 #include <malloc.h>
 
 #include <algorithm>
 
-#include "harness/speed/four_automata.h"
-#include "harness/speed/worlds.h"
+#include "bench/yardsticks/four_automata.h"
+#include "bench/yardsticks/worlds.h"
 
 namespace prehend::harness {
 namespace {
