@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the program weighs: lines of the product, in sum and in each inner room, have a ceiling.
+// What goes above pays by removing something; whoever removes lowers the ceiling.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+
+#include "tests/architecture/source_tree.h"
+
+namespace prehend::architecture {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr long kMostLines = 95'600;
+constexpr long kMostLinesPerRoom = 3500;
+/// Rooms that were larger when the ceiling came. They may only shrink.
+const std::map<std::string, long> kLargeRooms = {
+    {"grammar/compile", 4487}, {"grammar/engine", 5848}, {"harness/cli", 5690}, {"render", 3690}};
+
+/// Of the product, by folder; what npm installs is not ours.
+std::map<std::string, long> LinesByRoom() {
+  const std::set<std::string> languages = {".cc", ".h", ".js", ".mjs", ".pl", ".py", ".pyi"};
+  std::map<std::string, long> lines;
+  for (const char* top : {"grammar", "harness", "physics", "render", "python"}) {
+    const fs::path folder = fs::path(PREHEND_SOURCE_DIR) / top;
+    if (!fs::exists(folder)) continue;
+    for (fs::recursive_directory_iterator entry(folder), end; entry != end; ++entry) {
+      if (entry->path().filename() == "node_modules") entry.disable_recursion_pending();
+      if (!languages.contains(entry->path().extension())) continue;
+      const std::string room =
+          fs::relative(entry->path().parent_path(), PREHEND_SOURCE_DIR).generic_string();
+      lines[room] += std::ranges::count(Slurp(entry->path()), '\n');
+    }
+  }
+  return lines;
+}
+
+TEST(Weight, IsBelowItsCeiling) {
+  std::map<std::string, long> by_top;
+  long sum = 0;
+  for (const auto& [room, lines] : LinesByRoom()) {
+    by_top[room.substr(0, room.find('/'))] += lines;
+    sum += lines;
+  }
+  std::printf("product: %ld lines, at most %ld\n", sum, kMostLines);
+  for (const auto& [top, lines] : by_top) std::printf("  %s: %ld\n", top.c_str(), lines);
+  EXPECT_GT(sum, 50'000) << "the source tree was not found";
+  EXPECT_LE(sum, kMostLines) << "remove as much as you add, or make it smaller";
+}
+
+TEST(Weight, OfARoomIsBelowItsCeiling) {
+  const auto rooms = LinesByRoom();
+  for (const auto& [room, lines] : rooms) {
+    const auto large = kLargeRooms.find(room);
+    const long most = large == kLargeRooms.end() ? kMostLinesPerRoom : large->second;
+    EXPECT_LE(lines, most) << room;
+  }
+  for (const auto& [room, most] : kLargeRooms)
+    EXPECT_TRUE(rooms.contains(room) && rooms.at(room) > kMostLinesPerRoom)
+        << room << " is no large room any more: take it out of the list";
+}
+
+}  // namespace
+}  // namespace prehend::architecture
