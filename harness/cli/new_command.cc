@@ -29,17 +29,19 @@ struct Model {
   std::string path;  ///< of the template: where it would stand in the default folder
   std::string text;
   std::string skill;
-  std::string what;  ///< in words; empty if that is not known
-  std::string note;  ///< what the name left open
+  std::optional<NewScenario> made;  ///< from a template
 };
 
 /// The text of the scenario for `path`, with the line that editors look for. Errors of the model
-/// are reported in the model's own file; then nothing is returned.
+/// are reported in the model's own file or template; then nothing is returned.
 std::optional<std::string> Composed(const Model& model, const std::filesystem::path& path,
                                     const CommandContext& context) {
   const ScenarioLibrary library = ProjectLibrary(context.root);
   if (const auto as_it_is = ReadScenarioText(model.path, model.text, {}, library); !as_it_is) {
-    Complain(context, as_it_is.error());
+    grammar::Diagnostics errors = as_it_is.error();
+    for (grammar::Diagnostic& error : errors)
+      if (model.made && error.file == model.path) error = InTemplate(*model.made, std::move(error));
+    Complain(context, errors);
     return std::nullopt;
   }
   Result<std::string> copy = CopyOfScenario(model.path, model.text, path);
@@ -101,10 +103,10 @@ constexpr const char* kEditorSettings = R"({
 )";
 
 /// A scenario of a project with rules of its own.
-std::string FirstScenario() {
-  std::string text = ComposeScenario("carton_is_carried", "").text;
+std::string FirstScenario(const Templates& templates) {
+  std::string text = ComposeScenario(templates, "carton_is_carried", "carry").text;
   const auto replace = [&](std::string_view from, std::string_view to) {
-    text.replace(text.find(from), from.size(), to);
+    if (const std::size_t at = text.find(from); at != text.npos) text.replace(at, from.size(), to);
   };
   replace("scenario: name", "scenario: carton_is_held_still");
   replace("a carton is picked up, carried",
@@ -128,8 +130,10 @@ ExitCode MakeProject(const std::string& typed, const CommandContext& context) {
     return Complain(context, ExitCode::kBadInput,
                     "--project: found " + ReadableName(typed) +
                         ", which is not empty; wanted a new or an empty folder");
+  const Result<Templates> templates = ReadTemplates(ShippedRoot());
+  if (!templates) return Complain(context, templates.error());
   const std::pair<const char*, std::string> files[] = {
-      {"scenarios/pick_and_place/carton_is_held_still.yaml", FirstScenario()},
+      {"scenarios/pick_and_place/carton_is_held_still.yaml", FirstScenario(*templates)},
       {"scenarios/scenario.schema.json", ScenarioSchema()},
       {"grammars/my_rules.grammar", kOwnGrammar},
       {"README.md", kProjectReadme},
@@ -202,27 +206,25 @@ tl::expected<Model, ExitCode> ModelFor(const std::string& name, const ParsedOpti
     return Model{.path = like->path,
                  .text = std::move(*read),
                  .skill = like->skill.empty() ? kDefaultSkill : like->skill,
-                 .what = {},
-                 .note = {}};
+                 .made = {}};
   }
   const std::string verb = options.Has("--verb") ? options.Text("--verb") : "";
-  if (const std::string problem = WhyNoVerb(verb); !problem.empty())
+  if (const std::string problem = WhyNoVerb(verb, VerbNames(context.root)); !problem.empty())
     return tl::unexpected(Complain(context, ExitCode::kBadInput, "--verb: " + problem));
-  NewScenario made = ComposeScenario(name, verb);
+  const Result<Templates> templates = ReadTemplates(context.root);
+  if (!templates) return tl::unexpected(Complain(context, templates.error()));
+  NewScenario made = ComposeScenario(*templates, name, verb);
   const auto path = std::filesystem::path(context.root) / "scenarios" / kDefaultSkill / "name.yaml";
-  return Model{.path = path.string(),
-               .text = std::move(made.text),
-               .skill = kDefaultSkill,
-               .what = std::move(made.what),
-               .note = std::move(made.note)};
+  return Model{
+      .path = path.string(), .text = made.text, .skill = kDefaultSkill, .made = std::move(made)};
 }
 
 /// Says what was written, and what comes next; `id` is what commands call it.
 void SayWhatIsNext(const Model& model, const std::string& path, const std::string& id,
                    bool in_project, const CommandContext& context) {
-  if (!model.note.empty()) context.err << "note: " << model.note << "\n";
+  if (model.made && !model.made->note.empty()) context.err << "note: " << model.made->note << "\n";
   context.out << path << "\n";
-  if (!model.what.empty()) context.out << "shows: " << model.what << "\n";
+  if (model.made) context.out << "shows: " << model.made->what << "\n";
   context.out << "next: edit it; write what it shows into 'shows' and 'expects' before its first "
                  "run; then\n";
   for (const char* command : {"validate", "run", "render"})
@@ -273,10 +275,11 @@ ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
   const auto model = ModelFor(name, options, context);
   if (!model) return model.error();
   const std::string skill = typed->skill.empty() ? model->skill : typed->skill;
-  if (skill == kShowsErrors) {
+  if (skill == kShowsErrors || skill == kTemplates) {
+    const std::string holds = skill == kTemplates ? "templates of 'new'" : "examples of errors";
     return Complain(context, ExitCode::kBadInput,
-                    "scenarios/invalid/ holds examples of errors, which no command reads as "
-                    "scenarios; choose another folder, like " +
+                    "scenarios/" + skill + "/ holds " + holds +
+                        ", which no command reads as scenarios; choose another folder, like " +
                         std::string(kDefaultSkill) + "/" + name);
   }
   if (!IsOwnProject(context.root) && !IsCalledIn(context.root))
@@ -311,7 +314,7 @@ Command NewCommand() {
                        "written there"},
                   {.name = "--verb",
                    .help = fmt::format("what happens, if the name does not say so: {}",
-                                       fmt::join(VerbNames(), ", ")),
+                                       fmt::join(VerbNames(FindProjectRoot().value_or("")), ", ")),
                    .placeholder = "VERB"},
                   {.name = "--like",
                    .help = "start from this scenario instead of a template",

@@ -60,7 +60,8 @@ std::vector<ScenarioFile> ListScenarios(const std::string& root) {
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
     const std::string skill = entry.path().filename().string();
-    if (entry.is_directory(error) && skill != kShowsErrors) add(entry.path(), ReadableName(skill));
+    if (entry.is_directory(error) && skill != kShowsErrors && skill != kTemplates)
+      add(entry.path(), ReadableName(skill));
   }
   std::sort(scenarios.begin(), scenarios.end(), [](const ScenarioFile& a, const ScenarioFile& b) {
     return std::tie(a.skill, a.name) < std::tie(b.skill, b.name);

@@ -14,6 +14,8 @@ namespace prehend::harness {
 
 /// The folder of scenarios/ whose files are examples of errors.
 inline constexpr std::string_view kShowsErrors = "invalid";
+/// Below scenarios/, too: what `new` writes scenarios from.
+inline constexpr std::string_view kTemplates = "templates";
 
 struct ScenarioFile {
   std::string skill;  ///< its folder below scenarios/, as a ReadableName(), or ""
@@ -30,7 +32,7 @@ EpisodeName NameOf(const ScenarioFile& file);
 /// An episode as the scenario that it is or was; only those of the project, `all`, have goldens.
 ScenarioFile ScenarioOf(const EpisodeName& episode, const std::vector<ScenarioFile>& all);
 
-/// All below root/scenarios, sorted by skill and name, without the folder `invalid`.
+/// All below root/scenarios, sorted by skill and name, without the two folders above.
 std::vector<ScenarioFile> ListScenarios(const std::string& root);
 
 /// For a project of one's own the scenarios that ship with the program, which are found by name

@@ -6,33 +6,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <map>
 #include <sstream>
-
-#include "grammar/base/diagnostic.h"
-#include "harness/templates/nouns.h"
-#include "harness/templates/verbs.h"
 
 namespace prehend::harness {
 namespace {
 
-constexpr std::string_view kDefaultVerb = "carry";
 constexpr std::string_view kColors =
     "white black grey silver red orange yellow green blue purple violet pink brown beige turquoise";
-
-struct Destination {
-  std::string_view word, body;
-};
-constexpr Destination kInto[] = {
-    {"bowl", "class: Bowl, bowl: {radius_m: 0.14, height_m: 0.05}, mass_kg: 0.6"},
-    {"basket", "class: Basket, tray: {size_m: [0.3, 0.3, 0.08]}, mass_kg: 0.6"},
-    {"box", "class: Box, tray: {size_m: [0.3, 0.3, 0.08]}, mass_kg: 0.6"}};
-constexpr Destination kOnto[] = {
-    {"stand", "class: Stand, fixed: true, box: {size_m: [0.2, 0.2, 0.06]}"},
-    {"tray", "class: Tray, tray: {size_m: [0.4, 0.3, 0.03]}, mass_kg: 0.8"},
-    {"box", "class: Box, box: {size_m: [0.2, 0.2, 0.10]}, mass_kg: 1"},
-    {"book", "class: Book, box: {size_m: [0.24, 0.18, 0.03]}, mass_kg: 0.6"},
-    {"plate", "class: Plate, cylinder: {radius_m: 0.13, length_m: 0.015}, mass_kg: 0.5"}};
 
 std::vector<std::string> WordsOf(std::string_view text, char separator) {
   std::vector<std::string> words;
@@ -45,22 +25,35 @@ std::vector<std::string> WordsOf(std::string_view text, char separator) {
 bool Has(std::string_view list, const std::string& word) {
   return std::ranges::count(WordsOf(list, ' '), word) > 0;
 }
+bool Has(const std::vector<std::string>& list, const std::string& word) {
+  return std::ranges::count(list, word) > 0;
+}
 
-bool HasAny(std::string_view list, const std::vector<std::string>& words) {
+bool HasAny(const std::vector<std::string>& list, const std::vector<std::string>& words) {
   return std::ranges::any_of(words, [&](const std::string& word) { return Has(list, word); });
 }
 
-const Verb& VerbNamed(std::string_view name) {
-  return *std::ranges::find(Verbs(), name, &Verb::name);
+const VerbTemplate& VerbNamed(const Templates& templates, std::string_view name) {
+  return *std::ranges::find(templates.verbs, name, &VerbTemplate::name);
 }
 
 /// The verb that the words name; null if there is none.
-const Verb* VerbIn(std::vector<std::string> words) {
+const VerbTemplate* VerbIn(const Templates& templates, std::vector<std::string> words) {
   // A hand is who does it, but in 'hand over'.
-  if (std::ranges::count(words, "over") == 0)
+  if (!Has(words, "over"))
     std::erase_if(words, [](const std::string& word) { return word == "hand" || word == "hands"; });
-  for (const Verb& verb : Verbs())
+  for (const VerbTemplate& verb : templates.verbs)
     if (HasAny(verb.words, words) && (verb.also.empty() || HasAny(verb.also, words))) return &verb;
+  return nullptr;
+}
+
+/// The thing of this word, also of its plural; null if there is none.
+const ThingTemplate* FindThing(const Templates& templates, std::string_view word) {
+  for (const ThingTemplate& thing : templates.things) {
+    const bool plural =
+        word.size() == thing.word.size() + 1 && word.ends_with('s') && word.starts_with(thing.word);
+    if (word == thing.word || plural || (word == "boxes" && thing.word == "box")) return &thing;
+  }
   return nullptr;
 }
 
@@ -70,27 +63,26 @@ bool FollowsPreposition(const std::vector<std::string>& words, std::size_t at) {
   return at > 0 && Has("in into inside on onto over", words[at - 1]);
 }
 
-struct Thing {
-  const Noun* noun = nullptr;
+struct NamedThing {
+  const ThingTemplate* thing = nullptr;
   std::string name;  ///< with its colour
 };
 
-/// What the name speaks of: the first noun that is not where something goes.
-Thing ThingIn(const std::vector<std::string>& words) {
+/// What the name speaks of: the first thing that is not where something goes.
+NamedThing ThingIn(const Templates& templates, const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
-    const Noun* noun = FindNoun(words[i]);
-    if (!noun || FollowsPreposition(words, i)) continue;
+    const ThingTemplate* thing = FindThing(templates, words[i]);
+    if (!thing || FollowsPreposition(words, i)) continue;
     const bool colored = i > 0 && Has(kColors, words[i - 1]);
-    return {noun, (colored ? words[i - 1] + "_" : "") + std::string(noun->word)};
+    return {thing, (colored ? words[i - 1] + "_" : "") + thing->word};
   }
   return {};
 }
 
-template <std::size_t n>
-const Destination& DestinationIn(const Destination (&known)[n],
-                                 const std::vector<std::string>& words) {
+const ThingTemplate& DestinationIn(const std::vector<ThingTemplate>& known,
+                                   const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size(); ++i)
-    for (const Destination& destination : known)
+    for (const ThingTemplate& destination : known)
       if (words[i] == destination.word && FollowsPreposition(words, i)) return destination;
   return known[0];
 }
@@ -115,15 +107,16 @@ constexpr std::pair<std::string_view, std::string_view> kSections[] = {
 
 /// What of the name the new scenario does not do: "'elbow' of the name is left out; ..". Empty if
 /// all of it is understood. `verb` may be null.
-std::string IgnoredWords(const std::vector<std::string>& words, const Verb* verb,
-                         const Thing& thing, const Destination& destination) {
+std::string IgnoredWords(const Templates& templates, const std::vector<std::string>& words,
+                         const VerbTemplate* verb, const NamedThing& spoken_of,
+                         const ThingTemplate& destination) {
   std::vector<std::string> ignored;
   std::string_view section;
   for (const std::string& word : words) {
     const bool of_verb = verb && (Has(verb->words, word) || Has(verb->also, word) ||
                                   (!verb->destination.empty() && word == destination.word));
-    const bool of_thing =
-        thing.noun && (FindNoun(word) == thing.noun || thing.name.starts_with(word + "_"));
+    const bool of_thing = spoken_of.thing && (FindThing(templates, word) == spoken_of.thing ||
+                                              spoken_of.name.starts_with(word + "_"));
     if (of_verb || of_thing || Has(kPlain, word)) continue;
     ignored.push_back("'" + word + "'");
     for (const auto& [known, title] : kSections)
@@ -162,7 +155,7 @@ constexpr std::string_view kText =
 # word of a key; z is up.
 scenario: name
 shows: @shows@   # what it proves, as a sentence
-@grammar@   # a file of grammar/library/, without ".grammar"
+grammar: @grammar@   # a file of grammar/library/, without ".grammar"
 tags: []
 
 # What must be recognised if the sentence is true. Write it before the first run: afterwards it is easy to expect
@@ -180,77 +173,118 @@ script:
 @script@
 # Pictures for the report: at an event's begin or end, or at a time in seconds.
 pictures:
-  - {at: @picture@}
+  - {at: @picture@, camera: @camera@}
 )";
+
+using Values = std::map<std::string, std::string>;
+
+/// What the marks of a template stand for.
+Values ValuesOf(const NamedThing& of, const ThingTemplate& destination) {
+  Values values = {{"destination", destination.word}, {"destination_body", destination.body}};
+  if (of.thing) {
+    values["thing"] = of.name;
+    values["a_thing"] = WithArticle(Spaced(of.name));
+    values["body"] = of.thing->body;
+  }
+  return values;
+}
+
+/// kText with the parts of the verb; where each line comes from is kept.
+void WriteText(const VerbTemplate& verb, const Values& values, NewScenario& made) {
+  const std::map<std::string, const Located<std::string>*> blocks = {{"@expects@", &verb.expects},
+                                                                     {"@entities@", &verb.entities},
+                                                                     {"@actors@", &verb.actors},
+                                                                     {"@script@", &verb.script}};
+  std::vector<std::string> grammars;
+  for (const Located<std::string>& name : verb.grammar) grammars.push_back(name.value);
+  const Values parts = {
+      {"shows", Filled(verb.shows.value, values)},
+      {"grammar",
+       grammars.size() == 1 ? grammars[0] : fmt::format("[{}]", fmt::join(grammars, ", "))},
+      {"picture", Filled(verb.picture.value, values)},
+      {"camera", verb.camera}};
+  const std::map<std::string, grammar::Place> of_keys = {{"shows", verb.shows.where.place},
+                                                         {"grammar", verb.grammar[0].where.place},
+                                                         {"  - {at", verb.picture.where.place}};
+  int line_number = 1;
+  std::istringstream in{std::string(kText)};
+  for (std::string line; std::getline(in, line); ++line_number) {
+    if (const auto block = blocks.find(line); block != blocks.end()) {
+      int line_of_template = block->second->where.place.line;
+      std::istringstream lines(Filled(block->second->value, values));
+      for (std::string part; std::getline(lines, part); ++line_number) {
+        made.text += (part.empty() ? "" : "  ") + part + "\n";
+        made.places[line_number] = {.line = ++line_of_template, .column = 0};
+      }
+      made.text += "\n";
+      continue;
+    }
+    if (const auto of_key = of_keys.find(line.substr(0, line.find(':'))); of_key != of_keys.end())
+      made.places[line_number] = of_key->second;
+    made.text += Filled(line, parts) + "\n";
+  }
+}
 
 }  // namespace
 
-std::vector<std::string> VerbNames() {
-  std::vector<std::string> names;
-  for (const Verb& verb : Verbs()) names.emplace_back(verb.name);
-  std::ranges::sort(names);
-  return names;
-}
-
-std::string WhyNoVerb(const std::string& verb) {
-  const std::vector<std::string> known = VerbNames();
-  if (verb.empty() || std::ranges::count(known, verb) > 0) return "";
+std::string WhyNoVerb(const std::string& verb, const std::vector<std::string>& known) {
+  if (verb.empty() || Has(known, verb)) return "";
   const std::string nearest = grammar::NearestName(verb, known);
   return fmt::format("no verb is called '{}'; {}known: {}", verb,
                      nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest),
                      fmt::join(known, ", "));
 }
 
-NewScenario ComposeScenario(std::string_view name, std::string_view wanted) {
+NewScenario ComposeScenario(const Templates& templates, std::string_view name,
+                            std::string_view wanted) {
   const std::vector<std::string> words = WordsOf(name, '_');
-  const Verb* said = wanted.empty() ? VerbIn(words) : &VerbNamed(wanted);
-  const Verb& verb = said ? *said : VerbNamed(kDefaultVerb);
+  const VerbTemplate* said =
+      wanted.empty() ? VerbIn(templates, words) : &VerbNamed(templates, wanted);
+  const VerbTemplate& verb = said ? *said : VerbNamed(templates, kDefaultVerb);
   NewScenario made;
-  if (!said)
+  made.template_path = verb.path;
+  if (!said) {
+    std::vector<std::string> known;
+    for (const VerbTemplate& other : templates.verbs) known.push_back(other.name);
+    std::ranges::sort(known);
     made.note =
         fmt::format("the name has no verb that 'new' knows, so this is '{}'; choose by --verb: {}",
-                    verb.name, fmt::join(VerbNames(), ", "));
-  const std::vector<std::string> nouns = WordsOf(verb.nouns, ' ');
-  const Thing spoken_of = ThingIn(words);
-  Thing thing = spoken_of;
-  if (!nouns.empty() && (!thing.noun || !Has(verb.nouns, std::string(thing.noun->word)))) {
-    const std::string instead = nouns.front();
-    if (said && thing.noun)
+                    verb.name, fmt::join(known, ", "));
+  }
+  std::vector<std::string> things;
+  for (const Located<std::string>& thing : verb.things) things.push_back(thing.value);
+  const NamedThing spoken_of = ThingIn(templates, words);
+  NamedThing thing = spoken_of;
+  if (!things.empty() && (!thing.thing || !Has(things, thing.thing->word))) {
+    const std::string instead = things.front();
+    if (said && thing.thing)
       made.note = fmt::format("'{}' is written for {} only, so this is about a {}", verb.name,
-                              fmt::join(nouns, ", "), instead);
+                              fmt::join(things, ", "), instead);
     else if (said)
       made.note =
           fmt::format("the name has no thing that 'new' knows, so this is about a {}; known: {}",
-                      instead, fmt::join(nouns, ", "));
-    thing = {FindNoun(instead), instead};
+                      instead, fmt::join(things, ", "));
+    thing = {FindThing(templates, instead), instead};
   }
-  const bool into = verb.destination == "in";
-  const Destination& destination = into ? DestinationIn(kInto, words) : DestinationIn(kOnto, words);
-  std::map<std::string, std::string> values = {{"d", std::string(destination.word)},
-                                               {"destination", std::string(destination.body)}};
-  if (thing.noun) {
-    values["o"] = thing.name;
-    values["a"] = WithArticle(Spaced(thing.name));
-    values["body"] = thing.noun->body;
-  }
-  std::map<std::string, std::string> parts;
-  for (const auto& [key, text] : {std::pair("shows", verb.shows),
-                                  {"grammar", verb.grammar},
-                                  {"expects", verb.expects},
-                                  {"entities", verb.entities},
-                                  {"actors", verb.actors},
-                                  {"script", verb.script},
-                                  {"picture", verb.picture}})
-    parts[key] = Filled(text, values);
-  if (parts["picture"].find(',') == std::string::npos)
-    parts["picture"] += ", camera: three_quarter";
+  const ThingTemplate& destination =
+      DestinationIn(verb.destination == "in" ? templates.in : templates.on, words);
   if (wanted.empty()) {
-    const std::string ignored = IgnoredWords(words, said, spoken_of, destination);
+    const std::string ignored = IgnoredWords(templates, words, said, spoken_of, destination);
     if (!ignored.empty()) made.note += (made.note.empty() ? "" : "; ") + ignored;
   }
-  made.what = Filled(verb.shows, values);
-  made.text = Filled(kText, parts);
+  const Values values = ValuesOf(thing, destination);
+  made.what = Filled(verb.shows.value, values);
+  WriteText(verb, values, made);
   return made;
+}
+
+grammar::Diagnostic InTemplate(const NewScenario& made, grammar::Diagnostic error) {
+  const auto known = made.places.find(error.place.line);
+  error.file = made.template_path;
+  error.place.line = known == made.places.end() ? 0 : known->second.line;
+  if (known != made.places.end() && known->second.column > 0)
+    error.place.column = known->second.column;
+  return error;
 }
 
 }  // namespace prehend::harness

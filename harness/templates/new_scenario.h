@@ -3,9 +3,13 @@
 // by tests/program/new_command_test.cc
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "grammar/base/diagnostic.h"
+#include "harness/templates/templates.h"
 
 namespace prehend::harness {
 
@@ -14,15 +18,19 @@ struct NewScenario {
   std::string what;  ///< "shakes a bottle"
   /// What the name did not say, or said otherwise: a sentence; empty if all of it was understood.
   std::string note;
+  std::string template_path;
+  /// For lines of `text` (from 1) where they stand in the template.
+  std::map<int, grammar::Place> places;
 };
 
-/// The names of all verbs, as `--verb` takes them, sorted.
-std::vector<std::string> VerbNames();
-
 /// Why there is no such verb, with the nearest one; empty if there is, or if `verb` is empty.
-std::string WhyNoVerb(const std::string& verb);
+std::string WhyNoVerb(const std::string& verb, const std::vector<std::string>& known);
 
-/// `verb` is one of VerbNames(), or empty: then the name's own, else "carry".
-NewScenario ComposeScenario(std::string_view name, std::string_view verb);
+/// `verb` is that of one of the templates, or empty: then the name's own, else "carry".
+NewScenario ComposeScenario(const Templates& templates, std::string_view name,
+                            std::string_view verb);
+
+/// An error in the text of a new scenario, at its place in the template.
+grammar::Diagnostic InTemplate(const NewScenario& made, grammar::Diagnostic error);
 
 }  // namespace prehend::harness

@@ -106,7 +106,7 @@ const Arrows& ProjectArrows() {
         "harness/episodes", "harness/explain", "harness/golden", "harness/judge",
         "harness/pictures", "harness/process", "harness/read", "harness/replay", "harness/run",
         "harness/sense", "harness/timeline", "harness/yaml", "physics/scene"}},
-      {"harness/templates", {"grammar/base"}},
+      {"harness/templates", {"grammar/base", "harness/base", "harness/yaml"}},
       {"harness/report",
        {"harness/base", "harness/check", "harness/golden", "harness/process", "harness/timeline"}},
       {"harness/command",

@@ -3,6 +3,8 @@
 // hold.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/program/program.h"
 
 namespace prehend::house {
@@ -122,6 +124,41 @@ TEST_F(New, SaysWhatTheNameLeftOpen) {
             "it, like slide/slide_then_transport\n");
   EXPECT_EQ(Do({"new", "a", "--verb", "shake", "--like", "milk_carton_wrap"}).err,
             "prehend: --like starts from a scenario, --verb from a template: give one of them\n");
+}
+
+TEST_F(New, AVerbIsAFileInTheFolderOfTemplates) {
+  const fs::path file = folder_ / "scenarios/templates/nudge.yaml";
+  std::string text = ReadFile(fs::path(PREHEND_SOURCE_DIR) / "scenarios/templates/push.yaml");
+  text.replace(text.find("words: [push"), 12, "words: [nudged");
+  WriteFile(file, text);
+  EXPECT_TRUE(Has(Do({"new", "--help"}).out, " nudge, ")) << "beside those that ship";
+  ASSERT_EQ(Do({"new", "cup_is_nudged"}).exit_code, 0);
+  EXPECT_TRUE(Has(TextOf("cup_is_nudged"), "an open hand pushes a cup along the table"));
+  EXPECT_EQ(Do({"list"}).err, "") << "a template is no scenario";
+  EXPECT_FALSE(Has(Do({"list"}).out, "templates"));
+  EXPECT_TRUE(Do({"new", "templates/cup_is_slid"})
+                  .err.starts_with("prehend: scenarios/templates/ holds templates of 'new', which "
+                                   "no command reads as scenarios; choose another folder, like "));
+
+  const auto error_with = [&](const std::string& from, const std::string& to) {
+    std::string wrong = text;
+    wrong.replace(wrong.find(from), from.size(), to);
+    WriteFile(file, wrong);
+    const Said said = Do({"new", "can_is_nudged"});
+    EXPECT_EQ(said.exit_code, 2);
+    EXPECT_FALSE(fs::exists(folder_ / "scenarios/pick_and_place/can_is_nudged.yaml"));
+    return said.err.substr(said.err.find("nudge.yaml"));
+  };
+  EXPECT_TRUE(error_with("words:", "word:")
+                  .starts_with("nudge.yaml:2:1: error: unknown key 'word' in a verb\n"));
+  EXPECT_TRUE(error_with("no grasping", "no @grasping@")
+                  .starts_with("nudge.yaml:10:8: error: no mark is called '@grasping@'"));
+  EXPECT_TRUE(error_with("things: [carton", "things: [cartoon")
+                  .starts_with("nudge.yaml:4:10: error: no thing is called 'cartoon'"));
+  const std::string script = error_with("until: touching(@thing@)", "until: touching(cap)");
+  const auto line = std::to_string(
+      std::count(text.begin(), text.begin() + static_cast<long>(text.find("until:")), '\n') + 1);
+  EXPECT_TRUE(script.starts_with("nudge.yaml:" + line + ":")) << script;
 }
 
 TEST_F(New, WritesIntoThePresentFolderOutsideOfAProject) {

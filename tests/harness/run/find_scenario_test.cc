@@ -22,8 +22,9 @@ class LibraryPaths : public testing::Test {
     for (const char* file :
          {"scenarios/lift/cup_is_lifted.yaml", "scenarios/lift/both.yaml",
           "scenarios/slide/both.yaml", "scenarios/alone.yaml", "scenarios/invalid/typo.yaml",
-          "scenarios/lift/notes.txt", "scenarios/lift/my.hand.yaml",
-          "scenarios/lift/my.grasps.yaml", "grammar/library/b.grammar", "grammar/library/a.grammar",
+          "scenarios/templates/carry.yaml", "scenarios/lift/notes.txt",
+          "scenarios/lift/my.hand.yaml", "scenarios/lift/my.grasps.yaml",
+          "grammar/library/b.grammar", "grammar/library/a.grammar",
           "physics/library/human_right.hand.yaml"}) {
       std::filesystem::create_directories((root_ / file).parent_path());
       std::ofstream(root_ / file) << "x\n";
