@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "harness/figures/chart.h"
+#include "harness/chart/chart.h"
 #include "harness/figures/window.h"
 
 namespace prehend::harness::figures {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "harness/figures/chart.h"
+#include "harness/chart/chart.h"
 
 namespace prehend::harness::figures {
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/base/markup.h"
-#include "harness/report/signal_svg.h"
+#include "harness/report/charts.h"
 
 namespace prehend::harness {
 namespace {

@@ -16,7 +16,7 @@
 #include "harness/base/base64.h"
 #include "harness/base/markup.h"
 #include "harness/check/causes.h"
-#include "harness/golden/timeline_svg.h"
+#include "harness/report/charts.h"
 #include "harness/report/explanations.h"
 #include "harness/report/page_texts.h"
 
@@ -25,13 +25,6 @@ namespace {
 
 // Where style and scripts go: HTML does not unescape what is in them.
 constexpr std::string_view kStylePlace = "@style@", kScriptPlace = "@script@";
-
-// What timelines hatch their differences with.
-constexpr std::string_view kHatch =
-    R"=(<svg width="0" height="0" aria-hidden="true" style="position:absolute"><defs>)="
-    R"=(<pattern id="hatch" width="6" height="6" patternUnits="userSpaceOnUse" )="
-    R"=(patternTransform="rotate(45)"><line class="hatch" x1="0" y1="0" x2="0" y2="6"/>)="
-    R"=(</pattern></defs></svg>)=";
 
 constexpr std::size_t kMostEffects = 6;  // of a cause
 
@@ -401,7 +394,6 @@ std::string ReportHtml(const std::vector<ScenarioVerdict>& unsorted, const Repor
              "In every row of a timeline, the golden is above (pale) and the recognised event "
              "below; where they differ it is hatched. A click moves the cursor; so do the arrows, "
              "and b and B to the next and the last boundary.");
-  AddMarkup(body, kHatch);
   if (!WhyNoReplay().empty())
     AddElement(body, "p", {{"class", "soft"}},
                fmt::format("3D replay was left out: {}.", WhyNoReplay()));

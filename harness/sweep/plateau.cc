@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "grammar/base/wording.h"
-#include "harness/base/markup.h"
+#include "harness/chart/chart.h"
 
 namespace prehend::harness::sweep {
 namespace {
@@ -61,12 +61,12 @@ std::vector<std::size_t> StepsToWorse(const std::vector<Axis>& axes,
   return steps;
 }
 
-std::string ColorOf(double share) {  // from dark blue over green to yellow
+std::uint32_t ColorOf(double share) {  // from dark blue over green to yellow
   const auto mix = [&](double low, double middle, double high) {
-    return static_cast<int>(share < 0.5 ? low + (middle - low) * 2 * share
-                                        : middle + (high - middle) * (2 * share - 1));
+    return static_cast<std::uint32_t>(share < 0.5 ? low + (middle - low) * 2 * share
+                                                  : middle + (high - middle) * (2 * share - 1));
   };
-  return fmt::format("#{:02x}{:02x}{:02x}", mix(68, 33, 253), mix(1, 145, 231), mix(84, 140, 37));
+  return mix(68, 33, 253) << 16 | mix(1, 145, 231) << 8 | mix(84, 140, 37);
 }
 
 }  // namespace
@@ -160,73 +160,48 @@ std::string PlateauText(const std::vector<Axis>& axes, const SweepResult& result
 
 std::string HeatMapSvg(const std::vector<Axis>& axes, const std::vector<SweepPoint>& points,
                        const Plateau& plateau) {
-  constexpr double kLeft = 90, kTop = 34, kCell = 56, kHeight = 30;
   // The last axis to the right, the one before it downwards.
   const Axis& across = axes.back();
-  const std::size_t columns = across.values.size();
-  const std::size_t rows = axes.size() > 1 ? axes[axes.size() - 2].values.size() : 1;
-  const auto count = [](std::size_t n) { return static_cast<double>(n); };
-  const double width = kLeft + kCell * count(columns) + 10,
-               height = kTop + kHeight * count(rows) + 44;
+  const Axis* down = axes.size() > 1 ? &axes[axes.size() - 2] : nullptr;
+  const std::size_t columns = across.values.size(), rows = down ? down->values.size() : 1;
   double least = 1, most = 0;
   for (const SweepPoint& point : points) {
     least = std::min(least, point.f1);
     most = std::max(most, point.f1);
   }
-  pugi::xml_document document;
-  pugi::xml_node svg = AddElement(document, "svg",
-                                  {{"xmlns", "http://www.w3.org/2000/svg"},
-                                   {"viewBox", fmt::format("0 0 {:g} {:g}", width, height)},
-                                   {"font-family", "sans-serif"},
-                                   {"font-size", "11"}});
-  const auto write = [&](double x, double y, const std::string& text, const char* anchor,
-                         const char* color) {
-    AddElement(svg, "text",
-               {{"x", fmt::format("{:g}", x)},
-                {"y", fmt::format("{:g}", y)},
-                {"text-anchor", anchor},
-                {"fill", color}},
-               text);
-  };
-  write(10, 16,
-        axes.size() > 1 ? "F1 in %, " + axes[axes.size() - 2].parameter + " downwards" : "F1 in %",
-        "start", "#222");
+  figures::Chart chart{
+      .title = down ? "F1 in %, " + down->parameter + " downwards" : "F1 in %",
+      .to_s = static_cast<double>(columns),
+      .rows = std::vector<figures::Row>(rows),
+      .panels = {},
+      .axis = across.parameter + (plateau.members.empty()
+                                      ? "; every setting scores 0"
+                                      : "; framed: the plateau; red: farthest from its edge")};
+  for (std::size_t column = 0; column < columns; ++column)
+    chart.ticks.emplace_back(static_cast<double>(column) + 0.5, across.ValueText(column));
+  for (std::size_t row = 0; down && row < rows; ++row) chart.rows[row].name = down->ValueText(row);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SweepPoint& point = points[i];
     bool is_shown = true;
     for (std::size_t k = 0; k + 2 < axes.size(); ++k)
       is_shown &= point.at[k] == points[plateau.chosen].at[k];
     if (!is_shown) continue;
-    const std::size_t column = point.at.back(),
-                      row = axes.size() > 1 ? point.at[axes.size() - 2] : 0;
-    const double x = kLeft + kCell * count(column), y = kTop + kHeight * count(row);
-    const double share = most > least ? (point.f1 - least) / (most - least) : 1;
+    const double x = static_cast<double>(point.at.back());
     const bool member = std::ranges::binary_search(plateau.members, i);
-    AddElement(svg, "rect",
-               {{"x", fmt::format("{:g}", x + 1)},
-                {"y", fmt::format("{:g}", y + 1)},
-                {"width", fmt::format("{:g}", kCell - 2)},
-                {"height", fmt::format("{:g}", kHeight - 2)},
-                {"fill", ColorOf(share)},
-                {"stroke", !member               ? "none"
-                           : i == plateau.chosen ? "#d00"
-                                                 : "#000"},
-                {"stroke-width", member && i == plateau.chosen ? "3" : "1"}});
-    write(x + kCell / 2, y + kHeight / 2 + 4, fmt::format("{:.1f}", 100 * point.f1), "middle",
-          share > 0.6 ? "#000" : "#fff");
+    std::vector<figures::Bar>& bars = chart.rows[down ? point.at[axes.size() - 2] : 0].bars;
+    // The chosen one is drawn last, so that its frame is seen as a whole.
+    bars.insert(i == plateau.chosen ? bars.end() : bars.begin(),
+                {.begin_s = x,
+                 .end_s = x + 1,
+                 .text = fmt::format("{:.1f}", 100 * point.f1),
+                 .color = ColorOf(most > least ? (point.f1 - least) / (most - least) : 1),
+                 .frame = !member               ? ""
+                          : i == plateau.chosen ? "#d00"
+                                                : "#000"});
   }
-  for (std::size_t column = 0; column < columns; ++column)
-    write(kLeft + kCell * (count(column) + 0.5), kTop + kHeight * count(rows) + 14,
-          across.ValueText(column), "middle", "#222");
-  for (std::size_t row = 0; axes.size() > 1 && row < rows; ++row)
-    write(kLeft - 6, kTop + kHeight * (count(row) + 0.5) + 4, axes[axes.size() - 2].ValueText(row),
-          "end", "#222");
-  write(kLeft, height - 10,
-        across.parameter + (plateau.members.empty()
-                                ? "; every setting scores 0"
-                                : "; framed: the plateau; red: farthest from its edge"),
-        "start", "#222");
-  return ToText(document, Layout::kIndented);
+  const double texts_px = 7.2 * static_cast<double>(chart.axis.size());
+  return figures::ChartSvg(
+      chart, {.width_px = 110 + std::max(texts_px, 56 * static_cast<double>(columns))});
 }
 
 }  // namespace prehend::harness::sweep

@@ -66,7 +66,7 @@
   });
 
   // The part of its time that a timeline shows, in seconds: everything, unless somebody zooms.
-  function endOf(svg) { return (svg.viewBox.baseVal.width - Number(svg.dataset.left) - 20) / Number(svg.dataset.perSecond); }
+  function endOf(svg) { return Number(svg.dataset.end); }
   function shownOf(section) { return section.shown || {from: 0, to: endOf(timelineOf(section))}; }
   function perSecond(section) {
     const svg = timelineOf(section), shown = shownOf(section);
@@ -92,6 +92,7 @@
       bar.setAttribute('x', xAt(section, begin));
       bar.setAttribute('width', Math.max(1.5, (end - begin) * perSecond(section)));
     });
+    svg.querySelectorAll('path.hatch').forEach((each) => { each.style.display = to - from < endOf(svg) ? 'none' : ''; });
     const line = svg.querySelector('line.grid'), label = svg.querySelector('text.axis');
     let step = 1e-3;
     for (const factor of [2, 2.5, 2, 2, 2.5, 2, 2, 2.5, 2, 2, 2.5, 2, 2, 2.5, 2]) if ((to - from) / step > 12) step *= factor;
@@ -101,7 +102,7 @@
       grid.setAttribute('x1', xAt(section, k * step));
       grid.setAttribute('x2', xAt(section, k * step));
       text.setAttribute('x', xAt(section, k * step));
-      text.textContent = Number((k * step).toFixed(3)) + ' s';
+      text.textContent = Number((k * step).toFixed(3));
       svg.prepend(grid, text);
     }
     mark(section, section.cursor || 0);

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "harness/golden/timeline_svg.h"
 #include "harness/report/page_texts.h"
 
 namespace prehend::harness {
@@ -153,48 +152,6 @@ TEST(Report, PicturesAreInThePage) {
   verdicts[0].pictures[0].file = "a.png";
   const std::string html = ReportHtml(verdicts, {.command = {}, .date = {}, .folder = folder});
   EXPECT_NE(html.find("src=\"data:image/png;base64,TWFubw==\""), std::string::npos);
-}
-
-TEST(TimelineSvg, DrawsTheGoldenAboveWhatWasRecognised) {
-  Golden golden{.scenario = "s/x", .grammar = "g", .ticks_per_second = 100};
-  const grammar::NamedEvent event{
-      .event = "sliding", .roles = {{"hand", "h"}, {"object", "cup"}}, .interval = {100, 200}};
-  golden.events.push_back({.event = event, .tolerance_ms = {}, .because = {}, .comments = {}});
-  grammar::NamedEvent late = event;
-  late.interval.begin = 150;
-  const std::string svg =
-      TimelineSvg(Compare(golden, {.ticks_per_second = 100, .events = {late}}, 2), 400, {});
-  EXPECT_EQ(CountOf(svg, "<rect"), 3);
-  EXPECT_EQ(CountOf(svg, "class=\"hatch\""), 1) << "only its begin is another";
-  EXPECT_EQ(CountOf(svg, "class=\"row differs\""), 1);
-  EXPECT_NE(svg.find("golden sliding(h, cup), 1.0000..2.0000 s: shifted"), std::string::npos);
-  EXPECT_NE(svg.find("actual sliding(h, cup), 1.5000..2.0000 s: shifted"), std::string::npos);
-  EXPECT_EQ(CountOf(svg, "class=\"axis\""), 9) << "every half second of four";
-}
-
-TEST(TimelineSvg, RowsAreGroupedByWhoseTheyAre) {
-  const auto event = [](const char* name, const char* whose, grammar::Tick begin) {
-    return grammar::NamedEvent{
-        .event = name, .roles = {{"who", whose}}, .interval = {begin, begin + 10}};
-  };
-  const grammar::Timeline timeline{
-      .ticks_per_second = 100,
-      .events = {event("first", "left", 0), event("second", "cup", 5), event("third", "left", 20)}};
-  const std::string svg = TimelineSvg(Compare({}, timeline, 2), 400, {}, false);
-  const auto at = [&](const char* text) { return svg.find(text); };
-  EXPECT_EQ(CountOf(svg, "class=\"group\""), 2);
-  EXPECT_LT(at(">left</text>"), at(">first(left)</text>"));
-  EXPECT_LT(at(">first(left)</text>"), at(">third(left)</text>"));
-  EXPECT_LT(at(">third(left)</text>"), at(">cup</text>"));
-  EXPECT_LT(at(">cup</text>"), at(">second(cup)</text>"));
-  EXPECT_EQ(CountOf(svg, "class=\"hatch\""), 0) << "without a golden nothing differs";
-}
-
-TEST(TimelineSvg, AnEmptyTimelineIsAPictureToo) {
-  const std::string svg = TimelineSvg(Comparison{}, 0, {});
-  EXPECT_TRUE(svg.starts_with("<svg class=\"timeline\"")) << svg;
-  EXPECT_EQ(CountOf(svg, "</svg>"), 1);
-  EXPECT_EQ(CountOf(svg, "<rect"), 0);
 }
 
 }  // namespace

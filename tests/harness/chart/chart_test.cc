@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/figures/chart.h"
+#include "harness/chart/chart.h"
 
 #include <gtest/gtest.h>
 
