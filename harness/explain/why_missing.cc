@@ -40,6 +40,10 @@ const Reason* FirstFailure(const Reasons& reasons) {
   return nullptr;
 }
 
+Reasons Failed(std::string what, std::string how) {
+  return {{.mark = Mark::kFailed, .what = std::move(what), .how = std::move(how)}};
+}
+
 }  // namespace
 
 MissingReasons::Window MissingReasons::Around(FrameNumber frame) {
@@ -271,119 +275,142 @@ Reasons MissingReasons::EndThatNeverCame(const CandidateOutcome& outcome, FrameN
   return Weigh(rule.to, end, true, tell).reasons;
 }
 
-MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int depth,
-                                            FrameNumber look_until) {
-  const InstanceId instance = outcome.instance;
-  const Rule& rule = past_.RuleOf(instance);
-  const Tick per_second = past_.entity_table().ticks_per_second;
-  const FrameNumber begin = outcome.span.begin.frame;
-  const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
-  Reason run{
-      .mark = Mark::kFailed,
-      .what = Label(past_, instance),
-      .how = "from " + clauses_.Time(begin) + " to " + At(outcome.span.end.tick, per_second) + ": ",
-      .where = Source(rule.file, rule.place),
-      .tick = outcome.span.begin.tick,
-      .reading = {},
-      .because = {}};
-  const auto fail = [&](std::string what, std::string how) {
-    run.because.push_back({.mark = Mark::kFailed, .what = std::move(what), .how = std::move(how)});
-  };
-  const auto clauses = [&](const char* word, grammar::NodeId node, const Moment& at) {
-    for (Reason& reason : clauses_.State(node, at, true)) {
-      reason.what = word + reason.what;
-      run.because.push_back(std::move(reason));
-    }
-  };
-  const std::string lasted = Duration(outcome.span.end.tick - outcome.span.begin.tick, per_second);
+void MissingReasons::AddClauses(const char* word, grammar::NodeId node, const Moment& at,
+                                Reasons& reasons) {
+  for (Reason& reason : clauses_.State(node, at, true)) {
+    reason.what = word + reason.what;
+    reasons.push_back(std::move(reason));
+  }
+}
+
+std::string MissingReasons::Lasted(const CandidateOutcome& outcome) {
+  return Duration(outcome.span.end.tick - outcome.span.begin.tick,
+                  past_.entity_table().ticks_per_second);
+}
+
+// Too short, too long, or with too little in it.
+MissingReasons::Fate MissingReasons::OfLength(const CandidateOutcome& outcome) {
+  const Rule& rule = past_.RuleOf(outcome.instance);
   switch (outcome.kind) {
     case CandidateOutcome::Kind::kTooShort:
-      run.how += "too short";
-      fail("lasting " + QuantityText(rule.lasting_s, grammar::kSeconds),
-           "it lasted only " + lasted);
-      break;
+      return {"too short", Failed("lasting " + QuantityText(rule.lasting_s, grammar::kSeconds),
+                                  "it lasted only " + Lasted(outcome))};
     case CandidateOutcome::Kind::kTooLong:
-      run.how += "too long";
-      fail("lasting .. to " + QuantityText(rule.lasting_most_s, grammar::kSeconds),
-           "it lasted " + lasted);
-      break;
-    case CandidateOutcome::Kind::kTooFew:
-      run.how += "too few";
-      fail("at least " + std::to_string(rule.As<grammar::WhileRule>().at_least),
-           "there " + std::string(outcome.cause == 1 ? "was " : "were ") +
-               std::to_string(outcome.cause));
-      break;
-    case CandidateOutcome::Kind::kRefused:
-      run.how += "not what is required";
-      run.because = Requirement(outcome, depth);
-      break;
-    case CandidateOutcome::Kind::kUnconfirmed: {
-      run.how += "not confirmed";
-      const InstanceId by = past_.Referred(instance, rule.confirmed_by);
-      const InstanceId within = past_.Referred(instance, rule.confirmed_within);
-      const bool episode = outcome.cause >= past_.frames();
-      fail("confirmed by " + Label(past_, by),
-           "it did not begin before " +
-               (episode ? std::string("the episode ended") : Label(past_, within) + " was over") +
-               " at " + clauses_.Time(outcome.cause));
-      const Window wait{outcome.span.end.frame, std::min(outcome.cause, past_.frames() - 1)};
-      run.because.back().because = OfInstance(by, wait, depth + 1).reasons;
-      break;
-    }
-    case CandidateOutcome::Kind::kDropped:
-      run.how += "dropped";
-      run.because = EndThatNeverCame(outcome, look_until);
-      clauses("during ", rule.As<FromToRule>().during,
-              {.instance = instance, .frame = outcome.cause, .begin = begin});
-      break;
-    case CandidateOutcome::Kind::kTooLate:
-      run.how += "dropped";
-      fail(Awaited(instance), "it did not come within " +
-                                  QuantityText(rule.As<FromToRule>().within_s, grammar::kSeconds) +
-                                  ", " + HowLate(outcome));
-      break;
-    case CandidateOutcome::Kind::kCame:
-      run.how += "what must not come came";
-      fail(Awaited(instance),
-           "it came after " + lasted + ", at " + At(outcome.span.end.tick, per_second));
-      break;
-    case CandidateOutcome::Kind::kUnfinished:
-      run.how += "dropped";
-      fail(Awaited(instance),
-           !rule.As<FromToRule>().absence
-               ? "the episode ended before"
-               : "it is decided only " +
-                     QuantityText(rule.As<FromToRule>().within_s, grammar::kSeconds) +
-                     " later, the episode ended before");
-      break;
-    case CandidateOutcome::Kind::kNothingBack: {
-      run.how = "nothing before its end at " + clauses_.Time(outcome.span.end.frame);
-      run.because = events_.CutOfWalk(instance, outcome);
-      for (Reason& cut : run.because) cut.mark = Mark::kFailed;
-      const FrameNumber before = std::max<FrameNumber>(last - 1, 0);
-      Reasons state = clauses_.State(rule.As<UntilSinceRule>().since,
-                                     {.instance = instance, .frame = before, .end = last}, true);
-      for (Reason& reason : state) {
-        reason.what = "since " + reason.what;
-        run.because.push_back(std::move(reason));
-      }
-      break;
-    }
+      return {"too long",
+              Failed("lasting .. to " + QuantityText(rule.lasting_most_s, grammar::kSeconds),
+                     "it lasted " + Lasted(outcome))};
     default:
-      break;
+      return {"too few",
+              Failed("at least " + std::to_string(rule.As<grammar::WhileRule>().at_least),
+                     "there " + std::string(outcome.cause == 1 ? "was " : "were ") +
+                         std::to_string(outcome.cause))};
   }
-  const bool has_end = outcome.kind == CandidateOutcome::Kind::kTooShort ||
-                       outcome.kind == CandidateOutcome::Kind::kTooLong ||
-                       outcome.kind == CandidateOutcome::Kind::kTooFew ||
-                       outcome.kind == CandidateOutcome::Kind::kRefused;
+}
+
+MissingReasons::Fate MissingReasons::Unconfirmed(const CandidateOutcome& outcome, int depth) {
+  const Rule& rule = past_.RuleOf(outcome.instance);
+  const InstanceId by = past_.Referred(outcome.instance, rule.confirmed_by);
+  const InstanceId within = past_.Referred(outcome.instance, rule.confirmed_within);
+  const bool episode = outcome.cause >= past_.frames();
+  Fate fate{"not confirmed", Failed("confirmed by " + Label(past_, by),
+                                    "it did not begin before " +
+                                        (episode ? std::string("the episode ended")
+                                                 : Label(past_, within) + " was over") +
+                                        " at " + clauses_.Time(outcome.cause))};
+  const Window wait{outcome.span.end.frame, std::min(outcome.cause, past_.frames() - 1)};
+  fate.because.back().because = OfInstance(by, wait, depth + 1).reasons;
+  return fate;
+}
+
+// Of `from .. to` and `from .. without`: what was waited for did not come, or what must not, did.
+MissingReasons::Fate MissingReasons::WithoutEnd(const CandidateOutcome& outcome,
+                                                FrameNumber look_until) {
+  const InstanceId instance = outcome.instance;
+  const FromToRule& rule = past_.RuleOf(instance).As<FromToRule>();
+  const std::string within = QuantityText(rule.within_s, grammar::kSeconds);
+  switch (outcome.kind) {
+    case CandidateOutcome::Kind::kDropped: {
+      Fate fate{"dropped", EndThatNeverCame(outcome, look_until)};
+      AddClauses("during ", rule.during,
+                 {.instance = instance, .frame = outcome.cause, .begin = outcome.span.begin.frame},
+                 fate.because);
+      return fate;
+    }
+    case CandidateOutcome::Kind::kTooLate:
+      return {"dropped", Failed(Awaited(instance),
+                                "it did not come within " + within + ", " + HowLate(outcome))};
+    case CandidateOutcome::Kind::kCame:
+      return {"what must not come came",
+              Failed(Awaited(instance),
+                     "it came after " + Lasted(outcome) + ", at " +
+                         At(outcome.span.end.tick, past_.entity_table().ticks_per_second))};
+    default:
+      return {"dropped",
+              Failed(Awaited(instance), !rule.absence ? "the episode ended before"
+                                                      : "it is decided only " + within +
+                                                            " later, the episode ended before")};
+  }
+}
+
+MissingReasons::Fate MissingReasons::NothingBefore(const CandidateOutcome& outcome) {
+  Fate fate{"nothing before its end at " + clauses_.Time(outcome.span.end.frame),
+            events_.CutOfWalk(outcome.instance, outcome)};
+  for (Reason& cut : fate.because) cut.mark = Mark::kFailed;
+  const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
+  AddClauses(
+      "since ", past_.RuleOf(outcome.instance).As<UntilSinceRule>().since,
+      {.instance = outcome.instance, .frame = std::max<FrameNumber>(last - 1, 0), .end = last},
+      fate.because);
+  return fate;
+}
+
+MissingReasons::Fate MissingReasons::FateOf(const CandidateOutcome& outcome, int depth,
+                                            FrameNumber look_until) {
+  switch (outcome.kind) {
+    case CandidateOutcome::Kind::kTooShort:
+    case CandidateOutcome::Kind::kTooLong:
+    case CandidateOutcome::Kind::kTooFew:
+      return OfLength(outcome);
+    case CandidateOutcome::Kind::kRefused:
+      return {"not what is required", Requirement(outcome, depth)};
+    case CandidateOutcome::Kind::kUnconfirmed:
+      return Unconfirmed(outcome, depth);
+    case CandidateOutcome::Kind::kDropped:
+    case CandidateOutcome::Kind::kTooLate:
+    case CandidateOutcome::Kind::kCame:
+    case CandidateOutcome::Kind::kUnfinished:
+      return WithoutEnd(outcome, look_until);
+    case CandidateOutcome::Kind::kNothingBack:
+      return NothingBefore(outcome);
+    default:
+      return {};
+  }
+}
+
+MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int depth,
+                                            FrameNumber look_until) {
+  using enum CandidateOutcome::Kind;
+  const Rule& rule = past_.RuleOf(outcome.instance);
+  Fate fate = FateOf(outcome, depth, look_until);
+  const std::string span = "from " + clauses_.Time(outcome.span.begin.frame) + " to " +
+                           At(outcome.span.end.tick, past_.entity_table().ticks_per_second) + ": ";
+  Reason run{.mark = Mark::kFailed,
+             .what = Label(past_, outcome.instance),
+             .how = (outcome.kind == kNothingBack ? "" : span) + fate.how,
+             .where = Source(rule.file, rule.place),
+             .tick = outcome.span.begin.tick,
+             .reading = {},
+             .because = std::move(fate.because)};
+  const bool has_end = outcome.kind == kTooShort || outcome.kind == kTooLong ||
+                       outcome.kind == kTooFew || outcome.kind == kRefused;
   if (has_end) {
     Reason began{.mark = Mark::kNote,
                  .what = "it began there",
-                 .because = events_.CutOfWalk(instance, outcome)};
+                 .because = events_.CutOfWalk(outcome.instance, outcome)};
     if (!began.because.empty()) run.because.push_back(std::move(began));
     Reason ended{.mark = Mark::kNote,
                  .what = "it ended there",
-                 .because = events_.End(instance, outcome, kMaxDepth - 1)};
+                 .because = events_.End(outcome.instance, outcome, kMaxDepth - 1)};
     run.because.push_back(std::move(ended));
   }
   return {{std::move(run)}, RunCloseness(outcome)};

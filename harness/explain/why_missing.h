@@ -46,6 +46,19 @@ class MissingReasons {
   /// "to touching(hand, cup) ends", "without touching(hand, cup) begins"
   std::string Awaited(grammar::InstanceId instance);
   std::string HowLate(const grammar::CandidateOutcome& outcome);
+  /// What became of a run, and why.
+  struct Fate {
+    std::string how;
+    Reasons because;
+  };
+  Fate OfLength(const grammar::CandidateOutcome& outcome);
+  Fate Unconfirmed(const grammar::CandidateOutcome& outcome, int depth);
+  Fate WithoutEnd(const grammar::CandidateOutcome& outcome, grammar::FrameNumber look_until);
+  Fate NothingBefore(const grammar::CandidateOutcome& outcome);
+  Fate FateOf(const grammar::CandidateOutcome& outcome, int depth, grammar::FrameNumber look_until);
+  /// The clauses of a condition, each after this word.
+  void AddClauses(const char* word, grammar::NodeId node, const Moment& at, Reasons& reasons);
+  std::string Lasted(const grammar::CandidateOutcome& outcome);
   /// `look_until`: what came later than that could not have helped.
   Blame OfRun(const grammar::CandidateOutcome& outcome, int depth,
               grammar::FrameNumber look_until = grammar::kNever);

@@ -277,6 +277,88 @@ std::optional<grammar::NamedEvent> EventIn(const std::string& text, const Events
   return named;
 }
 
+/// What a label means: an event, nothing (it is ignored), or a problem.
+struct Meant {
+  std::optional<grammar::NamedEvent> event = {};
+  std::map<std::string, Where> in_map = {};  ///< of the entities that the map names, not the label
+  std::string problem = {}, hint = {};
+};
+
+Meant WithoutMap(const std::string& text, const Events& events) {
+  Meant meant;
+  meant.event = EventIn(text, events, meant.problem);
+  if (!meant.event) meant.hint = "say what your labels mean in a file: --map labels.yaml";
+  return meant;
+}
+
+/// What the map says of a label or a tier, which `kind` names; null if it has it not.
+const Meaning* Find(const std::map<std::string, Meaning>& known, const std::string& name,
+                    const std::string& kind, Meant& meant) {
+  const auto found = known.find(name);
+  if (found != known.end()) return &found->second;
+  std::vector<std::string> names;
+  for (const auto& [each, _] : known) names.push_back(each);
+  const std::string near = grammar::NearestName(name, names);
+  meant.problem = fmt::format("the map has no {} '{}'", kind, name);
+  meant.hint = near.empty() ? fmt::format("{}s: {{{}: ignore}}", kind, AsYaml(name))
+                            : "did you mean '" + near + "'?";
+  return nullptr;
+}
+
+/// The roles of the label's meaning, then those of its columns, then those of its tier. False if a
+/// column has an entity that is left out.
+bool AddRoles(const Label& label, const LabelMap& map, const Meaning* tier,
+              const EventSignature& event, Meant& meant) {
+  std::vector<grammar::Role>& roles = meant.event->roles;
+  const auto add = [&](const grammar::Role& role) {
+    const bool has_it = std::ranges::find(event.roles, role.name) != event.roles.end();
+    const bool given = std::ranges::find(roles, role.name, &grammar::Role::name) != roles.end();
+    if (has_it && !given) roles.push_back(role);
+  };
+  for (grammar::Role role : label.roles) {
+    const auto entity = map.entities.find(role.value);
+    meant.in_map.erase(role.value);
+    if (entity != map.entities.end()) {
+      role.value = entity->second.value;
+      meant.in_map[role.value] = entity->second.where;
+    }
+    if (role.value.empty()) return false;
+    add(role);
+  }
+  if (tier) std::ranges::for_each(tier->roles, add);
+  PutInOrder(event, roles);
+  return true;
+}
+
+Meant ByMap(const Label& label, const std::string& text, const LabelMap& map,
+            const Events& events) {
+  Meant meant;
+  const Meaning* tier = nullptr;
+  if (!map.tiers.empty()) {
+    tier = Find(map.tiers, label.tier, "tier", meant);
+    if (!tier || tier->ignored) return meant;
+  }
+  const Meaning* meaning = Find(map.labels, text, "label", meant);
+  if (!meaning || meaning->ignored) return meant;
+  meant.event = {.event = meaning->event, .roles = meaning->roles, .interval = {}};
+  meant.in_map = meaning->entities;
+  if (tier) meant.in_map.insert(tier->entities.begin(), tier->entities.end());
+  if (!AddRoles(label, map, tier, *FindEvent(events, meaning->event), meant)) meant.event.reset();
+  return meant;
+}
+
+/// Only roles that all labels of the event have are compared.
+void Compare(const std::string& event, const std::vector<grammar::Role>& roles,
+             ComparedRoles& compared) {
+  std::vector<std::string> names;
+  for (const grammar::Role& role : roles) names.push_back(role.name);
+  const auto [found, is_new] = compared.try_emplace(event, names);
+  if (!is_new)
+    std::erase_if(found->second, [&](const std::string& role) {
+      return std::ranges::find(names, role) == names.end();
+    });
+}
+
 }  // namespace
 
 Result<LabelMap> ReadLabelMap(const std::string& path, const Events& events) {
@@ -294,99 +376,29 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
   if (map) {
     reading.join_s_ = map->join_s;
     reading.offset_s_ = map->offset_s;
+    reading.map_ = map->document;
   }
   Diagnostics problems;
-  std::set<std::string> unknown;
-  const auto compare = [&](const grammar::NamedEvent& event) {
-    std::vector<std::string> roles;
-    for (const grammar::Role& role : event.roles) roles.push_back(role.name);
-    const auto [found, is_new] = reading.compared_.try_emplace(event.event, roles);
-    if (!is_new)
-      std::erase_if(found->second, [&](const std::string& role) {
-        return std::ranges::find(roles, role) == roles.end();
-      });
-  };
+  std::set<std::string> complained;
   for (const LabelFile& file : files) {
     std::vector<LabelledEvent>& of_file = reading.events_.emplace_back();
-    const auto complain = [&](const Label& label, std::string message, std::string hint) {
-      if (problems.size() < kMostComplaints && unknown.insert(message).second)
-        problems.push_back(file.At(label.place, std::move(message), std::move(hint)));
-    };
     for (const Label& label : file.labels) {
       const std::string text = Trimmed(label.text);
-      grammar::NamedEvent named;
-      std::map<std::string, Where> in_map;
-      if (!map) {
-        std::string problem;
-        const auto event = EventIn(text, events, problem);
-        if (!event) {
-          complain(label, problem, "say what your labels mean in a file: --map labels.yaml");
-          continue;
-        }
-        named = *event;
-      } else {
-        const auto tier = map->tiers.find(label.tier);
-        if (tier == map->tiers.end() && !map->tiers.empty()) {
-          std::vector<std::string> known;
-          for (const auto& [name, _] : map->tiers) known.push_back(name);
-          const std::string near = grammar::NearestName(label.tier, known);
-          complain(label, fmt::format("the map has no tier '{}'", label.tier),
-                   near.empty() ? fmt::format("tiers: {{{}: ignore}}", AsYaml(label.tier))
-                                : "did you mean '" + near + "'?");
-          continue;
-        }
-        if (tier != map->tiers.end() && tier->second.ignored) continue;
-        const auto meaning = map->labels.find(text);
-        if (meaning == map->labels.end()) {
-          std::vector<std::string> known;
-          for (const auto& [name, _] : map->labels) known.push_back(name);
-          const std::string near = grammar::NearestName(text, known);
-          complain(label, fmt::format("the map has no label '{}'", text),
-                   near.empty() ? fmt::format("labels: {{{}: ignore}}", AsYaml(text))
-                                : "did you mean '" + near + "'?");
-          continue;
-        }
-        if (meaning->second.ignored) continue;
-        named.event = meaning->second.event;
-        named.roles = meaning->second.roles;
-        const EventSignature& event = *FindEvent(events, named.event);
-        const auto add = [&](const grammar::Role& role) {
-          const bool has_it = std::ranges::find(event.roles, role.name) != event.roles.end();
-          const bool given =
-              std::ranges::find(named.roles, role.name, &grammar::Role::name) != named.roles.end();
-          if (has_it && !given) named.roles.push_back(role);
-        };
-        in_map = meaning->second.entities;
-        if (tier != map->tiers.end())
-          in_map.insert(tier->second.entities.begin(), tier->second.entities.end());
-        bool is_left_out = false;
-        for (grammar::Role role : label.roles) {
-          const auto entity = map->entities.find(role.value);
-          in_map.erase(role.value);
-          if (entity != map->entities.end()) {
-            role.value = entity->second.value;
-            in_map[role.value] = entity->second.where;
-          }
-          is_left_out = is_left_out || role.value.empty();
-          add(role);
-        }
-        if (is_left_out) continue;
-        if (tier != map->tiers.end()) std::ranges::for_each(tier->second.roles, add);
-        PutInOrder(event, named.roles);
-      }
-      compare(named);
-      const double offset_s = map ? map->offset_s : 0;
-      of_file.push_back({label.begin_s + offset_s, label.end_s + offset_s, std::move(named),
-                         label.place, std::move(in_map)});
+      Meant meant = map ? ByMap(label, text, *map, events) : WithoutMap(text, events);
+      if (!meant.problem.empty() && problems.size() < kMostComplaints &&
+          complained.insert(meant.problem).second)
+        problems.push_back(file.At(label.place, std::move(meant.problem), std::move(meant.hint)));
+      if (!meant.event) continue;
+      Compare(meant.event->event, meant.event->roles, reading.compared_);
+      of_file.push_back({label.begin_s + reading.offset_s_, label.end_s + reading.offset_s_,
+                         std::move(*meant.event), label.place, std::move(meant.in_map)});
     }
   }
   // What labels could name: without one of them, what is recognised of it is too much.
   if (map) {
     for (const auto& [text, meaning] : map->labels)
-      if (!meaning.ignored && !reading.compared_.contains(meaning.event)) {
-        grammar::NamedEvent event{.event = meaning.event, .roles = meaning.roles, .interval = {}};
-        compare(event);
-      }
+      if (!meaning.ignored && !reading.compared_.contains(meaning.event))
+        Compare(meaning.event, meaning.roles, reading.compared_);
   }
   // Of a symmetric event one role alone says nothing.
   for (auto& [name, roles] : reading.compared_) {
@@ -396,7 +408,6 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   for (const auto& [name, _] : reading.compared_)
     reading.signatures_.emplace(name, *FindEvent(events, name));
-  if (map) reading.map_ = map->document;
   reading.files_ = std::move(files);
   return reading;
 }
