@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "harness/command/typed_episode.h"
+#include "harness/episode/keep_episodes.h"
 #include "harness/knowledge/write_knowledge.h"
 
 namespace prehend::harness {
@@ -16,13 +17,19 @@ std::string FormProblem(const std::string& text) {
 }
 
 ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& context) {
-  const auto episodes = FindEpisodesOrComplain("files", options, context, {Need::kBodies});
+  auto episodes = FindEpisodesOrComplain("files", options, context, {Need::kBodies});
   if (!episodes) return episodes.error();
   const std::vector<std::string> forms = options.All("--to");
   const auto asked = [&](const char* form) {
     return std::ranges::find(forms, form) != forms.end();
   };
   const std::string folder = options.TextOr("--output", "kb");
+  EpisodeKeeper keeper(context.root, context.today, folder);
+  for (EpisodeName& episode : *episodes) {
+    Result<EpisodeName> kept = keeper.Keep(episode);
+    if (!kept) return Complain(context, kept.error());
+    episode = std::move(*kept);
+  }
   const Result<knowledge::KnowledgeWritten> written = knowledge::WriteKnowledge(
       *episodes,
       {.root = context.root, .folder = folder, .owl = asked("owl"), .neem = asked("neem")});
@@ -41,7 +48,8 @@ Command KnowledgeCommand() {
           .examples = {"knowledge suite.episodes -o kb",
                        "knowledge suite.episodes --episode 'slide/*' --to owl --to neem -o kb"},
           .options = {{.name = "files",
-                       .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
+                       .help = "episode files (docs/episodes.md); scenarios, which are played\n"
+                               "first and kept in the folder",
                        .required = true,
                        .repeatable = true},
                       {.name = "--output",

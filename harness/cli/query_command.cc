@@ -7,6 +7,7 @@
 
 #include "harness/command/command.h"
 #include "harness/command/moment_pictures.h"
+#include "harness/episode/keep_episodes.h"
 #include "harness/episodes/query_events.h"
 #include "harness/pictures/pictures.h"
 #include "harness/timeline/event_text.h"
@@ -151,7 +152,15 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
   const EventQuestion question = EventQuestionOf(options);
   std::vector<EventAnswer> answers;
   episodes::KnownNames known;
-  for (const std::string& path : options.All("files")) {
+  EpisodeKeeper keeper(context.root, context.today);
+  for (std::string path : options.All("files")) {
+    if (EpisodeKindOf(path) != EpisodeKind::kEpisodeFile) {
+      const auto name = FindEpisode(path, "", context.root);
+      if (!name) return Complain(context, name.error());
+      const Result<EpisodeName> kept = keeper.Keep(*name);
+      if (!kept) return Complain(context, kept.error());
+      path = kept->file;
+    }
     auto found = episodes::Ask(path, question, known);
     if (!found) return Complain(context, found.error());
     answers.insert(answers.end(), found->begin(), found->end());
@@ -169,6 +178,7 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
     for (const EventAnswer& answer : answers) moments.push_back(MomentOf(answer));
     drawn = DrawMoments(moments, options.Text("--show"), context.root);
   }
+  for (EventAnswer& answer : answers) answer.file = keeper.SourceOf(answer.file);
   if (options.Has("--json"))
     PrintQueryJson(answers, drawn.files, options.Has("--parts"), context.out);
   else
@@ -204,7 +214,8 @@ Command QueryCommand() {
                    "query *.episodes --event sliding --relation 'meets transporting' --csv",
                    "query suite.episodes --event grasping --class object=Handle --show shown"},
       .options = {{.name = "files",
-                   .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
+                   .help = "episode files (docs/episodes.md); scenarios and recordings as JSON\n"
+                           "Lines, which are played or imported first",
                    .required = true,
                    .repeatable = true},
                   {.name = "--event", .help = "its name, or a glob", .placeholder = "NAME"},

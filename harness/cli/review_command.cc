@@ -13,6 +13,7 @@
 #include "harness/check/select_scenarios.h"
 #include "harness/command/command.h"
 #include "harness/episode/find_episodes.h"
+#include "harness/episode/lacks.h"
 #include "harness/golden/compare.h"
 #include "harness/golden/golden_files.h"
 #include "harness/judge/accept_golden.h"
@@ -159,6 +160,9 @@ tl::expected<std::vector<Review>, ExitCode> Reviews(const ParsedOptions& options
         reviews.push_back(std::move(*review));
       continue;
     }
+    if (file.origin == Origin::kRecording)
+      return tl::unexpected(
+          Complain(context, ExitCode::kBadInput, Lacks(NameOf(file), Need::kGolden)));
     AddReviews(file, context.root, std::erase(pending, IdOf(file)) > 0, pictures, reviews);
   }
   if (!patterns.empty()) return reviews;

@@ -3,18 +3,17 @@
 // Tested by tests/program/watch_test.cc
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <optional>
 
-#include "grammar/name_events.h"
-#include "harness/command/command.h"
+#include "harness/command/typed_episode.h"
 #include "harness/run/load_grammar.h"
-#include "harness/run/run_text.h"
+#include "harness/run/segment.h"
 #include "harness/sense/episode_stream.h"
 #include "harness/timeline/event_text.h"
 #include "harness/timeline/timeline_json.h"
@@ -37,104 +36,136 @@ bool NextLine(std::istream& in, std::string& line, std::size_t& bytes) {
   return true;
 }
 
-class Watcher {
- public:
-  Watcher(const ParsedOptions& options, const CommandContext& context)
-      : options_(options), context_(context), stream_(NameOf(options)) {}
-
-  ExitCode Watch(std::istream& in) {
-    std::string line;
-    for (std::size_t bytes = 0; context_.out && NextLine(in, line, bytes);) {
-      ++line_;
-      if (bytes > kMaxEpisodeLineBytes) line = "a line of " + std::to_string(bytes) + " bytes";
-      const grammar::Diagnostics found = stream_.Take(line);
-      if (!found.empty()) {
-        if (!stream_.has_header()) return Complain(context_, found);
-        context_.err << grammar::Format(found) << std::flush;
-        ++skipped_;
-        continue;
-      }
-      if (stream_.has_header() && !monitor_) {
-        if (const auto refused = Begin()) return *refused;
-      }
-      if (!stream_.frame()) continue;
-      monitor_->Advance(stream_.frame()->View(), events_);
-      Print();
+/// Prints events as they are decided.
+void Print(const grammar::Timeline& decided, bool as_json, std::ostream& out) {
+  const grammar::Tick rate = decided.ticks_per_second;
+  for (const grammar::NamedEvent& event : decided.events) {
+    if (as_json) {
+      out << harness::EventJson(event, rate).dump() << "\n";
+      continue;
     }
+    std::string roles;
+    for (std::size_t i = 0; i < event.roles.size(); ++i) roles += "  " + RoleText(event, i);
+    out << fmt::format("{}  {}  {}  {}{}{}\n", SecondsText(event.decided, rate), event.event,
+                       SecondsText(event.interval.begin, rate),
+                       SecondsText(event.interval.end, rate), roles,
+                       event.open_end ? "  open_end" : "");
+  }
+  out.flush();
+}
+
+/// Lines of a recording, as they come. Faulty ones are reported and left out.
+class LineWatcher {
+ public:
+  LineWatcher(const std::string& name, const CommandContext& context)
+      : name_(name), context_(context), stream_(name) {}
+
+  ExitCode Watch(std::istream& in, const ParsedOptions& options) {
+    while (!stream_.has_header()) {
+      if (!Take(in)) return EndsTooEarly();
+      if (!wrong_.empty()) return Complain(context_, wrong_);
+    }
+    const grammar::EntityTable& entities = stream_.header().entity_table;
+    const Result<grammar::Overrides> settings = ParameterSettings(options.All("--set"));
+    if (!settings) return Complain(context_, settings.error());
+    const grammar::CompileResult compiled =
+        LoadGrammarOf(stream_.header(), options.Text("--grammar"), context_.root, *settings);
+    if (!compiled.program) return Complain(context_, compiled.diagnostics);
+    Warn(context_, Warnings(*compiled.program, entities));
+    const Segmentation watched = Segment(
+        compiled.program, entities,
+        [&](const std::function<void(const FrameNews&)>& take) {
+          while (context_.out && Take(in)) {
+            if (stream_.frame()) take(stream_.frame()->View());
+          }
+          return std::max<grammar::Tick>(stream_.end_tick(), 1);
+        },
+        [&](const grammar::Timeline& decided) {
+          Print(decided, options.Has("--json"), context_.out);
+        });
+    if (!watched.problem.empty())
+      return Complain(context_, ExitCode::kBadInput,
+                      "the grammar cannot segment this recording: " + watched.problem);
     return End();
   }
 
-  static std::string NameOf(const ParsedOptions& options) {
-    const std::string typed = options.Text("recording");
-    return typed == "-" ? "standard input" : typed;
-  }
-
  private:
-  /// The first line is there. An exit code if it cannot be watched.
-  std::optional<ExitCode> Begin() {
-    Result<grammar::Overrides> settings = ParameterSettings(options_.All("--set"));
-    if (!settings) return Complain(context_, settings.error());
-    grammar::CompileResult compiled =
-        LoadGrammarOf(stream_.header(), options_.Text("--grammar"), context_.root, *settings);
-    if (!compiled.program) return Complain(context_, compiled.diagnostics);
-    program_ = std::move(compiled.program);
-    Warn(context_, Warnings(*program_, stream_.header().entity_table));
-    monitor_.emplace(program_, stream_.header().entity_table);
-    if (monitor_->error().empty()) return std::nullopt;
-    return Complain(context_, ExitCode::kBadInput,
-                    "the grammar cannot segment this recording: " + monitor_->error());
+  /// The next line. False at the end.
+  bool Take(std::istream& in) {
+    std::string line;
+    std::size_t bytes = 0;
+    if (!NextLine(in, line, bytes)) return false;
+    ++line_;
+    if (bytes > kMaxEpisodeLineBytes) line = "a line of " + std::to_string(bytes) + " bytes";
+    wrong_ = stream_.Take(line);
+    if (wrong_.empty() || !stream_.has_header()) return true;
+    context_.err << grammar::Format(wrong_) << std::flush;
+    ++skipped_;
+    return true;
   }
 
-  void Print() {
-    if (events_.empty()) return;
-    const grammar::EntityTable& table = stream_.header().entity_table;
-    const grammar::Tick rate = table.ticks_per_second;
-    for (const grammar::NamedEvent& event : grammar::NameEvents(*program_, table, events_).events) {
-      if (options_.Has("--json")) {
-        context_.out << harness::EventJson(event, rate).dump() << "\n";
-        continue;
-      }
-      std::string roles;
-      for (std::size_t i = 0; i < event.roles.size(); ++i) roles += "  " + RoleText(event, i);
-      context_.out << fmt::format("{}  {}  {}  {}{}{}\n", SecondsText(event.decided, rate),
-                                  event.event, SecondsText(event.interval.begin, rate),
-                                  SecondsText(event.interval.end, rate), roles,
-                                  event.open_end ? "  open_end" : "");
-    }
-    context_.out.flush();
-    events_.clear();
+  ExitCode EndsTooEarly() const {
+    return Complain(context_, ExitCode::kBadInput, name_ + " ended before its first frame");
   }
 
-  ExitCode End() {
-    if (!monitor_ || stream_.end_tick() == 0)
-      return Complain(context_, ExitCode::kBadInput,
-                      NameOf(options_) + " ended before its first frame");
-    monitor_->Finish(stream_.end_tick(), events_);
-    Print();
+  ExitCode End() const {
+    if (stream_.end_tick() == 0) return EndsTooEarly();
     context_.err << stream_.gaps();
     if (!stream_.says_its_end())
       context_.err << fmt::format(
-          "prehend: {} ended after line {} without 'end_tick': what was open ends there\n",
-          NameOf(options_), line_);
+          "prehend: {} ended after line {} without 'end_tick': what was open ends there\n", name_,
+          line_);
     if (skipped_ == 0) return ExitCode::kAgrees;
     return Complain(
         context_, ExitCode::kBadInput,
         fmt::format("{} faulty {} skipped", skipped_, skipped_ == 1 ? "line was" : "lines were"));
   }
 
-  const ParsedOptions& options_;
+  const std::string name_;
   const CommandContext& context_;
   EpisodeStream stream_;
-  std::shared_ptr<const grammar::Program> program_;
-  std::optional<grammar::Monitor> monitor_;
-  std::vector<grammar::Event> events_;
+  grammar::Diagnostics wrong_;  ///< with the last line
   std::size_t line_ = 0, skipped_ = 0;
 };
 
+/// A run or a recording of an episode file, or a scenario while it is played.
+ExitCode WatchEpisode(const ParsedOptions& options, const CommandContext& context) {
+  auto episode = OpenEpisodeOrComplain(options.Text("recording"), options, context);
+  if (!episode) return episode.error();
+  Warn(context, episode->loaded().warnings);
+  Episode::End end;
+  const Segmentation watched = Segment(
+      episode->program(), episode->entities(),
+      [&](const std::function<void(const FrameNews&)>& take) {
+        end = episode->EachFrame([&](const grammar::Frame& frame) { take(frame); });
+        return end.tick;
+      },
+      [&](const grammar::Timeline& decided) {
+        Print(decided, options.Has("--json"), context.out);
+      });
+  if (!watched.problem.empty())
+    return Complain(context, ExitCode::kBadInput,
+                    "the grammar cannot segment this episode: " + watched.problem);
+  return end.failure.empty() ? ExitCode::kAgrees
+                             : Complain(context, ExitCode::kFailure, end.failure);
+}
+
+/// Otherwise lines are expected, whatever they say: of a pipe the first ones are not there yet.
+bool IsNoLines(const std::string& typed) {
+  std::error_code error;
+  const EpisodeKind kind = EpisodeKindOf(typed);
+  return kind == EpisodeKind::kEpisodeFile ||
+         (kind == EpisodeKind::kScenario && typed != "-" &&
+          (!std::filesystem::exists(typed, error) || typed.ends_with(".yaml")));
+}
+
 ExitCode RunWatch(const ParsedOptions& options, const CommandContext& context) {
   const std::string typed = options.Text("recording");
-  Watcher watcher(options, context);
-  if (typed == "-") return watcher.Watch(std::cin);
+  if (IsNoLines(typed)) return WatchEpisode(options, context);
+  if (options.Has("--episode"))
+    return Complain(context, ExitCode::kBadInput,
+                    fmt::format("--episode needs episode files; {} is none", typed));
+  if (typed == "-") return LineWatcher("standard input", context).Watch(std::cin, options);
   std::error_code error;
   if (std::filesystem::is_directory(typed, error))
     return Complain(context, ExitCode::kBadInput, typed + " is a directory, not a file");
@@ -142,7 +173,7 @@ ExitCode RunWatch(const ParsedOptions& options, const CommandContext& context) {
   if (!file)
     return Complain(context, ExitCode::kBadInput,
                     typed + ": cannot be read: " + std::strerror(errno));
-  return watcher.Watch(file);
+  return LineWatcher(typed, context).Watch(file, options);
 }
 
 }  // namespace
@@ -153,9 +184,10 @@ Command WatchCommand() {
       .summary = "Print events while a recording is written, each when it is decided",
       .examples = {"watch - --grammar pick_and_place_from_motion", "watch tracker.fifo --json"},
       .options = {{.name = "recording",
-                   .help = "lines of a recording (docs/recording-format.md): -, standard input, "
-                           "a pipe or a file",
+                   .help = "lines of a recording (docs/recording-format.md): -, standard input, a "
+                           "pipe or a file;\nor an episode file, or a scenario",
                    .required = true},
+                  EpisodeOption(),
                   GrammarOption(),
                   {.name = "--set",
                    .help = "set a parameter of the grammar (reach_radius=25cm); may be repeated",

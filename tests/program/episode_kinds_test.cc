@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every command that looks at an episode, with every kind of episode: it works, or says which fact
+// is missing and what to do.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kKinds = 4;
+const std::array<const char*, kKinds> kNames = {"a scenario", "a recorded run", "JSON Lines",
+                                                "an imported recording"};
+
+/// A scenario's name, a run of it in an episode file, a recording in JSON Lines, and the same in an
+/// episode file.
+const std::array<std::string, kKinds>& Episodes() {
+  static const std::array<std::string, kKinds> episodes = [] {
+    const fs::path folder = FreshFolder("episode_kinds");
+    const std::string scenario = "reach/idling_beside_the_object_is_no_reach";
+    std::array<std::string, kKinds> made = {scenario, (folder / "run.episodes").string(),
+                                            (folder / "take.jsonl").string(),
+                                            (folder / "take.episodes").string()};
+    const std::string docs = PREHEND_SOURCE_DIR "/docs/motion_capture";
+    EXPECT_EQ(Prehend({"run", scenario, "--record", made[1]}).exit_code, 0);
+    EXPECT_EQ(
+        Prehend({"import", docs + "/poses.csv", "--map", docs + "/bodies.yaml", "-o", made[2]})
+            .exit_code,
+        0);
+    EXPECT_EQ(Prehend({"import", made[2], "-o", made[3]}).exit_code, 0);
+    return made;
+  }();
+  return episodes;
+}
+
+const std::string kOut = "OUT";  // a file or folder of its own
+const std::string kEpisode = "EPISODE";
+
+struct Row {
+  std::vector<std::string> words;
+  std::array<int, kKinds> exit_codes;
+  std::string missing;  ///< part of what a cell with exit code 2 says
+};
+
+const Row kRows[] = {
+    {{"run", kEpisode}, {0, 2, 2, 2}, "so there is no scenario to simulate; 'prehend resegment"},
+    {{"validate", kEpisode}, {0, 2, 2, 2}, "so there is no scenario to simulate; 'prehend"},
+    {{"check", kEpisode, "--report", kOut}, {0, 0, 5, 5}, ""},
+    {{"review", kEpisode}, {0, 0, 5, 2}, "has no golden: that of a recording lies beside"},
+    {{"explain", kEpisode}, {0, 0, 0, 0}, ""},
+    {{"tracks", kEpisode}, {0, 0, 0, 0}, ""},
+    {{"poses", kEpisode}, {0, 0, 0, 0}, ""},
+    {{"render", kEpisode, "--at", "0.5", "-o", kOut + ".png"}, {0, 0, 0, 0}, ""},
+    {{"render", kEpisode, "--strip", "-o", kOut + ".svg"}, {0, 0, 0, 0}, ""},
+    {{"figure", "keyframes", kEpisode, "-o", kOut + ".svg"}, {0, 0, 0, 0}, ""},
+    {{"figure", "phases", kEpisode, "-o", kOut + ".svg"}, {0, 0, 0, 0}, ""},
+    {{"resegment", kEpisode}, {0, 0, 0, 0}, ""},
+    {{"resegment", kEpisode, "--json"}, {0, 0, 0, 0}, ""},
+    {{"resegment", kEpisode, "--labels", kOut + ".csv"}, {0, 0, 0, 0}, ""},
+    {{"resegment", kEpisode, "--compare", "recorded"},
+     {2, 0, 2, 0},
+     "has no events that were recorded with it; 'prehend "},
+    {{"watch", kEpisode}, {0, 0, 0, 0}, ""},
+    {{"query", kEpisode}, {0, 0, 0, 0}, ""},
+    {{"report", kEpisode, "-o", kOut + ".html"}, {0, 0, 0, 0}, ""},
+    {{"episodes", kEpisode}, {2, 0, 2, 0}, "is not kept in an episode file; 'prehend "},
+    {{"replay", kEpisode}, {2, 0, 2, 0}, "is not kept in an episode file; 'prehend "},
+    {{"score", kEpisode}, {0, 0, 2, 2}, "its physical truth is not known; score it against labels"},
+    {{"sweep", kEpisode, "--over", "reach_radius=20cm..40cm:2"}, {0, 0, 4, 4}, ""},
+    {{"margins", kEpisode}, {0, 0, 4, 4}, ""},
+    {{"knowledge", kEpisode, "-o", kOut}, {0, 0, 2, 2}, "was not simulated, so the bodies"},
+    {{"accept", kEpisode, "--reviewed", "0123456789abcdef", "--reason", "seen"},
+     {1, 2, 1, 2},
+     "has no golden: that of "},
+};
+
+TEST(EpisodeKinds, EveryCommandTakesEachOrSaysWhatIsMissing) {
+  const fs::path folder = FreshFolder("episode_kinds_out");
+  int number = 0;
+  for (const Row& row : kRows) {
+    for (std::size_t kind = 0; kind < kKinds; ++kind) {
+      std::vector<std::string> words = row.words;
+      const std::string out = (folder / std::to_string(++number)).string();
+      for (std::string& word : words) {
+        if (word == kEpisode) word = Episodes()[kind];
+        if (word.starts_with(kOut)) word = out + word.substr(kOut.size());
+      }
+      const Said said = Prehend(words, {"CI="});
+      const std::string which = row.words.front() + " of " + kNames[kind] + ": " + said.err;
+      EXPECT_EQ(said.exit_code, row.exit_codes[kind]) << which;
+      if (said.exit_code == 2) EXPECT_NE(said.err.find(row.missing), std::string::npos) << which;
+      for (const char* never : {"control character", "no such file", "No such file"})
+        EXPECT_EQ((said.out + said.err).find(never), std::string::npos) << which;
+    }
+  }
+}
+
+// What is played first says the same as a run.
+TEST(EpisodeKinds, AScenarioIsPlayedFirst) {
+  const std::string& scenario = Episodes()[0];
+  EXPECT_EQ(Prehend({"resegment", scenario}).out, Prehend({"run", scenario}).out);
+  EXPECT_EQ(Prehend({"resegment", scenario}).out, Prehend({"resegment", Episodes()[1]}).out);
+  const Said asked = Prehend({"query", scenario, "--json"}),
+             kept = Prehend({"query", Episodes()[1], "--json"});
+  EXPECT_EQ(std::ranges::count(asked.out, '{'), std::ranges::count(kept.out, '{'));
+}
+
+// A recording is the same in either form.
+TEST(EpisodeKinds, ARecordingIsTheSameInEitherForm) {
+  for (const std::string command : {"resegment", "explain", "tracks", "watch", "poses"})
+    EXPECT_EQ(Prehend({command, Episodes()[2]}).out, Prehend({command, Episodes()[3]}).out)
+        << command;
+}
+
+TEST(EpisodeKinds, AChoiceNeedsAnEpisodeFile) {
+  for (const std::size_t kind : {0u, 2u}) {
+    const Said said = Prehend({"explain", Episodes()[kind], "--episode", "1"});
+    EXPECT_EQ(said.exit_code, 2);
+    EXPECT_EQ(said.err,
+              "prehend: --episode needs episode files; " + Episodes()[kind] + " is none\n");
+  }
+}
+
+}  // namespace
+}  // namespace prehend::house
