@@ -96,7 +96,9 @@ Settings SettingsOf(const LoadedRun& loaded, const RunRequest& request, const Fi
     settings[RelativeTo(root, param.file)][param.name] = ParameterText(param, request, texts);
   for (const auto& [path, hash] : inputs) {
     if (!path.ends_with(".yaml") || hash == kNoFile) continue;
-    if (const auto document = ReadYamlFile(path))
+    if (path == loaded.scenario.file)
+      AddValues(loaded.document.root, "", settings[RelativeTo(root, path)]);
+    else if (const auto document = ReadYamlFile(path))
       AddValues(document->root, "", settings[RelativeTo(root, path)]);
   }
   for (const std::string& setting : request.settings) {

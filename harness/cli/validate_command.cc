@@ -101,7 +101,7 @@ tl::expected<Validated, ExitCode> Validate(const std::string& typed, const Parse
   if (file->in_project) AddGolden(*file, options, loaded, context.root, validated);
   if (!loaded) return validated;
   validated.warnings = std::move(loaded->warnings);
-  std::ranges::move(UndecidedClaims(loaded->scenario, *loaded->program),
+  std::ranges::move(UndecidedClaims(loaded->scenario, loaded->document, *loaded->program),
                     std::back_inserter(validated.warnings));
   return validated;
 }

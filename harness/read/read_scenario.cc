@@ -256,35 +256,38 @@ Result<Scenario> Resolve(const std::string& file, const YamlDocument& document,
   return scenario;
 }
 
-Result<Scenario> ReadDocumentAs(const std::string& file, Result<YamlDocument> document,
-                                const std::vector<std::string>& overrides,
-                                const ScenarioLibrary& library) {
-  if (!document) return tl::unexpected(std::move(document.error()));
+}  // namespace
+
+Result<Scenario> ReadScenario(const std::string& file, YamlDocument document,
+                              const std::vector<std::string>& overrides,
+                              const ScenarioLibrary& library) {
   for (const std::string& assignment : overrides) {
-    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema().json(), *document);
+    if (auto bad = ApplyOverride(assignment, ScenarioFormat().schema().json(), document);
         !bad.empty())
       return tl::unexpected(std::move(bad));
   }
-  Result<Scenario> scenario = Resolve(file, *document, library);
+  Result<Scenario> scenario = Resolve(file, document, library);
   if (!scenario || library.were_played) return scenario;
   Diagnostics unreadable = CheckDraws(
-      *document, scenario->variations,
+      document, scenario->variations,
       [&](const YamlDocument& varied) { return ErrorsOf(Resolve(file, varied, library)); });
   if (!unreadable.empty()) return tl::unexpected(std::move(unreadable));
   return scenario;
 }
 
-}  // namespace
-
 Result<Scenario> ReadScenario(const std::string& file, const std::vector<std::string>& overrides,
                               const ScenarioLibrary& library) {
-  return ReadDocumentAs(file, ReadYamlFile(file), overrides, library);
+  Result<YamlDocument> document = ReadYamlFile(file);
+  if (!document) return tl::unexpected(std::move(document.error()));
+  return ReadScenario(file, std::move(*document), overrides, library);
 }
 
 Result<Scenario> ReadScenarioText(const std::string& file, std::string text,
                                   const std::vector<std::string>& overrides,
                                   const ScenarioLibrary& library) {
-  return ReadDocumentAs(file, ParseYaml(file, std::move(text)), overrides, library);
+  Result<YamlDocument> document = ParseYaml(file, std::move(text));
+  if (!document) return tl::unexpected(std::move(document.error()));
+  return ReadScenario(file, std::move(*document), overrides, library);
 }
 
 }  // namespace prehend::harness

@@ -9,6 +9,7 @@
 #include "harness/base/result.h"
 #include "harness/read/scenario_library.h"
 #include "harness/scenario/scenario.h"
+#include "harness/yaml/located_yaml.h"
 
 namespace prehend::harness {
 
@@ -16,6 +17,11 @@ namespace prehend::harness {
 /// name must equal the file's; its skill is the folder between `scenarios/` and the file. On
 /// failure the diagnostics are sorted by place.
 Result<Scenario> ReadScenario(const std::string& path, const std::vector<std::string>& overrides,
+                              const ScenarioLibrary& library);
+
+/// The same of a document that was read before.
+Result<Scenario> ReadScenario(const std::string& path, YamlDocument document,
+                              const std::vector<std::string>& overrides,
                               const ScenarioLibrary& library);
 
 /// The same for a text as if it were the content of `file`.

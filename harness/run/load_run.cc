@@ -8,7 +8,6 @@
 #include <set>
 
 #include "grammar/contents.h"
-#include "harness/base/text_file.h"
 #include "harness/format/scenario_fields.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/event_time.h"
@@ -52,24 +51,24 @@ Settings Split(const std::vector<std::string>& settings,
 }
 
 /// The scenario's own grammar must have the events that pictures ask for.
-grammar::Diagnostics CheckPictures(const Scenario& scenario, const grammar::Program& program) {
+grammar::Diagnostics CheckPictures(const Scenario& scenario, const YamlDocument& document,
+                                   const grammar::Program& program) {
   grammar::Diagnostics diagnostics;
   for (const PictureYaml& picture : scenario.pictures) {
     const auto problem = WhyNoEventTime(picture.at.value, program);
     if (!problem) continue;
     const bool in_file = picture.at.where.source == 0;
-    const Result<std::string> text = in_file ? ReadTextFile(scenario.file) : std::string();
-    diagnostics.push_back(grammar::DiagnosticAt(in_file ? scenario.file : "--set",
-                                                text.value_or(""), picture.at.where.place,
-                                                "at: " + problem->message, problem->hint));
+    diagnostics.push_back(grammar::DiagnosticAt(
+        in_file ? scenario.file : "--set", in_file ? document.sources.front().text : "",
+        picture.at.where.place, "at: " + problem->message, problem->hint));
   }
   return diagnostics;
 }
 
 /// The grammar of a scenario that cannot be read, so that all errors are reported at once. Empty if
 /// it is not known, or not in the library (which the reader has reported).
-std::string GrammarNamedIn(const RunRequest& request, const std::string& root) {
-  const Result<YamlDocument> document = ReadYamlFile(request.scenario_file);
+std::string GrammarNamedIn(const Result<YamlDocument>& document, const RunRequest& request,
+                           const std::string& root) {
   const bool is_set = std::ranges::any_of(
       request.settings, [](const auto& set) { return set.starts_with("grammar="); });
   if (!document || is_set) return "";
@@ -99,10 +98,13 @@ Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
   Settings settings = Split(request.settings, IsFieldOfScenario);
   if (!settings.diagnostics.empty()) return tl::unexpected(std::move(settings.diagnostics));
   if (files) files->push_back(request.scenario_file);
-  Result<Scenario> scenario = ReadScenario(request.scenario_file, settings.of_scenario, library);
+  Result<YamlDocument> document = ReadYamlFile(request.scenario_file);
+  Result<Scenario> scenario =
+      document ? ReadScenario(request.scenario_file, *document, settings.of_scenario, library)
+               : tl::unexpected(document.error());
   const std::string grammar = !request.grammar.empty() ? request.grammar
                               : scenario               ? scenario->grammar
-                                                       : GrammarNamedIn(request, root);
+                                                       : GrammarNamedIn(document, request, root);
   grammar::CompileResult compiled =
       grammar.empty() ? grammar::CompileResult{} : load_grammar(grammar, settings.of_grammar);
   if (!scenario || !compiled.program) {
@@ -111,15 +113,18 @@ Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
     return tl::unexpected(std::move(diagnostics));
   }
   const bool is_own_grammar = request.grammar.empty();
-  grammar::Diagnostics misnamed = ValidateClaims(*scenario, *compiled.program, is_own_grammar);
+  grammar::Diagnostics misnamed =
+      ValidateClaims(*scenario, *document, *compiled.program, is_own_grammar);
   if (is_own_grammar)
-    std::ranges::move(CheckPictures(*scenario, *compiled.program), std::back_inserter(misnamed));
+    std::ranges::move(CheckPictures(*scenario, *document, *compiled.program),
+                      std::back_inserter(misnamed));
   if (!misnamed.empty()) return tl::unexpected(std::move(misnamed));
   scenario->grammar = GrammarName(*compiled.program);
   grammar::Diagnostics warnings = scenario->warnings;
   std::ranges::move(Warnings(*compiled.program, MakeEntityTable(*scenario)),
                     std::back_inserter(warnings));
-  return LoadedRun{std::move(*scenario), std::move(compiled.program), std::move(warnings)};
+  return LoadedRun{std::move(*scenario), std::move(compiled.program), std::move(warnings),
+                   std::move(*document)};
 }
 
 Result<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings) {

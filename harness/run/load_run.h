@@ -12,6 +12,7 @@
 #include "harness/base/result.h"
 #include "harness/read/scenario_library.h"
 #include "harness/scenario/scenario.h"
+#include "harness/yaml/located_yaml.h"
 
 namespace prehend::harness {
 
@@ -27,6 +28,7 @@ struct LoadedRun {
   std::shared_ptr<const grammar::Program> program;
   grammar::Diagnostics
       warnings;  ///< of scenario and grammar: what is allowed but is probably a mistake
+  YamlDocument document = {};  ///< the scenario's file, without `settings`; empty of a recording
 };
 
 /// `files` receives every path that was tried, also if there is no result.

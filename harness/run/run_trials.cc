@@ -20,28 +20,21 @@ constexpr const char* kFailed = "failed";
 constexpr double kTimeLimit_s = 600;
 constexpr std::size_t kMaxListed = 20;
 
-/// What the trials vary. The file is read once, before the first of them.
-struct Nominal {
-  LoadedRun run;
-  YamlDocument document;
-};
-
-Result<Nominal> ReadNominal(const RunRequest& request, const std::string& root) {
+/// What the trials vary: with the changes of the command line in its document.
+Result<LoadedRun> LoadNominal(const RunRequest& request, const std::string& root) {
   Result<LoadedRun> loaded = LoadRun(request, root);
-  if (!loaded) return tl::unexpected(std::move(loaded.error()));
-  Result<YamlDocument> document = ReadYamlFile(request.scenario_file);
-  if (!document) return tl::unexpected(std::move(document.error()));
+  if (!loaded) return loaded;
   for (const std::string& setting : request.settings) {
     if (IsFieldOfScenario(setting.substr(0, setting.find('='))))
       // LoadRun() has accepted the setting, so it cannot fail.
-      (void)ApplyOverride(setting, ScenarioFormat().schema().json(), *document);
+      (void)ApplyOverride(setting, ScenarioFormat().schema().json(), loaded->document);
   }
-  return Nominal{std::move(*loaded), std::move(*document)};
+  return loaded;
 }
 
 /// Draws one trial. A field that the command line sets is not varied.
-RunRequest WithDraws(const RunRequest& request, const Nominal& nominal, int trial) {
-  const Scenario& scenario = nominal.run.scenario;
+RunRequest WithDraws(const RunRequest& request, const LoadedRun& nominal, int trial) {
+  const Scenario& scenario = nominal.scenario;
   RunRequest varied = request;
   for (std::string& drawn :
        SampleTrial(nominal.document, scenario.variations, scenario.scene.world.seed, trial)) {
@@ -95,7 +88,7 @@ std::size_t CountOf(const std::string& outcome, const TrialReport& report) {
 }  // namespace
 
 Result<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root, int trial) {
-  const Result<Nominal> nominal = ReadNominal(request, root);
+  const Result<LoadedRun> nominal = LoadNominal(request, root);
   if (!nominal) return tl::unexpected(nominal.error());
   return WithDraws(request, *nominal, trial);
 }
@@ -103,9 +96,9 @@ Result<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& 
 Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
                               const TrialSettings& settings,
                               const std::function<void(int done)>& progress) {
-  const Result<Nominal> nominal = ReadNominal(request, root);
+  const Result<LoadedRun> nominal = LoadNominal(request, root);
   if (!nominal) return tl::unexpected(nominal.error());
-  const Scenario& scenario = nominal->run.scenario;
+  const Scenario& scenario = nominal->scenario;
   if (scenario.outcomes.empty()) {
     return tl::unexpected(grammar::Diagnostics{
         grammar::DiagnosticAt(request.scenario_file, "", {1, 1},

@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "harness/base/text_file.h"
 #include "harness/sense/entity_table.h"
 
 namespace prehend::harness {
@@ -12,8 +11,8 @@ namespace {
 
 class ClaimDiagnostics {
  public:
-  explicit ClaimDiagnostics(const Scenario& scenario)
-      : scenario_(scenario), text_(ReadTextFile(scenario.file).value_or("")) {}
+  ClaimDiagnostics(const Scenario& scenario, const YamlDocument& document)
+      : scenario_(scenario), text_(document.sources.front().text) {}
 
   void Add(const Claim& claim, const std::vector<ClaimProblem>& problems) {
     for (const ClaimProblem& problem : problems) {
@@ -29,7 +28,7 @@ class ClaimDiagnostics {
 
  private:
   const Scenario& scenario_;
-  const std::string text_;
+  const std::string& text_;
   grammar::Diagnostics diagnostics_;
 };
 
@@ -41,11 +40,11 @@ ClaimableEvents ClaimableIn(const Scenario& scenario, const grammar::Program& pr
           .entity_table = MakeEntityTable(scenario)};
 }
 
-grammar::Diagnostics ValidateClaims(const Scenario& scenario, const grammar::Program& program,
-                                    bool is_own_grammar) {
+grammar::Diagnostics ValidateClaims(const Scenario& scenario, const YamlDocument& document,
+                                    const grammar::Program& program, bool is_own_grammar) {
   if (scenario.expects.empty()) return {};
   const ClaimableEvents known = ClaimableIn(scenario, program);
-  ClaimDiagnostics diagnostics(scenario);
+  ClaimDiagnostics diagnostics(scenario, document);
   for (const Claim& claim : scenario.expects) {
     diagnostics.Add(claim, UnknownNames(claim, known));
     if (is_own_grammar) diagnostics.Add(claim, Misfits(claim, known));
@@ -53,9 +52,10 @@ grammar::Diagnostics ValidateClaims(const Scenario& scenario, const grammar::Pro
   return diagnostics.Take();
 }
 
-grammar::Diagnostics UndecidedClaims(const Scenario& scenario, const grammar::Program& program) {
+grammar::Diagnostics UndecidedClaims(const Scenario& scenario, const YamlDocument& document,
+                                     const grammar::Program& program) {
   const ClaimableEvents known = ClaimableIn(scenario, program);
-  ClaimDiagnostics diagnostics(scenario);
+  ClaimDiagnostics diagnostics(scenario, document);
   for (const Claim& claim : scenario.expects) {
     std::vector<ClaimProblem> misfits = Misfits(claim, known);
     if (misfits.empty()) continue;

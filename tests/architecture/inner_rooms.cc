@@ -59,7 +59,7 @@ const Arrows& ProjectArrows() {
       {"harness/run",
        {"grammar", "grammar/base", "grammar/compile", "harness/base", "harness/claims",
         "harness/format", "harness/process", "harness/read", "harness/scenario", "harness/sense",
-        "harness/timeline", "physics", "physics/scene"}},
+        "harness/timeline", "harness/yaml", "physics", "physics/scene"}},
       {"harness/frames", {"harness/sense", "physics/scene"}},
       {"harness/episodes",
        {"grammar", "grammar/base", "harness/base", "harness/frames", "harness/process",

@@ -7,6 +7,7 @@
 #include "harness/judge/accept_golden.h"
 #include "harness/judge/judge_golden.h"
 #include "tests/harness/judge/checked_run.h"
+#include "tests/harness/run/count_reads.h"
 
 namespace prehend::harness {
 namespace {
@@ -48,6 +49,13 @@ TEST_F(CheckScenarioTest, AScenarioThatAgreesPassesAndLeavesItsTrace) {
   EXPECT_EQ(verdict.inputs.count(files_.GoldenPath(kId).string()), 1u);
   EXPECT_TRUE(LeftTrace());
   EXPECT_FALSE(fs::exists(files_.PendingPath(kId)));
+}
+
+TEST_F(CheckScenarioTest, AScenarioIsReadOnceAndHashedOnce) {
+  Accept();
+  const CountReads reads(Request().scenario_file);
+  EXPECT_EQ(CheckScenario(Check()).verdict, Verdict::kPassed);
+  EXPECT_EQ(reads.Count(), 2);
 }
 
 TEST_F(CheckScenarioTest, WithoutGoldenItIsPendingAndItsProposalWaits) {

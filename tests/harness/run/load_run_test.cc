@@ -4,7 +4,10 @@
 #include "harness/run/load_run.h"
 
 #include "grammar/program/program.h"
+#include "harness/run/run_trials.h"
+#include "harness/run/validate_claims.h"
 #include "tests/harness/judge/checked_run.h"
+#include "tests/harness/run/count_reads.h"
 
 namespace prehend::harness {
 namespace {
@@ -48,6 +51,21 @@ TEST_F(PrepareRunTest, EveryFileThatWasUsedIsNamed) {
   EXPECT_EQ(files_.front(), Request().scenario_file);
   const std::string grammar = (root_ / "grammar/library/pick_and_place.grammar").string();
   EXPECT_EQ(std::ranges::count(files_, grammar), 1);
+}
+
+TEST_F(PrepareRunTest, AScenarioIsReadOnce) {
+  Write("scenarios/rest/carton_stands.yaml",
+        std::string(kCartonStands) + "expects: [one supported_by(carton, table)]\n" +
+            "vary: [{fields: [entities.carton.mass_kg], times: [0.8, 1.2]}]\n");
+  const CountReads reads(Request().scenario_file);
+  const auto loaded = Prepared({"settle_s=0.25"});
+  ASSERT_TRUE(loaded) << Format(ErrorsOf(loaded));
+  UndecidedClaims(loaded->scenario, loaded->document, *loaded->program);
+  EXPECT_EQ(reads.Count(), 1);
+  ASSERT_TRUE(RequestOfTrial(Request(), root_.string(), 1));
+  EXPECT_EQ(reads.Count(), 1) << "values are drawn from what was read";
+  ASSERT_FALSE(Prepared({"settle_s=soon"}));
+  EXPECT_EQ(reads.Count(), 1) << "its grammar is known, too, if it cannot be read";
 }
 
 TEST_F(PrepareRunTest, SettingsThatAreNoneAreRefused) {

@@ -45,7 +45,8 @@ TEST_F(ValidateClaimsTest, UnknownNamesAreShownInTheFile) {
 TEST_F(ValidateClaimsTest, AnotherGrammarMayLackTheEvents) {
   const auto loaded = LoadedWith("  - no opening(carton)\n  - one contact\n", "furniture");
   ASSERT_TRUE(loaded) << Format(ErrorsOf(loaded));
-  const grammar::Diagnostics warnings = UndecidedClaims(loaded->scenario, *loaded->program);
+  const grammar::Diagnostics warnings =
+      UndecidedClaims(loaded->scenario, loaded->document, *loaded->program);
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_TRUE(warnings[0].is_warning);
   EXPECT_EQ(warnings[0].message,
