@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
 
@@ -17,6 +16,7 @@
 #include "harness/check/last_pass.h"
 #include "harness/pictures/pictures.h"
 #include "harness/process/progress_counters.h"
+#include "harness/process/wire.h"
 
 namespace prehend::harness {
 namespace {
@@ -128,18 +128,14 @@ class Suite {
   WorkerJob Job(const Turn& turn, ProgressCounters::Tick& last_tick) const {
     CheckRequest check = RequestOf(turn);
     check.last_tick = &last_tick;
-    // CBOR, since JSON has no infinite numbers and refuses bytes that are no UTF-8.
-    return [check] {
-      const std::vector<std::uint8_t> bytes = nlohmann::json::to_cbor(Packed(CheckScenario(check)));
-      return std::string(bytes.begin(), bytes.end());
-    };
+    return [check] { return ToWire(Packed(CheckScenario(check))); };
   }
 
   ScenarioVerdict VerdictOf(std::size_t scenario, const WorkerResult& result,
                             std::int64_t last_tick) const {
     ScenarioVerdict verdict;
     if (result.finished) {
-      verdict = UnpackedVerdict(nlohmann::json::from_cbor(result.output));
+      verdict = UnpackedVerdict(FromWire<nlohmann::json>(result.output));
     } else {
       verdict.scenario = Id(scenario);
       verdict.exit_code = ExitCode::kFailure;

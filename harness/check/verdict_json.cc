@@ -7,6 +7,7 @@
 #include "harness/base/text_file.h"
 #include "harness/check/verdict.h"
 #include "harness/timeline/event_text.h"
+#include "harness/timeline/timeline_wire.h"
 
 namespace nlohmann {
 
@@ -21,15 +22,6 @@ struct adl_serializer<std::optional<T>> {
 };
 
 }  // namespace nlohmann
-
-namespace prehend::grammar {
-
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Interval, begin, end)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Role, name, value)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NamedValue, name, value, unit)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NamedEvent, event, roles, interval, decided, open_end, values)
-
-}  // namespace prehend::grammar
 
 namespace prehend::harness {
 

@@ -337,7 +337,7 @@ ExitCode RenderPictures(const ParsedOptions& options, const CommandContext& cont
                   << "; the picture shows the end of the run\n";
   }
   if (options.Has("--json")) {
-    OrderedJson json = RunJson(loaded->scenario, run);
+    OrderedJson json = RunJson(HeadingOf(loaded->scenario, run), run);
     json["pictures"] = OrderedJson::array();
     for (const WrittenPicture& picture : drawn.pictures) {
       json["pictures"].push_back({{"file", picture.file}, {"caption", picture.caption}});

@@ -37,7 +37,7 @@ void Print(const std::vector<Resegmented>& results, bool compare, const CommandC
     const std::string heading = HeadingOf(result.episode);
     if (!compare) {
       if (results.size() > 1) context.out << (&result == &results.front() ? "" : "\n") << heading;
-      context.out << result.table;
+      context.out << RunTable(result.run);
     } else if (!result.differences.empty()) {
       ++differing;
       context.out << heading << result.differences;
@@ -52,7 +52,7 @@ void PrintJson(const std::vector<Resegmented>& results, const CommandContext& co
   OrderedJson all = OrderedJson::array();
   for (const Resegmented& result : results) {
     if (!result.problem.empty()) continue;
-    OrderedJson json = OrderedJson::parse(result.json);
+    OrderedJson json = RunJson(result.heading, result.run);
     if (result.episode.number) {
       json["file"] = result.episode.file;
       json["episode"] = *result.episode.number;
@@ -81,10 +81,10 @@ ExitCode ResegmentEpisodes(const std::vector<EpisodeName>& selected, const Parse
     if (!result.problem.empty()) {
       context.err << result.problem;
       worst = ExitCode::kBadInput;
-    } else if (!result.completed && worst == ExitCode::kAgrees) {
-      context.err << fmt::format(
-          "prehend: {} has no good end: {}", PlaceOf(result.episode),
-          result.table.substr(result.table.rfind('\n', result.table.size() - 2) + 1));
+    } else if (result.run.status.kind != physics::RunStatus::Kind::kCompleted &&
+               worst == ExitCode::kAgrees) {
+      context.err << fmt::format("prehend: {} has no good end: {}\n", PlaceOf(result.episode),
+                                 StatusText(result.run));
       worst = ExitCode::kFailure;
     }
   }

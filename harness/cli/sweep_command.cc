@@ -4,9 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <filesystem>
 #include <optional>
 
 #include "harness/base/atomic_file.h"
@@ -18,6 +15,7 @@
 #include "harness/sweep/margins.h"
 #include "harness/sweep/plateau.h"
 #include "harness/sweep/sweep.h"
+#include "harness/sweep/sweep_progress.h"
 
 namespace prehend::harness {
 namespace {
@@ -41,26 +39,10 @@ std::optional<sweep::SweepRequest> RequestFrom(const ParsedOptions& options,
                               .grammar = options.Text("--grammar"),
                               .settings = options.All("--set"),
                               .axes = {}};
-  std::vector<std::string> truths = options.All("--truth");
-  if (truths.empty()) truths = {"golden"};
-  request.truth = truths.front() == "oracle"     ? sweep::Truth::kOracle
-                  : truths.front() == "recorded" ? sweep::Truth::kRecorded
-                  : truths.front() == "golden"   ? sweep::Truth::kGolden
-                                                 : sweep::Truth::kLabels;
-  std::error_code error;
-  for (const std::string& truth : truths) {
-    const bool is_word = truth == "golden" || truth == "oracle" || truth == "recorded";
-    const bool is_known =
-        is_word ? truths.size() == 1
-                : labels::IsLabelFile(truth) || std::filesystem::is_directory(truth, error);
-    if (is_known) continue;
-    Complain(context, ExitCode::kBadInput,
-             fmt::format("--truth: found '{}', wanted golden, oracle or recorded, or files of "
-                         "labels or a folder of them",
-                         truth));
+  if (const std::string why = sweep::SetTruth(options.All("--truth"), request); !why.empty()) {
+    Complain(context, ExitCode::kBadInput, why);
     return std::nullopt;
   }
-  if (request.truth == sweep::Truth::kLabels) request.label_files = truths;
   request.label_map = options.Text("--map");
   for (const char* of_labels : {"--map", "--skip-bad-labels"}) {
     if (request.truth == sweep::Truth::kLabels || !options.Has(of_labels)) continue;
@@ -97,18 +79,12 @@ tl::expected<std::vector<EpisodeName>, ExitCode> EpisodesFrom(const ParsedOption
   return *episodes;
 }
 
-/// Labels do not fit, or something cannot be read.
-bool IsRefused(const sweep::SweepResult& result, const sweep::SweepRequest& request) {
-  return !result.unread.empty() ||
-         (request.truth == sweep::Truth::kLabels && !result.left_out.empty());
-}
-
 /// Nothing if there is something to print. Labels that do not fit are bad input; of other truths
 /// what has none is left out.
 std::optional<ExitCode> ComplainOf(const sweep::SweepResult& result,
                                    const sweep::SweepRequest& request,
                                    const CommandContext& context) {
-  if (IsRefused(result, request))
+  if (result.IsRefused(request))
     return Complain(context, ExitCode::kBadInput,
                     (result.unread.empty() ? result.left_out : result.unread).front());
   context.err << result.label_warning;
@@ -119,71 +95,10 @@ std::optional<ExitCode> ComplainOf(const sweep::SweepResult& result,
   return std::nullopt;
 }
 
-/// "40 seconds", "12 minutes", "3.5 hours"
-std::string TimeText(double seconds) {
-  constexpr double kMinute_s = 60, kHour_s = 3600;
-  if (seconds < 1.5 * kMinute_s) return fmt::format("{:.0f} seconds", std::ceil(seconds));
-  if (seconds < 1.5 * kHour_s) return fmt::format("{:.0f} minutes", seconds / kMinute_s);
-  return fmt::format("{:.1f} hours", seconds / kHour_s);
-}
-
-/// Says once, after the first settings, how long all will take, unless that is soon; to a person
-/// also how far it is.
-class Progress {
- public:
-  Progress(std::size_t episodes, const CommandContext& context)
-      : episodes_(episodes), context_(context) {}
-  ~Progress() {
-    if (said_ && context_.progress) context_.err << "\r\033[K" << std::flush;
-  }
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-
-  void Tell(std::size_t done, std::size_t all) {
-    constexpr double kSoon_s = 2, kMeasured_s = 1;
-    const Clock::time_point now = Clock::now();
-    if (done > 0 && !first_) first_ = {now, done};
-    if (!first_ || done == first_->done) return;
-    // The first ones came with what happens once: grammars are compiled, recordings read.
-    const double measured_s = Seconds(now - first_->at);
-    const double more_s =
-        measured_s * static_cast<double>(all - done) / static_cast<double>(done - first_->done);
-    const double passed_s = Seconds(now - start_);
-    if (!said_ && (measured_s < kMeasured_s || passed_s + more_s < kSoon_s)) return;
-    if (!said_) {
-      const std::size_t settings = all / episodes_;
-      context_.err << fmt::format("prehend: {} setting{} on {} recording{}, about {}\n", settings,
-                                  settings == 1 ? "" : "s", episodes_, episodes_ == 1 ? "" : "s",
-                                  TimeText(passed_s + more_s))
-                   << std::flush;
-    }
-    said_ = true;
-    if (context_.progress)
-      context_.err << fmt::format("\r\033[K{} %, about {} more", 100 * done / all, TimeText(more_s))
-                   << std::flush;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  struct Counted {
-    Clock::time_point at;
-    std::size_t done = 0;
-  };
-  static double Seconds(Clock::duration time) {
-    return std::chrono::duration<double>(time).count();
-  }
-
-  const std::size_t episodes_;
-  const CommandContext& context_;
-  const Clock::time_point start_ = Clock::now();
-  std::optional<Counted> first_;
-  bool said_ = false;
-};
-
 template <typename Measure>
 auto WithProgress(sweep::SweepRequest& request, std::size_t episodes, const CommandContext& context,
                   const Measure& measure) {
-  Progress progress(episodes, context);
+  sweep::SweepProgress progress(episodes, context.progress, context.err);
   request.progress = [&](std::size_t done, std::size_t all) { progress.Tell(done, all); };
   return measure();
 }
@@ -197,7 +112,7 @@ ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context)
   std::string problem;
   // After each parameter, so that it is there if somebody ends it.
   const auto write = [&](const sweep::Margins& margins) {
-    if (options.Has("--output") && !IsRefused(margins.sweep, *request))
+    if (options.Has("--output") && !margins.sweep.IsRefused(*request))
       problem = WriteTextFile(options.Text("--output"), MarginsCsv(margins));
   };
   const auto margins = WithProgress(*request, episodes->size(), context, [&] {
@@ -212,23 +127,8 @@ ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context)
 ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
   auto request = RequestFrom(options, {"--output", "--picture"}, context);
   if (!request) return ExitCode::kBadInput;
-  std::size_t settings = 1;
-  for (const std::string& text : options.All("--over")) {
-    std::string problem;
-    request->axes.push_back(*sweep::ParseAxis(text, problem));
-    settings *= request->axes.back().values.size();
-    for (std::size_t i = 0; i + 1 < request->axes.size(); ++i) {
-      if (request->axes[i].parameter == request->axes.back().parameter)
-        return Complain(context, ExitCode::kBadInput,
-                        "--over: " + request->axes[i].parameter + " is given twice");
-    }
-    if (settings > sweep::kMostSettings)
-      return Complain(context, ExitCode::kBadInput,
-                      fmt::format("--over: more than {} settings", sweep::kMostSettings));
-  }
-  if (request->axes.empty())
-    return Complain(context, ExitCode::kBadInput,
-                    "--over is missing: which parameter? --over reach_radius=10cm..50cm:9");
+  if (const std::string why = sweep::SetAxes(options.All("--over"), *request); !why.empty())
+    return Complain(context, ExitCode::kBadInput, why);
   const auto episodes = EpisodesFrom(options, *request, context);
   if (!episodes) return episodes.error();
   const auto result = WithProgress(*request, episodes->size(), context,

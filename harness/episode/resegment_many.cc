@@ -5,19 +5,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
 #include "harness/episode/open_episode.h"
 #include "harness/episodes/write_rows.h"
+#include "harness/process/wire.h"
 #include "harness/process/worker_pool.h"
-#include "harness/run/run_text.h"
+#include "harness/timeline/timeline_wire.h"
+
+namespace prehend::physics {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunStatus, kind, tick, entity, reason, advice)
+
+}  // namespace prehend::physics
 
 namespace prehend::harness {
-namespace {
 
-using Json = nlohmann::json;
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunHeading, name, skill, grammar, notes)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunResult, status, ticks, is_unfinished, state_hash, timeline,
+                                   outcome)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Resegmented, heading, run, differences, warnings, problem,
+                                   nothing_left, finished)
+
+namespace {
 
 constexpr double kSliceTimeLimit_s = 3600;
 constexpr std::size_t kSlicesPerJob = 2;
@@ -62,24 +73,28 @@ class Worker {
  public:
   explicit Worker(const ResegmentRequest& request) : request_(request), opener_(request.root) {}
 
-  Json Run(const EpisodeName& name) {
+  Resegmented Run(const EpisodeName& name) {
+    const auto failed = [](const grammar::Diagnostics& why) {
+      return Resegmented{.problem = grammar::Format(why)};
+    };
     Result<Episode> episode = opener_.Open(name, request_.choice);
-    if (!episode) return {{"problem", grammar::Format(episode.error())}};
-    const Result<RunResult> run = episode->Run(request_.replay);
-    if (!run) return {{"problem", grammar::Format(run.error())}};
-    const bool is_finished = !episode->row() || episode->row()->status != episodes::kRecording;
-    Json said = {
-        {"table", RunTable(*run)},
-        {"json", RunJson(episode->loaded().scenario, *run).dump()},
-        {"completed", run->status.kind == physics::RunStatus::Kind::kCompleted},
-        {"nothing_left", episode->missing().nothing_left},
-        {"finished", is_finished},
-        {"warnings", grammar::Format(episode->loaded().warnings) + episode->missing().warnings}};
-    if (!request_.compare || !is_finished) return said;
+    if (!episode) return failed(episode.error());
+    Result<RunResult> run = episode->Run(request_.replay);
+    if (!run) return failed(run.error());
+    run->recording.clear();
+    const LoadedRun& loaded = episode->loaded();
+    const MissingFacts& missing = episode->missing();
+    Resegmented result{
+        .heading = HeadingOf(loaded.scenario, *run),
+        .run = std::move(*run),
+        .warnings = grammar::Format(loaded.warnings) + missing.warnings,
+        .nothing_left = missing.nothing_left,
+        .finished = !episode->row() || episode->row()->status != episodes::kRecording};
+    if (!request_.compare || !result.finished) return result;
     const Result<grammar::Timeline> recorded = episode->Recorded();
-    if (!recorded) return {{"problem", grammar::Format(recorded.error())}};
-    said["differences"] = Differences(*recorded, *run);
-    return said;
+    if (!recorded) return failed(recorded.error());
+    result.differences = Differences(*recorded, result.run);
+    return result;
   }
 
  private:
@@ -98,30 +113,23 @@ std::vector<Resegmented> ResegmentAll(const std::vector<EpisodeName>& episodes,
   for (std::size_t slice = 0; slice < slices; ++slice) {
     jobs.push_back([&, slice] {
       Worker worker(request);
-      Json all = Json::array();
+      std::vector<Resegmented> of_slice;
       for (std::size_t i = slice; i < episodes.size(); i += slices)
-        all.push_back(worker.Run(episodes[i]));
-      return all.dump();
+        of_slice.push_back(worker.Run(episodes[i]));
+      return ToWire(of_slice);
     });
   }
   const std::vector<WorkerResult> said =
       RunInWorkers(jobs, {.jobs = request.jobs, .time_limit_s = kSliceTimeLimit_s});
   std::vector<Resegmented> results(episodes.size());
   for (std::size_t slice = 0; slice < slices; ++slice) {
-    const Json all = said[slice].finished ? Json::parse(said[slice].output) : Json::array();
+    std::vector<Resegmented> of_slice;
+    if (said[slice].finished) of_slice = FromWire<std::vector<Resegmented>>(said[slice].output);
     for (std::size_t i = slice, k = 0; i < episodes.size(); i += slices, ++k) {
-      const Json one = k < all.size()
-                           ? all[k]
-                           : Json{{"problem", "its process ended: " + said[slice].reason + "\n"}};
-      results[i] = {.episode = episodes[i],
-                    .table = one.value("table", ""),
-                    .json = one.value("json", ""),
-                    .differences = one.value("differences", ""),
-                    .warnings = one.value("warnings", ""),
-                    .problem = one.value("problem", ""),
-                    .nothing_left = one.value("nothing_left", false),
-                    .completed = one.value("completed", false),
-                    .finished = one.value("finished", false)};
+      results[i] = k < of_slice.size()
+                       ? std::move(of_slice[k])
+                       : Resegmented{.problem = "its process ended: " + said[slice].reason + "\n"};
+      results[i].episode = episodes[i];
     }
   }
   return results;

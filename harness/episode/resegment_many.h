@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/episode/episode.h"
+#include "harness/run/run_text.h"
 
 namespace prehend::harness {
 
@@ -21,14 +22,13 @@ struct ResegmentRequest {
 
 struct Resegmented {
   EpisodeName episode;
-  std::string table;        ///< as `prehend run` prints it
-  std::string json;         ///< the same as a JSON object
+  RunHeading heading;
+  RunResult run;            ///< without its frames
   std::string differences;  ///< lines "- event" (only recorded) and "+ event" (only now)
   std::string warnings;
   std::string problem;        ///< empty, or why it could not be read or segmented
   bool nothing_left = false;  ///< no event of the grammar can be recognised in it
-  bool completed = false;
-  bool finished = false;  ///< its recording was not cut off
+  bool finished = false;      ///< its recording was not cut off
 };
 
 /// One result per episode, in their order.

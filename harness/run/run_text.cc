@@ -76,16 +76,20 @@ std::vector<std::string> NoteLines(const Scenario& scenario, const RunResult& ru
 
 std::string HashText(std::uint64_t hash) { return fmt::format("0x{:016x}", hash); }
 
-OrderedJson RunJson(const Scenario& scenario, const RunResult& run) {
-  OrderedJson json = {{"scenario", scenario.name},
-                      {"id", ScenarioId(scenario.skill, scenario.name)},
+RunHeading HeadingOf(const Scenario& scenario, const RunResult& run) {
+  return {scenario.name, scenario.skill, scenario.grammar, NoteLines(scenario, run)};
+}
+
+OrderedJson RunJson(const RunHeading& heading, const RunResult& run) {
+  OrderedJson json = {{"scenario", heading.name},
+                      {"id", ScenarioId(heading.skill, heading.name)},
                       {"status", !Completed(run)     ? "failed"
                                  : run.is_unfinished ? "unfinished"
                                                      : "completed"},
                       {"ticks_per_second", run.timeline.ticks_per_second},
                       {"ticks", run.ticks},
                       {"state_hash", HashText(run.state_hash)},
-                      {"grammar", scenario.grammar}};
+                      {"grammar", heading.grammar}};
   if (!Completed(run)) {
     json["failure"] = {{"tick", run.status.tick},
                        {"entity", run.status.entity},
@@ -93,7 +97,7 @@ OrderedJson RunJson(const Scenario& scenario, const RunResult& run) {
                        {"advice", run.status.advice}};
   }
   if (!run.outcome.empty()) json["outcome"] = run.outcome;
-  if (!run.notes.empty()) json["notes"] = NoteLines(scenario, run);
+  if (!heading.notes.empty()) json["notes"] = heading.notes;
   json["events"] = TimelineJson(run.timeline)["events"];
   return json;
 }

@@ -23,10 +23,17 @@ std::string RunTable(const RunResult& run);
 /// "note: 0.250 s: right_hand: ..." for each note of the run.
 std::vector<std::string> NoteLines(const Scenario& scenario, const RunResult& run);
 
+/// What is said of a run besides what happened in it.
+struct RunHeading {
+  std::string name, skill = {}, grammar = {};
+  std::vector<std::string> notes = {};  ///< NoteLines()
+};
+RunHeading HeadingOf(const Scenario& scenario, const RunResult& run);
+
 /// {"scenario", "id", "status", "ticks_per_second", "ticks", "state_hash", "grammar", "events":
 /// [..]}. A failed run also has "failure": {"tick", "entity", "reason", "advice"}; a run with
 /// outcomes has "outcome"; a run with notes has "notes".
-OrderedJson RunJson(const Scenario& scenario, const RunResult& run);
+OrderedJson RunJson(const RunHeading& heading, const RunResult& run);
 
 /// "0x" and 16 digits: a JSON number cannot hold 64 bits.
 std::string HashText(std::uint64_t hash);

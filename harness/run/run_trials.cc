@@ -8,12 +8,16 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/format/scenario_fields.h"
+#include "harness/process/wire.h"
 #include "harness/process/worker_pool.h"
 #include "harness/read/sample_variations.h"
 #include "harness/run/outcome.h"
 #include "physics/simulation.h"
 
 namespace prehend::harness {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrialResult, trial, outcome, reason, not_recorded)
+
 namespace {
 
 constexpr const char* kFailed = "failed";
@@ -57,16 +61,9 @@ TrialResult RunTrial(const Scenario& scenario, int trial) {
   return {trial, watch.Judge(simulation.snapshot()), {}, {}};
 }
 
-std::string ToJson(const TrialResult& result) {
-  return nlohmann::json{
-      {"outcome", result.outcome}, {"reason", result.reason}, {"not_recorded", result.not_recorded}}
-      .dump();
-}
-
 TrialResult FromWorker(int trial, const WorkerResult& worker) {
   if (!worker.finished) return {trial, kFailed, worker.reason, {}};
-  const auto json = nlohmann::json::parse(worker.output);
-  return {trial, json["outcome"], json["reason"], json["not_recorded"]};
+  return FromWire<TrialResult>(worker.output);
 }
 
 std::string TableLine(const std::string& outcome, std::size_t count, std::size_t of) {
@@ -111,10 +108,10 @@ Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root
       const RunRequest varied = WithDraws(request, *nominal, trial);
       const auto loaded = LoadRun(varied, root);
       if (!loaded)
-        return ToJson(
-            {trial, kFailed, "it cannot be read:\n" + grammar::Format(loaded.error()), {}});
-      if (settings.play) return ToJson(settings.play(trial, varied));
-      return ToJson(RunTrial(loaded->scenario, trial));
+        return ToWire(TrialResult{
+            trial, kFailed, "it cannot be read:\n" + grammar::Format(loaded.error()), {}});
+      if (settings.play) return ToWire(settings.play(trial, varied));
+      return ToWire(RunTrial(loaded->scenario, trial));
     });
   }
   int done = 0;

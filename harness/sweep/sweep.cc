@@ -7,15 +7,18 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <filesystem>
+#include <map>
 
 #include "grammar/contents.h"
 #include "harness/episode/lacks.h"
 #include "harness/episode/open_episode.h"
 #include "harness/golden/golden_files.h"
+#include "harness/labels/read_labels.h"
 #include "harness/labels/read_truths.h"
 #include "harness/oracle/oracle.h"
 #include "harness/process/progress_counters.h"
+#include "harness/process/wire.h"
 #include "harness/process/worker_pool.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/load_run.h"
@@ -24,9 +27,25 @@
 #include "harness/timeline/match_events.h"
 
 namespace prehend::harness::sweep {
-namespace {
 
-using Json = nlohmann::json;
+/// What one setting recognises in one episode. Times are magnitudes.
+struct JudgedSetting {
+  int correct = 0, extra = 0, missed = 0;  ///< events
+  std::vector<std::int64_t> begin_us, end_us, latency_us;
+};
+
+/// One episode under all settings, or why it is left out.
+struct JudgedSettings {
+  std::vector<JudgedSetting> settings;
+  std::string left_out;
+  bool is_unread = false;  ///< it is left out since it cannot be read
+};
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedSetting, correct, extra, missed, begin_us, end_us,
+                                   latency_us)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedSettings, settings, left_out, is_unread)
+
+namespace {
 using Programs = std::vector<std::shared_ptr<const grammar::Program>>;
 
 constexpr double kTimeLimit_s = 3600;
@@ -105,10 +124,8 @@ tl::expected<grammar::Timeline, std::string> TruthOf(const SweepRequest& request
   return truth;
 }
 
-/// {"c", "e", "m": counts; "b", "f", "l": magnitudes of boundary errors and latencies in
-/// microseconds} of one setting.
-Json Judged(const grammar::Timeline& truth, grammar::Timeline found, const SweepRequest& request,
-            grammar::Tick ticks) {
+JudgedSetting Judged(const grammar::Timeline& truth, grammar::Timeline found,
+                     const SweepRequest& request, grammar::Tick ticks) {
   if (request.truth == Truth::kOracle)
     std::erase_if(found.events,
                   [](const grammar::NamedEvent& event) { return !OracleDefines(event.event); });
@@ -124,49 +141,52 @@ Json Judged(const grammar::Timeline& truth, grammar::Timeline found, const Sweep
           : score::MatchWithCollar(episode.whole.truth, episode.whole.prediction,
                                    request.collar_s * per_s, 0)
                 .AsHits();
-  Json begins = Json::array(), ends = Json::array(), latencies = Json::array();
+  JudgedSetting judged{hits.correct, hits.extra, hits.missed, {}, {}, {}};
   for (const LabelAgreement& label :
        Agree(truth, found, static_cast<grammar::Tick>(request.collar_s * per_s)).labels) {
     for (const Match& match : label.matches) {
-      begins.push_back(micro(match.begin_offset()));
-      ends.push_back(micro(match.end_offset()));
+      judged.begin_us.push_back(micro(match.begin_offset()));
+      judged.end_us.push_back(micro(match.end_offset()));
     }
   }
   for (const grammar::NamedEvent& event : found.events)
-    latencies.push_back(micro(event.decided - event.interval.end));
-  return {{"c", hits.correct}, {"e", hits.extra}, {"m", hits.missed},
-          {"b", begins},       {"f", ends},       {"l", latencies}};
+    judged.latency_us.push_back(micro(event.decided - event.interval.end));
+  return judged;
+}
+
+JudgedSettings LeftOut(const std::string& why, bool is_unread = false) {
+  return {.left_out = why, .is_unread = is_unread};
 }
 
 /// One episode under all settings. With labels these are its truth, at `index`.
-Json JudgedEpisode(const EpisodeName& name, std::size_t index,
-                   const std::optional<labels::LabelReading>& labels, const SweepRequest& request,
-                   const Programs& programs, EpisodeOpener& opener,
-                   ProgressCounters::Tick& measured) {
+JudgedSettings JudgedEpisode(const EpisodeName& name, std::size_t index,
+                             const std::optional<labels::LabelReading>& labels,
+                             const SweepRequest& request, const Programs& programs,
+                             EpisodeOpener& opener, ProgressCounters::Tick& measured) {
   Result<Episode> episode = opener.Open(name, {request.grammar, request.settings});
-  if (!episode) return {{"out", grammar::Format(episode.error().front())}, {"unread", true}};
+  if (!episode) return LeftOut(grammar::Format(episode.error().front()), true);
   const Result<grammar::Tick> end = episode->EndTick();
-  if (!end) return {{"out", "it did not come to a good end"}};
+  if (!end) return LeftOut("it did not come to a good end");
   tl::expected<grammar::Timeline, std::string> truth;
   if (labels) {
     const grammar::EntityTable table = episode->entities();
     Result<grammar::Timeline> labelled =
         labels->Truth(index, table.entities, table.ticks_per_second, *end);
-    if (!labelled) return {{"out", grammar::Format(labelled.error().front())}};
+    if (!labelled) return LeftOut(grammar::Format(labelled.error().front()));
     truth = std::move(*labelled);
   } else {
     truth = TruthOf(request, *episode, *programs.front());
   }
-  if (!truth) return {{"out", truth.error()}};
-  Json points = Json::array();
+  if (!truth) return LeftOut(truth.error());
+  JudgedSettings judged;
   for (const auto& program : programs) {
     Result<grammar::Timeline> found = episode->Segment(program);
-    if (!found) return {{"out", grammar::Format(found.error().front())}, {"unread", true}};
+    if (!found) return LeftOut(grammar::Format(found.error().front()), true);
     if (labels) found = labels::Compared(*found, labels->compared());
-    points.push_back(Judged(*truth, std::move(*found), request, *end));
+    judged.settings.push_back(Judged(*truth, std::move(*found), request, *end));
     ++measured;
   }
-  return {{"points", std::move(points)}};
+  return judged;
 }
 
 double MedianMs(std::vector<std::int64_t>& microseconds) {
@@ -209,6 +229,44 @@ std::optional<Axis> ParseAxis(const std::string& text, std::string& problem) {
   return axis;
 }
 
+std::string SetTruth(const std::vector<std::string>& given, SweepRequest& request) {
+  static const std::map<std::string, Truth> words = {
+      {"golden", Truth::kGolden}, {"oracle", Truth::kOracle}, {"recorded", Truth::kRecorded}};
+  if (given.empty()) return "";
+  const auto word = words.find(given.front());
+  request.truth = word == words.end() ? Truth::kLabels : word->second;
+  std::error_code error;
+  for (const std::string& truth : given) {
+    const bool is_known = words.contains(truth) ? given.size() == 1
+                                                : labels::IsLabelFile(truth) ||
+                                                      std::filesystem::is_directory(truth, error);
+    if (!is_known)
+      return fmt::format(
+          "--truth: found '{}', wanted golden, oracle or recorded, or files of labels or a folder "
+          "of them",
+          truth);
+  }
+  if (request.truth == Truth::kLabels) request.label_files = given;
+  return "";
+}
+
+std::string SetAxes(const std::vector<std::string>& texts, SweepRequest& request) {
+  std::size_t settings = 1;
+  for (const std::string& text : texts) {
+    std::string problem;
+    Axis axis = *ParseAxis(text, problem);
+    settings *= axis.values.size();
+    if (std::ranges::count(request.axes, axis.parameter, &Axis::parameter) > 0)
+      return "--over: " + axis.parameter + " is given twice";
+    if (settings > kMostSettings)
+      return fmt::format("--over: more than {} settings", kMostSettings);
+    request.axes.push_back(std::move(axis));
+  }
+  if (request.axes.empty())
+    return "--over is missing: which parameter? --over reach_radius=10cm..50cm:9";
+  return "";
+}
+
 std::string MeasureText(const SweepRequest& request) {
   if (request.by_overlap)
     return "F1@50: an event is right if it and its label have half of their union in common; "
@@ -237,11 +295,10 @@ Result<SweepResult> Sweep(const std::vector<EpisodeName>& episodes, const SweepR
   for (std::size_t slice = 0; slice < slices; ++slice) {
     jobs.push_back([&, slice] {
       EpisodeOpener opener(request.root);
-      Json all = Json::array();
+      std::vector<JudgedSettings> all;
       for (std::size_t i = slice; i < episodes.size(); i += slices)
         all.push_back(JudgedEpisode(episodes[i], i, labels, request, *programs, opener, measured));
-      const std::vector<std::uint8_t> bytes = Json::to_cbor(all);
-      return std::string(bytes.begin(), bytes.end());
+      return ToWire(all);
     });
   }
   const std::function<void()> tell = [&] {
@@ -256,25 +313,25 @@ Result<SweepResult> Sweep(const std::vector<EpisodeName>& episodes, const SweepR
   result.points.resize(programs->size());
   std::vector<std::vector<std::int64_t>> begins(programs->size()), ends(begins), latencies(begins);
   for (std::size_t slice = 0; slice < slices; ++slice) {
-    const Json all = said[slice].finished ? Json::from_cbor(said[slice].output) : Json::array();
+    std::vector<JudgedSettings> of_slice;
+    if (said[slice].finished) of_slice = FromWire<std::vector<JudgedSettings>>(said[slice].output);
     for (std::size_t i = slice, k = 0; i < episodes.size(); i += slices, ++k) {
-      const Json one = k < all.size() ? all[k] : Json{{"out", said[slice].reason}};
-      if (one.contains("out")) {
-        result.left_out.push_back(episodes[i].scenario + ": " + one["out"].get<std::string>());
-        if (one.contains("unread")) result.unread.push_back(result.left_out.back());
+      const JudgedSettings one = k < of_slice.size() ? of_slice[k] : LeftOut(said[slice].reason);
+      if (one.settings.empty()) {
+        result.left_out.push_back(episodes[i].scenario + ": " + one.left_out);
+        if (one.is_unread) result.unread.push_back(result.left_out.back());
         continue;
       }
       ++result.episodes;
       for (std::size_t p = 0; p < programs->size(); ++p) {
-        const Json& judged = one["points"][p];
+        const JudgedSetting& judged = one.settings[p];
         SweepPoint& point = result.points[p];
-        point.correct += judged["c"].get<int>();
-        point.extra += judged["e"].get<int>();
-        point.missed += judged["m"].get<int>();
-        for (const auto& [key, values] : {std::pair{"b", &begins[p]}, std::pair{"f", &ends[p]},
-                                          std::pair{"l", &latencies[p]}}) {
-          for (const auto& value : judged[key]) values->push_back(value.get<std::int64_t>());
-        }
+        point.correct += judged.correct;
+        point.extra += judged.extra;
+        point.missed += judged.missed;
+        begins[p].insert(begins[p].end(), judged.begin_us.begin(), judged.begin_us.end());
+        ends[p].insert(ends[p].end(), judged.end_us.begin(), judged.end_us.end());
+        latencies[p].insert(latencies[p].end(), judged.latency_us.begin(), judged.latency_us.end());
       }
     }
   }

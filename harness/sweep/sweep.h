@@ -52,6 +52,13 @@ struct SweepRequest {
   std::function<void(std::size_t done, std::size_t all)> progress = {};
 };
 
+/// Sets what the events are compared with: {"golden"}, {"oracle"}, {"recorded"}, or files of
+/// labels, or a folder of them; golden if nothing is given. Returns "" or what is wrong with that.
+std::string SetTruth(const std::vector<std::string>& given, SweepRequest& request);
+
+/// Adds axes, each a text that ParseAxis() takes. Returns "" or why they cannot be tried together.
+std::string SetAxes(const std::vector<std::string>& texts, SweepRequest& request);
+
 /// How one setting did, over all episodes.
 struct SweepPoint {
   std::vector<std::size_t> at;                      ///< per axis, the index of its value
@@ -67,6 +74,11 @@ struct SweepResult {
   std::string label_warning;          ///< of labels that were left out, or ""
   std::vector<std::string> left_out;  ///< "SCENARIO: why"
   std::vector<std::string> unread;    ///< of these, what cannot be read
+
+  /// Something cannot be read, or labels do not fit.
+  bool IsRefused(const SweepRequest& request) const {
+    return !unread.empty() || (request.truth == Truth::kLabels && !left_out.empty());
+  }
 };
 
 /// What makes an event right, for people.

@@ -41,7 +41,7 @@ TEST(RunText, TheTableIsAlignedAndEndsWithTheStatus) {
 }
 
 TEST(RunText, JsonKeepsTheContract) {
-  const OrderedJson json = RunJson(Scenario{.name = "x", .grammar = "pick_and_place"}, SampleRun());
+  const OrderedJson json = RunJson({.name = "x", .grammar = "pick_and_place"}, SampleRun());
   EXPECT_EQ(json["scenario"], "x");
   EXPECT_EQ(json["status"], "completed");
   EXPECT_EQ(json["ticks_per_second"], 480);
@@ -76,7 +76,7 @@ TEST(RunText, AFailedRunNamesEntityTickReasonAndAdvice) {
                 .reason = "runaway speed",
                 .advice = "lower the gains"};
   EXPECT_EQ(StatusText(run), "failed at 0.5000 s (tick 240): cup: runaway speed; lower the gains");
-  const OrderedJson json = RunJson(Scenario{.name = "x"}, run);
+  const OrderedJson json = RunJson(HeadingOf(Scenario{.name = "x"}, run), run);
   EXPECT_EQ(json["status"], "failed");
   EXPECT_EQ(json["failure"].dump(),
             R"({"tick":240,"entity":"cup","reason":"runaway speed","advice":"lower the gains"})");
