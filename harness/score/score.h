@@ -71,6 +71,9 @@ Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& epi
 /// ignored.
 std::string ScoreTable(const Score& score, double collar_s);
 
+/// The tables of several grammars, and what their columns mean.
+std::string ScoresText(const std::vector<Score>& scores, double collar_s);
+
 /// The totals of several grammars beside each other, as a Markdown table.
 std::string SideBySide(const std::vector<Score>& scores, double collar_s);
 

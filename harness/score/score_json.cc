@@ -85,21 +85,14 @@ Json TestimonyJson(const Testimony& testimony) {
   return {{"by_event", std::move(by_event)}, {"differences", testimony.differences}};
 }
 
-Testimony TestimonyFromJson(const Json& json) {
-  Testimony testimony{.by_event = {}, .differences = json["differences"]};
-  for (const auto& [event, count] : json["by_event"].items())
-    testimony.by_event[event] = {.of = count["of"], .confirmed = count["confirmed"]};
-  return testimony;
-}
-
-Json WitnessesJson(const std::vector<std::string>& grammars,
-                   const std::vector<Witness>& witnesses) {
+Json WitnessesJson(const std::vector<Score>& scores, const std::vector<Witness>& witnesses) {
   Json rows = Json::array();
   for (const Witness& witness : witnesses) {
     Json columns = Json::array();
-    for (std::size_t g = 0; g < grammars.size(); ++g) {
+    for (std::size_t g = 0; g < scores.size(); ++g) {
       const Confirmed total = witness.of_grammars[g].Total();
-      Json column = {{"grammar", grammars[g]}, {"of", total.of}, {"confirmed", total.confirmed}};
+      Json column = {
+          {"grammar", scores[g].grammar}, {"of", total.of}, {"confirmed", total.confirmed}};
       column.update(TestimonyJson(witness.of_grammars[g]));
       columns.push_back(std::move(column));
     }

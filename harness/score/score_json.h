@@ -16,10 +16,9 @@ nlohmann::ordered_json ScoresJson(const std::vector<Score>& scores, double colla
 
 /// {"by_event": {EVENT: {"of", "confirmed"}}, "differences": ["..", ..]}
 nlohmann::ordered_json TestimonyJson(const Testimony& testimony);
-Testimony TestimonyFromJson(const nlohmann::ordered_json& json);
 
 /// [{"witness", "proves", "grammars": [{"grammar", "of", "confirmed", "by_event", "differences"}]}]
-nlohmann::ordered_json WitnessesJson(const std::vector<std::string>& grammars,
+nlohmann::ordered_json WitnessesJson(const std::vector<Score>& scores,
                                      const std::vector<Witness>& witnesses);
 
 }  // namespace prehend::harness::score

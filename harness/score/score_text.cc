@@ -153,4 +153,17 @@ std::string SideBySide(const std::vector<Score>& scores, double collar_s) {
   return text;
 }
 
+std::string ScoresText(const std::vector<Score>& scores, double collar_s) {
+  std::string text;
+  for (const Score& one : scores) text += ScoreTable(one, collar_s) + "\n";
+  if (scores.size() > 1) text += SideBySide(scores, collar_s) + "\n";
+  return text +
+         "C correct, D deleted, F fragmented, M merged, FM both, I' inserted (Ward et al. 2011); "
+         "boundary errors are\n"
+         "found - true: median / 95th percentile / largest, the last two by magnitude; late: from "
+         "an event's end to its\n"
+         "decision, median / 95th percentile / largest. Every grammar is scored on the same true "
+         "events.\n";
+}
+
 }  // namespace prehend::harness::score

@@ -36,25 +36,4 @@ Json TimelineJson(const grammar::Timeline& timeline) {
   return {{"ticks_per_second", timeline.ticks_per_second}, {"events", std::move(events)}};
 }
 
-grammar::Timeline TimelineFromJson(const Json& json) {
-  grammar::Timeline timeline{.ticks_per_second = json.at("ticks_per_second"), .events = {}};
-  for (const Json& event : json.at("events")) {
-    grammar::NamedEvent& named = timeline.events.emplace_back();
-    named.event = event.at("event");
-    for (const char* part : {"roles", "attributes"}) {
-      for (const auto& [name, value] : event.at(part).items()) {
-        if (value.is_number()) {
-          named.values.push_back({name, value, ""});
-        } else {
-          named.roles.push_back({name, value});
-        }
-      }
-    }
-    named.interval = {event.at("begin_tick"), event.at("end_tick")};
-    named.decided = event.at("decided_tick");
-    named.open_end = event.at("open_end");
-  }
-  return timeline;
-}
-
 }  // namespace prehend::harness

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Events as JSON, as `prehend run --json` prints them, and back.
+// Events as JSON, as `prehend run --json` prints them.
 // Tested by tests/harness/run/run_text_test.cc
 #pragma once
 
@@ -13,8 +13,7 @@ namespace prehend::harness {
 /// "decided_tick", "open_end"}; attributes are words (style) or numbers in SI units.
 nlohmann::ordered_json EventJson(const grammar::NamedEvent& event, grammar::Tick ticks_per_second);
 
-/// {"ticks_per_second", "events": [..]}; both directions.
+/// {"ticks_per_second", "events": [..]}
 nlohmann::ordered_json TimelineJson(const grammar::Timeline& timeline);
-grammar::Timeline TimelineFromJson(const nlohmann::ordered_json& json);
 
 }  // namespace prehend::harness

@@ -89,7 +89,7 @@ const Arrows& ProjectArrows() {
         "harness/run", "physics/scene"}},
       {"harness/score",
        {"grammar", "grammar/base", "harness/base", "harness/claims", "harness/episode",
-        "harness/oracle", "harness/run", "harness/timeline"}},
+        "harness/labels", "harness/oracle", "harness/process", "harness/run", "harness/timeline"}},
       {"harness/labels",
        {"grammar", "grammar/base", "harness/base", "harness/golden", "harness/run",
         "harness/timeline", "harness/yaml"}},
