@@ -11,15 +11,12 @@
 #include "harness/base/text_file.h"
 #include "harness/check/check_scenario.h"
 #include "harness/command/command.h"
-#include "harness/episodes/record_episode.h"
+#include "harness/episodes/record_run.h"
 #include "harness/episodes/schema.h"
 #include "harness/judge/judge_claims.h"
 #include "harness/report/report.h"
-#include "harness/run/outcome.h"
 #include "harness/run/run_text.h"
 #include "harness/run/run_trials.h"
-#include "harness/sense/entity_table.h"
-#include "harness/sense/episode_file.h"
 
 namespace prehend::harness {
 namespace {
@@ -40,41 +37,10 @@ std::string TrialCommand(const ParsedOptions& options) {
   return CommandText(words);
 }
 
-/// Where an episode is written while it is played, if anywhere.
-struct Recorders {
-  EpisodeWriter* lines = nullptr;
-  episodes::EpisodeRecorder* episode = nullptr;
-};
-
-/// Plays the scenario, records it, and judges its outcomes.
-RunResult Play(const LoadedRun& loaded, const RunOptions& how, const Recorders& recorders) {
-  const Scenario& scenario = loaded.scenario;
-  OutcomeWatch outcomes(scenario.scene, scenario.outcomes);
-  ScenarioRun playing(scenario, loaded.program, how);
-  while (playing.Step()) {
-    outcomes.Look(playing.snapshot());
-    if (recorders.lines && playing.sensed()) recorders.lines->Write(playing.frame());
-    if (recorders.episode) recorders.episode->Add(playing.snapshot());
-  }
-  RunResult run = playing.Finish();
-  if (!scenario.outcomes.empty() && run.status.kind == physics::RunStatus::Kind::kCompleted)
-    run.outcome = outcomes.Judge(playing.snapshot());
-  return run;
-}
-
-/// Plays one trial and adds it to an episode file.
-TrialResult RecordTrial(int trial, const RunRequest& varied, const std::string& file,
-                        const CommandContext& context) {
-  std::vector<std::string> files;
-  const Result<LoadedRun> loaded = LoadRun(varied, context.root, &files);
-  if (!loaded) return {trial, "failed", grammar::Format(loaded.error()), {}};
-  episodes::EpisodeRecorder episode(
-      {file, context.root, varied, files, context.today, ProgramHash()}, loaded->scenario);
-  const RunResult run = Play(*loaded, {}, {.lines = nullptr, .episode = &episode});
-  episode.Finish(run);
-  const bool completed = run.status.kind == physics::RunStatus::Kind::kCompleted;
-  return {trial, completed ? run.outcome : "failed",
-          completed ? "" : run.status.entity + ": " + run.status.reason, episode.problem()};
+episodes::RecordRequest RecordingOf(const RunRequest& request,
+                                    const std::vector<std::string>& files,
+                                    const ParsedOptions& options, const CommandContext& context) {
+  return {options.Text("--record"), context.root, request, files, context.today, ProgramHash()};
 }
 
 ExitCode CountTrials(const ParsedOptions& options, const RunRequest& request,
@@ -89,7 +55,7 @@ ExitCode CountTrials(const ParsedOptions& options, const RunRequest& request,
     if (const std::string problem = episodes::WhyNotRecordable(file); !problem.empty())
       return Complain(context, ExitCode::kBadInput, "--record: " + problem);
     settings.play = [&](int trial, const RunRequest& varied) {
-      return RecordTrial(trial, varied, file, context);
+      return episodes::RecordTrial(trial, varied, RecordingOf(varied, {}, options, context));
     };
   }
   const auto report = RunTrials(request, context.root, settings, [&](int done) {
@@ -134,15 +100,74 @@ std::string WriteReport(const ParsedOptions& options, const CommandContext& cont
   return WriteTextFile(options.Text("--report"), ReportHtml({verdict}, header));
 }
 
+/// Options that contradict each other, or a report that cannot be written.
+std::string WhyRefused(const ParsedOptions& options) {
+  for (const char* of_one_run : {"--trial", "--measure", "--report"}) {
+    if (options.Has("--trials") && options.Has(of_one_run))
+      return fmt::format("{} needs a single run; --trials makes many", of_one_run);
+  }
+  if (options.Has("--trials")) return "";
+  for (const char* of_output : {"--json", "--measure"}) {
+    if (options.Text("--record") == "-" && options.Has(of_output))
+      return fmt::format("--record - contradicts {}: both would be printed", of_output);
+  }
+  if (!options.Has("--report")) return "";
+  const std::string problem = WhyNotWritable(options.Text("--report"));
+  return problem.empty() ? "" : "--report: " + problem;
+}
+
+void Print(const LoadedRun& loaded, const RunResult& run, const std::vector<ClaimVerdict>& claims,
+           const ParsedOptions& options, const CommandContext& context) {
+  for (const std::string& note : NoteLines(loaded.scenario, run)) context.err << note << "\n";
+  const bool measure = options.Has("--measure");
+  if (options.Has("--json")) {
+    OrderedJson json = RunJson(HeadingOf(loaded.scenario, run), run);
+    json["claims"] = ClaimsJson(claims);
+    if (measure) json["measured"] = MeasurementJson(Measure(run));
+    context.out << json.dump(2) << "\n";
+  } else if (options.Text("--record") != "-") {
+    context.out << RunTable(run);
+    if (measure) context.out << MeasurementText(Measure(run));
+    context.out << std::flush;
+  }
+  context.err << TextOfContradicted(claims);
+}
+
+ExitCode PlayOne(const ScenarioFile& file, const RunRequest& request, const ParsedOptions& options,
+                 const CommandContext& context) {
+  std::vector<std::string> files;
+  const Result<LoadedRun> loaded = LoadRun(request, context.root, &files);
+  if (!loaded) return Complain(context, loaded.error());
+  Warn(context, loaded->warnings);
+  std::optional<episodes::RunRecorder> recorder;
+  if (options.Has("--record")) {
+    recorder.emplace(RecordingOf(request, files, options, context), loaded->scenario);
+    if (!recorder->problem().empty())
+      return Complain(context, ExitCode::kBadInput, "--record: " + recorder->problem());
+  }
+  const RunResult run = episodes::PlayScenario(
+      *loaded, {.record = options.Has("--report"), .measure = options.Has("--measure")},
+      recorder ? &*recorder : nullptr);
+  const bool completed = run.status.kind == physics::RunStatus::Kind::kCompleted;
+  // Of an unfinished run the claims may still come true.
+  const std::vector<ClaimVerdict> claims =
+      completed ? JudgeClaims(*loaded, run.timeline) : std::vector<ClaimVerdict>{};
+  Print(*loaded, run, claims, options, context);
+  if (recorder && !recorder->problem().empty())
+    return Complain(context, ExitCode::kFailure, "--record: " + recorder->problem());
+  if (options.Has("--report")) {
+    const std::string problem = WriteReport(options, context, file, request, *loaded, run, files);
+    if (!problem.empty()) return Complain(context, ExitCode::kFailure, "--report: " + problem);
+  }
+  return completed ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, StatusText(run));
+}
+
 ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
   const auto file = FindScenarioOrComplain(options.Text("scenario"), context);
   if (!file) return file.error();
   RunRequest request = RequestOf(options, file->path);
-  for (const char* of_one_run : {"--trial", "--measure", "--report"}) {
-    if (options.Has("--trials") && options.Has(of_one_run))
-      return Complain(context, ExitCode::kBadInput,
-                      fmt::format("{} needs a single run; --trials makes many", of_one_run));
-  }
+  if (const std::string why = WhyRefused(options); !why.empty())
+    return Complain(context, ExitCode::kBadInput, why);
   if (options.Has("--trials")) return CountTrials(options, request, context);
   if (options.Has("--trial")) {
     auto varied = RequestOfTrial(request, context.root, options.IntOr("--trial", 1));
@@ -151,75 +176,7 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
       context.err << "sampled: " << varied->settings[i] << "\n";
     request = std::move(*varied);
   }
-  const bool record_is_output = options.Text("--record") == "-";
-  for (const char* of_output : {"--json", "--measure"}) {
-    if (record_is_output && options.Has(of_output))
-      return Complain(context, ExitCode::kBadInput,
-                      fmt::format("--record - contradicts {}: both would be printed", of_output));
-  }
-  if (options.Has("--report")) {
-    const std::string problem = WhyNotWritable(options.Text("--report"));
-    if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--report: " + problem);
-  }
-  std::vector<std::string> files;
-  const Result<LoadedRun> loaded = LoadRun(request, context.root, &files);
-  if (!loaded) return Complain(context, loaded.error());
-  Warn(context, loaded->warnings);
-
-  const bool measure = options.Has("--measure");
-  std::optional<AtomicFile> record;
-  std::optional<EpisodeWriter> recorder;
-  std::optional<episodes::EpisodeRecorder> episode;
-  if (episodes::IsEpisodeFile(options.Text("--record"))) {
-    episode.emplace(episodes::RecordRequest{options.Text("--record"), context.root, request, files,
-                                            context.today, ProgramHash()},
-                    loaded->scenario);
-    if (!episode->problem().empty())
-      return Complain(context, ExitCode::kBadInput, "--record: " + episode->problem());
-  } else if (options.Has("--record")) {
-    record.emplace(options.Text("--record"));
-    if (!record->problem().empty())
-      return Complain(context, ExitCode::kBadInput, "--record: " + record->problem());
-    const Scenario& scenario = loaded->scenario;
-    recorder.emplace(record->stream(), EpisodeHeader{.episode = scenario.name,
-                                                     .grammar = scenario.grammar,
-                                                     .entity_table = MakeEntityTable(scenario)});
-  }
-  const RunResult run = Play(*loaded, {.record = options.Has("--report"), .measure = measure},
-                             {recorder ? &*recorder : nullptr, episode ? &*episode : nullptr});
-  for (const std::string& note : NoteLines(loaded->scenario, run)) context.err << note << "\n";
-  // Of an unfinished run the claims may still come true.
-  const std::vector<ClaimVerdict> claims = run.status.kind == physics::RunStatus::Kind::kCompleted
-                                               ? JudgeClaims(*loaded, run.timeline)
-                                               : std::vector<ClaimVerdict>{};
-  std::string not_recorded;
-  if (recorder) {
-    recorder->Finish(run.ticks + 1);
-    not_recorded = record->Commit();
-  }
-  if (episode) {
-    episode->Finish(run);
-    not_recorded = episode->problem();
-  }
-  if (options.Has("--json")) {
-    OrderedJson json = RunJson(loaded->scenario, run);
-    json["claims"] = ClaimsJson(claims);
-    if (measure) json["measured"] = MeasurementJson(Measure(run));
-    context.out << json.dump(2) << "\n";
-  } else if (!record_is_output) {
-    context.out << RunTable(run);
-    if (measure) context.out << MeasurementText(Measure(run));
-    context.out << std::flush;
-  }
-  context.err << TextOfContradicted(claims);
-  if (!not_recorded.empty())
-    return Complain(context, ExitCode::kFailure, "--record: " + not_recorded);
-  if (options.Has("--report")) {
-    const std::string problem = WriteReport(options, context, *file, request, *loaded, run, files);
-    if (!problem.empty()) return Complain(context, ExitCode::kFailure, "--report: " + problem);
-  }
-  if (run.status.kind == physics::RunStatus::Kind::kCompleted) return ExitCode::kAgrees;
-  return Complain(context, ExitCode::kFailure, StatusText(run));
+  return PlayOne(*file, request, options, context);
 }
 
 }  // namespace
