@@ -7,7 +7,9 @@
 
 #include <algorithm>
 
+#include "harness/base/build_text.h"
 #include "harness/base/content_hash.h"
+#include "harness/run/segment.h"
 
 namespace prehend::harness {
 namespace {
@@ -66,6 +68,25 @@ std::string FirstCause(const StateTrace& before, const DifferingRun& now) {
   return "the grammar or the golden. Everything moves as in the last passing run";
 }
 
+/// The same motion, with some parameters as they were.
+std::optional<Comparison> CompareWithSettings(const CheckRequest& request,
+                                              const CheckedRun& checked, const Golden& golden,
+                                              const std::vector<std::string>& settings) {
+  RunRequest changed = request.Run();
+  for (const std::string& setting : settings) {
+    const std::string name = setting.substr(0, setting.find('=') + 1);
+    std::erase_if(changed.settings, [&](const auto& other) { return other.starts_with(name); });
+    changed.settings.push_back(setting);
+  }
+  const Result<LoadedRun> loaded = LoadRun(changed, request.root);
+  if (!loaded) return std::nullopt;
+  const Scenario& scenario = checked.loaded.scenario;
+  return Compare(
+      golden,
+      Resegment(scenario, checked.result.recording, loaded->program, checked.result.ticks + 1),
+      DefaultTolerance(scenario));
+}
+
 }  // namespace
 
 std::string CauseText(const std::optional<LastPass>& last_pass,
@@ -105,6 +126,32 @@ std::string ChangesText(const std::vector<SettingChange>& changes) {
     text += fmt::format("changed: {} in {}\n", ChangeText(changes[i]), changes[i].file);
   if (changes.size() > kMost) text += fmt::format("changed: {} more\n", changes.size() - kMost);
   return text;
+}
+
+void AddBlame(const CheckRequest& request, const CheckedRun& checked, const Golden& golden,
+              const Comparison& comparison, ScenarioVerdict& verdict) {
+  const LastPasses records(request.root);
+  const RunResult& run = checked.result;
+  const auto last_pass = records.Read(request.id);
+  const auto trace = ReadTrace(records.TracePath(request.id));
+  const DifferingRun now{.program = request.program,
+                         .build = BuildText(),
+                         .inputs = verdict.inputs,
+                         .settings = verdict.settings,
+                         .options = OptionsOf(request.changes),
+                         .other_grammar = !request.changes.grammar.empty(),
+                         .trace = TraceOf(checked.loaded.scenario.scene, run.recording),
+                         .ticks_per_second = static_cast<double>(run.timeline.ticks_per_second)};
+  verdict.cause = CauseText(last_pass, trace, now, request.root);
+  const auto suspects = SuspectsOf(last_pass, trace, now, request.root);
+  if (suspects) verdict.cause += ChangesText(suspects->changes);
+  const bool can_undo = request.IsPlayed() && !run.recording.empty();
+  verdict.attributions = AttributeDifferences(
+      comparison, suspects.value_or(Suspects{}),
+      [&](const std::vector<std::string>& settings) -> std::optional<Comparison> {
+        if (!can_undo) return std::nullopt;
+        return CompareWithSettings(request, checked, golden, settings);
+      });
 }
 
 }  // namespace prehend::harness

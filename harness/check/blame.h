@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "harness/check/attribute.h"
+#include "harness/check/check_request.h"
 #include "harness/check/last_pass.h"
 #include "harness/check/state_trace.h"
+#include "harness/judge/judge.h"
 
 namespace prehend::harness {
 
@@ -40,5 +42,10 @@ std::optional<Suspects> SuspectsOf(const std::optional<LastPass>& last_pass,
 
 /// "changed: `reach_radius` 30 cm -> 20 cm in x.grammar", a line for each of at most ten.
 std::string ChangesText(const std::vector<SettingChange>& changes);
+
+/// Attributes how a run differs from its golden, as a whole and each difference. Fills `cause` and
+/// `attributions` of a verdict that has its inputs and settings.
+void AddBlame(const CheckRequest& request, const CheckedRun& checked, const Golden& golden,
+              const Comparison& comparison, ScenarioVerdict& verdict);
 
 }  // namespace prehend::harness

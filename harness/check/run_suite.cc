@@ -107,11 +107,9 @@ class Suite {
   }
 
   CheckRequest RequestOf(const Turn& turn) const {
-    RunRequest run = request_.changes;
-    run.scenario_file = scenarios_[turn.scenario].path;
     return {
-        .run = std::move(run),
-        .episode = scenarios_[turn.scenario].episode.value_or(0),
+        .episode = NameOf(scenarios_[turn.scenario]),
+        .changes = request_.changes,
         .id = Id(turn.scenario),
         .root = request_.root,
         .report_folder = request_.report_folder,

@@ -19,7 +19,7 @@ namespace prehend::harness {
 
 struct SuiteRequest {
   ScenarioSelection selection;
-  RunRequest changes;  ///< its grammar and settings hold for every scenario
+  episodes::GrammarChoice changes;  ///< holds for every scenario
   std::string root;
   std::string report_folder;
   std::string record_file;  ///< an episode file that gets the first run of each; or empty

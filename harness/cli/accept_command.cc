@@ -77,7 +77,7 @@ void ShowDifference(const Played& played, const OracleComparison& truth,
   } else {
     context.out << DifferenceText(
         Compare(*played.old, played.run.timeline, DefaultTolerance(played.loaded.scenario)),
-        ExplainCommand(played.id, {}));
+        CommandAbout("explain", played.id));
   }
   context.out << GroundTruthText(truth);
 }
@@ -213,7 +213,7 @@ std::optional<ExitCode> RefuseUnlessEnginesAgree(const CommandContext& context,
   const auto compared =
       CompareEngines(played.loaded.scenario, played.loaded.program, played.run.timeline);
   const std::string text = compared ? EngineDifferenceText(played.loaded.scenario, *compared,
-                                                           ExplainCommand(played.id, {}))
+                                                           CommandAbout("explain", played.id))
                                     : "";
   (void)GoldenFiles(context.root).WriteEngineDifference(played.id, text);
   if (text.empty()) return std::nullopt;
@@ -291,9 +291,46 @@ ExitCode AcceptRecording(const std::string& file, const ParsedOptions& options,
                                           {context.today, options.Text("--reason")});
   const std::string problem = WriteGoldenFile(golden_file, golden);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
-  context.out << ReviewText(*judged, ExplainCommand(file, request)) << "accepted: " << golden_file
-              << "\n";
+  context.out << ReviewText(*judged,
+                            CommandAbout("explain", file, {request.grammar, request.settings}))
+              << "accepted: " << golden_file << "\n";
   return ExitCode::kAgrees;
+}
+
+/// One of the project: its events or its pictures.
+ExitCode AcceptScenario(const ScenarioFile& file, const ParsedOptions& options,
+                        const CommandContext& context) {
+  // Another one must not lose the reason that this one adds.
+  const FolderLock one_at_a_time(context.root);
+  Played played;
+  played.id = ScenarioId(file.skill, file.name);
+  played.files = {GoldenFiles(context.root).GoldenPath(played.id).string()};
+  Result<LoadedRun> loaded = LoadRun({.scenario_file = file.path}, context.root, &played.files);
+  if (!loaded) return Complain(context, loaded.error());
+  played.loaded = std::move(*loaded);
+  auto old = GoldenFiles(context.root).ReadGoldenOf(played.id);
+  if (!old) return Complain(context, old.error());
+  played.old = std::move(*old);
+  if (options.Has("--pictures") && !played.old) {
+    return Complain(
+        context, ExitCode::kPending,
+        "the events of this scenario have no golden yet; accept them first, without --pictures");
+  }
+
+  played.run = RunScenario(played.loaded.scenario, played.loaded.program, {.record = true});
+  if (played.run.status.kind != physics::RunStatus::Kind::kCompleted) {
+    return Complain(context, ExitCode::kFailure,
+                    "a run that did not complete cannot be accepted: " + StatusText(played.run));
+  }
+  if (!options.Has("--pictures")) {
+    for (const std::string& note : NoteLines(played.loaded.scenario, played.run))
+      context.err << note << "\n";
+    if (const auto refused = RefuseUnlessClaimsHold(context, played)) return *refused;
+    if (const auto refused = RefuseUnlessEnginesAgree(context, played)) return *refused;
+    return AcceptEvents(options, context, played);
+  }
+  return AcceptPictures(context, options.Text("--reason"), *played.old, played.loaded.scenario,
+                        played.run);
 }
 
 ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) {
@@ -325,37 +362,7 @@ ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) 
                     "only scenarios in scenarios/ have goldens; move the file there and accept it "
                     "by name");
   }
-  // Another one must not lose the reason that this one adds.
-  const FolderLock one_at_a_time(context.root);
-  Played played;
-  played.id = ScenarioId(file->skill, file->name);
-  played.files = {GoldenFiles(context.root).GoldenPath(played.id).string()};
-  Result<LoadedRun> loaded = LoadRun({.scenario_file = file->path}, context.root, &played.files);
-  if (!loaded) return Complain(context, loaded.error());
-  played.loaded = std::move(*loaded);
-  auto old = GoldenFiles(context.root).ReadGoldenOf(played.id);
-  if (!old) return Complain(context, old.error());
-  played.old = std::move(*old);
-  if (options.Has("--pictures") && !played.old) {
-    return Complain(
-        context, ExitCode::kPending,
-        "the events of this scenario have no golden yet; accept them first, without --pictures");
-  }
-
-  played.run = RunScenario(played.loaded.scenario, played.loaded.program, {.record = true});
-  if (played.run.status.kind != physics::RunStatus::Kind::kCompleted) {
-    return Complain(context, ExitCode::kFailure,
-                    "a run that did not complete cannot be accepted: " + StatusText(played.run));
-  }
-  if (!options.Has("--pictures")) {
-    for (const std::string& note : NoteLines(played.loaded.scenario, played.run))
-      context.err << note << "\n";
-    if (const auto refused = RefuseUnlessClaimsHold(context, played)) return *refused;
-    if (const auto refused = RefuseUnlessEnginesAgree(context, played)) return *refused;
-    return AcceptEvents(options, context, played);
-  }
-  return AcceptPictures(context, options.Text("--reason"), *played.old, played.loaded.scenario,
-                        played.run);
+  return AcceptScenario(*file, options, context);
 }
 
 }  // namespace

@@ -172,7 +172,7 @@ std::string DefaultReport(const std::string& root) {
 SuiteRequest RequestFrom(const ParsedOptions& options, const CommandContext& context,
                          ScenarioSelection selection) {
   SuiteRequest request{.selection = std::move(selection),
-                       .changes = RequestOf(options, {}),
+                       .changes = {options.Text("--grammar"), options.All("--set")},
                        .root = context.root,
                        .report_folder = options.TextOr("--report", DefaultReport(context.root)),
                        .record_file = options.Text("--record"),
@@ -297,6 +297,24 @@ std::string StoppedText(const SuiteRequest& request, const std::vector<ScenarioV
                      all - checked, all);
 }
 
+/// What cannot be written, or "". Found out before the scenarios run, which takes long.
+std::string WhyNotWritten(const ParsedOptions& options, const std::string& page) {
+  std::string problem = WhyNotWritable(page);
+  if (!problem.empty()) return "--report: " + problem;
+  if (options.Has("--junit")) problem = WhyNotWritable(options.Text("--junit"));
+  if (!problem.empty()) return "--junit: " + problem;
+  if (options.Has("--record")) problem = episodes::WhyNotRecordable(options.Text("--record"));
+  return problem.empty() ? "" : "--record: " + problem;
+}
+
+SuiteProgress ProgressOn(const CommandContext& context) {
+  if (!context.progress) return {};
+  return [&](std::size_t done, std::size_t all, const std::string& id) {
+    context.err << fmt::format("\r\033[K[{}/{}] {}", done, all, id) << std::flush;
+    if (done == all) context.err << "\r\033[K" << std::flush;
+  };
+}
+
 ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--changed") && (options.Has("--grammar") || options.Has("--set"))) {
     return Complain(context, ExitCode::kBadInput,
@@ -325,22 +343,10 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   }
   const SuiteRequest request = RequestFrom(options, context, std::move(*selection));
   const std::string page = (fs::path(request.report_folder) / "index.html").string();
-  // Found out before the scenarios run, which takes long.
-  std::string problem = WhyNotWritable(page);
-  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--report: " + problem);
-  if (options.Has("--junit")) problem = WhyNotWritable(junit);
-  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--junit: " + problem);
-  if (options.Has("--record")) problem = episodes::WhyNotRecordable(options.Text("--record"));
-  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--record: " + problem);
-  SuiteProgress progress;
-  if (context.progress) {
-    progress = [&](std::size_t done, std::size_t all, const std::string& id) {
-      context.err << fmt::format("\r\033[K[{}/{}] {}", done, all, id) << std::flush;
-      if (done == all) context.err << "\r\033[K" << std::flush;
-    };
-  }
+  std::string problem = WhyNotWritten(options, page);
+  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, problem);
   Interrupt interrupt;
-  const std::vector<ScenarioVerdict> verdicts = RunSuite(request, progress, &interrupt);
+  const std::vector<ScenarioVerdict> verdicts = RunSuite(request, ProgressOn(context), &interrupt);
   const std::string stopped = StoppedText(request, verdicts, interrupt);
   if (context.progress && !stopped.empty()) context.err << "\r\033[K";
 

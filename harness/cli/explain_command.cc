@@ -50,7 +50,8 @@ ExitCode ComplainOfNoEvent(const ParsedOptions& options, grammar::ReplayMonitor&
                            IntervalText(other.interval, past.entity_table().ticks_per_second));
   }
   message += fmt::format("\n  why not: {} --expected {}",
-                         ExplainCommand(options.Text("scenario"), RequestOf(options, {})),
+                         CommandAbout("explain", options.Text("scenario"),
+                                      {options.Text("--grammar"), options.All("--set")}),
                          ShellQuoted(typed));
   return Complain(context, ExitCode::kNothing, message);
 }

@@ -70,8 +70,8 @@ Review ReviewOf(const ScenarioFile& file, const std::string& root) {
       Compare(**golden, ToTimeline(proposed), DefaultTolerance(loaded->scenario));
   const std::string derivation = DerivationLines(proposed, (*golden)->derived);
   review.kind = comparison.Agrees() && derivation.empty() ? "same" : "changed";
-  review.text =
-      DifferenceText(comparison, ExplainCommand(review.id, {})) + derivation + review.contradicts;
+  review.text = DifferenceText(comparison, CommandAbout("explain", review.id)) + derivation +
+                review.contradicts;
   return review;
 }
 
@@ -125,7 +125,8 @@ std::optional<Review> ReviewOfRecording(const RunRequest& request, const std::st
   if (judged->Agrees()) return std::nullopt;
   review.kind = judged->golden ? "changed" : "new";
   review.text =
-      judged->segmented.missing.warnings + ReviewText(*judged, ExplainCommand(file, request));
+      judged->segmented.missing.warnings +
+      ReviewText(*judged, CommandAbout("explain", file, {request.grammar, request.settings}));
   review.grammar = request.grammar;
   review.fingerprint = Fingerprint(judged->proposed);
   return review;

@@ -84,7 +84,8 @@ std::string WriteReport(const ParsedOptions& options, const CommandContext& cont
                         const ScenarioFile& file, const RunRequest& request,
                         const LoadedRun& loaded, const RunResult& run,
                         const std::vector<std::string>& files) {
-  const CheckRequest check{.run = request,
+  const CheckRequest check{.episode = NameOf(file),
+                           .changes = {request.grammar, request.settings},
                            .id = IdOf(file),
                            .root = context.root,
                            .replays = Replays::kAll,

@@ -11,10 +11,10 @@
 #include "grammar/describe.h"
 #include "harness/base/content_hash.h"
 #include "harness/base/text_file.h"
-#include "harness/check/validate_golden.h"
 #include "harness/command/command.h"
 #include "harness/golden/golden_files.h"
 #include "harness/judge/unreferenced_goldens.h"
+#include "harness/judge/validate_golden.h"
 #include "harness/run/load_grammar.h"
 #include "harness/run/validate_claims.h"
 

@@ -15,7 +15,8 @@ namespace {
 /// The heads of loops that have no place in a command.
 std::vector<std::string> LoopsThatCompute(const std::string& text) {
   std::vector<std::string> found;
-  const std::regex loop(R"(for \([^{;]*[ *:](takes|recordings|grammars|programs|settings|labels)\b[^{]*)");
+  const std::regex loop(
+      R"(for \([^{;]*[ *:](takes|recordings|grammars|programs|settings|labels)\b[^{]*)");
   for (std::sregex_iterator at(text.begin(), text.end(), loop), end; at != end; ++at)
     found.push_back(at->str());
   return found;
@@ -31,7 +32,8 @@ TEST(Commands, DoNotCompute) {
 TEST(Commands, ALoopThatComputesIsFound) {
   EXPECT_EQ(LoopsThatCompute("for (const Take& take : takes) {\n  a;\n}\n"),
             std::vector<std::string>{"for (const Take& take : takes) "});
-  EXPECT_EQ(LoopsThatCompute("for (std::size_t g = 0; g < grammars.size(); ++g) {\n}\n").size(), 1u);
+  EXPECT_EQ(LoopsThatCompute("for (std::size_t g = 0; g < grammars.size(); ++g) {\n}\n").size(),
+            1u);
   EXPECT_TRUE(LoopsThatCompute("for (const Line& line : lines) Print(takes, line);\n").empty());
 }
 

@@ -19,7 +19,7 @@ constexpr const char* kId = "rest/carton_stands";
 class CheckScenarioTest : public CheckedScenario {
  protected:
   CheckRequest Check() const {
-    return {.run = Request(),
+    return {.episode = {.file = Request().scenario_file, .scenario = kId},
             .id = kId,
             .root = root_.string(),
             .report_folder = (root_ / "build/report").string(),
@@ -106,7 +106,7 @@ TEST_F(CheckScenarioTest, ATrialLeavesNothingBehind) {
 
 TEST_F(CheckScenarioTest, WhatCannotBeReadIsBadInput) {
   CheckRequest request = Check();
-  request.run.settings = {"settle_s=soon"};
+  request.changes.settings = {"settle_s=soon"};
   const ScenarioVerdict scenario = CheckScenario(request);
   EXPECT_EQ(scenario.exit_code, ExitCode::kBadInput);
   EXPECT_EQ(scenario.reason, "cannot be read");
@@ -132,9 +132,7 @@ TEST_F(CheckScenarioTest, WhatIsWrongComesBeforeAGoldenThatDoesNotExist) {
 }
 
 TEST_F(CheckScenarioTest, ItsCommandsRepeatGrammarAndSettings) {
-  const RunRequest changes{
-      .scenario_file = {}, .grammar = "my rules.grammar", .settings = {"lift_rise=10cm"}};
-  EXPECT_EQ(ExplainCommand("a/b", changes),
+  EXPECT_EQ(ExplainCommand({.changes = {"my rules.grammar", {"lift_rise=10cm"}}, .id = "a/b"}),
             "prehend explain a/b --grammar 'my rules.grammar' --set lift_rise=10cm");
   EXPECT_EQ(RepeatCommand({.id = "a/b"}), "prehend check a/b");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/check/validate_golden.h. Tested by tests/program/golden_workflow_test.cc
-#include "harness/check/validate_golden.h"
+// See harness/judge/validate_golden.h. Tested by tests/program/golden_workflow_test.cc
+#include "harness/judge/validate_golden.h"
 
 #include <fmt/format.h>
 
