@@ -30,7 +30,7 @@ ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) 
     selection.scenarios.push_back(ScenarioOf(episode, all));
   SuiteRequest request{
       .selection = std::move(selection),
-      .changes = RequestOf(options, {}),
+      .changes = {options.Text("--grammar"), options.All("--set")},
       .root = context.root,
       .today = context.today,
       .pictures = false,
