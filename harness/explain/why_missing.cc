@@ -40,7 +40,7 @@ const Reason* FirstFailure(const Reasons& reasons) {
   return nullptr;
 }
 
-Reasons Failed(std::string what, std::string how) {
+Reasons OnlyFailed(std::string what, std::string how) {
   return {{.mark = Mark::kFailed, .what = std::move(what), .how = std::move(how)}};
 }
 
@@ -293,17 +293,17 @@ MissingReasons::Fate MissingReasons::OfLength(const CandidateOutcome& outcome) {
   const Rule& rule = past_.RuleOf(outcome.instance);
   switch (outcome.kind) {
     case CandidateOutcome::Kind::kTooShort:
-      return {"too short", Failed("lasting " + QuantityText(rule.lasting_s, grammar::kSeconds),
-                                  "it lasted only " + Lasted(outcome))};
+      return {"too short", OnlyFailed("lasting " + QuantityText(rule.lasting_s, grammar::kSeconds),
+                                      "it lasted only " + Lasted(outcome))};
     case CandidateOutcome::Kind::kTooLong:
       return {"too long",
-              Failed("lasting .. to " + QuantityText(rule.lasting_most_s, grammar::kSeconds),
-                     "it lasted " + Lasted(outcome))};
+              OnlyFailed("lasting .. to " + QuantityText(rule.lasting_most_s, grammar::kSeconds),
+                         "it lasted " + Lasted(outcome))};
     default:
       return {"too few",
-              Failed("at least " + std::to_string(rule.As<grammar::WhileRule>().at_least),
-                     "there " + std::string(outcome.cause == 1 ? "was " : "were ") +
-                         std::to_string(outcome.cause))};
+              OnlyFailed("at least " + std::to_string(rule.As<grammar::WhileRule>().at_least),
+                         "there " + std::string(outcome.cause == 1 ? "was " : "were ") +
+                             std::to_string(outcome.cause))};
   }
 }
 
@@ -312,11 +312,11 @@ MissingReasons::Fate MissingReasons::Unconfirmed(const CandidateOutcome& outcome
   const InstanceId by = past_.Referred(outcome.instance, rule.confirmed_by);
   const InstanceId within = past_.Referred(outcome.instance, rule.confirmed_within);
   const bool episode = outcome.cause >= past_.frames();
-  Fate fate{"not confirmed", Failed("confirmed by " + Label(past_, by),
-                                    "it did not begin before " +
-                                        (episode ? std::string("the episode ended")
-                                                 : Label(past_, within) + " was over") +
-                                        " at " + clauses_.Time(outcome.cause))};
+  Fate fate{"not confirmed", OnlyFailed("confirmed by " + Label(past_, by),
+                                        "it did not begin before " +
+                                            (episode ? std::string("the episode ended")
+                                                     : Label(past_, within) + " was over") +
+                                            " at " + clauses_.Time(outcome.cause))};
   const Window wait{outcome.span.end.frame, std::min(outcome.cause, past_.frames() - 1)};
   fate.because.back().because = OfInstance(by, wait, depth + 1).reasons;
   return fate;
@@ -337,18 +337,18 @@ MissingReasons::Fate MissingReasons::WithoutEnd(const CandidateOutcome& outcome,
       return fate;
     }
     case CandidateOutcome::Kind::kTooLate:
-      return {"dropped", Failed(Awaited(instance),
-                                "it did not come within " + within + ", " + HowLate(outcome))};
+      return {"dropped", OnlyFailed(Awaited(instance),
+                                    "it did not come within " + within + ", " + HowLate(outcome))};
     case CandidateOutcome::Kind::kCame:
       return {"what must not come came",
-              Failed(Awaited(instance),
-                     "it came after " + Lasted(outcome) + ", at " +
-                         At(outcome.span.end.tick, past_.entity_table().ticks_per_second))};
+              OnlyFailed(Awaited(instance),
+                         "it came after " + Lasted(outcome) + ", at " +
+                             At(outcome.span.end.tick, past_.entity_table().ticks_per_second))};
     default:
-      return {"dropped",
-              Failed(Awaited(instance), !rule.absence ? "the episode ended before"
-                                                      : "it is decided only " + within +
-                                                            " later, the episode ended before")};
+      return {"dropped", OnlyFailed(Awaited(instance),
+                                    !rule.absence ? "the episode ended before"
+                                                  : "it is decided only " + within +
+                                                        " later, the episode ended before")};
   }
 }
 
