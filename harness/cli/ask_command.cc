@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend ask: questions in the paper's language, answered by SWI-Prolog with
+// prehend episode ask: questions in the paper's language, answered by SWI-Prolog with
 // harness/knowledge/prehend.pl. Tested by tests/program/knowledge_test.cc
 #include <fmt/format.h>
 
@@ -157,15 +157,18 @@ ExitCode RunAsk(const ParsedOptions& options, const CommandContext& context) {
 
 Command AskCommand() {
   return {
-      .name = "ask",
+      .name = "episode ask",
       .summary = "Ask recorded episodes in the language of KnowRob (Prolog)",
-      .examples = {"ask kb \"entity(Act, [an, action, [type, 'Sliding']]), occurs(Act, [S, E])\"",
-                   "ask kb \"entity(Obj, [an, object, [type, 'Handle']]), holds(part_of(Obj, "
-                   "Door))\"",
-                   "ask kb --show shown \"entity(Act, [an, action, [type, 'Grasping'], [object, "
-                   "[an, object, [name, Obj], [type, 'Handle']]]]), occurs(Act, [S, E]), "
-                   "show(world(S)), show(trajectory(Obj), [S, E])\""},
-      .options = {{.name = "folder", .help = "what 'prehend knowledge' wrote", .required = true},
+      .examples =
+          {"episode ask kb \"entity(Act, [an, action, [type, 'Sliding']]), occurs(Act, [S, E])\"",
+           "episode ask kb \"entity(Obj, [an, object, [type, 'Handle']]), holds(part_of(Obj, "
+           "Door))\"",
+           "episode ask kb --show shown \"entity(Act, [an, action, [type, 'Grasping'], [object, "
+           "[an, object, [name, Obj], [type, 'Handle']]]]), occurs(Act, [S, E]), "
+           "show(world(S)), show(trajectory(Obj), [S, E])\""},
+      .options = {{.name = "folder",
+                   .help = "what 'prehend episode knowledge' wrote",
+                   .required = true},
                   {.name = "query", .help = "docs/knowledge.md explains it", .required = true},
                   {.name = "--show",
                    .help = "draw what the query shows into this folder",

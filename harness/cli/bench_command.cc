@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend bench. Tested by tests/program/command_line_test.cc
+// prehend grammar bench. Tested by tests/program/command_line_test.cc
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -65,9 +65,10 @@ ExitCode RunBench(const ParsedOptions& options, const CommandContext& context) {
 }  // namespace
 
 Command BenchCommand() {
-  return {.name = "bench",
+  return {.name = "grammar bench",
           .summary = "Measure how fast a grammar is evaluated on this machine",
-          .examples = {"bench", "bench take.jsonl --grammar my/rules.grammar", "bench --json"},
+          .examples = {"grammar bench", "grammar bench take.jsonl --grammar my/rules.grammar",
+                       "grammar bench --json"},
           .options = {{.name = "episode",
                        .help = "a scenario, an episode file or a recording whose frames are\n"
                                "watched; default: milk_carton_wrap"},

@@ -14,45 +14,11 @@
 #include "harness/base/project_paths.h"
 #include "harness/base/shell_quote.h"
 #include "harness/base/text_file.h"
-#include "harness/command/parse_arguments.h"
+#include "harness/cli/command_tree.h"
 #include "harness/command/preconditions.h"
 
 namespace prehend::harness {
 namespace {
-
-std::vector<Command> Commands() {
-  // Ten times what the longest scenario takes on a slow machine; there may be many episodes.
-  // Grammars are tried with hundreds of settings on them.
-  constexpr double kOne_s = 600, kMany_s = 3600, kSettings_s = 86'400;
-  return {Limited(ListCommand(), kOne_s),
-          Limited(ValidateCommand(), kOne_s),
-          Limited(RunCommand(), kOne_s),
-          CheckCommand(),
-          Limited(AcceptCommand(), kMany_s),
-          Limited(ReviewCommand(), kOne_s),
-          Limited(RenderCommand(), kOne_s),
-          Limited(PosesCommand(), kOne_s),
-          NewCommand(),
-          SchemaCommand(),
-          BenchCommand(),
-          Limited(ImportCommand(), kOne_s),
-          Limited(ResegmentCommand(), kMany_s),
-          Limited(QueryCommand(), kMany_s),
-          Limited(ScoreCommand(), kMany_s),
-          Limited(ExplainCommand(), kOne_s),
-          Limited(TracksCommand(), kOne_s),
-          Limited(EpisodesCommand(), kMany_s),
-          Limited(MigrateCommand(), kMany_s),
-          Limited(ReplayCommand(), kMany_s),
-          Limited(ReportCommand(), kMany_s),
-          Limited(SweepCommand(), kSettings_s),
-          Limited(MarginsCommand(), kSettings_s),
-          Limited(FigureCommand(), kMany_s),
-          Limited(KnowledgeCommand(), kMany_s),
-          AskCommand(),
-          WatchCommand(),
-          Limited(TryCommand(), kOne_s)};
-}
 
 bool IsSet(const char* variable) {
   const char* value = std::getenv(variable);
@@ -66,25 +32,11 @@ std::string Today() {
   return fmt::format("{:04}-{:02}-{:02}", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday);
 }
 
-ProgramDescription Description() {
-  return {
-      .version = "prehend " PREHEND_VERSION,
-      .summary =
-          "Simulate manipulation, segment it with activity grammars, compare it with goldens.",
-      .footer =
-          "Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 simulation or internal "
-          "failure,\n"
-          "4 nothing was selected or found, 5 goldens wait for acceptance.\n"
-          "The project is the folder that PREHEND_HOME names; otherwise the nearest folder, the "
-          "working\none or above, with a prehend.yaml; otherwise the checkout of the program."};
-}
-
 ExitCode Report(const UsageError& error) {
   std::cerr << "prehend: " << error.message << "\n";
   if (!error.corrected.empty()) std::cerr << "  again: " << CommandText(error.corrected) << "\n";
-  std::vector<std::string> help = {"--help"};
-  if (!error.command.empty()) help.insert(help.begin(), error.command);
-  std::cerr << "  see: " << CommandText(help) << "\n";
+  std::cerr << "  see: " << ProgramName() << " " << error.command
+            << (error.command.empty() ? "" : " ") << "--help\n";
   return ExitCode::kBadInput;
 }
 
@@ -143,8 +95,8 @@ ExitCode RunCommandLine(int argc, const char* const* argv) {
       std::cerr << "prehend: " << why << "\n";
       return ExitCode::kBadInput;
     }
-    const std::vector<Command> commands = Commands();
-    const ParsedArguments parsed = ParseArguments(Description(), commands, words);
+    const std::vector<Command> commands = AllCommands();
+    const ParsedArguments parsed = ParseArguments(DescribeProgram(), commands, words);
     if (const auto* error = std::get_if<UsageError>(&parsed)) return Report(*error);
     const auto* const info = std::get_if<InfoText>(&parsed);
     const ExitCode code = info ? Print(*info) : Run(std::get<ChosenCommand>(parsed), words);

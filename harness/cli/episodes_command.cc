@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend episodes: what episode files hold. prehend replay: their frames, checked against their
-// state hashes. prehend migrate: files of an older version. Tested by
-// tests/program/episodes_test.cc and tests/harness/episodes/migrate_test.cc
+// prehend episode list: what episode files hold. prehend episode verify: their frames, checked
+// against their state hashes. prehend episode migrate: files of an older version. Tested by
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -61,21 +60,21 @@ ExitCode RunEpisodes(const ParsedOptions& options, const CommandContext& context
 }  // namespace
 
 Command EpisodesCommand() {
-  return {
-      .name = "episodes",
-      .summary = "List what episode files hold",
-      .examples = {"episodes suite.episodes", "episodes monday.episodes tuesday.episodes --json"},
-      .options = {{.name = "files",
-                   .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
-                   .required = true,
-                   .repeatable = true},
-                  {.name = "--json", .help = "print a JSON array instead of a table"}},
-      .run = RunEpisodes};
+  return {.name = "episode list",
+          .summary = "List what episode files hold",
+          .examples = {"episode list suite.episodes",
+                       "episode list monday.episodes tuesday.episodes --json"},
+          .options = {{.name = "files",
+                       .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
+                       .required = true,
+                       .repeatable = true},
+                      {.name = "--json", .help = "print a JSON array instead of a table"}},
+          .run = RunEpisodes};
 }
 
 namespace {
 
-ExitCode RunReplay(const ParsedOptions& options, const CommandContext& context) {
+ExitCode RunVerify(const ParsedOptions& options, const CommandContext& context) {
   const auto selected = FindEpisodesOrComplain("files", options, context, {Need::kEpisodeFile});
   if (!selected) return selected.error();
   const std::vector<Resegmented> results =
@@ -121,10 +120,11 @@ ExitCode RunReplay(const ParsedOptions& options, const CommandContext& context) 
 
 }  // namespace
 
-Command ReplayCommand() {
-  return {.name = "replay",
+Command VerifyCommand() {
+  return {.name = "episode verify",
           .summary = "Read every frame of recorded episodes again and check them by their hashes",
-          .examples = {"replay suite.episodes", "replay suite.episodes --episode 'slide/*'"},
+          .examples = {"episode verify suite.episodes",
+                       "episode verify suite.episodes --episode 'slide/*'"},
           .options = {{.name = "files",
                        .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
                        .required = true,
@@ -138,7 +138,7 @@ Command ReplayCommand() {
                        .placeholder = "N",
                        .rule = IntegersFrom(1, kMaxJobs)},
                       {.name = "--json", .help = "print a JSON array instead of text"}},
-          .run = RunReplay};
+          .run = RunVerify};
 }
 
 namespace {
@@ -156,9 +156,9 @@ ExitCode RunMigrate(const ParsedOptions& options, const CommandContext& context)
 }  // namespace
 
 Command MigrateCommand() {
-  return {.name = "migrate",
+  return {.name = "episode migrate",
           .summary = "Write an episode file of an older version as one of this version",
-          .examples = {"migrate old.episodes -o new.episodes"},
+          .examples = {"episode migrate old.episodes -o new.episodes"},
           .options = {{.name = "file",
                        .help = "an episode file that other commands refuse as too old",
                        .required = true},

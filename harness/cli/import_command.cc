@@ -87,8 +87,8 @@ Command ImportCommand() {
       .name = "import",
       .summary = "Make a recording of a tracker's poses, or an episode of a recording",
       .examples = {"import poses.csv --map bodies.yaml --check",
-                   "import poses.csv --map bodies.yaml -o take.jsonl", "resegment take.jsonl",
-                   "import take.jsonl -o takes.episodes"},
+                   "import poses.csv --map bodies.yaml -o take.jsonl",
+                   "episode resegment take.jsonl", "import take.jsonl -o takes.episodes"},
       .options = {{.name = "poses",
                    .help = "a file with poses of hands and things, CSV, BVH, MCAP or a bag\n"
                            "(docs/motion-capture.md), or a recording (docs/recording-format.md)",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend knowledge: recorded episodes for knowledge bases. Tested by
+// prehend episode knowledge: recorded episodes for knowledge bases. Tested by
 // tests/program/knowledge_test.cc
 #include <fmt/format.h>
 
@@ -43,10 +43,10 @@ ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& contex
 }  // namespace
 
 Command KnowledgeCommand() {
-  return {.name = "knowledge",
+  return {.name = "episode knowledge",
           .summary = "Write recorded episodes for knowledge bases (RDF, OWL, NEEM)",
-          .examples = {"knowledge suite.episodes -o kb",
-                       "knowledge suite.episodes --episode 'slide/*' --to owl --to neem -o kb"},
+          .examples = {"episode knowledge suite.episodes -o kb",
+                       "episode knowledge suite.episodes --episode 'slide/*' --to owl --to neem -o kb"},
           .options = {{.name = "files",
                        .help = "episode files (docs/episodes.md); scenarios, which are played\n"
                                "first and kept in the folder",

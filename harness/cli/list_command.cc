@@ -29,7 +29,7 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
   for (const ScenarioFile& file : selection->scenarios) {
     if (file.episode)
       return Complain(context, ExitCode::kBadInput,
-                      "list shows scenarios; '" + CommandText({"episodes", file.path}) +
+                      "list shows scenarios; '" + CommandText({"episode", "list", file.path}) +
                           "' shows what an episode file has");
     if (const std::string lack = Lacks(NameOf(file), Need::kScenario); !lack.empty())
       return Complain(context, ExitCode::kBadInput, lack);

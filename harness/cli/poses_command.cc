@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend poses: where everything is at a moment, as a scenario would say it. Tested by
+// prehend scenario poses: where everything is at a moment, as a scenario would say it. Tested by
 // tests/program/poses_test.cc
 #include <fmt/format.h>
 
@@ -143,19 +143,21 @@ ExitCode RunPoses(const ParsedOptions& options, const CommandContext& context) {
 }  // namespace
 
 Command PosesCommand() {
-  return {.name = "poses",
-          .summary = "Print where hands and things are at a moment, ready to paste",
-          .examples = {"poses milk_carton_wrap", "poses milk_carton_wrap --at grasping.begin",
-                       "poses suite.episodes --episode slide/hop_divides_a_slide --at 1.5 --json"},
-          .options = {EpisodeArgument(),
-                      EpisodeOption(),
-                      {.name = "--at",
-                       .help = "when: EVENT.begin, EVENT.end, or seconds; default: 0",
-                       .placeholder = "TIME"},
-                      GrammarOption(),
-                      SettingsOption(),
-                      {.name = "--json", .help = "print one JSON object"}},
-          .run = RunPoses};
+  return {
+      .name = "scenario poses",
+      .summary = "Print where hands and things are at a moment, ready to paste",
+      .examples =
+          {"scenario poses milk_carton_wrap", "scenario poses milk_carton_wrap --at grasping.begin",
+           "scenario poses suite.episodes --episode slide/hop_divides_a_slide --at 1.5 --json"},
+      .options = {EpisodeArgument(),
+                  EpisodeOption(),
+                  {.name = "--at",
+                   .help = "when: EVENT.begin, EVENT.end, or seconds; default: 0",
+                   .placeholder = "TIME"},
+                  GrammarOption(),
+                  SettingsOption(),
+                  {.name = "--json", .help = "print one JSON object"}},
+      .run = RunPoses};
 }
 
 }  // namespace prehend::harness

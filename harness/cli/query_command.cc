@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend query: questions to recorded episodes. Tested by tests/program/query_test.cc
+// prehend episode query: questions to recorded episodes. Tested by tests/program/query_test.cc
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -205,14 +205,15 @@ Option SecondsOption(const std::string& name, const std::string& help) {
 
 Command QueryCommand() {
   return {
-      .name = "query",
+      .name = "episode query",
       .summary = "Find events in recorded episodes",
-      .examples = {"query suite.episodes --event sliding --class object=CerealBox",
-                   "query suite.episodes --event grasping --class object=Handle --part-of "
-                   "object=FridgeDoor",
-                   "query suite.episodes --event pick_and_place --parts --json",
-                   "query *.episodes --event sliding --relation 'meets transporting' --csv",
-                   "query suite.episodes --event grasping --class object=Handle --show shown"},
+      .examples =
+          {"episode query suite.episodes --event sliding --class object=CerealBox",
+           "episode query suite.episodes --event grasping --class object=Handle --part-of "
+           "object=FridgeDoor",
+           "episode query suite.episodes --event pick_and_place --parts --json",
+           "episode query *.episodes --event sliding --relation 'meets transporting' --csv",
+           "episode query suite.episodes --event grasping --class object=Handle --show shown"},
       .options = {{.name = "files",
                    .help = "episode files (docs/episodes.md); scenarios and recordings as JSON\n"
                            "Lines, which are played or imported first",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend resegment: recorded episodes under another grammar, without physics.
+// prehend episode resegment: recorded episodes under another grammar, without physics.
 // Tested by tests/program/recording_test.cc and tests/program/episodes_test.cc
 #include <fmt/format.h>
 
@@ -165,13 +165,13 @@ std::string CompareProblem(const std::string& value) {
 
 Command ResegmentCommand() {
   return {
-      .name = "resegment",
+      .name = "episode resegment",
       .summary = "Segment recorded episodes again, with any grammar",
-      .examples = {"run milk_carton_wrap --record milk.episodes", "resegment milk.episodes",
-                   "resegment milk.episodes --grammar my/rules.grammar --json",
-                   "resegment milk.jsonl --set lift_rise=10cm",
-                   "resegment monday.episodes tuesday.episodes --compare recorded",
-                   "resegment suite.episodes --episode 'slide/*' --set slide_speed=3cm/s"},
+      .examples = {"run milk_carton_wrap --record milk.episodes", "episode resegment milk.episodes",
+                   "episode resegment milk.episodes --grammar my/rules.grammar --json",
+                   "episode resegment milk.jsonl --set lift_rise=10cm",
+                   "episode resegment monday.episodes tuesday.episodes --compare recorded",
+                   "episode resegment suite.episodes --episode 'slide/*' --set slide_speed=3cm/s"},
       .options = {{.name = "recording",
                    .help = "episode files (docs/episodes.md), recordings as JSON Lines\n"
                            "(docs/recording-format.md) or scenarios, which are played first",

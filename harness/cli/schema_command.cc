@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend schema. Tested by tests/program/command_line_test.cc
+// prehend scenario schema. Tested by tests/program/command_line_test.cc
 
 #include "harness/command/command.h"
 #include "harness/format/scenario_fields.h"
@@ -16,9 +16,9 @@ ExitCode RunSchema(const ParsedOptions& options, const CommandContext& context) 
 }  // namespace
 
 Command SchemaCommand() {
-  return {.name = "schema",
+  return {.name = "scenario schema",
           .summary = "Print the JSON Schema of scenario files",
-          .examples = {"schema > scenarios/scenario.schema.json"},
+          .examples = {"scenario schema > scenarios/scenario.schema.json"},
           .options = {{.name = "--import-map",
                        .help = "that of the maps of 'prehend import' (docs/motion-capture.md)"}},
           .run = RunSchema};

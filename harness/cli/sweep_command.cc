@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend sweep and margins: a grammar's parameters on recorded episodes. Tested by
+// prehend grammar sweep and margins: a grammar's parameters on recorded episodes. Tested by
 // tests/program/sweep_test.cc
 #include <fmt/format.h>
 
@@ -184,11 +184,12 @@ Option JobsOption() {
 }  // namespace
 
 Command MarginsCommand() {
-  return {.name = "margins",
+  return {.name = "grammar margins",
           .summary = "How far each parameter of a grammar may be from its value",
-          .examples = {"margins suite.episodes --truth oracle --grammar my/rules.grammar",
-                       "margins take1.jsonl take2.jsonl --truth labels --map labels.yaml --grammar "
-                       "pick_and_place_from_motion -o margins.csv"},
+          .examples =
+              {"grammar margins suite.episodes --truth oracle --grammar my/rules.grammar",
+               "grammar margins take1.jsonl take2.jsonl --truth labels --map labels.yaml --grammar "
+               "pick_and_place_from_motion -o margins.csv"},
           .options = {{.name = "files",
                        .help = "episode files, or with labels also recordings as JSON Lines",
                        .required = true,
@@ -222,13 +223,14 @@ Command MarginsCommand() {
 
 Command SweepCommand() {
   return {
-      .name = "sweep",
+      .name = "grammar sweep",
       .summary = "Try a grammar's parameters on recorded episodes",
-      .examples = {"sweep suite.episodes --over reach_radius=10cm..50cm:9 -o sweep.csv",
-                   "sweep suite.episodes --over reach_radius=10cm..50cm:9 --over "
-                   "lift_rise=2cm..8cm:7 --truth oracle --picture sweep.png",
-                   "sweep *.episodes --grammar my/rules.grammar --over still_for=50ms..200ms:4 "
-                   "--truth recorded"},
+      .examples =
+          {"grammar sweep suite.episodes --over reach_radius=10cm..50cm:9 -o sweep.csv",
+           "grammar sweep suite.episodes --over reach_radius=10cm..50cm:9 --over "
+           "lift_rise=2cm..8cm:7 --truth oracle --picture sweep.png",
+           "grammar sweep *.episodes --grammar my/rules.grammar --over still_for=50ms..200ms:4 "
+           "--truth recorded"},
       .options = {{.name = "files",
                    .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
                    .required = true,

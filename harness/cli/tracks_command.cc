@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend tracks: conditions and signals over time, as CSV or JSON.
+// prehend grammar tracks: conditions and signals over time, as CSV or JSON.
 // Tested by tests/program/explain_command_test.cc
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -80,11 +80,11 @@ ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) 
 }  // namespace
 
 Command TracksCommand() {
-  return {.name = "tracks",
+  return {.name = "grammar tracks",
           .summary = "Write conditions and signals over time, for plots",
-          .examples = {"tracks milk_carton_wrap -o milk.csv",
-                       "tracks milk_carton_wrap --only grasping --only speed_along",
-                       "tracks milk.jsonl --grammar my/rules.grammar -o milk.json"},
+          .examples = {"grammar tracks milk_carton_wrap -o milk.csv",
+                       "grammar tracks milk_carton_wrap --only grasping --only speed_along",
+                       "grammar tracks milk.jsonl --grammar my/rules.grammar -o milk.json"},
           .options = {EpisodeArgument(),
                       EpisodeOption(),
                       {.name = "--output",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend try: drawn episodes as unit tests of a grammar. Tested by
+// prehend grammar try: drawn episodes as unit tests of a grammar. Tested by
 // tests/program/try_command_test.cc
 #include <fmt/format.h>
 
@@ -128,11 +128,11 @@ ExitCode RunTry(const ParsedOptions& options, const CommandContext& context) {
 }  // namespace
 
 Command TryCommand() {
-  return {.name = "try",
+  return {.name = "grammar try",
           .summary = "Try a grammar on drawn episodes: unit tests of rules",
-          .examples = {"try my.grammar my_drawings.txt",
-                       "try pick_and_place my_drawings.txt --set slide_distance=\"3 cm\"",
-                       "try my.grammar my_drawings.txt --json"},
+          .examples = {"grammar try my.grammar my_drawings.txt",
+                       "grammar try pick_and_place my_drawings.txt --set slide_distance=\"3 cm\"",
+                       "grammar try my.grammar my_drawings.txt --json"},
           .options = {{.name = "grammar",
                        .help = "a name of the library or a .grammar file",
                        .required = true},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend watch: events of a recording while it is written, each when it is decided.
+// prehend grammar watch: events of a recording while it is written, each when it is decided.
 // Tested by tests/program/watch_test.cc
 #include <fmt/format.h>
 
@@ -180,9 +180,10 @@ ExitCode RunWatch(const ParsedOptions& options, const CommandContext& context) {
 
 Command WatchCommand() {
   return {
-      .name = "watch",
+      .name = "grammar watch",
       .summary = "Print events while a recording is written, each when it is decided",
-      .examples = {"watch - --grammar pick_and_place_from_motion", "watch tracker.fifo --json"},
+      .examples = {"grammar watch - --grammar pick_and_place_from_motion",
+                   "grammar watch tracker.fifo --json"},
       .options = {{.name = "recording",
                    .help = "lines of a recording (docs/recording-format.md): -, standard input, a "
                            "pipe or a file;\nor an episode file, or a scenario",

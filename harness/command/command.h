@@ -60,7 +60,7 @@ Command ExplainCommand();
 Command TracksCommand();
 Command EpisodesCommand();
 Command MigrateCommand();
-Command ReplayCommand();
+Command VerifyCommand();
 Command ReportCommand();
 Command QueryCommand();
 Command SweepCommand();

@@ -45,7 +45,7 @@ tl::expected<OtherView, ExitCode> GrammarView(const PlayedRun& played, const std
   if (!played.simulated)
     return tl::unexpected(Complain(context, ExitCode::kBadInput,
                                    "--against: of a recording that was imported, only one grammar "
-                                   "can be shown; resegment --grammar shows the other"));
+                                   "can be shown; episode resegment --grammar shows the other"));
   const grammar::CompileResult compiled = LoadGrammar(context.root, grammar);
   if (!compiled.program) return tl::unexpected(Complain(context, compiled.diagnostics));
   OtherView view{

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "harness/base/shell_quote.h"
+#include "harness/command/program_help.h"
 
 namespace prehend::harness {
 namespace {
@@ -36,14 +37,13 @@ void Declare(const Option& option, CLI::App& app) {
 }
 
 void Declare(const Command& command, CLI::App& app) {
-  CLI::App* declared = app.add_subcommand(command.name, command.summary);
   std::string footer = "Examples:";
   for (const std::string& example : command.examples)
     footer += "\n  " + ProgramName() + " " + example;
   if (!command.note.empty()) footer += "\n\n" + command.note;
-  declared->footer(footer);
-  declared->allow_extras();
-  for (const Option& option : command.options) Declare(option, *declared);
+  app.footer(footer);
+  app.allow_extras();
+  for (const Option& option : command.options) Declare(option, app);
 }
 
 /// The words with the first `wrong` replaced; also in "wrong=value".
@@ -108,24 +108,17 @@ ParsedArguments Chosen(const Command& command, const CLI::App& app) {
 }
 
 /// What CLI11 noticed itself, worded better where that can happen.
-UsageError Worded(const CLI::ParseError& error, const Command* command) {
+UsageError Worded(const CLI::ParseError& error, const Command& command) {
   const std::string message = error.what();
-  if (!command) return {message};
-  for (const Option& option : command->options) {
+  for (const Option& option : command.options) {
     if (message == option.name + " is required")
-      return {fmt::format("the argument '{}' is missing", option.name), command->name};
+      return {fmt::format("the argument '{}' is missing", option.name), command.name};
     if (message.starts_with(option.name + ":") && message.ends_with(" missing"))
       return {
           fmt::format("{0}: the value is missing; write {0} {1}", option.name, option.placeholder),
-          command->name};
+          command.name};
   }
-  return {message, command->name};
-}
-
-const Command* Find(const std::vector<Command>& commands, const CLI::App& app) {
-  const auto chosen = app.get_subcommands();
-  if (chosen.empty()) return nullptr;
-  return &*std::ranges::find(commands, chosen.front()->get_name(), &Command::name);
+  return {message, command.name};
 }
 
 /// CLI11 puts two empty lines before each group of options.
@@ -135,38 +128,75 @@ std::string HelpOf(const CLI::App& app) {
   return help;
 }
 
+/// `words` after those of the command's name.
+ParsedArguments ParseOptions(const Command& command, const std::vector<std::string>& words,
+                             std::ptrdiff_t words_of_name) {
+  CLI::App app(command.summary, "prehend " + command.name);
+  Declare(command, app);
+  try {
+    // CLI11 takes them reversed.
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend() - words_of_name));
+  } catch (const CLI::Success&) {
+    return InfoText{HelpOf(app)};
+  } catch (const CLI::ParseError& error) {
+    return Worded(error, command);
+  }
+  std::vector<std::string> extras = app.remaining();
+  // CLI11 leaves over the word that ends the options.
+  if (const auto end = std::ranges::find(extras, "--"); end != extras.end()) extras.erase(end);
+  if (extras.empty()) return Chosen(command, app);
+  return UnexpectedWord(app, extras.front(), command.name, words);
+}
+
+/// `typed`, the first word or the first two, names no command.
+UsageError UnknownCommand(const ProgramDescription& program, const std::vector<Command>& commands,
+                          const std::string& typed, const std::vector<std::string>& words) {
+  const auto corrected = [&](const std::string& now) {
+    std::vector<std::string> all(words.begin() + std::ranges::count(typed, ' ') + 1, words.end());
+    const std::size_t space = now.find(' ');
+    if (space != now.npos) all.insert(all.begin(), now.substr(space + 1));
+    all.insert(all.begin(), now.substr(0, space));
+    return all;
+  };
+  const std::string noun = typed.substr(0, typed.find(' '));
+  for (const OldName& name : program.old_commands) {
+    if (typed == name.old || (noun != typed && typed == noun + " " + name.old))
+      return {fmt::format("'{}' is called '{}' now", typed, name.now), "", corrected(name.now)};
+  }
+  std::vector<std::string> names;
+  for (const Command& command : commands) names.push_back(command.name);
+  for (const Noun& one : program.nouns) names.push_back(one.name);
+  UsageError error{fmt::format("unknown command '{}'", typed), noun == typed ? "" : noun};
+  const std::string near = grammar::NearestName(typed, names);
+  if (near.empty()) return error;
+  error.message += fmt::format("; did you mean '{}'?", near);
+  error.corrected = corrected(near);
+  return error;
+}
+
+bool IsHelp(const std::string& word) { return word == "-h" || word == "--help"; }
+
 }  // namespace
 
 ParsedArguments ParseArguments(const ProgramDescription& program,
                                const std::vector<Command>& commands,
                                const std::vector<std::string>& words) {
-  CLI::App app(program.summary, "prehend");
-  app.footer(program.footer);
-  app.set_version_flag("--version", program.version, "Print the version and exit");
-  app.allow_extras();
-  for (const Command& command : commands) Declare(command, app);
-  try {
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes them reversed
-  } catch (const CLI::CallForVersion& version) {
-    return InfoText{version.what() + std::string("\n")};
-  } catch (const CLI::Success&) {
-    return InfoText{HelpOf(app)};
-  } catch (const CLI::ParseError& error) {
-    return Worded(error, Find(commands, app));
+  if (words.empty()) return InfoText{ProgramHelp(program, commands), /*asked_for=*/false};
+  std::string name = words.front();
+  if (IsHelp(name)) return InfoText{ProgramHelp(program, commands)};
+  if (name == "--version") return InfoText{program.version + "\n"};
+  if (name.starts_with('-'))
+    return UnknownName("option", name.substr(0, name.find('=')), {"--help", "--version"}, "",
+                       words);
+  const auto noun = std::ranges::find(program.nouns, name, &Noun::name);
+  if (noun != program.nouns.end()) {
+    if (words.size() == 1) return InfoText{NounHelp(*noun, commands), /*asked_for=*/false};
+    if (IsHelp(words[1])) return InfoText{NounHelp(*noun, commands)};
+    name += " " + words[1];
   }
-  const Command* const command = Find(commands, app);
-  std::vector<std::string> extras = app.remaining(/*recurse=*/true);
-  // CLI11 leaves over the word that ends the options.
-  if (const auto end = std::ranges::find(extras, "--"); command && end != extras.end())
-    extras.erase(end);
-  if (command && extras.empty()) return Chosen(*command, *app.get_subcommand(command->name));
-  if (command)
-    return UnexpectedWord(*app.get_subcommand(command->name), extras.front(), command->name, words);
-  if (extras.empty()) return InfoText{HelpOf(app), /*asked_for=*/false};
-  if (extras.front().starts_with('-')) return UnexpectedWord(app, extras.front(), "", words);
-  std::vector<std::string> names;
-  for (const Command& known : commands) names.push_back(known.name);
-  return UnknownName("command", extras.front(), names, "", words);
+  const auto command = std::ranges::find(commands, name, &Command::name);
+  if (command == commands.end()) return UnknownCommand(program, commands, name, words);
+  return ParseOptions(*command, words, noun == program.nouns.end() ? 1 : 2);
 }
 
 }  // namespace prehend::harness

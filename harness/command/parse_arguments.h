@@ -12,11 +12,32 @@
 
 namespace prehend::harness {
 
+/// A noun, the first word of several commands: "episode" of "episode list".
+struct Noun {
+  std::string name;
+  std::string summary;
+};
+
+/// Commands under a heading of the program's help; nouns come below them.
+struct CommandGroup {
+  std::string title;
+  std::vector<std::string> names;
+};
+
+/// What a command was called once. It is no name any more: an error says the new one.
+struct OldName {
+  std::string old;
+  std::string now;
+};
+
 /// What the program says about itself.
 struct ProgramDescription {
   std::string version;  ///< all of `--version`
   std::string summary;
   std::string footer;  ///< below the list of commands
+  std::vector<CommandGroup> groups = {};
+  std::vector<Noun> nouns = {};
+  std::vector<OldName> old_commands = {};
 };
 
 /// A command to run. `command` is one of those that were given.
@@ -28,7 +49,7 @@ struct ChosenCommand {
 /// A text to print instead of running a command: help or version.
 struct InfoText {
   std::string text;
-  bool asked_for = true;  ///< otherwise nothing was typed at all
+  bool asked_for = true;  ///< otherwise no command was typed
 };
 
 struct UsageError {

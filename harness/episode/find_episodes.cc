@@ -128,7 +128,7 @@ tl::expected<EpisodeName, NotFound> FindEpisode(const std::string& typed, const 
   return tl::unexpected(
       NotFound{ExitCode::kNothing,
                fmt::format("{} has {} such episodes; --episode selects one, and '{}' shows all",
-                           typed, found->size(), CommandText({"episodes", typed}))});
+                           typed, found->size(), CommandText({"episode", "list", typed}))});
 }
 
 }  // namespace prehend::harness

@@ -16,7 +16,7 @@ std::string Lacks(const EpisodeName& episode, Need need) {
       if (episode.origin == Origin::kScenario) return "";
       return fmt::format("{} {}, so there is no scenario to simulate; '{}' prints its events", file,
                          is_recording ? "is a recording" : "was simulated before",
-                         CommandText({"resegment", file}));
+                         CommandText({"episode", "resegment", file}));
     case Need::kGroundTruth:
       if (!is_recording) return "";
       return episode.scenario +
@@ -27,7 +27,7 @@ std::string Lacks(const EpisodeName& episode, Need need) {
       return fmt::format(
           "{} was not simulated, so the bodies that a knowledge base describes are not known; '{}' "
           "writes its events",
-          episode.scenario, CommandText({"resegment", file, "--json"}));
+          episode.scenario, CommandText({"episode", "resegment", file, "--json"}));
     case Need::kRecordedEvents:
       if (episode.number) return "";
       return fmt::format("{} has no events that were recorded with it; '{}' keeps them", file,

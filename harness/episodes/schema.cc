@@ -159,10 +159,10 @@ void RefuseOthers(const Database& database, const std::string& path, Versions th
   if (version > these.last)
     throw DatabaseError(fmt::format("has version {} of the format already", version));
   if (version < these.first) {
-    throw DatabaseError(
-        fmt::format("has version {} of the format, this program reads version {}; '{}' writes a "
-                    "file of it that can be read",
-                    version, these.last, CommandText({"migrate", path, "-o", "NEW.episodes"})));
+    throw DatabaseError(fmt::format(
+        "has version {} of the format, this program reads version {}; '{}' writes a "
+        "file of it that can be read",
+        version, these.last, CommandText({"episode", "migrate", path, "-o", "NEW.episodes"})));
   }
   if (IsAsMade(database)) return;
   // Tables and columns that a program reads must be there; what others added is left alone.

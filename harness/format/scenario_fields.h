@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scenario format, version 1: every key, declared once. The reader and `prehend schema` both
-// come from here; docs/scenario-format.md explains it to people. Tested by
+// The scenario format, version 1: every key, declared once. The reader and `prehend scenario
+// schema` both come from here; docs/scenario-format.md explains it to people. Tested by
 // tests/harness/format/scenario_fields_test.cc
 #pragma once
 

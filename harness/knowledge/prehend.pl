@@ -1,6 +1,6 @@
 % SPDX-License-Identifier: Apache-2.0
 % Questions to recorded episodes in the language of Haidu & Beetz (arXiv 2011.13689, section V): entity/2, occurs/2,
-% holds/1, show/1,2. It reads what `prehend knowledge` wrote; docs/knowledge.md is its manual. In SWI-Prolog:
+% holds/1, show/1,2. It reads what `prehend episode knowledge` wrote; docs/knowledge.md is its manual. In SWI-Prolog:
 %
 %   ?- use_module('harness/knowledge/prehend').
 %   ?- load_knowledge(kb).
@@ -57,7 +57,7 @@ load_knowledge(Folder) :-
     ),
     atom_concat(Folder, '/prehend.ttl', Words),
     (   exists_file(Words) -> true
-    ;   throw(refused("~w has no prehend.ttl: 'prehend knowledge' writes such a folder"-[Folder]))
+    ;   throw(refused("~w has no prehend.ttl: 'prehend episode knowledge' writes such a folder"-[Folder]))
     ),
     load_file(Words, [silent(true)]),
     forall(( member(Part, ['/maps/*.ttl', '/episodes/*.ttl']),
@@ -270,7 +270,7 @@ part_of(S, O, Property) :- rdf3(S, Property, Between), part_of(Between, O, Prope
 
 % --- pictures --------------------------------------------------------------------------------------------------------
 
-% What is to be drawn is collected with the answer; `prehend ask --show` draws it by replay.
+% What is to be drawn is collected with the answer; `prehend episode ask --show` draws it by replay.
 show(What) :- show(What, none).
 show(What, When) :-
     (   shown(What, When, Shown) -> true

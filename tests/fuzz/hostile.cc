@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
       {Kind::kBag, BagFiles()}};
   for (const auto& [kind, file] : {std::pair(Kind::kEaf, folder / "seed.eaf"),
                                    std::pair(Kind::kTextGrid, folder / "seed.TextGrid")}) {
-    Run({program, "resegment", recording.string(), "--labels", file.string()}, folder);
+    Run({program, "episode", "resegment", recording.string(), "--labels", file.string()}, folder);
     made[kind] = {ReadFile(file)};
     if (made[kind].front().empty()) {
       std::printf("no labels were written to %s\n", file.c_str());
@@ -167,12 +167,15 @@ int main(int argc, char** argv) {
     std::ofstream(path, std::ios::binary) << file.text;
     std::vector<std::string> words = {program, "validate", path.string()};
     if (file.kind == Kind::kRecording) {
-      constexpr const char* kReaders[] = {"resegment", "explain", "tracks"};
-      words[1] = kReaders[i % 3];
+      const std::vector<std::string> readers[] = {
+          {"episode", "resegment"}, {"explain"}, {"grammar", "tracks"}};
+      words = readers[i % 3];
+      words.insert(words.begin(), program);
+      words.push_back(path.string());
     } else if (file.kind == Kind::kScenario && i % 5 == 0) {
       words = {program, "run", path.string(), "--time-limit-s", "4", "--memory-limit-mb", "250"};
     } else if (file.kind == Kind::kGrammar && i % 3 == 0) {
-      words = {program, "resegment", recording.string(), "--grammar", path.string()};
+      words = {program, "episode", "resegment", recording.string(), "--grammar", path.string()};
     } else if (const auto map = kMaps.find(file.kind); map != kMaps.end()) {
       words = {program,
                "import",

@@ -20,22 +20,23 @@ TEST_F(CommandLine, BenchMeasuresAGrammarOnAnEpisode) {
   const std::string take = (root_ / "take.episodes").string();
   ASSERT_EQ(Do("run carton_rests --record " + take).exit_code, 0);
   for (const auto& [episode, rows] : {std::pair<std::string, int>{"carton_rests", 2}, {take, 1}}) {
-    const Said json = Do("bench " + episode + " --grammar contact --quick --json");
+    const Said json = Do("grammar bench " + episode + " --grammar contact --quick --json");
     EXPECT_EQ(json.exit_code, 0) << json.err;
     const auto figures = nlohmann::json::parse(json.out)["figures"];
     ASSERT_EQ(figures.size(), rows);
     EXPECT_EQ(figures[0]["what"], "contact on rest/carton_rests");
     for (const auto& figure : figures) EXPECT_GT(figure["operations_per_s"], 0) << figure;
   }
-  EXPECT_EQ(Do("bench no_such_scenario").exit_code, 4);
+  EXPECT_EQ(Do("grammar bench no_such_scenario").exit_code, 4);
 }
 
 TEST_F(CommandLine, HelpIsEverywhere) {
   const Said all = Do("--help");
   EXPECT_EQ(all.exit_code, 0);
-  for (const std::string command :
-       {"list", "validate", "run", "check", "accept", "render", "new", "schema", "bench"}) {
-    EXPECT_NE(all.out.find("  " + command), std::string::npos) << command;
+  for (const std::string command : {"list", "validate", "run", "check", "accept", "render", "new",
+                                    "scenario schema", "grammar bench"}) {
+    EXPECT_NE(all.out.find("  " + command.substr(0, command.find(' '))), std::string::npos)
+        << command;
     const Said ended = Do(command + " --help");
     EXPECT_EQ(ended.exit_code, 0);
     EXPECT_NE(ended.out.find("Examples:\n  prehend " + command), std::string::npos) << ended.out;
@@ -66,7 +67,8 @@ TEST_F(CommandLine, UsageErrorsEndWithASuggestion) {
        "carton_rests "
        "--json\n  see: prehend run --help\n"},
       {"run", 2, "prehend: the argument 'scenario' is missing\n  see: prehend run --help\n"},
-      {"schema more", 2, "prehend: unexpected argument 'more'\n  see: prehend schema --help\n"},
+      {"scenario schema more", 2,
+       "prehend: unexpected argument 'more'\n  see: prehend scenario schema --help\n"},
       {"check --jobs none", 2,
        "prehend: --jobs: found 'none', wanted a whole number from 1 to 256\n  see: prehend check "
        "--help\n"},
@@ -162,7 +164,7 @@ TEST_F(CommandLine, ARecordingIsNotAScenario) {
     EXPECT_EQ(said.out, "");
     EXPECT_EQ(said.err, "prehend: " + file +
                             " is a recording, so there is no scenario to simulate; 'prehend "
-                            "resegment " +
+                            "episode resegment " +
                             file + "' prints its events\n");
   }
   const Said scored = Do("score " + file);
@@ -179,8 +181,8 @@ TEST_F(CommandLine, PrintedCommandsHaveTheNameThatTheProgramWasCalledBy) {
   EXPECT_EQ(Prehend({"run", "carton_rest"}, environment).err,
             "prehend: no scenario 'carton_rest'; did you mean 'carton_rests'? ('./run list' shows "
             "all)\n  again: ./run run carton_rests\n");
-  EXPECT_EQ(Prehend({"schema", "more"}, environment).err,
-            "prehend: unexpected argument 'more'\n  see: ./run schema --help\n");
+  EXPECT_EQ(Prehend({"scenario", "schema", "more"}, environment).err,
+            "prehend: unexpected argument 'more'\n  see: ./run scenario schema --help\n");
   const Said help = Prehend({"list", "--help"}, environment);
   EXPECT_NE(help.out.find("\n  ./run list --json\n"), std::string::npos) << help.out;
 }
@@ -207,7 +209,7 @@ TEST_F(CommandLine, ListAndSchema) {
             "rest/carton_rests  a carton stands on a table and nobody touches it  quiet\n");
   EXPECT_EQ(nlohmann::json::parse(Do("list --json").out)["scenarios"][0]["scenario"],
             "rest/carton_rests");
-  EXPECT_TRUE(nlohmann::json::parse(Do("schema").out).contains("$schema"));
+  EXPECT_TRUE(nlohmann::json::parse(Do("scenario schema").out).contains("$schema"));
 }
 
 TEST_F(CommandLine, ValidateReadsScenariosGrammarsAndGoldens) {

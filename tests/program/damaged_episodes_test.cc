@@ -22,9 +22,9 @@ class DamagedEpisodes : public testing::Test {
   }
 
   std::vector<std::vector<std::string>> Questions() const {
-    return {{"resegment", file_, "--json"},
-            {"replay", file_},
-            {"query", file_, "--event", "*", "--parts", "--json"},
+    return {{"episode", "resegment", file_, "--json"},
+            {"episode", "verify", file_},
+            {"episode", "query", file_, "--event", "*", "--parts", "--json"},
             {"check", file_, "--no-pictures", "--report", (folder_ / "report").string()},
             {"render", file_, "--at", "1.5", "-o", (folder_ / "a.png").string()}};
   }
@@ -78,7 +78,7 @@ TEST_F(DamagedEpisodes, EveryBitThatSaysWhetherThereAreChecksumsIsWatched) {
   for (const std::size_t byte : {20, 60, 61, 62, 63}) {  // room for checksums, version
     for (int bit = 0; bit < 8; ++bit) {
       WriteFlipped(byte, bit);
-      EXPECT_EQ(Prehend({"episodes", file_}).exit_code, 2) << byte << " " << bit;
+      EXPECT_EQ(Prehend({"episode", "list", file_}).exit_code, 2) << byte << " " << bit;
     }
   }
 }
@@ -89,7 +89,7 @@ TEST_F(DamagedEpisodes, APageInThePlaceOfAnotherIsRefused) {
   const std::size_t at = kPage * (bytes.size() / kPage / 2);
   bytes.replace(at, kPage, whole_.substr(at + kPage, kPage));
   WriteFile(file_, bytes);
-  const Said said = Prehend({"replay", file_});
+  const Said said = Prehend({"episode", "verify", file_});
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_NE(said.err.find("the file is damaged"), std::string::npos) << said.err;
 }

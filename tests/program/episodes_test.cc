@@ -22,7 +22,8 @@ TEST(Episodes, ARunAndItsEpisodeSayTheSame) {
   EXPECT_EQ(played.out, alone.out) << "recording changes nothing";
   ASSERT_EQ(Prehend({"run", kShort, "--record", file}).exit_code, 0);
 
-  const Said again = Prehend({"resegment", file, "--episode", "milk_carton_wrap", "--json"});
+  const Said again =
+      Prehend({"episode", "resegment", file, "--episode", "milk_carton_wrap", "--json"});
   ASSERT_EQ(again.exit_code, 0) << again.err;
   auto first = nlohmann::json::parse(played.out), second = nlohmann::json::parse(again.out);
   EXPECT_EQ(second["file"], file);
@@ -33,15 +34,15 @@ TEST(Episodes, ARunAndItsEpisodeSayTheSame) {
   first.erase("claims");
   EXPECT_EQ(first, second);
 
-  const Said both = Prehend({"resegment", file, file, "--compare", "recorded"});
+  const Said both = Prehend({"episode", "resegment", file, file, "--compare", "recorded"});
   EXPECT_EQ(both.exit_code, 0) << both.err;
   EXPECT_EQ(both.out, "4 episodes, 0 with differences\n");
   const Said differs =
-      Prehend({"resegment", file, "--compare", "recorded", "--set", "lift_rise=10m"});
+      Prehend({"episode", "resegment", file, "--compare", "recorded", "--set", "lift_rise=10m"});
   EXPECT_EQ(differs.exit_code, 1) << differs.err;
   EXPECT_NE(differs.out.find("- picking_up"), std::string::npos) << differs.out;
   EXPECT_NE(differs.out.find("2 episodes, 2 with differences\n"), std::string::npos);
-  const Said none = Prehend({"resegment", file, "--episode", "slide/*"});
+  const Said none = Prehend({"episode", "resegment", file, "--episode", "slide/*"});
   EXPECT_EQ(none.exit_code, 4);
   EXPECT_EQ(none.err, "prehend: --episode: no episode matches 'slide/*'\n");
 }
@@ -52,19 +53,19 @@ TEST(Episodes, EveryCommandTakesThem) {
   const std::string slide = "slide/hop_divides_a_slide";
   ASSERT_EQ(Prehend({"run", kShort, "--record", file}).exit_code, 0);
   ASSERT_EQ(Prehend({"run", slide, "--record", file}).exit_code, 0);
-  const Said listed = Prehend({"episodes", file});
+  const Said listed = Prehend({"episode", "list", file});
   EXPECT_NE(listed.out.find("completed  "), std::string::npos) << listed.out;
   EXPECT_NE(listed.out.find(slide), std::string::npos) << listed.out;
-  EXPECT_EQ(Prehend({"replay", file}).out,
+  EXPECT_EQ(Prehend({"episode", "verify", file}).out,
             "2 of 2 episodes have the frames and events that were recorded\n");
 
   for (const std::vector<std::string>& words :
        std::vector<std::vector<std::string>>{{"explain"},
                                              {"explain", "--expected", "sliding@2s", "--json"},
-                                             {"tracks", "--only", "grasping"}}) {
+                                             {"grammar", "tracks", "--only", "grasping"}}) {
     std::vector<std::string> from_file = words, from_scenario = words;
-    from_file.insert(from_file.begin() + 1, {file, "--episode", "slide/*"});
-    from_scenario.insert(from_scenario.begin() + 1, slide);
+    from_file.insert(from_file.end(), {file, "--episode", "slide/*"});
+    from_scenario.push_back(slide);
     const Said one = Prehend(from_file), other = Prehend(from_scenario);
     EXPECT_EQ(one.exit_code, 0) << one.err;
     EXPECT_EQ(one.out, other.out);
@@ -108,7 +109,7 @@ TEST(Episodes, AGrammarOfOnesOwnIsKeptWithTheEpisode) {
   const Said played = Prehend({"run", kShort, "--grammar", own, "--record", file});
   ASSERT_EQ(played.exit_code, 0) << played.err;
   std::filesystem::remove(own);
-  const Said again = Prehend({"resegment", file});
+  const Said again = Prehend({"episode", "resegment", file});
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(again.out, played.out);
 }
@@ -119,7 +120,8 @@ TEST(Episodes, ASuiteIsRecordedByWorkersIntoOneFile) {
   const Said checked = Prehend({"check", "reach/*", "--no-pictures", "--jobs", "3", "--record",
                                 file, "--report", (folder / "report").string()});
   ASSERT_EQ(checked.exit_code, 0) << checked.out << checked.err;
-  const Said compared = Prehend({"resegment", file, "--compare", "recorded", "--jobs", "3"});
+  const Said compared =
+      Prehend({"episode", "resegment", file, "--compare", "recorded", "--jobs", "3"});
   EXPECT_EQ(compared.exit_code, 0) << compared.err;
   EXPECT_TRUE(compared.out.ends_with("episodes, 0 with differences\n")) << compared.out;
 }
@@ -132,11 +134,11 @@ TEST(Episodes, TrialsAreRecordedEachByItself) {
       Prehend({"run", scenario, "--trials", "3", "--json", "--jobs", "2", "--record", file});
   ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
   EXPECT_EQ(recorded.out, alone.out) << "recording changes nothing";
-  EXPECT_EQ(Prehend({"resegment", file, "--compare", "recorded"}).out,
+  EXPECT_EQ(Prehend({"episode", "resegment", file, "--compare", "recorded"}).out,
             "3 episodes, 0 with differences\n");
   const auto trial =
       nlohmann::json::parse(Prehend({"run", scenario, "--trial", "2", "--json"}).out);
-  EXPECT_NE(Prehend({"episodes", file}).out.find(trial["state_hash"].get<std::string>()),
+  EXPECT_NE(Prehend({"episode", "list", file}).out.find(trial["state_hash"].get<std::string>()),
             std::string::npos);
 }
 
@@ -161,10 +163,11 @@ TEST(Episodes, BadUseIsExplained) {
   const Said other = Prehend({"check", kShort, "--record", (folder / "a.jsonl").string()});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_NE(other.err.find("wanted a file NAME.episodes"), std::string::npos) << other.err;
-  const Said read = Prehend({"resegment", text});
+  const Said read = Prehend({"episode", "resegment", text});
   EXPECT_EQ(read.exit_code, 2);
   EXPECT_NE(read.err.find("is no episode file"), std::string::npos) << read.err;
-  const Said lines = Prehend({"resegment", (folder / "a.jsonl").string(), "--jobs", "2"});
+  const Said lines =
+      Prehend({"episode", "resegment", (folder / "a.jsonl").string(), "--jobs", "2"});
   EXPECT_EQ(lines.exit_code, 2);
   EXPECT_NE(lines.err.find("--jobs needs episode files"), std::string::npos) << lines.err;
 }
@@ -179,14 +182,15 @@ TEST(Episodes, DamageIsNamedByEveryCommandThatLooksAtFrames) {
   const std::string svg = file + ".svg", png = file + ".png", page = file + ".html";
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {"explain", file},
-           {"tracks", file},
-           {"resegment", file},
-           {"poses", file},
-           {"replay", file},
+           {"grammar", "tracks", file},
+           {"episode", "resegment", file},
+           {"scenario", "poses", file},
+           {"episode", "verify", file},
            {"figure", "phases", file, "-o", svg},
            {"render", file, "-o", png},
            {"report", file, "-o", page},
-           {"sweep", file, "--over", "reach_radius=10cm..20cm:2", "--truth", "recorded"}}) {
+           {"grammar", "sweep", file, "--over", "reach_radius=10cm..20cm:2", "--truth",
+            "recorded"}}) {
     const Said said = Prehend(words);
     EXPECT_EQ(said.exit_code, 2) << words[0] << said.out;
     EXPECT_NE(said.err.find(file), std::string::npos) << words[0] << ": " << said.err;
@@ -211,7 +215,7 @@ TEST(Episodes, AreWholeAfterTheProgramWasKilledAtAnyMoment) {
         std::to_string(seconds) + "; kill -s KILL -- -$p; wait $p; } >/dev/null 2>&1";
     (void)std::system(command.c_str());
     if (!std::filesystem::exists(file) || std::filesystem::file_size(file) == 0) continue;
-    const Said listed = Prehend({"episodes", file, "--json"});
+    const Said listed = Prehend({"episode", "list", file, "--json"});
     ASSERT_TRUE(listed.exit_code == 0 || listed.exit_code == 4) << listed.err;
     std::size_t finished = 0;
     cut_off = 0;
@@ -220,7 +224,7 @@ TEST(Episodes, AreWholeAfterTheProgramWasKilledAtAnyMoment) {
     EXPECT_GE(finished, whole) << "no finished episode is lost";
     whole = finished;
     if (i % 20 != 5 && i + 1 < kills) continue;
-    const Said replayed = Prehend({"replay", file, "--jobs", "2"});
+    const Said replayed = Prehend({"episode", "verify", file, "--jobs", "2"});
     EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
     EXPECT_NE(replayed.out.find(std::to_string(whole) + " of "), std::string::npos);
   }

@@ -88,7 +88,7 @@ TEST(ExplainCommand, BadQuestionsEndWithExitCodeTwo) {
 TEST(TracksCommand, WritesAWholeFileOrNothing) {
   const auto folder = FreshFolder("tracks");
   const auto csv = folder / "milk.csv";
-  const Said said = Prehend({"tracks", "milk_carton_wrap", "-o", csv.string()});
+  const Said said = Prehend({"grammar", "tracks", "milk_carton_wrap", "-o", csv.string()});
   ASSERT_EQ(said.exit_code, 0) << said.err;
   const std::string text = ReadFile(csv);
   EXPECT_TRUE(text.starts_with("time_s,tick,\"touching(")) << text.substr(0, 200);
@@ -96,11 +96,14 @@ TEST(TracksCommand, WritesAWholeFileOrNothing) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1)
       << "something was left behind";
 
-  const Said some = Prehend({"tracks", "milk_carton_wrap", "--only", "grasping", "--json"});
+  const Said some =
+      Prehend({"grammar", "tracks", "milk_carton_wrap", "--only", "grasping", "--json"});
   ASSERT_EQ(some.exit_code, 0) << some.err;
   EXPECT_EQ(nlohmann::json::parse(some.out)["tracks"][0]["name"], "grasping(right_hand, milk)");
-  EXPECT_EQ(Prehend({"tracks", "milk_carton_wrap", "--only", "grasping", "--json", "-o", "-"}).out,
-            some.out);
+  EXPECT_EQ(
+      Prehend({"grammar", "tracks", "milk_carton_wrap", "--only", "grasping", "--json", "-o", "-"})
+          .out,
+      some.out);
 
   for (const std::vector<std::string>& slip :
        std::vector<std::vector<std::string>>{{"-o", "/dev/null/milk.csv"},
@@ -108,7 +111,7 @@ TEST(TracksCommand, WritesAWholeFileOrNothing) {
                                              {"-o", "/dev/stdout"},
                                              {"--only", "graping"},
                                              {"-o", "/x.csv", "--json"}}) {
-    std::vector<std::string> arguments = {"tracks", "milk_carton_wrap"};
+    std::vector<std::string> arguments = {"grammar", "tracks", "milk_carton_wrap"};
     arguments.insert(arguments.end(), slip.begin(), slip.end());
     const Said bad = Prehend(arguments);
     EXPECT_EQ(bad.exit_code, 2) << bad.err;

@@ -69,7 +69,7 @@ def strip(lines):
 
 
 def events(prehend, file, grammar, kinds=KINDS):
-    said = subprocess.run([prehend, "resegment", str(file), "--grammar", str(grammar), "--json"],
+    said = subprocess.run([prehend, "episode", "resegment", str(file), "--grammar", str(grammar), "--json"],
                           capture_output=True, text=True, check=True)
     found = [e for e in json.loads(said.stdout)["events"] if e["event"] in kinds]
     return sorted(found, key=lambda e: (e["event"], e["begin_s"]))

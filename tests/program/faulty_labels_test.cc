@@ -69,7 +69,7 @@ class FaultyLabels : public testing::Test {
   }
   Said Margins(const std::string& name, const std::string& text) const {
     WriteFile(folder_ / name, text);
-    return Prehend({"margins", (folder_ / "take.jsonl").string(), "--truth",
+    return Prehend({"grammar", "margins", (folder_ / "take.jsonl").string(), "--truth",
                     (folder_ / name).string(), "--grammar", (folder_ / "g.grammar").string(), "-o",
                     (folder_ / "margins.csv").string()});
   }

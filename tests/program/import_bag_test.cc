@@ -75,7 +75,8 @@ TEST_F(ImportBag, ChunksOfAnyKindHaveTheSamePoses) {
     if (first.empty()) first = recording;
     EXPECT_EQ(recording, first) << compression;
   }
-  const std::string events = Prehend({"resegment", (folder_ / "take.jsonl").string()}).out;
+  const std::string events =
+      Prehend({"episode", "resegment", (folder_ / "take.jsonl").string()}).out;
   for (const char* event : {"picking_up", "transporting", "putting_down", "pick_and_place"})
     EXPECT_NE(events.find(event), std::string::npos) << event << "\n" << events;
 }

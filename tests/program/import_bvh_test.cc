@@ -84,7 +84,7 @@ class ImportBvh : public testing::Test {
                     (folder_ / "map.yaml").string(), "-o", (folder_ / "take.jsonl").string()});
   }
   std::string Events() const {
-    return Prehend({"resegment", (folder_ / "take.jsonl").string()}).out;
+    return Prehend({"episode", "resegment", (folder_ / "take.jsonl").string()}).out;
   }
 
   const std::filesystem::path folder_ = FreshFolder("import_bvh");

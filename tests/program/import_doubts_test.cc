@@ -226,8 +226,11 @@ TEST(ImportDoubts, AGrammarThatDoesNotExistIsWrongWhereItIsNamed) {
   ASSERT_EQ(ImportCsv(folder, SwingingCsv(30), SwingingMap("30")).exit_code, 0);
   const auto take = folder / "take.jsonl";
   WriteFile(take, Replaced(ReadFile(take), "\"pick_and_place_from_motion\"", "\"contat\""));
-  for (const char* command : {"resegment", "explain", "watch", "check"}) {
-    const Said read = Prehend({command, take.string()});
+  for (std::vector<std::string> words : std::vector<std::vector<std::string>>{
+           {"episode", "resegment"}, {"explain"}, {"grammar", "watch"}, {"check"}}) {
+    const std::string command = words.back();
+    words.push_back(take.string());
+    const Said read = Prehend(words);
     EXPECT_EQ(read.exit_code, 2) << command;
     EXPECT_NE((read.out + read.err).find("take.jsonl:1:"), std::string::npos)
         << command << read.out << read.err;

@@ -71,7 +71,7 @@ class ImportMcap : public testing::Test {
   std::string EventsOf(const std::string& bytes, const std::string& map = kMap) const {
     const Said said = Import(bytes, map);
     EXPECT_EQ(said.exit_code, 0) << said.err;
-    return Prehend({"resegment", (folder_ / "take.jsonl").string()}).out;
+    return Prehend({"episode", "resegment", (folder_ / "take.jsonl").string()}).out;
   }
 
   const std::filesystem::path folder_ = FreshFolder("import_mcap");

@@ -55,7 +55,7 @@ std::string Csv(const Writer& write = AsWritten) {
 }
 
 std::string Events(const std::filesystem::path& folder) {
-  return Prehend({"resegment", (folder / "take.jsonl").string()}).out;
+  return Prehend({"episode", "resegment", (folder / "take.jsonl").string()}).out;
 }
 
 TEST(Import, PosesBecomeARecordingInWhichACupIsCarried) {
@@ -418,7 +418,7 @@ TEST(Import, TheDocumentedRecordingIsSegmentedAsThePageSays) {
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_EQ(said.err, "");
   EXPECT_NE(page.find(said.out), std::string::npos) << said.out;
-  const std::string events = Prehend({"resegment", file.string()}).out;
+  const std::string events = Prehend({"episode", "resegment", file.string()}).out;
   EXPECT_NE(page.find(events), std::string::npos) << events;
 }
 
@@ -486,7 +486,7 @@ TEST(Import, TheOtherDocumentedFilesHaveTheSameEvents) {
 }
 
 TEST(Import, TheSchemaOfMapsIsJson) {
-  const Said said = Prehend({"schema", "--import-map"});
+  const Said said = Prehend({"scenario", "schema", "--import-map"});
   EXPECT_EQ(said.exit_code, 0);
   EXPECT_NE(said.out.find("\"quaternion_order\""), std::string::npos);
 }
@@ -501,14 +501,16 @@ TEST(Import, EpisodeFilesTakePosesAndRecordings) {
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_EQ(said.out, takes + ": a_cup_is_carried, 301 frames\n");
 
-  EXPECT_EQ(Prehend({"replay", takes}).out,
+  EXPECT_EQ(Prehend({"episode", "verify", takes}).out,
             "2 of 2 episodes have the frames and events that were recorded\n");
   for (const char* which : {"1", "2"})
-    EXPECT_EQ(Prehend({"resegment", takes, "--episode", which}).out, Events(folder)) << which;
-  EXPECT_EQ(Prehend({"tracks", takes, "--episode", "2"}).out, Prehend({"tracks", lines}).out);
+    EXPECT_EQ(Prehend({"episode", "resegment", takes, "--episode", which}).out, Events(folder))
+        << which;
+  EXPECT_EQ(Prehend({"grammar", "tracks", takes, "--episode", "2"}).out,
+            Prehend({"grammar", "tracks", lines}).out);
   EXPECT_EQ(Prehend({"explain", takes, "--episode", "2", "--event", "transporting"}).out,
             Prehend({"explain", lines, "--event", "transporting"}).out);
-  const Said asked = Prehend({"query", takes, "--event", "transporting", "--csv"});
+  const Said asked = Prehend({"episode", "query", takes, "--event", "transporting", "--csv"});
   EXPECT_NE(asked.out.find("a_cup_is_carried"), std::string::npos) << asked.out;
 }
 

@@ -75,7 +75,7 @@ class ImportUp : public testing::Test {
                      check ? std::vector<std::string>{"--check"} : std::vector<std::string>{});
   }
   std::string Events() const {
-    return Prehend({"resegment", (folder_ / "take.jsonl").string()}).out;
+    return Prehend({"episode", "resegment", (folder_ / "take.jsonl").string()}).out;
   }
   static std::string UpLine(const Vector3d& up) {
     char text[100];

@@ -36,7 +36,7 @@ const Recorded& ThreeDays() {
                                  "pick_and_place/milk_carton_wrap", "body/arm_follows_the_hand"})
       EXPECT_EQ(Prehend({"run", scenario, "--record", made.file}).exit_code, 0) << scenario;
     const Said said =
-        Prehend({"knowledge", made.file, "-o", made.kb, "--to", "owl", "--to", "neem"});
+        Prehend({"episode", "knowledge", made.file, "-o", made.kb, "--to", "owl", "--to", "neem"});
     EXPECT_EQ(said.exit_code, 0) << said.err;
     EXPECT_NE(said.out.find("4 episodes of 4 tasks"), std::string::npos) << said.out;
     return made;
@@ -95,11 +95,11 @@ TEST(Knowledge, ThePapersQuestionsHaveTheSameAnswersInEveryLanguage) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::string row = std::to_string(i + 1);
     Times asked, queried, selected;
-    for (const Json& answer : Asked({"ask", days.kb, prolog[i], "--json"}))
+    for (const Json& answer : Asked({"episode", "ask", days.kb, prolog[i], "--json"}))
       asked.insert(Rounded(answer["bindings"]["Start"], answer["bindings"]["End"]));
     ASSERT_EQ(asked.size(), 1u) << row;
 
-    std::vector<std::string> words = {"query", days.file, "--json"};
+    std::vector<std::string> words = {"episode", "query", days.file, "--json"};
     std::istringstream options(CellOf(row, 0));
     for (std::string word; options >> word;) words.push_back(word);
     for (const Json& answer : Asked(words))
@@ -127,7 +127,7 @@ TEST(Knowledge, TheGraphIsSound) {
   EXPECT_EQ(std::system(command.c_str()), 0);
   // A handle of a door of a fridge; a hand of a person.
   const Json whole =
-      Asked({"ask", days.kb,
+      Asked({"episode", "ask", days.kb,
              "entity(H, [an, object, [name, handle], [type, 'Handle']]), holds(part_of(H, W)), "
              "label_of(W, Name)",
              "--json"});
@@ -135,19 +135,20 @@ TEST(Knowledge, TheGraphIsSound) {
   for (const Json& answer : whole) names.insert(answer["bindings"]["Name"]);
   EXPECT_EQ(names, (std::set<std::string>{"door", "fridge"}));
   const Json hers =
-      Asked({"ask", days.kb,
+      Asked({"episode", "ask", days.kb,
              "entity(P, [an, object, [type, 'Person']]), entity(H, [an, object, [type, 'Hand']]), "
              "holds(part_of(H, P))",
              "--json"});
   EXPECT_EQ(hers.size(), 1u);
   EXPECT_FALSE(
-      Asked({"ask", days.kb, "entity(F, [an, object, [type, 'ArmPart']])", "--json"}).empty());
-  EXPECT_EQ(Asked({"ask", days.kb,
+      Asked({"episode", "ask", days.kb, "entity(F, [an, object, [type, 'ArmPart']])", "--json"})
+          .empty());
+  EXPECT_EQ(Asked({"episode", "ask", days.kb,
                    "entity(A, [an, action, [type, 'OpenedBy'], [agent, right_hand]])", "--json"})
                 .size(),
             1u);
-  EXPECT_EQ(Asked({"ask", days.kb, "entity(A, [an, action, [type, 'Grasping'], [grasp_type, S]])",
-                   "--json"})
+  EXPECT_EQ(Asked({"episode", "ask", days.kb,
+                   "entity(A, [an, action, [type, 'Grasping'], [grasp_type, S]])", "--json"})
                 .size(),
             4u);
 }
@@ -164,7 +165,7 @@ TEST(Knowledge, NeemsAreReadBackByAnotherReader) {
 TEST(Knowledge, WhatNoGrammarComposesIsComposed) {
   const Recorded& days = ThreeDays();
   const Json moved =
-      Asked({"ask", days.kb,
+      Asked({"episode", "ask", days.kb,
              "entity(A, [an, action, [type, 'FetchAndPush'], [sub_action, [an, action, [type, "
              "'Reaching']]], [sub_action, [an, action, [type, 'Sliding']]]]), occurs(A, [S, E])",
              "--json"});
@@ -175,9 +176,9 @@ TEST(Knowledge, WhatNoGrammarComposesIsComposed) {
 
 TEST(Knowledge, AllensRelationsAreExclusive) {
   const Recorded& days = ThreeDays();
-  const Json pairs =
-      Asked({"ask", days.kb, "entity(A, [an, event]), entity(B, [an, event]), allen(A, R, B)",
-             "--json", "--most", "100000"});
+  const Json pairs = Asked({"episode", "ask", days.kb,
+                            "entity(A, [an, event]), entity(B, [an, event]), allen(A, R, B)",
+                            "--json", "--most", "100000"});
   ASSERT_GT(pairs.size(), 100u);
   std::set<std::pair<std::string, std::string>> seen;
   std::set<std::string> relations;
@@ -210,17 +211,18 @@ TEST(Knowledge, HostileQueriesAreRefusedOrStopped) {
     const auto begin = std::chrono::steady_clock::now();
     // Only an endless query has to reach its limit; the others end before, on a busy machine, too.
     const bool is_endless = why == "took more than";
-    const Said said = Prehend({"ask", days.kb, query, "--seconds", is_endless ? "2" : "15"});
+    const Said said =
+        Prehend({"episode", "ask", days.kb, query, "--seconds", is_endless ? "2" : "15"});
     EXPECT_EQ(said.exit_code, 2) << query << said.out;
     EXPECT_NE(said.err.find(why), std::string::npos) << query << ": " << said.err;
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20)) << query;
   }
   EXPECT_FALSE(fs::exists("/tmp/prehend-was-here"));
-  EXPECT_EQ(Prehend({"ask", days.kb, "[..]"}).exit_code, 0) << "says nothing";
-  const Said nowhere = Prehend({"ask", (days.folder / "no").string(), "true"});
+  EXPECT_EQ(Prehend({"episode", "ask", days.kb, "[..]"}).exit_code, 0) << "says nothing";
+  const Said nowhere = Prehend({"episode", "ask", (days.folder / "no").string(), "true"});
   EXPECT_EQ(nowhere.exit_code, 2);
   EXPECT_NE(nowhere.err.find("there is no folder"), std::string::npos) << nowhere.err;
-  const Said bad = Prehend({"knowledge", days.file, "--to", "xml"});
+  const Said bad = Prehend({"episode", "knowledge", days.file, "--to", "xml"});
   EXPECT_EQ(bad.exit_code, 2);
   EXPECT_NE(bad.err.find("wanted owl or neem"), std::string::npos) << bad.err;
 }
@@ -228,8 +230,8 @@ TEST(Knowledge, HostileQueriesAreRefusedOrStopped) {
 TEST(Knowledge, AnswersAreShownByReplay) {
   const Recorded& days = ThreeDays();
   const auto folder = days.folder / "shown";
-  const Said said =
-      Prehend({"ask", days.kb, BlocksOf("prolog")[1], "--show", folder.string(), "--json"});
+  const Said said = Prehend(
+      {"episode", "ask", days.kb, BlocksOf("prolog")[1], "--show", folder.string(), "--json"});
   if (said.err.find("draws no pictures") != std::string::npos) GTEST_SKIP() << said.err;
   ASSERT_EQ(said.exit_code, 0) << said.err;
   const Json answers = Json::parse(said.out);

@@ -61,7 +61,8 @@ TEST_F(Labelled, TheGrammarOfTheRecordingIsScoredUnlessAnotherIsNamed) {
   EXPECT_TRUE(Has(scored.out, "pick_and_place_from_motion, 1 episode")) << scored.out;
   EXPECT_TRUE(Has(scored.out, "all              5      5  5")) << scored.out;
   EXPECT_FALSE(Has(scored.out, "original_2020")) << scored.out;
-  const Said swept = run({"sweep", take, "--over", "hold_way=3mm..4mm:2", "--collar-ms", "1000"});
+  const Said swept =
+      run({"grammar", "sweep", take, "--over", "hold_way=3mm..4mm:2", "--collar-ms", "1000"});
   EXPECT_EQ(swept.exit_code, 0) << swept.err;
   EXPECT_EQ(Prehend({"import", take, "-o", Path("milk.episodes")}).exit_code, 0);
   EXPECT_TRUE(Has(run({"score", Path("milk.episodes")}).out, "all              5      5  5"));
@@ -100,26 +101,26 @@ TEST_F(Labelled, WhatIsWrittenIsReadAgain) {
   const std::string take = Take("milk.jsonl");
   for (const char* ending : {"csv", "eaf", "TextGrid"}) {
     const std::string file = Path(std::string("out.") + ending);
-    EXPECT_EQ(Prehend({"resegment", take, "--labels", file}).exit_code, 0);
+    EXPECT_EQ(Prehend({"episode", "resegment", take, "--labels", file}).exit_code, 0);
     const Said said = Prehend(
         {"score", take, "--truth", file, "--grammar", "pick_and_place_from_motion", "--json"});
     ASSERT_EQ(said.exit_code, 0) << said.err;
     const auto total = nlohmann::json::parse(said.out)["grammars"][0]["total"];
     EXPECT_EQ(total["f1_50"], 1.0) << ending << total;
   }
-  const Said some = Prehend({"resegment", take, "--labels", Path("some.csv"), "--events",
+  const Said some = Prehend({"episode", "resegment", take, "--labels", Path("some.csv"), "--events",
                              "grasping", "--events", "reaching"});
   EXPECT_TRUE(Has(some.out, ": 2 labels")) << some.out << some.err;
   EXPECT_FALSE(Has(ReadFile(Path("some.csv")), "putting_down"));
   const Said unknown =
-      Prehend({"resegment", take, "--labels", Path("some.csv"), "--events", "graspin"});
+      Prehend({"episode", "resegment", take, "--labels", Path("some.csv"), "--events", "graspin"});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_TRUE(Has(unknown.err,
                   "--events: grammar 'pick_and_place_from_motion' has no event "
                   "'graspin'; did you mean 'grasping'?"))
       << unknown.err;
-  EXPECT_EQ(Prehend({"resegment", take, "--events", "grasping"}).exit_code, 2);
-  const Said other = Prehend({"resegment", take, "--labels", Path("out.txt")});
+  EXPECT_EQ(Prehend({"episode", "resegment", take, "--events", "grasping"}).exit_code, 2);
+  const Said other = Prehend({"episode", "resegment", take, "--labels", Path("out.txt")});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_TRUE(Has(other.err, "wanted a file .csv, .eaf or .TextGrid")) << other.err;
   EXPECT_FALSE(fs::exists(Path("out.txt")));
@@ -127,7 +128,8 @@ TEST_F(Labelled, WhatIsWrittenIsReadAgain) {
 
 TEST_F(Labelled, ARunIsWrittenByItsOwnGrammar) {
   ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", Path("milk.episodes")}).exit_code, 0);
-  const Said said = Prehend({"resegment", Path("milk.episodes"), "--labels", Path("milk.csv")});
+  const Said said =
+      Prehend({"episode", "resegment", Path("milk.episodes"), "--labels", Path("milk.csv")});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_TRUE(Has(ReadFile(Path("milk.csv")), "picking_up")) << ReadFile(Path("milk.csv"));
 }
@@ -136,20 +138,21 @@ TEST_F(Labelled, EpisodesAndScenariosOfASuiteTakeLabelsToo) {
   const std::string file = Path("a.episodes");
   for (const char* scenario : {"pick_and_place/milk_carton_wrap", "slide/hop_divides_a_slide"})
     ASSERT_EQ(Prehend({"run", scenario, "--record", file}).exit_code, 0);
-  const Said swept = Prehend({"sweep", file, "--over", "reach_radius=10cm..30cm:2", "--truth",
-                              PREHEND_SOURCE_DIR "/golden"});
+  const Said swept = Prehend({"grammar", "sweep", file, "--over", "reach_radius=10cm..30cm:2",
+                              "--truth", PREHEND_SOURCE_DIR "/golden"});
   ASSERT_EQ(swept.exit_code, 0) << swept.err;
   EXPECT_TRUE(Has(swept.out, "2 settings on 2 episodes; the best F1 is 100.00 %\nF1@50: "))
       << swept.out;
-  const Said of_lines = Prehend({"sweep", Take("a.jsonl"), "--over", "reach_radius=1cm..3cm:2"});
+  const Said of_lines =
+      Prehend({"grammar", "sweep", Take("a.jsonl"), "--over", "reach_radius=1cm..3cm:2"});
   EXPECT_EQ(of_lines.exit_code, 2);
   EXPECT_TRUE(Has(of_lines.err, "its events are known only from labels")) << of_lines.err;
 }
 
 TEST_F(Labelled, MarginsNameWhatIsAtAnEdge) {
-  const Said said = Prehend({"margins", Take("milk.jsonl"), "--truth", docs_ + "/labels.csv",
-                             "--map", map_, "--grammar", "pick_and_place_from_motion",
-                             "--collar-ms", "200", "-o", Path("margins.csv")});
+  const Said said = Prehend(
+      {"grammar", "margins", Take("milk.jsonl"), "--truth", docs_ + "/labels.csv", "--map", map_,
+       "--grammar", "pick_and_place_from_motion", "--collar-ms", "200", "-o", Path("margins.csv")});
   ASSERT_EQ(said.exit_code, 0) << said.err;
   EXPECT_TRUE(Has(said.out, "touch_back")) << said.out;
   EXPECT_TRUE(Has(said.out, "warning: not among the best")) << said.out;
@@ -159,8 +162,9 @@ TEST_F(Labelled, MarginsNameWhatIsAtAnEdge) {
 
 TEST_F(Labelled, MarginsOfSomeParametersOnly) {
   const auto margins = [&](const std::string& only) {
-    return Prehend({"margins", Take("milk.jsonl"), "--truth", docs_ + "/labels.csv", "--map", map_,
-                    "--only", "hold_way", "--only", only, "-o", Path("margins.csv")});
+    return Prehend({"grammar", "margins", Take("milk.jsonl"), "--truth", docs_ + "/labels.csv",
+                    "--map", map_, "--only", "hold_way", "--only", only, "-o",
+                    Path("margins.csv")});
   };
   ASSERT_EQ(margins("touch_back").exit_code, 0);
   std::istringstream lines(ReadFile(Path("margins.csv")));
@@ -179,8 +183,9 @@ TEST_F(Labelled, MarginsOfSomeParametersOnly) {
 
 // More than two seconds, on any machine: 241 settings.
 TEST_F(Labelled, ALongSweepSaysHowLongItTakes) {
-  const Said said = Prehend({"sweep", Take("milk.jsonl"), "--truth", docs_ + "/labels.csv", "--map",
-                             map_, "--over", "hold_way=1mm..9mm:241", "-o", Path("sweep.csv")});
+  const Said said =
+      Prehend({"grammar", "sweep", Take("milk.jsonl"), "--truth", docs_ + "/labels.csv", "--map",
+               map_, "--over", "hold_way=1mm..9mm:241", "-o", Path("sweep.csv")});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_TRUE(said.err.empty() || said.err.starts_with("prehend: 241 settings on 1 recording, "
                                                        "about "))
@@ -226,10 +231,9 @@ TEST_F(Labelled, ASweepMeasuresLabelsAsScoreDoes) {
   WriteFile(folder_ / "a.csv",
             "begin_s,end_s,label,tier\n1.65,4.3,hold,right\n1.9,3.1,carry,right\n");
   const auto sweep = [&](std::vector<std::string> more) {
-    std::vector<std::string> words = {"sweep",   take,
-                                      "--truth", Path("a.csv"),
-                                      "--map",   map_,
-                                      "--over",  "hold_way=3mm..4mm:2",
+    std::vector<std::string> words = {"grammar", "sweep",          take,
+                                      "--truth", Path("a.csv"),    "--map",
+                                      map_,      "--over",         "hold_way=3mm..4mm:2",
                                       "-o",      Path("sweep.csv")};
     words.insert(words.end(), more.begin(), more.end());
     return Prehend(words);
@@ -296,8 +300,8 @@ TEST_F(Labelled, LabelsThatEndBeforeTheyBeginAreNamedTogetherOrLeftOut) {
   EXPECT_TRUE(Has(skipped.err, "warning: 6 labels end before they begin, and are left out: 3 of "))
       << skipped.err;
   EXPECT_TRUE(Has(skipped.out, "all             10     10  10")) << skipped.out;
-  const Said swept = Prehend({"sweep", one, "--truth", Path("labels/one.csv"), "--map", map_,
-                              "--over", "hold_way=3mm..4mm:2", "--skip-bad-labels"});
+  const Said swept = Prehend({"grammar", "sweep", one, "--truth", Path("labels/one.csv"), "--map",
+                              map_, "--over", "hold_way=3mm..4mm:2", "--skip-bad-labels"});
   EXPECT_EQ(swept.exit_code, 0) << swept.err;
   EXPECT_TRUE(Has(swept.err, "warning: 3 labels end before they begin")) << swept.err;
 }
@@ -310,8 +314,8 @@ TEST_F(Labelled, OptionsOfLabelsNeedLabels) {
       Prehend({"score", Take("a.jsonl"), "--truth", docs_ + "/labels.csv", "--events", "grasping"})
           .exit_code,
       2);
-  const Said unknown =
-      Prehend({"sweep", "a.episodes", "--over", "reach_radius=1cm..3cm:2", "--truth", "gold"});
+  const Said unknown = Prehend(
+      {"grammar", "sweep", "a.episodes", "--over", "reach_radius=1cm..3cm:2", "--truth", "gold"});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_TRUE(Has(unknown.err, "found 'gold', wanted golden, oracle or recorded")) << unknown.err;
 }

@@ -40,15 +40,15 @@ TEST_F(Limits, OfTimeEndARecordingsSegmentation) {
                "(a: Entity, b: Entity) while distance(a, b) < 1 m and rate(height(a), " +
                std::to_string(i + 1) + " ms) > 1 m/s\n";
   WriteFile(root_ / "slow.grammar", grammar);
-  const Said said = Do("resegment " + path + " --grammar " + (root_ / "slow.grammar").string() +
-                       " --time-limit-s 0.1");
+  const Said said = Do("episode resegment " + path + " --grammar " +
+                       (root_ / "slow.grammar").string() + " --time-limit-s 0.1");
   EXPECT_EQ(said.exit_code, 3) << said.err;
   EXPECT_NE(said.err.find("no end after 0.1 s"), std::string::npos) << said.err;
 }
 
 TEST_F(Limits, AreExplained) {
   EXPECT_NE(Do("run --help").out.find("default: 600, none with --trials"), std::string::npos);
-  EXPECT_NE(Do("resegment --help").out.find("default: 3600"), std::string::npos);
+  EXPECT_NE(Do("episode resegment --help").out.find("default: 3600"), std::string::npos);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ constexpr const char* kPoses =
 TEST(MissingFacts, AreNamedAndNothingRecognisedIsExitCodeFour) {
   const auto file = FreshFolder("missing") / "poses.jsonl";
   WriteFile(file, kPoses);
-  const Said said = Prehend({"resegment", file.string(), "--grammar", "pick_and_place"});
+  const Said said = Prehend({"episode", "resegment", file.string(), "--grammar", "pick_and_place"});
   EXPECT_EQ(said.exit_code, 4);
   EXPECT_TRUE(said.err.starts_with(
       "warning: no frame says where 'table' is, so no condition on its pose ever holds\n"))
@@ -34,13 +34,13 @@ TEST(MissingFacts, WhatCanStillBeRecognisedIsExitCodeZero) {
   WriteFile(folder / "poses.jsonl", kPoses);
   WriteFile(folder / "g.grammar",
             "grammar g\nuse grasp\nevent down(hand: Hand) while vertical_speed(hand) < -10 cm/s\n");
-  const Said said = Prehend({"resegment", (folder / "poses.jsonl").string(), "--grammar",
+  const Said said = Prehend({"episode", "resegment", (folder / "poses.jsonl").string(), "--grammar",
                              (folder / "g.grammar").string()});
   EXPECT_EQ(said.exit_code, 0);
   EXPECT_NE(said.err.find("so 'grasping' is never recognised\n"), std::string::npos) << said.err;
   EXPECT_NE(said.out.find("down"), std::string::npos);
-  const Said motion = Prehend(
-      {"resegment", (folder / "poses.jsonl").string(), "--grammar", "pick_and_place_from_motion"});
+  const Said motion = Prehend({"episode", "resegment", (folder / "poses.jsonl").string(),
+                               "--grammar", "pick_and_place_from_motion"});
   EXPECT_EQ(motion.exit_code, 0);
   EXPECT_EQ(motion.err.find("never recognised"), std::string::npos) << motion.err;
 }
@@ -49,7 +49,7 @@ TEST(MissingFacts, ForcesAreNotMadeOfMotion) {
   const auto folder = FreshFolder("missing");
   WriteFile(folder / "poses.jsonl", kPoses);
   WriteFile(folder / "g.grammar", "grammar g\nuse contact from motion\nuse kitchen\n");
-  const Said said = Prehend({"resegment", (folder / "poses.jsonl").string(), "--grammar",
+  const Said said = Prehend({"episode", "resegment", (folder / "poses.jsonl").string(), "--grammar",
                              (folder / "g.grammar").string()});
   EXPECT_EQ(said.exit_code, 0);
   EXPECT_NE(said.err.find("warning: this recording has no forces, so 'holding_onto' is never "
@@ -73,7 +73,8 @@ TEST(MissingFacts, WithoutOrientationsThereIsNoPouring) {
   WriteFile(folder / "labels.csv", "begin_s,end_s,label\n0.1,0.5,pouring\n");
   const std::string poses = (folder / "poses.jsonl").string();
   const std::vector<std::vector<std::string>> calls = {
-      {"resegment", poses}, {"score", poses, "--truth", (folder / "labels.csv").string()}};
+      {"episode", "resegment", poses},
+      {"score", poses, "--truth", (folder / "labels.csv").string()}};
   const auto say = [&](const std::vector<std::string>& call, const std::string& text) {
     WriteFile(folder / "poses.jsonl", text);
     std::vector<std::string> words = call;

@@ -38,10 +38,12 @@ class NotTracked : public testing::Test {
               "event moving(cup: Cup) while speed(cup) > 1 cm/s\n"
               "event far(hand: Hand, cup: Cup) while not (distance(hand, cup) < 4 cm)\n");
   }
-  Said Segment(const std::string& recording, const std::string& command = "resegment") const {
+  Said Segment(const std::string& recording,
+               std::vector<std::string> words = {"episode", "resegment"}) const {
     WriteFile(folder_ / "take.jsonl", recording);
-    return Prehend({command, (folder_ / "take.jsonl").string(), "--grammar",
-                    (folder_ / "g.grammar").string()});
+    words.insert(words.end(), {(folder_ / "take.jsonl").string(), "--grammar",
+                               (folder_ / "g.grammar").string()});
+    return Prehend(words);
   }
   const std::filesystem::path folder_ = FreshFolder("not_tracked");
 };
@@ -70,7 +72,7 @@ TEST_F(NotTracked, AHandThatIsLostForLongDoesNotIdle) {
               (i >= lost && i < found ? "null" : "{\"at_m\": [1, 0, 1]}") + "}}\n";
     }
     WriteFile(folder_ / "take.jsonl", text + "{\"end_tick\": 4000}\n");
-    return Prehend({"resegment", (folder_ / "take.jsonl").string(), "--grammar",
+    return Prehend({"episode", "resegment", (folder_ / "take.jsonl").string(), "--grammar",
                     "hand_actions_from_motion"})
         .out;
   };
@@ -102,7 +104,7 @@ TEST_F(NotTracked, WhatALongGapLeavesUnknownEndsAndNeitherDoesItsOppositeHold) {
 }
 
 TEST_F(NotTracked, WatchSaysTheSame) {
-  const Said said = Segment(Recording(40, 60), "watch");
+  const Said said = Segment(Recording(40, 60), {"grammar", "watch"});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_NE(said.out.find("0.9000  near  0.0000  0.9000"), std::string::npos) << said.out;
   EXPECT_NE(said.out.find("2.0000  near  1.2000  2.0000"), std::string::npos) << said.out;
@@ -134,8 +136,8 @@ TEST_F(NotTracked, WhatIsSeenLaterHasThePoseOfItsFirstSample) {
 
 TEST_F(NotTracked, ExplainAndTracksSayIt) {
   WriteFile(folder_ / "take.jsonl", Recording(40, 60));
-  const Said tracks = Prehend(
-      {"tracks", (folder_ / "take.jsonl").string(), "--grammar", (folder_ / "g.grammar").string()});
+  const Said tracks = Prehend({"grammar", "tracks", (folder_ / "take.jsonl").string(), "--grammar",
+                               (folder_ / "g.grammar").string()});
   EXPECT_EQ(tracks.exit_code, 0) << tracks.err;
   EXPECT_EQ(tracks.out.find("nan"), std::string::npos) << tracks.out;
   const Said explain = Prehend({"explain", (folder_ / "take.jsonl").string(), "--grammar",

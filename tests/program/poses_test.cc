@@ -12,15 +12,16 @@ namespace {
 TEST(Poses, OfAScenarioAndItsEpisodeAreTheSame) {
   const auto record = (FreshFolder("poses") / "a.episodes").string();
   ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", record}).exit_code, 0);
-  const Said played = Prehend({"poses", "milk_carton_wrap", "--at", "transporting.begin"});
-  const Said recorded = Prehend({"poses", record, "--at", "transporting.begin"});
+  const Said played =
+      Prehend({"scenario", "poses", "milk_carton_wrap", "--at", "transporting.begin"});
+  const Said recorded = Prehend({"scenario", "poses", record, "--at", "transporting.begin"});
   EXPECT_EQ(played.exit_code, 0) << played.err;
   EXPECT_EQ(played.out, recorded.out);
   EXPECT_NE(played.out.find("# end of index_distal"), std::string::npos) << played.out;
 }
 
 TEST(Poses, AreThoseOfTheScenarioAtItsBegin) {
-  const Said said = Prehend({"poses", "milk_carton_wrap", "--json"});
+  const Said said = Prehend({"scenario", "poses", "milk_carton_wrap", "--json"});
   ASSERT_EQ(said.exit_code, 0) << said.err;
   const auto poses = nlohmann::json::parse(said.out);
   EXPECT_NEAR(poses["entities"]["table"]["at_m"][2], 0.74, 1e-12);
@@ -30,7 +31,7 @@ TEST(Poses, AreThoseOfTheScenarioAtItsBegin) {
 }
 
 TEST(Poses, AMomentThatIsNoneIsExplained) {
-  const Said bad = Prehend({"poses", "milk_carton_wrap", "--at", "graspng.begin"});
+  const Said bad = Prehend({"scenario", "poses", "milk_carton_wrap", "--at", "graspng.begin"});
   EXPECT_EQ(bad.exit_code, 2);
   EXPECT_NE(bad.err.find("graspng"), std::string::npos) << bad.err;
 }

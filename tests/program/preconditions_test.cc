@@ -71,7 +71,8 @@ TEST_F(Preconditions, AnOutputReplacesNoInput) {
   EXPECT_EQ(ReadFile(Scenario()), scenario);
   const fs::path recording = root_ / "a.csv";
   WriteFile(recording, "time\n");
-  const Said said = Do("tracks " + recording.string() + " -o " + (root_ / "./a.csv").string());
+  const Said said =
+      Do("grammar tracks " + recording.string() + " -o " + (root_ / "./a.csv").string());
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_NE(said.err.find("a.csv is what is read; name another file"), std::string::npos)
       << said.err;

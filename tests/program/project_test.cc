@@ -92,17 +92,17 @@ TEST_F(OwnProject, ItsEpisodesAreReadElsewhere) {
   ASSERT_EQ(Do({"run", "carton_is_held_still", "--record", "held.episodes"}).exit_code, 0);
   fs::rename(kitchen_ / "held.episodes", folder_ / "held.episodes");
   fs::remove_all(kitchen_);
-  const Said said = In(folder_, {"resegment", "held.episodes", "--compare", "recorded"});
+  const Said said = In(folder_, {"episode", "resegment", "held.episodes", "--compare", "recorded"});
   EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
   EXPECT_TRUE(Has(said.out, "1 episode, 0 with differences")) << said.out;
 }
 
 TEST_F(OwnProject, WritesKnowledgeWithTheTermsThatShip) {
   ASSERT_EQ(Do({"run", "carton_is_held_still", "--record", "held.episodes"}).exit_code, 0);
-  const Said said = Do({"knowledge", "held.episodes", "-o", "kb"});
+  const Said said = Do({"episode", "knowledge", "held.episodes", "-o", "kb"});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_TRUE(fs::exists(kitchen_ / "kb/prehend.ttl"));
-  const Said asked = Do({"ask", "kb", "member(X, [1])"});
+  const Said asked = Do({"episode", "ask", "kb", "member(X, [1])"});
   EXPECT_FALSE(Has(asked.err, "prehend.pl")) << asked.err;
 }
 

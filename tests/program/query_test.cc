@@ -23,7 +23,7 @@ std::string ThreeEpisodes(const std::string& name) {
 }
 
 nlohmann::json Asked(const std::string& file, std::vector<std::string> words) {
-  words.insert(words.begin(), {"query", file, "--json"});
+  words.insert(words.begin(), {"episode", "query", file, "--json"});
   const Said said = Prehend(words);
   EXPECT_TRUE(said.exit_code == 0 || said.exit_code == 4) << said.err;
   return nlohmann::json::parse(said.out);
@@ -75,21 +75,21 @@ TEST(Query, TimesRelationsAndFormsAreChosen) {
                          "milk_carton_wrap"})
                 .size(),
             0u);
-  const Said csv = Prehend({"query", file, "--event", "picking_up", "--csv"});
+  const Said csv = Prehend({"episode", "query", file, "--event", "picking_up", "--csv"});
   EXPECT_TRUE(csv.out.starts_with("file,episode,scenario,event,begin_s,end_s,roles\n")) << csv.out;
-  const Said none = Prehend({"query", file, "--event", "flying"});
+  const Said none = Prehend({"episode", "query", file, "--event", "flying"});
   EXPECT_EQ(none.exit_code, 4);
   EXPECT_TRUE(none.out.ends_with("0 answers\n")) << none.out;
 }
 
 TEST(Query, AWrongQuestionIsExplained) {
-  const Said relation = Prehend({"query", "a.episodes", "--relation", "meet x"});
+  const Said relation = Prehend({"episode", "query", "a.episodes", "--relation", "meet x"});
   EXPECT_EQ(relation.exit_code, 2);
   EXPECT_NE(relation.err.find("did you mean 'meets'?"), std::string::npos) << relation.err;
-  const Said role = Prehend({"query", "a.episodes", "--role", "milk"});
+  const Said role = Prehend({"episode", "query", "a.episodes", "--role", "milk"});
   EXPECT_EQ(role.exit_code, 2);
   EXPECT_NE(role.err.find("found 'milk', wanted ROLE=VALUE"), std::string::npos) << role.err;
-  const Said file = Prehend({"query", "no.episodes"});
+  const Said file = Prehend({"episode", "query", "no.episodes"});
   EXPECT_EQ(file.exit_code, 2);
   EXPECT_NE(file.err.find("no such file"), std::string::npos) << file.err;
 }
@@ -113,7 +113,7 @@ TEST(Query, Sqlite3AnswersTheDocumentedQuestions) {
 TEST(Query, EachAnswerIsDrawn) {
   const std::string file = ThreeEpisodes("query_show");
   const auto folder = FreshFolder("query_shown") / "new";
-  const Said bad = Prehend({"query", file, "--show", file});
+  const Said bad = Prehend({"episode", "query", file, "--show", file});
   if (bad.err.find("draws no pictures") != std::string::npos) GTEST_SKIP() << bad.err;
   EXPECT_EQ(bad.exit_code, 3);
   EXPECT_NE(bad.err.find(file + " is not a folder"), std::string::npos) << bad.err;
@@ -128,8 +128,8 @@ TEST(Query, EachAnswerIsDrawn) {
     sizes.insert(std::filesystem::file_size(picture));
   }
   EXPECT_EQ(sizes.size(), answers.size()) << "each shows something else";
-  const Said csv =
-      Prehend({"query", file, "--event", "grasping", "--csv", "--show", folder.string()});
+  const Said csv = Prehend(
+      {"episode", "query", file, "--event", "grasping", "--csv", "--show", folder.string()});
   EXPECT_EQ(csv.out.substr(0, csv.out.find('\n')),
             "file,episode,scenario,event,begin_s,end_s,roles,picture");
 }
@@ -139,12 +139,12 @@ TEST(Query, UnknownNamesAreNamed) {
   ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", file}).exit_code, 0);
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {"--role", "hnd=right_hand"}, {"--class", "hnd=Hand"}, {"--part-of", "hnd=table"}}) {
-    const Said said = Prehend({"query", file, words[0], words[1]});
+    const Said said = Prehend({"episode", "query", file, words[0], words[1]});
     EXPECT_EQ(said.exit_code, 2);
     EXPECT_EQ(said.err,
               "prehend: " + words[0] + ": no event has a role 'hnd'; did you mean 'hand'?\n");
   }
-  const Said typo = Prehend({"query", file, "--event", "graping"});
+  const Said typo = Prehend({"episode", "query", file, "--event", "graping"});
   EXPECT_EQ(typo.exit_code, 4);
   EXPECT_EQ(typo.err, "prehend: no event is called 'graping'; did you mean 'grasping'?\n");
 }

@@ -16,18 +16,18 @@ TEST(Recording, ResegmentingGivesTheSameTimelineAndOtherGrammarsTheirs) {
   const auto file = (FreshFolder("recording") / "milk.jsonl").string();
   const Said played = Prehend({"run", "milk_carton_wrap", "--json", "--record", file});
   ASSERT_EQ(played.exit_code, 0) << played.err;
-  const Said again = Prehend({"resegment", file, "--json"});
+  const Said again = Prehend({"episode", "resegment", file, "--json"});
   ASSERT_EQ(again.exit_code, 0) << again.err;
   const auto first = nlohmann::json::parse(played.out), second = nlohmann::json::parse(again.out);
   EXPECT_EQ(first["events"], second["events"]);
   EXPECT_EQ(second["scenario"], "milk_carton_wrap");
   EXPECT_FALSE(first["events"].empty());
 
-  const Said contacts = Prehend({"resegment", file, "--grammar", "contact", "--json"});
+  const Said contacts = Prehend({"episode", "resegment", file, "--grammar", "contact", "--json"});
   for (const auto& event : nlohmann::json::parse(contacts.out)["events"]) {
     EXPECT_TRUE(event["event"] == "contact" || event["event"] == "supported_by") << event;
   }
-  const Said higher = Prehend({"resegment", file, "--set", "lift_rise=10m"});
+  const Said higher = Prehend({"episode", "resegment", file, "--set", "lift_rise=10m"});
   EXPECT_EQ(higher.out.find("picking_up"), std::string::npos) << higher.out;
 }
 
@@ -36,7 +36,7 @@ TEST(Recording, WhatBadSensorsSawIsSegmentedAgainAsItWas) {
   const Said played =
       Prehend({"run", "a_slide_is_seen_through_bad_sensors", "--json", "--record", file});
   ASSERT_EQ(played.exit_code, 0) << played.err;
-  const Said again = Prehend({"resegment", file, "--json"});
+  const Said again = Prehend({"episode", "resegment", file, "--json"});
   ASSERT_EQ(again.exit_code, 0) << again.err;
   const auto first = nlohmann::json::parse(played.out), second = nlohmann::json::parse(again.out);
   EXPECT_EQ(first["events"], second["events"]);
@@ -60,7 +60,7 @@ TEST(Recording, ClassesAreSegmentedAgainAsTheScenarioNamesThem) {
   const auto file = (folder / "ball.jsonl").string();
   const Said played =
       Prehend({"run", "ball_in_a_carried_cup_is_supported_by_it", "--json", "--record", file});
-  const Said again = Prehend({"resegment", file, "--json"});
+  const Said again = Prehend({"episode", "resegment", file, "--json"});
   EXPECT_EQ(EventsNamed("contained_in", played).size(), 1u);
   EXPECT_EQ(EventsNamed("contained_in", again), EventsNamed("contained_in", played));
 
@@ -70,8 +70,8 @@ TEST(Recording, ClassesAreSegmentedAgainAsTheScenarioNamesThem) {
       "grammar mine\nuse contact\n"
       "event by_class(ball: Ball, cup: Cup) while supported_by(ball, cup)\n"
       "event by_superclass(ball: Movable, vessel: Container) while supported_by(ball, vessel)\n");
-  const Said mine =
-      Prehend({"resegment", file, "--grammar", (folder / "mine.grammar").string(), "--json"});
+  const Said mine = Prehend(
+      {"episode", "resegment", file, "--grammar", (folder / "mine.grammar").string(), "--json"});
   ASSERT_EQ(EventsNamed("by_class", mine).size(), 1u);
   ASSERT_EQ(EventsNamed("by_superclass", mine).size(), 1u);
   EXPECT_EQ(EventsNamed("by_class", mine)[0]["begin_tick"],
@@ -80,7 +80,8 @@ TEST(Recording, ClassesAreSegmentedAgainAsTheScenarioNamesThem) {
   // Without its superclass the cup is no container, and who asks for containers is warned of it.
   const auto poorer = folder / "poorer.jsonl";
   WriteFile(poorer, Replaced(ReadFile(file), R"("kinds":["Container"],)", ""));
-  const Said none = Prehend({"resegment", poorer.string(), "--grammar", "containers", "--json"});
+  const Said none =
+      Prehend({"episode", "resegment", poorer.string(), "--grammar", "containers", "--json"});
   EXPECT_TRUE(EventsNamed("contained_in", none).empty()) << none.out;
   EXPECT_NE(none.err.find("no entity of this episode is a 'Container'"), std::string::npos)
       << none.err;
@@ -103,7 +104,8 @@ TEST(Recording, AHandIsPartOfItsPerson) {
   EXPECT_EQ(hers[0]["begin_tick"], grasps[0]["begin_tick"]);
   EXPECT_EQ(hers[0]["end_tick"], grasps[0]["end_tick"]);
   EXPECT_TRUE(EventsNamed("nobody_holds", played).empty()) << played.out;
-  EXPECT_EQ(EventsNamed("she_holds", Prehend({"resegment", file, "--grammar", rules, "--json"})),
+  EXPECT_EQ(EventsNamed("she_holds",
+                        Prehend({"episode", "resegment", file, "--grammar", rules, "--json"})),
             hers);
 
   // The same motion of a hand that belongs to nobody.
@@ -114,7 +116,8 @@ TEST(Recording, AHandIsPartOfItsPerson) {
   const auto nobodys = folder / "nobodys.jsonl";
   WriteFile(nobodys, alone.substr(0, part) +
                          alone.substr(part + std::string(R"("part_of":"anna",)").size()));
-  const Said said = Prehend({"resegment", nobodys.string(), "--grammar", rules, "--json"});
+  const Said said =
+      Prehend({"episode", "resegment", nobodys.string(), "--grammar", rules, "--json"});
   EXPECT_TRUE(EventsNamed("she_holds", said).empty()) << said.out;
   EXPECT_EQ(EventsNamed("nobody_holds", said).size(), 1u) << said.out;
 }
@@ -126,19 +129,20 @@ TEST(Recording, WithoutItsLastLineItIsUnfinished) {
   const std::string whole = ReadFile(file);
   const auto cut = folder / "cut.jsonl";
   WriteFile(cut, whole.substr(0, whole.rfind("{\"end_tick\"")));
-  EXPECT_NE(Prehend({"resegment", file}).out.find("\ncompleted: 5.1500 s, 2472 ticks\n"),
+  EXPECT_NE(Prehend({"episode", "resegment", file}).out.find("\ncompleted: 5.1500 s, 2472 ticks\n"),
             std::string::npos);
-  const Said open = Prehend({"resegment", cut.string()});
+  const Said open = Prehend({"episode", "resegment", cut.string()});
   EXPECT_NE(
       open.out.find("\nunfinished: 5.1500 s, 2472 ticks; the recording does not say that it ended "
                     "here\n"),
       std::string::npos)
       << open.out;
-  EXPECT_NE(Prehend({"resegment", cut.string(), "--json"}).out.find("\"status\": \"unfinished\""),
+  EXPECT_NE(Prehend({"episode", "resegment", cut.string(), "--json"})
+                .out.find("\"status\": \"unfinished\""),
             std::string::npos);
   // Cut within a line it has no end either, and is refused at the place of the cut.
   WriteFile(cut, whole.substr(0, whole.size() / 2));
-  const Said refused = Prehend({"resegment", cut.string()});
+  const Said refused = Prehend({"episode", "resegment", cut.string()});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_NE(refused.err.find("the line ends within a value"), std::string::npos) << refused.err;
 }
@@ -172,7 +176,7 @@ TEST(Recording, TheDocumentedExampleIsRead) {
   const std::size_t begin = text.find(fence) + fence.size();
   const auto file = FreshFolder("recording") / "example.jsonl";
   WriteFile(file, text.substr(begin, text.find("```", begin) - begin));
-  const Said said = Prehend({"resegment", file.string(), "--json"});
+  const Said said = Prehend({"episode", "resegment", file.string(), "--json"});
   ASSERT_EQ(said.exit_code, 0) << said.err;
   EXPECT_EQ(nlohmann::json::parse(said.out)["events"].size(), 3) << said.out;
 }
@@ -193,7 +197,7 @@ TEST(Recording, BadOnesEndWithExitCodeTwo) {
   WriteFile(folder / "bad.jsonl", "{\"recording\": 1}\n");
   for (const std::string& file :
        {(folder / "bad.jsonl").string(), (folder / "none.jsonl").string(), folder.string()}) {
-    const Said said = Prehend({"resegment", file});
+    const Said said = Prehend({"episode", "resegment", file});
     EXPECT_EQ(said.exit_code, 2) << said.err;
     EXPECT_EQ(said.out, "");
     EXPECT_NE(said.err.find(file), std::string::npos) << said.err;

@@ -225,10 +225,10 @@ TEST_F(Render, MissingFoldersAreMade) {
   const Said said = Do({"--strip", "-o", Path("no/folder/a.svg")});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_TRUE(fs::exists(Path("no/folder/a.svg")));
-  EXPECT_EQ(
-      Prehend({"tracks", "milk_carton_wrap", "--only", "grasping", "-o", Path("no/other/a.csv")})
-          .exit_code,
-      0);
+  EXPECT_EQ(Prehend({"grammar", "tracks", "milk_carton_wrap", "--only", "grasping", "-o",
+                     Path("no/other/a.csv")})
+                .exit_code,
+            0);
 }
 
 }  // namespace

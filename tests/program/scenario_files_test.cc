@@ -40,8 +40,8 @@ TEST(ScenarioFiles, BeginWithTheLineThatEditorsLookFor) {
               "# yaml-language-server: $schema=../scenario.schema.json")
         << file;
   }
-  EXPECT_EQ(Prehend({"schema"}).out, ReadFile(kScenarios / "scenario.schema.json"))
-      << "renew it with: prehend schema > scenarios/scenario.schema.json";
+  EXPECT_EQ(Prehend({"scenario", "schema"}).out, ReadFile(kScenarios / "scenario.schema.json"))
+      << "renew it with: prehend scenario schema > scenarios/scenario.schema.json";
 }
 
 std::vector<std::string> InvalidNames() {

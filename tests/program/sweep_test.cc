@@ -28,7 +28,7 @@ TEST(Sweep, IsEqualToItsSingleRuns) {
   const std::string file = TwoEpisodes(folder), csv = (folder / "sweep.csv").string(),
                     png = (folder / "sweep.png").string();
   const Said swept =
-      Prehend({"sweep", file, "--over", "lift_rise=1cm..41cm:3", "--over",
+      Prehend({"grammar", "sweep", file, "--over", "lift_rise=1cm..41cm:3", "--over",
                "reach_min=50ms..150ms:2", "--truth", "recorded", "-o", csv, "--picture", png});
   ASSERT_EQ(swept.exit_code, 0) << swept.err;
   EXPECT_NE(swept.out.find("6 settings on 2 episodes"), std::string::npos) << swept.out;
@@ -41,9 +41,9 @@ TEST(Sweep, IsEqualToItsSingleRuns) {
       << "a carton is never lifted 41 cm";
   for (const auto& [line, rise, still] :
        {std::tuple{2, "1 cm", "150 ms"}, std::tuple{5, "41 cm", "50 ms"}}) {
-    const Said single =
-        Prehend({"sweep", file, "--over", std::string("lift_rise=") + rise + ".." + rise + ":2",
-                 "--set", std::string("reach_min=") + still, "--truth", "recorded"});
+    const Said single = Prehend({"grammar", "sweep", file, "--over",
+                                 std::string("lift_rise=") + rise + ".." + rise + ":2", "--set",
+                                 std::string("reach_min=") + still, "--truth", "recorded"});
     ASSERT_EQ(single.exit_code, 0) << single.err;
     const std::string one = LinesOf(single.out)[1], same = lines[static_cast<std::size_t>(line)];
     EXPECT_EQ(one.substr(one.find(',') + 1), same.substr(same.find(',', same.find(',') + 1) + 1));
@@ -54,7 +54,7 @@ TEST(Sweep, GoldensAndTheOracleAreTruths) {
   const std::string file = TwoEpisodes(FreshFolder("sweep_truths"));
   for (const char* truth : {"golden", "oracle"}) {
     const Said swept =
-        Prehend({"sweep", file, "--over", "reach_radius=5cm..30cm:2", "--truth", truth});
+        Prehend({"grammar", "sweep", file, "--over", "reach_radius=5cm..30cm:2", "--truth", truth});
     ASSERT_EQ(swept.exit_code, 0) << swept.err;
     const std::vector<std::string> lines = LinesOf(swept.out);
     const auto f1 = [](const std::string& line) {
@@ -66,14 +66,14 @@ TEST(Sweep, GoldensAndTheOracleAreTruths) {
 }
 
 TEST(Sweep, AWrongCallIsExplained) {
-  const Said nothing = Prehend({"sweep", "a.episodes"});
+  const Said nothing = Prehend({"grammar", "sweep", "a.episodes"});
   EXPECT_EQ(nothing.exit_code, 2);
   EXPECT_NE(nothing.err.find("--over is missing"), std::string::npos) << nothing.err;
-  const Said unit = Prehend({"sweep", "a.episodes", "--over", "x=1cm..2m:3"});
+  const Said unit = Prehend({"grammar", "sweep", "a.episodes", "--over", "x=1cm..2m:3"});
   EXPECT_EQ(unit.exit_code, 2);
   EXPECT_NE(unit.err.find("both ends need the same unit"), std::string::npos) << unit.err;
   const std::string file = TwoEpisodes(FreshFolder("sweep_wrong"));
-  const Said unknown = Prehend({"sweep", file, "--over", "reach_radios=1cm..2cm:2"});
+  const Said unknown = Prehend({"grammar", "sweep", file, "--over", "reach_radios=1cm..2cm:2"});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_NE(unknown.err.find("did you mean 'reach_radius'"), std::string::npos) << unknown.err;
 }

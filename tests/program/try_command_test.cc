@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend try, as a person or a script uses it.
+// prehend grammar try, as a person or a script uses it.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -30,17 +30,17 @@ class TryCommand : public ::testing::Test {
 TEST_F(TryCommand, ADrawingAgreesOrDiffersRowByRow) {
   const std::string grammar = File("taps.grammar", kGrammar);
   const std::string drawing = File("taps.txt", kDrawing);
-  const Said agrees = Prehend({"try", grammar, drawing});
+  const Said agrees = Prehend({"grammar", "try", grammar, drawing});
   EXPECT_EQ(agrees.exit_code, 0) << agrees.err;
   EXPECT_EQ(agrees.out, "agrees   " + drawing + ":1 two touches\n1 of 1 drawings agree\n");
-  const Said differs = Prehend({"try", grammar, drawing, "--set", "longest=0.3 s"});
+  const Said differs = Prehend({"grammar", "try", grammar, drawing, "--set", "longest=0.3 s"});
   EXPECT_EQ(differs.exit_code, 1) << differs.err;
   EXPECT_EQ(differs.out, "differs  " + drawing +
                              ":1 two touches\n"
                              "  wanted tap(hand, drum)             |..[=..............|\n"
                              "  found  tap(hand, drum)             |..[=......[====...|\n"
                              "0 of 1 drawings agree\n");
-  const Said json = Prehend({"try", grammar, drawing, "--json"});
+  const Said json = Prehend({"grammar", "try", grammar, drawing, "--json"});
   const auto parsed = nlohmann::json::parse(json.out);
   EXPECT_EQ(parsed["grammar"], "taps");
   EXPECT_EQ(parsed["drawings"][0]["agrees"], true);
@@ -50,11 +50,11 @@ TEST_F(TryCommand, ADrawingAgreesOrDiffersRowByRow) {
 TEST_F(TryCommand, ARowWithoutEventsSaysThatThereAreNone) {
   const std::string grammar = File("taps.grammar", kGrammar);
   const std::string head = "entities hand:Hand drum:Fixed\nhand holds drum ";
-  const Said none =
-      Prehend({"try", grammar, File("none.txt", head + "|....|\n--\ntap(hand, drum) |....|\n")});
+  const Said none = Prehend(
+      {"grammar", "try", grammar, File("none.txt", head + "|....|\n--\ntap(hand, drum) |....|\n")});
   EXPECT_EQ(none.exit_code, 0) << none.out;
-  const Said one =
-      Prehend({"try", grammar, File("one.txt", head + "|.00.|\n--\ntap(hand, drum) |....|\n")});
+  const Said one = Prehend(
+      {"grammar", "try", grammar, File("one.txt", head + "|.00.|\n--\ntap(hand, drum) |....|\n")});
   EXPECT_EQ(one.exit_code, 1) << one.out;
   EXPECT_NE(one.out.find("  found  tap(hand, drum)             |.[=.|\n"), std::string::npos)
       << one.out;
@@ -64,7 +64,7 @@ TEST_F(TryCommand, ADrawingThatExpectsNothingShowsWhatThereIs) {
   const std::string grammar = File("taps.grammar", kGrammar);
   const std::string drawing =
       File("taps.txt", "entities hand:Hand drum:Fixed\nhand holds drum |.00.|\n");
-  const Said said = Prehend({"try", grammar, drawing});
+  const Said said = Prehend({"grammar", "try", grammar, drawing});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_NE(said.out.find("  found  tap(hand, drum)             |.[=.|\n"), std::string::npos)
       << said.out;
@@ -74,25 +74,26 @@ TEST_F(TryCommand, MistakesHaveTheirPlaceAndExitCodeTwo) {
   const std::string grammar = File("taps.grammar", kGrammar);
   const std::string drawing =
       File("taps.txt", "entities hand:Hand drum:Fixed\nhand holds drom |.00.|\n");
-  const Said said = Prehend({"try", grammar, drawing});
+  const Said said = Prehend({"grammar", "try", grammar, drawing});
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_EQ(said.out, "");
   EXPECT_TRUE(said.err.starts_with(drawing + ":2:12: error: nobody is called 'drom'\n"))
       << said.err;
   EXPECT_NE(said.err.find("did you mean 'drum'?"), std::string::npos) << said.err;
-  EXPECT_EQ(Prehend({"try", grammar, (folder_ / "none.txt").string()}).exit_code, 2);
-  EXPECT_EQ(Prehend({"try", "no_such", drawing}).exit_code, 2);
+  EXPECT_EQ(Prehend({"grammar", "try", grammar, (folder_ / "none.txt").string()}).exit_code, 2);
+  EXPECT_EQ(Prehend({"grammar", "try", "no_such", drawing}).exit_code, 2);
 }
 
 TEST_F(TryCommand, WhatCannotBeIsAMistakeAndNoDifference) {
   const std::string grammar = File("taps.grammar", kGrammar);
   const std::string head = "entities hand:Hand drum:Fixed\n";
-  const Said sets = Prehend({"try", grammar, File("sets.txt", head + "hand holds drum |.4.|\n")});
+  const Said sets =
+      Prehend({"grammar", "try", grammar, File("sets.txt", head + "hand holds drum |.4.|\n")});
   EXPECT_EQ(sets.exit_code, 2);
   EXPECT_NE(sets.err.find(":2:19: error: 'holds' takes 0..3 or '.', found '4'"), std::string::npos)
       << sets.err;
   const Said swapped =
-      Prehend({"try", grammar,
+      Prehend({"grammar", "try", grammar,
                File("swapped.txt", head + "hand holds drum |.2.|\n--\ntap(drum, hand) |.[.|\n")});
   EXPECT_EQ(swapped.exit_code, 2);
   EXPECT_NE(swapped.err.find("did you mean 'tap(hand, drum)'?"), std::string::npos) << swapped.err;
@@ -120,8 +121,8 @@ TEST_F(TryCommand, TheCookbookIsRight) {
   for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
     if (!blocks[i].starts_with("grammar ")) continue;
     const std::string number = std::to_string(++tried);
-    const Said said = Prehend(
-        {"try", File(number + ".grammar", blocks[i]), File(number + ".txt", blocks[i + 1])});
+    const Said said = Prehend({"grammar", "try", File(number + ".grammar", blocks[i]),
+                               File(number + ".txt", blocks[i + 1])});
     EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
     EXPECT_EQ(said.err, "");
   }

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """tests/program/watch_latency.py PREHEND RECORDING.jsonl [GRAMMAR]: how long after the frame that decided it an event is
-printed. The recording's frames go through a FIFO to `prehend watch --json` at their own rate, in real time; what is printed
-must be the events that `prehend resegment` finds. Prints the lags, and ends with 1 if the events differ."""
+printed. The recording's frames go through a FIFO to `prehend grammar watch --json` at their own rate, in real time; what is printed
+must be the events that `prehend episode resegment` finds. Prints the lags, and ends with 1 if the events differ."""
 import json
 import os
 import subprocess
@@ -21,7 +21,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         fifo = os.path.join(folder, "tracker")
         os.mkfifo(fifo)
-        watch = subprocess.Popen([program, "watch", fifo, "--json"] + grammar, stdout=subprocess.PIPE)
+        watch = subprocess.Popen([program, "grammar", "watch", fifo, "--json"] + grammar, stdout=subprocess.PIPE)
         sent = {}
 
         def produce():
@@ -49,7 +49,7 @@ def main():
             if event["decided_tick"] in sent:
                 lags.append((now - sent[event["decided_tick"]]) * 1e3)
         producer.join()
-    found = json.loads(subprocess.run([program, "resegment", recording, "--json"] + grammar, capture_output=True).stdout)
+    found = json.loads(subprocess.run([program, "episode", "resegment", recording, "--json"] + grammar, capture_output=True).stdout)
     key = lambda event: json.dumps(event, sort_keys=True)
     same = sorted(map(key, events)) == sorted(map(key, found["events"]))
     lags.sort()

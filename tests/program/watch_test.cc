@@ -28,7 +28,8 @@ std::vector<Json> Lines(const std::string& text) {
 }
 
 void ExpectTheEventsOf(const std::filesystem::path& file, const Said& watched) {
-  const Json all = Json::parse(Prehend({"resegment", file.string(), "--json"}).out)["events"];
+  const Json all =
+      Json::parse(Prehend({"episode", "resegment", file.string(), "--json"}).out)["events"];
   std::vector<Json> lines = Lines(watched.out);
   EXPECT_TRUE(std::is_sorted(lines.begin(), lines.end(), [](const Json& a, const Json& b) {
     return a["decided_tick"] < b["decided_tick"];
@@ -41,7 +42,7 @@ void ExpectTheEventsOf(const std::filesystem::path& file, const Said& watched) {
 TEST(Watch, PrintsTheEventsOfResegmentInTheOrderInWhichTheyAreDecided) {
   const auto folder = FreshFolder("watch");
   const auto file = Recorded(folder);
-  const Said said = Prehend({"watch", file.string(), "--json"});
+  const Said said = Prehend({"grammar", "watch", file.string(), "--json"});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_GT(Lines(said.out).size(), 8u);
   ExpectTheEventsOf(file, said);
@@ -58,7 +59,7 @@ TEST(Watch, ReadsAPipeAndPrintsBeforeItsEnd) {
                                " && break; sleep 0.1; done; grep -q reaching " + out +
                                " && echo seen > " + (folder / "seen").string() + "; tail -n +801 " +
                                file.string() + "; } > " + fifo + " & } && { " + PREHEND_BINARY_DIR +
-                               "/prehend watch " + fifo + " --json > " + out + "; }";
+                               "/prehend grammar watch " + fifo + " --json > " + out + "; }";
   ASSERT_EQ(std::system(("cd " PREHEND_SOURCE_DIR " && " + producer).c_str()), 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "seen"));
   ExpectTheEventsOf(file, {.exit_code = 0, .out = ReadFile(out), .err = ""});
@@ -75,7 +76,7 @@ TEST(Watch, AFaultyLineIsNamedAndLeftOut) {
                         "{\"tick\": 100000, \"samples\": {\"milk\": {\"at_m\": [9, 9, 9]}, "
                         "\"mlk\": {\"at_m\": [0, 0, 0]}}}\n" +
                         text.substr(at));
-  const Said said = Prehend({"watch", faulty.string(), "--json"});
+  const Said said = Prehend({"grammar", "watch", faulty.string(), "--json"});
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_NE(said.err.find("faulty.jsonl:301:"), std::string::npos) << said.err;
   EXPECT_NE(said.err.find("faulty.jsonl:302:"), std::string::npos) << said.err;
@@ -89,22 +90,22 @@ TEST(Watch, AProducerThatIsLostEndsTheEpisode) {
   const std::string text = ReadFile(Recorded(folder));
   const auto cut = folder / "cut.jsonl";
   WriteFile(cut, text.substr(0, text.find("\n{\"end_tick\"") + 1));
-  const Said said = Prehend({"watch", cut.string(), "--json"});
+  const Said said = Prehend({"grammar", "watch", cut.string(), "--json"});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_NE(said.err.find("without 'end_tick': what was open ends there"), std::string::npos)
       << said.err;
   ExpectTheEventsOf(cut, said);
   WriteFile(cut, "");
-  EXPECT_EQ(Prehend({"watch", cut.string()}).exit_code, 2);
+  EXPECT_EQ(Prehend({"grammar", "watch", cut.string()}).exit_code, 2);
   WriteFile(cut, "no recording\n");
-  const Said none = Prehend({"watch", cut.string()});
+  const Said none = Prehend({"grammar", "watch", cut.string()});
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_NE(none.err.find("cut.jsonl:1:1: error: "), std::string::npos) << none.err;
 }
 
 TEST(Watch, AFolderIsNoFile) {
   const auto folder = FreshFolder("watched_folder").string();
-  const Said said = Prehend({"watch", folder});
+  const Said said = Prehend({"grammar", "watch", folder});
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_EQ(said.err.find("prehend: " + folder + " is a directory, not a file\n"), 0u) << said.err;
 }

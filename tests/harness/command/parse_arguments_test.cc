@@ -33,9 +33,11 @@ const std::vector<Command>& Commands() {
 }
 
 ParsedArguments Parse(const std::vector<std::string>& words) {
-  return ParseArguments(
-      {.version = "kitchen 1.0", .summary = "A kitchen.", .footer = "Mind the step."}, Commands(),
-      words);
+  return ParseArguments({.version = "kitchen 1.0",
+                         .summary = "A kitchen.",
+                         .footer = "Mind the step.",
+                         .groups = {{"Chores", {"pour", "wash"}}}},
+                        Commands(), words);
 }
 
 ParsedOptions OptionsOf(const std::vector<std::string>& words) {

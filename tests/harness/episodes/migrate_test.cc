@@ -95,7 +95,7 @@ TEST(Migrate, WhatIsOldOrNewIsSaid) {
   const auto refused = EpisodeFile::Open(kOldFile);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().front().message,
-            "has version 1 of the format, this program reads version 3; 'prehend migrate " +
+            "has version 1 of the format, this program reads version 3; 'prehend episode migrate " +
                 kOldFile + " -o NEW.episodes' writes a file of it that can be read");
   ASSERT_TRUE(MigrateFile(kOldFile, file, kSource));
   EXPECT_EQ(MigrateFile(kOldFile, file, kSource).error().front().message, "is there already");

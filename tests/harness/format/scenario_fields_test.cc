@@ -24,7 +24,7 @@ std::string TextOf(const std::string& path) {
 
 TEST(ScenarioSchema, TheCommittedFileIsTheGeneratedOne) {
   EXPECT_EQ(TextOf(kRoot + "/scenarios/scenario.schema.json"), ScenarioSchema())
-      << "renew it: prehend schema > scenarios/scenario.schema.json";
+      << "renew it: prehend scenario schema > scenarios/scenario.schema.json";
 }
 
 TEST(ScenarioSchema, EveryScenarioIsReadAndValid) {

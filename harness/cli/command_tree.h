@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// All commands of `prehend`, and what the program says about itself: groups, nouns, old names.
+// Tested by tests/harness/cli/command_tree_test.cc
+#pragma once
+
+#include <vector>
+
+#include "harness/command/parse_arguments.h"
+
+namespace prehend::harness {
+
+std::vector<Command> AllCommands();
+ProgramDescription DescribeProgram();
+
+}  // namespace prehend::harness
