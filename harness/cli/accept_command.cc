@@ -380,34 +380,35 @@ Command AcceptCommand() {
            "accept milk_carton_wrap --pictures --reason \"the carton is seen in the hand\"",
            "accept takes/take1.jsonl --reason \"compared with the video\"",
            "accept takes/take1.jsonl --grammar my.grammar --reason \"compared with the video\""},
-      .options =
-          {{.name = "scenario",
-            .help = "a name, skill/name, or the file of a recording of a tracker",
-            .required = true},
-           {.name = "--reason",
-            .help = "why this is right; is written into the golden",
-            .placeholder = "TEXT"},
-           {.name = "--derived",
-            .help = "how the events follow from the definitions, one line each; the\n"
-                    "physical oracle's derivation is added; may be repeated",
-            .placeholder = "TEXT",
-            .repeatable = true},
-           {.name = "--reviewed",
-            .help = "accept only what 'review' printed with this fingerprint",
-            .placeholder = "FINGERPRINT",
-            .rule = {.problem = FingerprintProblem}},
-           {.name = "--grammar",
-            .help = "of a recording of a tracker: this grammar instead of the one that it names",
-            .placeholder = "NAME|FILE"},
-           {.name = "--exact",
-            .help = "take over boundaries that moved within their tolerance, too: after a\n"
-                    "change that moved many, or the next small one fails"},
-           {.name = "--unsteady",
-            .help = "why the events may differ when the scenario is played elsewhere, which\n"
-                    "accept does; is written into the golden; without it they may not",
-            .placeholder = "TEXT"},
-           {.name = "--pictures",
-            .help = "accept the pictures, not the events; they are kept beside the timeline"}},
+      .options = {{.name = "scenario",
+                   .help = "a name, skill/name, or the file of a recording of a tracker",
+                   .required = true},
+                  {.name = "--reason",
+                   .help = "why this is right; is written into the golden",
+                   .placeholder = "TEXT"},
+                  {.name = "--derived",
+                   .help = "how the events follow from the definitions, one line each; the "
+                           "physical oracle's derivation is added; may be repeated",
+                   .placeholder = "TEXT",
+                   .repeatable = true},
+                  {.name = "--reviewed",
+                   .help = "accept only what 'review' printed with this fingerprint",
+                   .placeholder = "FINGERPRINT",
+                   .rule = {.problem = FingerprintProblem}},
+                  {.name = "--grammar",
+                   .help =
+                       "of a recording of a tracker: this grammar instead of the one that it names",
+                   .placeholder = "NAME|FILE"},
+                  {.name = "--exact",
+                   .help = "take over boundaries that moved within their tolerance, too: after a "
+                           "change that moved many, or the next small one fails"},
+                  {.name = "--unsteady",
+                   .help = "why the events may differ when the scenario is played elsewhere, which "
+                           "accept does; is written into the golden; without it they may not",
+                   .placeholder = "TEXT"},
+                  {.name = "--pictures",
+                   .help =
+                       "accept the pictures, not the events; they are kept beside the timeline"}},
       .run = RunAccept};
 }
 

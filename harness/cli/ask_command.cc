@@ -120,7 +120,7 @@ ExitCode RunAsk(const ParsedOptions& options, const CommandContext& context) {
     return Complain(context, ExitCode::kBadInput, "--show: this build draws no pictures");
   Answered answered =
       AskSwipl(context.root, folder, options.Text("query"), options.IntOr("--most", kDefaultMost),
-               options.NumberOr("--seconds", kDefaultAsk_s));
+               options.NumberOr("--time-limit-s", kDefaultAsk_s));
   MomentPictures drawn;
   if (shows) {
     std::vector<Moment> moments;
@@ -177,11 +177,8 @@ Command AskCommand() {
                    .help = "stop after so many answers; default: 100",
                    .placeholder = "N",
                    .rule = IntegersFrom(1, kMostAnswers)},
-                  {.name = "--seconds",
-                   .help = "stop after this time; default: 10",
-                   .placeholder = "S",
-                   .rule = NumbersFrom(0.1, kMostAsk_s)},
-                  {.name = "--json", .help = "print a JSON array instead of a table"}},
+                  TimeLimitOption(0.1, kMostAsk_s),
+                  JsonOption()},
       .run = RunAsk};
 }
 

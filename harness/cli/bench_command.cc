@@ -70,14 +70,14 @@ Command BenchCommand() {
           .examples = {"grammar bench", "grammar bench take.jsonl --grammar my/rules.grammar",
                        "grammar bench --json"},
           .options = {{.name = "episode",
-                       .help = "a scenario, an episode file or a recording whose frames are\n"
+                       .help = "a scenario, an episode file or a recording whose frames are "
                                "watched; default: milk_carton_wrap"},
                       EpisodeOption(),
                       GrammarOption(),
                       SettingsOption(),
                       {.name = "--quick",
                        .help = "one run instead of five: shows that it runs, not how fast"},
-                      {.name = "--json", .help = "print one JSON object instead of a table"}},
+                      JsonOption()},
           .run = RunBench};
 }
 

@@ -29,15 +29,6 @@ constexpr double kDefaultTimeLimit_s = 120;
 constexpr std::uint64_t kDefaultMemoryLimit_mb = 1000;
 constexpr int kMaxRepeats = 10'000;
 
-std::string FilterProblem(const std::string& filter) {
-  const bool negated = filter.starts_with('!');
-  const std::string rest = filter.substr(negated ? 1 : 0);
-  if (!rest.empty() && rest != "tag:") return "";
-  return fmt::format("found '{0}', wanted {1}, like {0}{2}", filter,
-                     rest.empty() ? "what must not match" : "a tag after it",
-                     rest.empty() ? "reach/*" : "smoke");
-}
-
 std::string ShardProblem(const std::string& shard) {
   return ParseShard(shard) ? ""
                            : "found '" + shard + "', wanted I/N, like 2/3 for the second of three";
@@ -56,57 +47,38 @@ std::vector<Option> SelectionOptions() {
       {
           {.name = "names",
            .help =
-               "names, skill/name, globs or files, also episode files and recordings of trackers;\n"
+               "names, skill/name, globs or files, also episode files and recordings of trackers; "
                "default: all scenarios",
            .repeatable = true},
-          {.name = "--filter",
-           .help = "keep those that match this glob or have the tag; with a leading '!' drop\n"
-                   "them; may be repeated, then all must hold",
-           .placeholder = "[!]GLOB|[!]tag:NAME",
-           .rule = {.problem = FilterProblem},
-           .repeatable = true},
+          FilterOption(),
           {.name = "--shard",
            .help = "keep part I of N equal parts",
            .placeholder = "I/N",
            .rule = {.problem = ShardProblem}},
           {.name = "--changed",
-           .help = "skip scenarios that passed, if no file and no part of the program that\n"
+           .help = "skip scenarios that passed, if no file and no part of the program that "
                    "they depend on changed since"},
       });
 }
 
 std::vector<Option> RunningOptions() {
-  return InGroup(
-      "How they run",
-      {
-          {.name = "--jobs",
-           .help = "scenarios at a time; default: one per core",
-           .placeholder = "N",
-           .other_name = "-j",
-           .rule = IntegersFrom(1, kMaxJobs)},
-          {.name = "--time-limit-s",
-           .help =
-               fmt::format("seconds that one scenario may take; default: {}", kDefaultTimeLimit_s),
-           .placeholder = "S",
-           .other_name = "--time-limit",
-           .rule = NumbersFrom(0.1, 86400)},
-          {.name = "--memory-limit-mb",
-           .help = fmt::format("memory that one scenario may take; 0: no limit; default: {}",
-                               kDefaultMemoryLimit_mb),
-           .placeholder = "MB",
-           .rule = IntegersFrom(0, 1'000'000)},
-          {.name = "--repeat",
-           .help = "run each scenario N times; a scenario whose results or state hashes\n"
-                   "differ is flaky and fails",
-           .placeholder = "N",
-           .rule = IntegersFrom(1, kMaxRepeats)},
-          {.name = "--shuffle",
-           .help = "run in a random order with this seed; default: the slowest first",
-           .placeholder = "SEED",
-           .rule = AnySeed()},
-          GrammarOption(),
-          SettingsOption(),
-      });
+  return InGroup("How they run",
+                 {
+                     JobsOption("scenarios"),
+                     TimeLimitOption(0.1, 86400),
+                     MemoryLimitOption(),
+                     {.name = "--repeat",
+                      .help = "run each scenario N times; a scenario whose results or state hashes "
+                              "differ is flaky and fails",
+                      .placeholder = "N",
+                      .rule = IntegersFrom(1, kMaxRepeats)},
+                     {.name = "--shuffle",
+                      .help = "run in a random order with this seed; default: the slowest first",
+                      .placeholder = "SEED",
+                      .rule = AnySeed()},
+                     GrammarOption(),
+                     SettingsOption(),
+                 });
 }
 
 std::string RecordProblem(const std::string& file) {
@@ -130,7 +102,7 @@ std::vector<Option> ResultOptions() {
       "What is written",
       {
           {.name = "--report",
-           .help = "folder for index.html and pictures; default: build/report of the project,\n"
+           .help = "folder for index.html and pictures; default: build/report of the project, "
                    "or, outside of it, of this folder",
            .placeholder = "DIR",
            .is_output = true},
@@ -145,13 +117,13 @@ std::vector<Option> ResultOptions() {
            .is_output = true},
           {.name = "--no-pictures", .help = "draw no pictures"},
           {.name = "--replay",
-           .help = "of which scenarios the page has a 3D replay: failures (the default),\n"
+           .help = "of which scenarios the page has a 3D replay: failures (the default), "
                    "all, none",
            .placeholder = "WHICH",
            .rule = {.range = {}, .problem = ReplayProblem}},
           {.name = "--verbose",
            .help = "print the details of every failure, also of more than ten"},
-          {.name = "--json", .help = "print one JSON object instead of text"},
+          JsonOption(),
       });
 }
 

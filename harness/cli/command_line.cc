@@ -96,7 +96,8 @@ ExitCode RunCommandLine(int argc, const char* const* argv) {
       return ExitCode::kBadInput;
     }
     const std::vector<Command> commands = AllCommands();
-    const ParsedArguments parsed = ParseArguments(DescribeProgram(), commands, words);
+    const ParsedArguments parsed =
+        ParseArguments(DescribeProgram("prehend " PREHEND_VERSION), commands, words);
     if (const auto* error = std::get_if<UsageError>(&parsed)) return Report(*error);
     const auto* const info = std::get_if<InfoText>(&parsed);
     const ExitCode code = info ? Print(*info) : Run(std::get<ChosenCommand>(parsed), words);

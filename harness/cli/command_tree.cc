@@ -3,6 +3,22 @@
 #include "harness/cli/command_tree.h"
 
 namespace prehend::harness {
+namespace {
+
+constexpr const char* kFooter =
+    R"(Options:
+  -h,--help             Print this, or of a command what it does and takes
+  --version             Print the version
+  --time-limit-s S      After most commands: seconds that it may take; 0: no limit; default: 600,
+                        of many episodes 3600, of sweeps 86400, of each scenario in 'check' 120,
+                        of a question in 'episode ask' 10, with --trials or --on-save none
+  --memory-limit-mb MB  Memory that it may take; 0: no limit; default: 4000, in 'check' 1000
+
+Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 simulation or internal failure,
+4 nothing was selected or found, 5 goldens wait for acceptance.
+The project is $PREHEND_HOME, or the nearest folder with a prehend.yaml, or the program's checkout.)";
+
+}  // namespace
 
 std::vector<Command> AllCommands() {
   // Ten times what the longest scenario takes on a slow machine; there may be many episodes.
@@ -38,17 +54,12 @@ std::vector<Command> AllCommands() {
           SchemaCommand()};
 }
 
-ProgramDescription DescribeProgram() {
+ProgramDescription DescribeProgram(const std::string& version) {
   return {
-      .version = "prehend " PREHEND_VERSION,
+      .version = version,
       .summary =
           "Simulate manipulation, segment it with activity grammars, compare it with goldens.",
-      .footer =
-          "Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 simulation or internal "
-          "failure,\n"
-          "4 nothing was selected or found, 5 goldens wait for acceptance.\n"
-          "The project is the folder that PREHEND_HOME names; otherwise the nearest folder, the "
-          "working\none or above, with a prehend.yaml; otherwise the checkout of the program.",
+      .footer = kFooter,
       .groups = {{"Write scenarios", {"new", "validate"}},
                  {"Test", {"check", "review", "accept", "list"}},
                  {"Look at an episode", {"run", "explain", "render", "figure", "report"}},
@@ -71,6 +82,21 @@ ProgramDescription DescribeProgram() {
                        {"bench", "grammar bench"},
                        {"poses", "scenario poses"},
                        {"schema", "scenario schema"}},
+      .old_options = {{"validate --watch", "--on-save"},
+                      {"check --time-limit", "--time-limit-s"},
+                      {"render --only", "--hand"},
+                      {"figure --only", "--hand"},
+                      {"score --events", "--event"},
+                      {"score --differences", "--verbose"},
+                      {"episode resegment --compare", "--against"},
+                      {"episode resegment --labels", "--output"},
+                      {"episode resegment --events", "--event"},
+                      {"episode query --scenario", "--episode"},
+                      {"episode query --from-s", "--from"},
+                      {"episode query --until-s", "--to"},
+                      {"episode knowledge --to", "--also"},
+                      {"episode ask --seconds", "--time-limit-s"},
+                      {"grammar margins --only", "--over"}},
   };
 }
 

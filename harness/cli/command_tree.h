@@ -3,6 +3,7 @@
 // Tested by tests/harness/cli/command_tree_test.cc
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "harness/command/parse_arguments.h"
@@ -10,6 +11,7 @@
 namespace prehend::harness {
 
 std::vector<Command> AllCommands();
-ProgramDescription DescribeProgram();
+/// `version`: all that --version prints.
+ProgramDescription DescribeProgram(const std::string& version);
 
 }  // namespace prehend::harness

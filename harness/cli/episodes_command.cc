@@ -64,11 +64,7 @@ Command EpisodesCommand() {
           .summary = "List what episode files hold",
           .examples = {"episode list suite.episodes",
                        "episode list monday.episodes tuesday.episodes --json"},
-          .options = {{.name = "files",
-                       .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
-                       .required = true,
-                       .repeatable = true},
-                      {.name = "--json", .help = "print a JSON array instead of a table"}},
+          .options = {EpisodeFilesArgument(), JsonOption()},
           .run = RunEpisodes};
 }
 
@@ -121,24 +117,13 @@ ExitCode RunVerify(const ParsedOptions& options, const CommandContext& context) 
 }  // namespace
 
 Command VerifyCommand() {
-  return {.name = "episode verify",
-          .summary = "Read every frame of recorded episodes again and check them by their hashes",
-          .examples = {"episode verify suite.episodes",
-                       "episode verify suite.episodes --episode 'slide/*'"},
-          .options = {{.name = "files",
-                       .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
-                       .required = true,
-                       .repeatable = true},
-                      {.name = "--episode",
-                       .help = "only this one: its number, or its scenario (a name, skill/name or "
-                               "a glob)",
-                       .placeholder = "WHICH"},
-                      {.name = "--jobs",
-                       .help = "episodes at a time; default: one per core",
-                       .placeholder = "N",
-                       .rule = IntegersFrom(1, kMaxJobs)},
-                      {.name = "--json", .help = "print a JSON array instead of text"}},
-          .run = RunVerify};
+  return {
+      .name = "episode verify",
+      .summary = "Read every frame of recorded episodes again and check them by their hashes",
+      .examples = {"episode verify suite.episodes",
+                   "episode verify suite.episodes --episode 'slide/*'"},
+      .options = {EpisodeFilesArgument(), EpisodesOption(), JobsOption("episodes"), JsonOption()},
+      .run = RunVerify};
 }
 
 namespace {
@@ -162,12 +147,8 @@ Command MigrateCommand() {
           .options = {{.name = "file",
                        .help = "an episode file that other commands refuse as too old",
                        .required = true},
-                      {.name = "--output",
-                       .help = "the new file; the old one stays as it is",
-                       .placeholder = "FILE.episodes",
-                       .other_name = "-o",
-                       .required = true,
-                       .is_output = true}},
+                      Required(OutputOption("the new file; the old one stays as it is",
+                                            "FILE.episodes"))},
           .run = RunMigrate};
 }
 

@@ -141,7 +141,7 @@ Command ExplainCommand() {
                        .placeholder = "EVENT[@TIME]"},
                       GrammarOption(),
                       SettingsOption(),
-                      {.name = "--json", .help = "print one JSON object instead of text"}},
+                      JsonOption()},
           .run = RunExplain};
 }
 

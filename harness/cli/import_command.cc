@@ -90,18 +90,15 @@ Command ImportCommand() {
                    "import poses.csv --map bodies.yaml -o take.jsonl",
                    "episode resegment take.jsonl", "import take.jsonl -o takes.episodes"},
       .options = {{.name = "poses",
-                   .help = "a file with poses of hands and things, CSV, BVH, MCAP or a bag\n"
+                   .help = "a file with poses of hands and things, CSV, BVH, MCAP or a bag "
                            "(docs/motion-capture.md), or a recording (docs/recording-format.md)",
                    .required = true},
                   {.name = "--map",
                    .help = "of poses, what the file means: unit, axes, times, columns, bodies",
                    .placeholder = "MAP.yaml"},
-                  {.name = "--output",
-                   .help = "the recording (docs/recording-format.md), -: standard output; or an\n"
-                           "episode file, NAME.episodes, to which it is added (docs/episodes.md)",
-                   .placeholder = "FILE",
-                   .other_name = "-o",
-                   .is_output = true},
+                  OutputOption(
+                      "the recording (docs/recording-format.md), -: standard output; or an episode "
+                      "file, NAME.episodes, to which it is added (docs/episodes.md)"),
                   {.name = "--check",
                    .help = "write nothing; show what the file has, and what a grammar will miss"},
                   {.name = "--grammar",

@@ -19,7 +19,7 @@ std::string FormProblem(const std::string& text) {
 ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& context) {
   auto episodes = FindEpisodesOrComplain("files", options, context, {Need::kBodies});
   if (!episodes) return episodes.error();
-  const std::vector<std::string> forms = options.All("--to");
+  const std::vector<std::string> forms = options.All("--also");
   const auto asked = [&](const char* form) {
     return std::ranges::find(forms, form) != forms.end();
   };
@@ -45,27 +45,21 @@ ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& contex
 Command KnowledgeCommand() {
   return {.name = "episode knowledge",
           .summary = "Write recorded episodes for knowledge bases (RDF, OWL, NEEM)",
-          .examples = {"episode knowledge suite.episodes -o kb",
-                       "episode knowledge suite.episodes --episode 'slide/*' --to owl --to neem -o kb"},
-          .options = {{.name = "files",
-                       .help = "episode files (docs/episodes.md); scenarios, which are played\n"
-                               "first and kept in the folder",
-                       .required = true,
-                       .repeatable = true},
+          .examples =
+              {"episode knowledge suite.episodes -o kb",
+               "episode knowledge suite.episodes --episode 'slide/*' --also owl --also neem -o kb"},
+          .options = {EpisodesArgument(),
                       {.name = "--output",
                        .help = "the folder; default: kb. It gets prehend.ttl, maps/ and episodes/",
                        .placeholder = "FOLDER",
                        .other_name = "-o"},
-                      {.name = "--to",
-                       .help = "also as owl (RDF/XML beside each Turtle file) or neem (BSON\n"
+                      {.name = "--also",
+                       .help = "also as owl (RDF/XML beside each Turtle file) or neem (BSON "
                                "collections as mongodump writes them); may be repeated",
                        .placeholder = "owl|neem",
                        .rule = {.range = {}, .problem = FormProblem},
                        .repeatable = true},
-                      {.name = "--episode",
-                       .help = "only these episodes: a number, or a scenario (a name, skill/name "
-                               "or a glob)",
-                       .placeholder = "WHICH"}},
+                      EpisodesOption()},
           .run = RunKnowledge};
 }
 

@@ -8,18 +8,25 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/base/shell_quote.h"
+#include "harness/base/wrap_text.h"
 #include "harness/check/select_scenarios.h"
 #include "harness/command/command.h"
 #include "harness/episode/lacks.h"
 #include "harness/read/read_scenario.h"
 #include "harness/run/project_library.h"
-#include "harness/timeline/event_text.h"
 
 namespace prehend::harness {
 namespace {
 
+constexpr std::size_t kColumns = 100;
+const std::string kIndent = "    ";
+
+std::string TagsText(const std::vector<std::string>& tags) {
+  return tags.empty() ? "" : fmt::format("  [{}]", fmt::join(tags, " "));
+}
+
 ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
-  std::vector<std::vector<std::string>> rows = {{"scenario", "shows", "tags"}};
+  std::string text;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   grammar::Diagnostics diagnostics;
   const ScenarioLibrary library = ProjectLibrary(context.root);
@@ -37,7 +44,8 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
     std::ranges::copy(ErrorsOf(read), std::back_inserter(diagnostics));
     const Scenario scenario = std::move(read).value_or(Scenario{.shows = "(cannot be read)"});
     const std::string id = ScenarioId(file.skill, file.name);
-    rows.push_back({id, scenario.shows, fmt::format("{}", fmt::join(scenario.tags, " "))});
+    text += fmt::format("{}{}\n", id, TagsText(scenario.tags)) +
+            Wrapped(kIndent + scenario.shows, kColumns, kIndent.size()) + "\n";
     list.push_back({{"scenario", id},
                     {"shows", scenario.shows},
                     {"tags", scenario.tags},
@@ -49,7 +57,7 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--json")) {
     context.out << nlohmann::ordered_json{{"scenarios", list}}.dump(2) << "\n";
   } else {
-    for (const std::string& line : AlignColumns(rows)) context.out << line << "\n";
+    context.out << text;
   }
   return diagnostics.empty() ? ExitCode::kAgrees : Complain(context, diagnostics);
 }
@@ -63,12 +71,8 @@ Command ListCommand() {
           .options = {{.name = "names",
                        .help = "which ones: names, skill/name, globs or files; default: all",
                        .repeatable = true},
-                      {.name = "--filter",
-                       .help = "only those that match this glob or tag:NAME, or with ! in front do "
-                               "not;\nmay be repeated",
-                       .placeholder = "PATTERN",
-                       .repeatable = true},
-                      {.name = "--json", .help = "print one JSON object instead of a table"}},
+                      FilterOption(),
+                      JsonOption()},
           .run = RunList};
 }
 

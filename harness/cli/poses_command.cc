@@ -156,7 +156,7 @@ Command PosesCommand() {
                    .placeholder = "TIME"},
                   GrammarOption(),
                   SettingsOption(),
-                  {.name = "--json", .help = "print one JSON object"}},
+                  JsonOption()},
       .run = RunPoses};
 }
 

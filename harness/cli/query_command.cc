@@ -107,7 +107,7 @@ std::string RelationProblem(const std::string& text) {
 }
 
 EventQuestion EventQuestionOf(const ParsedOptions& options) {
-  EventQuestion question{.scenario = options.Text("--scenario"), .event = options.Text("--event")};
+  EventQuestion question{.scenario = options.Text("--episode"), .event = options.Text("--event")};
   for (const auto& [option, conditions] :
        {std::pair{"--role", &question.roles}, std::pair{"--class", &question.classes},
         std::pair{"--part-of", &question.parts_of}}) {
@@ -116,8 +116,8 @@ EventQuestion EventQuestionOf(const ParsedOptions& options) {
   }
   for (const auto& [option, bound] :
        {std::pair{"--at-least-s", &question.at_least_s},
-        std::pair{"--at-most-s", &question.at_most_s}, std::pair{"--from-s", &question.from_s},
-        std::pair{"--until-s", &question.until_s}}) {
+        std::pair{"--at-most-s", &question.at_most_s}, std::pair{"--from", &question.from_s},
+        std::pair{"--to", &question.until_s}}) {
     if (options.Has(option)) *bound = options.NumberOr(option, 0);
   }
   std::string problem;
@@ -214,11 +214,7 @@ Command QueryCommand() {
            "episode query suite.episodes --event pick_and_place --parts --json",
            "episode query *.episodes --event sliding --relation 'meets transporting' --csv",
            "episode query suite.episodes --event grasping --class object=Handle --show shown"},
-      .options = {{.name = "files",
-                   .help = "episode files (docs/episodes.md); scenarios and recordings as JSON\n"
-                           "Lines, which are played or imported first",
-                   .required = true,
-                   .repeatable = true},
+      .options = {EpisodesArgument(),
                   {.name = "--event", .help = "its name, or a glob", .placeholder = "NAME"},
                   RoleOption("--role", "who or what has a role (of any role: any=NAME)",
                              "ROLE=NAME"),
@@ -228,30 +224,28 @@ Command QueryCommand() {
                              "ROLE=NAME"),
                   SecondsOption("--at-least-s", "the event lasts at least so long"),
                   SecondsOption("--at-most-s", "the event lasts at most so long"),
-                  SecondsOption("--from-s", "it begins at this time of its episode or later"),
-                  SecondsOption("--until-s", "it ends at this time of its episode or earlier"),
+                  SecondsOption("--from", "it begins at this time of its episode or later"),
+                  SecondsOption("--to", "it ends at this time of its episode or earlier"),
                   {.name = "--relation",
-                   .help = "how it lies to another event of its episode, in Allen's words\n"
-                           "(before, meets, overlaps, starts, inside, finishes, equals, ..);\n"
+                   .help = "how it lies to another event of its episode, in Allen's words "
+                           "(before, meets, overlaps, starts, inside, finishes, equals, ..); "
                            "may be repeated",
                    .placeholder = "'RELATION EVENT'",
                    .rule = {.range = {}, .problem = RelationProblem},
                    .repeatable = true},
-                  {.name = "--scenario",
-                   .help = "only episodes of this scenario (a name, skill/name or a glob)",
-                   .placeholder = "NAME"},
+                  EpisodesOption(),
                   {.name = "--with",
                    .help = "it has a part of this name (see --parts); may be repeated",
                    .placeholder = "EVENT",
                    .repeatable = true},
                   {.name = "--parts",
-                   .help = "below each event also its parts: those that begin within it and have\n"
+                   .help = "below each event also its parts: those that begin within it and have "
                            "no other participants"},
                   {.name = "--show",
-                   .help = "draw each answer into this folder: the world when the event begins,\n"
+                   .help = "draw each answer into this folder: the world when the event begins, "
                            "with the paths of its hand and its thing until it ends",
                    .placeholder = "FOLDER"},
-                  {.name = "--json", .help = "print a JSON array instead of a table"},
+                  JsonOption(),
                   {.name = "--csv", .help = "print CSV instead of a table"}},
       .run = RunQuery};
 }

@@ -406,14 +406,10 @@ Command RenderCommand() {
                    .help = "a scenario (name, skill/name or file) or an episode file",
                    .required = true},
                   EpisodeOption(),
-                  {.name = "--output",
-                   .help = "the PNG file; default: build/pictures/SKILL/NAME.png. --strip and\n"
-                           "--against also write .svg and .pdf",
-                   .placeholder = "FILE",
-                   .other_name = "-o",
-                   .is_output = true},
+                  OutputOption("the PNG file; default: build/pictures/SKILL/NAME.png. --strip and "
+                               "--against also write .svg and .pdf"),
                   {.name = "--at",
-                   .help = "when: EVENT.begin, EVENT.end, or seconds; for a sheet several,\n"
+                   .help = "when: EVENT.begin, EVENT.end, or seconds; for a sheet several, "
                            "with commas between them",
                    .placeholder = "TIME"},
                   {.name = "--sheet",
@@ -423,13 +419,13 @@ Command RenderCommand() {
                  InGroup("Instead of pictures",
                          {{.name = "--strip", .help = "the timeline alone"},
                           {.name = "--against",
-                           .help = "compare with the golden, another grammar, the other engine\n"
-                                   "(bullet, box2d): both timelines, and the scenes at each\n"
-                                   "boundary that differs. 'pictures': golden pictures, those of\n"
+                           .help = "compare with the golden, another grammar, the other engine "
+                                   "(bullet, box2d): both timelines, and the scenes at each "
+                                   "boundary that differs. 'pictures': golden pictures, those of "
                                    "now, and what differs",
                            .placeholder = "golden|pictures|GRAMMAR|ENGINE"},
                           {.name = "--film",
-                           .help = "a film: NAME.webp (img2webp), NAME.mp4 (ffmpeg), or a folder\n"
+                           .help = "a film: NAME.webp (img2webp), NAME.mp4 (ffmpeg), or a folder "
                                    "of frames; 960x540 unless --size says otherwise",
                            .placeholder = "FILE|FOLDER",
                            .is_output = true},

@@ -67,7 +67,7 @@ void PrintJson(const std::vector<Resegmented>& results, const CommandContext& co
 
 ExitCode ResegmentEpisodes(const std::vector<EpisodeName>& selected, const ParsedOptions& options,
                            const CommandContext& context) {
-  const bool compare = options.Has("--compare");
+  const bool compare = options.Has("--against");
   const std::vector<Resegmented> results =
       ResegmentAll(selected, {.root = context.root,
                               .choice = {options.Text("--grammar"), options.All("--set")},
@@ -105,23 +105,24 @@ std::string LabelsProblem(const std::string& file) {
              : "found '" + file + "', wanted a file .csv, .eaf or .TextGrid";
 }
 
-/// `--labels`: the events of one recording for an annotation program.
+/// `-o`: the events of one recording for an annotation program.
 ExitCode WriteLabels(const std::vector<EpisodeName>& selected, const ParsedOptions& options,
                      const CommandContext& context) {
   if (selected.size() != 1)
-    return Complain(context, ExitCode::kBadInput,
-                    fmt::format("--labels writes one recording; {} are selected", selected.size()));
+    return Complain(
+        context, ExitCode::kBadInput,
+        fmt::format("--output writes labels of one recording; {} are selected", selected.size()));
   Result<Episode> episode = OpenEpisode(
       selected.front(), {options.Text("--grammar"), options.All("--set")}, context.root);
   if (!episode) return Complain(context, episode.error());
   const std::shared_ptr<const grammar::Program> program = episode->program();
-  const std::vector<std::string> only = options.All("--events");
+  const std::vector<std::string> only = options.All("--event");
   const std::vector<std::string> known = EventNames(*program);
   for (const std::string& name : only) {
     if (std::ranges::count(known, name) > 0) continue;
     const std::string near = grammar::NearestName(name, known);
     return Complain(context, ExitCode::kBadInput,
-                    fmt::format("--events: grammar '{}' has no event '{}'{}", GrammarName(*program),
+                    fmt::format("--event: grammar '{}' has no event '{}'{}", GrammarName(*program),
                                 name, near.empty() ? "" : "; did you mean '" + near + "'?"));
   }
   Result<grammar::Timeline> found = episode->Segment(program);
@@ -129,7 +130,7 @@ ExitCode WriteLabels(const std::vector<EpisodeName>& selected, const ParsedOptio
   std::erase_if(found->events, [&](const grammar::NamedEvent& event) {
     return !only.empty() && std::ranges::count(only, event.event) == 0;
   });
-  const std::string& file = options.Text("--labels");
+  const std::string& file = options.Text("--output");
   const std::string problem = WriteTextFile(
       file,
       labels::LabelsText(file.substr(file.rfind('.')), *found, *episode->EndTick(), context.today));
@@ -139,21 +140,21 @@ ExitCode WriteLabels(const std::vector<EpisodeName>& selected, const ParsedOptio
 }
 
 ExitCode RunResegment(const ParsedOptions& options, const CommandContext& context) {
-  if (options.Has("--labels")) {
-    for (const char* other : {"--compare", "--json", "--jobs"}) {
+  if (options.Has("--output")) {
+    for (const char* other : {"--against", "--json", "--jobs"}) {
       if (options.Has(other))
         return Complain(context, ExitCode::kBadInput,
-                        fmt::format("--labels writes a file of labels: {} does not apply", other));
+                        fmt::format("--output writes a file of labels: {} does not apply", other));
     }
   }
-  if (options.Has("--events") && !options.Has("--labels"))
+  if (options.Has("--event") && !options.Has("--output"))
     return Complain(context, ExitCode::kBadInput,
-                    "--events chooses what --labels FILE writes; --labels is missing");
+                    "--event chooses what --output FILE writes; --output is missing");
   const std::vector<Need> needs =
-      options.Has("--compare") ? std::vector<Need>{Need::kRecordedEvents} : std::vector<Need>{};
+      options.Has("--against") ? std::vector<Need>{Need::kRecordedEvents} : std::vector<Need>{};
   const auto selected = FindEpisodesOrComplain("recording", options, context, needs);
   if (!selected) return selected.error();
-  return options.Has("--labels") ? WriteLabels(*selected, options, context)
+  return options.Has("--output") ? WriteLabels(*selected, options, context)
                                  : ResegmentEpisodes(*selected, options, context);
 }
 
@@ -170,42 +171,34 @@ Command ResegmentCommand() {
       .examples = {"run milk_carton_wrap --record milk.episodes", "episode resegment milk.episodes",
                    "episode resegment milk.episodes --grammar my/rules.grammar --json",
                    "episode resegment milk.jsonl --set lift_rise=10cm",
-                   "episode resegment monday.episodes tuesday.episodes --compare recorded",
+                   "episode resegment monday.episodes tuesday.episodes --against recorded",
                    "episode resegment suite.episodes --episode 'slide/*' --set slide_speed=3cm/s"},
       .options = {{.name = "recording",
-                   .help = "episode files (docs/episodes.md), recordings as JSON Lines\n"
+                   .help = "episode files (docs/episodes.md), recordings as JSON Lines "
                            "(docs/recording-format.md) or scenarios, which are played first",
                    .required = true,
                    .repeatable = true},
-                  {.name = "--episode",
-                   .help = "only this one of an episode file: its number, or its scenario\n"
-                           "(a name, skill/name or a glob)",
-                   .placeholder = "WHICH"},
-                  {.name = "--compare",
-                   .help = "print only how the events differ from those that were recognised when\n"
+                  EpisodesOption(),
+                  {.name = "--against",
+                   .help = "print only how the events differ from those that were recognised when "
                            "the episode was recorded",
                    .placeholder = "recorded",
                    .rule = {.range = {}, .problem = CompareProblem}},
-                  {.name = "--jobs",
-                   .help = "episodes at a time; default: one per core",
-                   .placeholder = "N",
-                   .rule = IntegersFrom(1, kMaxJobs)},
+                  JobsOption("episodes"),
                   GrammarOption(),
-                  {.name = "--set",
-                   .help = "set a parameter of the grammar (reach_radius=25cm); may be repeated",
-                   .placeholder = "NAME=VALUE",
-                   .repeatable = true},
-                  {.name = "--labels",
-                   .help = "write the events of one recording for an annotation program\n"
+                  ParametersOption(),
+                  {.name = "--output",
+                   .help = "write the events of one recording for an annotation program "
                            "(docs/labels.md): ELAN (.eaf), Praat (.TextGrid) or .csv",
                    .placeholder = "FILE",
+                   .other_name = "-o",
                    .rule = {.range = {}, .problem = LabelsProblem},
                    .is_output = true},
-                  {.name = "--events",
-                   .help = "with --labels: write this event instead of all; may be repeated",
+                  {.name = "--event",
+                   .help = "with --output: write this event instead of all; may be repeated",
                    .placeholder = "NAME",
                    .repeatable = true},
-                  {.name = "--json", .help = "print one JSON object instead of a table"}},
+                  JsonOption()},
       .run = RunResegment};
 }
 

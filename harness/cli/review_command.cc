@@ -239,15 +239,16 @@ Command ReviewCommand() {
       .name = "review",
       .summary = "Show what is pending, and how it differs from the goldens",
       .examples = {"review", "review milk_carton_wrap 'slide/*'"},
-      .options =
-          {{.name = "names",
-            .help = "names, skill/name, globs, or files of recordings of trackers; default: all\n"
-                    "that is pending",
-            .repeatable = true},
-           {.name = "--grammar",
-            .help = "of recordings of trackers: this grammar instead of the one that they name",
-            .placeholder = "NAME|FILE"},
-           {.name = "--json", .help = "print one JSON object instead of text"}},
+      .options = {{.name = "names",
+                   .help =
+                       "names, skill/name, globs, or files of recordings of trackers; default: all "
+                       "that is pending",
+                   .repeatable = true},
+                  {.name = "--grammar",
+                   .help =
+                       "of recordings of trackers: this grammar instead of the one that they name",
+                   .placeholder = "NAME|FILE"},
+                  JsonOption()},
       .run = RunReview};
 }
 

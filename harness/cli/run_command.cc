@@ -206,16 +206,12 @@ Command RunCommand() {
             .help = "simulate variation K only",
             .placeholder = "K",
             .rule = IntegersFrom(1, kMaxTrials)},
-           {.name = "--jobs",
-            .help = "trials at a time; default: one per core",
-            .placeholder = "N",
-            .rule = IntegersFrom(1, kMaxJobs)},
-           {.name = "--json", .help = "print one JSON object instead of a table"},
+           JobsOption("trials"),
+           JsonOption(),
            {.name = "--record",
-            .help =
-                "write the episode to FILE: NAME.episodes holds many episodes and all of each;\n"
-                "any other ending: what the grammar sees, as JSON Lines; -: print these\n"
-                "instead of the table. With --trials: NAME.episodes, an episode per trial",
+            .help = "write the episode to FILE: NAME.episodes holds many episodes and all of each; "
+                    "any other ending: what the grammar sees, as JSON Lines; -: print these "
+                    "instead of the table. With --trials: NAME.episodes, an episode per trial",
             .placeholder = "FILE",
             .is_output = true},
            {.name = "--report",

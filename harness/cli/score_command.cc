@@ -14,11 +14,9 @@
 namespace prehend::harness {
 namespace {
 
-constexpr double kDefaultCollar_ms = 50;
-
 /// `score TAKES --truth LABELS`: against what people marked.
 ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) {
-  for (const char* other : {"--filter", "--events"}) {
+  for (const char* other : {"--filter", "--event"}) {
     if (options.Has(other))
       return Complain(
           context, ExitCode::kBadInput,
@@ -49,7 +47,7 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
     json["by_hand"] = score::ScoresJson(scores->by_hand, collar_s);
     context.out << json.dump(2) << "\n";
   } else {
-    context.out << score::LabelScoresText(*scores, collar_s, options.Has("--differences"));
+    context.out << score::LabelScoresText(*scores, collar_s, options.Has("--verbose"));
   }
   return ExitCode::kAgrees;
 }
@@ -81,7 +79,7 @@ ExitCode RunScenarios(const score::ScoredGrammars& grammars, const std::vector<s
     json["witnesses"] = score::WitnessesJson(scores.of_grammars, scores.witnesses);
     context.out << json.dump(2) << "\n";
   } else {
-    context.out << score::ScenarioScoresText(scores, collar_s, options.Has("--differences"));
+    context.out << score::ScenarioScoresText(scores, collar_s, options.Has("--verbose"));
   }
   return worst;
 }
@@ -100,7 +98,7 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
       return Complain(context, ExitCode::kBadInput,
                       fmt::format("{} needs --truth: where are the labels?", of_labels));
   }
-  const std::vector<std::string> events = score::EventsIn(options.All("--events"));
+  const std::vector<std::string> events = score::EventsIn(options.All("--event"));
   if (const std::string unknown = score::UnknownEvent(events); !unknown.empty())
     return Complain(context, ExitCode::kBadInput, unknown);
   Result<score::ScoredGrammars> grammars =
@@ -112,62 +110,39 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
 }  // namespace
 
 Command ScoreCommand() {
-  return {
-      .name = "score",
-      .summary = "Score grammars against what physically happened",
-      .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
-                   "score --grammar my/rules.grammar --events grasping,sliding",
-                   "score 'slide/*' --collar-ms 20 --json",
-                   "score take1.jsonl take2.jsonl --truth labels --map labels.yaml --grammar "
-                   "pick_and_place_from_motion"},
-      .options = {{.name = "names",
-                   .help = "names, skill/name, globs or files; default: all scenarios",
-                   .repeatable = true},
-                  {.name = "--filter",
-                   .help = "keep those that match this glob or have the tag; as of 'check'",
-                   .placeholder = "[!]GLOB|[!]tag:NAME",
-                   .repeatable = true},
-                  {.name = "--grammar",
-                   .help = "a grammar to score; may be repeated; default: pick_and_place and\n"
-                           "original_2020 (with --set the first alone); with --truth that of the\n"
-                           "recordings",
-                   .placeholder = "NAME|FILE",
-                   .repeatable = true},
-                  {.name = "--set",
-                   .help = "set a parameter of the grammars; may be repeated",
-                   .placeholder = "NAME=VALUE",
-                   .repeatable = true},
-                  {.name = "--truth",
-                   .help = "labels by people (.csv, .eaf, .TextGrid) of the recordings or\n"
-                           "episode files that are named, one file for each or a folder\n"
-                           "(docs/labels.md); may be repeated",
-                   .placeholder = "FILE|FOLDER",
-                   .repeatable = true},
-                  {.name = "--map",
-                   .help = "what the labels mean: a YAML file; without it labels are events,\n"
-                           "like grasping(right_hand, cup)",
-                   .placeholder = "FILE"},
-                  {.name = "--skip-bad-labels",
-                   .help = "with --truth: leave out labels that end before they begin, and\n"
-                           "count them"},
-                  {.name = "--episode",
-                   .help = "with --truth: only these episodes of episode files",
-                   .placeholder = "WHICH"},
-                  {.name = "--events",
-                   .help = "score only these events; default: all that docs/events.md defines",
-                   .placeholder = "NAME,..",
-                   .repeatable = true},
-                  {.name = "--collar-ms",
-                   .help = fmt::format("tolerance of a boundary for the scores at a collar; "
-                                       "default: {}",
-                                       kDefaultCollar_ms),
-                   .placeholder = "MS",
-                   .rule = NumbersFrom(0, 10000)},
-                  {.name = "--differences",
-                   .help = "list every event that differs from what a witness says, or\n"
-                           "from the labels"},
-                  {.name = "--json", .help = "print one JSON object instead of tables"}},
-      .run = RunScore};
+  return {.name = "score",
+          .summary = "Score grammars against what physically happened",
+          .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
+                       "score --grammar my/rules.grammar --event grasping,sliding",
+                       "score 'slide/*' --collar-ms 20 --json",
+                       "score take1.jsonl take2.jsonl --truth labels --map labels.yaml --grammar "
+                       "pick_and_place_from_motion"},
+          .options = Joined(
+              {{.name = "names",
+                .help = "names, skill/name, globs or files; default: all scenarios",
+                .repeatable = true},
+               FilterOption(),
+               {.name = "--grammar",
+                .help = "a grammar to score; may be repeated; default: pick_and_place and "
+                        "original_2020 (with --set the first alone); with --truth that of the "
+                        "recordings",
+                .placeholder = "NAME|FILE",
+                .repeatable = true},
+               ParametersOption(),
+               EpisodesOption(),
+               {.name = "--event",
+                .help = "score only these events; default: all that docs/events.md defines",
+                .placeholder = "NAME,..",
+                .repeatable = true},
+               {.name = "--verbose",
+                .help = "list every event that differs from what a witness says, or "
+                        "from the labels"},
+               JsonOption()},
+              TruthOptions(
+                  "labels by people (.csv, .eaf, .TextGrid) of the recordings or episode files "
+                  "that are named, one file for each or a folder (docs/labels.md); may be repeated",
+                  "FILE|FOLDER")),
+          .run = RunScore};
 }
 
 }  // namespace prehend::harness

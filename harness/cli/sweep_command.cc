@@ -21,7 +21,6 @@ namespace prehend::harness {
 namespace {
 
 constexpr double kDefaultWithin_percent = 0.5;
-constexpr double kDefaultSweepCollar_ms = 50;
 
 std::string AxisProblem(const std::string& text) {
   std::string problem;
@@ -50,7 +49,7 @@ std::optional<sweep::SweepRequest> RequestFrom(const ParsedOptions& options,
              fmt::format("{} needs labels: --truth FILE or FOLDER", of_labels));
     return std::nullopt;
   }
-  request.collar_s = options.NumberOr("--collar-ms", kDefaultSweepCollar_ms) / 1000;
+  request.collar_s = options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
   // People agree to a few tenths of a second; goldens are exact.
   request.by_overlap = request.truth == sweep::Truth::kLabels && !options.Has("--collar-ms");
   request.skip_bad_labels = options.Has("--skip-bad-labels");
@@ -116,7 +115,7 @@ ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context)
       problem = WriteTextFile(options.Text("--output"), MarginsCsv(margins));
   };
   const auto margins = WithProgress(*request, episodes->size(), context, [&] {
-    return sweep::FindMargins(*episodes, *request, within, options.All("--only"), write);
+    return sweep::FindMargins(*episodes, *request, within, options.All("--over"), write);
   });
   if (!margins) return Complain(context, margins.error());
   if (const auto refused = ComplainOf(margins->sweep, *request, context)) return *refused;
@@ -150,35 +149,23 @@ ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
   return problem.empty() ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, problem);
 }
 
-Option TruthOption() {
-  return {.name = "--truth",
-          .help =
-              "what the events are compared with: golden (default), oracle, recorded (the\n"
-              "events of the recording), or labels by people: one file for each recording\n"
-              "(.csv, .eaf, .TextGrid, .timeline) or a folder (docs/labels.md)",
-          .placeholder = "golden|oracle|recorded|FILE|FOLDER",
-          .repeatable = true};
+/// What both commands take, and what is theirs alone.
+std::vector<Option> SweepOptions(const std::vector<Option>& own) {
+  std::vector<Option> options = {EpisodesArgument(), GrammarOption(), ParametersOption(),
+                                 EpisodesOption(), JobsOption("episodes")};
+  options = Joined(
+      options,
+      TruthOptions(
+          "what the events are compared with: golden (default), oracle, recorded (the events of "
+          "the "
+          "recording), or labels by people: one file for each recording (.csv, .eaf, .TextGrid, "
+          ".timeline) or a folder (docs/labels.md)",
+          "golden|oracle|recorded|FILE|FOLDER"));
+  return Joined(options, own);
 }
-Option MapOption() {
-  return {.name = "--map", .help = "what labels mean: a YAML file", .placeholder = "FILE"};
-}
-Option SkipOption() {
-  return {.name = "--skip-bad-labels",
-          .help = "leave out labels that end before they begin, and count them"};
-}
-Option CollarOption() {
-  return {.name = "--collar-ms",
-          .help =
-              "an event is right if both boundaries are so near; default: 50, and with labels\n"
-              "by people what has half of the union with its label in common (F1@50)",
-          .placeholder = "MS",
-          .rule = NumbersFrom(0, 1e6)};
-}
-Option JobsOption() {
-  return {.name = "--jobs",
-          .help = "episodes at a time; default: one per core",
-          .placeholder = "N",
-          .rule = IntegersFrom(1, kMaxJobs)};
+
+Option WithinOption(const std::string& help) {
+  return {.name = "--within", .help = help, .placeholder = "PERCENT", .rule = NumbersFrom(0, 100)};
 }
 
 }  // namespace
@@ -190,34 +177,13 @@ Command MarginsCommand() {
               {"grammar margins suite.episodes --truth oracle --grammar my/rules.grammar",
                "grammar margins take1.jsonl take2.jsonl --truth labels --map labels.yaml --grammar "
                "pick_and_place_from_motion -o margins.csv"},
-          .options = {{.name = "files",
-                       .help = "episode files, or with labels also recordings as JSON Lines",
-                       .required = true,
-                       .repeatable = true},
-                      GrammarOption(),
-                      {.name = "--set",
-                       .help = "set a parameter of the grammar; may be repeated",
-                       .placeholder = "NAME=VALUE",
-                       .repeatable = true},
-                      {.name = "--only",
-                       .help = "this parameter instead of all; may be repeated",
-                       .placeholder = "NAME",
-                       .repeatable = true},
-                      TruthOption(),
-                      MapOption(),
-                      SkipOption(),
-                      CollarOption(),
-                      {.name = "--within",
-                       .help = "how many percent of F1 a score may be below the best; default: 1",
-                       .placeholder = "PERCENT",
-                       .rule = NumbersFrom(0, 100)},
-                      EpisodeOption(),
-                      {.name = "--output",
-                       .help = "also write a CSV file, again after each parameter",
-                       .placeholder = "FILE",
-                       .other_name = "-o",
-                       .is_output = true},
-                      JobsOption()},
+          .options = SweepOptions(
+              {{.name = "--over",
+                .help = "try this parameter instead of all; may be repeated",
+                .placeholder = "NAME",
+                .repeatable = true},
+               WithinOption("how many percent of F1 a score may be below the best; default: 1"),
+               OutputOption("also write a CSV file, again after each parameter")}),
           .run = RunMargins};
 }
 
@@ -231,42 +197,21 @@ Command SweepCommand() {
            "lift_rise=2cm..8cm:7 --truth oracle --picture sweep.png",
            "grammar sweep *.episodes --grammar my/rules.grammar --over still_for=50ms..200ms:4 "
            "--truth recorded"},
-      .options = {{.name = "files",
-                   .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
-                   .required = true,
-                   .repeatable = true},
-                  {.name = "--over",
-                   .help = "try so many values of this parameter, evenly spaced; repeated: all\n"
-                           "combinations",
-                   .placeholder = "NAME=FROM..TO:COUNT",
-                   .rule = {.range = {}, .problem = AxisProblem},
-                   .repeatable = true},
-                  GrammarOption(),
-                  {.name = "--set",
-                   .help = "set another parameter of the grammar; may be repeated",
-                   .placeholder = "NAME=VALUE",
-                   .repeatable = true},
-                  TruthOption(),
-                  MapOption(),
-                  SkipOption(),
-                  CollarOption(),
-                  {.name = "--within",
-                   .help = "the plateau: settings whose F1 is within so many percent of the "
-                           "best;\ndefault: 0.5",
-                   .placeholder = "PERCENT",
-                   .rule = NumbersFrom(0, 100)},
-                  EpisodeOption(),
-                  {.name = "--output",
-                   .help = "the CSV file; default: print it",
-                   .placeholder = "FILE",
-                   .other_name = "-o",
-                   .is_output = true},
-                  {.name = "--picture",
-                   .help = "a heat map of one or two parameters: NAME.svg, NAME.png or NAME.pdf",
-                   .placeholder = "FILE",
-                   .rule = {.range = {}, .problem = WhyNoDrawingFile},
-                   .is_output = true},
-                  JobsOption()},
+      .options = SweepOptions(
+          {{.name = "--over",
+            .help =
+                "try so many values of this parameter, evenly spaced; repeated: all combinations",
+            .placeholder = "NAME=FROM..TO:COUNT",
+            .rule = {.range = {}, .problem = AxisProblem},
+            .repeatable = true},
+           WithinOption("the plateau: settings whose F1 is within so many percent of the best; "
+                        "default: 0.5"),
+           OutputOption("the CSV file; default: print it"),
+           {.name = "--picture",
+            .help = "a heat map of one or two parameters: NAME.svg, NAME.png or NAME.pdf",
+            .placeholder = "FILE",
+            .rule = {.range = {}, .problem = WhyNoDrawingFile},
+            .is_output = true}}),
       .run = RunSweep};
 }
 

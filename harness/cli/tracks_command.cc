@@ -87,19 +87,15 @@ Command TracksCommand() {
                        "grammar tracks milk.jsonl --grammar my/rules.grammar -o milk.json"},
           .options = {EpisodeArgument(),
                       EpisodeOption(),
-                      {.name = "--output",
-                       .help = "the file to write, .csv or .json; - or nothing: print CSV",
-                       .placeholder = "FILE",
-                       .other_name = "-o",
-                       .is_output = true},
+                      OutputOption("the file to write, .csv or .json; - or nothing: print CSV"),
                       {.name = "--only",
-                       .help = "an event, condition or signal (speed_along); may be repeated;\n"
+                       .help = "an event, condition or signal (speed_along); may be repeated; "
                                "default: all",
                        .placeholder = "NAME",
                        .repeatable = true},
                       GrammarOption(),
                       SettingsOption(),
-                      {.name = "--json", .help = "print JSON instead of CSV"}},
+                      JsonOption()},
           .run = RunTracks};
 }
 

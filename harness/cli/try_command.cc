@@ -141,7 +141,7 @@ Command TryCommand() {
                        .required = true,
                        .repeatable = true},
                       ParametersOption(),
-                      {.name = "--json", .help = "print one JSON object instead of lines"}},
+                      JsonOption()},
           .run = RunTry};
 }
 

@@ -157,7 +157,7 @@ std::vector<std::string> Names(const ParsedOptions& options, const CommandContex
 }
 
 ExitCode RunValidate(const ParsedOptions& options, const CommandContext& context) {
-  if (options.Has("--watch")) Watch(options, context);
+  if (options.Has("--on-save")) Watch(options, context);
   const std::vector<std::string> names = Names(options, context);
   if (names.empty())
     return Complain(context, ExitCode::kNothing,
@@ -195,15 +195,15 @@ Command ValidateCommand() {
           .summary = "Read scenarios, grammars and goldens without running anything",
           .examples = {"validate", "validate milk_carton_wrap my/scenario.yaml",
                        "validate my/rules.grammar", "validate --grammar pick_and_place",
-                       "validate --watch"},
+                       "validate --on-save"},
           .options = {{.name = "files",
-                       .help = "scenarios (names or files), .grammar or .timeline files; default:\n"
+                       .help = "scenarios (names or files), .grammar or .timeline files; default: "
                                "all scenarios",
                        .repeatable = true},
                       GrammarOption(),
                       SettingsOption(),
-                      {.name = "--json", .help = "print one JSON object instead of text"},
-                      {.name = "--watch",
+                      JsonOption(),
+                      {.name = "--on-save",
                        .help = "validate again what a saved file affects, until interrupted"}},
           .run = RunValidate};
 }

@@ -190,11 +190,8 @@ Command WatchCommand() {
                    .required = true},
                   EpisodeOption(),
                   GrammarOption(),
-                  {.name = "--set",
-                   .help = "set a parameter of the grammar (reach_radius=25cm); may be repeated",
-                   .placeholder = "NAME=VALUE",
-                   .repeatable = true},
-                  {.name = "--json", .help = "one JSON object per event"}},
+                  ParametersOption(),
+                  {.name = "--json", .help = "print JSON, one object per event"}},
       .run = RunWatch};
 }
 

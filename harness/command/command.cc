@@ -2,9 +2,6 @@
 // What commands share. Tested by tests/program/command_line_test.cc
 #include "harness/command/command.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <thread>
@@ -20,7 +17,7 @@ namespace {
 constexpr std::uint64_t kMemoryLimit_mb = 4000;
 // What has no end by itself, or does as much as it is told to: no limit of time unless one is
 // given.
-constexpr const char* kEndless[] = {"--watch", "--trials"};
+constexpr const char* kEndless[] = {"--on-save", "--trials"};
 
 bool HasOption(const Command& command, const std::string& name) {
   return std::ranges::any_of(command.options,
@@ -49,21 +46,8 @@ Command Limited(Command command, double time_limit_s) {
   for (const char* name : kEndless) {
     if (HasOption(command, name)) endless.emplace_back(name);
   }
-  command.options = Joined(
-      std::move(command.options),
-      InGroup("Limits",
-              {{.name = "--time-limit-s",
-                .help = fmt::format(
-                    "seconds that it may take; 0: no limit; default: {:g}{}", time_limit_s,
-                    endless.empty() ? std::string()
-                                    : fmt::format(", none with {}", fmt::join(endless, ", "))),
-                .placeholder = "S",
-                .rule = NumbersFrom(0, 86400)},
-               {.name = "--memory-limit-mb",
-                .help = fmt::format("memory that it may take; 0: no limit; default: {}",
-                                    kMemoryLimit_mb),
-                .placeholder = "MB",
-                .rule = IntegersFrom(0, 1'000'000)}}));
+  command.options =
+      Joined(std::move(command.options), {TimeLimitOption(0, 86400), MemoryLimitOption()});
   command.run = [run = std::move(command.run), endless, time_limit_s](
                     const ParsedOptions& options, const CommandContext& context) {
     const LimitedEnd end = RunWithinLimits([&] { return static_cast<int>(run(options, context)); },
@@ -78,38 +62,6 @@ Command Limited(Command command, double time_limit_s) {
 }
 
 int CoreCount() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
-
-Option ScenarioArgument() {
-  return {.name = "scenario", .help = "a name, skill/name or a file", .required = true};
-}
-
-Option EpisodeArgument() {
-  return {.name = "scenario",
-          .help = "a scenario (name, skill/name or file), an episode file or a recording",
-          .required = true};
-}
-
-Option GrammarOption() {
-  return {.name = "--grammar",
-          .help = "use another grammar: a name of the library or a .grammar file",
-          .placeholder = "NAME|FILE"};
-}
-
-Option ParametersOption() {
-  return {.name = "--set",
-          .help = "set a parameter of the grammar (reach_radius=25cm); may be repeated",
-          .placeholder = "NAME=VALUE",
-          .repeatable = true};
-}
-
-Option SettingsOption() {
-  return {.name = "--set",
-          .help =
-              "set a parameter of the grammar (reach_radius=25cm) or a field of the scenario\n"
-              "(entities.milk.mass_kg=8); may be repeated",
-          .placeholder = "NAME=VALUE",
-          .repeatable = true};
-}
 
 RunRequest RequestOf(const ParsedOptions& options, const std::string& scenario_file) {
   return {.scenario_file = scenario_file,

@@ -15,6 +15,7 @@
 #include "grammar/base/diagnostic.h"
 #include "harness/base/exit_code.h"
 #include "harness/command/options.h"
+#include "harness/command/shared_options.h"
 #include "harness/episode/find_episodes.h"
 #include "harness/run/find_scenario.h"
 #include "harness/run/load_run.h"
@@ -76,16 +77,10 @@ Command AskCommand();
 /// exit code 3 and a message.
 Command Limited(Command command, double time_limit_s);
 
-constexpr int kMaxJobs = 256;
 /// The number of processes that keep this machine busy.
 int CoreCount();
 
-// Options that several commands have.
-Option ScenarioArgument();
-Option EpisodeArgument();  ///< a scenario, an episode file or a recording
-Option GrammarOption();
-Option SettingsOption();    ///< of a grammar and a scenario
-Option ParametersOption();  ///< of a grammar alone
+/// --grammar and --set.
 RunRequest RequestOf(const ParsedOptions& options, const std::string& scenario_file);
 
 /// The scenario that was typed, by name or path; otherwise, after reporting the nearest name, or

@@ -47,6 +47,11 @@ std::vector<Option> InGroup(const std::string& group, std::vector<Option> option
   return options;
 }
 
+Option Required(Option option) {
+  option.required = true;
+  return option;
+}
+
 std::vector<Option> Joined(std::vector<Option> first, std::vector<Option> second) {
   std::ranges::move(second, std::back_inserter(first));
   return first;

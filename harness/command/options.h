@@ -34,11 +34,15 @@ struct Option {
   bool required = false;
   bool repeatable = false;  ///< may be given several times
   bool is_output = false;   ///< names a file that is written
+  bool unlisted = false;    ///< the program's help has it, not the command's
   std::string group = {};   ///< heading in the help; "" is the common one
 };
 
 /// The same options under a heading of the help.
 std::vector<Option> InGroup(const std::string& group, std::vector<Option> options);
+
+/// The same option, which must be given.
+Option Required(Option option);
 
 /// Two lists of options, one after the other.
 std::vector<Option> Joined(std::vector<Option> first, std::vector<Option> second);

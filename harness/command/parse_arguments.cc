@@ -9,10 +9,14 @@
 #include <algorithm>
 
 #include "harness/base/shell_quote.h"
+#include "harness/base/wrap_text.h"
 #include "harness/command/program_help.h"
 
 namespace prehend::harness {
 namespace {
+
+/// How wide a help is, and where its texts begin, which CLI11 decides.
+constexpr std::size_t kHelpColumns = 100, kNameColumns = 30;
 
 bool IsArgument(const Option& option) { return !option.name.starts_with('-'); }
 bool IsFlag(const Option& option) { return !IsArgument(option) && option.placeholder.empty(); }
@@ -20,8 +24,9 @@ bool IsFlag(const Option& option) { return !IsArgument(option) && option.placeho
 void Declare(const Option& option, CLI::App& app) {
   const std::string names =
       option.other_name.empty() ? option.name : option.name + "," + option.other_name;
-  const std::string help =
-      option.rule.range.empty() ? option.help : option.help + " (" + option.rule.range + ")";
+  const std::string help = Wrapped(
+      option.rule.range.empty() ? option.help : option.help + " (" + option.rule.range + ")",
+      kHelpColumns - kNameColumns);
   CLI::Option* declared = nullptr;
   if (IsFlag(option)) {
     declared = app.add_flag(names, help);
@@ -34,6 +39,7 @@ void Declare(const Option& option, CLI::App& app) {
   if (!IsArgument(option) || option.repeatable)
     declared->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   if (!option.group.empty()) declared->group(option.group);
+  if (option.unlisted) declared->group("");
 }
 
 void Declare(const Command& command, CLI::App& app) {
@@ -43,6 +49,7 @@ void Declare(const Command& command, CLI::App& app) {
   if (!command.note.empty()) footer += "\n\n" + command.note;
   app.footer(footer);
   app.allow_extras();
+  app.set_help_flag("-h,--help")->group("");  // the program's help has it
   for (const Option& option : command.options) Declare(option, app);
 }
 
@@ -70,13 +77,19 @@ UsageError UnknownName(const char* what, const std::string& typed,
 }
 
 UsageError UnexpectedWord(const CLI::App& app, const std::string& word, const std::string& command,
+                          const std::vector<OldName>& old_options,
                           const std::vector<std::string>& words) {
   if (!word.starts_with('-')) return {fmt::format("unexpected argument '{}'", word), command};
+  const std::string typed = word.substr(0, word.find('='));
+  const auto was = std::ranges::find(old_options, command + " " + typed, &OldName::old);
+  if (was != old_options.end())
+    return {fmt::format("'{}' is called '{}' now", typed, was->now), command,
+            Corrected(words, typed, was->now)};
   std::vector<std::string> known;
   for (const CLI::Option* option : app.get_options()) {
     for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
   }
-  return UnknownName("option", word.substr(0, word.find('=')), known, command, words);
+  return UnknownName("option", typed, known, command, words);
 }
 
 /// What is wrong with the values of an option, or "".
@@ -129,8 +142,8 @@ std::string HelpOf(const CLI::App& app) {
 }
 
 /// `words` after those of the command's name.
-ParsedArguments ParseOptions(const Command& command, const std::vector<std::string>& words,
-                             std::ptrdiff_t words_of_name) {
+ParsedArguments ParseOptions(const Command& command, const std::vector<OldName>& old_options,
+                             const std::vector<std::string>& words, std::ptrdiff_t words_of_name) {
   CLI::App app(command.summary, "prehend " + command.name);
   Declare(command, app);
   try {
@@ -145,7 +158,7 @@ ParsedArguments ParseOptions(const Command& command, const std::vector<std::stri
   // CLI11 leaves over the word that ends the options.
   if (const auto end = std::ranges::find(extras, "--"); end != extras.end()) extras.erase(end);
   if (extras.empty()) return Chosen(command, app);
-  return UnexpectedWord(app, extras.front(), command.name, words);
+  return UnexpectedWord(app, extras.front(), command.name, old_options, words);
 }
 
 /// `typed`, the first word or the first two, names no command.
@@ -196,7 +209,7 @@ ParsedArguments ParseArguments(const ProgramDescription& program,
   }
   const auto command = std::ranges::find(commands, name, &Command::name);
   if (command == commands.end()) return UnknownCommand(program, commands, name, words);
-  return ParseOptions(*command, words, noun == program.nouns.end() ? 1 : 2);
+  return ParseOptions(*command, program.old_options, words, noun == program.nouns.end() ? 1 : 2);
 }
 
 }  // namespace prehend::harness

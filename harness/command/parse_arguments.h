@@ -24,7 +24,7 @@ struct CommandGroup {
   std::vector<std::string> names;
 };
 
-/// What a command was called once. It is no name any more: an error says the new one.
+/// What a command or an option was called once. It is no name any more: an error says the new one.
 struct OldName {
   std::string old;
   std::string now;
@@ -38,6 +38,7 @@ struct ProgramDescription {
   std::vector<CommandGroup> groups = {};
   std::vector<Noun> nouns = {};
   std::vector<OldName> old_commands = {};
+  std::vector<OldName> old_options = {};  ///< the old name with its command: "run --mesure"
 };
 
 /// A command to run. `command` is one of those that were given.

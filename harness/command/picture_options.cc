@@ -27,11 +27,11 @@ std::vector<Option> PartOptions() {
        .placeholder = "S",
        .rule = NumbersFrom(0, 1e6)},
       {.name = "--to",
-       .help = "end of that part; default: all, but paths and ghosts of an episode of\n"
+       .help = "end of that part; default: all, but paths and ghosts of an episode of "
                "more than 15 s only around the moment",
        .placeholder = "S",
        .rule = NumbersFrom(0, 1e6)},
-      {.name = "--only", .help = "paths, ghosts and rows of this hand only", .placeholder = "HAND"},
+      {.name = "--hand", .help = "paths, ghosts and rows of this hand only", .placeholder = "HAND"},
       {.name = "--of",
        .help = "the path of this thing, and only events that it takes part in",
        .placeholder = "NAME"}};
@@ -39,8 +39,8 @@ std::vector<Option> PartOptions() {
 
 std::vector<Option> LookOptions() {
   return {{.name = "--camera",
-           .help = "from where: front, left, right, top, three_quarter; hand, action or\n"
-                   "body, which are nearer to what they name; a camera of the scenario;\n"
+           .help = "from where: front, left, right, top, three_quarter; hand, action or "
+                   "body, which are nearer to what they name; a camera of the scenario; "
                    "or X,Y,Z:X,Y,Z[:DEG], a place, what it looks at, and the view's height",
            .placeholder = "CAMERA"},
           {.name = "--text",
@@ -53,7 +53,7 @@ std::vector<Option> LookOptions() {
            .rule = Themes()},
           {.name = "--transparent", .help = "without a ground: for slides and posters"},
           {.name = "--regions",
-           .help = "the regions of interest of what hands do at the moment, and a star above\n"
+           .help = "the regions of interest of what hands do at the moment, and a star above "
                    "each thing that a hand may be reaching for"}};
 }
 
@@ -61,7 +61,7 @@ PictureFormat FormatOfOptions(const ParsedOptions& options) {
   PictureFormat format{.text_scale = options.NumberOr("--text", 1),
                        .print = options.Text("--theme") == "print",
                        .transparent = options.Has("--transparent"),
-                       .only = options.Text("--only"),
+                       .only = options.Text("--hand"),
                        .of = options.Text("--of"),
                        .regions = options.Has("--regions")};
   if (options.Has("--from")) format.from_s = options.NumberOr("--from", 0);
@@ -82,7 +82,7 @@ std::string WhyNoPart(const PictureFormat& format, const Scenario& scenario) {
   for (const physics::Hand& hand : scenario.scene.hands) hands.push_back(hand.name);
   for (const physics::Body& body : scenario.scene.bodies) all.push_back(body.name);
   all.insert(all.end(), hands.begin(), hands.end());
-  const std::string why = unknown("--only", format.only, hands);
+  const std::string why = unknown("--hand", format.only, hands);
   return why.empty() ? unknown("--of", format.of, all) : why;
 }
 
@@ -102,7 +102,7 @@ figures::Window WindowOf(const ParsedOptions& options, const RunResult& run) {
   figures::Window window = figures::WholeOf(run);
   window.from_s = options.NumberOr("--from", window.from_s);
   window.to_s = std::min(window.to_s, options.NumberOr("--to", window.to_s));
-  window.hand = options.Text("--only");
+  window.hand = options.Text("--hand");
   window.entity = options.Text("--of");
   return window;
 }

@@ -12,7 +12,7 @@
 
 namespace prehend::harness {
 
-/// --from, --to, --only, --of.
+/// --from, --to, --hand, --of.
 std::vector<Option> PartOptions();
 /// --camera, --text, --theme, --transparent, --regions.
 std::vector<Option> LookOptions();

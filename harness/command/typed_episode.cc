@@ -7,14 +7,6 @@
 
 namespace prehend::harness {
 
-Option EpisodeOption() {
-  return {.name = "--episode",
-          .help =
-              "which one of an episode file that holds several: its number, or its scenario\n"
-              "(a name, skill/name or a glob)",
-          .placeholder = "WHICH"};
-}
-
 tl::expected<std::vector<EpisodeName>, ExitCode> FindEpisodesOrComplain(
     const std::string& argument, const ParsedOptions& options, const CommandContext& context,
     const std::vector<Need>& needs) {

@@ -13,9 +13,6 @@
 
 namespace prehend::harness {
 
-/// --episode, for commands that take one of a file.
-Option EpisodeOption();
-
 /// All that was typed for an argument, with --episode. What lacks one of `needs` is refused.
 tl::expected<std::vector<EpisodeName>, ExitCode> FindEpisodesOrComplain(
     const std::string& argument, const ParsedOptions& options, const CommandContext& context,

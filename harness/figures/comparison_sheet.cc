@@ -293,7 +293,7 @@ Sheet ComparisonSheet(const Scenario& scenario, const Side& first, const Side& s
   if (!only.tiles.empty()) sheet.rows.push_back(std::move(only));
   if (disputes.size() > kMostDisputes)
     sheet.note = fmt::format(
-        "{} more differences have no scenes here; --from, --to, --only and "
+        "{} more differences have no scenes here; --from, --to, --hand and "
         "--of choose a part",
         disputes.size() - kMostDisputes);
   if (disputes.empty()) sheet.note = AgreementText(comparison);

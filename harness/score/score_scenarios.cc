@@ -99,7 +99,7 @@ std::string DifferencesText(const std::vector<std::string>& grammars,
       if (shown > 0) text += fmt::format("{}, outside the {}:\n", grammars[g], witness.name);
       for (std::size_t i = 0; i < shown; ++i) text += "  " + lines[i] + "\n";
       if (shown < lines.size())
-        text += fmt::format("  and {} more; --differences lists all\n", lines.size() - shown);
+        text += fmt::format("  and {} more; --verbose lists all\n", lines.size() - shown);
     }
   }
   return text;
@@ -123,9 +123,9 @@ std::string UnknownEvent(const std::vector<std::string>& events) {
   const std::vector<std::string> known(OracleEvents().begin(), OracleEvents().end());
   for (const std::string& event : events) {
     if (OracleDefines(event)) continue;
-    if (event.empty()) return "--events: a name is missing next to a comma; write NAME,NAME";
+    if (event.empty()) return "--event: a name is missing next to a comma; write NAME,NAME";
     const std::string near = grammar::NearestName(event, known);
-    return fmt::format("--events: docs/events.md defines no '{}'; {}", event,
+    return fmt::format("--event: docs/events.md defines no '{}'; {}", event,
                        near.empty() ? fmt::format("it defines {}", fmt::join(known, ", "))
                                     : fmt::format("did you mean '{}'?", near));
   }

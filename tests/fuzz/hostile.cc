@@ -149,7 +149,7 @@ int main(int argc, char** argv) {
       {Kind::kBag, BagFiles()}};
   for (const auto& [kind, file] : {std::pair(Kind::kEaf, folder / "seed.eaf"),
                                    std::pair(Kind::kTextGrid, folder / "seed.TextGrid")}) {
-    Run({program, "episode", "resegment", recording.string(), "--labels", file.string()}, folder);
+    Run({program, "episode", "resegment", recording.string(), "-o", file.string()}, folder);
     made[kind] = {ReadFile(file)};
     if (made[kind].front().empty()) {
       std::printf("no labels were written to %s\n", file.c_str());

@@ -205,8 +205,7 @@ TEST_F(CommandLine, AnEmptyValueIsRefused) {
 
 TEST_F(CommandLine, ListAndSchema) {
   EXPECT_EQ(Do("list").out,
-            "scenario           shows                                             tags\n"
-            "rest/carton_rests  a carton stands on a table and nobody touches it  quiet\n");
+            "rest/carton_rests  [quiet]\n    a carton stands on a table and nobody touches it\n");
   EXPECT_EQ(nlohmann::json::parse(Do("list --json").out)["scenarios"][0]["scenario"],
             "rest/carton_rests");
   EXPECT_TRUE(nlohmann::json::parse(Do("scenario schema").out).contains("$schema"));
@@ -394,7 +393,7 @@ TEST_F(CommandLine, OrphansUnreadableGoldensAndScenariosFail) {
 TEST_F(CommandLine, AScenarioThatNeverEndsIsAVerdict) {
   Accept();
   const Said ended =
-      Do("check --no-pictures --time-limit 0.2 --set script.0.right_hand.wait_s=600");
+      Do("check --no-pictures --time-limit-s 0.2 --set script.0.right_hand.wait_s=600");
   EXPECT_EQ(ended.exit_code, 3) << ended.out;
   EXPECT_NE(ended.out.find("its process ended: no end after 0.2 s"), std::string::npos)
       << ended.out;

@@ -48,32 +48,36 @@ struct Row {
 };
 
 const Row kRows[] = {
-    {{"run", kEpisode}, {0, 2, 2, 2}, "so there is no scenario to simulate; 'prehend resegment"},
+    {{"run", kEpisode},
+     {0, 2, 2, 2},
+     "so there is no scenario to simulate; 'prehend episode resegment"},
     {{"validate", kEpisode}, {0, 2, 2, 2}, "so there is no scenario to simulate; 'prehend"},
     {{"check", kEpisode, "--report", kOut}, {0, 0, 5, 5}, ""},
     {{"review", kEpisode}, {0, 0, 5, 2}, "has no golden: that of a recording lies beside"},
     {{"explain", kEpisode}, {0, 0, 0, 0}, ""},
-    {{"tracks", kEpisode}, {0, 0, 0, 0}, ""},
-    {{"poses", kEpisode}, {0, 0, 0, 0}, ""},
+    {{"grammar", "tracks", kEpisode}, {0, 0, 0, 0}, ""},
+    {{"scenario", "poses", kEpisode}, {0, 0, 0, 0}, ""},
     {{"render", kEpisode, "--at", "0.5", "-o", kOut + ".png"}, {0, 0, 0, 0}, ""},
     {{"render", kEpisode, "--strip", "-o", kOut + ".svg"}, {0, 0, 0, 0}, ""},
     {{"figure", "keyframes", kEpisode, "-o", kOut + ".svg"}, {0, 0, 0, 0}, ""},
     {{"figure", "phases", kEpisode, "-o", kOut + ".svg"}, {0, 0, 0, 0}, ""},
-    {{"resegment", kEpisode}, {0, 0, 0, 0}, ""},
-    {{"resegment", kEpisode, "--json"}, {0, 0, 0, 0}, ""},
-    {{"resegment", kEpisode, "--labels", kOut + ".csv"}, {0, 0, 0, 0}, ""},
-    {{"resegment", kEpisode, "--compare", "recorded"},
+    {{"episode", "resegment", kEpisode}, {0, 0, 0, 0}, ""},
+    {{"episode", "resegment", kEpisode, "--json"}, {0, 0, 0, 0}, ""},
+    {{"episode", "resegment", kEpisode, "-o", kOut + ".csv"}, {0, 0, 0, 0}, ""},
+    {{"episode", "resegment", kEpisode, "--against", "recorded"},
      {2, 0, 2, 0},
      "has no events that were recorded with it; 'prehend "},
-    {{"watch", kEpisode}, {0, 0, 0, 0}, ""},
-    {{"query", kEpisode}, {0, 0, 0, 0}, ""},
+    {{"grammar", "watch", kEpisode}, {0, 0, 0, 0}, ""},
+    {{"episode", "query", kEpisode}, {0, 0, 0, 0}, ""},
     {{"report", kEpisode, "-o", kOut + ".html"}, {0, 0, 0, 0}, ""},
-    {{"episodes", kEpisode}, {2, 0, 2, 0}, "is not kept in an episode file; 'prehend "},
-    {{"replay", kEpisode}, {2, 0, 2, 0}, "is not kept in an episode file; 'prehend "},
+    {{"episode", "list", kEpisode}, {2, 0, 2, 0}, "is not kept in an episode file; 'prehend "},
+    {{"episode", "verify", kEpisode}, {2, 0, 2, 0}, "is not kept in an episode file; 'prehend "},
     {{"score", kEpisode}, {0, 0, 2, 2}, "its physical truth is not known; score it against labels"},
-    {{"sweep", kEpisode, "--over", "reach_radius=20cm..40cm:2"}, {0, 0, 4, 4}, ""},
-    {{"margins", kEpisode}, {0, 0, 4, 4}, ""},
-    {{"knowledge", kEpisode, "-o", kOut}, {0, 0, 2, 2}, "was not simulated, so the bodies"},
+    {{"grammar", "sweep", kEpisode, "--over", "reach_radius=20cm..40cm:2"}, {0, 0, 4, 4}, ""},
+    {{"grammar", "margins", kEpisode}, {0, 0, 4, 4}, ""},
+    {{"episode", "knowledge", kEpisode, "-o", kOut},
+     {0, 0, 2, 2},
+     "was not simulated, so the bodies"},
     {{"accept", kEpisode, "--reviewed", "0123456789abcdef", "--reason", "seen"},
      {1, 2, 1, 2},
      "has no golden: that of "},
@@ -91,7 +95,8 @@ TEST(EpisodeKinds, EveryCommandTakesEachOrSaysWhatIsMissing) {
         if (word.starts_with(kOut)) word = out + word.substr(kOut.size());
       }
       const Said said = Prehend(words, {"CI="});
-      const std::string which = row.words.front() + " of " + kNames[kind] + ": " + said.err;
+      const std::string which =
+          row.words[row.words[1] == kEpisode ? 0 : 1] + " of " + kNames[kind] + ": " + said.err;
       EXPECT_EQ(said.exit_code, row.exit_codes[kind]) << which;
       if (said.exit_code == 2) EXPECT_NE(said.err.find(row.missing), std::string::npos) << which;
       for (const char* never : {"control character", "no such file", "No such file"})
@@ -103,18 +108,27 @@ TEST(EpisodeKinds, EveryCommandTakesEachOrSaysWhatIsMissing) {
 // What is played first says the same as a run.
 TEST(EpisodeKinds, AScenarioIsPlayedFirst) {
   const std::string& scenario = Episodes()[0];
-  EXPECT_EQ(Prehend({"resegment", scenario}).out, Prehend({"run", scenario}).out);
-  EXPECT_EQ(Prehend({"resegment", scenario}).out, Prehend({"resegment", Episodes()[1]}).out);
-  const Said asked = Prehend({"query", scenario, "--json"}),
-             kept = Prehend({"query", Episodes()[1], "--json"});
+  EXPECT_EQ(Prehend({"episode", "resegment", scenario}).out, Prehend({"run", scenario}).out);
+  EXPECT_EQ(Prehend({"episode", "resegment", scenario}).out,
+            Prehend({"episode", "resegment", Episodes()[1]}).out);
+  const Said asked = Prehend({"episode", "query", scenario, "--json"}),
+             kept = Prehend({"episode", "query", Episodes()[1], "--json"});
   EXPECT_EQ(std::ranges::count(asked.out, '{'), std::ranges::count(kept.out, '{'));
 }
 
 // A recording is the same in either form.
 TEST(EpisodeKinds, ARecordingIsTheSameInEitherForm) {
-  for (const std::string command : {"resegment", "explain", "tracks", "watch", "poses"})
-    EXPECT_EQ(Prehend({command, Episodes()[2]}).out, Prehend({command, Episodes()[3]}).out)
-        << command;
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"episode", "resegment"},
+                                             {"explain"},
+                                             {"grammar", "tracks"},
+                                             {"grammar", "watch"},
+                                             {"scenario", "poses"}}) {
+    std::vector<std::string> lines = words, kept = words;
+    lines.push_back(Episodes()[2]);
+    kept.push_back(Episodes()[3]);
+    EXPECT_EQ(Prehend(lines).out, Prehend(kept).out) << words.back();
+  }
 }
 
 TEST(EpisodeKinds, AChoiceNeedsAnEpisodeFile) {

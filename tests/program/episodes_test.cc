@@ -34,11 +34,11 @@ TEST(Episodes, ARunAndItsEpisodeSayTheSame) {
   first.erase("claims");
   EXPECT_EQ(first, second);
 
-  const Said both = Prehend({"episode", "resegment", file, file, "--compare", "recorded"});
+  const Said both = Prehend({"episode", "resegment", file, file, "--against", "recorded"});
   EXPECT_EQ(both.exit_code, 0) << both.err;
   EXPECT_EQ(both.out, "4 episodes, 0 with differences\n");
   const Said differs =
-      Prehend({"episode", "resegment", file, "--compare", "recorded", "--set", "lift_rise=10m"});
+      Prehend({"episode", "resegment", file, "--against", "recorded", "--set", "lift_rise=10m"});
   EXPECT_EQ(differs.exit_code, 1) << differs.err;
   EXPECT_NE(differs.out.find("- picking_up"), std::string::npos) << differs.out;
   EXPECT_NE(differs.out.find("2 episodes, 2 with differences\n"), std::string::npos);
@@ -121,7 +121,7 @@ TEST(Episodes, ASuiteIsRecordedByWorkersIntoOneFile) {
                                 file, "--report", (folder / "report").string()});
   ASSERT_EQ(checked.exit_code, 0) << checked.out << checked.err;
   const Said compared =
-      Prehend({"episode", "resegment", file, "--compare", "recorded", "--jobs", "3"});
+      Prehend({"episode", "resegment", file, "--against", "recorded", "--jobs", "3"});
   EXPECT_EQ(compared.exit_code, 0) << compared.err;
   EXPECT_TRUE(compared.out.ends_with("episodes, 0 with differences\n")) << compared.out;
 }
@@ -134,7 +134,7 @@ TEST(Episodes, TrialsAreRecordedEachByItself) {
       Prehend({"run", scenario, "--trials", "3", "--json", "--jobs", "2", "--record", file});
   ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
   EXPECT_EQ(recorded.out, alone.out) << "recording changes nothing";
-  EXPECT_EQ(Prehend({"episode", "resegment", file, "--compare", "recorded"}).out,
+  EXPECT_EQ(Prehend({"episode", "resegment", file, "--against", "recorded"}).out,
             "3 episodes, 0 with differences\n");
   const auto trial =
       nlohmann::json::parse(Prehend({"run", scenario, "--trial", "2", "--json"}).out);

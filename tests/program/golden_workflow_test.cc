@@ -339,7 +339,7 @@ TEST_F(GoldenWorkflow, WatchingReadsAgainWhatASaveAffects) {
   WriteVariant("rest/b", "wait_s: 0.2", "wait_s: 0.1");
   const fs::path out = root_ / "watched.txt";
   const std::string command = "cd '" + root_.string() + "' && PREHEND_HOME='" + root_.string() +
-                              "' timeout 8 '" PREHEND_BINARY_DIR "/prehend' validate --watch >'" +
+                              "' timeout 8 '" PREHEND_BINARY_DIR "/prehend' validate --on-save >'" +
                               out.string() + "' 2>&1";
   std::thread watcher([&] { (void)!std::system(command.c_str()); });
   const auto wait_for = [&](const std::string& text) {

@@ -51,7 +51,7 @@ TEST(JoinedGrammars, AllOfThemWatchAScenarioAndItsEpisode) {
   EXPECT_EQ(Prehend({"score", file}).exit_code, 0) << "its claims can be judged";
   // The episode keeps all of them, wherever the files are now.
   std::filesystem::remove(folder / "shaking.grammar");
-  const Said again = Prehend({"episode", "resegment", record, "--compare", "recorded"});
+  const Said again = Prehend({"episode", "resegment", record, "--against", "recorded"});
   EXPECT_EQ(again.exit_code, 0) << again.err << again.out;
   const Said line = Prehend({"run", "milk_carton_wrap", "--grammar", "furniture+pick_and_place"});
   EXPECT_EQ(line.exit_code, 0) << line.err;

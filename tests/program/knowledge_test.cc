@@ -36,7 +36,7 @@ const Recorded& ThreeDays() {
                                  "pick_and_place/milk_carton_wrap", "body/arm_follows_the_hand"})
       EXPECT_EQ(Prehend({"run", scenario, "--record", made.file}).exit_code, 0) << scenario;
     const Said said =
-        Prehend({"episode", "knowledge", made.file, "-o", made.kb, "--to", "owl", "--to", "neem"});
+        Prehend({"episode", "knowledge", made.file, "-o", made.kb, "--also", "owl", "--also", "neem"});
     EXPECT_EQ(said.exit_code, 0) << said.err;
     EXPECT_NE(said.out.find("4 episodes of 4 tasks"), std::string::npos) << said.out;
     return made;
@@ -212,7 +212,7 @@ TEST(Knowledge, HostileQueriesAreRefusedOrStopped) {
     // Only an endless query has to reach its limit; the others end before, on a busy machine, too.
     const bool is_endless = why == "took more than";
     const Said said =
-        Prehend({"episode", "ask", days.kb, query, "--seconds", is_endless ? "2" : "15"});
+        Prehend({"episode", "ask", days.kb, query, "--time-limit-s", is_endless ? "2" : "15"});
     EXPECT_EQ(said.exit_code, 2) << query << said.out;
     EXPECT_NE(said.err.find(why), std::string::npos) << query << ": " << said.err;
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20)) << query;
@@ -222,7 +222,7 @@ TEST(Knowledge, HostileQueriesAreRefusedOrStopped) {
   const Said nowhere = Prehend({"episode", "ask", (days.folder / "no").string(), "true"});
   EXPECT_EQ(nowhere.exit_code, 2);
   EXPECT_NE(nowhere.err.find("there is no folder"), std::string::npos) << nowhere.err;
-  const Said bad = Prehend({"episode", "knowledge", days.file, "--to", "xml"});
+  const Said bad = Prehend({"episode", "knowledge", days.file, "--also", "xml"});
   EXPECT_EQ(bad.exit_code, 2);
   EXPECT_NE(bad.err.find("wanted owl or neem"), std::string::npos) << bad.err;
 }

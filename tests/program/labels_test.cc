@@ -101,26 +101,26 @@ TEST_F(Labelled, WhatIsWrittenIsReadAgain) {
   const std::string take = Take("milk.jsonl");
   for (const char* ending : {"csv", "eaf", "TextGrid"}) {
     const std::string file = Path(std::string("out.") + ending);
-    EXPECT_EQ(Prehend({"episode", "resegment", take, "--labels", file}).exit_code, 0);
+    EXPECT_EQ(Prehend({"episode", "resegment", take, "-o", file}).exit_code, 0);
     const Said said = Prehend(
         {"score", take, "--truth", file, "--grammar", "pick_and_place_from_motion", "--json"});
     ASSERT_EQ(said.exit_code, 0) << said.err;
     const auto total = nlohmann::json::parse(said.out)["grammars"][0]["total"];
     EXPECT_EQ(total["f1_50"], 1.0) << ending << total;
   }
-  const Said some = Prehend({"episode", "resegment", take, "--labels", Path("some.csv"), "--events",
-                             "grasping", "--events", "reaching"});
+  const Said some = Prehend({"episode", "resegment", take, "-o", Path("some.csv"), "--event",
+                             "grasping", "--event", "reaching"});
   EXPECT_TRUE(Has(some.out, ": 2 labels")) << some.out << some.err;
   EXPECT_FALSE(Has(ReadFile(Path("some.csv")), "putting_down"));
   const Said unknown =
-      Prehend({"episode", "resegment", take, "--labels", Path("some.csv"), "--events", "graspin"});
+      Prehend({"episode", "resegment", take, "-o", Path("some.csv"), "--event", "graspin"});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_TRUE(Has(unknown.err,
-                  "--events: grammar 'pick_and_place_from_motion' has no event "
+                  "--event: grammar 'pick_and_place_from_motion' has no event "
                   "'graspin'; did you mean 'grasping'?"))
       << unknown.err;
-  EXPECT_EQ(Prehend({"episode", "resegment", take, "--events", "grasping"}).exit_code, 2);
-  const Said other = Prehend({"episode", "resegment", take, "--labels", Path("out.txt")});
+  EXPECT_EQ(Prehend({"episode", "resegment", take, "--event", "grasping"}).exit_code, 2);
+  const Said other = Prehend({"episode", "resegment", take, "-o", Path("out.txt")});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_TRUE(Has(other.err, "wanted a file .csv, .eaf or .TextGrid")) << other.err;
   EXPECT_FALSE(fs::exists(Path("out.txt")));
@@ -129,7 +129,7 @@ TEST_F(Labelled, WhatIsWrittenIsReadAgain) {
 TEST_F(Labelled, ARunIsWrittenByItsOwnGrammar) {
   ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", Path("milk.episodes")}).exit_code, 0);
   const Said said =
-      Prehend({"episode", "resegment", Path("milk.episodes"), "--labels", Path("milk.csv")});
+      Prehend({"episode", "resegment", Path("milk.episodes"), "-o", Path("milk.csv")});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_TRUE(Has(ReadFile(Path("milk.csv")), "picking_up")) << ReadFile(Path("milk.csv"));
 }
@@ -163,7 +163,7 @@ TEST_F(Labelled, MarginsNameWhatIsAtAnEdge) {
 TEST_F(Labelled, MarginsOfSomeParametersOnly) {
   const auto margins = [&](const std::string& only) {
     return Prehend({"grammar", "margins", Take("milk.jsonl"), "--truth", docs_ + "/labels.csv",
-                    "--map", map_, "--only", "hold_way", "--only", only, "-o",
+                    "--map", map_, "--over", "hold_way", "--over", only, "-o",
                     Path("margins.csv")});
   };
   ASSERT_EQ(margins("touch_back").exit_code, 0);
@@ -176,7 +176,7 @@ TEST_F(Labelled, MarginsOfSomeParametersOnly) {
   const Said unknown = margins("hold_wey");
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_TRUE(Has(unknown.err,
-                  "--only: the grammar has no parameter 'hold_wey'\n  hint: did you "
+                  "--over: the grammar has no parameter 'hold_wey'\n  hint: did you "
                   "mean 'hold_way'?"))
       << unknown.err;
 }
@@ -197,7 +197,7 @@ TEST_F(Labelled, DifferencesAreListed) {
   const auto score = [&](const std::string& labels) {
     WriteFile(folder_ / "a.csv", labels);
     return Prehend({"score", take, "--truth", Path("a.csv"), "--map", map_, "--collar-ms", "200",
-                    "--differences"});
+                    "--verbose"});
   };
   const std::string head = "begin_s,end_s,label,tier\n";
   const Said said = score(head + "0.1,0.7,reach,right\n1.5,1.7,lift,right\n4.5,4.6,lift,right\n");
@@ -209,7 +209,7 @@ TEST_F(Labelled, DifferencesAreListed) {
   EXPECT_TRUE(Has(said.out, "extra    grasping(milk)                found 1.47910..")) << said.out;
   EXPECT_FALSE(Has(said.out, "off ")) << said.out;
   const Said agrees = Prehend({"score", take, "--truth", docs_ + "/labels.csv", "--map", map_,
-                               "--collar-ms", "1000", "--differences"});
+                               "--collar-ms", "1000", "--verbose"});
   EXPECT_TRUE(Has(agrees.out, "against the labels:\nno differences")) << agrees.out;
 }
 
@@ -311,7 +311,7 @@ TEST_F(Labelled, OptionsOfLabelsNeedLabels) {
   EXPECT_EQ(Prehend({"score", "--map", map_}).exit_code, 2);
   EXPECT_EQ(Prehend({"score", "--truth", docs_ + "/labels.csv"}).exit_code, 4);
   EXPECT_EQ(
-      Prehend({"score", Take("a.jsonl"), "--truth", docs_ + "/labels.csv", "--events", "grasping"})
+      Prehend({"score", Take("a.jsonl"), "--truth", docs_ + "/labels.csv", "--event", "grasping"})
           .exit_code,
       2);
   const Said unknown = Prehend(

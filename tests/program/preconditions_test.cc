@@ -87,7 +87,7 @@ TEST_F(Preconditions, APipeIsNotWaitedFor) {
   Accept();
   const fs::path pipe = root_ / "scenarios/rest/pipe.yaml";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  for (const char* command : {"list", "validate", "check --no-pictures --time-limit 20"}) {
+  for (const char* command : {"list", "validate", "check --no-pictures --time-limit-s 20"}) {
     const Said said = Do(command);
     EXPECT_EQ(said.exit_code, 2) << command;
     EXPECT_NE((said.out + said.err).find("pipe.yaml: error: is not a regular file"),
@@ -99,7 +99,7 @@ TEST_F(Preconditions, APipeIsNotWaitedFor) {
   fs::remove(Golden());
   ASSERT_EQ(mkfifo(Golden().c_str(), 0600), 0);
   for (const char* command :
-       {"validate", "check --no-pictures --time-limit 20", "accept carton_rests --reason why"}) {
+       {"validate", "check --no-pictures --time-limit-s 20", "accept carton_rests --reason why"}) {
     const Said said = Do(command);
     EXPECT_EQ(said.exit_code, 2) << command;
     EXPECT_NE((said.out + said.err).find("carton_rests.timeline: error: is not a regular file"),

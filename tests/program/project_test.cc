@@ -92,7 +92,7 @@ TEST_F(OwnProject, ItsEpisodesAreReadElsewhere) {
   ASSERT_EQ(Do({"run", "carton_is_held_still", "--record", "held.episodes"}).exit_code, 0);
   fs::rename(kitchen_ / "held.episodes", folder_ / "held.episodes");
   fs::remove_all(kitchen_);
-  const Said said = In(folder_, {"episode", "resegment", "held.episodes", "--compare", "recorded"});
+  const Said said = In(folder_, {"episode", "resegment", "held.episodes", "--against", "recorded"});
   EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
   EXPECT_TRUE(Has(said.out, "1 episode, 0 with differences")) << said.out;
 }

@@ -47,7 +47,7 @@ TEST(Query, TheThreeQuestionsOfThePaperAreAnswered) {
   EXPECT_TRUE(Asked(file, {"--event", "grasping", "--part-of", "object=table"}).empty());
   // 3. Of what is a pick-and-place composed?
   const auto whole =
-      Asked(file, {"--event", "pick_and_place", "--parts", "--scenario", "milk_carton_wrap"});
+      Asked(file, {"--event", "pick_and_place", "--parts", "--episode", "milk_carton_wrap"});
   ASSERT_EQ(whole.size(), 1u);
   std::vector<std::string> parts;
   for (const auto& part : whole[0]["parts"]) parts.push_back(part["event"]);
@@ -63,15 +63,15 @@ TEST(Query, TimesRelationsAndFormsAreChosen) {
   EXPECT_EQ(Asked(file, {"--event", "transporting", "--at-least-s", "100"}).size(), 0u);
   EXPECT_EQ(Asked(file, {"--event", "transporting", "--at-most-s", "100"}).size(), all.size());
   EXPECT_EQ(
-      Asked(file, {"--event", "transporting", "--from-s", std::to_string(begin_s - 0.001),
-                   "--until-s", std::to_string(end_s + 0.001), "--scenario", "milk_carton_wrap"})
+      Asked(file, {"--event", "transporting", "--from", std::to_string(begin_s - 0.001),
+                   "--to", std::to_string(end_s + 0.001), "--episode", "milk_carton_wrap"})
           .size(),
       1u);
-  EXPECT_EQ(Asked(file, {"--event", "picking_up", "--relation", "meets transporting", "--scenario",
+  EXPECT_EQ(Asked(file, {"--event", "picking_up", "--relation", "meets transporting", "--episode",
                          "milk_carton_wrap"})
                 .size(),
             1u);
-  EXPECT_EQ(Asked(file, {"--event", "picking_up", "--relation", "after transporting", "--scenario",
+  EXPECT_EQ(Asked(file, {"--event", "picking_up", "--relation", "after transporting", "--episode",
                          "milk_carton_wrap"})
                 .size(),
             0u);

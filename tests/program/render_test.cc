@@ -58,8 +58,8 @@ TEST_F(Render, OptionsThatDoNotGoTogetherAreRefused) {
                                      "--strip is the timeline alone");
   Refused({"--strip", "-o", Path("a.gif")},
           "--output: found '" + Path("a.gif") + "', wanted a file NAME.svg, NAME.png or NAME.pdf");
-  Refused({"--strip", "--only", "foot", "-o", Path("a.svg")},
-          "--only: found 'foot', wanted one of right_hand");
+  Refused({"--strip", "--hand", "foot", "-o", Path("a.svg")},
+          "--hand: found 'foot', wanted one of right_hand");
   Refused({"--camera", "1,1,1:1,1,1"},
           "--camera: expected one of front, left, right, top, three_quarter, hand, action, body, "
           "or X,Y,Z:X,Y,Z[:DEG], found '1,1,1:1,1,1'");

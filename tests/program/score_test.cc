@@ -59,12 +59,12 @@ TEST_F(ScoreCommand, WhatIsMisspeltIsListedByName) {
 }
 
 TEST_F(ScoreCommand, EventsCanBeChosen) {
-  const Said said = Do("score --json --events supported_by" + GrammarOption("silent"));
+  const Said said = Do("score --json --event supported_by" + GrammarOption("silent"));
   ASSERT_EQ(said.exit_code, 0) << said.err;
   const Json score = Json::parse(said.out)["grammars"][0];
   EXPECT_EQ(score["total"]["true"], 1);
   EXPECT_EQ(score["not_covered"], Json::array({"supported_by"}));
-  const Said wrong = Do("score --events contact,suported_by");
+  const Said wrong = Do("score --event contact,suported_by");
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_EQ(wrong.out, "");
   EXPECT_NE(wrong.err.find("defines no 'suported_by'; did you mean 'supported_by'?"),
@@ -74,9 +74,9 @@ TEST_F(ScoreCommand, EventsCanBeChosen) {
 
 TEST_F(ScoreCommand, EveryCommaHasNamesBesideIt) {
   for (const char* events : {"reaching,,", ",reaching", "reaching,,grasping"}) {
-    const Said wrong = Do(std::string("score --events ") + events);
+    const Said wrong = Do(std::string("score --event ") + events);
     EXPECT_EQ(wrong.exit_code, 2) << events;
-    EXPECT_NE(wrong.err.find("--events: a name is missing next to a comma; write NAME,NAME"),
+    EXPECT_NE(wrong.err.find("--event: a name is missing next to a comma; write NAME,NAME"),
               std::string::npos)
         << wrong.err;
   }

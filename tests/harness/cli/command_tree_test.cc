@@ -13,7 +13,7 @@ namespace {
 
 ParsedArguments Typed(const std::vector<std::string>& words) {
   static const std::vector<Command> commands = AllCommands();
-  return ParseArguments(DescribeProgram(), commands, words);
+  return ParseArguments(DescribeProgram("prehend 1"), commands, words);
 }
 
 std::string Screen(const std::vector<std::string>& words) {
@@ -49,7 +49,7 @@ TEST(CommandTree, HelpIsOneScreen) {
 }
 
 TEST(CommandTree, ANounAloneIsUsageAndItsHelpListsItsCommands) {
-  for (const Noun& noun : DescribeProgram().nouns) {
+  for (const Noun& noun : DescribeProgram("prehend 1").nouns) {
     const ParsedArguments alone = Typed({noun.name});
     ASSERT_TRUE(std::holds_alternative<InfoText>(alone));
     EXPECT_FALSE(std::get<InfoText>(alone).asked_for);
@@ -66,8 +66,8 @@ TEST(CommandTree, ANounAloneIsUsageAndItsHelpListsItsCommands) {
 }
 
 TEST(CommandTree, AnOldNameIsAnErrorThatSaysTheNewOne) {
-  ASSERT_EQ(DescribeProgram().old_commands.size(), 15u);
-  for (const OldName& name : DescribeProgram().old_commands) {
+  ASSERT_EQ(DescribeProgram("prehend 1").old_commands.size(), 15u);
+  for (const OldName& name : DescribeProgram("prehend 1").old_commands) {
     std::vector<std::string> corrected = WordsIn(name.now);
     const std::vector<std::string> start = corrected;
     corrected.push_back("--help");
