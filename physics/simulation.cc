@@ -9,6 +9,7 @@
 #include "physics/motion/stage_clock.h"
 #include "physics/motion/tracker.h"
 #include "physics/person/person_player.h"
+#include "physics/scene/check_scene.h"
 #include "physics/scene/mirror_image.h"
 #include "physics/scene/run_limits.h"
 #include "physics/scene/state_hash.h"
@@ -23,6 +24,7 @@ namespace {
 constexpr double kMaxRun_s = 1800;
 
 std::unique_ptr<World> MakeWorld(const Scene& scene, const Script& script) {
+  CheckScene(scene);
   const std::vector<int> styles = ScriptPlayer::FirstStyles(scene, script);
   switch (scene.world.engine) {
     case Engine::kBox2d:
@@ -113,8 +115,7 @@ bool Simulation::State::Step() {
   if (status.kind != RunStatus::Kind::kRunning) return false;
   const std::vector<HandCommand>* commands = player.Advance(snapshot);
   if (!player.problem().empty()) {
-    const auto hand = static_cast<std::size_t>(player.problem_hand());
-    Fail(scene.hands[hand].name, player.problem(), "");
+    Fail(scene.hand(player.problem_hand()).name, player.problem(), "");
     return false;
   }
   if (!commands) {
@@ -128,6 +129,7 @@ bool Simulation::State::Step() {
   world->Describe(snapshot);
   See();
   watch.See(snapshot, persons);
+  PREHEND_DCHECK(IsOf(scene, snapshot));
   hash.Add(snapshot);
   if (auto problem = CheckSnapshot(scene, snapshot))
     Fail(problem->entity, problem->reason, problem->advice);

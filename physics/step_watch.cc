@@ -47,9 +47,9 @@ std::string PositionText(const Joint& joint, double position) {
   return std::to_string(std::lround(position * 180 / M_PI)) + " degrees";
 }
 
-bool TouchesJoint(const Scene& scene, int hand, int joint, const Snapshot& now) {
+bool TouchesJoint(const Scene& scene, HandIndex hand, int joint, const Snapshot& now) {
   for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
-    const int index = static_cast<int>(body);
+    const BodyIndex index(body);
     if (JointThatMoves(scene, index) == joint && Touches(hand, index, now)) return true;
   }
   return false;
@@ -93,7 +93,7 @@ void StepWatch::SeeJoints(const Snapshot& now) {
     const double least = joint.kind == JointKind::kSlider ? kNotedSlider_m : kNotedHinge_rad;
     if (missing <= std::max(kNotedJointShare * std::abs(leading.to - leading.from), least))
       continue;
-    const std::string& name = scene_.bodies[static_cast<std::size_t>(joint.body)].name;
+    const std::string& name = scene_.body(joint.body).name;
     const std::string remedy =
         TouchesJoint(scene_, leading.hand, leading.joint, now)
             ? "it touches " + name +
@@ -119,26 +119,26 @@ void StepWatch::SeeArms(const Snapshot& now, const std::vector<PersonPlayer>& pe
     }
     if (!person.has_body) continue;
     for (const bool right : {true, false}) {
-      const int hand = right ? person.right_hand : person.left_hand;
+      const HandIndex hand = right ? person.right_hand : person.left_hand;
       const PartRange parts = PartsOfLimb(person, right ? 0 : 1);
-      if (hand >= 0) SeeContacts(hand, person.head + parts.begin, person.head + parts.end, now);
+      if (hand != kNone) SeeContacts(hand, person.head + parts.begin, person.head + parts.end, now);
     }
   }
 }
 
-void StepWatch::SeeContacts(int hand, int begin, int end, const Snapshot& now) {
+void StepWatch::SeeContacts(HandIndex hand, BodyIndex begin, BodyIndex end, const Snapshot& now) {
   const auto is_part = [&](const ContactSide& side) {
-    return side.hand < 0 && side.body >= begin && side.body < end;
+    return side.hand == kNone && side.body >= begin && side.body < end;
   };
   for (const ContactPoint& contact : now.contacts) {
     const bool a_is_part = is_part(contact.a);
     if (a_is_part == is_part(contact.b)) continue;
     const ContactSide &part = a_is_part ? contact.a : contact.b,
                       &thing = a_is_part ? contact.b : contact.a;
-    if (thing.hand >= 0 || Touches(hand, thing.body, now)) continue;
-    const auto index = static_cast<std::size_t>(thing.body);
-    if (scene_.bodies[index].fixed || scene_.bodies[index].kinematic) continue;
-    const Eigen::Vector3d& p_W_m = now.bodies[index].X_WB.p_m;
+    if (thing.hand != kNone || Touches(hand, thing.body, now)) continue;
+    const Body& body = scene_.body(thing.body);
+    if (body.fixed || body.kinematic) continue;
+    const Eigen::Vector3d& p_W_m = now.body(thing.body).X_WB.p_m;
     const auto [entry, is_new] = met_.try_emplace({hand, part.body, thing.body});
     Met& met = entry->second;
     if (is_new) met.tick = now.tick;
@@ -155,14 +155,14 @@ std::vector<ScriptNote> StepWatch::Notes() const {
     for (int limb = 0; limb < 4; ++limb) {
       const Short& farthest = limbs_[i][static_cast<std::size_t>(limb)];
       if (farthest.by_m <= kNotedLimb_m) continue;
-      const int hand = limb == 0 ? person.right_hand : limb == 1 ? person.left_hand : -1;
+      const HandIndex hand = HandAt(limb, person);
       const std::string away = Millimetres(farthest.by_m) + " before ";
-      if (hand >= 0)
+      if (hand != kNone)
         notes.push_back({farthest.tick, hand,
                          "it is out of reach: the arm of " + person.name + " ends " + away +
                              "it; let her stand nearer, walk, turn or lean"});
       else
-        notes.push_back({farthest.tick, -1,
+        notes.push_back({farthest.tick, kNone,
                          person.name + ": move_limb: her " + NameOf(farthest.end) + " ends " +
                              away +
                              "its to_m, which is out of reach; let her stand nearer, walk, turn "
@@ -171,10 +171,10 @@ std::vector<ScriptNote> StepWatch::Notes() const {
   }
   for (const auto& [who, met] : met_) {
     const auto& [hand, part, thing] = who;
-    const std::string& name = scene_.bodies[static_cast<std::size_t>(thing)].name;
+    const std::string& name = scene_.body(thing).name;
     notes.push_back(
         {met.tick, hand,
-         "on its way " + scene_.bodies[static_cast<std::size_t>(part)].name + " touches " + name +
+         "on its way " + scene_.body(part).name + " touches " + name +
              (met.moved_m < kMoved_m ? "" : " and moves it by " + Millimetres(met.moved_m)) +
              "; let her stand elsewhere, go another way, or make room"});
   }

@@ -35,7 +35,7 @@ class StepWatch {
   };
   /// A hand that leads a joint.
   struct Leading {
-    int hand = 0;
+    HandIndex hand = {};
     int joint = 0;  ///< index into Scene::joints
     double from = 0, to = 0;
     std::int64_t end_tick = 0;
@@ -51,13 +51,14 @@ class StepWatch {
   void SeeJoints(const Snapshot& now);
   void SeeArms(const Snapshot& now, const std::vector<PersonPlayer>& persons);
   /// Of the arm that follows `hand`: its parts are the bodies from `begin` to before `end`.
-  void SeeContacts(int hand, int begin, int end, const Snapshot& now);
+  void SeeContacts(HandIndex hand, BodyIndex begin, BodyIndex end, const Snapshot& now);
 
   const Scene& scene_;
   const Script& script_;
   std::vector<Leading> leading_;
-  std::vector<std::array<Short, 4>> limbs_;       ///< by person and limb
-  std::map<std::tuple<int, int, int>, Met> met_;  ///< by hand, part of the arm and thing
+  std::vector<std::array<Short, 4>> limbs_;  ///< by person and limb
+  std::map<std::tuple<HandIndex, BodyIndex, BodyIndex>, Met>
+      met_;  ///< hand, part of the arm, thing
   std::vector<ScriptNote> notes_;
 };
 

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/scene/check.h"
+
 namespace prehend::render {
 
 using Eigen::Vector2f;
@@ -46,6 +48,8 @@ Canvas::Span Canvas::Clip(float low, float high, int limit) {
 
 void Canvas::Blend(int x, int y, const Color& color, float alpha) {
   if (x < 0 || y < 0 || x >= image_.width_px || y >= image_.height_px) return;
+  PREHEND_DCHECK(image_.rgb.size() ==
+                 3 * static_cast<std::size_t>(image_.width_px) * image_.height_px);
   std::uint8_t* pixel = &image_.rgb[(static_cast<std::size_t>(y) * image_.width_px + x) * 3];
   for (int k = 0; k < 3; ++k) {
     const float before = pixel[k];

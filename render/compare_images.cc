@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "physics/scene/check.h"
 #include "render/picture.h"
 
 namespace prehend::render {
 
 bool PixelDiffers(const Image& golden, const Image& drawn, std::size_t i) {
+  PREHEND_DCHECK(i + 2 < golden.rgb.size() && i + 2 < drawn.rgb.size());
   for (std::size_t k = i; k < i + 3; ++k) {
     if (std::abs(int{golden.rgb[k]} - int{drawn.rgb[k]}) > kMaxColorDifference) return true;
   }

@@ -165,7 +165,7 @@ physics::Pose BodyPose(const physics::Scene& scene, const physics::Snapshot& sna
 }
 
 /// Whether a person's body gives the hand its arm.
-bool HasArm(const physics::Scene& scene, int hand) {
+bool HasArm(const physics::Scene& scene, physics::HandIndex hand) {
   return std::ranges::any_of(scene.persons, [&](const physics::Person& person) {
     return person.has_body && (person.right_hand == hand || person.left_hand == hand);
   });
@@ -245,7 +245,7 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
                           .alpha = kForearmAlpha,
                           .gloss = 0.15f,
                           .object = AddObject("forearm:" + scene.hands[i].name, list)};
-    if (HasArm(scene, static_cast<int>(i))) continue;
+    if (HasArm(scene, physics::HandIndex(i))) continue;
     AddForearm(scene.hands[i].model, picture.snapshot.hands[i], look, &list->ghosts.emplace_back(),
                list);
   }
@@ -254,20 +254,19 @@ void AddBodiesAndHands(const Picture& picture, DrawList* list) {
 void AddGhost(const Picture& picture, std::size_t number, DrawList* list) {
   const physics::Scene& scene = *picture.scene;
   const Ghost& ghost = picture.ghosts[number];
-  const auto hand = static_cast<std::size_t>(ghost.hand);
   const bool has_hand =
-      ghost.hand >= 0 && hand < scene.hands.size() && hand < ghost.snapshot.hands.size();
-  const std::string who = has_hand ? scene.hands[hand].name : "";
+      ghost.hand.IsBelow(scene.hands.size()) && ghost.hand.IsBelow(ghost.snapshot.hands.size());
+  const std::string who = has_hand ? scene.hand(ghost.hand).name : "";
   Appearance look{.alpha = kGhostAlpha, .gloss = 0.1f};
   look.object = AddObject("ghost:" + std::to_string(number) + ":" + who, list);
   std::vector<Item> items;
   if (has_hand) {
     look.color = 0.6f * ghost.tint + 0.4f * kSkinColor;
-    AddHand(scene.hands[hand].model, ghost.snapshot.hands[hand], look, {}, &items, list);
+    AddHand(scene.hand(ghost.hand).model, ghost.snapshot.hand(ghost.hand), look, {}, &items, list);
   }
-  for (const int body : ghost.bodies) {
-    const auto i = static_cast<std::size_t>(body);
-    if (body < 0 || i >= scene.bodies.size()) continue;
+  for (const physics::BodyIndex body : ghost.bodies) {
+    if (!body.IsBelow(scene.bodies.size())) continue;
+    const std::size_t i = body.index();
     look.color = 0.75f * BodyColor(picture, i) + 0.25f * ghost.tint;
     AddBody(scene.bodies[i], BodyPose(scene, ghost.snapshot, i), look, &items, list);
   }
@@ -329,6 +328,15 @@ float ScaleAt(float distance_m) {
                   kLeast * distance_m / kNear_m);
 }
 
+/// What there is one of per body or hand may be missing, but there is no more of it.
+void CheckSizes(const Picture& picture, std::size_t bodies, std::size_t hands) {
+  PREHEND_CHECK(picture.snapshot.bodies.size() <= bodies);
+  PREHEND_CHECK(picture.snapshot.hands.size() <= hands);
+  PREHEND_CHECK(picture.body_colors.size() <= bodies && picture.body_alphas.size() <= bodies);
+  PREHEND_CHECK(picture.body_labels.size() <= bodies && picture.hand_labels.size() <= hands);
+  PREHEND_CHECK(picture.hand_colors.size() <= hands);
+}
+
 }  // namespace
 
 void AddItem(const Item& item, std::vector<Item>* items, DrawList* list) {
@@ -336,6 +344,9 @@ void AddItem(const Item& item, std::vector<Item>* items, DrawList* list) {
       !std::isfinite(item.rounding_m) || !item.color.allFinite()) {
     return;
   }
+  PREHEND_DCHECK(item.object >= 0 && item.object < std::ssize(list->objects));
+  PREHEND_DCHECK(item.primitive != Primitive::kMesh ||
+                 (item.mesh >= 0 && item.mesh < std::ssize(list->meshes)));
   Bounds bounds;
   if (item.primitive == Primitive::kMesh) {
     for (const Vertex& vertex : list->meshes[item.mesh].vertices)
@@ -370,7 +381,10 @@ DrawList MakeDrawList(const Picture& picture) {
   list.objects = {{"background", {}}, {"ground", {}}};
   if (picture.to_light.allFinite() && picture.to_light.norm() > 0)
     list.to_light = picture.to_light.normalized();
-  if (picture.scene != nullptr) AddBodiesAndHands(picture, &list);
+  if (picture.scene != nullptr) {
+    CheckSizes(picture, picture.scene->bodies.size(), picture.scene->hands.size());
+    AddBodiesAndHands(picture, &list);
+  }
   const float distance = (picture.camera.eye_m - picture.camera.look_at_m).norm();
   const float scale = std::isfinite(distance) ? ScaleAt(distance) : 1.0f;
   AddPath(picture.path, scale, &list);

@@ -91,7 +91,7 @@ const physics::Capsule* CapsuleOf(const physics::Body& body) {
 std::optional<std::string> PartName(const physics::Scene& scene, const physics::Person& person,
                                     std::size_t body) {
   if (body >= scene.bodies.size() || !CapsuleOf(scene.bodies[body])) return std::nullopt;
-  if (person.head >= 0 && body == static_cast<std::size_t>(person.head)) return "head";
+  if (physics::BodyIndex(body) == person.head) return "head";
   const std::string& name = scene.bodies[body].name;
   if (!person.has_body || !scene.bodies[body].kinematic || !name.starts_with(person.name + "_"))
     return std::nullopt;

@@ -29,8 +29,8 @@ struct PathStretch {
 
 /// A translucent copy of a hand and the objects that it holds, at another time.
 struct Ghost {
-  int hand = 0;
-  std::vector<int> bodies;  ///< drawn with it
+  physics::HandIndex hand = physics::HandIndex(0);
+  std::vector<physics::BodyIndex> bodies;  ///< drawn with it
   physics::Snapshot snapshot;
   Color tint = {0.7f, 0.7f, 0.7f};
 };

@@ -10,19 +10,14 @@
 #pragma once
 
 #include <stdexcept>
-#include <string>
 
-namespace prehend::grammar {
+#define PREHEND_TEXT_OF(words) #words
+#define PREHEND_LINE_AS_TEXT(line) PREHEND_TEXT_OF(line)
 
-[[noreturn]] inline void FailCheck(const char* file, int line, const char* condition) {
-  throw std::logic_error(std::string("internal error: ") + file + ":" + std::to_string(line) +
-                         ": not true: " + condition);
-}
-
-}  // namespace prehend::grammar
-
-#define PREHEND_CHECK(condition) \
-  ((condition) ? void() : ::prehend::grammar::FailCheck(__FILE__, __LINE__, #condition))
+#define PREHEND_CHECK(condition)                                                              \
+  ((condition) ? void()                                                                       \
+               : throw std::logic_error("internal error: " __FILE__ ":" PREHEND_LINE_AS_TEXT( \
+                     __LINE__) ": not true: " #condition))
 
 #ifdef PREHEND_DEBUG_CHECKS
 #define PREHEND_DCHECK(condition) PREHEND_CHECK(condition)

@@ -121,8 +121,8 @@ std::vector<physics::Joint> BuildJoints(const ScenarioYaml& entry, DiagnosticLis
                  fmt::format("{}: '{}' is grains: nothing can be attached to them", written->key,
                              written->to->value));
     physics::Joint& joint = joints.emplace_back(MakeJoint(*written));
-    joint.body = static_cast<int>(i);
-    joint.base = static_cast<int>(base);
+    joint.body = physics::BodyIndex(i);
+    joint.base = physics::BodyIndex(base);
   }
   return joints;
 }

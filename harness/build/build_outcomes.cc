@@ -25,7 +25,7 @@ class ConditionBuilder {
   std::optional<Outcome::Condition> Build(const ConditionYaml& wanted) const {
     Outcome::Condition condition{.wanted = wanted};
     condition.body = Find("entity", wanted.entity, wanted.where);
-    if (condition.body < 0) return std::nullopt;
+    if (condition.body == physics::kNone) return std::nullopt;
     condition.joint = JointOf(condition.body);
     if ((wanted.joint_above || wanted.joint_below) && condition.joint < 0)
       errors_.Add(wanted.where, fmt::format("entity: '{}' has no joint", wanted.entity));
@@ -43,16 +43,16 @@ class ConditionBuilder {
   }
 
  private:
-  /// -1 after an error.
-  int Find(const char* key, const std::string& name, const Where& where) const {
+  /// None after an error.
+  physics::BodyIndex Find(const char* key, const std::string& name, const Where& where) const {
     const auto found = std::find(names_.begin(), names_.end(), name);
-    if (found != names_.end()) return static_cast<int>(found - names_.begin());
+    if (found != names_.end()) return physics::BodyIndex(found - names_.begin());
     errors_.AddUnknownName(where, fmt::format("{}: no entity is called '{}'", key, name), name,
                            names_);
-    return -1;
+    return physics::kNone;
   }
 
-  int JointOf(int body) const {
+  int JointOf(physics::BodyIndex body) const {
     const auto joint =
         std::find_if(scene_.joints.begin(), scene_.joints.end(),
                      [&](const physics::Joint& candidate) { return candidate.body == body; });

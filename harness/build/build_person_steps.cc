@@ -69,9 +69,8 @@ struct PersonStepMaker {
   bool IsHers(std::size_t body) const {
     const auto next = std::ranges::find_if(
         scene.persons, [&](const physics::Person& other) { return other.head > person.head; });
-    const std::size_t end =
-        next == scene.persons.end() ? scene.bodies.size() : static_cast<std::size_t>(next->head);
-    return body >= static_cast<std::size_t>(person.head) && body < end;
+    const std::size_t end = next == scene.persons.end() ? scene.bodies.size() : next->head.index();
+    return body >= person.head.index() && body < end;
   }
 
   void CheckSeen(const Located<std::string>& name) const {
@@ -101,11 +100,12 @@ struct PersonStepMaker {
     if (!CheckBody(limb.where, "move_limb")) return;
     const bool right = limb.value == LimbEnd::kRightElbow || limb.value == LimbEnd::kRightWrist;
     const bool left = limb.value == LimbEnd::kLeftElbow || limb.value == LimbEnd::kLeftWrist;
-    const int hand = right ? person.right_hand : left ? person.left_hand : -1;
-    if (hand < 0) return;
+    const physics::HandIndex hand = right  ? person.right_hand
+                                    : left ? person.left_hand
+                                           : physics::kNone;
+    if (hand == physics::kNone) return;
     errors.Add(limb.where,
-               fmt::format("move_limb: this arm follows the hand '{}'",
-                           scene.hands[static_cast<std::size_t>(hand)].name),
+               fmt::format("move_limb: this arm follows the hand '{}'", scene.hand(hand).name),
                "move the hand instead");
   }
 };

@@ -25,7 +25,7 @@ class PersonBuilder {
     const PersonActorYaml& written = actor.value;
     physics::Person person{
         .name = actor.name,
-        .head = static_cast<int>(scene_.bodies.size()),
+        .head = physics::BodyIndex(scene_.bodies.size()),
         .has_body = written.person == PersonKind::kBody,
         .height_m = written.height_m,
         .X_WS = {written.at_m.value, physics::FromRollPitchYaw({0, 0, written.yaw_deg})},
@@ -37,16 +37,16 @@ class PersonBuilder {
   }
 
  private:
-  int FindHand(const char* key, const Located<std::string>& name) {
+  physics::HandIndex FindHand(const char* key, const Located<std::string>& name) {
     const auto found = std::find(hands_.begin(), hands_.end(), name.value);
     if (found == hands_.end()) {
       errors_.AddUnknownName(name.where, fmt::format("{}: no hand is called '{}'", key, name.value),
                              name.value, hands_);
-      return -1;
+      return physics::kNone;
     }
     if (!used_.insert(name.value).second)
       errors_.Add(name.where, fmt::format("{}: '{}' is already on another arm", key, name.value));
-    return static_cast<int>(found - hands_.begin());
+    return physics::HandIndex(found - hands_.begin());
   }
 
   void AddParts(const physics::Person& person, const Where& where) {

@@ -67,36 +67,38 @@ struct StepMaker {
     CheckPoint(e);
     physics::ReachStep reach{e.reach.value, e.style.value, e.from, e.offset_m.value, {}};
     if (e.point_m) reach.point_m = e.point_m->value;
-    return {0, std::move(reach), e.over_s};
+    return {physics::kNone, std::move(reach), e.over_s};
   }
   physics::Step operator()(const CloseYaml& e) const {
-    return {0, physics::TriggerStep{e.close_to}, e.over_s};
+    return {physics::kNone, physics::TriggerStep{e.close_to}, e.over_s};
   }
   physics::Step operator()(const OpenYaml& e) const {
-    return {0, physics::TriggerStep{e.open_to}, e.over_s};
+    return {physics::kNone, physics::TriggerStep{e.open_to}, e.over_s};
   }
   physics::Step operator()(const LiftYaml& e) const {
-    return {0, physics::MoveStep{{0, 0, e.lift_by_m}}, e.over_s};
+    return {physics::kNone, physics::MoveStep{{0, 0, e.lift_by_m}}, e.over_s};
   }
   physics::Step operator()(const MoveYaml& e) const {
-    return {0, physics::MoveStep{e.move_by_m.value}, e.over_s};
+    return {physics::kNone, physics::MoveStep{e.move_by_m.value}, e.over_s};
   }
   physics::Step operator()(const CarryYaml& e) const {
-    return {0, physics::CarryStep{e.carry_to_m.value}, e.over_s};
+    return {physics::kNone, physics::CarryStep{e.carry_to_m.value}, e.over_s};
   }
   physics::Step operator()(const PlaceYaml& e) const {
     CheckEntity("place_on", e.place_on);
-    return {0, physics::PlaceStep{e.place_on.value}, e.over_s};
+    return {physics::kNone, physics::PlaceStep{e.place_on.value}, e.over_s};
   }
   physics::Step operator()(const RetreatYaml& e) const {
-    return {0, physics::RetreatStep{e.retreat_by_m}, e.over_s};
+    return {physics::kNone, physics::RetreatStep{e.retreat_by_m}, e.over_s};
   }
   physics::Step operator()(const FollowJointYaml& e) const {
     CheckEntity("follow_joint", e.follow_joint);
     CheckJoint(e.follow_joint);
-    return {0, physics::FollowJointStep{e.follow_joint.value, e.to}, e.over_s};
+    return {physics::kNone, physics::FollowJointStep{e.follow_joint.value, e.to}, e.over_s};
   }
-  physics::Step operator()(const WaitYaml& e) const { return {0, physics::WaitStep{}, e.wait_s}; }
+  physics::Step operator()(const WaitYaml& e) const {
+    return {physics::kNone, physics::WaitStep{}, e.wait_s};
+  }
   physics::Step operator()(const PosesYaml& e) const {
     physics::PosesStep step;
     for (const PoseYaml& pose : e.poses) step.poses.push_back(TimedPoseOf(pose));
@@ -109,19 +111,21 @@ struct StepMaker {
   physics::Step operator()(const TurnHandYaml& e) const {
     if (e.turn_by_deg.value.isZero())
       errors.Add(e.turn_by_deg.where, "turn_by_deg: all three are 0, so nothing turns");
-    return {0, physics::TurnHandStep{e.turn_by_deg.value * (M_PI / 180), e.own_axes}, e.over_s};
+    return {physics::kNone, physics::TurnHandStep{e.turn_by_deg.value * (M_PI / 180), e.own_axes},
+            e.over_s};
   }
   physics::Step operator()(const OrbitYaml& e) const {
     CheckEntity("orbit", e.orbit.around);
-    return {0, physics::OrbitStep{e.orbit.around.value, e.orbit.by_deg * M_PI / 180, e.orbit.at_m},
+    return {physics::kNone,
+            physics::OrbitStep{e.orbit.around.value, e.orbit.by_deg * M_PI / 180, e.orbit.at_m},
             e.over_s};
   }
   physics::Step operator()(const PressYaml& e) const {
     CheckEntity("press_n", e.against);
     if (e.along.value.norm() < 0.01)
       errors.Add(e.along.where, "along: the direction has no length");
-    return {0, physics::PressStep{e.against.value, e.press_n, e.along.value.normalized()},
-            e.over_s};
+    return {physics::kNone,
+            physics::PressStep{e.against.value, e.press_n, e.along.value.normalized()}, e.over_s};
   }
   template <class PersonYaml>
   physics::Step operator()(const PersonYaml&) const {
@@ -238,7 +242,7 @@ struct StepMaker {
   void CheckJoint(const Located<std::string>& name) const {
     const auto found = std::find(entities.begin(), entities.end(), name.value);
     if (found == entities.end()) return;  // already reported
-    const int joint = physics::JointThatMoves(scene, static_cast<int>(found - entities.begin()));
+    const int joint = physics::JointThatMoves(scene, physics::BodyIndex(found - entities.begin()));
     if (joint >= 0 &&
         scene.joints[static_cast<std::size_t>(joint)].kind != physics::JointKind::kBall)
       return;
@@ -250,7 +254,7 @@ struct StepMaker {
     if (!style.value.empty()) FindStyle(style.value, style.where);
     step.style = style.value;
     const double over_s = step.poses.empty() ? 0 : step.poses.back().t_s;
-    return {0, std::move(step), over_s};
+    return {physics::kNone, std::move(step), over_s};
   }
 
   /// Null after an error, and when the hand is unknown.
@@ -367,15 +371,15 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
         errors.AddUnknownName(named.name_where, fmt::format("no actor is called '{}'", named.name),
                               named.name, NamesOf(entry.actors));
       }
-      const bool known = hand >= 0 && hand < static_cast<int>(scene.hands.size());
-      const physics::HandModel* model =
-          known ? &scene.hands[static_cast<std::size_t>(hand)].model : nullptr;
+      const physics::HandIndex index(hand);
+      const bool known = index.IsBelow(scene.hands.size());
+      const physics::HandModel* model = known ? &scene.hand(index).model : nullptr;
       const StepMaker maker{entities, scene, hand >= 0, model, named, errors};
       physics::Step step = std::visit(maker, named.value);
       step.until = maker.UntilOf();
       step.delay_s = TimingOf(named.value).delay_s;
       step.order = OrderOf(named.value);
-      step.hand = hand;
+      step.hand = index;
       step.written_at = errors.PlaceText(named.name_where);
       stage.steps.push_back(std::move(step));
     }

@@ -81,7 +81,7 @@ double Depth(const Occupant& a, const Occupant& b) {
 /// Bodies on the two sides of a joint never collide: a drawer may overlap its cabinet.
 bool Joined(const physics::Scene& scene, std::size_t a, std::size_t b) {
   if (std::max(a, b) >= scene.bodies.size()) return false;
-  return physics::NeverTouch(scene, static_cast<int>(a), static_cast<int>(b));
+  return physics::NeverTouch(scene, physics::BodyIndex(a), physics::BodyIndex(b));
 }
 
 /// A person does not collide with fixed bodies, hands and other persons.
@@ -120,7 +120,7 @@ Where WhereOf(const ScenarioYaml& entry, const physics::Scene& scene, std::size_
   if (body < entry.entities.size()) return PlaceOf(entry.entities[body].value);
   Where where;
   for (std::size_t i = 0; i < scene.persons.size(); ++i) {
-    if (static_cast<std::size_t>(scene.persons[i].head) <= body)
+    if (scene.persons[i].head <= physics::BodyIndex(body))
       where = entry.persons[i].value.at_m.where;
   }
   return where;

@@ -99,7 +99,7 @@ void CheckJoints(const ScenarioYaml& entry, const physics::Scene& scene, Diagnos
   for (const physics::Joint& joint : scene.joints) {
     const std::string why = physics::WhyNotPlanar(joint);
     if (why.empty()) continue;
-    const auto& named = entry.entities[static_cast<std::size_t>(joint.body)];
+    const auto& named = At(entry.entities, joint.body);
     errors.Add(JointPlace(named.value),
                fmt::format("the joint of '{}' does not fit a planar world: {}", named.name, why),
                RemedyFor(joint.kind));

@@ -18,6 +18,8 @@
 namespace prehend::harness {
 namespace {
 
+using physics::BodyIndex;
+
 using Eigen::Vector3d;
 
 /// Fingers shift what they close around: a thing is where its script carries it, give or take this.
@@ -33,7 +35,7 @@ struct Whereabouts {
 };
 
 struct HandByScript {
-  int body = -1;         ///< the one last reached for; -1: none
+  BodyIndex body = {};   ///< the one last reached for, or none
   double trigger = 0;    ///< what its grip was last commanded to
   bool carries = false;  ///< the body has been moved since it was taken or put down
 };
@@ -80,13 +82,13 @@ class OnPaper {
   void operator()(const LiftYaml& e) { MoveBy({0, 0, e.lift_by_m}); }
   void operator()(const MoveYaml& e) { MoveBy(e.move_by_m.value); }
   void operator()(const CarryYaml& e) {
-    if (hand_->body < 0) return LoseAll();
+    if (hand_->body == physics::kNone) return LoseAll();
     const Vector3d centre = CentreOf(hand_->body);
     MoveBy({e.carry_to_m.value.x() - centre.x(), e.carry_to_m.value.y() - centre.y(), 0});
   }
   void operator()(const PlaceYaml& e) {
-    const int support = physics::FindBody(scene_, e.place_on.value);
-    if (!Holds() || support < 0) return;
+    const BodyIndex support = physics::FindBody(scene_, e.place_on.value);
+    if (!Holds() || support == physics::kNone) return;
     const std::optional<physics::Pose> standing = RestOn(support, hand_->body);
     if (!standing || !At(support).known) return Lose(hand_->body);
     MoveBy(standing->p_m - At(hand_->body).X_WB.p_m);
@@ -94,7 +96,7 @@ class OnPaper {
   }
   void operator()(const RetreatYaml&) {
     if (hand_->trigger <= 0) return;
-    if (hand_->body < 0) return LoseAll();
+    if (hand_->body == physics::kNone) return LoseAll();
     Lose(hand_->body);
   }
   void operator()(const FollowJointYaml&) { LoseAll(); }
@@ -139,19 +141,19 @@ class OnPaper {
     if (const auto* place = std::get_if<PlaceYaml>(&step.value)) Check(*place, hands_[step.name]);
   }
 
-  Whereabouts& At(int body) { return at_[static_cast<std::size_t>(body)]; }
-  const physics::Body& BodyOf(int body) const {
-    return scene_.bodies[static_cast<std::size_t>(body)];
+  Whereabouts& At(BodyIndex body) { return physics::At(at_, body); }
+  const physics::Body& BodyOf(BodyIndex body) const { return scene_.body(body); }
+  bool Holds() const { return hand_->body != physics::kNone && hand_->trigger > 0; }
+
+  Vector3d CentreOf(BodyIndex body) {
+    return At(body).X_WB * physics::BoundingBox(BodyOf(body)).p_BC_m;
   }
-  bool Holds() const { return hand_->body >= 0 && hand_->trigger > 0; }
 
-  Vector3d CentreOf(int body) { return At(body).X_WB * physics::BoundingBox(BodyOf(body)).p_BC_m; }
-
-  std::optional<physics::Pose> RestOn(int support, int object) {
+  std::optional<physics::Pose> RestOn(BodyIndex support, BodyIndex object) {
     return physics::RestOn(BodyOf(support), At(support).X_WB, BodyOf(object), At(object).X_WB);
   }
 
-  bool IsAbove(int support, const Eigen::Vector2d& p_W_m) {
+  bool IsAbove(BodyIndex support, const Eigen::Vector2d& p_W_m) {
     for (const double x : {0.0, -kInexact_m, kInexact_m}) {
       for (const double y : {0.0, -kInexact_m, kInexact_m}) {
         const Eigen::Vector2d nearby_m = p_W_m + Eigen::Vector2d(x, y);
@@ -162,7 +164,7 @@ class OnPaper {
   }
 
   /// Whether a hand other than this one holds the body.
-  bool IsHeldByAnother(int body, const HandByScript& than) const {
+  bool IsHeldByAnother(BodyIndex body, const HandByScript& than) const {
     return std::ranges::any_of(hands_, [&](const auto& named) {
       const HandByScript& hand = named.second;
       return &hand != &than && hand.body == body && hand.trigger > 0;
@@ -174,7 +176,7 @@ class OnPaper {
   }
 
   void Trigger(double to) {
-    if (to < hand_->trigger && hand_->carries && hand_->body >= 0) Lose(hand_->body);
+    if (to < hand_->trigger && hand_->carries && hand_->body != physics::kNone) Lose(hand_->body);
     if (to < hand_->trigger) hand_->carries = false;
     hand_->trigger = to;
   }
@@ -184,7 +186,7 @@ class OnPaper {
     const bool aside = by_m.head<2>().squaredNorm() > 0;
     if (hand_->trigger <= 0 && !aside) return;
     if (!Holds()) return LoseAll();
-    const int body = hand_->body;
+    const BodyIndex body = hand_->body;
     if (BodyOf(body).fixed) return;
     if (physics::JointThatMoves(scene_, body) >= 0) return LoseAll();
     if (physics::RootOf(scene_, body) != body || IsHeldByAnother(body, *hand_)) return Lose(body);
@@ -200,31 +202,31 @@ class OnPaper {
   }
 
   /// It may be anywhere now, and what is on it or beside it likewise.
-  void Lose(int body) {
+  void Lose(BodyIndex body) {
     if (!At(body).known || BodyOf(body).fixed) return;
     At(body).known = false;
     LoseWhatTouches(body, At(body).bounds);
   }
 
   /// What a thing stands on stays where it is.
-  void LoseWhatTouches(int body, const Eigen::AlignedBox3d& way) {
+  void LoseWhatTouches(BodyIndex body, const Eigen::AlignedBox3d& way) {
     const Eigen::AlignedBox3d around(way.min() - Vector3d(kAround_m, kAround_m, 0),
                                      way.max() + Vector3d::Constant(kAround_m));
     for (std::size_t i = 0; i < at_.size(); ++i) {
-      const int other = static_cast<int>(i);
+      const BodyIndex other(i);
       if (other == body || !at_[i].known || !at_[i].bounds.intersects(around)) continue;
       if (at_[i].bounds.max().z() > way.min().z() + 0.001) Lose(other);
     }
   }
 
   /// The deepest of the known things that the object would be in, and how deep.
-  std::pair<int, double> InTheWay(int object, const physics::Pose& X_WO, int support,
-                                  const HandByScript& hand) {
-    std::pair<int, double> deepest{-1, kInexact_m};
+  std::pair<BodyIndex, double> InTheWay(BodyIndex object, const physics::Pose& X_WO,
+                                        BodyIndex support, const HandByScript& hand) {
+    std::pair<BodyIndex, double> deepest{physics::kNone, kInexact_m};
     const physics::Body& held = BodyOf(object);
     const Eigen::AlignedBox3d bounds = physics::WorldBounds(held, X_WO);
     for (std::size_t i = 0; i < at_.size(); ++i) {
-      const int other = static_cast<int>(i);
+      const BodyIndex other(i);
       const physics::Body& body = scene_.bodies[i];
       if (other == object || other == support || !at_[i].known || body.kinematic) continue;
       if (!at_[i].bounds.intersects(bounds) || IsHeldByAnother(other, hand)) continue;
@@ -240,8 +242,10 @@ class OnPaper {
   }
 
   void Check(const PlaceYaml& e, const HandByScript& hand) {
-    const int object = hand.body, support = physics::FindBody(scene_, e.place_on.value);
-    if (object < 0 || hand.trigger <= 0 || support < 0 || object == support) return;
+    const BodyIndex object = hand.body, support = physics::FindBody(scene_, e.place_on.value);
+    if (object == physics::kNone || hand.trigger <= 0 || support == physics::kNone ||
+        object == support)
+      return;
     if (!At(object).known || !At(support).known || BodyOf(object).fixed) return;
     if (physics::JointThatMoves(scene_, object) >= 0 || IsHeldByAnother(object, hand)) return;
     const std::string &held = BodyOf(object).name, &below = BodyOf(support).name;
@@ -262,7 +266,8 @@ class OnPaper {
                       below),
           where + "; carry it farther");
     }
-    if (const auto [other, depth_m] = InTheWay(object, *standing, support, hand); other >= 0) {
+    if (const auto [other, depth_m] = InTheWay(object, *standing, support, hand);
+        other != physics::kNone) {
       errors_.Add(e.place_on.where,
                   fmt::format("place_on: '{}' is in the way: '{}' would overlap it by {:.0f} mm",
                               BodyOf(other).name, held, 1000 * depth_m),

@@ -52,7 +52,7 @@ std::vector<std::size_t> LastLinks(const physics::HandModel& model) {
   std::vector<std::size_t> last;
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const bool has_child = std::ranges::any_of(model.links, [&](const physics::HandLink& other) {
-      return other.parent == static_cast<int>(i);
+      return other.parent == physics::LinkIndex(i);
     });
     if (!has_child) last.push_back(i);
   }
@@ -88,8 +88,7 @@ void PrintPoses(const Scenario& scenario, const physics::Snapshot& now, double t
     const double range = joint.upper - joint.lower;
     if (!(range > 0)) continue;
     rows.push_back({"", "",
-                    fmt::format("# joint of {}: {:.1f} % of its range",
-                                scene.bodies[static_cast<std::size_t>(joint.body)].name,
+                    fmt::format("# joint of {}: {:.1f} % of its range", scene.body(joint.body).name,
                                 100 * (now.joints[i].position - joint.lower) / range)});
   }
   for (const std::string& line : AlignColumns(rows)) out << line << "\n";

@@ -204,7 +204,7 @@ Result<std::vector<physics::ScriptNote>> EpisodeFile::NotesOf(const EpisodeRow& 
         "SELECT tick, hand, text FROM note WHERE episode = ? ORDER BY position");
     find.Bind(episode.id);
     while (find.Step())
-      notes.push_back({find.Integer(0), static_cast<int>(find.Integer(1)), find.Text(2)});
+      notes.push_back({find.Integer(0), physics::HandIndex(find.Integer(1)), find.Text(2)});
     return notes;
   } catch (const DatabaseError& error) {
     return tl::unexpected(Damage(path_, error.what()));

@@ -156,7 +156,7 @@ physics::Snapshot StandInAt(const EpisodeHeader& header, const EpisodeFrame& fra
   }
   const auto side = [&](int entity) -> physics::ContactSide {
     const StandIn& place = places[static_cast<std::size_t>(entity)];
-    return {.body = place.body, .hand = place.hand, .link = -1};
+    return {.body = physics::BodyIndex(place.body), .hand = physics::HandIndex(place.hand)};
   };
   for (const grammar::Touch& touch : frame.touches) {
     if (touch.nhat_BA_W.isZero()) continue;  // where it is is not known

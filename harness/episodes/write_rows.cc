@@ -126,7 +126,7 @@ void WriteEnd(const Database& database, std::int64_t episode, const char* status
   Statement note = database.Prepare("INSERT INTO note VALUES(?, ?, ?, ?, ?)");
   for (std::size_t i = 0; i < run.notes.size(); ++i) {
     note.Bind(episode).Bind(static_cast<std::int64_t>(i)).Bind(run.notes[i].tick);
-    note.Bind(run.notes[i].hand).Bind(run.notes[i].text).Run();
+    note.Bind(run.notes[i].hand.number()).Bind(run.notes[i].text).Run();
   }
   Statement end = database.Prepare(
       "UPDATE episode SET status = ?, ticks = ?, state_hash = ?, outcome = ?,"

@@ -146,7 +146,7 @@ Chart SeriesChart(const Scenario& scenario, const RunResult& run, const Window& 
       double impulse_n_s = 0;
       for (const auto& part : snapshot.AllContacts()) {
         for (const physics::ContactPoint& point : part) {
-          const auto index = static_cast<int>(h);
+          const physics::HandIndex index(h);
           if (point.a.hand == index || point.b.hand == index)
             impulse_n_s += point.normal_impulse_n_s;
         }
@@ -194,7 +194,7 @@ std::optional<Chart> GazeChart(const Scenario& scenario, const RunResult& run,
     Curve distance{scene.persons[p].name, {}};
     for (const physics::Snapshot& snapshot : run.recording) {
       const physics::GazeState& gaze = snapshot.gazes[p];
-      const bool sees = gaze.body >= 0 || gaze.hand >= 0;
+      const bool sees = gaze.body != physics::kNone || gaze.hand != physics::kNone;
       distance.points.emplace_back(
           SecondsOf(run, snapshot.tick),
           sees ? gaze.distance_m : std::numeric_limits<double>::quiet_NaN());

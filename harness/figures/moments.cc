@@ -99,10 +99,9 @@ std::vector<Look> Looks(const Scenario& scenario, const RunResult& run, const Wi
       const double time_s = SecondsOf(run, snapshot.tick);
       if (time_s < window.from_s || time_s > window.to_s) continue;
       const physics::GazeState& gaze = snapshot.gazes[p];
-      const std::string seen =
-          gaze.body >= 0   ? scene.bodies[static_cast<std::size_t>(gaze.body)].name
-          : gaze.hand >= 0 ? scene.hands[static_cast<std::size_t>(gaze.hand)].name
-                           : std::string();
+      const std::string seen = gaze.body != physics::kNone   ? scene.body(gaze.body).name
+                               : gaze.hand != physics::kNone ? scene.hand(gaze.hand).name
+                                                             : std::string();
       if (goes_on && looks.back().seen != seen) finish();
       if (seen.empty()) continue;
       if (!goes_on) {
@@ -139,17 +138,17 @@ std::optional<HeldMoment> LongestGrasp(const Scenario& scenario, const RunResult
   if (hand == scene.hands.end() || snapshot == run.recording.end()) return moment;
   // Only of what is held: a finger may touch the table, too.
   const std::size_t role = run.drawings.Of(longest->event).first;
-  const int held =
-      role < longest->roles.size() ? physics::FindBody(scene, longest->roles[role].value) : -1;
+  const physics::BodyIndex held = role < longest->roles.size()
+                                      ? physics::FindBody(scene, longest->roles[role].value)
+                                      : physics::kNone;
   std::set<int> sets;
-  const auto index = static_cast<int>(hand - scene.hands.begin());
+  const physics::HandIndex index(hand - scene.hands.begin());
   for (const physics::ContactPoint& point : snapshot->contacts) {
     for (const physics::ContactSide& side : {point.a, point.b}) {
       const bool touches_held = point.a.body == held || point.b.body == held;
       if (side.hand != index || !touches_held) continue;
-      sets.insert(side.link < 0
-                      ? hand->model.palm_sensor_set
-                      : hand->model.links[static_cast<std::size_t>(side.link)].sensor_set);
+      sets.insert(side.link == physics::kNone ? hand->model.palm_sensor_set
+                                              : hand->model.link(side.link).sensor_set);
     }
   }
   for (const int set : sets) {

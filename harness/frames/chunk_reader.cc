@@ -11,10 +11,9 @@ namespace {
 constexpr std::size_t kMostPartBytes = std::size_t{1} << 30;
 
 bool IsSide(const FrameLayout& layout, const physics::ContactSide& side) {
-  if (side.hand < 0) return side.body >= 0 && side.body < static_cast<int>(layout.bodies);
-  if (side.hand >= static_cast<int>(layout.hands.size())) return false;
-  return side.link <
-         static_cast<int>(layout.hands[static_cast<std::size_t>(side.hand)].links.size());
+  if (side.hand == physics::kNone) return side.body.IsBelow(layout.bodies);
+  if (!side.hand.IsBelow(layout.hands.size())) return false;
+  return side.link == physics::kNone || side.link.IsBelow(At(layout.hands, side.hand).links.size());
 }
 
 /// Takes the number of a chunk's frames.

@@ -32,9 +32,9 @@ bool SamePoints(const ContactPoints* a, const ContactPoints* b) {
 }
 
 const physics::Pose& PoseOf(const physics::Snapshot& snapshot, const physics::ContactSide& side) {
-  if (side.hand < 0) return snapshot.bodies[static_cast<std::size_t>(side.body)].X_WB;
-  const physics::HandState& hand = snapshot.hands[static_cast<std::size_t>(side.hand)];
-  return side.link < 0 ? hand.palm.X_WB : hand.X_WL[static_cast<std::size_t>(side.link)];
+  if (side.hand == physics::kNone) return snapshot.body(side.body).X_WB;
+  const physics::HandState& hand = snapshot.hand(side.hand);
+  return side.link == physics::kNone ? hand.palm.X_WB : At(hand.X_WL, side.link);
 }
 
 }  // namespace

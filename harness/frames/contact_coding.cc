@@ -18,7 +18,16 @@ constexpr std::size_t kMostContacts = 1 << 24;
 using Key = std::array<int, 6>;
 
 Key KeyOf(const physics::ContactPoint& point) {
-  return {point.a.body, point.a.hand, point.a.link, point.b.body, point.b.hand, point.b.link};
+  const physics::ContactSide &a = point.a, &b = point.b;
+  return {a.body.number(), a.hand.number(), a.link.number(),
+          b.body.number(), b.hand.number(), b.link.number()};
+}
+
+/// Of the two sides of a point the one whose indices begin at `first`.
+physics::ContactSide SideOf(const Key& key, std::size_t first) {
+  return {.body = physics::BodyIndex(key[first]),
+          .hand = physics::HandIndex(key[first + 1]),
+          .link = physics::LinkIndex(key[first + 2])};
 }
 
 std::array<double, kValues> ValuesOf(const physics::ContactPoint& point) {
@@ -283,7 +292,7 @@ bool DecodeOldValues(std::span<const Word> counts, std::span<const Word> ids, st
 }  // namespace
 
 const physics::ContactSide& OwnerOf(const physics::ContactPoint& point) {
-  return point.a.hand >= 0 ? point.a : point.b;
+  return point.a.hand != physics::kNone ? point.a : point.b;
 }
 
 bool SamePoint(const physics::ContactPoint& a, const physics::ContactPoint& b) {
@@ -327,8 +336,7 @@ std::optional<DecodedContacts> DecodeContacts(std::string_view& bytes, const Con
       if (!word || *word > kMostContacts) return std::nullopt;
       index = static_cast<int>(*word) - 1;
     }
-    if (!world.has({key[0], key[1], key[2]}) || !world.has({key[3], key[4], key[5]}))
-      return std::nullopt;
+    if (!world.has(SideOf(key, 0)) || !world.has(SideOf(key, 3))) return std::nullopt;
   }
   const std::optional<Columns> counts = Decode(bytes, static_cast<std::size_t>(*frames), 1, {});
   if (!counts) return std::nullopt;
@@ -347,8 +355,8 @@ std::optional<DecodedContacts> DecodeContacts(std::string_view& bytes, const Con
   decoded.points.resize(size);
   for (std::size_t row = 0; row < size; ++row) {
     const Key& key = keys[static_cast<std::size_t>(ids->words[row])];
-    decoded.points[row].a = {key[0], key[1], key[2]};
-    decoded.points[row].b = {key[3], key[4], key[5]};
+    decoded.points[row].a = SideOf(key, 0);
+    decoded.points[row].b = SideOf(key, 3);
   }
   const bool good =
       world.version == 1

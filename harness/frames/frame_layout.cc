@@ -81,16 +81,16 @@ void TakeHand(RowReader& row, physics::HandState& hand) {
 void PutGaze(const physics::GazeState& gaze, RowWriter& row) {
   row.Put(gaze.p_WE_m);
   row.Put(gaze.toward_W);
-  row.PutInteger(gaze.body);
-  row.PutInteger(gaze.hand);
+  row.PutInteger(gaze.body.number());
+  row.PutInteger(gaze.hand.number());
   row.Put(gaze.distance_m);
 }
 
 void TakeGaze(RowReader& row, physics::GazeState& gaze) {
   row.Take(gaze.p_WE_m);
   row.Take(gaze.toward_W);
-  gaze.body = row.Integer();
-  gaze.hand = row.Integer();
+  gaze.body = physics::BodyIndex(row.Integer());
+  gaze.hand = physics::HandIndex(row.Integer());
   gaze.distance_m = row.Double();
 }
 
@@ -194,7 +194,8 @@ bool HasValidIndices(const FrameLayout& layout, const physics::Snapshot& snapsho
     if (style < 0 || !IsIndex(style, styles)) return false;
   }
   return std::ranges::all_of(snapshot.gazes, [&](const physics::GazeState& gaze) {
-    return IsIndex(gaze.body, layout.bodies) && IsIndex(gaze.hand, layout.hands.size());
+    return IsIndex(gaze.body.number(), layout.bodies) &&
+           IsIndex(gaze.hand.number(), layout.hands.size());
   });
 }
 

@@ -81,10 +81,10 @@ bool FramePlayer::OpenContacts(const FetchPart& fetch) {
 }
 
 physics::Pose FramePlayer::PoseOf(std::size_t frame, const physics::ContactSide& side) {
-  if (side.hand >= 0)
-    return PlaceOf(static_cast<std::size_t>(side.hand),
-                   static_cast<std::size_t>(side.link < 0 ? 0 : side.link + 1), frame);
-  const auto body = static_cast<std::size_t>(side.body);
+  if (side.hand != physics::kNone)
+    return PlaceOf(side.hand.index(), side.link == physics::kNone ? 0 : side.link.index() + 1,
+                   frame);
+  const std::size_t body = side.body.index();
   return tracks_[body] ? PoseInRow(*tracks_[body], frame) : now_.bodies[body].X_WB;
 }
 

@@ -173,9 +173,9 @@ LinkGuess::LinkGuess(const physics::HandModel& model) {
     const physics::HandLink& link = model.links[i];
     const physics::Pose& X_HL = rest[i];
     const physics::Pose X_HP =
-        link.parent < 0 ? physics::Pose{} : rest[static_cast<std::size_t>(link.parent)];
+        link.parent == physics::kNone ? physics::Pose{} : At(rest, link.parent);
     const Vector3 axis = ToVector3(X_HL.q.conjugate() * link.joint_axis);
-    links_.push_back({.parent = link.parent,
+    links_.push_back({.parent = link.parent.number(),
                       .slides = link.slides,
                       .turn = ToTurn(X_HL.q.conjugate() * X_HP.q),
                       .axis = axis,

@@ -195,7 +195,7 @@ class Carrier {
 
 Carrying FindCarrying(const Evidence& evidence, const OracleSettings& settings, const Grasp& grasp,
                       const std::map<int, Spans>& supports) {
-  if (!physics::MovesFreely(evidence.recording.scene, grasp.body)) return {};
+  if (!physics::MovesFreely(evidence.recording.scene, physics::BodyIndex(grasp.body))) return {};
   return Carrier(evidence, settings, grasp, supports).Find();
 }
 

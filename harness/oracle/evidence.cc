@@ -74,13 +74,13 @@ class EvidenceReader {
       AddPush({b, a}, point, frame, -point.nhat_BA_W);
     } else if (IsBody(a) || IsBody(b)) {
       const physics::ContactSide& hand = IsBody(a) ? point.b : point.a;
-      sets[{hand.hand, IsBody(a) ? a : b}] |= 1u << SensorSet(hand);
+      sets[{hand.hand.number(), IsBody(a) ? a : b}] |= 1u << SensorSet(hand);
     }
   }
 
   void AddPush(Pair pair, const physics::ContactPoint& point, int frame, const Vector3d& nhat_W) {
-    if (!physics::MovesFreely(recording_.scene, pair.first) ||
-        !physics::IsThing(recording_.scene.bodies[static_cast<std::size_t>(pair.second)]))
+    if (!physics::MovesFreely(recording_.scene, physics::BodyIndex(pair.first)) ||
+        !physics::IsThing(recording_.scene.body(physics::BodyIndex(pair.second))))
       return;
     std::vector<Push>& pushes = pushes_[pair];
     if (pushes.empty() || pushes.back().frame != frame) pushes.push_back({.frame = frame});
@@ -156,7 +156,7 @@ class EvidenceReader {
   /// `impulse_n_s`: per tick.
   double ShareOf(int object, double impulse_n_s) const {
     if (!has_forces_) return std::numeric_limits<double>::infinity();
-    const double weight_n = recording_.scene.bodies[static_cast<std::size_t>(object)].mass_kg *
+    const double weight_n = recording_.scene.body(physics::BodyIndex(object)).mass_kg *
                             recording_.scene.world.gravity_m_per_s2;
     if (weight_n <= 0) return std::numeric_limits<double>::infinity();
     return impulse_n_s * recording_.scene.world.rate_hz / weight_n;
@@ -165,12 +165,13 @@ class EvidenceReader {
   bool IsBody(int entity) const { return entity < recording_.body_count(); }
 
   int Entity(const physics::ContactSide& side) const {
-    return side.hand >= 0 ? recording_.body_count() + side.hand : side.body;
+    return side.hand != physics::kNone ? recording_.body_count() + side.hand.number()
+                                       : side.body.number();
   }
 
   int SensorSet(const physics::ContactSide& side) const {
-    const physics::HandModel& model = recording_.scene.hands[side.hand].model;
-    return side.link < 0 ? model.palm_sensor_set : model.links[side.link].sensor_set;
+    const physics::HandModel& model = recording_.scene.hand(side.hand).model;
+    return side.link == physics::kNone ? model.palm_sensor_set : model.link(side.link).sensor_set;
   }
 
   const Recording& recording_;

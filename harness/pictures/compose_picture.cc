@@ -126,7 +126,7 @@ void AppendPath(const physics::Scene& scene, const RunResult& run, const Selecti
 }
 
 /// The path of one body in its colour, while it moves.
-void AppendBodyPath(const RunResult& run, const Selection& selection, int body,
+void AppendBodyPath(const RunResult& run, const Selection& selection, physics::BodyIndex body,
                     const render::Color& color, std::vector<render::PathStretch>& path) {
   constexpr float kStill_m = 0.002f;
   render::PathStretch stretch{
@@ -135,7 +135,7 @@ void AppendBodyPath(const RunResult& run, const Selection& selection, int body,
   for (const physics::Snapshot& snapshot : run.recording) {
     const double t_s = Seconds(snapshot.tick, run);
     if (!selection.IsIn(t_s) || t_s < next_point_s) continue;
-    const physics::BodyState& state = snapshot.bodies[static_cast<std::size_t>(body)];
+    const physics::BodyState& state = snapshot.body(body);
     const Eigen::Vector3f point = state.X_WB.p_m.cast<float>();
     if (!stretch.points_m.empty() && (stretch.points_m.back() - point).norm() < kStill_m) continue;
     stretch.points_m.push_back(point);
@@ -145,13 +145,13 @@ void AppendBodyPath(const RunResult& run, const Selection& selection, int body,
 }
 
 /// Bodies that a hand holds at a tick.
-std::vector<int> HeldBodies(const physics::Scene& scene, const RunResult& run,
-                            const std::string& hand, grammar::Tick tick) {
-  std::vector<int> held;
+std::vector<physics::BodyIndex> HeldBodies(const physics::Scene& scene, const RunResult& run,
+                                           const std::string& hand, grammar::Tick tick) {
+  std::vector<physics::BodyIndex> held;
   for (const grammar::NamedEvent& event : run.timeline.events) {
     if (!IsOfHand(run, event, DrawnAs::kGrasp, hand) || !Covers(event, tick)) continue;
-    const int body = BodyNamed(scene, FirstOf(run, event));
-    if (body >= 0 && !scene.bodies[body].fixed) held.push_back(body);
+    const physics::BodyIndex body(BodyNamed(scene, FirstOf(run, event)));
+    if (body != physics::kNone && !scene.body(body).fixed) held.push_back(body);
   }
   return held;
 }
@@ -172,7 +172,7 @@ std::vector<render::Ghost> ComposeGhosts(const physics::Scene& scene, const RunR
           ghost == grammar::Ghost::kAtEnd ? event.interval.end : event.interval.begin;
       if (std::abs(Seconds(tick - moment, run)) < 0.15 || !selection.IsIn(Seconds(tick, run)))
         continue;
-      ghosts.push_back({.hand = static_cast<int>(h),
+      ghosts.push_back({.hand = physics::HandIndex(h),
                         .bodies = HeldBodies(scene, run, scene.hands[h].name, tick),
                         .snapshot = SnapshotAt(run, tick),
                         .tint = EventColor(run, event)});
@@ -183,8 +183,8 @@ std::vector<render::Ghost> ComposeGhosts(const physics::Scene& scene, const RunR
 
 /// Whether a part of a person touches something.
 bool IsPart(const Scenario& scenario, const physics::ContactPoint& contact) {
-  const auto is_part = [&](int body) {
-    return body >= 0 && scenario.scene.bodies[static_cast<std::size_t>(body)].kinematic;
+  const auto is_part = [&](physics::BodyIndex body) {
+    return body != physics::kNone && scenario.scene.body(body).kinematic;
   };
   return is_part(contact.a.body) || is_part(contact.b.body);
 }
@@ -207,7 +207,7 @@ std::vector<render::Marker> ComposeMarkers(const Scenario& scenario, const RunRe
                        Eigen::Vector3d(half.x() * 1.35, half.y() * 1.35, 0.006).cast<float>()});
   }
   for (const physics::ContactPoint& contact : snapshot.contacts) {
-    const bool is_hands = contact.a.hand >= 0 || contact.b.hand >= 0;
+    const bool is_hands = contact.a.hand != physics::kNone || contact.b.hand != physics::kNone;
     if (!is_hands && !IsPart(scenario, contact)) continue;
     markers.push_back(
         {is_hands ? render::MarkerKind::kContact : render::MarkerKind::kPersonsContact,
@@ -475,8 +475,8 @@ render::Picture ComposePicture(const Scenario& scenario, const RunResult& run,
   }
   const int of = BodyNamed(scene, selection.entity);
   if (of >= 0 && format.paths)
-    AppendBodyPath(run, selection, of, picture.body_colors[static_cast<std::size_t>(of)],
-                   picture.path);
+    AppendBodyPath(run, selection, physics::BodyIndex(of),
+                   picture.body_colors[static_cast<std::size_t>(of)], picture.path);
   // Near a hand, a ghost would hide it.
   if (format.ghosts && entry.camera.value != "hand")
     picture.ghosts = ComposeGhosts(scene, run, selection, moment.tick);

@@ -37,17 +37,17 @@ std::optional<Vector3d> MiddleOf(const RegionOfInterest& region, const physics::
     if (region.middle != Middle::kAhead) return X_WH.p_m;
     return X_WH * (region.ahead_m * scene.hands[index].model.ahead);
   }
-  const int body = physics::FindBody(scene, name);
-  if (body < 0 || region.middle == Middle::kAhead) return std::nullopt;
-  return at.bodies[static_cast<std::size_t>(body)].X_WB.p_m;
+  const physics::BodyIndex body = physics::FindBody(scene, name);
+  if (body == physics::kNone || region.middle == Middle::kAhead) return std::nullopt;
+  return at.body(body).X_WB.p_m;
 }
 
 /// A star above each thing that can be moved and is in the sphere.
 void MarkCandidates(const physics::Scene& scene, const physics::Snapshot& now,
-                    const Vector3d& middle_m, double radius_m, std::set<int>& marked,
+                    const Vector3d& middle_m, double radius_m, std::set<physics::BodyIndex>& marked,
                     std::vector<render::Marker>& markers) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const int body = static_cast<int>(i);
+    const physics::BodyIndex body(i);
     const physics::Pose& X_WB = now.bodies[i].X_WB;
     if (scene.bodies[i].shapes.empty() || !physics::MovesFreely(scene, body)) continue;
     if (physics::DistanceTo(scene.bodies[i], X_WB.inverse() * middle_m) > radius_m) continue;
@@ -67,7 +67,7 @@ std::vector<render::Marker> RegionMarkers(
     const std::function<bool(const grammar::NamedEvent&)>& shown) {
   const physics::Scene& scene = scenario.scene;
   std::vector<render::Marker> markers;
-  std::set<int> candidates;
+  std::set<physics::BodyIndex> candidates;
   for (const grammar::NamedEvent& event : run.timeline.events) {
     const EventDrawing& drawing = run.drawings.Of(event.event);
     const bool is_now = event.interval.begin <= now.tick && now.tick < event.interval.end;

@@ -112,14 +112,14 @@ std::vector<Vector3d> PlacesOfAction(const physics::Scene& scene, const physics:
   std::vector<Vector3d> places_m;
   for (const physics::HandState& hand : now.hands) places_m.push_back(hand.palm.X_WB.p_m);
   const auto acts = [&](const physics::ContactSide& side) {
-    return side.hand >= 0 || scene.bodies[static_cast<std::size_t>(side.body)].kinematic;
+    return side.hand != physics::kNone || scene.body(side.body).kinematic;
   };
   std::vector<bool> is_acted_on(scene.bodies.size());
   for (const physics::ContactPoint& contact : now.contacts) {
-    if (contact.a.body >= 0 && acts(contact.b))
-      is_acted_on[static_cast<std::size_t>(contact.a.body)] = true;
-    if (contact.b.body >= 0 && acts(contact.a))
-      is_acted_on[static_cast<std::size_t>(contact.b.body)] = true;
+    if (contact.a.body != physics::kNone && acts(contact.b))
+      is_acted_on[contact.a.body.index()] = true;
+    if (contact.b.body != physics::kNone && acts(contact.a))
+      is_acted_on[contact.b.body.index()] = true;
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const physics::Body& body = scene.bodies[i];
@@ -238,7 +238,7 @@ std::vector<render::GazeRay> GazesOf(const physics::Scene& scene, const physics:
   std::vector<render::GazeRay> rays;
   for (std::size_t i = 0; i < std::min(scene.persons.size(), now.gazes.size()); ++i) {
     const physics::GazeState& gaze = now.gazes[i];
-    const bool hits = gaze.body >= 0 || gaze.hand >= 0;
+    const bool hits = gaze.body != physics::kNone || gaze.hand != physics::kNone;
     const double length_m = hits ? gaze.distance_m : kGazeEnds_m;
     rays.push_back({.from_m = gaze.p_WE_m.cast<float>(),
                     .to_m = (gaze.p_WE_m + length_m * gaze.toward_W).cast<float>(),

@@ -78,7 +78,7 @@ physics::HandLink LinkOf(const LinkYaml& link, double joint_unit, int sensor_set
 void HandBuilder::AddDigit(const Named<DigitYaml>& digit, std::vector<physics::HandLink>& links) {
   const int sensor_set = SensorSet(digit.value.sensor_set);
   Eigen::Vector3d pivot_m = digit.value.base_m;
-  int parent = -1;
+  physics::LinkIndex parent;
   const auto add = [&](physics::HandLink link, const std::string& name, Where where,
                        const Eigen::Vector3d& joint_axis) {
     if (std::ranges::count(links, name, &physics::HandLink::name) > 0)
@@ -90,7 +90,7 @@ void HandBuilder::AddDigit(const Named<DigitYaml>& digit, std::vector<physics::H
     link.direction = digit.value.direction;
     link.joint_axis = joint_axis;
     links.push_back(std::move(link));
-    parent = static_cast<int>(links.size()) - 1;
+    parent = physics::LinkIndex(links.size() - 1);
     pivot_m += digit.value.direction * links.back().length_m;
   };
   for (const PhalanxYaml& phalanx : digit.value.phalanges)

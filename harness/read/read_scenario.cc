@@ -158,15 +158,15 @@ std::string ClassOfPart(const std::string& name, const std::string& person) {
 void AddPersonClasses(Scenario& scenario) {
   for (std::size_t i = scenario.body_classes.size(); i < scenario.scene.bodies.size(); ++i) {
     const auto& persons = scenario.scene.persons;
-    const auto owner = std::find_if(
-        persons.rbegin(), persons.rend(),
-        [&](const physics::Person& person) { return static_cast<std::size_t>(person.head) <= i; });
-    const bool is_head = static_cast<std::size_t>(owner->head) == i;
-    const auto head = static_cast<std::size_t>(owner->head);
+    const auto owner =
+        std::find_if(persons.rbegin(), persons.rend(),
+                     [&](const physics::Person& person) { return person.head.index() <= i; });
+    const std::size_t head = owner->head.index();
+    const bool is_head = head == i;
     const auto& bodies = scenario.scene.bodies;
     scenario.body_classes.push_back(is_head ? "Person"
                                             : ClassOfPart(bodies[i].name, bodies[head].name));
-    scenario.body_part_of.push_back(is_head ? grammar::kNoEntity : owner->head);
+    scenario.body_part_of.push_back(is_head ? grammar::kNoEntity : owner->head.number());
   }
 }
 

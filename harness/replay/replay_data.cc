@@ -146,7 +146,7 @@ json GrainsJson(const physics::Scene& scene, std::size_t body, const Frames& fra
       std::min(scene.bodies[body].grains->p_WG_m.size(), std::size_t{kMostGrains});
   Differences places(3 * count);
   frames.Sample(kGrainSamples_hz, [&](const Snapshot& frame) {
-    const auto grains = physics::GrainsOf(scene, body, frame);
+    const auto grains = physics::GrainsOf(scene, physics::BodyIndex(body), frame);
     for (std::size_t g = 0; g < std::min(count, grains.size()); ++g)
       for (int i = 0; i < 3; ++i) places.Add(3 * g + i, grains[g][i] * kCoarseUnits_per_m);
   });

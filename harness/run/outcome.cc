@@ -54,9 +54,8 @@ std::string OutcomeWatch::Judge(const physics::Snapshot& last) const {
 bool OutcomeWatch::Holds(const Outcome::Condition& condition,
                          const physics::Snapshot& snapshot) const {
   const ConditionYaml& wanted = condition.wanted;
-  const auto index = static_cast<std::size_t>(condition.body);
-  const physics::Body& body = scene_.bodies[index];
-  const physics::BodyState& state = snapshot.bodies[index];
+  const physics::Body& body = scene_.body(condition.body);
+  const physics::BodyState& state = snapshot.body(condition.body);
   const Eigen::Vector3d centre = state.X_WB * physics::BoundingBox(body).p_BC_m;
   const double tilt_deg = TiltDeg(body.X_WB, state.X_WB);
   const double fraction =
@@ -75,16 +74,15 @@ bool OutcomeWatch::Holds(const Outcome::Condition& condition,
 /// The share of the body's grains that are inside the vessel; 0 or 1 for a body without grains.
 double OutcomeWatch::ShareInside(const Outcome::Condition& condition,
                                  const physics::Snapshot& snapshot) const {
-  const auto index = static_cast<std::size_t>(condition.body),
-             in = static_cast<std::size_t>(condition.vessel);
-  const physics::Body& vessel = scene_.bodies[in];
-  const physics::Pose& X_WV = snapshot.bodies[in].X_WB;
-  const physics::Body& body = scene_.bodies[index];
+  const physics::Body &vessel = scene_.body(condition.vessel), &body = scene_.body(condition.body);
+  const physics::Pose& X_WV = snapshot.body(condition.vessel).X_WB;
   if (!body.grains) {
-    const Eigen::Vector3d p_W_m = snapshot.bodies[index].X_WB * physics::BoundingBox(body).p_BC_m;
+    const Eigen::Vector3d p_W_m =
+        snapshot.body(condition.body).X_WB * physics::BoundingBox(body).p_BC_m;
     return physics::IsInside(vessel, X_WV, p_W_m) ? 1 : 0;
   }
-  const std::span<const Eigen::Vector3d> grains = physics::GrainsOf(scene_, index, snapshot);
+  const std::span<const Eigen::Vector3d> grains =
+      physics::GrainsOf(scene_, condition.body, snapshot);
   const auto inside = std::count_if(
       grains.begin(), grains.end(),
       [&](const Eigen::Vector3d& p_W_m) { return physics::IsInside(vessel, X_WV, p_W_m); });

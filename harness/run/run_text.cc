@@ -65,8 +65,9 @@ std::vector<std::string> NoteLines(const Scenario& scenario, const RunResult& ru
   std::vector<std::string> lines;
   for (const physics::ScriptNote& note : run.notes) {
     const auto& hands = scenario.scene.hands;
-    const auto index = static_cast<std::size_t>(note.hand);  // -1, and what a damaged file says
-    const std::string hand = index < hands.size() ? hands[index].name + ": " : "";
+    // A damaged file may say anything.
+    const std::string hand =
+        note.hand.IsBelow(hands.size()) ? At(hands, note.hand).name + ": " : "";
     lines.push_back(fmt::format("note: {} s: {}{}",
                                 SecondsText(note.tick, run.timeline.ticks_per_second), hand,
                                 note.text));

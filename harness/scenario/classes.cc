@@ -10,8 +10,8 @@ namespace {
 
 /// A body on a joint is neither fixed nor free to be picked up; only a slider or a hinge opens and
 /// closes.
-const char* MobilityOf(const physics::Scene& scene, int body) {
-  if (scene.bodies[static_cast<std::size_t>(body)].fixed) return "Fixed";
+const char* MobilityOf(const physics::Scene& scene, physics::BodyIndex body) {
+  if (scene.body(body).fixed) return "Fixed";
   const auto joint = std::ranges::find(scene.joints, body, &physics::Joint::body);
   if (joint == scene.joints.end()) return "Movable";
   const bool opens =
@@ -36,11 +36,11 @@ std::vector<std::string> BuiltInClassesOf(const physics::Scene& scene, std::size
   }
   if (is.grains) return {"Grains", "Entity"};
   const bool is_head = std::ranges::any_of(scene.persons, [&](const physics::Person& person) {
-    return person.head == static_cast<int>(body);
+    return person.head == physics::BodyIndex(body);
   });
   if (is.kinematic && !is_head) return {"BodyPart", "Entity"};
   if (!physics::IsThing(is)) return {"Entity"};
-  return {MobilityOf(scene, static_cast<int>(body)), "Thing", "Entity"};
+  return {MobilityOf(scene, physics::BodyIndex(body)), "Thing", "Entity"};
 }
 
 }  // namespace

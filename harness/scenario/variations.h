@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harness/base/located.h"
+#include "physics/scene/ids.h"
 
 namespace prehend::harness {
 
@@ -43,9 +44,9 @@ struct ConditionYaml {
 /// An outcome whose entities are resolved; it holds when all its conditions do.
 struct Outcome {
   struct Condition {
-    int body = 0;
-    int joint = -1;   ///< index into Scene::joints
-    int vessel = -1;  ///< index of the body that it must be inside
+    physics::BodyIndex body = physics::BodyIndex(0);
+    int joint = -1;                  ///< index into Scene::joints
+    physics::BodyIndex vessel = {};  ///< that it must be inside, or none
     ConditionYaml wanted;
   };
   std::string name;

@@ -11,9 +11,9 @@ namespace prehend::harness {
 namespace {
 
 /// The entity that stands for the person whose hand this is, her head; otherwise kNoEntity.
-int PersonOf(const physics::Scene& scene, int hand) {
+int PersonOf(const physics::Scene& scene, physics::HandIndex hand) {
   for (const physics::Person& person : scene.persons) {
-    if (person.right_hand == hand || person.left_hand == hand) return person.head;
+    if (person.right_hand == hand || person.left_hand == hand) return person.head.number();
   }
   return grammar::kNoEntity;
 }
@@ -83,7 +83,7 @@ grammar::EntityTable MakeEntityTable(const Scenario& scenario) {
     const physics::Hand& hand = scenario.scene.hands[i];
     grammar::EntityInfo& member = entity_table.entities.emplace_back();
     member.name = hand.name;
-    member.part_of = PersonOf(scenario.scene, static_cast<int>(i));
+    member.part_of = PersonOf(scenario.scene, physics::HandIndex(i));
     member.classes = {"Hand", "Entity"};
     member.half_size_m = hand.model.palm_size_m / 2;
     member.sensor_sets = hand.model.sensor_sets;

@@ -98,8 +98,8 @@ Sensing::Sensing(const physics::Scene& scene, const SensingSettings& settings)
                          StyleIndices(hand.model, styles)});
     collision_spheres_.emplace_back(geometry_.back().palm.size() + geometry_.back().links.size());
   }
-  for (const physics::Person& person : scene.persons) heads_.push_back(person.head);
-  for (const physics::Joint& joint : scene.joints) jointed_.push_back(joint.body);
+  for (const physics::Person& person : scene.persons) heads_.push_back(person.head.number());
+  for (const physics::Joint& joint : scene.joints) jointed_.push_back(joint.body.number());
   entities_.resize(scene.bodies.size() + scene.hands.size());
   hands_.resize(scene.hands.size());
   if (!settings.sensors.IsPerfect()) noise_.emplace(settings.sensors, MeasuredOf(scene));
@@ -153,9 +153,9 @@ void Sensing::SenseBodies(const physics::Snapshot& snapshot) {
   for (std::size_t i = 0; i < snapshot.gazes.size(); ++i) {
     const physics::GazeState& gaze = snapshot.gazes[i];
     grammar::EntitySample look = entities_[static_cast<std::size_t>(heads_[i])];
-    look.gazes_at = gaze.hand >= 0   ? body_count_ + gaze.hand
-                    : gaze.body >= 0 ? gaze.body
-                                     : grammar::kNoEntity;
+    look.gazes_at = gaze.hand != physics::kNone   ? body_count_ + gaze.hand.number()
+                    : gaze.body != physics::kNone ? gaze.body.number()
+                                                  : grammar::kNoEntity;
     Show(heads_[i], look);
   }
 }
@@ -263,13 +263,14 @@ void Sensing::LookAtBearing(std::span<const PairPoint> points, grammar::Touch& t
 }
 
 int Sensing::EntityOf(const physics::ContactSide& side) const {
-  return side.hand >= 0 ? body_count_ + side.hand : side.body;
+  return side.hand != physics::kNone ? body_count_ + side.hand.number() : side.body.number();
 }
 
 std::uint32_t Sensing::SensorSetOf(const physics::ContactSide& side) const {
-  if (side.hand < 0) return 0;
-  const physics::HandModel& model = geometry_[side.hand].model;
-  return 1u << (side.link < 0 ? model.palm_sensor_set : model.links[side.link].sensor_set);
+  if (side.hand == physics::kNone) return 0;
+  const physics::HandModel& model = At(geometry_, side.hand).model;
+  return 1u << (side.link == physics::kNone ? model.palm_sensor_set
+                                            : model.link(side.link).sensor_set);
 }
 
 }  // namespace prehend::harness

@@ -61,13 +61,16 @@ Scenario Reordered(Scenario scenario) {
   std::vector<int> place(order.size());
   for (std::size_t i = 0; i < order.size(); ++i)
     place[static_cast<std::size_t>(order[i])] = static_cast<int>(i);
-  const auto replace = [&](int& body) {
-    if (body >= 0) body = place[static_cast<std::size_t>(body)];
+  const auto replaced = [&](int body) {
+    return body < 0 ? body : place[static_cast<std::size_t>(body)];
+  };
+  const auto replace = [&](physics::BodyIndex& body) {
+    body = physics::BodyIndex(replaced(body.number()));
   };
   scene.bodies = InOrder(scene.bodies, order);
   scenario.body_classes = InOrder(scenario.body_classes, order);
   scenario.body_part_of = InOrder(scenario.body_part_of, order);
-  for (int& whole : scenario.body_part_of) replace(whole);
+  for (int& whole : scenario.body_part_of) whole = replaced(whole);
   for (physics::Joint& joint : scene.joints) replace(joint.body), replace(joint.base);
   for (Outcome& outcome : scenario.outcomes)
     for (Outcome::Condition& condition : outcome.conditions)

@@ -84,7 +84,7 @@ Box2dBody::Box2dBody(const std::vector<const Body*>& bodies,
   Eigen::Vector3d centre_P = Eigen::Vector3d::Zero();
   for (const RigidMember& member : MembersOf(bodies)) {
     const Pose X_PS = X_PB_.front() * member.X_RC;
-    const int index = static_cast<int>(indices[member.owner]);
+    const BodyIndex index(indices[member.owner]);
     AddSection(member.placed->shape, X_PS,
                {root.friction, root.restitution, 0, {{.body = index}, root.rolling_friction}},
                *rigid_, table);

@@ -14,12 +14,13 @@ Eigen::Vector3d SizeOf(const HandLink& link) {
 
 }  // namespace
 
-Box2dHand::Box2dHand(const Hand& hand, int index, int style, b2World& world, FixtureTable& table)
+Box2dHand::Box2dHand(const Hand& hand, HandIndex index, int style, b2World& world,
+                     FixtureTable& table)
     : model_(hand.model),
       index_(index),
       pids_(hand.model),
       command_{.target = {.X_WH = hand.X_WH}, .style = style},
-      palm_(MakePart(-1, hand.X_WH, model_.palm_size_m, model_.palm_mass_kg,
+      palm_(MakePart(kNone, hand.X_WH, model_.palm_size_m, model_.palm_mass_kg,
                      model_.palm_inertia_scale, world, table)) {
   const std::vector<double> joints =
       JointTargets(model_.styles[static_cast<std::size_t>(style)], 0);
@@ -28,18 +29,16 @@ Box2dHand::Box2dHand(const Hand& hand, int index, int style, b2World& world, Fix
   for (std::size_t i = 0; i < model_.links.size(); ++i) {
     const HandLink& link = model_.links[i];
     const Pose X_WL = hand.X_WH * X_HL[i];
-    links_.push_back(
-        MakePart(static_cast<int>(i), X_WL, SizeOf(link), link.mass_kg, 1, world, table));
+    links_.push_back(MakePart(LinkIndex(i), X_WL, SizeOf(link), link.mass_kg, 1, world, table));
     // A joint's own motion does not move its axis.
     const Eigen::Vector3d axis_W = X_WL.q * (rest[i].q.conjugate() * link.joint_axis);
     const Eigen::Vector3d pivot_W_m = X_WL * Eigen::Vector3d(-link.length_m / 2, 0, 0);
-    b2Body& parent =
-        link.parent < 0 ? *palm_.body : *links_[static_cast<std::size_t>(link.parent)].body;
+    b2Body& parent = link.parent == kNone ? *palm_.body : *At(links_, link.parent).body;
     motors_.push_back(MakeMotor(link, axis_W, pivot_W_m, joints[i], parent, *links_.back().body));
   }
 }
 
-Box2dHand::Part Box2dHand::MakePart(int link, const Pose& X_WL, const Eigen::Vector3d& size_m,
+Box2dHand::Part Box2dHand::MakePart(LinkIndex link, const Pose& X_WL, const Eigen::Vector3d& size_m,
                                     double mass_kg, double inertia_scale, b2World& world,
                                     FixtureTable& table) {
   b2BodyDef def;
@@ -50,7 +49,8 @@ Box2dHand::Part Box2dHand::MakePart(int link, const Pose& X_WL, const Eigen::Vec
   const Part part{world.CreateBody(&def), {Eigen::Vector3d::Zero(), X_WL.q}};
   const Box box{size_m};
   // A hand does not touch itself: its parts share a negative group.
-  AddSection(box, part.X_PL, {model_.friction, 0, -1 - index_, {{.hand = index_, .link = link}, 0}},
+  AddSection(box, part.X_PL,
+             {model_.friction, 0, -1 - index_.number(), {{.hand = index_, .link = link}, 0}},
              *part.body, table);
   const double moment = inertia_scale * MomentAboutY(box, part.X_PL, mass_kg);
   const b2MassData mass{

@@ -14,8 +14,8 @@ namespace prehend::physics {
 
 class Box2dHand {
  public:
-  /// `index` counts in Scene::hands. The hand starts open in `style`.
-  Box2dHand(const Hand& hand, int index, int style, b2World& world, FixtureTable& table);
+  /// The hand starts open in `style`.
+  Box2dHand(const Hand& hand, HandIndex index, int style, b2World& world, FixtureTable& table);
 
   /// Sets forces and motor speeds for the coming tick.
   void Drive(const HandCommand& command, double dt_s);
@@ -33,7 +33,7 @@ class Box2dHand {
     b2RevoluteJoint* hinge = nullptr;
   };
 
-  Part MakePart(int link, const Pose& X_WL, const Eigen::Vector3d& size_m, double mass_kg,
+  Part MakePart(LinkIndex link, const Pose& X_WL, const Eigen::Vector3d& size_m, double mass_kg,
                 double inertia_scale, b2World& world, FixtureTable& table);
   Motor MakeMotor(const HandLink& link, const Eigen::Vector3d& axis_W,
                   const Eigen::Vector3d& pivot_W_m, double start, b2Body& parent, b2Body& body);
@@ -41,7 +41,7 @@ class Box2dHand {
   void Drive(const Motor& motor, double wanted_speed, double strength);
 
   HandModel model_;
-  int index_;
+  HandIndex index_ = {};
   PalmPids pids_;
   HandCommand command_;
   Part palm_;

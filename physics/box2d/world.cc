@@ -57,7 +57,7 @@ Box2dWorld::Box2dWorld(const Scene& scene, const std::vector<int>& styles)
   AddBodies();
   AddJoints();
   for (std::size_t i = 0; i < scene_.hands.size(); ++i)
-    hands_.emplace_back(scene_.hands[i], static_cast<int>(i), styles[i], world_, table_);
+    hands_.emplace_back(scene_.hands[i], HandIndex(i), styles[i], world_, table_);
 }
 
 void Box2dWorld::AddBodies() {
@@ -73,8 +73,8 @@ void Box2dWorld::AddBodies() {
 }
 
 void Box2dWorld::AddJoints() {
-  const auto rigid = [&](int body) -> b2Body& {
-    return rigids_[places_[static_cast<std::size_t>(body)].rigid].rigid();
+  const auto rigid = [&](BodyIndex body) -> b2Body& {
+    return rigids_[At(places_, body).rigid].rigid();
   };
   for (const Joint& joint : scene_.joints) {
     if (joint.kind == JointKind::kFixed) continue;

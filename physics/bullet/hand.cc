@@ -60,9 +60,9 @@ void BulletHand::MakeLinks() {
 
   const std::vector<Pose> rest = RestPoses(model_);
   for (int i = 0; i < count; ++i) {
-    const HandLink& link = model_.links[static_cast<std::size_t>(i)];
+    const HandLink& link = model_.link(LinkIndex(i));
     const Pose& X_HL = rest[static_cast<std::size_t>(i)];
-    const Pose X_HP = link.parent < 0 ? Pose{} : rest[static_cast<std::size_t>(link.parent)];
+    const Pose X_HP = link.parent == kNone ? Pose{} : At(rest, link.parent);
     LinkShape(link)->calculateLocalInertia(link.mass_kg, inertia);
     const btQuaternion turn = ToBullet(Eigen::Quaterniond(X_HL.q.conjugate() * X_HP.q));
     const btVector3 axis = ToBullet(Eigen::Vector3d(X_HL.q.conjugate() * link.joint_axis));
@@ -71,11 +71,11 @@ void BulletHand::MakeLinks() {
     const btVector3 centre =
         ToBullet(Eigen::Vector3d(X_HL.q.conjugate() * (X_HL.p_m - link.pivot_m)));
     if (link.slides)
-      multibody_->setupPrismatic(i, link.mass_kg, inertia, link.parent, turn, axis, pivot, centre,
-                                 true);
+      multibody_->setupPrismatic(i, link.mass_kg, inertia, link.parent.number(), turn, axis, pivot,
+                                 centre, true);
     else
-      multibody_->setupRevolute(i, link.mass_kg, inertia, link.parent, turn, axis, pivot, centre,
-                                true);
+      multibody_->setupRevolute(i, link.mass_kg, inertia, link.parent.number(), turn, axis, pivot,
+                                centre, true);
   }
   multibody_->finalizeMultiDof();
 }

@@ -61,7 +61,7 @@ class BulletWorld final : public World {
 
   void Step(const std::vector<HandCommand>& commands) override;
   void Describe(Snapshot& snapshot) const override;
-  void MoveKinematic(int body, const Pose& X_WB) override;
+  void MoveKinematic(BodyIndex body, const Pose& X_WB) override;
   Sight Look(const SightLine& line) const override;
 
  private:
@@ -157,7 +157,7 @@ void BulletWorld::AddGrains(std::size_t body) {
     grain->setUserIndex2(kGrain);
     world_.addRigidBody(grain.get(), kMovingGroup, -1);
   }
-  sides_.push_back({{.body = static_cast<int>(body)}});
+  sides_.push_back({{.body = BodyIndex(body)}});
 }
 
 void BulletWorld::AddRigid(const std::vector<std::size_t>& group) {
@@ -169,8 +169,7 @@ void BulletWorld::AddRigid(const std::vector<std::size_t>& group) {
   auto made = std::make_unique<BulletBody>(bodies);
   made->rigid().setUserIndex(static_cast<int>(sides_.size()));
   std::vector<ContactSide>& sides = sides_.emplace_back();
-  for (const std::size_t owner : made->owners())
-    sides.push_back({.body = static_cast<int>(group[owner])});
+  for (const std::size_t owner : made->owners()) sides.push_back({.body = BodyIndex(group[owner])});
   if (scene_.world.planar) made->KeepInPlane();
   if (bodies.front()->abstract != Abstract::kNot)
     world_.addRigidBody(&made->rigid(), kNoGroup, kNoGroup);
@@ -186,8 +185,8 @@ void BulletWorld::AddRigid(const std::vector<std::size_t>& group) {
 }
 
 void BulletWorld::AddJoints() {
-  const auto rigid = [&](int body) -> btRigidBody& {
-    return rigids_[places_[static_cast<std::size_t>(body)].rigid]->rigid();
+  const auto rigid = [&](BodyIndex body) -> btRigidBody& {
+    return rigids_[At(places_, body).rigid]->rigid();
   };
   for (const Joint& joint : scene_.joints) {
     if (joint.kind == JointKind::kFixed) continue;
@@ -202,7 +201,7 @@ void BulletWorld::AddHands(const std::vector<Hand>& hands, const std::vector<int
     auto hand = std::make_unique<BulletHand>(hands[i], styles[i], kFirstHandGroup << i, world_);
     for (auto& collider : hand->colliders()) {
       collider->setUserIndex(static_cast<int>(sides_.size()));
-      sides_.push_back({{.hand = static_cast<int>(i), .link = collider->m_link}});
+      sides_.push_back({{.hand = HandIndex(i), .link = LinkIndex(collider->m_link)}});
     }
     hands_.push_back(std::move(hand));
   }
@@ -224,9 +223,9 @@ void BulletWorld::Step(const std::vector<HandCommand>& commands) {
   touching_.EndTick();
 }
 
-void BulletWorld::MoveKinematic(int body, const Pose& X_WB) {
+void BulletWorld::MoveKinematic(BodyIndex body, const Pose& X_WB) {
   // Bullet derives the velocity from the previous pose and this one when it steps.
-  const Place& place = places_[static_cast<std::size_t>(body)];
+  const Place& place = At(places_, body);
   rigids_[place.rigid]->rigid().setWorldTransform(ToBullet(X_WB));
 }
 

@@ -33,10 +33,10 @@ constexpr double kNotedForceShare = 0.8;
 
 }  // namespace
 
-bool Touches(int hand, int body, const Snapshot& now) {
+bool Touches(HandIndex hand, BodyIndex body, const Snapshot& now) {
   return std::ranges::any_of(now.contacts, [&](const ContactPoint& contact) {
-    return (contact.a.hand == hand && contact.b.hand < 0 && contact.b.body == body) ||
-           (contact.b.hand == hand && contact.a.hand < 0 && contact.a.body == body);
+    return (contact.a.hand == hand && contact.b.hand == kNone && contact.b.body == body) ||
+           (contact.b.hand == hand && contact.a.hand == kNone && contact.a.body == body);
   });
 }
 
@@ -44,9 +44,10 @@ std::string Millimetres(double length_m) {
   return std::to_string(std::lround(1000 * length_m)) + " mm";
 }
 
-bool ScriptPlayer::IsTouched(int hand, int thing, const Snapshot& now) const {
-  const int object = hands_[static_cast<std::size_t>(hand)].object;
-  const int held = object >= 0 && object != thing && Touches(hand, object, now) ? object : -1;
+bool ScriptPlayer::IsTouched(HandIndex hand, BodyIndex thing, const Snapshot& now) const {
+  const BodyIndex object = At(hands_, hand).object;
+  const BodyIndex held =
+      object != kNone && object != thing && Touches(hand, object, now) ? object : kNone;
   bool touched = false;
   ForEachContact(hand, held, thing, now, [&](const ContactPoint& contact) {
     touched |= contact.distance_m <= 0 || contact.normal_impulse_n_s > 0;
@@ -54,16 +55,17 @@ bool ScriptPlayer::IsTouched(int hand, int thing, const Snapshot& now) const {
   return touched;
 }
 
-double ScriptPlayer::GapTo(int hand, int thing, const Snapshot& now) const {
-  const HandClearance clearance(scene_, hand, now.hands[static_cast<std::size_t>(hand)].joints);
-  return clearance.To(thing, now.hands[static_cast<std::size_t>(hand)].palm.X_WB, now);
+double ScriptPlayer::GapTo(HandIndex hand, BodyIndex thing, const Snapshot& now) const {
+  const HandClearance clearance(scene_, hand, now.hand(hand).joints);
+  return clearance.To(thing, now.hand(hand).palm.X_WB, now);
 }
 
 void ScriptPlayer::WatchGuards(const Snapshot& now) {
   for (std::size_t h = 0; h < hands_.size(); ++h) {
     HandState& hand = hands_[h];
     if (!hand.waiting || hand.waiting->met || tick_in_stage_ >= clock_.EndOf(*hand.step)) continue;
-    const int index = static_cast<int>(h), thing = hand.waiting->thing;
+    const HandIndex index(h);
+    const BodyIndex thing = hand.waiting->thing;
     const std::optional<double>& gap_m = hand.waiting->until.gap_m;
     hand.waiting->met = gap_m ? GapTo(index, thing, now) < *gap_m : IsTouched(index, thing, now);
     if (!hand.waiting->met) {
@@ -89,7 +91,7 @@ void ScriptPlayer::WatchGuards(const Snapshot& now) {
 void ScriptPlayer::Brake(std::size_t hand, const Snapshot& now) {
   HandState& state = hands_[hand];
   const double rate_hz = scene_.world.rate_hz, t_s = MotionTime(state);
-  const HandClearance clearance(scene_, static_cast<int>(hand), now.hands[hand].joints);
+  const HandClearance clearance(scene_, HandIndex(hand), now.hands[hand].joints);
   const auto gap_m = [&](double at_s) {
     return clearance.To(state.waiting->thing, state.motion.At(at_s).X_WH, now);
   };
@@ -108,7 +110,7 @@ void ScriptPlayer::Brake(std::size_t hand, const Snapshot& now) {
 void ScriptPlayer::CheckGuard(std::size_t hand, const Snapshot& now) {
   const std::optional<Waiting>& waiting = hands_[hand].waiting;
   if (!waiting || waiting->met || waiting->until.or_go_on) return;
-  const int index = static_cast<int>(hand);
+  const HandIndex index(hand);
   const double gap_m = GapTo(index, waiting->thing, now);
   const std::string away = gap_m >= HandClearance::kFar_m
                                ? "more than " + Millimetres(HandClearance::kFar_m)
@@ -122,14 +124,14 @@ void ScriptPlayer::CheckGuard(std::size_t hand, const Snapshot& now) {
 
 void ScriptPlayer::NoteTheGrip(std::size_t hand, const Snapshot& now) {
   const HandState& state = hands_[hand];
-  if (!state.step || state.object < 0) return;
+  if (!state.step || state.object == kNone) return;
   const Step& step = script_.stages[stage_ - 1].steps[*state.step];
   const auto* grip = std::get_if<TriggerStep>(&step.action);
   const bool met = state.waiting && state.waiting->met;
   if (!grip || grip->trigger < kClosed || met || !state.closes) return;
-  std::string note = NoteAboutGrip(scene_, now, static_cast<int>(hand), state.object);
+  std::string note = NoteAboutGrip(scene_, now, HandIndex(hand), state.object);
   if (note.empty()) return;
-  notes_.push_back({now.tick, static_cast<int>(hand), std::move(note)});
+  notes_.push_back({now.tick, HandIndex(hand), std::move(note)});
   hands_[hand].doubt = Doubt{now.tick, state.object};
 }
 
@@ -137,7 +139,7 @@ void ScriptPlayer::WithdrawNotes(const Snapshot& now) {
   for (std::size_t h = 0; h < hands_.size(); ++h) {
     std::optional<Doubt>& doubt = hands_[h].doubt;
     if (!doubt) continue;
-    const int hand = static_cast<int>(h);
+    const HandIndex hand = HandIndex(h);
     if (hands_[h].object != doubt->object || TargetOf(hands_[h]).trigger < kClosed) {
       doubt.reset();
     } else if (IsHeldBySides(scene_, now, hand, doubt->object)) {
@@ -155,10 +157,11 @@ void ScriptPlayer::Press(const Snapshot& now) {
   for (std::size_t h = 0; h < hands_.size(); ++h) {
     if (!hands_[h].pressing) continue;
     Pressing& pressing = *hands_[h].pressing;
-    const int hand = static_cast<int>(h), object = hands_[h].object;
-    const bool holds = object >= 0 && object != pressing.against && Touches(hand, object, now);
+    const HandIndex hand(h);
+    const BodyIndex object = hands_[h].object;
+    const bool holds = object != kNone && object != pressing.against && Touches(hand, object, now);
     double impulse_n_s = 0;
-    ForEachContact(hand, holds ? object : -1, pressing.against, now,
+    ForEachContact(hand, holds ? object : kNone, pressing.against, now,
                    [&](const ContactPoint& contact) { impulse_n_s += contact.normal_impulse_n_s; });
     const double share = std::min(1 / (kForce_s * rate_hz), 1.0);
     pressing.present_n += share * (impulse_n_s * rate_hz - pressing.present_n);
@@ -169,10 +172,9 @@ void ScriptPlayer::Press(const Snapshot& now) {
     pressing.depth_m = std::max(pressing.depth_m + speed_m_per_s / rate_hz, 0.0);
     if (tick_in_stage_ + 1 == PlannedEnd(hands_[h]) &&
         pressing.present_n < kNotedForceShare * pressing.force_n) {
-      const auto body = static_cast<std::size_t>(pressing.against);
       notes_.push_back({now.tick, hand,
                         "presses with " + std::to_string(std::lround(pressing.present_n)) +
-                            " N against " + scene_.bodies[body].name + ", not with " +
+                            " N against " + scene_.body(pressing.against).name + ", not with " +
                             std::to_string(std::lround(pressing.force_n)) + " N"});
     }
   }

@@ -22,8 +22,8 @@ constexpr int kLooks = 120;
 
 /// Whether a body is a part of the person whose hand this is. Parts stand together in a scene, from
 /// the head on.
-bool IsPartOfOwner(const Scene& scene, int hand, int body) {
-  if (!scene.bodies[static_cast<std::size_t>(body)].kinematic) return false;
+bool IsPartOfOwner(const Scene& scene, HandIndex hand, BodyIndex body) {
+  if (!scene.body(body).kinematic) return false;
   const Person* person = nullptr;
   for (const Person& other : scene.persons) {
     if (other.head <= body && (!person || other.head > person->head)) person = &other;
@@ -33,12 +33,13 @@ bool IsPartOfOwner(const Scene& scene, int hand, int body) {
 
 }  // namespace
 
-HandClearance::HandClearance(const Scene& scene, int hand, const std::vector<double>& joints)
+HandClearance::HandClearance(const Scene& scene, HandIndex hand, const std::vector<double>& joints)
     : scene_(scene) {
-  const HandModel& model = scene.hands[static_cast<std::size_t>(hand)].model;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (scene.bodies[b].abstract != Abstract::kNot) continue;
-    if (!IsPartOfOwner(scene, hand, static_cast<int>(b))) obstacles_.push_back(b);
+  const HandModel& model = scene.hand(hand).model;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const BodyIndex body(i);
+    if (scene.body(body).abstract != Abstract::kNot) continue;
+    if (!IsPartOfOwner(scene, hand, body)) obstacles_.push_back(body);
   }
   const Eigen::Vector3d half = model.palm_size_m / 2;
   const double palm_radius = half.z();
@@ -73,18 +74,18 @@ HandClearance::HandClearance(const Scene& scene, int hand, const std::vector<dou
 
 double HandClearance::At(const Pose& X_WH, const Snapshot& now) const {
   double least = kFar_m;
-  for (const std::size_t b : obstacles_) least = LessTo(b, X_WH, now, least);
+  for (const BodyIndex body : obstacles_) least = LessTo(body, X_WH, now, least);
   return least;
 }
 
-double HandClearance::To(int body, const Pose& X_WH, const Snapshot& now) const {
-  return LessTo(static_cast<std::size_t>(body), X_WH, now, kFar_m);
+double HandClearance::To(BodyIndex body, const Pose& X_WH, const Snapshot& now) const {
+  return LessTo(body, X_WH, now, kFar_m);
 }
 
-double HandClearance::LessTo(std::size_t body, const Pose& X_WH, const Snapshot& now,
+double HandClearance::LessTo(BodyIndex body, const Pose& X_WH, const Snapshot& now,
                              double least) const {
-  for (const PlacedShape& placed : scene_.bodies[body].shapes) {
-    const Pose X_SH = (now.bodies[body].X_WB * placed.X_BS).inverse() * X_WH;
+  for (const PlacedShape& placed : scene_.body(body).shapes) {
+    const Pose X_SH = (now.body(body).X_WB * placed.X_BS).inverse() * X_WH;
     if (SignedDistance(placed.shape, X_SH.p_m) > reach_m_ + least) continue;
     for (const Ball& ball : balls_)
       least = std::min(least, SignedDistance(placed.shape, X_SH * ball.p_H_m) - ball.radius_m);
@@ -99,9 +100,9 @@ HandClearance::Nearest HandClearance::NearestAlong(const Segment& segment,
   Nearest nearest;
   for (int i = 1; i <= kLooks; ++i) {
     const Pose X_WH = trajectory.At(segment.duration_s * i / kLooks).X_WH;
-    for (const std::size_t body : obstacles_) {
+    for (const BodyIndex body : obstacles_) {
       const double distance_m = LessTo(body, X_WH, now, nearest.distance_m);
-      if (distance_m < nearest.distance_m) nearest = {distance_m, static_cast<int>(body)};
+      if (distance_m < nearest.distance_m) nearest = {distance_m, body};
     }
   }
   return nearest;

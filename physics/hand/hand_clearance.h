@@ -15,34 +15,34 @@ class HandClearance {
  public:
   /// `hand` is an index into Scene::hands; the scene must outlive the clearance. The person whose
   /// hand it is does not obstruct it: her arm comes along, and hands pass through persons.
-  HandClearance(const Scene& scene, int hand, const std::vector<double>& joints);
+  HandClearance(const Scene& scene, HandIndex hand, const std::vector<double>& joints);
 
   /// Smallest distance of a hand at X_WH to any body that may obstruct it, metres; negative:
   /// penetration.
   double At(const Pose& X_WH, const Snapshot& now) const;
   /// Distance of a hand at X_WH to one body, metres, at most kFar_m; exact within a few
   /// millimetres.
-  double To(int body, const Pose& X_WH, const Snapshot& now) const;
+  double To(BodyIndex body, const Pose& X_WH, const Snapshot& now) const;
   /// Distances are cut off here; larger ones do not matter.
   static constexpr double kFar_m = 0.1;
   /// The smallest distance along a motion, sampled at even time steps.
   double Along(const Segment& segment, const Snapshot& now) const;
-  /// The same, and to which body: an index into Scene::bodies; -1 if all are far.
+  /// The same, and to which body: an none if all are far.
   struct Nearest {
     double distance_m = kFar_m;
-    int body = -1;
+    BodyIndex body = {};
   };
   Nearest NearestAlong(const Segment& segment, const Snapshot& now) const;
 
  private:
   /// The distance to this body, if it is less than `least`.
-  double LessTo(std::size_t body, const Pose& X_WH, const Snapshot& now, double least) const;
+  double LessTo(BodyIndex body, const Pose& X_WH, const Snapshot& now, double least) const;
   struct Ball {
     Eigen::Vector3d p_H_m;
     double radius_m;
   };
   const Scene& scene_;
-  std::vector<std::size_t> obstacles_;  ///< indices into Scene::bodies
+  std::vector<BodyIndex> obstacles_;
   std::vector<Ball> balls_;
   double reach_m_ = 0;  ///< radius of a sphere around H's origin that encloses all
 };

@@ -9,23 +9,24 @@
 
 namespace prehend::physics {
 
-/// Calls `see` with the contacts of a hand, and of the body that it holds if that is not -1, with
+/// Calls `see` with the contacts of a hand, and of the body that it holds if there is one, with
 /// another body.
 template <typename See>
-void ForEachContact(int hand, int held, int body, const Snapshot& now, const See& see) {
+void ForEachContact(HandIndex hand, BodyIndex held, BodyIndex body, const Snapshot& now,
+                    const See& see) {
   const auto is_ours = [&](const ContactSide& side) {
-    return side.hand == hand || (held >= 0 && side.hand < 0 && side.body == held);
+    return side.hand == hand || (held != kNone && side.hand == kNone && side.body == held);
   };
   for (const auto& points : now.AllContacts()) {
     for (const ContactPoint& contact : points) {
-      const bool a_is_it = contact.a.hand < 0 && contact.a.body == body;
-      const bool b_is_it = contact.b.hand < 0 && contact.b.body == body;
+      const bool a_is_it = contact.a.hand == kNone && contact.a.body == body;
+      const bool b_is_it = contact.b.hand == kNone && contact.b.body == body;
       if ((a_is_it && is_ours(contact.b)) || (b_is_it && is_ours(contact.a))) see(contact);
     }
   }
 }
 
-bool Touches(int hand, int body, const Snapshot& now);
+bool Touches(HandIndex hand, BodyIndex body, const Snapshot& now);
 
 /// "12 mm".
 std::string Millimetres(double length_m);

@@ -114,15 +114,15 @@ struct Target {
 /// Heights above which palm and fingers have to stay.
 class Ground {
  public:
-  Ground(const Scene& scene, const Snapshot& now, int object)
+  Ground(const Scene& scene, const Snapshot& now, BodyIndex object)
       : object_(BoundsOf(scene, now, object)) {
     constexpr double kInside_m = 0.01;  // a foot this much narrower does not obstruct
-    for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {
-      const Body& body = scene.bodies[static_cast<std::size_t>(i)];
-      if (!IsThing(body) || RootOf(scene, i) == RootOf(scene, object)) continue;
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+      const Body& body = scene.bodies[i];
+      if (!IsThing(body) || RootOf(scene, BodyIndex(i)) == RootOf(scene, object)) continue;
       for (const PlacedShape& placed : body.shapes) {
         const Eigen::AlignedBox3d bounds =
-            WorldBounds(placed.shape, now.bodies[static_cast<std::size_t>(i)].X_WB * placed.X_BS);
+            WorldBounds(placed.shape, now.bodies[i].X_WB * placed.X_BS);
         const bool is_foot = (bounds.min() - object_.min()).head<2>().minCoeff() > kInside_m &&
                              (object_.max() - bounds.max()).head<2>().minCoeff() > kInside_m;
         if (bounds.max().z() <= object_.min().z() + kRests_m && !is_foot) below_.push_back(bounds);
@@ -146,9 +146,8 @@ class Ground {
 
  private:
   static constexpr double kRests_m = 0.005;
-  static Eigen::AlignedBox3d BoundsOf(const Scene& scene, const Snapshot& now, int body) {
-    return WorldBounds(scene.bodies[static_cast<std::size_t>(body)],
-                       now.bodies[static_cast<std::size_t>(body)].X_WB);
+  static Eigen::AlignedBox3d BoundsOf(const Scene& scene, const Snapshot& now, BodyIndex body) {
+    return WorldBounds(scene.body(body), now.body(body).X_WB);
   }
 
   Eigen::AlignedBox3d object_;
@@ -160,11 +159,10 @@ class CandidateList {
   CandidateList(const Scene& scene, const Snapshot& now, const ReachQuery& query)
       : query_(query),
         planar_(scene.world.planar),
-        hand_(scene.hands[static_cast<std::size_t>(query.hand)].model),
+        hand_(scene.hand(query.hand).model),
         style_(hand_.styles[static_cast<std::size_t>(query.style)]),
         side_(hand_.left ? -1 : 1),
-        target_(scene.bodies[static_cast<std::size_t>(query.object)],
-                now.bodies[static_cast<std::size_t>(query.object)].X_WB, query.point_m),
+        target_(scene.body(query.object), now.body(query.object).X_WB, query.point_m),
         ground_(scene, now, query.object),
         mounted_(JointThatMoves(scene, query.object) >= 0) {}
 
@@ -328,7 +326,7 @@ Segment Way(const ReachQuery& query, const Candidate& to, const Bend& bend) {
 }  // namespace
 
 ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& query) {
-  const HandModel& model = scene.hands[static_cast<std::size_t>(query.hand)].model;
+  const HandModel& model = scene.hand(query.hand).model;
   const GraspStyle& style = model.styles[static_cast<std::size_t>(query.style)];
   const HandClearance clearance(scene, query.hand, JointTargets(style, query.from.trigger));
   ReachPlan best;

@@ -26,9 +26,9 @@ struct ReachPlan {
 };
 
 struct ReachQuery {
-  int hand = 0;    ///< index into Scene::hands
-  int object = 0;  ///< index into Scene::bodies
-  int style = 0;   ///< index into HandModel::styles
+  HandIndex hand = {};
+  BodyIndex object = {};
+  int style = 0;  ///< index into HandModel::styles
   Approach approach = Approach::kAuto;
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
   /// If set, the part of the object nearest to this point (object's frame) is grasped there.

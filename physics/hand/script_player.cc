@@ -41,21 +41,21 @@ constexpr int kJointWaypoints = 40;
 constexpr int kTurnWaypoints = 160;
 
 /// Number of hands that touch a body.
-int HandsOn(int body, const Snapshot& now) {
-  std::set<int> hands;
+int HandsOn(BodyIndex body, const Snapshot& now) {
+  std::set<HandIndex> hands;
   for (const ContactPoint& contact : now.contacts) {
-    if (contact.a.body == body && contact.b.hand >= 0) hands.insert(contact.b.hand);
-    if (contact.b.body == body && contact.a.hand >= 0) hands.insert(contact.a.hand);
+    if (contact.a.body == body && contact.b.hand != kNone) hands.insert(contact.b.hand);
+    if (contact.b.body == body && contact.a.hand != kNone) hands.insert(contact.a.hand);
   }
   return static_cast<int>(hands.size());
 }
 
 /// Upward force on a body from others than hands, newtons.
-double BorneBy(int body, const Snapshot& now, double rate_hz) {
+double BorneBy(BodyIndex body, const Snapshot& now, double rate_hz) {
   double impulse_n_s = 0;
   for (const auto& points : now.AllContacts()) {
     for (const ContactPoint& contact : points) {
-      if (contact.a.hand >= 0 || contact.b.hand >= 0) continue;
+      if (contact.a.hand != kNone || contact.b.hand != kNone) continue;
       const double up = contact.nhat_BA_W.z() * contact.normal_impulse_n_s;
       if (contact.a.body == body) impulse_n_s += std::max(up, 0.0);
       if (contact.b.body == body) impulse_n_s += std::max(-up, 0.0);
@@ -65,10 +65,10 @@ double BorneBy(int body, const Snapshot& now, double rate_hz) {
 }
 
 /// Whether the body touches others than hands.
-bool TouchesAnything(int body, const Snapshot& now) {
+bool TouchesAnything(BodyIndex body, const Snapshot& now) {
   for (const auto& points : now.AllContacts()) {
     for (const ContactPoint& contact : points) {
-      if (contact.a.hand < 0 && contact.b.hand < 0 &&
+      if (contact.a.hand == kNone && contact.b.hand == kNone &&
           (contact.a.body == body || contact.b.body == body))
         return true;
     }
@@ -108,7 +108,7 @@ class ScriptPlayer::Resolver {
   void MoveBy(const Eigen::Vector3d& by_m, double duration_s);
   void Follow(const Segment& segment);
   void Follow(const std::vector<TimedPose>& poses);
-  int HeldBody() const;
+  BodyIndex HeldBody() const;
   /// Where it is; a problem if there is no such thing.
   Pose PoseOf(const PoseFrame& frame);
   Pose InWorld(const Pose& X_FH, const PoseFrame& frame);
@@ -138,10 +138,10 @@ void ScriptPlayer::Resolver::MoveBy(const Eigen::Vector3d& by_m, double duration
 }
 
 void ScriptPlayer::Resolver::operator()(const ReachStep& reach) {
-  const HandModel& model = scene_.hands[static_cast<std::size_t>(step_.hand)].model;
-  const int object = FindBody(scene_, reach.object);
+  const HandModel& model = scene_.hand(step_.hand).model;
+  const BodyIndex object = FindBody(scene_, reach.object);
   const int style = FindStyle(model, reach.style);
-  if (object < 0) {
+  if (object == kNone) {
     problem_ = "reach: there is no entity '" + reach.object + "'";
   } else if (style < 0) {
     problem_ = "reach: hand '" + model.name + "' has no style '" + reach.style + "'";
@@ -170,54 +170,50 @@ void ScriptPlayer::Resolver::operator()(const TriggerStep& trigger) {
   Follow(segment);
 }
 
-/// The body last reached for; without a reach, the movable body that is pressed most; -1: none.
-int ScriptPlayer::Resolver::HeldBody() const {
-  if (hand_.object >= 0) return hand_.object;
+/// The body last reached for; without a reach, the movable body that is pressed most; or none.
+BodyIndex ScriptPlayer::Resolver::HeldBody() const {
+  if (hand_.object != kNone) return hand_.object;
   std::vector<double> impulse(scene_.bodies.size(), 0);
   for (const ContactPoint& contact : now_.contacts) {
-    const ContactSide &body = contact.a.body >= 0 ? contact.a : contact.b,
-                      &hand = contact.a.body >= 0 ? contact.b : contact.a;
-    if (body.body < 0 || hand.hand != step_.hand || !MovesFreely(scene_, body.body)) continue;
-    impulse[static_cast<std::size_t>(body.body)] += contact.normal_impulse_n_s;
+    const ContactSide &body = contact.a.body != kNone ? contact.a : contact.b,
+                      &hand = contact.a.body != kNone ? contact.b : contact.a;
+    if (body.body == kNone || hand.hand != step_.hand || !MovesFreely(scene_, body.body)) continue;
+    At(impulse, body.body) += contact.normal_impulse_n_s;
   }
   const auto most = std::max_element(impulse.begin(), impulse.end());
-  return most == impulse.end() || *most <= 0 ? -1 : static_cast<int>(most - impulse.begin());
+  return most == impulse.end() || *most <= 0 ? kNone : BodyIndex(most - impulse.begin());
 }
 
 void ScriptPlayer::Resolver::operator()(const CarryStep& carry) {
   Eigen::Vector3d centre = hand_.target.X_WH.p_m;
-  if (const int held = HeldBody(); held >= 0) {
-    const auto index = static_cast<std::size_t>(held);
-    centre = now_.bodies[index].X_WB * BoundingBox(scene_.bodies[index]).p_BC_m;
-  }
+  if (const BodyIndex held = HeldBody(); held != kNone)
+    centre = now_.body(held).X_WB * BoundingBox(scene_.body(held)).p_BC_m;
   MoveBy({carry.to_m.x() - centre.x(), carry.to_m.y() - centre.y(), 0}, step_.over_s);
 }
 
 void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
-  const int held = HeldBody(), support = FindBody(scene_, place.support);
-  if (support < 0) {
+  const BodyIndex held = HeldBody(), support = FindBody(scene_, place.support);
+  if (support == kNone) {
     problem_ = "place_on: there is no entity '" + place.support + "'";
-  } else if (held < 0) {
+  } else if (held == kNone) {
     problem_ = "place_on: the hand holds nothing and has not reached for anything";
   } else {
-    const auto h = static_cast<std::size_t>(held), s = static_cast<std::size_t>(support);
+    const Body &below = scene_.body(support), &thing = scene_.body(held);
     const std::optional<double> landing_m =
-        LandingHeight(scene_.bodies[s], now_.bodies[s].X_WB, scene_.bodies[h], now_.bodies[h].X_WB);
+        LandingHeight(below, now_.body(support).X_WB, thing, now_.body(held).X_WB);
     if (!landing_m) {
-      problem_ =
-          "place_on: no part of '" + place.support + "' is below '" + scene_.bodies[h].name + "'";
+      problem_ = "place_on: no part of '" + place.support + "' is below '" + thing.name + "'";
       problem_ += HandsOn(held, now_) > 0
                       ? ": carry it there first"
                       : ", which no hand touches now: was it lost on the way? 'poses' tells where "
                         "it is at each moment";
       return;
     }
-    const Eigen::AlignedBox3d object = WorldBounds(scene_.bodies[h], now_.bodies[h].X_WB);
+    const Eigen::AlignedBox3d object = WorldBounds(thing, now_.body(held).X_WB);
     const double drop = object.min().z() - *landing_m;
-    const double stiffness =
-        scene_.hands[static_cast<std::size_t>(step_.hand)].model.translation.proportional;
+    const double stiffness = scene_.hand(step_.hand).model.translation.proportional;
     const double weight_n =
-        scene_.bodies[h].mass_kg * scene_.world.gravity_m_per_s2 / std::max(HandsOn(held, now_), 1);
+        thing.mass_kg * scene_.world.gravity_m_per_s2 / std::max(HandsOn(held, now_), 1);
     const double spring = std::min(weight_n / std::max(stiffness, 1.0), kMaxSpring_m);
     MoveBy({0, 0, -drop - kPress_m - spring}, kLoweringShare * step_.over_s);
     hand_.placing = Placing{.body = held, .support = support, .weight_n = weight_n};
@@ -234,7 +230,7 @@ void ScriptPlayer::Resolver::operator()(const RetreatStep& retreat) {
 
 void ScriptPlayer::Resolver::operator()(const PosesStep& poses) {
   if (!poses.style.empty()) {
-    const HandModel& model = scene_.hands[static_cast<std::size_t>(step_.hand)].model;
+    const HandModel& model = scene_.hand(step_.hand).model;
     hand_.style = FindStyle(model, poses.style);
     if (hand_.style < 0)
       problem_ = "poses: hand '" + model.name + "' has no style '" + poses.style + "'";
@@ -255,8 +251,8 @@ Pose ScriptPlayer::Resolver::InWorld(const Pose& X_FH, const PoseFrame& frame) {
 Pose ScriptPlayer::Resolver::PoseOf(const PoseFrame& frame) {
   if (frame.own_hand) return hand_.target.X_WH;
   if (frame.name.empty()) return {};
-  if (const int body = FindBody(scene_, frame.name); body >= 0)
-    return now_.bodies[static_cast<std::size_t>(body)].X_WB;
+  if (const BodyIndex body = FindBody(scene_, frame.name); body != kNone)
+    return now_.body(body).X_WB;
   for (std::size_t i = 0; i < scene_.hands.size(); ++i)
     if (scene_.hands[i].name == frame.name) return now_.hands[i].palm.X_WB;
   problem_ = "relative_to: there is no entity '" + frame.name + "'";
@@ -264,14 +260,14 @@ Pose ScriptPlayer::Resolver::PoseOf(const PoseFrame& frame) {
 }
 
 void ScriptPlayer::Resolver::operator()(const FollowJointStep& follow) {
-  const int body = FindBody(scene_, follow.entity);
-  const int index = body < 0 ? -1 : JointThatMoves(scene_, body);
+  const BodyIndex body = FindBody(scene_, follow.entity);
+  const int index = body == kNone ? -1 : JointThatMoves(scene_, body);
   if (index < 0) {
     problem_ = "follow_joint: no joint moves '" + follow.entity + "'";
     return;
   }
   const Joint& joint = scene_.joints[static_cast<std::size_t>(index)];
-  const Pose& X_WBase = now_.bodies[static_cast<std::size_t>(joint.base)].X_WB;
+  const Pose& X_WBase = now_.body(joint.base).X_WB;
   const double to = joint.lower + follow.to * (joint.upper - joint.lower);
   const double change = to - now_.joints[static_cast<std::size_t>(index)].position;
   std::vector<TimedPose> poses;
@@ -301,13 +297,12 @@ void ScriptPlayer::Resolver::operator()(const TurnHandStep& turn) {
 }
 
 void ScriptPlayer::Resolver::operator()(const OrbitStep& orbit) {
-  const int body = FindBody(scene_, orbit.around);
-  if (body < 0) {
+  const BodyIndex body = FindBody(scene_, orbit.around);
+  if (body == kNone) {
     problem_ = "orbit: there is no entity '" + orbit.around + "'";
     return;
   }
-  const auto index = static_cast<std::size_t>(body);
-  const Eigen::Vector3d centre = now_.bodies[index].X_WB * BoundingBox(scene_.bodies[index]).p_BC_m;
+  const Eigen::Vector3d centre = now_.body(body).X_WB * BoundingBox(scene_.body(body)).p_BC_m;
   const Pose& X_WH = hand_.target.X_WH;
   const Eigen::Vector2d away = (X_WH.p_m - centre).head<2>();
   const double from_m = away.norm();
@@ -335,8 +330,8 @@ void ScriptPlayer::Resolver::operator()(const OrbitStep& orbit) {
 }
 
 void ScriptPlayer::Resolver::operator()(const PressStep& press) {
-  const int body = FindBody(scene_, press.against);
-  if (body < 0) {
+  const BodyIndex body = FindBody(scene_, press.against);
+  if (body == kNone) {
     problem_ = "press_n: there is no entity '" + press.against + "'";
     return;
   }
@@ -360,9 +355,8 @@ std::vector<int> ScriptPlayer::FirstStyles(const Scene& scene, const Script& scr
       const auto* reach = std::get_if<ReachStep>(&step.action);
       const auto* poses = std::get_if<PosesStep>(&step.action);
       const std::string style = reach ? reach->style : poses ? poses->style : std::string();
-      const auto hand = static_cast<std::size_t>(step.hand);
-      if (!style.empty() && styles[hand] < 0)
-        styles[hand] = FindStyle(scene.hands[hand].model, style);
+      int& first = At(styles, step.hand);
+      if (!style.empty() && first < 0) first = FindStyle(scene.hand(step.hand).model, style);
     }
   }
   for (int& style : styles) style = std::max(style, 0);
@@ -399,7 +393,8 @@ void ScriptPlayer::Progress(const Snapshot& now) {
     changed = EndSteps(now);
     changed |= StartSteps(now);
   }
-  if (problem_.empty() && clock_.IsStuck()) Fail(0, "the steps of a stage wait for each other");
+  if (problem_.empty() && clock_.IsStuck())
+    Fail(HandIndex(0), "the steps of a stage wait for each other");
 }
 
 bool ScriptPlayer::StartSteps(const Snapshot& now) {
@@ -428,7 +423,7 @@ bool ScriptPlayer::EndSteps(const Snapshot& now) {
   for (std::size_t i = 0; i < stage.steps.size() + stage.person_steps.size(); ++i) {
     if (!clock_.Plays(i) || tick_in_stage_ < clock_.EndOf(i)) continue;
     if (i < stage.steps.size()) {
-      const auto h = static_cast<std::size_t>(stage.steps[i].hand);
+      const std::size_t h = stage.steps[i].hand.index();
       if (Waits(h, hands_[h].late_ticks)) {
         ++hands_[h].late_ticks;
         clock_.SetEnd(i, tick_in_stage_ + 1);
@@ -469,13 +464,13 @@ std::int64_t ScriptPlayer::PlannedEnd(const HandState& hand) const {
 
 void ScriptPlayer::StartStep(std::size_t index, const Snapshot& now) {
   const Step& step = script_.stages[stage_ - 1].steps[index];
-  HandState& hand = hands_[static_cast<std::size_t>(step.hand)];
+  HandState& hand = At(hands_, step.hand);
   hand.step = index;
   hand.begin_tick = clock_.BeginOf(index);
   hand.written_at = step.written_at;
   if (step.until) {
     hand.waiting = Waiting{.until = *step.until, .thing = FindBody(scene_, step.until->thing)};
-    if (hand.waiting->thing < 0)
+    if (hand.waiting->thing == kNone)
       return Fail(step.hand, "until: there is no entity '" + step.until->thing + "'");
   }
   Resolver resolver(scene_, now, step, hand);
@@ -496,8 +491,8 @@ TargetState ScriptPlayer::TargetOf(const HandState& hand) const {
   return target;
 }
 
-void ScriptPlayer::Fail(int hand, const std::string& problem) {
-  const std::string& written_at = hands_[static_cast<std::size_t>(hand)].written_at;
+void ScriptPlayer::Fail(HandIndex hand, const std::string& problem) {
+  const std::string& written_at = At(hands_, hand).written_at;
   problem_ = written_at.empty() ? problem : written_at + ": " + problem;
   problem_hand_ = hand;
 }
@@ -534,15 +529,13 @@ bool ScriptPlayer::Waits(std::size_t hand, std::int64_t late_ticks) const {
 /// What the hand has lost is not its problem.
 void ScriptPlayer::CheckThatItStands(std::size_t hand, const Snapshot& now) {
   const std::optional<Placing>& placing = hands_[hand].placing;
-  const int index = static_cast<int>(hand);
+  const HandIndex index(hand);
   if (!placing || placing->Stands() || !Touches(index, placing->body, now)) return;
-  const auto body = static_cast<std::size_t>(placing->body);
-  const auto support = static_cast<std::size_t>(placing->support);
-  const std::string &held = scene_.bodies[body].name, &below = scene_.bodies[support].name;
-  std::string problem = "place_on: '" + held + "' does not stand on '" + below + "'";
-  if (const auto landing_m = LandingHeight(scene_.bodies[support], now.bodies[support].X_WB,
-                                           scene_.bodies[body], now.bodies[body].X_WB)) {
-    const double low_m = WorldBounds(scene_.bodies[body], now.bodies[body].X_WB).min().z();
+  const Body &held = scene_.body(placing->body), &below = scene_.body(placing->support);
+  const Pose& X_WHeld = now.body(placing->body).X_WB;
+  std::string problem = "place_on: '" + held.name + "' does not stand on '" + below.name + "'";
+  if (const auto landing_m = LandingHeight(below, now.body(placing->support).X_WB, held, X_WHeld)) {
+    const double low_m = WorldBounds(held, X_WHeld).min().z();
     problem += ", but is held " + Millimetres(low_m - *landing_m) + " above it";
   }
   Fail(index, problem);

@@ -25,7 +25,7 @@ namespace prehend::physics {
 /// A remark on a step that was executed but perhaps not as its author intended.
 struct ScriptNote {
   std::int64_t tick = 0;
-  int hand = 0;  ///< index into Scene::hands; -1: the text names its actor
+  HandIndex hand = {};  ///< none: the text names its actor
   std::string text;
 };
 
@@ -54,8 +54,7 @@ class ScriptPlayer {
 
   /// Why the script cannot continue; empty if it can.
   const std::string& problem() const { return problem_; }
-  /// Index of the hand that has the problem.
-  int problem_hand() const { return problem_hand_; }
+  HandIndex problem_hand() const { return problem_hand_; }
   /// Remarks on all steps so far.
   const std::vector<ScriptNote>& notes() const { return notes_; }
   void AddNote(ScriptNote note) { notes_.push_back(std::move(note)); }
@@ -63,8 +62,8 @@ class ScriptPlayer {
  private:
   /// A thing that is put down.
   struct Placing {
-    int body = 0;          ///< index into Scene::bodies
-    int support = 0;       ///< likewise
+    BodyIndex body = {};
+    BodyIndex support = {};
     double weight_n = 0;   ///< that its support must bear: its weight, per hand that holds it
     double borne_n = 0;    ///< what others than hands bear of it: a mean over some 20 ms
     bool touches = false;  ///< it is borne at this moment
@@ -81,12 +80,12 @@ class ScriptPlayer {
   /// What ends the present step before its time.
   struct Waiting {
     Until until;
-    int thing = 0;  ///< index into Scene::bodies
+    BodyIndex thing = {};
     bool met = false;
   };
   /// The target goes on along a direction until the force is reached.
   struct Pressing {
-    int against = 0;  ///< index into Scene::bodies
+    BodyIndex against = {};
     double force_n = 0;
     Eigen::Vector3d along_W;
     double present_n = 0;  ///< a mean over some 20 ms
@@ -95,13 +94,13 @@ class ScriptPlayer {
   /// A note says that the hand has closed without holding `object`.
   struct Doubt {
     std::int64_t tick = 0;  ///< of the note
-    int object = 0;         ///< index into Scene::bodies
+    BodyIndex object = {};
   };
   struct HandState {
     TargetState target;  ///< present target, or the one at the end of the motion
     Trajectory motion{TargetState{}};
     int style = 0;
-    int object = -1;  ///< the body last reached for, or -1
+    BodyIndex object = {};  ///< the body last reached for, or none
     Eigen::Vector3d came_along_W =
         Eigen::Vector3d::Zero();  ///< direction of the last arrival; zero before the first reach
     std::optional<Placing> placing = std::nullopt;
@@ -147,11 +146,11 @@ class ScriptPlayer {
   /// Fingers follow late: a hand that takes hold after all, before it opens, needs no note.
   void WithdrawNotes(const Snapshot& now);
   void Press(const Snapshot& now);
-  bool IsTouched(int hand, int thing, const Snapshot& now) const;
-  double GapTo(int hand, int thing, const Snapshot& now) const;
+  bool IsTouched(HandIndex hand, BodyIndex thing, const Snapshot& now) const;
+  double GapTo(HandIndex hand, BodyIndex thing, const Snapshot& now) const;
   /// Where the hand's target is and how it moves.
   TargetState TargetOf(const HandState& hand) const;
-  void Fail(int hand, const std::string& problem);
+  void Fail(HandIndex hand, const std::string& problem);
 
   const Scene& scene_;
   Script script_;
@@ -164,7 +163,7 @@ class ScriptPlayer {
   std::vector<BegunSteps> begun_;
   bool settling_ = false;
   std::string problem_;
-  int problem_hand_ = -1;
+  HandIndex problem_hand_ = {};
   std::vector<ScriptNote> notes_;
 };
 

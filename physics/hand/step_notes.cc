@@ -28,14 +28,13 @@ std::string TwoDigits(double share) {
 }
 
 /// The sensor sets of a hand that touch a body.
-std::set<std::string> SidesThatTouch(const Scene& scene, const Snapshot& now, int hand,
-                                     int object) {
-  const HandModel& model = scene.hands[static_cast<std::size_t>(hand)].model;
+std::set<std::string> SidesThatTouch(const Scene& scene, const Snapshot& now, HandIndex hand,
+                                     BodyIndex object) {
+  const HandModel& model = scene.hand(hand).model;
   std::set<std::string> sides;
-  ForEachContact(hand, -1, object, now, [&](const ContactPoint& contact) {
-    const int link = contact.a.hand == hand ? contact.a.link : contact.b.link;
-    const int set =
-        link < 0 ? model.palm_sensor_set : model.links[static_cast<std::size_t>(link)].sensor_set;
+  ForEachContact(hand, kNone, object, now, [&](const ContactPoint& contact) {
+    const LinkIndex link = contact.a.hand == hand ? contact.a.link : contact.b.link;
+    const int set = link == kNone ? model.palm_sensor_set : model.link(link).sensor_set;
     sides.insert(model.sensor_sets[static_cast<std::size_t>(set)]);
   });
   return sides;
@@ -43,15 +42,15 @@ std::set<std::string> SidesThatTouch(const Scene& scene, const Snapshot& now, in
 
 std::string NoteAboutObstacle(const Scene& scene, const Snapshot& now, const ReachQuery& query,
                               const ReachPlan& plan) {
-  const HandModel& model = scene.hands[static_cast<std::size_t>(query.hand)].model;
+  const HandModel& model = scene.hand(query.hand).model;
   const GraspStyle& style = model.styles[static_cast<std::size_t>(query.style)];
-  const std::string& object = scene.bodies[static_cast<std::size_t>(query.object)].name;
+  const std::string& object = scene.body(query.object).name;
   const auto nearest_at = [&](double trigger) {
     return HandClearance(scene, query.hand, JointTargets(style, trigger))
         .NearestAlong(plan.segment, now);
   };
   const HandClearance::Nearest worst = nearest_at(query.from.trigger);
-  const std::string& obstacle = scene.bodies[static_cast<std::size_t>(worst.body)].name;
+  const std::string& obstacle = scene.body(worst.body).name;
   if (query.from.trigger > 0 && nearest_at(0).distance_m >= -kNotedTouch_m)
     return "it comes with its grip at " + TwoDigits(query.from.trigger) + ", so its fingers push " +
            Millimetres(-worst.distance_m) + " into " + obstacle +
@@ -65,9 +64,9 @@ std::string NoteAboutObstacle(const Scene& scene, const Snapshot& now, const Rea
 
 std::string NoteAboutReach(const Scene& scene, const Snapshot& now, const ReachQuery& query,
                            const ReachPlan& plan) {
-  const HandModel& model = scene.hands[static_cast<std::size_t>(query.hand)].model;
+  const HandModel& model = scene.hand(query.hand).model;
   const GraspStyle& style = model.styles[static_cast<std::size_t>(query.style)];
-  const std::string& object = scene.bodies[static_cast<std::size_t>(query.object)].name;
+  const std::string& object = scene.body(query.object).name;
   std::string notes;
   const auto add = [&](const std::string& note) { notes += (notes.empty() ? "" : "; ") + note; };
   if (plan.beside_m > kAtPoint_m)
@@ -82,24 +81,24 @@ std::string NoteAboutReach(const Scene& scene, const Snapshot& now, const ReachQ
   return notes;
 }
 
-bool IsHeldBySides(const Scene& scene, const Snapshot& now, int hand, int object) {
+bool IsHeldBySides(const Scene& scene, const Snapshot& now, HandIndex hand, BodyIndex object) {
   return SidesThatTouch(scene, now, hand, object).size() >= 2;
 }
 
-std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, int hand, int object) {
+std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, HandIndex hand,
+                          BodyIndex object) {
   const std::set<std::string> sides = SidesThatTouch(scene, now, hand, object);
   if (sides.size() >= 2) return "";
   if (sides.size() == 1)
-    return "it has closed and touches " + scene.bodies[static_cast<std::size_t>(object)].name +
-           " with its " + *sides.begin() +
+    return "it has closed and touches " + scene.body(object).name + " with its " + *sides.begin() +
            " only, which is no grasp: close it farther ('close_to: 1'), or reach for it from "
            "another "
            "side";
-  const auto h = static_cast<std::size_t>(hand), o = static_cast<std::size_t>(object);
-  const HandClearance clearance(scene, hand, now.hands[h].joints);
-  const double away_m = clearance.To(object, now.hands[h].palm.X_WB, now);
-  const std::string& name = scene.bodies[o].name;
-  const double grip = now.hands[h].trigger;
+  const HandState& state = now.hand(hand);
+  const HandClearance clearance(scene, hand, state.joints);
+  const double away_m = clearance.To(object, state.palm.X_WB, now);
+  const std::string& name = scene.body(object).name;
+  const double grip = state.trigger;
   if (grip < 1 && away_m < kNearlyThere_m)
     return "it has closed to " + TwoDigits(grip) + " and does not touch " + name + ", which is " +
            Millimetres(std::max(away_m, 0.0)) + " away: close it farther";

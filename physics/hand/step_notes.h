@@ -18,10 +18,11 @@ std::string NoteAboutReach(const Scene& scene, const Snapshot& now, const ReachQ
                            const ReachPlan& plan);
 
 /// Whether two sides of the hand touch `object`, an index into Scene::bodies: it holds it.
-bool IsHeldBySides(const Scene& scene, const Snapshot& now, int hand, int object);
+bool IsHeldBySides(const Scene& scene, const Snapshot& now, HandIndex hand, BodyIndex object);
 
 /// About a hand that has closed, at the end of the step: that it touches `object`, an index into
 /// Scene::bodies, with one side only or not at all.
-std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, int hand, int object);
+std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, HandIndex hand,
+                          BodyIndex object);
 
 }  // namespace prehend::physics

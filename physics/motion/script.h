@@ -97,7 +97,7 @@ struct StepOrder {
 };
 
 struct Step {
-  int hand = 0;  ///< index into Scene::hands
+  HandIndex hand = HandIndex(0);
   StepAction action;
   double over_s = 0.5;
   std::optional<Until> until = {};

@@ -19,7 +19,7 @@ struct Item {
 std::vector<Item> ItemsOf(const ScriptStage& stage) {
   std::vector<Item> items;
   for (const Step& step : stage.steps)
-    items.push_back({{false, step.hand}, &step.order, step.delay_s, DurationOf(step)});
+    items.push_back({{false, step.hand.number()}, &step.order, step.delay_s, DurationOf(step)});
   for (const PersonStep& step : stage.person_steps)
     items.push_back({{true, step.person}, &step.order, step.delay_s, DurationOf(step)});
   return items;

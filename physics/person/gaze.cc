@@ -34,14 +34,13 @@ Vector3d Between(const Vector3d& from, const Vector3d& to, double x) {
 }  // namespace
 
 std::optional<Vector3d> PointOf(const GazeTarget& target, const Scene& scene, const Snapshot& now) {
-  const auto index = static_cast<std::size_t>(target.index);
   switch (target.kind) {
     case GazeTarget::Kind::kAhead:
       return std::nullopt;
     case GazeTarget::Kind::kBody:
-      return now.bodies[index].X_WB * BoundingBox(scene.bodies[index]).p_BC_m;
+      return now.body(target.body).X_WB * BoundingBox(scene.body(target.body)).p_BC_m;
     case GazeTarget::Kind::kHand:
-      return now.hands[index].palm.X_WB.p_m;
+      return now.hand(target.hand).palm.X_WB.p_m;
     case GazeTarget::Kind::kPoint:
       return target.p_W_m;
   }
@@ -51,7 +50,7 @@ std::optional<Vector3d> PointOf(const GazeTarget& target, const Scene& scene, co
 std::optional<TargetSeen> TargetInSight(const Scene& scene, const GazeState& gaze,
                                         const SightLine& line) {
   std::optional<TargetSeen> seen;
-  double nearest_m = gaze.body < 0 && gaze.hand < 0 ? line.length_m : gaze.distance_m;
+  double nearest_m = gaze.body == kNone && gaze.hand == kNone ? line.length_m : gaze.distance_m;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     if (body.abstract != Abstract::kGazeTarget) continue;
@@ -63,20 +62,20 @@ std::optional<TargetSeen> TargetInSight(const Scene& scene, const GazeState& gaz
         std::max(0.0, along_m - std::sqrt(reach_m * reach_m - std::max(0.0, beside2)));
     if (distance_m >= nearest_m) continue;
     nearest_m = distance_m;
-    seen = TargetSeen{static_cast<int>(i), distance_m};
+    seen = TargetSeen{BodyIndex(i), distance_m};
   }
   return seen;
 }
 
 GazeLeader::GazeLeader(const Scene& scene, const Script& script, const Person& person)
-    : scene_(scene), script_(script), person_(person), reached_(scene.hands.size(), -1) {}
+    : scene_(scene), script_(script), person_(person), reached_(scene.hands.size()) {}
 
 void GazeLeader::Begin(std::size_t stage, const std::vector<std::size_t>& steps,
                        const Snapshot& now) {
   // The right hand first: she looks at one of two hands that do different things.
-  for (const int hand : {person_.right_hand, person_.left_hand}) {
+  for (const HandIndex hand : {person_.right_hand, person_.left_hand}) {
     for (const std::size_t index : steps) {
-      if (hand < 0 || script_.stages[stage].steps[index].hand != hand) continue;
+      if (hand == kNone || script_.stages[stage].steps[index].hand != hand) continue;
       if (const auto target = TargetOf(stage, index, now)) {
         target_ = *target;
         return;
@@ -89,9 +88,9 @@ void GazeLeader::Begin(std::size_t stage, const std::vector<std::size_t>& steps,
 std::optional<GazeTarget> GazeLeader::TargetOf(std::size_t stage, std::size_t index,
                                                const Snapshot& now) {
   const Step& step = script_.stages[stage].steps[index];
-  int& reached = reached_[static_cast<std::size_t>(step.hand)];
-  const auto body = [](int target) {
-    return GazeTarget{.kind = GazeTarget::Kind::kBody, .index = target};
+  BodyIndex& reached = At(reached_, step.hand);
+  const auto body = [](BodyIndex target) {
+    return GazeTarget{.kind = GazeTarget::Kind::kBody, .body = target};
   };
   if (const auto* reach = std::get_if<ReachStep>(&step.action)) {
     reached = FindBody(scene_, reach->object);
@@ -105,22 +104,22 @@ std::optional<GazeTarget> GazeLeader::TargetOf(std::size_t stage, std::size_t in
   const bool moves = !std::holds_alternative<WaitStep>(step.action) &&
                      !std::holds_alternative<PlaceStep>(step.action);
   if (!moves) return std::nullopt;
-  if (reached >= 0) return body(reached);
-  return GazeTarget{.kind = GazeTarget::Kind::kHand, .index = step.hand};
+  if (reached != kNone) return body(reached);
+  return GazeTarget{.kind = GazeTarget::Kind::kHand, .hand = step.hand};
 }
 
 /// The place on the support of the next put-down; nullopt if none follows.
 std::optional<Vector3d> GazeLeader::LandingPlace(const CarryStep& carry, std::size_t stage,
                                                  std::size_t index, const Snapshot& now) const {
-  const int hand = script_.stages[stage].steps[index].hand;
+  const HandIndex hand = script_.stages[stage].steps[index].hand;
   for (std::size_t later = stage; later < script_.stages.size(); ++later) {
     const std::vector<Step>& steps = script_.stages[later].steps;
     for (std::size_t i = later == stage ? index + 1 : 0; i < steps.size(); ++i) {
       const auto* place = std::get_if<PlaceStep>(&steps[i].action);
-      const int support = place && steps[i].hand == hand ? FindBody(scene_, place->support) : -1;
-      if (support < 0) continue;
-      const auto s = static_cast<std::size_t>(support);
-      const double top = WorldBounds(scene_.bodies[s], now.bodies[s].X_WB).max().z();
+      const BodyIndex support =
+          place && steps[i].hand == hand ? FindBody(scene_, place->support) : kNone;
+      if (support == kNone) continue;
+      const double top = WorldBounds(scene_.body(support), now.body(support).X_WB).max().z();
       return Vector3d(carry.to_m.x(), carry.to_m.y(), top);
     }
   }

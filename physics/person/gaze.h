@@ -20,7 +20,8 @@ namespace prehend::physics {
 struct GazeTarget {
   enum class Kind { kAhead, kBody, kHand, kPoint };
   Kind kind = Kind::kAhead;
-  int index = 0;  ///< of the body or hand
+  BodyIndex body = {};  ///< of kBody
+  HandIndex hand = {};  ///< of kHand
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
 };
 
@@ -31,7 +32,7 @@ std::optional<Eigen::Vector3d> PointOf(const GazeTarget& target, const Scene& sc
 /// The nearest gaze target of the scene along her line of sight, if it is nearer than what she
 /// sees. No engine finds gaze targets, because they are abstract.
 struct TargetSeen {
-  int body = -1;
+  BodyIndex body = {};
   double distance_m = 0;
 };
 std::optional<TargetSeen> TargetInSight(const Scene& scene, const GazeState& gaze,
@@ -55,7 +56,7 @@ class GazeLeader {
   const Scene& scene_;
   const Script& script_;
   const Person& person_;
-  std::vector<int> reached_;  ///< by hand: the body last reached for, or -1
+  std::vector<BodyIndex> reached_;  ///< by hand: the body last reached for, or none
   GazeTarget target_;
 };
 

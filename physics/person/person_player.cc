@@ -25,11 +25,11 @@ class PersonPlayer::Resolver {
   void operator()(const WaitStep&) {}
   void operator()(const LookAtStep& look) {
     if (const auto* name = std::get_if<std::string>(&look.target)) {
-      const int body = FindBody(player_.scene_, *name);
-      player_.told_ = GazeTarget{.kind = GazeTarget::Kind::kBody, .index = body};
+      const BodyIndex body = FindBody(player_.scene_, *name);
+      player_.told_ = GazeTarget{.kind = GazeTarget::Kind::kBody, .body = body};
       for (std::size_t i = 0; i < player_.scene_.hands.size(); ++i) {
         if (player_.scene_.hands[i].name == *name)
-          player_.told_ = GazeTarget{.kind = GazeTarget::Kind::kHand, .index = static_cast<int>(i)};
+          player_.told_ = GazeTarget{.kind = GazeTarget::Kind::kHand, .hand = HandIndex(i)};
       }
     } else {
       player_.told_ =
@@ -117,11 +117,11 @@ void PersonPlayer::Begin(std::size_t stage, const std::vector<std::size_t>& hand
 }
 
 BodyTargets::Limb PersonPlayer::LimbAt(int limb, const Snapshot& now) const {
-  const int hand = limb == 0 ? person_.right_hand : limb == 1 ? person_.left_hand : -1;
+  const HandIndex hand = HandAt(limb, person_);
   const BodyTargets::Limb rest = RestOf(limb, person_, targets_);
-  if (hand >= 0) {
-    const auto h = static_cast<std::size_t>(hand);
-    return {rest.end, now.hands[h].palm.X_WB * WristInHand(person_, scene_.hands[h].model)};
+  if (hand != kNone) {
+    const Pose& X_WH = now.hand(hand).palm.X_WB;
+    return {rest.end, X_WH * WristInHand(person_, scene_.hand(hand).model)};
   }
   const LimbMotion& motion = limbs_[static_cast<std::size_t>(limb)];
   const double progress =
@@ -251,8 +251,8 @@ void PersonPlayer::Advance(const Snapshot& now, World& world) {
 
 double PersonPlayer::LimbIsShortBy(int limb) const {
   const auto index = static_cast<std::size_t>(limb);
-  const int hand = limb == 0 ? person_.right_hand : limb == 1 ? person_.left_hand : -1;
-  const bool is_led = hand >= 0 || (!limbs_[index].to_rest && !targets_.posture);
+  const HandIndex hand = HandAt(limb, person_);
+  const bool is_led = hand != kNone || (!limbs_[index].to_rest && !targets_.posture);
   if (!person_.has_body || !is_led) return 0;
   const BodyTargets::Limb& target = targets_.limbs[index];
   return (target.p_W_m - PlaceOf(target.end, person_, targets_)).norm();
@@ -268,7 +268,7 @@ GazeState PersonPlayer::See(const World& world) const {
   gaze.hand = sight.hand;
   gaze.distance_m = sight.distance_m;
   if (const auto target = TargetInSight(scene_, gaze))
-    gaze.body = target->body, gaze.hand = -1, gaze.distance_m = target->distance_m;
+    gaze.body = target->body, gaze.hand = kNone, gaze.distance_m = target->distance_m;
   return gaze;
 }
 

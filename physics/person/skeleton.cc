@@ -108,7 +108,7 @@ struct Arm {
 };
 
 bool FollowsHand(const Person& person, bool right) {
-  return (right ? person.right_hand : person.left_hand) >= 0;
+  return (right ? person.right_hand : person.left_hand) != kNone;
 }
 
 Vector3d DirectionOf(const BodyTargets& targets, std::size_t way, bool right) {
@@ -243,6 +243,11 @@ int LimbOf(LimbEnd end) {
   return 0;
 }
 
+HandIndex HandAt(int limb, const Person& person) {
+  if (limb == 0) return person.right_hand;
+  return limb == 1 ? person.left_hand : kNone;
+}
+
 PartRange PartsOfLimb(const Person& person, int limb) {
   constexpr int kTrunkParts = 5, kLegParts = 4;  // head, neck, chest, abdomen, pelvis
   const int right_arm = FollowsHand(person, true) ? 2 : 3,
@@ -369,8 +374,8 @@ BodyTargets Standing(const Scene& scene, const Person& person) {
   BodyTargets targets = Resting(person);
   for (const auto& [hand, limb] :
        {std::pair(person.right_hand, 0), std::pair(person.left_hand, 1)}) {
-    if (hand < 0) continue;
-    const Hand& of_scene = scene.hands[static_cast<std::size_t>(hand)];
+    if (hand == kNone) continue;
+    const Hand& of_scene = scene.hand(hand);
     targets.limbs[static_cast<std::size_t>(limb)].p_W_m =
         of_scene.X_WH * WristInHand(person, of_scene.model);
   }

@@ -37,6 +37,9 @@ struct BodyTargets {
 /// Index into BodyTargets::limbs.
 int LimbOf(LimbEnd end);
 
+/// The hand of the scene that a limb follows, or none.
+HandIndex HandAt(int limb, const Person& person);
+
 /// The rest position of a limb: of its wrist, or of the middle of its foot.
 BodyTargets::Limb RestOf(int limb, const Person& person, const BodyTargets& targets);
 /// Position of this end of a limb, metres.

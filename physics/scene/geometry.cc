@@ -109,10 +109,10 @@ struct DistanceOf {
 
 }  // namespace
 
-int FindBody(const Scene& scene, const std::string& name) {
+BodyIndex FindBody(const Scene& scene, const std::string& name) {
   const auto it = std::find_if(scene.bodies.begin(), scene.bodies.end(),
                                [&](const Body& body) { return body.name == name; });
-  return it == scene.bodies.end() ? -1 : static_cast<int>(it - scene.bodies.begin());
+  return it == scene.bodies.end() ? kNone : BodyIndex(it - scene.bodies.begin());
 }
 
 double HalfWidthAlong(const LocalBox& box, const Pose& X_WB, const Eigen::Vector3d& direction_W) {

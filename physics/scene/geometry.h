@@ -9,8 +9,8 @@
 
 namespace prehend::physics {
 
-/// Index into Scene::bodies, or -1 if no body has this name.
-int FindBody(const Scene& scene, const std::string& name);
+/// None if no body has this name.
+BodyIndex FindBody(const Scene& scene, const std::string& name);
 
 /// Extent of the body from the centre of its bounding box in a world direction (unit), metres.
 double HalfWidthAlong(const LocalBox& box, const Pose& X_WB, const Eigen::Vector3d& direction_W);

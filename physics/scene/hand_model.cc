@@ -137,7 +137,7 @@ std::vector<Pose> LinkPoses(const HandModel& model, const std::vector<double>& j
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const HandLink& link = model.links[i];
     const Pose joint = JointMotion(link, joints[i]);
-    moved[i] = link.parent < 0 ? joint : moved[static_cast<std::size_t>(link.parent)] * joint;
+    moved[i] = link.parent == kNone ? joint : At(moved, link.parent) * joint;
     const Pose rest{link.pivot_m + link.direction * (link.length_m / 2),
                     RotationBetween(Eigen::Vector3d::UnitX(), link.direction)};
     centres[i] = moved[i] * rest;

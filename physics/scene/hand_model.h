@@ -9,13 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "physics/scene/ids.h"
 #include "physics/scene/pose.h"
 
 namespace prehend::physics {
 
 struct HandLink {
   std::string name;
-  int parent = -1;  ///< index into HandModel::links; -1 is the palm
+  LinkIndex parent = {};                              ///< none is the palm
   Eigen::Vector3d pivot_m = Eigen::Vector3d::Zero();  ///< of the joint, in H, all joints at zero
   Eigen::Vector3d direction =
       Eigen::Vector3d::UnitX();  ///< from the pivot along the link, unit, in H
@@ -90,6 +91,8 @@ struct HandModel {
   PidGains translation, rotation;
   JointDriver driver;
   std::vector<GraspStyle> styles;
+
+  const HandLink& link(LinkIndex index) const { return At(links, index); }
 };
 
 /// Target speed of the joint driver, rad/s or m/s: towards `target`, within the driver's limit.

@@ -8,21 +8,17 @@
 namespace prehend::physics {
 namespace {
 
-const Body& BodyAt(const Scene& scene, int body) {
-  return scene.bodies[static_cast<std::size_t>(body)];
-}
-
 /// Index of the body's own joint, or -1.
-int JointOf(const Scene& scene, int body) {
+int JointOf(const Scene& scene, BodyIndex body) {
   const auto it = std::find_if(scene.joints.begin(), scene.joints.end(),
                                [&](const Joint& joint) { return joint.body == body; });
   return it == scene.joints.end() ? -1 : static_cast<int>(it - scene.joints.begin());
 }
 
 double Position(const Scene& scene, const Joint& joint, const Pose& X_WBase, const Pose& X_WB) {
-  const Pose placed = BodyAt(scene, joint.base).X_WB.inverse() * BodyAt(scene, joint.body).X_WB;
+  const Pose placed = scene.body(joint.base).X_WB.inverse() * scene.body(joint.body).X_WB;
   const Pose now = X_WBase.inverse() * X_WB;
-  const Eigen::Vector3d axis_base = BodyAt(scene, joint.base).X_WB.q.conjugate() * joint.axis_W;
+  const Eigen::Vector3d axis_base = scene.body(joint.base).X_WB.q.conjugate() * joint.axis_W;
   if (joint.kind == JointKind::kSlider) return axis_base.dot(now.p_m - placed.p_m);
   if (joint.kind == JointKind::kHinge)
     return axis_base.dot(RotationVector(now.q * placed.q.conjugate()));
@@ -35,18 +31,18 @@ bool IsThing(const Body& body) {
   return !body.kinematic && !body.grains && body.abstract == Abstract::kNot;
 }
 
-std::span<const Eigen::Vector3d> GrainsOf(const Scene& scene, std::size_t body,
+std::span<const Eigen::Vector3d> GrainsOf(const Scene& scene, BodyIndex body,
                                           const Snapshot& snapshot) {
   std::size_t first = 0;
-  for (std::size_t i = 0; i < body; ++i)
+  for (std::size_t i = 0; i < body.index(); ++i)
     if (const auto& other = scene.bodies[i].grains) first += other->p_WG_m.size();
-  const std::vector<Eigen::Vector3d>& placed = scene.bodies[body].grains->p_WG_m;
+  const std::vector<Eigen::Vector3d>& placed = scene.body(body).grains->p_WG_m;
   if (first + placed.size() > snapshot.grains.size()) return placed;
   return std::span(snapshot.grains).subspan(first, placed.size());
 }
 
-bool MovesFreely(const Scene& scene, int body) {
-  const Body& moved = BodyAt(scene, body);
+bool MovesFreely(const Scene& scene, BodyIndex body) {
+  const Body& moved = scene.body(body);
   return !moved.fixed && IsThing(moved) && JointOf(scene, body) < 0;
 }
 
@@ -57,16 +53,16 @@ JointState StateOf(const Scene& scene, const Joint& joint, const Pose& X_WBase, 
 }
 
 void DescribeJoints(const Scene& scene, Snapshot& snapshot) {
-  const auto X_WB = [&](int body) { return snapshot.bodies[static_cast<std::size_t>(body)].X_WB; };
   snapshot.joints.resize(scene.joints.size());
   for (std::size_t i = 0; i < scene.joints.size(); ++i) {
     const Joint& joint = scene.joints[i];
-    snapshot.joints[i] = StateOf(scene, joint, X_WB(joint.base), X_WB(joint.body));
+    snapshot.joints[i] =
+        StateOf(scene, joint, snapshot.body(joint.base).X_WB, snapshot.body(joint.body).X_WB);
   }
 }
 
 Pose MotionAlong(const Scene& scene, const Joint& joint, const Pose& X_WBase, double change) {
-  const Pose since_placed = X_WBase * BodyAt(scene, joint.base).X_WB.inverse();
+  const Pose since_placed = X_WBase * scene.body(joint.base).X_WB.inverse();
   const Eigen::Vector3d axis_W = since_placed.q * joint.axis_W;
   if (joint.kind == JointKind::kSlider) return {axis_W * change};
   if (joint.kind != JointKind::kHinge) return {};
@@ -75,17 +71,19 @@ Pose MotionAlong(const Scene& scene, const Joint& joint, const Pose& X_WBase, do
   return {pivot_W_m - turn * pivot_W_m, turn};
 }
 
-int JointThatMoves(const Scene& scene, int body) { return JointOf(scene, RootOf(scene, body)); }
+int JointThatMoves(const Scene& scene, BodyIndex body) {
+  return JointOf(scene, RootOf(scene, body));
+}
 
-bool NeverTouch(const Scene& scene, int body, int other) {
-  const int a = RootOf(scene, body), b = RootOf(scene, other);
+bool NeverTouch(const Scene& scene, BodyIndex body, BodyIndex other) {
+  const BodyIndex a = RootOf(scene, body), b = RootOf(scene, other);
   return a == b || std::any_of(scene.joints.begin(), scene.joints.end(), [&](const Joint& joint) {
-           const int on = RootOf(scene, joint.base), hangs = RootOf(scene, joint.body);
+           const BodyIndex on = RootOf(scene, joint.base), hangs = RootOf(scene, joint.body);
            return (on == a && hangs == b) || (on == b && hangs == a);
          });
 }
 
-int RootOf(const Scene& scene, int body) {
+BodyIndex RootOf(const Scene& scene, BodyIndex body) {
   for (int joint = JointOf(scene, body); joint >= 0; joint = JointOf(scene, body)) {
     const Joint& j = scene.joints[static_cast<std::size_t>(joint)];
     if (j.kind != JointKind::kFixed) break;

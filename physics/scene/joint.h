@@ -20,13 +20,13 @@ Pose MotionAlong(const Scene& scene, const Joint& joint, const Pose& X_WBase, do
 
 /// Index of the joint that moves a body: its own, or for a body with a fixed joint that of its
 /// base, and so on; -1: none.
-int JointThatMoves(const Scene& scene, int body);
+int JointThatMoves(const Scene& scene, BodyIndex body);
 
 /// The body at the end of its chain of fixed joints, or itself. All bodies with the same root are
 /// one rigid body.
-int RootOf(const Scene& scene, int body);
+BodyIndex RootOf(const Scene& scene, BodyIndex body);
 
 /// Whether the two are one rigid body or the two sides of a joint. Such bodies do not collide.
-bool NeverTouch(const Scene& scene, int body, int other);
+bool NeverTouch(const Scene& scene, BodyIndex body, BodyIndex other);
 
 }  // namespace prehend::physics

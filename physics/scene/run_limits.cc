@@ -43,8 +43,8 @@ std::optional<RunProblem> CheckState(const std::string& name, const BodyState& s
 constexpr double kMaxMassRatio = 1000;
 
 double MassOf(const Scene& scene, const ContactSide& side) {
-  if (side.hand >= 0) return 0;
-  const Body& body = scene.bodies[static_cast<std::size_t>(side.body)];
+  if (side.hand != kNone) return 0;
+  const Body& body = scene.body(side.body);
   return body.fixed ? 0 : body.mass_kg;
 }
 
@@ -70,8 +70,7 @@ std::string AdviceFor(const Scene& scene, const Snapshot& snapshot, const Contac
 }
 
 const std::string& NameOf(const Scene& scene, const ContactSide& side) {
-  return side.hand >= 0 ? scene.hands[static_cast<std::size_t>(side.hand)].name
-                        : scene.bodies[static_cast<std::size_t>(side.body)].name;
+  return side.hand != kNone ? scene.hand(side.hand).name : scene.body(side.body).name;
 }
 
 }  // namespace

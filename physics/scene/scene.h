@@ -82,8 +82,8 @@ enum class JointKind {
 /// m, N, N s/m and N/m for a slider; rad, Nm, Nm s/rad and Nm/rad for a hinge.
 struct Joint {
   JointKind kind = JointKind::kFixed;
-  int body = 0;  ///< index into Scene::bodies; at most one joint per body
-  int base = 0;  ///< index into Scene::bodies; bases form no circle
+  BodyIndex body = BodyIndex(0);                        ///< at most one joint per body
+  BodyIndex base = BodyIndex(0);                        ///< bases form no circle
   Eigen::Vector3d pivot_W_m = Eigen::Vector3d::Zero();  ///< at the initial poses
   Eigen::Vector3d axis_W =
       Eigen::Vector3d::UnitX();  ///< unit, at the initial poses; positive direction
@@ -127,13 +127,13 @@ enum class Eyes {
 /// bodies of the scene, from `head` on, in the order of physics/person/skeleton.h.
 struct Person {
   std::string name;
-  int head = 0;            ///< index into Scene::bodies
+  BodyIndex head = BodyIndex(0);
   bool has_body = false;   ///< else there is only a head
   double height_m = 1.75;  ///< standing, from the floor to the crown
   Pose X_WS;               ///< her stance: between her feet on the floor, x ahead, z up
   Eyes eyes = Eyes::kLead;
-  int right_hand = -1;  ///< index into Scene::hands: the hand that her arm follows; -1: none
-  int left_hand = -1;
+  HandIndex right_hand = {};  ///< that her arm follows; or none
+  HandIndex left_hand = {};
 };
 
 enum class Engine {
@@ -158,6 +158,9 @@ struct Scene {
   std::vector<Joint> joints;
   std::vector<Hand> hands;
   std::vector<Person> persons;
+
+  const Body& body(BodyIndex index) const { return At(bodies, index); }
+  const Hand& hand(HandIndex index) const { return At(hands, index); }
 };
 
 /// Whether a body is a thing: it can carry others and be grasped. Parts of persons, grains and
@@ -165,7 +168,7 @@ struct Scene {
 bool IsThing(const Body& body);
 
 /// Whether a body can be picked up: it is a thing, not fixed, and no joint ties it to another body.
-bool MovesFreely(const Scene& scene, int body);
+bool MovesFreely(const Scene& scene, BodyIndex body);
 
 /// Tight oriented bounding box of a body, in its own frame B: centre and half sizes, metres.
 struct LocalBox {

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "physics/scene/ids.h"
 #include "physics/scene/pose.h"
 
 namespace prehend::physics {
@@ -37,11 +38,11 @@ struct HandState {
   int style = 0;  ///< index into HandModel::styles
 };
 
-/// One side of a contact: a body (hand == -1) or a link of a hand (link == -1 is the palm).
+/// One side of a contact: a body, or a link of a hand; the palm if there is no link.
 struct ContactSide {
-  int body = -1;
-  int hand = -1;
-  int link = -1;
+  BodyIndex body = {};
+  HandIndex hand = {};
+  LinkIndex link = {};
   friend auto operator<=>(const ContactSide&, const ContactSide&) = default;
 };
 
@@ -58,8 +59,8 @@ struct ContactPoint {
 struct GazeState {
   Eigen::Vector3d p_WE_m = Eigen::Vector3d::Zero();     ///< between the eyes
   Eigen::Vector3d toward_W = Eigen::Vector3d::UnitX();  ///< unit
-  int body = -1;                                        ///< index of the body that she sees, or -1
-  int hand = -1;                                        ///< index of the hand that she sees, or -1
+  BodyIndex body = {};                                  ///< that she sees, or none
+  HandIndex hand = {};                                  ///< likewise
   double distance_m = 0;                                ///< to the surface that she sees
 };
 
@@ -77,6 +78,9 @@ struct Snapshot {
   /// By body, the last tick at which it may have moved. Empty: unknown.
   std::vector<std::int64_t> moved_tick;
 
+  const BodyState& body(BodyIndex index) const { return At(bodies, index); }
+  const HandState& hand(HandIndex index) const { return At(hands, index); }
+
   /// False only if the state of the body is certainly the same as after the tick `since`.
   bool MayHaveMoved(std::size_t body, std::int64_t since) const {
     return body >= moved_tick.size() || moved_tick[body] > since;
@@ -89,7 +93,7 @@ struct Snapshot {
 
 struct Scene;
 /// Centres of the grains of a body; their initial positions if the snapshot has none.
-std::span<const Eigen::Vector3d> GrainsOf(const Scene& scene, std::size_t body,
+std::span<const Eigen::Vector3d> GrainsOf(const Scene& scene, BodyIndex body,
                                           const Snapshot& snapshot);
 
 }  // namespace prehend::physics

@@ -15,7 +15,7 @@ std::vector<std::vector<std::size_t>> RigidGroups(const Scene& scene) {
     if (!scene.bodies[i].grains) groups[i].push_back(i);
   }
   for (std::size_t i = 0; i < count; ++i) {
-    const auto root = static_cast<std::size_t>(RootOf(scene, static_cast<int>(i)));
+    const auto root = RootOf(scene, BodyIndex(i)).index();
     if (root == i) continue;
     groups[root].push_back(i);
     groups[i].clear();

@@ -42,8 +42,7 @@ class TouchingPairs {
   using Pairs = std::map<std::pair<ContactSide, ContactSide>, Pair>;
 
   bool Rests(const ContactSide& side) const {
-    return side.hand < 0 && static_cast<std::size_t>(side.body) < rested_.size() &&
-           rested_[static_cast<std::size_t>(side.body)] != 0;
+    return side.hand == kNone && side.body.IsBelow(rested_.size()) && At(rested_, side.body) != 0;
   }
   bool MovePairs(Pairs& from, Pairs& to, bool that_rest);
   void ShareResting();

@@ -62,14 +62,14 @@ double SpringForce(const Joint& joint, const JointPlace& place, int sharers, con
 }
 
 int SpringsOnOneBody(const Scene& scene, const Joint& joint) {
-  const auto springs_at = [&](int rigid) {
+  const auto springs_at = [&](BodyIndex rigid) {
     return static_cast<int>(std::ranges::count_if(scene.joints, [&](const Joint& other) {
       return (other.spring > 0 || other.damping > 0) &&
              (RootOf(scene, other.body) == rigid || RootOf(scene, other.base) == rigid);
     }));
   };
-  const int base = RootOf(scene, joint.base);
-  const int at_base = scene.bodies[static_cast<std::size_t>(base)].fixed ? 0 : springs_at(base);
+  const BodyIndex base = RootOf(scene, joint.base);
+  const int at_base = scene.body(base).fixed ? 0 : springs_at(base);
   return std::max({1, at_base, springs_at(RootOf(scene, joint.body))});
 }
 

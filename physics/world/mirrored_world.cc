@@ -68,7 +68,7 @@ class MirroredWorld final : public World {
     snapshot.resting = Resting();
   }
 
-  void MoveKinematic(int body, const Pose& X_WB) override {
+  void MoveKinematic(BodyIndex body, const Pose& X_WB) override {
     image_->MoveKinematic(body, InMirror(X_WB));
   }
 
@@ -108,8 +108,7 @@ bool LeftHandLeads(const Scene& scene, const Script& script) {
   if (lefts == std::ssize(scene.hands)) return true;
   for (const ScriptStage& stage : script.stages) {
     std::ptrdiff_t more_left = 0;
-    for (const Step& step : stage.steps)
-      more_left += is_left(scene.hands[static_cast<std::size_t>(step.hand)]) ? 1 : -1;
+    for (const Step& step : stage.steps) more_left += is_left(scene.hand(step.hand)) ? 1 : -1;
     if (more_left != 0) return more_left > 0;
   }
   return false;

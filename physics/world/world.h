@@ -23,11 +23,12 @@ struct SightLine {
   Eigen::Vector3d toward_W = Eigen::Vector3d::UnitX();  ///< unit
   double radius_m = 0.015;
   double length_m = 10;
-  int ignore_from = 0, ignore_to = 0;  ///< bodies that are transparent: [from, to)
+  /// Bodies that are transparent: [from, to).
+  BodyIndex ignore_from = BodyIndex(0), ignore_to = BodyIndex(0);
 };
 struct Sight {
-  int body = -1;
-  int hand = -1;
+  BodyIndex body = {};
+  HandIndex hand = {};
   double distance_m = 0;
 };
 
@@ -41,7 +42,7 @@ class World {
   virtual void Describe(Snapshot& snapshot) const = 0;
 
   /// Moves a kinematic body there during the next step. Only for scenes with persons.
-  virtual void MoveKinematic(int body, const Pose& X_WB);
+  virtual void MoveKinematic(BodyIndex body, const Pose& X_WB);
   /// The first surface that the sphere meets. Only for scenes with persons.
   virtual Sight Look(const SightLine& line) const;
 };

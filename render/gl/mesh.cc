@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/scene/check.h"
+
 namespace prehend::render {
 namespace {
 
@@ -109,9 +111,11 @@ Mesh HullMesh(const physics::Hull& hull) {
   Mesh mesh;
   for (const physics::Hull::Face& face : hull.faces) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const int corner : face.corners)
+    for (const int corner : face.corners) {
+      PREHEND_DCHECK(corner >= 0 && corner < std::ssize(hull.corners_m));
       mesh.vertices.push_back({hull.corners_m[static_cast<std::size_t>(corner)].cast<float>(),
                                face.nhat_S.cast<float>()});
+    }
     for (std::uint32_t i = 2; i < face.corners.size(); ++i)
       mesh.triangles.insert(mesh.triangles.end(), {first, first + i - 1, first + i});
   }

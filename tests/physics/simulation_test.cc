@@ -12,7 +12,7 @@ namespace prehend::physics {
 namespace {
 
 Script OneBeat(StepAction action, double over_s, double settle_s = 0.5) {
-  return {.stages = {{{{0, std::move(action), over_s}}}}, .settle_s = settle_s};
+  return {.stages = {{{{HandIndex(0), std::move(action), over_s}}}}, .settle_s = settle_s};
 }
 
 TEST(SimulationTest, EmptySceneCompletesAfterSettling) {
@@ -98,7 +98,7 @@ TEST(SimulationTest, WrapSucceedsForNineteenOfTwentyVariations) {
 TEST(SimulationTest, AHeldObjectSlidesAlongTheTable) {
   Script script = MakeScript({});
   script.stages.resize(2);
-  script.stages.push_back({{{0, MoveStep{{0, -0.25, 0}}, 1.0}}});
+  script.stages.push_back({{{HandIndex(0), MoveStep{{0, -0.25, 0}}, 1.0}}});
   Simulation simulation(MakeScene({}), script);
   int on_table = 0, moving = 0;
   while (simulation.Step()) {
@@ -106,7 +106,7 @@ TEST(SimulationTest, AHeldObjectSlidesAlongTheTable) {
     if (now.bodies[kObject].v_WB_m_per_s.head<2>().norm() < 0.1) continue;
     ++moving;
     for (const ContactPoint& contact : now.contacts) {
-      if (contact.a.body != kTable || contact.b.body != kObject) continue;
+      if (contact.a.body != BodyIndex(kTable) || contact.b.body != BodyIndex(kObject)) continue;
       ++on_table;
       break;
     }
@@ -125,7 +125,7 @@ TEST(SimulationTest, AnObjectTouchesItsSupportBeforeTheHandOpens) {
       stood = false;
       for (const auto& points : simulation.snapshot().AllContacts())
         for (const ContactPoint& contact : points)
-          stood |= contact.a.body == kTable && contact.b.body == kObject;
+          stood |= contact.a.body == BodyIndex(kTable) && contact.b.body == BodyIndex(kObject);
     }
     EXPECT_TRUE(stood);
     EXPECT_EQ(simulation.snapshot().hands[0].trigger, 1);
@@ -140,12 +140,11 @@ TEST(SimulationTest, GraspsAreFeltByFingersAndThumb) {
   }
   std::set<int> sets;
   for (const ContactPoint& contact : simulation.snapshot().contacts) {
-    if (contact.a.body != kObject && contact.b.body != kObject) continue;
-    const ContactSide& hand = contact.a.hand >= 0 ? contact.a : contact.b;
+    if (contact.a.body != BodyIndex(kObject) && contact.b.body != BodyIndex(kObject)) continue;
+    const ContactSide& hand = contact.a.hand != kNone ? contact.a : contact.b;
     const HandModel& model = simulation.scene().hands[0].model;
-    if (hand.hand >= 0)
-      sets.insert(hand.link < 0 ? model.palm_sensor_set
-                                : model.links[static_cast<std::size_t>(hand.link)].sensor_set);
+    if (hand.hand != kNone)
+      sets.insert(hand.link == kNone ? model.palm_sensor_set : model.link(hand.link).sensor_set);
   }
   EXPECT_GE(sets.size(), 2u);
 }
@@ -164,7 +163,7 @@ TEST(SimulationTest, ASecondReachFindsAnObjectThatWasMoved) {
 
 TEST(SimulationTest, AWaitUntilTheObjectSleepsChangesNothing) {
   Script script = MakeScript({});
-  script.stages.insert(script.stages.begin(), ScriptStage{{{0, WaitStep{}, 3}}});
+  script.stages.insert(script.stages.begin(), ScriptStage{{{HandIndex(0), WaitStep{}, 3}}});
   Simulation simulation(MakeScene({}), script);
   bool slept = false;
   double highest = 0;

@@ -19,21 +19,21 @@ Texts NotesOf(const Scene& scene, const Script& script) {
   EXPECT_EQ(simulation.status().kind, RunStatus::Kind::kCompleted) << simulation.status().reason;
   Texts texts;
   for (const ScriptNote& note : simulation.notes()) {
-    texts.push_back(
-        (note.hand < 0 ? "" : scene.hands[static_cast<std::size_t>(note.hand)].name + ": ") +
-        note.text);
+    texts.push_back((note.hand == kNone ? "" : scene.hand(note.hand).name + ": ") + note.text);
   }
   return texts;
 }
 
-ScriptStage One(StepAction action, double over_s) { return {{{0, std::move(action), over_s}}}; }
+ScriptStage One(StepAction action, double over_s) {
+  return {{{HandIndex(0), std::move(action), over_s}}};
+}
 
 /// The object slides along x, away from the hand.
 Scene OnASlider() {
   Scene scene = MakeScene({});
   scene.joints.push_back({.kind = JointKind::kSlider,
-                          .body = kObject,
-                          .base = kTable,
+                          .body = BodyIndex(kObject),
+                          .base = BodyIndex(kTable),
                           .axis_W = Vector3d::UnitX(),
                           .lower = 0,
                           .upper = 0.2});
@@ -58,11 +58,11 @@ TEST(StepWatch, AJointThatFollowsIsNotNoted) {
 Scene WithAnna(bool led, const Vector3d& hand_at_m = {-0.2, -0.1, 1.05}) {
   Scene scene = MakeScene({.hand_at_m = hand_at_m});
   Person person{.name = "anna",
-                .head = static_cast<int>(scene.bodies.size()),
+                .head = BodyIndex(scene.bodies.size()),
                 .has_body = true,
                 .X_WS = {{-0.65, 0, 0}},
                 .eyes = Eyes::kAhead,
-                .right_hand = led ? 0 : -1};
+                .right_hand = HandIndex(led ? 0 : -1)};
   const std::vector<Pose> places = PlacesOf(person, Standing(scene, person), {});
   for (std::size_t i = 0; Body & part : PartsOf(person)) {
     part.X_WB = places[i++];

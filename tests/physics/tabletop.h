@@ -57,7 +57,7 @@ struct PickAndPlace {
 inline Script MakeScript(const PickAndPlace& p) {
   Script script;
   const auto add = [&](StepAction action, double over_s) {
-    script.stages.push_back({{{0, action, over_s}}});
+    script.stages.push_back({{{HandIndex(0), action, over_s}}});
   };
   add(ReachStep{"object", p.style, p.approach}, 0.8);
   add(TriggerStep{1}, 0.6);

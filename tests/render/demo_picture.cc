@@ -112,7 +112,7 @@ physics::HandModel DemoHandModel() {
     const Vector3d axis =
         thumb ? Vector3d(0.3, 0.3, 0.9).cross(direction).normalized() : Vector3d::UnitY();
     for (int i = 0; i < 3; ++i) {
-      const int parent = i == 0 ? -1 : static_cast<int>(model.links.size()) - 1;
+      const physics::LinkIndex parent(i == 0 ? -1 : static_cast<int>(model.links.size()) - 1);
       model.links.push_back({.name = "link",
                              .parent = parent,
                              .pivot_m = pivot,
@@ -134,7 +134,7 @@ physics::HandState DemoHandState(const physics::HandModel& model, const Pose& X_
   // X_WJ: the hand's frame carried along by all joints up to a link.
   std::vector<Pose> X_WJ;
   for (const physics::HandLink& link : model.links) {
-    const Pose X_WP = link.parent < 0 ? X_WH : X_WJ[link.parent];
+    const Pose X_WP = link.parent == physics::kNone ? X_WH : At(X_WJ, link.parent);
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(curl_rad, link.joint_axis));
     X_WJ.push_back(X_WP * Pose{link.pivot_m, turn} *
                    Pose{-link.pivot_m, Eigen::Quaterniond::Identity()});
@@ -172,14 +172,18 @@ Picture DemoPicture(const physics::Scene& scene) {
   picture.path = DemoPath();
   const auto point = [&](int stretch, int i) { return picture.path[stretch].points_m[i]; };
   picture.snapshot = At(scene, point(1, 14), 0.62, false);
-  picture.ghosts = {{.hand = 0, .snapshot = At(scene, point(0, 0), 0.15, false), .tint = kReaching},
-                    {.hand = 0, .snapshot = At(scene, point(0, 30), 0.2, false), .tint = kReaching},
-                    {.hand = 0,
-                     .bodies = {1},
+  picture.ghosts = {{.hand = physics::HandIndex(0),
+                     .snapshot = At(scene, point(0, 0), 0.15, false),
+                     .tint = kReaching},
+                    {.hand = physics::HandIndex(0),
+                     .snapshot = At(scene, point(0, 30), 0.2, false),
+                     .tint = kReaching},
+                    {.hand = physics::HandIndex(0),
+                     .bodies = {physics::BodyIndex(1)},
                      .snapshot = At(scene, point(3, 34), 0.62, true),
                      .tint = kTransporting},
-                    {.hand = 0,
-                     .bodies = {1},
+                    {.hand = physics::HandIndex(0),
+                     .bodies = {physics::BodyIndex(1)},
                      .snapshot = At(scene, point(5, 36), 0.62, true),
                      .tint = kSliding}};
   picture.markers = {{MarkerKind::kContact, {0.172f, 0.055f, 0.88f}, {0.012f, 0.02f, 0.03f}},

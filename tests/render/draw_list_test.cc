@@ -122,10 +122,13 @@ TEST(DrawListTest, APaleBodyIsAGhost) {
 
 TEST(DrawListTest, AHandWithAPersonsArmHasNoOtherForearm) {
   physics::Scene scene = DemoScene();
-  scene.persons.push_back({.name = "anna", .head = -1, .has_body = true, .right_hand = 0});
+  scene.persons.push_back({.name = "anna",
+                           .head = physics::kNone,
+                           .has_body = true,
+                           .right_hand = physics::HandIndex(0)});
   Picture picture{.scene = &scene, .snapshot = DemoPicture(scene).snapshot};
   EXPECT_TRUE(MakeDrawList(picture).ghosts.empty());
-  scene.persons[0].right_hand = -1;
+  scene.persons[0].right_hand = physics::kNone;
   EXPECT_EQ(MakeDrawList(picture).ghosts.size(), 1u);
 }
 
@@ -243,7 +246,9 @@ TEST(DrawListTest, WhatIsNotFiniteIsSkipped) {
 TEST(DrawListTest, IndicesThatTheSceneDoesNotHaveAreSkipped) {
   const physics::Scene scene = DemoScene();
   Picture picture{.scene = &scene};
-  picture.ghosts = {{.hand = 7}, {.hand = -1, .bodies = {-1, 99}}, {.hand = 0}};
+  picture.ghosts = {{.hand = physics::HandIndex(7)},
+                    {.hand = physics::kNone, .bodies = {physics::kNone, physics::BodyIndex(99)}},
+                    {.hand = physics::HandIndex(0)}};
   const DrawList list = MakeDrawList(picture);
   EXPECT_EQ(list.ghosts.size(), 3u);
   for (const auto& ghost : list.ghosts) EXPECT_TRUE(ghost.empty());
@@ -251,7 +256,8 @@ TEST(DrawListTest, IndicesThatTheSceneDoesNotHaveAreSkipped) {
 
 TEST(DrawListTest, WithoutASceneThereAreStillPaths) {
   const DrawList list = MakeDrawList(
-      {.path = {{"a", {1, 0, 0}, {{0, 0, 0}, {1, 0, 0}}}}, .ghosts = {{.hand = 0, .bodies = {0}}}});
+      {.path = {{"a", {1, 0, 0}, {{0, 0, 0}, {1, 0, 0}}}},
+       .ghosts = {{.hand = physics::HandIndex(0), .bodies = {physics::BodyIndex(0)}}}});
   EXPECT_EQ(list.meshes.size(), 1u);
   EXPECT_TRUE(list.ghosts.empty());
 }

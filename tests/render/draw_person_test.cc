@@ -13,7 +13,7 @@ namespace {
 class DrawPersonTest : public testing::Test {
  protected:
   DrawPersonTest() {
-    const physics::Person anna{.name = "anna", .head = 0, .has_body = true};
+    const physics::Person anna{.name = "anna", .head = physics::BodyIndex(0), .has_body = true};
     const std::pair<const char*, double> parts[] = {{"anna", 0.05},
                                                     {"anna_neck", 0.09},
                                                     {"anna_chest", 0.1},

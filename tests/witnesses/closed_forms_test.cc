@@ -153,14 +153,14 @@ TEST(ClosedForms, WhatAHandTouchesIsWhereItIs) {
     const ClosedFormRecording& recording = form->recordings.front();
     for (const physics::Snapshot& frame : recording.frames) {
       for (const physics::ContactPoint& point : frame.contacts) {
-        if (point.a.hand < 0) continue;  // hands come before bodies
+        if (point.a.hand == physics::kNone) continue;  // hands come before bodies
         ++touches;
-        const physics::HandState& hand = frame.hands[static_cast<std::size_t>(point.a.hand)];
+        const physics::HandState& hand = frame.hand(point.a.hand);
         const physics::Pose& X_WL =
-            point.a.link < 0 ? hand.palm.X_WB : hand.X_WL[static_cast<std::size_t>(point.a.link)];
-        const auto body = static_cast<std::size_t>(point.b.body);
-        const double distance_m = physics::DistanceTo(recording.scenario.scene.bodies[body],
-                                                      frame.bodies[body].X_WB.inverse() * X_WL.p_m);
+            point.a.link == physics::kNone ? hand.palm.X_WB : At(hand.X_WL, point.a.link);
+        const double distance_m =
+            physics::DistanceTo(recording.scenario.scene.body(point.b.body),
+                                frame.body(point.b.body).X_WB.inverse() * X_WL.p_m);
         ASSERT_NEAR(distance_m, 0, kNear_m) << form->name << " at tick " << frame.tick;
       }
     }

@@ -43,13 +43,13 @@ TEST(BuildJoints, ADrawerWithAHandle) {
   const auto& joints = read->scene.joints;
   ASSERT_EQ(joints.size(), 2u);
   EXPECT_EQ(joints[0].kind, JointKind::kSlider);
-  EXPECT_EQ(joints[0].body, 1);
-  EXPECT_EQ(joints[0].base, 0);
+  EXPECT_EQ(joints[0].body, physics::BodyIndex(1));
+  EXPECT_EQ(joints[0].base, physics::BodyIndex(0));
   EXPECT_LT((joints[0].axis_W + Vector3d::UnitX()).norm(), 1e-12);
   EXPECT_EQ(joints[0].upper, 0.3);
   EXPECT_EQ(joints[0].friction, 3);
   EXPECT_EQ(joints[1].kind, JointKind::kFixed);
-  EXPECT_EQ(joints[1].base, 1);
+  EXPECT_EQ(joints[1].base, physics::BodyIndex(1));
   const grammar::EntityTable entity_table = MakeEntityTable(*read);
   EXPECT_EQ(entity_table.entities[2].part_of, 1);
   EXPECT_EQ(entity_table.entities[1].part_of, grammar::kNoEntity);

@@ -33,8 +33,8 @@ TEST(PersonsTest, ABodyIsAnEntityWithParts) {
   ASSERT_TRUE(read) << Brief(ErrorsOf(read));
   const Scenario& scenario = *read;
   ASSERT_EQ(scenario.scene.persons.size(), 1u);
-  EXPECT_EQ(scenario.scene.persons[0].head, 2);
-  EXPECT_EQ(scenario.scene.persons[0].right_hand, 0);
+  EXPECT_EQ(scenario.scene.persons[0].head, physics::BodyIndex(2));
+  EXPECT_EQ(scenario.scene.persons[0].right_hand, physics::HandIndex(0));
   EXPECT_EQ(scenario.scene.bodies.size(), 2u + 18u);
   const grammar::EntityTable entity_table = MakeEntityTable(scenario);
   EXPECT_EQ(entity_table.entities[2].name, "anna");

@@ -124,7 +124,7 @@ physics::HandModel Fingers() {
   physics::HandModel model;
   model.links.resize(3);
   model.links[0].joint_axis = {0, 1, 0};
-  model.links[1].parent = 0;
+  model.links[1].parent = physics::LinkIndex(0);
   model.links[1].joint_axis = {0.6, 0, 0.8};
   model.links[1].pivot_m = {0.03, 0.01, 0};
   model.links[2].slides = true;

@@ -2,6 +2,7 @@
 // Snapshots -> chunks -> snapshots, bit by bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <random>
 
@@ -15,7 +16,7 @@ namespace {
 physics::HandModel TwoLinks() {
   physics::HandModel model;
   model.links.resize(2);
-  model.links[1].parent = 0;
+  model.links[1].parent = physics::LinkIndex(0);
   model.links[1].slides = true;
   model.links[1].pivot_m = {0.03, 0, 0};
   model.styles.resize(2);
@@ -49,8 +50,8 @@ std::vector<physics::Snapshot> Frames(std::size_t count) {
       now.moved_tick[2] = now.tick;
     }
     if (i % 300 == 50) {
-      resting = std::make_shared<const ContactPoints>(
-          ContactPoints(1 + i % 3, {.a = {.body = 0}, .b = {.body = 2}}));
+      resting = std::make_shared<const ContactPoints>(ContactPoints(
+          1 + i % 3, {.a = {.body = physics::BodyIndex(0)}, .b = {.body = physics::BodyIndex(2)}}));
     }
     if (i == 900) resting.reset();
     now.resting = resting;
@@ -68,12 +69,13 @@ std::vector<physics::Snapshot> Frames(std::size_t count) {
       hand.X_WL[link] = placed[link + 1].X_WL[0];
     }
     if (i >= 480) hand.X_WL[1].p_m.x() += 1e-15 * any(random);
-    now.gazes[0].body = static_cast<int>(i % 4) - 1;
+    now.gazes[0].body = physics::BodyIndex(static_cast<int>(i % 4) - 1);
     now.contacts.clear();
     for (std::size_t k = 0; k < i / 10 % 4; ++k)
       now.contacts.push_back(
-          {.a = {.body = 1},
-           .b = {.hand = 0, .link = static_cast<int>(k) - 1 > 1 ? 1 : static_cast<int>(k) - 1},
+          {.a = {.body = physics::BodyIndex(1)},
+           .b = {.hand = physics::HandIndex(0),
+                 .link = physics::LinkIndex(std::min(static_cast<int>(k) - 1, 1))},
            .p_W_m = {any(random), t, 0},
            .normal_impulse_n_s = any(random)});
     frames.push_back(now);

@@ -33,8 +33,8 @@ struct Stage {
       const bool in_the_air = tick >= 10 && tick < 20;
       if (!in_the_air) {
         physics::ContactPoint point;
-        point.a.body = 0;
-        point.b.body = 1;
+        point.a.body = physics::BodyIndex(0);
+        point.b.body = physics::BodyIndex(1);
         point.normal_impulse_n_s = 0.01;
         snapshot.contacts.push_back(point);
       }

@@ -39,9 +39,10 @@ class Stage {
     Eigen::Vector3d from_a_m = Eigen::Vector3d::Zero();  ///< from the origin of body a
     double impulse_n_s = 0;
   };
-  static physics::ContactSide BodySide(int body) { return {.body = body}; }
+  static physics::ContactSide BodySide(int body) { return {.body = physics::BodyIndex(body)}; }
   static physics::ContactSide HandSide(int hand, int sensor_set) {
-    return {.hand = hand, .link = sensor_set == 2 ? -1 : sensor_set};
+    return {.hand = physics::HandIndex(hand),
+            .link = physics::LinkIndex(sensor_set == 2 ? -1 : sensor_set)};
   }
 
   /// `ticks_per_frame` is how often it is sensed; the world runs at 480 Hz.
@@ -130,7 +131,7 @@ class Stage {
     for (const Contact& contact : all)
       frame.contacts.push_back({.a = contact.a,
                                 .b = contact.b,
-                                .p_W_m = body(contact.a.body).X_WB.p_m + contact.from_a_m,
+                                .p_W_m = body(contact.a.body.number()).X_WB.p_m + contact.from_a_m,
                                 .nhat_BA_W = contact.nhat_BA_W,
                                 .normal_impulse_n_s = contact.impulse_n_s});
     frames_.push_back(frame);

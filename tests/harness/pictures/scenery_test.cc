@@ -115,20 +115,23 @@ TEST(SceneryTest, APersonIsPaleWhereSheHidesWhatMovesOrIsTouched) {
   room.now.bodies[1].v_WB_m_per_s = {0, 0.1, 0};
   EXPECT_LT(alpha(), 0.5f) << "moves";
   room.now.bodies[1].v_WB_m_per_s.setZero();
-  room.now.contacts = {{.a = {.body = 0}, .b = {.body = 1}}};
+  room.now.contacts = {
+      {.a = {.body = physics::BodyIndex(0)}, .b = {.body = physics::BodyIndex(1)}}};
   EXPECT_LT(alpha(), 0.5f) << "touched";
 }
 
 TEST(SceneryTest, AGazeEndsAtWhatIsSeen) {
   Room room;
   room.scenario.scene.persons.push_back({.name = "anna"});
-  room.now.gazes.push_back(
-      {.p_WE_m = {0, 0, 1}, .toward_W = {0, 1, 0}, .body = 0, .distance_m = 0.7});
+  room.now.gazes.push_back({.p_WE_m = {0, 0, 1},
+                            .toward_W = {0, 1, 0},
+                            .body = physics::BodyIndex(0),
+                            .distance_m = 0.7});
   auto rays = GazesOf(room.scenario.scene, room.now);
   ASSERT_EQ(rays.size(), 1u);
   EXPECT_TRUE(rays[0].hits);
   EXPECT_LT((rays[0].to_m - Eigen::Vector3f(0, 0.7f, 1)).norm(), 1e-6f);
-  room.now.gazes[0].body = -1;
+  room.now.gazes[0].body = physics::kNone;
   rays = GazesOf(room.scenario.scene, room.now);
   EXPECT_FALSE(rays[0].hits);
 }

@@ -95,8 +95,8 @@ TEST(ReadScenario, TwoActorsInOneBeat) {
   const Scenario scenario = Read(text);
   const physics::ScriptStage& stage = scenario.script.stages[1];
   ASSERT_EQ(stage.steps.size(), 2u);
-  EXPECT_EQ(stage.steps[0].hand, 1);
-  EXPECT_EQ(stage.steps[1].hand, 0);
+  EXPECT_EQ(stage.steps[0].hand, physics::HandIndex(1));
+  EXPECT_EQ(stage.steps[1].hand, physics::HandIndex(0));
   EXPECT_EQ(scenario.script.settle_s, 0);
 }
 

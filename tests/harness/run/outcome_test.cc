@@ -108,7 +108,9 @@ TEST(Outcome, OfGrainsAShareIsInside) {
     ConditionYaml wanted{.entity = "peas"};
     wanted.inside = Located<std::string>{"cup", {}};
     wanted.share = share;
-    const std::vector<Outcome> outcomes = {{"kept", {{.body = 1, .vessel = 0, .wanted = wanted}}}};
+    const std::vector<Outcome> outcomes = {
+        {"kept",
+         {{.body = physics::BodyIndex(1), .vessel = physics::BodyIndex(0), .wanted = wanted}}}};
     return OutcomeWatch(scene, outcomes).Judge(snapshot);
   };
   EXPECT_EQ(judge(0.75), "kept");

@@ -44,13 +44,13 @@ void Vary(physics::Script& script, physics::Random& random) {
 
 /// A hand opens, perhaps after it has placed a thing.
 struct Opening {
-  int body = -1, support = -1;  ///< -1: nothing was placed
-  std::int64_t tick = -1;       ///< at which it began; -1: not yet
-  bool stood = false;           ///< then
+  physics::BodyIndex body = {}, support = {};  ///< none: nothing was placed
+  std::int64_t tick = -1;                      ///< at which it began; -1: not yet
+  bool stood = false;                          ///< then
 };
 
 /// The openings of one hand, in their order.
-std::vector<Opening> OpeningsOf(const Scenario& scenario, int hand) {
+std::vector<Opening> OpeningsOf(const Scenario& scenario, physics::HandIndex hand) {
   std::vector<Opening> openings;
   Opening next;
   double trigger = 0;
@@ -59,12 +59,12 @@ std::vector<Opening> OpeningsOf(const Scenario& scenario, int hand) {
       if (step.hand != hand) continue;
       if (const auto* reach = std::get_if<physics::ReachStep>(&step.action)) {
         next.body = physics::FindBody(scenario.scene, reach->object);
-        next.support = -1;
+        next.support = physics::kNone;
       } else if (const auto* place = std::get_if<physics::PlaceStep>(&step.action)) {
         next.support = physics::FindBody(scenario.scene, place->support);
       } else if (const auto* moved = std::get_if<physics::TriggerStep>(&step.action)) {
         if (moved->trigger < trigger) openings.push_back(next);
-        if (moved->trigger != trigger) next.support = -1;
+        if (moved->trigger != trigger) next.support = physics::kNone;
         trigger = moved->trigger;
       }
     }
@@ -72,10 +72,10 @@ std::vector<Opening> OpeningsOf(const Scenario& scenario, int hand) {
   return openings;
 }
 
-bool Touch(const physics::Snapshot& now, int a, int b) {
+bool Touch(const physics::Snapshot& now, physics::BodyIndex a, physics::BodyIndex b) {
   for (const auto& points : now.AllContacts()) {
     for (const physics::ContactPoint& point : points) {
-      if (point.a.hand >= 0 || point.b.hand >= 0) continue;
+      if (point.a.hand != physics::kNone || point.b.hand != physics::kNone) continue;
       if ((point.a.body == a && point.b.body == b) || (point.a.body == b && point.b.body == a))
         return true;
     }
@@ -93,7 +93,7 @@ Complaints Play(const LoadedRun& loaded, const Scenario& scenario) {
   const std::size_t hands = scenario.scene.hands.size();
   std::vector<std::vector<Opening>> openings;
   for (std::size_t h = 0; h < hands; ++h)
-    openings.push_back(OpeningsOf(scenario, static_cast<int>(h)));
+    openings.push_back(OpeningsOf(scenario, physics::HandIndex(h)));
   std::vector<std::size_t> begun(hands, 0);
   std::vector<double> trigger(hands, 0);
   std::vector<bool> opening(hands, false);
@@ -107,7 +107,7 @@ Complaints Play(const LoadedRun& loaded, const Scenario& scenario) {
       if (opens && !opening[h] && begun[h] < openings[h].size()) {
         Opening& begins = openings[h][begun[h]++];
         begins.tick = now.tick;
-        begins.stood = begins.support < 0 || Touch(now, begins.body, begins.support);
+        begins.stood = begins.support == physics::kNone || Touch(now, begins.body, begins.support);
       }
       opening[h] = is != trigger[h] ? opens : opening[h] && is > 0;
       trigger[h] = is;
@@ -120,8 +120,8 @@ Complaints Play(const LoadedRun& loaded, const Scenario& scenario) {
   const double rate_hz = scenario.scene.world.rate_hz;
   for (std::size_t h = 0; h < hands; ++h) {
     for (const Opening& placed : openings[h]) {
-      if (placed.support < 0) continue;
-      const std::string& name = scenario.scene.bodies[static_cast<std::size_t>(placed.body)].name;
+      if (placed.support == physics::kNone) continue;
+      const std::string& name = scenario.scene.body(placed.body).name;
       const std::string roles = "(" + scenario.scene.hands[h].name + ", " + name + ")";
       std::string hovers = placed.stood ? "" : "does not stand when the hand opens";
       grammar::Tick down = -1;

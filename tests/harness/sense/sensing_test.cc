@@ -36,8 +36,12 @@ physics::Snapshot StillSnapshot(std::int64_t tick) {
   return snapshot;
 }
 
-constexpr physics::ContactSide kTable{.body = 0}, kBox{.body = 1}, kPalm{.hand = 0, .link = -1};
-constexpr physics::ContactSide kFinger{.hand = 0, .link = 0}, kThumb{.hand = 0, .link = 1};
+constexpr physics::ContactSide kTable{.body = physics::BodyIndex(0)},
+    kBox{.body = physics::BodyIndex(1)},
+    kPalm{.hand = physics::HandIndex(0), .link = physics::kNone};
+constexpr physics::ContactSide kFinger{.hand = physics::HandIndex(0),
+                                       .link = physics::LinkIndex(0)},
+    kThumb{.hand = physics::HandIndex(0), .link = physics::LinkIndex(1)};
 
 physics::ContactPoint Point(physics::ContactSide a, physics::ContactSide b, double up,
                             double impulse) {
@@ -47,7 +51,8 @@ physics::ContactPoint Point(physics::ContactSide a, physics::ContactSide b, doub
 
 TEST(Sensing, TellsWhereAJointStands) {
   physics::Scene scene = TwoBodiesAndAHand();
-  scene.joints.push_back({.kind = physics::JointKind::kSlider, .body = 1, .upper = 0.4});
+  scene.joints.push_back(
+      {.kind = physics::JointKind::kSlider, .body = physics::BodyIndex(1), .upper = 0.4});
   physics::Snapshot snapshot = StillSnapshot(1);
   snapshot.joints = {{.position = 0.1, .fraction = 0.25}};
   Sensing sensing(scene, {.sensing_hz = 480});

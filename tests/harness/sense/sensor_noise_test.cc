@@ -31,8 +31,10 @@ struct Still {
     snapshot.hands.resize(1);
     snapshot.hands[0].palm.X_WB.p_m = {0, 0, 0.4};
     snapshot.hands[0].X_WL = {{{0.1, 0, 0.4}}};
-    snapshot.contacts = {
-        {.a = {.body = 0}, .b = {.body = 1}, .nhat_BA_W = {0, 0, -1}, .normal_impulse_n_s = 0.02}};
+    snapshot.contacts = {{.a = {.body = physics::BodyIndex(0)},
+                          .b = {.body = physics::BodyIndex(1)},
+                          .nhat_BA_W = {0, 0, -1},
+                          .normal_impulse_n_s = 0.02}};
   }
 
   physics::Snapshot At(std::int64_t tick) const {

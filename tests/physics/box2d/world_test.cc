@@ -47,7 +47,7 @@ Scene GripperScene(const Setting& setting) {
 Script PickAndPlace(double offset_m) {
   Script script;
   const auto add = [&](StepAction action, double over_s) {
-    script.stages.push_back({{{0, std::move(action), over_s}}});
+    script.stages.push_back({{{HandIndex(0), std::move(action), over_s}}});
   };
   add(ReachStep{"object", "parallel", Approach::kAuto, {offset_m, 0, 0}}, 0.8);
   add(TriggerStep{1}, 0.6);

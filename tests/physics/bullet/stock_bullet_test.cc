@@ -74,8 +74,8 @@ double SlideOnATippingBoard_m(Engine engine) {
                    .friction = 0.2,
                    .X_WB = {{0.1, 0, 1.04}}}};
   scene.joints = {{.kind = JointKind::kHinge,
-                   .body = 1,
-                   .base = 0,
+                   .body = BodyIndex(1),
+                   .base = BodyIndex(0),
                    .pivot_W_m = {0, 0, 1},
                    .axis_W = Eigen::Vector3d::UnitY(),
                    .lower = -kEnd_rad,

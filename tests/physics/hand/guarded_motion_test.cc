@@ -12,7 +12,10 @@ namespace prehend::physics {
 namespace {
 
 Step Guarded(StepAction action, double over_s, Until until) {
-  return {.hand = 0, .action = std::move(action), .over_s = over_s, .until = std::move(until)};
+  return {.hand = HandIndex(0),
+          .action = std::move(action),
+          .over_s = over_s,
+          .until = std::move(until)};
 }
 
 struct Played {
@@ -27,15 +30,15 @@ TEST(GuardedMotion, EndsWhenTheHandTouches) {
   const Scene scene = MakeScene({.hand_at_m = {-0.3, -0.2, 1.0}});
   Script script;
   script.stages = {{{Guarded(MoveStep{{0, 0, -0.4}}, 4, {.thing = "table"})}},
-                   {{{0, MoveStep{{0, 0, 0.05}}, 0.5}}}};
+                   {{{HandIndex(0), MoveStep{{0, 0, 0.05}}, 0.5}}}};
   script.settle_s = 0.3;
   const Played played(scene, script);
   EXPECT_EQ(played.simulation.status().kind, RunStatus::Kind::kCompleted)
       << played.simulation.status().reason;
   EXPECT_LT(played.simulation.snapshot().tick, 480 * 4) << "shorter than planned";
   const Snapshot& now = played.simulation.snapshot();
-  const HandClearance clearance(scene, 0, now.hands[0].joints);
-  EXPECT_NEAR(clearance.To(kTable, now.hands[0].palm.X_WB, now), 0.05, 0.01)
+  const HandClearance clearance(scene, HandIndex(0), now.hands[0].joints);
+  EXPECT_NEAR(clearance.To(BodyIndex(kTable), now.hands[0].palm.X_WB, now), 0.05, 0.01)
       << "it goes up from where it was stopped";
 }
 
@@ -60,8 +63,8 @@ TEST(GuardedMotion, StopsAtAGap) {
   script.settle_s = 0.5;
   const Played played(scene, script);
   const Snapshot& now = played.simulation.snapshot();
-  const HandClearance clearance(scene, 0, now.hands[0].joints);
-  EXPECT_NEAR(clearance.To(kTable, now.hands[0].palm.X_WB, now), 0.02, 0.003);
+  const HandClearance clearance(scene, HandIndex(0), now.hands[0].joints);
+  EXPECT_NEAR(clearance.To(BodyIndex(kTable), now.hands[0].palm.X_WB, now), 0.02, 0.003);
 }
 
 TEST(GuardedMotion, AFastHandBrakesBeforeItsGap) {
@@ -74,8 +77,8 @@ TEST(GuardedMotion, AFastHandBrakesBeforeItsGap) {
   double least_m = 1;
   while (simulation.Step()) {
     const Snapshot& now = simulation.snapshot();
-    const HandClearance clearance(scene, 0, now.hands[0].joints);
-    least_m = std::min(least_m, clearance.To(kTable, now.hands[0].palm.X_WB, now));
+    const HandClearance clearance(scene, HandIndex(0), now.hands[0].joints);
+    least_m = std::min(least_m, clearance.To(BodyIndex(kTable), now.hands[0].palm.X_WB, now));
   }
   EXPECT_EQ(simulation.status().kind, RunStatus::Kind::kCompleted) << simulation.status().reason;
   EXPECT_NEAR(least_m, 0.005, 0.0015);
@@ -95,7 +98,8 @@ TEST(GuardedMotion, AHeldThingTouchesToo) {
 /// The target at the end of one step, in a world that does not move.
 Pose EndOf(const Scene& scene, StepAction action) {
   Simulation still(scene, {});
-  ScriptPlayer player(scene, {.stages = {{{{0, std::move(action), 1}}}}, .settle_s = 0.1});
+  ScriptPlayer player(scene,
+                      {.stages = {{{{HandIndex(0), std::move(action), 1}}}}, .settle_s = 0.1});
   Pose last;
   while (const auto* commands = player.Advance(still.snapshot()))
     last = commands->front().target.X_WH;
@@ -166,14 +170,15 @@ TEST(GuardedMotion, PressesWithTheForceThatIsAsked) {
   const Scene scene = MakeScene({.hand_at_m = {-0.3, -0.2, 0.9}});
   Script script;
   script.stages = {{{Guarded(MoveStep{{0, 0, -0.3}}, 2, {.thing = "table"})}},
-                   {{{0, PressStep{"table", 10}, 1.5}}}};
+                   {{{HandIndex(0), PressStep{"table", 10}, 1.5}}}};
   script.settle_s = 0;
   Simulation simulation(scene, script);
   std::vector<double> force_n;
   while (simulation.Step()) {
     double impulse_n_s = 0;
     for (const ContactPoint& contact : simulation.snapshot().contacts)
-      if (contact.a.hand == 0 || contact.b.hand == 0) impulse_n_s += contact.normal_impulse_n_s;
+      if (contact.a.hand == HandIndex(0) || contact.b.hand == HandIndex(0))
+        impulse_n_s += contact.normal_impulse_n_s;
     force_n.push_back(impulse_n_s * scene.world.rate_hz);
   }
   ASSERT_GT(force_n.size(), 480u);

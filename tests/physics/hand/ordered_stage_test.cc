@@ -21,8 +21,8 @@ Scene TwoHands() {
   return scene;
 }
 
-Step Named(int hand, StepAction action, double over_s, StepOrder order) {
-  Step step{hand, std::move(action), over_s};
+Step Named(std::size_t hand, StepAction action, double over_s, StepOrder order) {
+  Step step{HandIndex(hand), std::move(action), over_s};
   step.order = std::move(order);
   return step;
 }
@@ -76,10 +76,10 @@ TEST(OrderedStage, OneHandWaitsForTheOther) {
 
 TEST(OrderedStage, AGuardedStepEndsEarlyAndTheNextBegins) {
   Scene scene = TwoHands();
-  Step down{0, MoveStep{{0, 0, -0.5}}, 5};
+  Step down{HandIndex(0), MoveStep{{0, 0, -0.5}}, 5};
   down.until = Until{.thing = "table", .gap_m = 0.05};
   down.order.name = "down";
-  const Script script{.stages = {{{down, Step{0, MoveStep{{0, 0, 0.1}}, 0.5},
+  const Script script{.stages = {{{down, Step{HandIndex(0), MoveStep{{0, 0, 0.1}}, 0.5},
                                    Named(1, MoveStep{{0.1, 0, 0}}, 0.5, {.after = "down"})}}},
                       .settle_s = 0};
   Simulation simulation(scene, script);
@@ -94,9 +94,9 @@ TEST(OrderedStage, AGuardedStepEndsEarlyAndTheNextBegins) {
 
 TEST(OrderedStage, AGuardThatFailsEndsTheRunAtItsOwnEnd) {
   const Scene scene = TwoHands();
-  Step aside{0, MoveStep{{0, -0.05, 0}}, 0.5};
+  Step aside{HandIndex(0), MoveStep{{0, -0.05, 0}}, 0.5};
   aside.until = Until{.thing = "table"};
-  Simulation simulation(scene, {.stages = {{{aside, Step{0, WaitStep{}, 5}}}}});
+  Simulation simulation(scene, {.stages = {{{aside, Step{HandIndex(0), WaitStep{}, 5}}}}});
   while (simulation.Step()) {
   }
   EXPECT_EQ(simulation.status().kind, RunStatus::Kind::kFailed);
@@ -107,7 +107,7 @@ TEST(OrderedStage, AGuardThatFailsEndsTheRunAtItsOwnEnd) {
 
 TEST(OrderedStage, ThePersonWaitsAndWalks) {
   Scene scene = MakeScene({});
-  Person person{.name = "anna", .head = static_cast<int>(scene.bodies.size())};
+  Person person{.name = "anna", .head = BodyIndex(scene.bodies.size())};
   person.X_WS = {{-0.9, 0, 0}};
   for (Body& part : PartsOf(person)) scene.bodies.push_back(part);
   scene.persons.push_back(person);

@@ -17,7 +17,8 @@ ReachPlan Plan(const Scene& scene, const std::string& style, Approach approach,
                Vector3d offset_m = Vector3d::Zero()) {
   Simulation simulation(scene, {});
   return PlanReach(scene, simulation.snapshot(),
-                   {.object = kObject,
+                   {.hand = HandIndex(0),
+                    .object = BodyIndex(kObject),
                     .style = FindStyle(scene.hands[0].model, style),
                     .approach = approach,
                     .offset_m = offset_m,
@@ -94,7 +95,8 @@ TEST(ReachPlannerTest, APointOnAPartIsGraspedThere) {
   Simulation simulation(scene, {});
   const auto plan = [&](const Vector3d& point_m) {
     return PlanReach(scene, simulation.snapshot(),
-                     {.object = kObject,
+                     {.hand = HandIndex(0),
+                      .object = BodyIndex(kObject),
                       .style = FindStyle(scene.hands[0].model, "wrap"),
                       .approach = Approach::kAbove,
                       .point_m = point_m,
@@ -137,11 +139,11 @@ TEST(ReachPlannerTest, AnOffsetMovesTheEnd) {
 /// The same scene with a person who stands before the table and whose hand it is.
 Scene WithOwner(Scene scene) {
   Person anna{.name = "anna",
-              .head = static_cast<int>(scene.bodies.size()),
+              .head = BodyIndex(scene.bodies.size()),
               .has_body = true,
               .X_WS = {{-0.42, 0, 0}},
               .eyes = Eyes::kAhead};
-  (scene.hands[0].model.left ? anna.left_hand : anna.right_hand) = 0;
+  (scene.hands[0].model.left ? anna.left_hand : anna.right_hand) = HandIndex(0);
   const std::vector<Pose> places = PlacesOf(anna, Standing(scene, anna), {});
   for (std::size_t i = 0; Body part : PartsOf(anna)) {
     part.X_WB = places[i++];
@@ -182,7 +184,7 @@ TEST(ReachPlannerTest, APersonsOwnBodyIsNotInTheWayOfHerHand) {
 TEST(ReachPlannerTest, SomebodyElsesBodyIsInTheWay) {
   Scene scene = WithOwner(MakeScene({.at_m = {0.15, -0.2}, .hand_at_m = {-0.1, -0.2, 1.0}}));
   const double with_hers_m = Plan(scene, "wrap", Approach::kSide).clearance_m;
-  scene.persons[0].right_hand = -1;
+  scene.persons[0].right_hand = kNone;
   EXPECT_NE(Plan(scene, "wrap", Approach::kSide).clearance_m, with_hers_m);
 }
 

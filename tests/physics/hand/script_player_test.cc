@@ -12,7 +12,9 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-ScriptStage One(StepAction action, double over_s) { return {{{0, std::move(action), over_s}}}; }
+ScriptStage One(StepAction action, double over_s) {
+  return {{{HandIndex(0), std::move(action), over_s}}};
+}
 
 /// The target at the end of a script, in a world that does not move.
 TargetState EndOf(const Scene& scene, Script script, int* ticks = nullptr) {
@@ -47,7 +49,7 @@ TEST(ScriptPlayerTest, MovesAreRelativeAndTriggersLast) {
 
 TEST(ScriptPlayerTest, ADelayedStepBeginsLaterAndProlongsItsStage) {
   const Scene scene = MakeScene({});
-  Step step{0, MoveStep{{0.1, 0, 0}}, 0.5};
+  Step step{HandIndex(0), MoveStep{{0.1, 0, 0}}, 0.5};
   step.delay_s = 0.25;
   Simulation still(scene, {});
   ScriptPlayer player(scene, {.stages = {{{step}}}, .settle_s = 0});
@@ -64,7 +66,7 @@ TEST(ScriptPlayerTest, ADelayedStepBeginsLaterAndProlongsItsStage) {
 
 TEST(ScriptPlayerTest, WhatADelayedStepSaysIsResolvedWhenItBegins) {
   const Scene scene = MakeScene({});
-  Step reach{0, ReachStep{"nobody"}, 0.5};
+  Step reach{HandIndex(0), ReachStep{"nobody"}, 0.5};
   reach.delay_s = 0.5;
   Simulation still(scene, {});
   ScriptPlayer player(scene, {.stages = {{{reach}}}, .settle_s = 0});
@@ -191,7 +193,10 @@ TEST(ScriptPlayerTest, ABeatLastsAsLongAsItsLongestStep) {
   Scene scene = MakeScene({});
   scene.hands.push_back({"other", LibraryHand("human_left"), {{-0.3, 0.3, 1.1}}});
   int ticks = 0;
-  EndOf(scene, {.stages = {{{{0, WaitStep{}, 0.1}, {1, WaitStep{}, 0.3}}}}, .settle_s = 0}, &ticks);
+  EndOf(scene,
+        {.stages = {{{{HandIndex(0), WaitStep{}, 0.1}, {HandIndex(1), WaitStep{}, 0.3}}}},
+         .settle_s = 0},
+        &ticks);
   EXPECT_EQ(ticks, 144);
 }
 
@@ -206,7 +211,7 @@ TEST(ScriptPlayerTest, SayWhatIsUnknown) {
     ScriptPlayer player(scene, {.stages = {One(action, 0.5)}});
     EXPECT_EQ(player.Advance(still.snapshot()), nullptr);
     EXPECT_NE(player.problem().find(said), std::string::npos) << player.problem();
-    EXPECT_EQ(player.problem_hand(), 0);
+    EXPECT_EQ(player.problem_hand(), HandIndex(0));
   }
 }
 
@@ -229,8 +234,9 @@ TEST(ScriptPlayerTest, PlacingOnWhatIsNotBelowNamesTheStep) {
 /// Whether the object touches the table.
 bool Stands(const Snapshot& now) {
   return std::ranges::any_of(now.contacts, [](const ContactPoint& point) {
-    return point.a.hand < 0 && point.b.hand < 0 &&
-           std::minmax(point.a.body, point.b.body) == std::minmax(kTable, kObject);
+    return point.a.hand == kNone && point.b.hand == kNone &&
+           std::minmax(point.a.body, point.b.body) ==
+               std::minmax(BodyIndex(kTable), BodyIndex(kObject));
   });
 }
 
@@ -258,14 +264,14 @@ TEST(ScriptPlayerTest, AHandThatSpringsBackWithItsThingGoesDownAgain) {
   const Scene scene = MakeScene({});
   Snapshot held = Simulation(scene, {}).snapshot();
   held.bodies[kObject].X_WB.p_m.z() += 0.2;
-  held.contacts = {{.a = {.body = kObject}, .b = {.hand = 0}}};
+  held.contacts = {{.a = {.body = BodyIndex(kObject)}, .b = {.hand = HandIndex(0)}}};
   const Script script = {.stages = {One(ReachStep{"object"}, 0.01), One(PlaceStep{"table"}, 0.5)}};
   // The same, but touching the table, with the palm lower than its target by a centimetre.
   const auto touching = [&](double target_m) {
     Snapshot now = held;
     now.hands[0].palm.X_WB.p_m.z() = target_m - 0.01;
-    now.contacts.insert(now.contacts.begin(), {.a = {.body = kTable},
-                                               .b = {.body = kObject},
+    now.contacts.insert(now.contacts.begin(), {.a = {.body = BodyIndex(kTable)},
+                                               .b = {.body = BodyIndex(kObject)},
                                                .nhat_BA_W = -Eigen::Vector3d::UnitZ(),
                                                .normal_impulse_n_s = 1});
     return now;
@@ -292,7 +298,7 @@ TEST(ScriptPlayerTest, WhatCannotBePutDownNamesTheStep) {
   const Scene scene = MakeScene({});
   Snapshot stuck = Simulation(scene, {}).snapshot();
   stuck.bodies[kObject].X_WB.p_m.z() += 0.2;
-  stuck.contacts = {{.a = {.body = kObject}, .b = {.hand = 0}}};
+  stuck.contacts = {{.a = {.body = BodyIndex(kObject)}, .b = {.hand = HandIndex(0)}}};
   ScriptStage place = One(PlaceStep{"table"}, 0.5);
   place.steps[0].written_at = "milk.yaml:12:5";
   ScriptPlayer player(scene, {.stages = {One(ReachStep{"object"}, 0.01), place}});

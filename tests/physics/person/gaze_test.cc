@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 Scene WithPerson(Eyes eyes = Eyes::kAhead) {
   Scene scene = MakeScene({});
   Person person{.name = "anna",
-                .head = static_cast<int>(scene.bodies.size()),
+                .head = BodyIndex(scene.bodies.size()),
                 .X_WS = {{-0.7, 0, 0}},
                 .eyes = eyes,
-                .right_hand = 0};
+                .right_hand = HandIndex(0)};
   for (Body& part : PartsOf(person)) scene.bodies.push_back(part);
   scene.bodies.back().X_WB = PlacesOf(person, Standing(scene, person), {}).front();
   scene.persons.push_back(person);
@@ -45,18 +45,18 @@ std::vector<GazeState> GazesOf(const Scene& scene, const Script& script) {
 TEST(GazeTest, AheadThereIsNothing) {
   const auto gazes = GazesOf(WithPerson(), Told(WaitStep{}, 0.1));
   EXPECT_LT((gazes.back().toward_W - Vector3d::UnitX()).norm(), 1e-9);
-  EXPECT_EQ(gazes.back().body, -1);
+  EXPECT_EQ(gazes.back().body, kNone);
 }
 
 TEST(GazeTest, SheSeesWhatSheLooksAt) {
   const auto gazes = GazesOf(WithPerson(), Told(LookAtStep{"object"}));
-  EXPECT_EQ(gazes.back().body, kObject);
+  EXPECT_EQ(gazes.back().body, BodyIndex(kObject));
   EXPECT_NEAR(gazes.back().distance_m, 1.1, 0.15);
   EXPECT_EQ(GazesOf(WithPerson(), Told(LookAtStep{Vector3d(0.4, -0.2, kTop_m)})).back().body,
-            kTable);
+            BodyIndex(kTable));
   const auto at_hand = GazesOf(WithPerson(), Told(LookAtStep{"hand"}));
-  EXPECT_EQ(at_hand.back().hand, 0);
-  EXPECT_EQ(at_hand.back().body, -1);
+  EXPECT_EQ(at_hand.back().hand, HandIndex(0));
+  EXPECT_EQ(at_hand.back().body, kNone);
 }
 
 TEST(GazeTest, WhatStandsBeforeItHidesIt) {
@@ -65,7 +65,7 @@ TEST(GazeTest, WhatStandsBeforeItHidesIt) {
   scene.bodies[kObject].X_WB.p_m.z() = 0.1;
   scene.bodies[kObject].fixed = true;
   scene.bodies[kObject].X_WB.p_m.x() = 0;
-  EXPECT_EQ(GazesOf(scene, Told(LookAtStep{"object"})).back().body, kTable);
+  EXPECT_EQ(GazesOf(scene, Told(LookAtStep{"object"})).back().body, BodyIndex(kTable));
 }
 
 TEST(GazeTest, ASaccadeIsFasterThanTheHead) {
@@ -95,9 +95,9 @@ TEST(GazeTest, AMovingTargetIsFollowedWithoutLag) {
 }
 
 /// First tick at which she sees this body; -1: never.
-int FirstSeen(const std::vector<GazeState>& gazes, int body) {
+int FirstSeen(const std::vector<GazeState>& gazes, std::size_t body) {
   for (std::size_t i = 0; i < gazes.size(); ++i) {
-    if (gazes[i].body == body) return static_cast<int>(i);
+    if (gazes[i].body == BodyIndex(body)) return static_cast<int>(i);
   }
   return -1;
 }
@@ -110,10 +110,10 @@ TEST(GazeTest, EyesLeadTheHand) {
     const Snapshot& now = simulation.snapshot();
     const int tick = static_cast<int>(now.tick);
     for (const ContactPoint& contact : now.contacts) {
-      if (touched < 0 && (contact.a.hand >= 0) != (contact.b.hand >= 0)) touched = tick;
+      if (touched < 0 && (contact.a.hand != kNone) != (contact.b.hand != kNone)) touched = tick;
     }
-    if (seen < 0 && now.gazes[0].body == kObject) seen = tick;
-    if (seen >= 0 && tick > 480 * 2.0 && saw_table < 0 && now.gazes[0].body == kTable)
+    if (seen < 0 && now.gazes[0].body == BodyIndex(kObject)) seen = tick;
+    if (seen >= 0 && tick > 480 * 2.0 && saw_table < 0 && now.gazes[0].body == BodyIndex(kTable))
       saw_table = tick;
   }
   ASSERT_EQ(simulation.status().kind, RunStatus::Kind::kCompleted) << simulation.status().reason;
@@ -138,7 +138,7 @@ TEST(GazeTest, ARecordedHeadLooksWhereItFaces) {
                                 {.t_s = 1.0, .X_WH = {{-0.6, -0.35, 1.5}, down}, .trigger = {}}}};
   const auto gazes = GazesOf(WithPerson(), Told(recorded));
   EXPECT_LT((gazes.back().toward_W - down * Vector3d::UnitX()).norm(), 1e-6);
-  EXPECT_EQ(gazes.back().body, kTable);
+  EXPECT_EQ(gazes.back().body, BodyIndex(kTable));
 }
 
 TEST(GazeTest, TheGazeIsInTheStateHash) {

@@ -26,7 +26,7 @@ Scene Before(const Vector3d& block_at_m) {
                           .mass_kg = 2,
                           .friction = 0.4,
                           .X_WB = {block_at_m}});
-  Person person{.name = "anna", .head = kHead, .has_body = true, .eyes = Eyes::kAhead};
+  Person person{.name = "anna", .head = BodyIndex(kHead), .has_body = true, .eyes = Eyes::kAhead};
   const std::vector<Pose> places = PlacesOf(person, Standing(scene, person), {});
   for (Body& part : PartsOf(person)) {
     part.X_WB = places[scene.bodies.size() - kHead];
@@ -57,7 +57,8 @@ Played Play(const Scene& scene, std::vector<PersonStep> steps, const std::string
   const int touching = PartNamed(scene, part);
   while (simulation.Step()) {
     for (const ContactPoint& contact : simulation.snapshot().contacts)
-      played.touched |= contact.a.body == kBlock && contact.b.body == touching;
+      played.touched |=
+          contact.a.body == BodyIndex(kBlock) && contact.b.body == BodyIndex(touching);
   }
   EXPECT_EQ(simulation.status().kind, RunStatus::Kind::kCompleted) << simulation.status().reason;
   played.end = simulation.snapshot();

@@ -46,7 +46,7 @@ TEST(SkeletonTest, AHeadIsOnePart) {
 TEST(SkeletonTest, ABodyIsWholeAndAHandOfTheSceneIsNotDoubled) {
   Person person = Anna();
   EXPECT_EQ(PartsOf(person).size(), 19u);
-  person.right_hand = 0;
+  person.right_hand = HandIndex(0);
   const std::vector<std::string> names = NamesOf(PartsOf(person));
   EXPECT_EQ(names.size(), 18u);
   EXPECT_EQ(std::count(names.begin(), names.end(), "anna_right_hand"), 0);
@@ -168,7 +168,7 @@ TEST(SkeletonTest, APostureSuitsATallerPerson) {
 TEST(SkeletonTest, PartsOfLimbsAreTheOnesOfTheirNames) {
   Person person = Anna();
   for (const int hand : {-1, 0}) {
-    person.right_hand = hand;
+    person.right_hand = HandIndex(hand);
     const std::vector<std::string> names = NamesOf(PartsOf(person));
     const std::string words[4] = {"_right_", "_left_", "_right_", "_left_"};
     int covered = 5;  // head and trunk
@@ -193,7 +193,7 @@ TEST(SkeletonTest, ArmsFollowTheHandsOfTheScene) {
   scene.hands.push_back(
       {.name = "hand", .model = LibraryHand("human_right"), .X_WH = {{1.4, 1.8, 1.1}}});
   Person person = Anna();
-  person.right_hand = 0;
+  person.right_hand = HandIndex(0);
   const Vector3d wrist = scene.hands[0].X_WH * WristInHand(person, scene.hands[0].model);
   EXPECT_LT((PlaceOf(LimbEnd::kRightWrist, person, Standing(scene, person)) - wrist).norm(), 1e-9);
 }

@@ -31,7 +31,7 @@ Body Block(const Vector3d& at_m, double mass_kg = 2) {
 /// A slider along the vertical: gravity is the load.
 Scene Lift(Joint joint) {
   joint.kind = JointKind::kSlider;
-  joint.body = 1;
+  joint.body = BodyIndex(1);
   joint.axis_W = -Vector3d::UnitZ();
   return {.bodies = {Frame(), Block({0, 0, 0.9})}, .joints = {joint}};
 }
@@ -39,7 +39,7 @@ Scene Lift(Joint joint) {
 /// A hinge about y at the frame: the block, 0.3 m beside it, falls.
 Scene Flap(Joint joint) {
   joint.kind = JointKind::kHinge;
-  joint.body = 1;
+  joint.body = BodyIndex(1);
   joint.axis_W = Vector3d::UnitY();
   joint.pivot_W_m = {0, 0, 1};
   return {.bodies = {Frame(), Block({0.3, 0, 1})}, .joints = {joint}};
@@ -119,7 +119,7 @@ TEST_P(JointInEveryEngine, ASpringCarriesTheWeight) {
 }
 
 TEST(JointTest, ABallJointSwingsAnyWayAboutItsPivot) {
-  const Joint joint{.kind = JointKind::kBall, .body = 1, .pivot_W_m = {0, 0, 1}};
+  const Joint joint{.kind = JointKind::kBall, .body = BodyIndex(1), .pivot_W_m = {0, 0, 1}};
   const Scene scene{.bodies = {Frame(), Block({0.2, 0.2, 1})}, .joints = {joint}};
   Simulation simulation(scene, {.settle_s = 2});
   double lowest = 1;
@@ -133,24 +133,25 @@ TEST(JointTest, ABallJointSwingsAnyWayAboutItsPivot) {
 
 TEST_P(JointInEveryEngine, FixedJointsMakeOneBodyThatIsTouchedApart) {
   // A plate with a peg below it: the peg touches the floor, the plate does not.
-  const Scene scene{.bodies = {{.name = "floor", .shapes = {{Box{{2, 2, 0.1}}, {}}}, .fixed = true},
-                               {.name = "plate",
-                                .shapes = {{Box{{0.2, 0.2, 0.02}}, {}}},
-                                .mass_kg = 1,
-                                .X_WB = {{0, 0, 0.21}}},
-                               {.name = "peg",
-                                .shapes = {{Box{{0.1, 0.1, 0.1}}, {}}},
-                                .mass_kg = 0.5,
-                                .X_WB = {{0, 0, 0.15}}}},
-                    .joints = {{.kind = JointKind::kFixed, .body = 2, .base = 1}}};
+  const Scene scene{
+      .bodies = {{.name = "floor", .shapes = {{Box{{2, 2, 0.1}}, {}}}, .fixed = true},
+                 {.name = "plate",
+                  .shapes = {{Box{{0.2, 0.2, 0.02}}, {}}},
+                  .mass_kg = 1,
+                  .X_WB = {{0, 0, 0.21}}},
+                 {.name = "peg",
+                  .shapes = {{Box{{0.1, 0.1, 0.1}}, {}}},
+                  .mass_kg = 0.5,
+                  .X_WB = {{0, 0, 0.15}}}},
+      .joints = {{.kind = JointKind::kFixed, .body = BodyIndex(2), .base = BodyIndex(1)}}};
   const Snapshot end = After(scene, 1);
   EXPECT_NEAR(end.bodies[2].X_WB.p_m.z(), 0.10, 0.001);
   EXPECT_NEAR((end.bodies[1].X_WB.p_m - end.bodies[2].X_WB.p_m).z(), 0.06, 1e-9);
   double impulse = 0;
   for (const auto& points : end.AllContacts()) {
     for (const ContactPoint& contact : points) {
-      EXPECT_EQ(contact.a.body, 0);
-      EXPECT_EQ(contact.b.body, 2);
+      EXPECT_EQ(contact.a.body, BodyIndex(0));
+      EXPECT_EQ(contact.b.body, BodyIndex(2));
       impulse += contact.normal_impulse_n_s;
     }
   }
@@ -181,12 +182,12 @@ TEST(JointTest, AHandleIsMovedByTheJointOfWhatItIsFixedTo) {
   Scene scene = Flap({.upper = 1});
   scene.bodies.push_back(Block({0.4, 0, 1}));
   scene.bodies.push_back(Block({2, 0, 1}));
-  scene.joints.push_back({.kind = JointKind::kFixed, .body = 2, .base = 1});
-  EXPECT_EQ(RootOf(scene, 2), 1);
-  EXPECT_EQ(JointThatMoves(scene, 2), 0);
-  EXPECT_EQ(JointThatMoves(scene, 3), -1);
-  EXPECT_TRUE(MovesFreely(scene, 3));
-  for (const int body : {0, 1, 2}) EXPECT_FALSE(MovesFreely(scene, body)) << body;
+  scene.joints.push_back({.kind = JointKind::kFixed, .body = BodyIndex(2), .base = BodyIndex(1)});
+  EXPECT_EQ(RootOf(scene, BodyIndex(2)), BodyIndex(1));
+  EXPECT_EQ(JointThatMoves(scene, BodyIndex(2)), 0);
+  EXPECT_EQ(JointThatMoves(scene, BodyIndex(3)), -1);
+  EXPECT_TRUE(MovesFreely(scene, BodyIndex(3)));
+  for (const int body : {0, 1, 2}) EXPECT_FALSE(MovesFreely(scene, BodyIndex(body))) << body;
 }
 
 TEST_P(JointInEveryEngine, DampedBodiesSlowDown) {

@@ -30,7 +30,8 @@ TEST(RunChecksTest, EveryDisasterIsNamedWithItsEntity) {
       {"25 m from", [](Snapshot& s) { s.bodies[1].X_WB.p_m.y() = -25; }},
       {"30 mm deep in table",
        [](Snapshot& s) {
-         s.contacts = {{.a = {.body = 1}, .b = {.body = 0}, .distance_m = -0.03}};
+         s.contacts = {
+             {.a = {.body = BodyIndex(1)}, .b = {.body = BodyIndex(0)}, .distance_m = -0.03}};
        }},
   };
   for (const CheckCase& c : cases) {
@@ -51,9 +52,9 @@ TEST(RunChecksTest, WhatIsPressedIntoAnotherByAHugeMassIsAdvisedOfIt) {
                   {.name = "anvil", .mass_kg = 1000}};
   Snapshot now;
   now.bodies.resize(3);
-  now.contacts = {{.a = {.body = 0}, .b = {.body = 1}, .distance_m = -0.03}};
+  now.contacts = {{.a = {.body = BodyIndex(0)}, .b = {.body = BodyIndex(1)}, .distance_m = -0.03}};
   EXPECT_EQ(CheckSnapshot(scene, now)->advice, "start them apart, or let them meet more slowly");
-  now.contacts.push_back({.a = {.body = 1}, .b = {.body = 2}});
+  now.contacts.push_back({.a = {.body = BodyIndex(1)}, .b = {.body = BodyIndex(2)}});
   EXPECT_EQ(CheckSnapshot(scene, now)->advice,
             "a mass presses on one that is 1000000 times smaller; make them more similar");
 }

@@ -100,8 +100,7 @@ double PushFromNowhere(const Snapshot& before, const Snapshot& now) {
   std::vector<char> touched(now.bodies.size(), 0);
   for (const auto& part : now.AllContacts())
     for (const ContactPoint& point : part)
-      for (const ContactSide& side : {point.a, point.b})
-        touched[static_cast<std::size_t>(side.body)] = 1;
+      for (const ContactSide& side : {point.a, point.b}) At(touched, side.body) = 1;
   double most_m_per_s = 0;
   for (std::size_t i = 1; i < now.bodies.size(); ++i) {  // the floor is the first
     if (touched[i]) continue;

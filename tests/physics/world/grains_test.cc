@@ -52,15 +52,15 @@ TEST(Grains, TouchAsOne) {
   const Snapshot end = After(FilledMug(), 0.2);
   ASSERT_FALSE(end.contacts.empty());
   for (const ContactPoint& contact : end.contacts) {
-    EXPECT_EQ(contact.a.body, 0);
-    EXPECT_EQ(contact.b.body, 1);
+    EXPECT_EQ(contact.a.body, BodyIndex(0));
+    EXPECT_EQ(contact.b.body, BodyIndex(1));
   }
 }
 
 TEST(Grains, AreNoThing) {
   const Scene scene = FilledMug();
   EXPECT_FALSE(IsThing(scene.bodies[1]));
-  EXPECT_FALSE(MovesFreely(scene, 1));
+  EXPECT_FALSE(MovesFreely(scene, BodyIndex(1)));
 }
 
 TEST(Grains, MoveTheSameEveryTime) {
@@ -79,7 +79,7 @@ TEST(Grains, WhatIsSpiltStopsFarAway) {
 
 TEST(Grains, AreWhereTheyWerePlacedBeforeTheFirstTick) {
   const Scene scene = FilledMug();
-  EXPECT_EQ(GrainsOf(scene, 1, Snapshot{})[3], scene.bodies[1].grains->p_WG_m[3]);
+  EXPECT_EQ(GrainsOf(scene, BodyIndex(1), Snapshot{})[3], scene.bodies[1].grains->p_WG_m[3]);
 }
 
 }  // namespace

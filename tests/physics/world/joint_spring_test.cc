@@ -57,7 +57,7 @@ Body Post() {
 /// Of cubes on a slider whose spring pulls them 0.05 m along the axis.
 Scene Sprung(double size_m, double mass_kg, double spring, const Vector3d& axis_W) {
   const Joint joint{.kind = JointKind::kSlider,
-                    .body = 1,
+                    .body = BodyIndex(1),
                     .axis_W = axis_W,
                     .lower = -0.5,
                     .upper = 0.5,
@@ -141,8 +141,8 @@ TEST_P(JointSpringTest, JointsThatShareABodyDoNotReadEachOthersPush) {
   Scene scene = Sprung(0.1, 1, 400, down);
   scene.bodies.push_back(Cube(0.1, 1, {0, 0, 1.5}));
   Joint lower = scene.joints[0];
-  lower.body = 2;
-  lower.base = 1;
+  lower.body = BodyIndex(2);
+  lower.base = BodyIndex(1);
   lower.spring = 100;
   for (Joint* joint : {&lower, &scene.joints[0]}) {
     joint->damping = 20;
@@ -165,7 +165,7 @@ TEST_P(JointSpringTest, ManyThatPullAtALightBodyDoNotExplode) {
   for (int more = 1; more <= 3; ++more) {
     scene.bodies.push_back(Cube(0.1, 1, {0.5 * more, 0, 2}));
     scene.joints.push_back(joint);
-    scene.joints.back().body = more;
+    scene.joints.back().body = BodyIndex(more);
   }
   const std::vector<double> positions = Positions(scene, 1);
   for (const double position : positions) ASSERT_LT(std::abs(position), 0.0515);

@@ -23,7 +23,7 @@ Script LiftedAndPutBack(int hand = 0) {
                                                             {MoveStep{{0, 0, 0.1}}, 0.5},
                                                             {PlaceStep{"table"}, 0.4},
                                                             {TriggerStep{0}, 0.4}})
-    script.stages.push_back({{{hand, action, over_s}}});
+    script.stages.push_back({{{HandIndex(hand), action, over_s}}});
   return script;
 }
 
@@ -110,8 +110,8 @@ TEST(MirroredWorld, LinesOfSightAreMirrored) {
       {.name = "post", .shapes = {{Box{{0.1, 0.1, 1}}, {}}}, .fixed = true, .X_WB = {{1, 0.5, 0}}});
   const auto world = MirrorImageOf(MakeBulletWorld(InMirror(scene), {}));
   world->Step({});
-  EXPECT_EQ(world->Look({.from_W_m = {0, 0.5, 0}}).body, 0);
-  EXPECT_EQ(world->Look({.from_W_m = {0, -0.5, 0}}).body, -1);
+  EXPECT_EQ(world->Look({.from_W_m = {0, 0.5, 0}}).body, BodyIndex(0));
+  EXPECT_EQ(world->Look({.from_W_m = {0, -0.5, 0}}).body, kNone);
 }
 
 TEST(MirroredWorld, TheHandThatHasMoreToDoFirstLeads) {
@@ -125,8 +125,8 @@ TEST(MirroredWorld, TheHandThatHasMoreToDoFirstLeads) {
   EXPECT_FALSE(LeftHandLeads(both, LiftedAndPutBack(0)));
   EXPECT_TRUE(LeftHandLeads(both, LiftedAndPutBack(1)));
   Script together = LiftedAndPutBack(1);
-  together.stages.insert(together.stages.begin(),
-                         {{{0, TriggerStep{0}, 0.1}, {1, TriggerStep{0}, 0.1}}});
+  together.stages.insert(together.stages.begin(), {{{HandIndex(0), TriggerStep{0}, 0.1},
+                                                    {HandIndex(1), TriggerStep{0}, 0.1}}});
   EXPECT_TRUE(LeftHandLeads(both, together)) << "the first stage in which they differ decides";
   std::ranges::reverse(both.hands);
   EXPECT_TRUE(LeftHandLeads(both, LiftedAndPutBack(0))) << "in whatever order they are listed";

@@ -51,8 +51,8 @@ Scene MakeScene(const Shapes& board, const Shapes& thing, double friction, Engin
        .friction = friction,
        .X_WB = {{0.1, 0, 1.04}}}};
   scene.joints = {{.kind = JointKind::kHinge,
-                   .body = 1,
-                   .base = 0,
+                   .body = BodyIndex(1),
+                   .base = BodyIndex(0),
                    .pivot_W_m = {0, 0, 1},
                    .axis_W = Eigen::Vector3d::UnitY(),
                    .lower = -kEnd_rad,

@@ -62,8 +62,8 @@ TEST_P(WorldTest, EveryShapeRestsAtItsOwnHeight) {
     EXPECT_NEAR(snapshot.bodies[1].X_WB.p_m.z(), height, 0.0005);
     const std::vector<ContactPoint> points = PointsOf(snapshot);
     ASSERT_FALSE(points.empty());
-    EXPECT_EQ(points[0].a.body, 0);
-    EXPECT_EQ(points[0].b.body, 1);
+    EXPECT_EQ(points[0].a.body, BodyIndex(0));
+    EXPECT_EQ(points[0].b.body, BodyIndex(1));
     // From the thing (b) into the floor (a): down.
     EXPECT_LT(points[0].nhat_BA_W.z(), -0.99);
   }
@@ -89,7 +89,8 @@ TEST_P(WorldTest, TouchingNeedsAPush) {
         .name = name, .shapes = {{Box{{0.1, 0.1, 0.1}}, {}}}, .mass_kg = 1, .X_WB = {{x, 0, 0.05}}};
   };
   const auto world = Make({.bodies = {Floor(), block("left", 0), block("right", 0.101)}});
-  for (const ContactPoint& contact : PointsOf(After(*world, 240))) EXPECT_EQ(contact.a.body, 0);
+  for (const ContactPoint& contact : PointsOf(After(*world, 240)))
+    EXPECT_EQ(contact.a.body, BodyIndex(0));
 }
 
 TEST_P(WorldTest, ARestingContactNeverFlickers) {

@@ -96,11 +96,10 @@ physics::HandState Kinematics::HandNow(std::size_t hand) {
 void Kinematics::AddTouches(physics::Snapshot& snapshot) {
   for (const WorldFormulas::Touch& touch : formulas_.touches) {
     if (Value(touch.during) == 0) continue;
-    const bool hand = touch.a.hand >= 0;
-    const auto first = static_cast<std::size_t>(hand ? touch.a.hand : touch.a.body);
+    const bool hand = touch.a.hand != physics::kNone;
     const Vector3d place =
-        hand ? snapshot.hands[first].palm.X_WB.p_m : snapshot.bodies[first].X_WB.p_m;
-    const double weight_n = hand ? 1 : WeightOf(scene_.bodies[first]);
+        (hand ? snapshot.hand(touch.a.hand).palm : snapshot.body(touch.a.body)).X_WB.p_m;
+    const double weight_n = hand ? 1 : WeightOf(scene_.body(touch.a.body));
     physics::ContactPoint point{.a = touch.a,
                                 .b = touch.b,
                                 .p_W_m = Vector(touch.at_m, place),

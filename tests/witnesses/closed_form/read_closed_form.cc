@@ -225,14 +225,14 @@ class Reader {
     const std::size_t dot = text.value.find('.');
     const std::string name = text.value.substr(0, dot);
     if (const int body = IndexOf(entry_.entities, name); body >= 0 && dot == std::string::npos)
-      return {.body = body};
-    const int hand = IndexOf(entry_.hands, name);
-    if (hand < 0) {
+      return {.body = physics::BodyIndex(body)};
+    const physics::HandIndex hand(IndexOf(entry_.hands, name));
+    if (hand == physics::kNone) {
       errors_.AddUnknownName(text.where, fmt::format("unknown name '{}'", text.value), text.value,
                              Names());
       return {};
     }
-    const physics::HandModel& model = scenario_.scene.hands[static_cast<std::size_t>(hand)].model;
+    const physics::HandModel& model = scenario_.scene.hand(hand).model;
     const std::string side = dot == std::string::npos ? "" : text.value.substr(dot + 1);
     const auto set = std::ranges::find(model.sensor_sets, side);
     if (set == model.sensor_sets.end()) {
@@ -243,7 +243,7 @@ class Reader {
       return {};
     }
     const int link = static_cast<int>(set - model.sensor_sets.begin());
-    return {.hand = hand, .link = link == model.palm_sensor_set ? -1 : link};
+    return {.hand = hand, .link = physics::LinkIndex(link == model.palm_sensor_set ? -1 : link)};
   }
 
   ClosedFormRecording Play(Kinematics& kinematics, FormulaScope scope,

@@ -73,11 +73,11 @@ TEST(ReadClosedForm, ComputesPosesVelocitiesAndContacts) {
   EXPECT_NEAR(late.bodies[1].w_WB_rad_per_s.z(), 90 * physics::kRadPerDeg, 1e-6);
   EXPECT_NEAR(late.hands[0].palm.v_WB_m_per_s.x(), 0.1, 1e-6);
   ASSERT_EQ(late.contacts.size(), 2u);
-  EXPECT_EQ(late.contacts[0].a, (physics::ContactSide{.hand = 0}));
-  EXPECT_EQ(late.contacts[0].b, (physics::ContactSide{.body = 1}));
+  EXPECT_EQ(late.contacts[0].a, (physics::ContactSide{.hand = physics::HandIndex(0)}));
+  EXPECT_EQ(late.contacts[0].b, (physics::ContactSide{.body = physics::BodyIndex(1)}));
   EXPECT_EQ(late.contacts[0].nhat_BA_W.x(), -1) << "on the hand";
   EXPECT_NEAR(late.contacts[0].normal_impulse_n_s, 2.0 / 480, 1e-12);
-  EXPECT_EQ(late.contacts[1].a, (physics::ContactSide{.body = 0}));
+  EXPECT_EQ(late.contacts[1].a, (physics::ContactSide{.body = physics::BodyIndex(0)}));
   EXPECT_EQ(late.contacts[1].nhat_BA_W.z(), -1) << "on the table, which is the first body";
   EXPECT_NEAR(late.contacts[1].normal_impulse_n_s, 0.5 * 9.81 / 480, 1e-12) << "the box's weight";
 }

@@ -93,20 +93,20 @@ Scenario WithCopy(Scenario scenario) {
   for (int whole : copy.body_part_of)
     scenario.body_part_of.push_back(whole < 0 ? whole : whole + bodies);
   for (physics::Joint joint : copy.scene.joints) {
-    joint.body += bodies;
-    joint.base += bodies;
+    joint.body = joint.body + bodies;
+    joint.base = joint.base + bodies;
     scene.joints.push_back(joint);
   }
   for (physics::Person person : copy.scene.persons) {
-    person.head += bodies;
-    if (person.right_hand >= 0) person.right_hand += hands;
-    if (person.left_hand >= 0) person.left_hand += hands;
+    person.head = person.head + bodies;
+    if (person.right_hand != physics::kNone) person.right_hand = person.right_hand + hands;
+    if (person.left_hand != physics::kNone) person.left_hand = person.left_hand + hands;
     scene.persons.push_back(std::move(person));
   }
   for (std::size_t i = 0; i < scenario.script.stages.size(); ++i) {
     physics::ScriptStage& stage = scenario.script.stages[i];
     for (physics::Step step : copy.script.stages[i].steps) {
-      step.hand += hands;
+      step.hand = step.hand + hands;
       RenameOrder(step.order);
       stage.steps.push_back(std::move(step));
     }

@@ -42,7 +42,7 @@ Scenario Turned(const Scenario& scenario, double yaw_deg) {
 
 /// How far the centre of `body` rises above where it stands at first.
 double Rise_m(const Scenario& scenario, const std::string& body) {
-  const auto index = static_cast<std::size_t>(physics::FindBody(scenario.scene, body));
+  const auto index = physics::FindBody(scenario.scene, body).index();
   const double stands_m = scenario.scene.bodies[index].X_WB.p_m.z();
   physics::Simulation simulation(scenario.scene, scenario.script);
   double rise_m = 0;

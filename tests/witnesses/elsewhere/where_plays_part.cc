@@ -39,22 +39,22 @@ Vector3d Back(const WorldMotion& motion, const Vector3d& p_W_m) {
 }
 
 std::string NameOf(const physics::Scene& scene, const ContactSide& side) {
-  if (side.hand < 0) return scene.bodies[static_cast<std::size_t>(side.body)].name;
-  const physics::Hand& hand = scene.hands[static_cast<std::size_t>(side.hand)];
-  return hand.name + " " +
-         (side.link < 0 ? "palm" : hand.model.links[static_cast<std::size_t>(side.link)].name);
+  if (side.hand == physics::kNone) return scene.body(side.body).name;
+  const physics::Hand& hand = scene.hand(side.hand);
+  return hand.name + " " + (side.link == physics::kNone ? "palm" : hand.model.link(side.link).name);
 }
 
 /// Centres of all bodies, palms and links, and what they are called.
 std::vector<std::pair<ContactSide, Vector3d>> Places(const Snapshot& now) {
   std::vector<std::pair<ContactSide, Vector3d>> places;
-  for (int i = 0; i < static_cast<int>(now.bodies.size()); ++i)
-    places.push_back({{.body = i}, now.bodies[static_cast<std::size_t>(i)].X_WB.p_m});
-  for (int h = 0; h < static_cast<int>(now.hands.size()); ++h) {
-    const physics::HandState& hand = now.hands[static_cast<std::size_t>(h)];
-    places.push_back({{.hand = h, .link = -1}, hand.palm.X_WB.p_m});
-    for (int l = 0; l < static_cast<int>(hand.X_WL.size()); ++l)
-      places.push_back({{.hand = h, .link = l}, hand.X_WL[static_cast<std::size_t>(l)].p_m});
+  for (std::size_t i = 0; i < now.bodies.size(); ++i)
+    places.push_back({{.body = physics::BodyIndex(i)}, now.bodies[i].X_WB.p_m});
+  for (std::size_t h = 0; h < now.hands.size(); ++h) {
+    const physics::HandIndex index(h);
+    const physics::HandState& hand = now.hands[h];
+    places.push_back({{.hand = index}, hand.palm.X_WB.p_m});
+    for (std::size_t l = 0; l < hand.X_WL.size(); ++l)
+      places.push_back({{.hand = index, .link = physics::LinkIndex(l)}, hand.X_WL[l].p_m});
   }
   return places;
 }
