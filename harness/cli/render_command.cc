@@ -387,6 +387,30 @@ ExitCode RunRender(const ParsedOptions& options, const CommandContext& context) 
   return RenderPictures(options, context);
 }
 
+std::vector<Option> OptionsInsteadOfPictures() {
+  return InGroup("Instead of pictures",
+                 {{.name = "--strip", .help = "the timeline alone"},
+                  {.name = "--against",
+                   .help = "compare with the golden, another grammar, the other engine "
+                           "(bullet, box2d): both timelines, and the scenes at each "
+                           "boundary that differs. 'pictures': golden pictures, those of "
+                           "now, and what differs",
+                   .placeholder = "golden|pictures|GRAMMAR|ENGINE"},
+                  {.name = "--film",
+                   .help = "a film: NAME.webp (img2webp), NAME.mp4 (ffmpeg), or a folder "
+                           "of frames; 960x540 unless --size says otherwise",
+                   .placeholder = "FILE|FOLDER",
+                   .is_output = true},
+                  {.name = "--fps",
+                   .help = "frames in a second of the film; default: 30",
+                   .placeholder = "N",
+                   .rule = NumbersFrom(1, 120)},
+                  {.name = "--speed",
+                   .help = "seconds of the episode in a second of the film; default: 1",
+                   .placeholder = "N",
+                   .rule = NumbersFrom(0.01, 100)}});
+}
+
 }  // namespace
 
 Command RenderCommand() {
@@ -416,27 +440,7 @@ Command RenderCommand() {
                    .help = "all pictures in one file, with so many columns",
                    .placeholder = "N",
                    .rule = IntegersFrom(1, kMostColumns)}},
-                 InGroup("Instead of pictures",
-                         {{.name = "--strip", .help = "the timeline alone"},
-                          {.name = "--against",
-                           .help = "compare with the golden, another grammar, the other engine "
-                                   "(bullet, box2d): both timelines, and the scenes at each "
-                                   "boundary that differs. 'pictures': golden pictures, those of "
-                                   "now, and what differs",
-                           .placeholder = "golden|pictures|GRAMMAR|ENGINE"},
-                          {.name = "--film",
-                           .help = "a film: NAME.webp (img2webp), NAME.mp4 (ffmpeg), or a folder "
-                                   "of frames; 960x540 unless --size says otherwise",
-                           .placeholder = "FILE|FOLDER",
-                           .is_output = true},
-                          {.name = "--fps",
-                           .help = "frames in a second of the film; default: 30",
-                           .placeholder = "N",
-                           .rule = NumbersFrom(1, 120)},
-                          {.name = "--speed",
-                           .help = "seconds of the episode in a second of the film; default: 1",
-                           .placeholder = "N",
-                           .rule = NumbersFrom(0.01, 100)}})),
+                 OptionsInsteadOfPictures()),
           Joined(Joined(LookOptions(), PartOptions()),
                  {{.name = "--size",
                    .help = "pixels of a picture; default: 1280x720",
