@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A function is read in one piece: at most kMostLines, a command less, tables more. What is laid out by
-// clang-format ends with a '}' alone in its line, below the first character of its head.
+// A function is read in one piece: at most kMostLines, a command less, tables more. What is laid
+// out by clang-format ends with a '}' alone in its line, below the first character of its head.
 #include <gtest/gtest.h>
 
 #include <algorithm>
