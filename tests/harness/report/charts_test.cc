@@ -23,7 +23,7 @@ bool Has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-int CountOf(const std::string& text, const std::string& part) {
+int TimesIn(const std::string& text, const std::string& part) {
   int count = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
     ++count;
@@ -39,12 +39,12 @@ TEST(TimelineSvg, DrawsTheGoldenAboveWhatWasRecognised) {
   late.interval.begin = 150;
   const std::string svg =
       TimelineSvg(Compare(golden, {.ticks_per_second = 100, .events = {late}}, 2), 400, {});
-  EXPECT_EQ(CountOf(svg, "<rect"), 2);
-  EXPECT_EQ(CountOf(svg, "class=\"hatch\""), 1) << "only its begin is another";
-  EXPECT_EQ(CountOf(svg, "class=\"row differs\""), 1);
+  EXPECT_EQ(TimesIn(svg, "<rect"), 2);
+  EXPECT_EQ(TimesIn(svg, "class=\"hatch\""), 1) << "only its begin is another";
+  EXPECT_EQ(TimesIn(svg, "class=\"row differs\""), 1);
   EXPECT_NE(svg.find("golden sliding(h, cup), 1.0000..2.0000 s: shifted"), std::string::npos);
   EXPECT_NE(svg.find("actual sliding(h, cup), 1.5000..2.0000 s: shifted"), std::string::npos);
-  EXPECT_EQ(CountOf(svg, "class=\"axis\""), 9) << "every half second of four";
+  EXPECT_EQ(TimesIn(svg, "class=\"axis\""), 9) << "every half second of four";
 }
 
 TEST(TimelineSvg, RowsAreGroupedByWhoseTheyAre) {
@@ -57,19 +57,19 @@ TEST(TimelineSvg, RowsAreGroupedByWhoseTheyAre) {
       .events = {event("first", "left", 0), event("second", "cup", 5), event("third", "left", 20)}};
   const std::string svg = TimelineSvg(Compare({}, timeline, 2), 400, {}, false);
   const auto at = [&](const char* text) { return svg.find(text); };
-  EXPECT_EQ(CountOf(svg, "class=\"group\""), 2);
+  EXPECT_EQ(TimesIn(svg, "class=\"group\""), 2);
   EXPECT_LT(at(">left</text>"), at(">first(left)</text>"));
   EXPECT_LT(at(">first(left)</text>"), at(">third(left)</text>"));
   EXPECT_LT(at(">third(left)</text>"), at(">cup</text>"));
   EXPECT_LT(at(">cup</text>"), at(">second(cup)</text>"));
-  EXPECT_EQ(CountOf(svg, "class=\"hatch\""), 0) << "without a golden nothing differs";
+  EXPECT_EQ(TimesIn(svg, "class=\"hatch\""), 0) << "without a golden nothing differs";
 }
 
 TEST(TimelineSvg, AnEmptyTimelineIsAPictureToo) {
   const std::string svg = TimelineSvg(Comparison{}, 0, {});
   EXPECT_TRUE(svg.starts_with("<svg class=\"timeline\"")) << svg;
-  EXPECT_EQ(CountOf(svg, "</svg>"), 1);
-  EXPECT_EQ(CountOf(svg, "<rect"), 0);
+  EXPECT_EQ(TimesIn(svg, "</svg>"), 1);
+  EXPECT_EQ(TimesIn(svg, "<rect"), 0);
 }
 
 TEST(SignalSvg, ShowsValueLimitAndCrossing) {
