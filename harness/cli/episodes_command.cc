@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend episode list: what episode files hold. prehend episode verify: their frames, checked
 // against their state hashes. prehend episode migrate: files of an older version. Tested by
+// tests/program/episodes_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -24,15 +24,10 @@ ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& contex
     return std::ranges::find(forms, form) != forms.end();
   };
   const std::string folder = options.TextOr("--output", "kb");
-  EpisodeKeeper keeper(context.root, context.today, folder);
-  for (EpisodeName& episode : *episodes) {
-    Result<EpisodeName> kept = keeper.Keep(episode);
-    if (!kept) return Complain(context, kept.error());
-    episode = std::move(*kept);
-  }
+  const auto kept = EpisodeKeeper(context.root, context.today, folder).KeepAll(*episodes);
+  if (!kept) return Complain(context, kept.error());
   const Result<knowledge::KnowledgeWritten> written = knowledge::WriteKnowledge(
-      *episodes,
-      {.root = context.root, .folder = folder, .owl = asked("owl"), .neem = asked("neem")});
+      *kept, {.root = context.root, .folder = folder, .owl = asked("owl"), .neem = asked("neem")});
   if (!written) return Complain(context, written.error());
   context.out << fmt::format("{}: {} episodes of {} tasks, {} events, {} statements\n", folder,
                              written->episodes, written->tasks, written->events,

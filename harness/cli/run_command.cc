@@ -173,8 +173,7 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--trial")) {
     auto varied = RequestOfTrial(request, context.root, options.IntOr("--trial", 1));
     if (!varied) return Complain(context, varied.error());
-    for (std::size_t i = request.settings.size(); i < varied->settings.size(); ++i)
-      context.err << "sampled: " << varied->settings[i] << "\n";
+    context.err << SampledText(request, *varied);
     request = std::move(*varied);
   }
   return PlayOne(*file, request, options, context);

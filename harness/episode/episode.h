@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An episode: something with entities, a rate, frames and an end, whatever it came from.
-// OpenEpisode() in open_episode.h opens one; a scenario is simulated when its frames are asked for.
-// Tested by tests/program/episode_kinds_test.cc
+// OpenEpisode() in harness/episode/open_episode.h opens one; a scenario is simulated when its
+// frames are asked for. Tested by tests/program/episode_kinds_test.cc
 #pragma once
 
 #include <functional>

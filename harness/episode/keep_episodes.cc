@@ -64,6 +64,15 @@ Result<EpisodeName> EpisodeKeeper::Keep(const EpisodeName& episode) {
   return std::move(kept->front());
 }
 
+Result<std::vector<EpisodeName>> EpisodeKeeper::KeepAll(std::vector<EpisodeName> episodes) {
+  for (EpisodeName& episode : episodes) {
+    Result<EpisodeName> kept = Keep(episode);
+    if (!kept) return tl::unexpected(std::move(kept.error()));
+    episode = std::move(*kept);
+  }
+  return episodes;
+}
+
 std::string EpisodeKeeper::SourceOf(const std::string& file) const {
   const auto source = sources_.find(file);
   return source == sources_.end() ? file : source->second;

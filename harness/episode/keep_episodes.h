@@ -5,6 +5,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "harness/base/result.h"
 #include "harness/base/temporary_folder.h"
@@ -20,6 +21,7 @@ class EpisodeKeeper {
 
   /// The same episode in a file.
   Result<EpisodeName> Keep(const EpisodeName& episode);
+  Result<std::vector<EpisodeName>> KeepAll(std::vector<EpisodeName> episodes);
   /// Of a file that was made here, what it was made from; any other is as it is.
   std::string SourceOf(const std::string& file) const;
 

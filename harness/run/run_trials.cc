@@ -126,6 +126,13 @@ Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root
   return report;
 }
 
+std::string SampledText(const RunRequest& request, const RunRequest& varied) {
+  std::string text;
+  for (std::size_t i = request.settings.size(); i < varied.settings.size(); ++i)
+    text += "sampled: " + varied.settings[i] + "\n";
+  return text;
+}
+
 nlohmann::ordered_json TrialJson(const TrialReport& report) {
   nlohmann::ordered_json outcomes, results = nlohmann::ordered_json::array();
   for (const std::string& name : AllOutcomes(report)) outcomes[name] = CountOf(name, report);

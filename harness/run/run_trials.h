@@ -39,6 +39,9 @@ Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root
 /// The request, with the values drawn for one trial added to its settings.
 Result<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root, int trial);
 
+/// The drawn values of such a request, a line each: "sampled: entities.drawer.mass_kg=1.1".
+std::string SampledText(const RunRequest& request, const RunRequest& varied);
+
 /// For programs: `trials`, `outcomes` (name to count) and `results` (`trial`, `outcome`, `reason`).
 nlohmann::ordered_json TrialJson(const TrialReport& report);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The loop that segments an episode which was played or recorded before, whatever it came from.
-// (ScenarioRun in run_scenario.h is the other one: it segments while it simulates.) Tested by
-// tests/harness/run/run_scenario_test.cc
+// (ScenarioRun in harness/run/run_scenario.h is the other one: it segments while it simulates.)
+// Tested by tests/harness/run/run_scenario_test.cc
 #pragma once
 
 #include <functional>

@@ -34,7 +34,9 @@ class Index {
   constexpr bool IsBelow(std::size_t size) const {
     return number_ >= 0 && static_cast<std::size_t>(number_) < size;
   }
-  friend constexpr Index operator+(Index first, int offset) { return Index(first.number_ + offset); }
+  friend constexpr Index operator+(Index first, int offset) {
+    return Index(first.number_ + offset);
+  }
   friend constexpr bool operator==(Index, Index) = default;
   friend constexpr std::strong_ordering operator<=>(Index, Index) = default;
 

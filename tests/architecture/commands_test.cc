@@ -14,11 +14,14 @@ namespace {
 
 /// The heads of loops that have no place in a command.
 std::vector<std::string> LoopsThatCompute(const std::string& text) {
+  const std::string names = "(episodes|recordings|grammars|programs|settings|labels)";
   std::vector<std::string> found;
-  const std::regex loop(
-      R"(for \([^{;]*[ *:](takes|recordings|grammars|programs|settings|labels)\b[^{]*)");
-  for (std::sregex_iterator at(text.begin(), text.end(), loop), end; at != end; ++at)
-    found.push_back(at->str());
+  for (const std::string& form : {"for \\([^;{)]*: \\*?" + names + "\\)",
+                                  "for \\([^;{]*;[^;{]*\\b" + names + "(\\.|->)size"}) {
+    const std::regex loop(form);
+    for (std::sregex_iterator at(text.begin(), text.end(), loop), end; at != end; ++at)
+      found.push_back(at->str());
+  }
   return found;
 }
 
@@ -30,11 +33,11 @@ TEST(Commands, DoNotCompute) {
 }
 
 TEST(Commands, ALoopThatComputesIsFound) {
-  EXPECT_EQ(LoopsThatCompute("for (const Take& take : takes) {\n  a;\n}\n"),
-            std::vector<std::string>{"for (const Take& take : takes) "});
-  EXPECT_EQ(LoopsThatCompute("for (std::size_t g = 0; g < grammars.size(); ++g) {\n}\n").size(),
-            1u);
-  EXPECT_TRUE(LoopsThatCompute("for (const Line& line : lines) Print(takes, line);\n").empty());
+  const std::string range = "for (const Episode& episode : episodes)",
+                    count = "for (std::size_t g = 0; g < grammars.size";
+  EXPECT_EQ(LoopsThatCompute(range + " {\n  a;\n}\n"), std::vector<std::string>{range});
+  EXPECT_EQ(LoopsThatCompute(count + "(); ++g) {\n}\n"), std::vector<std::string>{count});
+  EXPECT_TRUE(LoopsThatCompute("for (const Line& line : lines) Print(labels, line);\n").empty());
 }
 
 }  // namespace

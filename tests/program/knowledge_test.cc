@@ -35,8 +35,8 @@ const Recorded& ThreeDays() {
                                  "furniture/fridge_is_opened_by_its_handle",
                                  "pick_and_place/milk_carton_wrap", "body/arm_follows_the_hand"})
       EXPECT_EQ(Prehend({"run", scenario, "--record", made.file}).exit_code, 0) << scenario;
-    const Said said =
-        Prehend({"episode", "knowledge", made.file, "-o", made.kb, "--also", "owl", "--also", "neem"});
+    const Said said = Prehend(
+        {"episode", "knowledge", made.file, "-o", made.kb, "--also", "owl", "--also", "neem"});
     EXPECT_EQ(said.exit_code, 0) << said.err;
     EXPECT_NE(said.out.find("4 episodes of 4 tasks"), std::string::npos) << said.out;
     return made;
