@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "harness/base/atomic_file.h"
 #include "harness/check/select_scenarios.h"
@@ -14,9 +13,8 @@
 #include "harness/command/picture_options.h"
 #include "harness/command/typed_episode.h"
 #include "harness/figures/comparison_sheet.h"
+#include "harness/figures/find_grasps.h"
 #include "harness/pictures/svg_file.h"
-#include "harness/run/event_time.h"
-#include "harness/run/run_text.h"
 
 namespace prehend::harness {
 namespace {
@@ -90,61 +88,22 @@ ExitCode DrawKeyFrames(const PlayedRun& played, const ParsedOptions& options,
   return WriteSheet(sheet, format, painter, options, context);
 }
 
-/// The styles in which the scenario's hands reach.
-std::vector<std::string> StylesOf(const Scenario& scenario) {
-  std::vector<std::string> styles;
-  for (const physics::ScriptStage& stage : scenario.script.stages) {
-    for (const physics::Step& step : stage.steps)
-      if (const auto* reach = std::get_if<physics::ReachStep>(&step.action))
-        styles.push_back(reach->style);
-  }
-  return styles;
-}
-
-/// Short ones first, which show little else.
-std::vector<ScenarioFile> ScenariosLike(const std::string& typed, const CommandContext& context) {
-  auto selection = SelectScenarios({typed}, {}, context.root);
-  if (!selection) {
-    Complain(context, selection.error().exit_code, selection.error().why);
-    return {};
-  }
-  std::ranges::stable_sort(selection->scenarios, {}, [](const ScenarioFile& file) {
-    std::error_code error;
-    return std::filesystem::file_size(file.path, error);
-  });
-  return std::move(selection->scenarios);
-}
-
 /// One scenario per style: the first in which a hand holds something so.
 ExitCode DrawGrasps(const std::string& typed, const ParsedOptions& options,
                     const CommandContext& context) {
-  std::vector<PlayedRun> played;
-  std::vector<figures::HeldScene> scenes;
-  const auto is_known = [&](const std::string& style) {
-    return std::ranges::any_of(
-        scenes, [&](const figures::HeldScene& scene) { return scene.held.style == style; });
-  };
-  for (const ScenarioFile& file : ScenariosLike(typed, context)) {
-    const Result<LoadedRun> read = LoadRun(RequestOf(options, file.path), context.root);
-    if (!read) return Complain(context, read.error());
-    if (std::ranges::all_of(StylesOf(read->scenario), is_known)) continue;
-    auto one = PlayTyped(file.path, options, context);
-    if (!one) return one.error();
-    auto held = figures::LongestGrasp(one->loaded.scenario, one->run);
-    if (!held || is_known(held->style)) continue;
-    played.push_back(std::move(*one));
-    scenes.push_back({.held = std::move(*held)});
-  }
-  if (scenes.empty())
+  const auto selection = SelectScenarios({typed}, {}, context.root);
+  if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
+  std::vector<RunRequest> scenarios;
+  for (const ScenarioFile& file : selection->scenarios)
+    scenarios.push_back(RequestOf(options, file.path));
+  const auto grasps = figures::FindGrasps(std::move(scenarios), context.root);
+  if (!grasps) return Complain(context, grasps.error());
+  if (grasps->empty())
     return Complain(context, ExitCode::kNothing,
                     "in no scenario of '" + typed + "' a hand holds something in a style");
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
-    scenes[i].scenario = &played[i].loaded.scenario;
-    scenes[i].run = &played[i].run;
-  }
   const figures::SceneFormat format = SceneFormatOf(options, "hand", kSheetWidth_px);
   ScenePainter painter;
-  const figures::Sheet sheet = figures::GraspSheet(scenes, format, painter);
+  const figures::Sheet sheet = figures::GraspSheet(figures::ScenesOf(*grasps), format, painter);
   return WriteSheet(sheet, format, painter, options, context);
 }
 
@@ -155,39 +114,22 @@ tl::expected<std::vector<figures::KeyMoment>, ExitCode> MomentsOf(const Kind& ki
                                                                   const CommandContext& context) {
   const RunResult& run = played.run;
   const figures::Window window = WindowOf(options, run);
-  std::vector<figures::KeyMoment> moments;
   if (options.Has("--at")) {
-    for (const std::string& at : WordsOf(options.Text("--at"))) {
-      if (const auto problem = WhyNoEventTime(at, *played.loaded.program))
-        return tl::unexpected(Complain(context, ExitCode::kBadInput,
-                                       "--at: " + problem->message + "; " + problem->hint));
-      const FoundTime found = FindEventTime(at, run);
-      if (!found.missed.empty())
-        return tl::unexpected(Complain(context, ExitCode::kBadInput, "--at: " + found.missed));
-      moments.push_back({.time_s = figures::SecondsOf(run, found.tick), .caption = at});
-    }
-    if (moments.size() > kMostScenes)
+    auto moments =
+        figures::NamedMoments(WordsOf(options.Text("--at")), *played.loaded.program, run);
+    if (!moments)
+      return tl::unexpected(Complain(context, ExitCode::kBadInput, "--at: " + moments.error()));
+    if (moments->size() > kMostScenes)
       return tl::unexpected(Complain(
           context, ExitCode::kBadInput,
-          fmt::format("--at: found {} moments, wanted at most {}", moments.size(), kMostScenes)));
-    return moments;
+          fmt::format("--at: found {} moments, wanted at most {}", moments->size(), kMostScenes)));
+    return std::move(*moments);
   }
   const auto count = static_cast<std::size_t>(options.IntOr("--scenes", kind.scenes));
   const std::string name = kind.name;
   if (name == "gaze") return LongestLooks(played.loaded.scenario, run, window, count);
-  if (name == "phases") {
-    // Begin and end of the episode are on the chart anyway.
-    for (std::size_t most = count; moments.size() < count && most <= count + 2; ++most) {
-      moments = figures::KeyMoments(run, window, most);
-      std::erase_if(moments, [](const figures::KeyMoment& moment) {
-        return moment.caption == "begin" || moment.caption == "end";
-      });
-    }
-    return moments;
-  }
-  for (const double time_s : figures::SpreadMoments(run, window, count))
-    moments.push_back({.time_s = time_s, .caption = ""});
-  return moments;
+  return name == "phases" ? figures::EventMoments(run, window, count)
+                          : figures::SpreadScenes(run, window, count);
 }
 
 ExitCode DrawChart(const Kind& kind, const PlayedRun& played, const ParsedOptions& options,

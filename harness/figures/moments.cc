@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "harness/run/event_time.h"
 #include "harness/timeline/event_text.h"
 #include "physics/scene/geometry.h"
 
@@ -83,6 +84,37 @@ std::vector<double> SpreadMoments(const RunResult& run, const Window& window, st
     times_s.push_back(from_s + share * (to_s - from_s));
   }
   return times_s;
+}
+
+std::vector<KeyMoment> SpreadScenes(const RunResult& run, const Window& window, std::size_t count) {
+  std::vector<KeyMoment> moments;
+  for (const double time_s : SpreadMoments(run, window, count))
+    moments.push_back({.time_s = time_s, .caption = ""});
+  return moments;
+}
+
+std::vector<KeyMoment> EventMoments(const RunResult& run, const Window& window, std::size_t count) {
+  std::vector<KeyMoment> moments;
+  for (std::size_t most = count; moments.size() < count && most <= count + 2; ++most) {
+    moments = KeyMoments(run, window, most);
+    std::erase_if(moments, [](const KeyMoment& moment) {
+      return moment.caption == "begin" || moment.caption == "end";
+    });
+  }
+  return moments;
+}
+
+tl::expected<std::vector<KeyMoment>, std::string> NamedMoments(
+    const std::vector<std::string>& names, const grammar::Program& program, const RunResult& run) {
+  std::vector<KeyMoment> moments;
+  for (const std::string& name : names) {
+    if (const auto problem = WhyNoEventTime(name, program))
+      return tl::unexpected(problem->message + "; " + problem->hint);
+    const FoundTime found = FindEventTime(name, run);
+    if (!found.missed.empty()) return tl::unexpected(found.missed);
+    moments.push_back({.time_s = SecondsOf(run, found.tick), .caption = name});
+  }
+  return moments;
 }
 
 std::vector<Look> Looks(const Scenario& scenario, const RunResult& run, const Window& window) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <tl/expected.hpp>
 #include <vector>
 
 #include "harness/figures/window.h"
@@ -22,6 +23,15 @@ std::vector<KeyMoment> KeyMoments(const RunResult& run, const Window& window, st
 /// The middle of so many equal parts of what hands do in the window; of all of it if they do
 /// nothing.
 std::vector<double> SpreadMoments(const RunResult& run, const Window& window, std::size_t count);
+/// The same without captions.
+std::vector<KeyMoment> SpreadScenes(const RunResult& run, const Window& window, std::size_t count);
+
+/// Key moments but begin and end of the episode, which a chart shows anyway.
+std::vector<KeyMoment> EventMoments(const RunResult& run, const Window& window, std::size_t count);
+
+/// Those that are named, as for FindEventTime(), or why there is no such moment.
+tl::expected<std::vector<KeyMoment>, std::string> NamedMoments(
+    const std::vector<std::string>& names, const grammar::Program& program, const RunResult& run);
 
 /// A person sees something for a while.
 struct Look {

@@ -38,6 +38,18 @@ TEST(Moments, AreSpreadOverWhatHandsDo) {
   EXPECT_EQ(SpreadMoments({}, {.from_s = 0, .to_s = 4}, 2), (std::vector<double>{1, 3}));
 }
 
+TEST(Moments, OfAChartAreInsideOfTheEpisodeOrNamed) {
+  const auto& [loaded, run] = Of("pick_and_place/milk_carton_wrap");
+  const auto events = EventMoments(run, WholeOf(run), 5);
+  ASSERT_EQ(events.size(), 5u);
+  EXPECT_EQ(std::ranges::count(events, "end", &KeyMoment::caption), 0);
+  const auto named = NamedMoments({"reaching.begin", "1.5"}, *loaded.program, run);
+  ASSERT_TRUE(named) << named.error();
+  EXPECT_EQ((*named)[0].caption, "reaching.begin");
+  EXPECT_NEAR((*named)[1].time_s, 1.5, 0.01);
+  EXPECT_NE(NamedMoments({"reachin.begin"}, *loaded.program, run).error(), "");
+}
+
 TEST(Moments, ALookHasItsDwellAndDistance) {
   const auto& [loaded, run] = Of("gaze/eyes_lead_the_hand");
   const auto looks = Looks(loaded.scenario, run, WholeOf(run));
