@@ -376,7 +376,7 @@ Command AcceptCommand() {
            "accept milk_carton_wrap --reviewed 3fa90c11d27e5b60 --reason \"the grasp ends "
            "earlier\"",
            "accept milk_carton_wrap --reason \"...\" --derived \"the reach begins with the hand's "
-           "first motion\"",
+           "motion\"",
            "accept milk_carton_wrap --pictures --reason \"the carton is seen in the hand\"",
            "accept takes/take1.jsonl --reason \"compared with the video\"",
            "accept takes/take1.jsonl --grammar my.grammar --reason \"compared with the video\""},

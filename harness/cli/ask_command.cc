@@ -163,9 +163,8 @@ Command AskCommand() {
           {"episode ask kb \"entity(Act, [an, action, [type, 'Sliding']]), occurs(Act, [S, E])\"",
            "episode ask kb \"entity(Obj, [an, object, [type, 'Handle']]), holds(part_of(Obj, "
            "Door))\"",
-           "episode ask kb --show shown \"entity(Act, [an, action, [type, 'Grasping'], [object, "
-           "[an, object, [name, Obj], [type, 'Handle']]]]), occurs(Act, [S, E]), "
-           "show(world(S)), show(trajectory(Obj), [S, E])\""},
+           "episode ask kb --show shown \"entity(A, [an, action]), occurs(A, [S, E]), "
+           "show(world(S))\""},
       .options = {{.name = "folder",
                    .help = "what 'prehend episode knowledge' wrote",
                    .required = true},

@@ -43,7 +43,7 @@ nlohmann::ordered_json FigureJson(const SpeedFigure& f) {
 }
 
 ExitCode RunBench(const ParsedOptions& options, const CommandContext& context) {
-  auto episode = OpenEpisodeOrComplain(options.TextOr("episode", "pick_and_place/milk_carton_wrap"),
+  auto episode = OpenEpisodeOrComplain(options.TextOr("EPISODE", "pick_and_place/milk_carton_wrap"),
                                        options, context);
   if (!episode) return episode.error();
   std::vector<std::vector<std::string>> rows = {
@@ -69,7 +69,7 @@ Command BenchCommand() {
           .summary = "Measure how fast a grammar is evaluated on this machine",
           .examples = {"grammar bench", "grammar bench take.jsonl --grammar my/rules.grammar",
                        "grammar bench --json"},
-          .options = {{.name = "episode",
+          .options = {{.name = "EPISODE",
                        .help = "a scenario, an episode file or a recording whose frames are "
                                "watched; default: milk_carton_wrap"},
                       EpisodeOption(),

@@ -50,7 +50,7 @@ ExitCode ComplainOfNoEvent(const ParsedOptions& options, grammar::ReplayMonitor&
                            IntervalText(other.interval, past.entity_table().ticks_per_second));
   }
   message += fmt::format("\n  why not: {} --expected {}",
-                         CommandAbout("explain", options.Text("scenario"),
+                         CommandAbout("explain", options.Text("EPISODE"),
                                       {options.Text("--grammar"), options.All("--set")}),
                          ShellQuoted(typed));
   return Complain(context, ExitCode::kNothing, message);
@@ -101,7 +101,7 @@ ExitCode RunExplain(const ParsedOptions& options, const CommandContext& context)
     return Complain(context, ExitCode::kBadInput,
                     "--event contradicts --expected; give one of them");
   }
-  auto episode = OpenEpisodeOrComplain(options.Text("scenario"), options, context);
+  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
   if (!episode) return episode.error();
 
   Question question;

@@ -184,7 +184,7 @@ ExitCode RunFigure(const ParsedOptions& options, const CommandContext& context) 
   std::string problem = WhyNot(kind, options);
   if (problem.empty()) problem = WhyNotWritable(options.Text("--output"));
   if (!problem.empty()) return Complain(context, ExitCode::kBadInput, problem);
-  const std::string typed = options.TextOr("scenario", kind.scenario);
+  const std::string typed = options.TextOr("EPISODE", kind.scenario);
   if (std::string_view(kind.name) == "grasps") return DrawGrasps(typed, options, context);
   const auto played = PlayTyped(typed, options, context);
   if (!played) return played.error();
@@ -210,8 +210,8 @@ Command FigureCommand() {
             .help = KindHelp(),
             .rule = {.range = {}, .problem = KindProblem},
             .required = true},
-           {.name = "scenario",
-            .help = "a scenario or an episode file (docs/episodes.md); for grasps a glob"},
+           {.name = "EPISODE",
+            .help = "a scenario, an episode file or a recording; for grasps a glob of scenarios"},
            EpisodeOption(),
            Required(OutputOption("the file: .svg, .pdf or .png")),
            {.name = "--against",

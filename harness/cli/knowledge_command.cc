@@ -17,7 +17,7 @@ std::string FormProblem(const std::string& text) {
 }
 
 ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& context) {
-  auto episodes = FindEpisodesOrComplain("files", options, context, {Need::kBodies});
+  auto episodes = FindEpisodesOrComplain("EPISODES", options, context, {Need::kBodies});
   if (!episodes) return episodes.error();
   const std::vector<std::string> forms = options.All("--also");
   const auto asked = [&](const char* form) {

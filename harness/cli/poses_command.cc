@@ -114,7 +114,7 @@ Json PosesJson(const Scenario& scenario, const physics::Snapshot& now, double ti
 }
 
 ExitCode RunPoses(const ParsedOptions& options, const CommandContext& context) {
-  auto episode = OpenEpisodeOrComplain(options.Text("scenario"), options, context);
+  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
   if (!episode) return episode.error();
   const std::string at = options.TextOr("--at", "0");
   if (const auto problem = WhyNoEventTime(at, *episode->program()))

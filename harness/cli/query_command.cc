@@ -153,7 +153,7 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
   std::vector<EventAnswer> answers;
   episodes::KnownNames known;
   EpisodeKeeper keeper(context.root, context.today);
-  for (std::string path : options.All("files")) {
+  for (std::string path : options.All("EPISODES")) {
     if (EpisodeKindOf(path) != EpisodeKind::kEpisodeFile) {
       const auto name = FindEpisode(path, "", context.root);
       if (!name) return Complain(context, name.error());
@@ -210,7 +210,7 @@ Command QueryCommand() {
       .examples =
           {"episode query suite.episodes --event sliding --class object=CerealBox",
            "episode query suite.episodes --event grasping --class object=Handle --part-of "
-           "object=FridgeDoor",
+           "object=Door",
            "episode query suite.episodes --event pick_and_place --parts --json",
            "episode query *.episodes --event sliding --relation 'meets transporting' --csv",
            "episode query suite.episodes --event grasping --class object=Handle --show shown"},

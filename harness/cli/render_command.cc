@@ -184,7 +184,7 @@ std::string WhyNotTogether(const ParsedOptions& options) {
 /// The run of a scenario or of an episode, with every frame.
 tl::expected<PlayedRun, ExitCode> Play(const ParsedOptions& options,
                                        const CommandContext& context) {
-  auto episode = OpenEpisodeOrComplain(options.Text("scenario"), options, context);
+  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
   if (!episode) return tl::unexpected(episode.error());
   auto played = PlayOrComplain(std::move(*episode), context);
   if (!played) return played;
@@ -304,7 +304,7 @@ ExitCode RenderFilm(const ParsedOptions& options, const CommandContext& context)
 }
 
 ExitCode RenderPictures(const ParsedOptions& options, const CommandContext& context) {
-  auto episode = OpenEpisodeOrComplain(options.Text("scenario"), options, context);
+  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
   if (!episode) return episode.error();
   LoadedRun* loaded = &episode->loaded();
   auto asked = AskedPictures(options, loaded->scenario);
@@ -420,15 +420,13 @@ Command RenderCommand() {
       .examples = {"render milk_carton_wrap", "render milk_carton_wrap -o milk.png",
                    "render suite.episodes --episode slide/hop_divides_a_slide -o hop.png",
                    "render milk_carton_wrap --at transporting.begin --camera left -o left.png",
-                   "render milk_carton_wrap --at reaching.begin,grasping.begin,putting_down.end "
-                   "--sheet 3 --size 640x480 --theme print -o sheet.png",
+                   "render milk_carton_wrap --at reaching.begin,putting_down.end --sheet 2 --theme "
+                   "print -o sheet.png",
                    "render milk_carton_wrap --strip -o strip.pdf",
                    "render milk_carton_wrap --against original_2020 -o two_grammars.png",
                    "render milk_carton_wrap --film milk.webp --speed 0.5"},
       .options = Joined(
-          Joined({{.name = "scenario",
-                   .help = "a scenario (name, skill/name or file) or an episode file",
-                   .required = true},
+          Joined({EpisodeArgument(),
                   EpisodeOption(),
                   OutputOption("the PNG file; default: build/pictures/SKILL/NAME.png. --strip and "
                                "--against also write .svg and .pdf"),

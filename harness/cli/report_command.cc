@@ -18,7 +18,7 @@ constexpr const char* kDefaultPage = "report.html";
 constexpr double kLongest_s = 600;  ///< for one episode
 
 ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) {
-  const auto chosen = FindEpisodesOrComplain("files", options, context);
+  const auto chosen = FindEpisodesOrComplain("EPISODES", options, context);
   if (!chosen) return chosen.error();
   const std::string page = options.TextOr("--output", kDefaultPage);
   std::string problem = WhyNotWritable(page);

@@ -152,7 +152,7 @@ ExitCode RunResegment(const ParsedOptions& options, const CommandContext& contex
                     "--event chooses what --output FILE writes; --output is missing");
   const std::vector<Need> needs =
       options.Has("--against") ? std::vector<Need>{Need::kRecordedEvents} : std::vector<Need>{};
-  const auto selected = FindEpisodesOrComplain("recording", options, context, needs);
+  const auto selected = FindEpisodesOrComplain("EPISODES", options, context, needs);
   if (!selected) return selected.error();
   return options.Has("--output") ? WriteLabels(*selected, options, context)
                                  : ResegmentEpisodes(*selected, options, context);
@@ -173,11 +173,7 @@ Command ResegmentCommand() {
                    "episode resegment milk.jsonl --set lift_rise=10cm",
                    "episode resegment monday.episodes tuesday.episodes --against recorded",
                    "episode resegment suite.episodes --episode 'slide/*' --set slide_speed=3cm/s"},
-      .options = {{.name = "recording",
-                   .help = "episode files (docs/episodes.md), recordings as JSON Lines "
-                           "(docs/recording-format.md) or scenarios, which are played first",
-                   .required = true,
-                   .repeatable = true},
+      .options = {EpisodesArgument(),
                   EpisodesOption(),
                   {.name = "--against",
                    .help = "print only how the events differ from those that were recognised when "

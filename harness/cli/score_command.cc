@@ -115,8 +115,7 @@ Command ScoreCommand() {
           .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
                        "score --grammar my/rules.grammar --event grasping,sliding",
                        "score 'slide/*' --collar-ms 20 --json",
-                       "score take1.jsonl take2.jsonl --truth labels --map labels.yaml --grammar "
-                       "pick_and_place_from_motion"},
+                       "score take1.jsonl take2.jsonl --truth labels --map labels.yaml"},
           .options = Joined(
               {{.name = "names",
                 .help = "names, skill/name, globs or files; default: all scenarios",

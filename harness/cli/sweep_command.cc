@@ -68,7 +68,7 @@ std::optional<sweep::SweepRequest> RequestFrom(const ParsedOptions& options,
 tl::expected<std::vector<EpisodeName>, ExitCode> EpisodesFrom(const ParsedOptions& options,
                                                               sweep::SweepRequest& request,
                                                               const CommandContext& context) {
-  auto episodes = FindEpisodesOrComplain("files", options, context);
+  auto episodes = FindEpisodesOrComplain("EPISODES", options, context);
   if (!episodes) return episodes;
   if (request.grammar.empty()) {
     Result<std::string> own = labels::OwnGrammar(*episodes);
@@ -173,10 +173,9 @@ Option WithinOption(const std::string& help) {
 Command MarginsCommand() {
   return {.name = "grammar margins",
           .summary = "How far each parameter of a grammar may be from its value",
-          .examples =
-              {"grammar margins suite.episodes --truth oracle --grammar my/rules.grammar",
-               "grammar margins take1.jsonl take2.jsonl --truth labels --map labels.yaml --grammar "
-               "pick_and_place_from_motion -o margins.csv"},
+          .examples = {"grammar margins suite.episodes --truth oracle --grammar my/rules.grammar",
+                       "grammar margins take1.jsonl take2.jsonl --truth labels --map labels.yaml "
+                       "-o margins.csv"},
           .options = SweepOptions(
               {{.name = "--over",
                 .help = "try this parameter instead of all; may be repeated",
@@ -193,10 +192,9 @@ Command SweepCommand() {
       .summary = "Try a grammar's parameters on recorded episodes",
       .examples =
           {"grammar sweep suite.episodes --over reach_radius=10cm..50cm:9 -o sweep.csv",
-           "grammar sweep suite.episodes --over reach_radius=10cm..50cm:9 --over "
-           "lift_rise=2cm..8cm:7 --truth oracle --picture sweep.png",
-           "grammar sweep *.episodes --grammar my/rules.grammar --over still_for=50ms..200ms:4 "
-           "--truth recorded"},
+           "grammar sweep suite.episodes --over reach_radius=10cm..50cm:9 --truth oracle --picture "
+           "sweep.png",
+           "grammar sweep *.episodes --over reach_radius=10cm..50cm:9 --over lift_rise=2cm..8cm:7"},
       .options = SweepOptions(
           {{.name = "--over",
             .help =

@@ -44,7 +44,7 @@ ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) 
     return Complain(context, ExitCode::kBadInput,
                     "--json contradicts an --output that ends with .csv");
   }
-  auto episode = OpenEpisodeOrComplain(options.Text("scenario"), options, context);
+  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
   if (!episode) return episode.error();
   const std::vector<std::string> only = options.All("--only");
   const std::string unknown = UnknownTrack(only, *episode->program());

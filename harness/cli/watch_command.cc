@@ -130,7 +130,7 @@ class LineWatcher {
 
 /// A run or a recording of an episode file, or a scenario while it is played.
 ExitCode WatchEpisode(const ParsedOptions& options, const CommandContext& context) {
-  auto episode = OpenEpisodeOrComplain(options.Text("recording"), options, context);
+  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
   if (!episode) return episode.error();
   Warn(context, episode->loaded().warnings);
   Episode::End end;
@@ -160,7 +160,7 @@ bool IsNoLines(const std::string& typed) {
 }
 
 ExitCode RunWatch(const ParsedOptions& options, const CommandContext& context) {
-  const std::string typed = options.Text("recording");
+  const std::string typed = options.Text("EPISODE");
   if (IsNoLines(typed)) return WatchEpisode(options, context);
   if (options.Has("--episode"))
     return Complain(context, ExitCode::kBadInput,
@@ -184,7 +184,7 @@ Command WatchCommand() {
       .summary = "Print events while a recording is written, each when it is decided",
       .examples = {"grammar watch - --grammar pick_and_place_from_motion",
                    "grammar watch tracker.fifo --json"},
-      .options = {{.name = "recording",
+      .options = {{.name = "EPISODE",
                    .help = "lines of a recording (docs/recording-format.md): -, standard input, a "
                            "pipe or a file;\nor an episode file, or a scenario",
                    .required = true},

@@ -23,13 +23,13 @@ Option ScenarioArgument() {
 }
 
 Option EpisodeArgument() {
-  return {.name = "scenario",
+  return {.name = "EPISODE",
           .help = "a scenario (name, skill/name or file), an episode file or a recording",
           .required = true};
 }
 
 Option EpisodesArgument() {
-  return {.name = "files",
+  return {.name = "EPISODES",
           .help =
               "episode files (docs/episodes.md), recordings (docs/recording-format.md) or "
               "scenarios, which are played first",

@@ -15,8 +15,8 @@ constexpr double kDefaultCollar_ms = 50;
 
 Option ScenarioArgument();
 Option EpisodeArgument();       ///< a scenario, an episode file or a recording
-Option EpisodesArgument();      ///< "files": any number of them
-Option EpisodeFilesArgument();  ///< "files"
+Option EpisodesArgument();      ///< any number of them
+Option EpisodeFilesArgument();  ///< "files": no others
 Option EpisodeOption();         ///< one of an episode file
 Option EpisodesOption();        ///< some of episode files
 Option GrammarOption();

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -84,6 +85,37 @@ TEST(CommandTree, AnOldNameIsAnErrorThatSaysTheNewOne) {
       EXPECT_EQ(std::get<UsageError>(parsed).corrected, corrected);
     }
   }
+}
+
+TEST(CommandTree, AnOldOptionIsAnErrorThatSaysTheNewOne) {
+  for (const OldName& name : DescribeProgram("prehend 1").old_options) {
+    std::vector<std::string> words = WordsIn(name.old);
+    const std::string option = words.back();
+    words.insert(words.end(), {"a", "b", "-o", "c"});  // what some commands must have
+    const ParsedArguments parsed = Typed(words);
+    ASSERT_TRUE(std::holds_alternative<UsageError>(parsed)) << name.old;
+    EXPECT_EQ(std::get<UsageError>(parsed).message,
+              "'" + option + "' is called '" + name.now + "' now");
+    std::ranges::replace(words, option, name.now);
+    EXPECT_EQ(std::get<UsageError>(parsed).corrected, words);
+  }
+}
+
+TEST(CommandTree, ScreensAreNarrowAndOptionsFew) {
+  std::size_t options = 4;  // of the program's own screen
+  for (const Command& command : AllCommands()) {
+    std::vector<std::string> words = WordsIn(command.name);
+    words.push_back("--help");
+    const std::string screen = Screen(words);
+    for (const std::string& line : LinesOf(screen)) {
+      EXPECT_LE(line.size(), 100u) << command.name << ": " << line;
+      if (line.starts_with("  -")) ++options;
+    }
+    for (const Option& option : command.options)
+      EXPECT_EQ(screen.find(option.name) == std::string::npos, option.unlisted) << screen;
+  }
+  EXPECT_LE(options, 200u);
+  RecordProperty("options", std::to_string(options));
 }
 
 TEST(CommandTree, AnUnknownCommandIsAnErrorAlsoWhenItsHelpIsAsked) {
