@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "harness/base/atomic_file.h"
@@ -19,10 +17,10 @@
 #include "harness/golden/golden_files.h"
 #include "harness/judge/accept_golden.h"
 #include "harness/judge/compare_engines.h"
+#include "harness/pictures/choose_pictures.h"
 #include "harness/pictures/film.h"
 #include "harness/pictures/pictures.h"
 #include "harness/pictures/svg_file.h"
-#include "harness/run/event_time.h"
 #include "harness/run/run_text.h"
 
 namespace prehend::harness {
@@ -97,23 +95,10 @@ PictureFormat FormatOf(const ParsedOptions& options) {
   return format;
 }
 
-/// The pictures that the command line asks for instead of the scenario's own; none when it asks
-/// for none.
-std::vector<PictureYaml> AskedPictures(const ParsedOptions& options, const Scenario& scenario) {
-  if (!options.Has("--at") && !options.Has("--camera") && !options.Has("--output")) return {};
-  PictureYaml entry =
-      scenario.pictures.empty() ? PictureYaml{.at = {"0", {}}} : scenario.pictures.front();
-  entry.camera.value = options.TextOr("--camera", entry.camera.value);
-  if (!options.Has("--at")) {
-    if (options.Has("--sheet") && !scenario.pictures.empty()) return scenario.pictures;
-    return {entry};
-  }
-  std::vector<PictureYaml> entries;
-  for (const std::string& at : WordsOf(options.Text("--at"))) {
-    entries.push_back(entry);
-    entries.back().at.value = at;
-  }
-  return entries;
+PictureChoice ChoiceOf(const ParsedOptions& options) {
+  PictureChoice choice{.camera = options.Text("--camera"), .all = options.Has("--sheet")};
+  if (options.Has("--at")) choice.at = WordsOf(options.Text("--at"));
+  return choice;
 }
 
 /// Why these pictures do not fit on one sheet, or "".
@@ -223,25 +208,9 @@ ExitCode ComparePictures(const PlayedRun& played, const ParsedOptions& options,
                          const CommandContext& context) {
   const Scenario& scenario = played.loaded.scenario;
   const std::string id = ScenarioId(scenario.skill, scenario.name);
-  figures::Sheet sheet{.title = id + ": golden pictures and those of now"};
   ScenePainter painter;
-  for (const KeptPicture& golden : GoldenFiles(context.root).PicturesOf(id)) {
-    const auto index = static_cast<std::size_t>(golden.number) - 1;
-    if (index >= scenario.pictures.size()) continue;
-    std::ifstream file(golden.path, std::ios::binary);
-    const std::string kept{std::istreambuf_iterator<char>(file), {}};
-    const PictureYaml& entry = scenario.pictures[index];
-    const DrawnScene now = painter.Draw(scenario, played.run, entry, kGoldenFormat);
-    const SceneDifference difference = DifferenceOf(kept, now.png);
-    sheet.rows.push_back(
-        {.heading = fmt::format("picture {}: {}", golden.number, entry.at.value),
-         .tiles = {{kept, "golden"},
-                   {now.png, "now"},
-                   {difference.png,
-                    fmt::format("difference: {:.2g} % of the pixels", 100 * difference.share)}},
-         .columns = 3,
-         .height_share = 9.0 / 16});
-  }
+  const figures::Sheet sheet = figures::GoldenPicturesSheet(
+      id, scenario, played.run, GoldenFiles(context.root).PicturesOf(id), painter);
   if (sheet.rows.empty())
     return Complain(context, ExitCode::kNothing,
                     "--against: " + id + " has no golden pictures; " + AcceptPicturesCommand(id) +
@@ -307,18 +276,13 @@ ExitCode RenderPictures(const ParsedOptions& options, const CommandContext& cont
   auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
   if (!episode) return episode.error();
   LoadedRun* loaded = &episode->loaded();
-  auto asked = AskedPictures(options, loaded->scenario);
-  for (const PictureYaml& entry : asked) {
-    const auto problem = WhyNoEventTime(entry.at.value, *loaded->program);
-    if (problem && options.Has("--at")) {
-      return Complain(context, ExitCode::kBadInput,
-                      "--at: " + problem->message + "; " + problem->hint);
-    }
-    if (const auto why = WhyNoCamera(loaded->scenario, entry.camera.value))
-      return Complain(context, ExitCode::kBadInput, "--" + *why);
-  }
+  const PictureChoice choice = ChoiceOf(options);
+  std::vector<PictureYaml> asked;
+  if (options.Has("--at") || options.Has("--camera") || options.Has("--output"))
+    asked = ChosenPictures(choice, loaded->scenario);
   for (const std::string& why :
-       {WhyNoPart(FormatOf(options), loaded->scenario), WhyNoSheet(options, asked.size())}) {
+       {WhyNotChosen(choice, asked, loaded->scenario, *loaded->program),
+        WhyNoPart(FormatOf(options), loaded->scenario), WhyNoSheet(options, asked.size())}) {
     if (!why.empty()) return Complain(context, ExitCode::kBadInput, why);
   }
   if (!asked.empty()) loaded->scenario.pictures = std::move(asked);

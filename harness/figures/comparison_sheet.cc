@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <vector>
 
 #include "harness/timeline/event_text.h"
@@ -303,6 +305,29 @@ Sheet ComparisonSheet(const Scenario& scenario, const Side& first, const Side& s
                                          moment.time_s, moment.involved));
   }
   sheet.chart = std::move(chart);
+  return sheet;
+}
+
+Sheet GoldenPicturesSheet(const std::string& id, const Scenario& scenario, const RunResult& run,
+                          const std::vector<KeptPicture>& goldens, ScenePainter& painter) {
+  Sheet sheet{.title = id + ": golden pictures and those of now"};
+  for (const KeptPicture& golden : goldens) {
+    const auto index = static_cast<std::size_t>(golden.number) - 1;
+    if (index >= scenario.pictures.size()) continue;
+    std::ifstream file(golden.path, std::ios::binary);
+    const std::string kept{std::istreambuf_iterator<char>(file), {}};
+    const PictureYaml& entry = scenario.pictures[index];
+    const DrawnScene now = painter.Draw(scenario, run, entry, kGoldenFormat);
+    const SceneDifference difference = DifferenceOf(kept, now.png);
+    sheet.rows.push_back(
+        {.heading = fmt::format("picture {}: {}", golden.number, entry.at.value),
+         .tiles = {{kept, "golden"},
+                   {now.png, "now"},
+                   {difference.png,
+                    fmt::format("difference: {:.2g} % of the pixels", 100 * difference.share)}},
+         .columns = 3,
+         .height_share = 9.0 / 16});
+  }
   return sheet;
 }
 

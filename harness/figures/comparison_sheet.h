@@ -5,10 +5,12 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "harness/figures/figures.h"
 #include "harness/figures/scene_tiles.h"
 #include "harness/golden/compare.h"
+#include "harness/golden/golden_files.h"
 
 namespace prehend::harness::figures {
 
@@ -27,6 +29,10 @@ struct Side {
 Sheet ComparisonSheet(const Scenario& scenario, const Side& first, const Side& second,
                       const Comparison& comparison, const Window& window, const SceneFormat& format,
                       ScenePainter& painter);
+
+/// Golden pictures of a scenario, the same as its run shows them now, and where they differ.
+Sheet GoldenPicturesSheet(const std::string& id, const Scenario& scenario, const RunResult& run,
+                          const std::vector<KeptPicture>& goldens, ScenePainter& painter);
 
 /// The chart of it alone.
 Chart ComparisonChart(const Scenario& scenario, const Side& first, const Side& second,
