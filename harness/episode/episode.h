@@ -12,6 +12,7 @@
 
 #include "harness/episodes/load_episode.h"
 #include "harness/run/episode_name.h"
+#include "harness/run/segment_recording.h"
 
 namespace prehend::harness {
 

@@ -8,9 +8,8 @@
 
 #include "harness/base/content_hash.h"
 #include "harness/episode/find_episodes.h"
-#include "harness/episodes/record_episode.h"
+#include "harness/episodes/record_run.h"
 #include "harness/episodes/recordings.h"
-#include "harness/run/load_run.h"
 
 namespace prehend::harness {
 namespace {
@@ -21,10 +20,8 @@ namespace fs = std::filesystem;
 grammar::Diagnostics Record(episodes::RecordRequest request) {
   const Result<LoadedRun> loaded = LoadRun(request.run, request.root, &request.files);
   if (!loaded) return loaded.error();
-  episodes::EpisodeRecorder recorder(request, loaded->scenario);
-  ScenarioRun playing(loaded->scenario, loaded->program);
-  while (playing.Step()) recorder.Add(playing.snapshot());
-  recorder.Finish(playing.Finish());
+  episodes::RunRecorder recorder(request, loaded->scenario);
+  episodes::PlayScenario(*loaded, {}, &recorder);
   if (recorder.problem().empty()) return {};
   return {{.file = request.file, .place = {}, .message = recorder.problem()}};
 }

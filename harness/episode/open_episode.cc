@@ -42,7 +42,8 @@ Result<Episode> EpisodeOpener::OpenKept(const EpisodeName& name, const GrammarCh
         grammar::Diagnostics{{.file = name.file, .place = {}, .message = "the episode is gone"}});
   Result<LoadedRun> loaded = loader_.Load(*file_, *row, choice);
   if (!loaded) return tl::unexpected(std::move(loaded.error()));
-  Episode episode(name, std::move(*loaded));
+  const Origin origin = row->simulated ? Origin::kRecordedRun : Origin::kRecording;
+  Episode episode({name.file, row->id, row->scenario, origin, row->grammar}, std::move(*loaded));
   episode.file_ = file_;
   episode.row_ = *row;
   if (row->simulated) return episode;

@@ -29,16 +29,6 @@ tl::unexpected<grammar::Diagnostics> Failure(const EpisodeFile& file, const Epis
        .hint = {}}});
 }
 
-RunResult BlankResult(const EpisodeRow& episode, const LoadedRun& loaded) {
-  RunResult run;
-  run.status = episode.end;
-  run.ticks = episode.ticks;
-  run.is_unfinished = episode.status == kUnfinished;
-  run.outcome = episode.outcome;
-  run.drawings = EventDrawings(*loaded.program);
-  return run;
-}
-
 std::uint64_t HashOfText(const std::string& text) {
   std::uint64_t hash = 0;
   for (const char c : text.substr(std::min<std::size_t>(2, text.size()))) {
@@ -58,33 +48,6 @@ Result<Recording> ReadWhole(const EpisodeFile& file, const EpisodeRow& episode) 
   return Failure(file, episode,
                  fmt::format("the file is damaged: its frames have the hash {}, recorded was {}",
                              hash, episode.state_hash));
-}
-
-namespace {
-
-/// Of a recording: what the grammar recognises, and with `frames` the scene that stands in for it.
-Result<RunResult> ResegmentRecording(const EpisodeFile& file, const EpisodeRow& episode,
-                                     const LoadedRun& loaded, bool frames, MissingFacts* missing) {
-  Result<Recording> recording = ReadWhole(file, episode);
-  if (!recording) return tl::unexpected(std::move(recording.error()));
-  auto segmented = SegmentRecording(*recording, loaded.program, file.path());
-  if (!segmented) return tl::unexpected(std::move(segmented.error()));
-  if (missing != nullptr) *missing = std::move(segmented->missing);
-  RunResult run = BlankResult(episode, loaded);
-  run.timeline = std::move(segmented->timeline);
-  run.state_hash = HashOfText(episode.state_hash);
-  for (std::size_t i = 0; frames && i < recording->frames.size(); ++i)
-    run.recording.push_back(StandInAt(recording->header, recording->frames[i]));
-  return run;
-}
-
-}  // namespace
-
-Result<SegmentedRecording> SegmentRecorded(const EpisodeFile& file, const EpisodeRow& episode,
-                                           const LoadedRun& loaded) {
-  Result<Recording> recording = ReadWhole(file, episode);
-  if (!recording) return tl::unexpected(std::move(recording.error()));
-  return SegmentRecording(*recording, loaded.program, file.path());
 }
 
 void EpisodeLoader::Refresh() {
@@ -162,9 +125,12 @@ Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow&
 }
 
 Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
-                            const LoadedRun& loaded, MissingFacts* missing) {
-  if (!episode.simulated) return ResegmentRecording(file, episode, loaded, false, missing);
-  RunResult run = BlankResult(episode, loaded);
+                            const LoadedRun& loaded) {
+  RunResult run;
+  run.status = episode.end;
+  run.ticks = episode.ticks;
+  run.outcome = episode.outcome;
+  run.drawings = EventDrawings(*loaded.program);
   Sensing sensing(loaded.scenario.scene, loaded.scenario.sensing);
   EpisodeFrames frames(file, episode, LayoutOf(loaded.scenario.scene));
   std::string damage;
@@ -188,7 +154,6 @@ Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
 
 Result<RunResult> Replay(const EpisodeFile& file, const EpisodeRow& episode,
                          const LoadedRun& loaded) {
-  if (!episode.simulated) return ResegmentRecording(file, episode, loaded, true, nullptr);
   Result<RunResult> run = Resegment(file, episode, loaded);
   if (!run) return run;
   physics::StateHash hash;

@@ -12,7 +12,7 @@
 #include "harness/episodes/episode_file.h"
 #include "harness/read/scenario_library.h"
 #include "harness/run/run_scenario.h"
-#include "harness/run/segment_recording.h"
+#include "harness/sense/episode_file.h"
 
 namespace prehend::harness::episodes {
 
@@ -54,22 +54,16 @@ class EpisodeLoader {
   std::size_t writes_read_ = 0;  ///< of the tasks' files, when these were read
 };
 
-/// What the grammar recognises in the episode; its frames are not kept. An episode that is not
-/// finished has the status "failed". `missing`, unless null: of a recording, what the grammar
-/// misses.
+/// What the grammar recognises in a run; its frames are not kept. One that is not finished has the
+/// status "failed".
 Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
-                            const LoadedRun& loaded, MissingFacts* missing = nullptr);
+                            const LoadedRun& loaded);
 
-/// The same, with every frame: as RunScenario() with RunOptions::record returned it. Of a recording
-/// the frames are those of its stand-in: for pictures, not to be sensed.
+/// The same, with every frame: as RunScenario() with RunOptions::record returned it.
 Result<RunResult> Replay(const EpisodeFile& file, const EpisodeRow& episode,
                          const LoadedRun& loaded);
 
 /// The frames of a recording, if they are those that were recorded.
 Result<Recording> ReadWhole(const EpisodeFile& file, const EpisodeRow& episode);
-
-/// Of a recording: what the grammar recognises, and what it misses.
-Result<SegmentedRecording> SegmentRecorded(const EpisodeFile& file, const EpisodeRow& episode,
-                                           const LoadedRun& loaded);
 
 }  // namespace prehend::harness::episodes

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "harness/episodes/load_episode.h"
+#include "harness/episode/open_episode.h"
 #include "harness/episodes/stand_in.h"
 
 namespace prehend::harness::episodes {
@@ -73,10 +73,9 @@ TEST(Recordings, BecomeEpisodesAndComeBack) {
   EXPECT_EQ(read->header.entity_table.entities[2].classes,
             made.recording.header.entity_table.entities[2].classes);
 
-  EpisodeLoader loader(kProject);
-  const auto loaded = loader.Load(*opened, row);
-  ASSERT_TRUE(loaded);
-  const auto again = Replay(*opened, row, *loaded);
+  auto episode = OpenEpisode({.file = made.file(), .number = row.id}, {}, kProject);
+  ASSERT_TRUE(episode);
+  const auto again = episode->Run(true);
   ASSERT_TRUE(again);
   ASSERT_EQ(again->timeline.events.size(), 3);
   EXPECT_EQ(again->timeline.events[1].Label(), opened->TimelineOf(row)->events[1].Label());
@@ -91,8 +90,9 @@ TEST(Recordings, WithoutAnEndAreUnfinished) {
   const EpisodeRow& row = opened->episodes()[0];
   EXPECT_EQ(row.status, "unfinished");
   EXPECT_EQ(row.end.kind, physics::RunStatus::Kind::kCompleted);
-  EpisodeLoader loader(kProject);
-  EXPECT_TRUE(Resegment(*opened, row, *loader.Load(*opened, row))->is_unfinished);
+  auto episode = OpenEpisode({.file = made.file(), .number = row.id}, {}, kProject);
+  ASSERT_TRUE(episode);
+  EXPECT_TRUE(episode->Run(false)->is_unfinished);
 }
 
 TEST(Recordings, HaveASceneThatStandsInForThem) {
