@@ -12,10 +12,10 @@
 #include <optional>
 #include <random>
 
-#include "harness/episodes/episode_file.h"
-#include "harness/episodes/record_episode.h"
+#include "harness/episode/episodes/episode_file.h"
+#include "harness/episode/episodes/record_episode.h"
 
-namespace prehend::harness::episodes {
+namespace prehend::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,8 +28,8 @@ std::int64_t Frames() {
   return frames ? std::max(60, std::atoi(frames)) : 1800;
 }
 
-Scenario ManyBodies() {
-  Scenario scenario;
+scenario::Scenario ManyBodies() {
+  scenario::Scenario scenario;
   scenario.name = "many_bodies";
   scenario.scene.world.rate_hz = kRate_hz;
   for (std::size_t i = 0; i < kBodies; ++i)
@@ -68,22 +68,23 @@ std::string FileNamed(const char* name) {
   return (fs::temp_directory_path() / (name + std::to_string(getpid()))).string();
 }
 
-RunResult Ended() {
-  RunResult run;
+episode::RunResult Ended() {
+  episode::RunResult run;
   run.status.kind = physics::RunStatus::Kind::kCompleted;
   run.ticks = Frames();
   return run;
 }
 
-void WriteEpisode(const std::string& file, const Scenario& scenario) {
+void WriteEpisode(const std::string& file, const scenario::Scenario& scenario) {
   fs::remove(file);
-  EpisodeRecorder recorder({file,
-                            "/",
-                            {.scenario_file = "/many_bodies.yaml", .grammar = "", .settings = {}},
-                            {},
-                            "",
-                            ""},
-                           scenario);
+  episode::EpisodeRecorder recorder(
+      {file,
+       "/",
+       {.scenario_file = "/many_bodies.yaml", .grammar = "", .settings = {}},
+       {},
+       "",
+       ""},
+      scenario);
   Shaken shaken;
   for (std::int64_t i = 0; i < Frames(); ++i) recorder.Add(shaken.Next());
   recorder.Finish(Ended());
@@ -131,7 +132,7 @@ void SayBytes(benchmark::State& state, const std::string& file) {
 }
 
 void RecordEpisode(benchmark::State& state) {
-  const Scenario scenario = ManyBodies();
+  const scenario::Scenario scenario = ManyBodies();
   const std::string file = FileNamed("bench_record_");
   for (auto _ : state) WriteEpisode(file, scenario);
   SayBytes(state, file);
@@ -149,14 +150,14 @@ BENCHMARK(RecordRows)->Unit(benchmark::kMillisecond);
 
 /// An open episode for reading.
 struct Recorded {
-  Scenario scenario = ManyBodies();
+  scenario::Scenario scenario = ManyBodies();
   std::string file = FileNamed("bench_read_");
-  std::optional<EpisodeFile> open;
-  std::optional<EpisodeFrames> frames;
+  std::optional<episode::EpisodeFile> open;
+  std::optional<episode::EpisodeFrames> frames;
   Recorded() {
     WriteEpisode(file, scenario);
-    open.emplace(*EpisodeFile::Open(file));
-    frames.emplace(*open, open->episodes().front(), LayoutOf(scenario.scene));
+    open.emplace(*episode::EpisodeFile::Open(file));
+    frames.emplace(*open, open->episodes().front(), episode::LayoutOf(scenario.scene));
   }
   ~Recorded() {
     frames.reset();
@@ -218,4 +219,4 @@ void WholeTrackOfRows(benchmark::State& state) {
 BENCHMARK(WholeTrackOfRows)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace prehend::harness::episodes
+}  // namespace prehend::bench

@@ -11,14 +11,14 @@
 #include "bench/yardsticks/four_automata.h"
 #include "bench/yardsticks/workload.h"
 #include "bench/yardsticks/worlds.h"
-#include "harness/base/project_paths.h"
-#include "harness/run/find_scenario.h"
-#include "harness/run/load_run.h"
-#include "harness/run/run_scenario.h"
-#include "harness/run/run_text.h"
-#include "harness/run/segment.h"
+#include "harness/base/base/project_paths.h"
+#include "harness/episode/run/find_scenario.h"
+#include "harness/episode/run/load_run.h"
+#include "harness/episode/run/run_scenario.h"
+#include "harness/episode/run/run_text.h"
+#include "harness/episode/run/segment.h"
 
-namespace prehend::harness {
+namespace prehend::bench {
 namespace {
 
 constexpr double kPeriod_s = 60;
@@ -29,7 +29,7 @@ template <typename Watch>
 void Play(benchmark::State& state, const ChangeLog& log, double operations, Watch&& watch) {
   Recognised recognised;
   for (auto _ : state) recognised = watch(log, state);
-  state.SetLabel(HashText(recognised.hash));
+  state.SetLabel(episode::HashText(recognised.hash));
   using benchmark::Counter;
   const auto rate = [](double count) { return Counter(count, Counter::kIsIterationInvariantRate); };
   state.counters["operations"] = rate(operations);
@@ -61,7 +61,7 @@ void FourRules(benchmark::State& state) {
   const int objects = static_cast<int>(state.range(0));
   const int frames = FramesFor(objects);
   const ChangeLog log = MakeStations(objects, frames, kPeriod_s);
-  Play(state, log, static_cast<double>(harness::FourRules::kCount) * objects * frames, kWatch);
+  Play(state, log, static_cast<double>(bench::FourRules::kCount) * objects * frames, kWatch);
 }
 BENCHMARK(FourRules<ByGrammar>)->Apply(Sizes);
 BENCHMARK(FourRules<ByHandInEveryFrame>)->Apply(Sizes);
@@ -85,7 +85,7 @@ void Dense(benchmark::State& state) {
   constexpr int kObjects = 1024, kFrames = 1000;
   const ChangeLog log =
       MakeFlicker(kObjects, kFrames, kObjects / static_cast<int>(state.range(0)), Flicker::kFact);
-  Play(state, log, static_cast<double>(harness::FourRules::kCount) * kObjects * (kFrames - 1),
+  Play(state, log, static_cast<double>(bench::FourRules::kCount) * kObjects * (kFrames - 1),
        kWatch);
 }
 BENCHMARK(Dense<ByGrammar>)->Arg(1)->Arg(8)->Arg(64)->Unit(benchmark::kMillisecond);
@@ -95,12 +95,14 @@ BENCHMARK(Dense<ByHandOnChange>)->Arg(1)->Arg(8)->Arg(64)->Unit(benchmark::kMill
 // All of pick_and_place on a simulated scene, from its recording: sensing and grammar, no physics.
 void RecordedCarton(benchmark::State& state) {
   const std::string root = FindProjectRoot().value_or(".");
-  const LoadedRun carton =
-      *LoadRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root);
-  const RunResult run = RunScenario(carton.scenario, carton.program, {.record = true});
+  const episode::LoadedRun carton = *episode::LoadRun(
+      {.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root);
+  const episode::RunResult run =
+      episode::RunScenario(carton.scenario, carton.program, {.record = true});
   std::size_t events = 0;
   for (auto _ : state)
-    events = Resegment(carton.scenario, run.recording, carton.program, run.ticks + 1).events.size();
+    events = episode::Resegment(carton.scenario, run.recording, carton.program, run.ticks + 1)
+                 .events.size();
   state.counters["events"] = static_cast<double>(events);
   state.counters["times_real_time"] =
       benchmark::Counter(static_cast<double>(run.ticks) / carton.scenario.scene.world.rate_hz,
@@ -136,4 +138,4 @@ void Binding(benchmark::State& state) {
 BENCHMARK(Binding)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::bench

@@ -9,7 +9,7 @@
 #include "bench/yardsticks/resting_boxes.h"
 #include "physics/simulation.h"
 
-namespace prehend::harness {
+namespace prehend::bench {
 namespace {
 
 /// Shorter than the two seconds after which resting boxes fall asleep.
@@ -21,20 +21,20 @@ constexpr int kAsleepRate_hz = 60;
 constexpr int kTicksUntilAsleep = static_cast<int>(kUntilAsleep_s * kAsleepRate_hz);
 
 struct Ours {
-  explicit Ours(const Scenario& scenario) : simulation(scenario.scene, scenario.script) {}
+  explicit Ours(const scenario::Scenario& scenario) : simulation(scenario.scene, scenario.script) {}
   void Step() { simulation.Step(); }
   physics::Simulation simulation;
 };
 
 struct Bare {
-  explicit Bare(const Scenario& scenario) : bullet(scenario.scene) {}
+  explicit Bare(const scenario::Scenario& scenario) : bullet(scenario.scene) {}
   void Step() { bullet.Step(); }
   bench::BulletAlone bullet;
 };
 
 /// They fall by a millimetre: boxes that stand still from the beginning are put to sleep at once.
-Scenario BoxesThatLand(int count) {
-  Scenario scenario = BoxesOnAFloor(count);
+scenario::Scenario BoxesThatLand(int count) {
+  scenario::Scenario scenario = BoxesOnAFloor(count);
   for (physics::Body& body : scenario.scene.bodies)
     if (!body.fixed) body.X_WB.p_m.z() += 0.001;
   return scenario;
@@ -42,7 +42,7 @@ Scenario BoxesThatLand(int count) {
 
 template <class Runner>
 void Awake(benchmark::State& state) {
-  const Scenario scenario = BoxesThatLand(static_cast<int>(state.range(0)));
+  const scenario::Scenario scenario = BoxesThatLand(static_cast<int>(state.range(0)));
   auto runner = std::make_unique<Runner>(scenario);
   int ticks = 0;
   for (auto _ : state) {
@@ -78,4 +78,4 @@ BENCHMARK(Asleep<Ours>)
     ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::bench

@@ -7,14 +7,14 @@
 #include <cstdlib>
 #include <string>
 
-#include "harness/base/project_paths.h"
-#include "harness/pictures/compose_picture.h"
-#include "harness/run/load_run.h"
-#include "harness/run/run_scenario.h"
+#include "harness/base/base/project_paths.h"
+#include "harness/episode/run/load_run.h"
+#include "harness/episode/run/run_scenario.h"
+#include "harness/show/pictures/compose_picture.h"
 #include "render/inventory.h"
 #include "render/picture.h"
 
-namespace prehend::harness {
+namespace prehend::bench {
 namespace {
 
 /// A played scenario and one of its pictures.
@@ -23,18 +23,18 @@ class Scene {
   Scene(const std::string& file, const std::string& moment) {
     setenv("LP_NUM_THREADS", "0", /*overwrite=*/0);
     const std::string root = FindProjectRoot().value_or(".");
-    loaded_ = *LoadRun({.scenario_file = root + "/scenarios/" + file}, root);
-    run_ = RunScenario(loaded_.scenario, loaded_.program, {.record = true});
-    PictureYaml entry;
+    loaded_ = *episode::LoadRun({.scenario_file = root + "/scenarios/" + file}, root);
+    run_ = episode::RunScenario(loaded_.scenario, loaded_.program, {.record = true});
+    scenario::PictureYaml entry;
     entry.at.value = moment;
     entry.camera.value = "three_quarter";
-    picture_ = ComposePicture(loaded_.scenario, run_, entry, kGoldenFormat);
+    picture_ = show::ComposePicture(loaded_.scenario, run_, entry, show::kGoldenFormat);
   }
   const render::Picture& picture() const { return picture_; }
 
  private:
-  LoadedRun loaded_;
-  RunResult run_;
+  episode::LoadedRun loaded_;
+  episode::RunResult run_;
   render::Picture picture_;
 };
 
@@ -99,4 +99,4 @@ void ComparePixels(benchmark::State& state) {
 BENCHMARK(ComparePixels)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::bench

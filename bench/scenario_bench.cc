@@ -5,18 +5,18 @@
 
 #include <string>
 
-#include "harness/base/project_paths.h"
-#include "harness/run/find_scenario.h"
-#include "harness/run/load_run.h"
-#include "harness/run/run_scenario.h"
+#include "harness/base/base/project_paths.h"
+#include "harness/episode/run/find_scenario.h"
+#include "harness/episode/run/load_run.h"
+#include "harness/episode/run/run_scenario.h"
 
-namespace prehend::harness {
+namespace prehend::bench {
 namespace {
 
-LoadedRun Carton() {
+episode::LoadedRun Carton() {
   const std::string root = FindProjectRoot().value_or(".");
-  return *LoadRun({.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"},
-                  root);
+  return *episode::LoadRun(
+      {.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root);
 }
 
 void CountRealTime(benchmark::State& state, double simulated_s) {
@@ -25,7 +25,7 @@ void CountRealTime(benchmark::State& state, double simulated_s) {
 }
 
 void CartonPhysicsAlone(benchmark::State& state) {
-  const LoadedRun carton = Carton();
+  const episode::LoadedRun carton = Carton();
   double simulated_s = 0;
   for (auto _ : state) {
     physics::Simulation simulation(carton.scenario.scene, carton.scenario.script);
@@ -40,10 +40,11 @@ void CartonPhysicsAlone(benchmark::State& state) {
 BENCHMARK(CartonPhysicsAlone)->Unit(benchmark::kMillisecond);
 
 void CartonWatched(benchmark::State& state) {
-  const LoadedRun carton = Carton();
+  const episode::LoadedRun carton = Carton();
   double simulated_s = 0;
   for (auto _ : state) {
-    const RunResult run = RunScenario(carton.scenario, carton.program, {.measure = true});
+    const episode::RunResult run =
+        episode::RunScenario(carton.scenario, carton.program, {.measure = true});
     simulated_s = static_cast<double>(run.ticks) / carton.scenario.scene.world.rate_hz;
     state.counters["physics_share"] = run.seconds.physics / run.seconds.total;
     state.counters["sensing_share"] = run.seconds.sensing / run.seconds.total;
@@ -54,4 +55,4 @@ void CartonWatched(benchmark::State& state) {
 BENCHMARK(CartonWatched)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::bench

@@ -18,15 +18,15 @@
 #include "bench/yardsticks/resting_boxes.h"
 #include "bench/yardsticks/workload.h"
 #include "bench/yardsticks/worlds.h"
-#include "harness/run/load_grammar.h"
-#include "harness/run/run_text.h"
-#include "harness/sense/entity_table.h"
-#include "harness/sense/sensing.h"
-#include "harness/speed/stopwatch.h"
-#include "harness/timeline/event_text.h"
+#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/run_text.h"
+#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/sensing.h"
+#include "harness/measure/speed/stopwatch.h"
+#include "harness/truth/timeline/event_text.h"
 #include "physics/simulation.h"
 
-namespace prehend::harness {
+namespace prehend::bench {
 namespace {
 
 struct Figure {
@@ -132,7 +132,7 @@ class Measuring {
     grammar::Tick tick = 1;
     for (; tick < 1000; ++tick)
       monitor.AdvanceBy({.tick = tick}, events);  // new instances become idle
-    const Stopwatch watch;
+    const measure::Stopwatch watch;
     for (int i = 0; i < frames; ++i) monitor.AdvanceBy({.tick = tick++}, events);
     return {.what = fmt::format("nothing changes, {} objects stand on a table", objects),
             .unit = "idle tick",
@@ -149,7 +149,7 @@ class Measuring {
     for (int run = 0; run < kRuns; ++run) {
       std::vector<grammar::Event> events;
       const double bytes_before = BytesInUse();
-      const Stopwatch watch;
+      const measure::Stopwatch watch;
       grammar::Monitor monitor(program_, log.entity_table);
       monitor.AdvanceBy(log[0], events);
       figure.seconds = std::min(figure.seconds, watch.seconds());
@@ -168,10 +168,10 @@ class Measuring {
 Figure WatchSleepers(std::shared_ptr<const grammar::Program> program, bool quick) {
   constexpr int kRate_hz = 60;  // falling asleep takes 2 s at any rate
   const int boxes = quick ? 50 : 5000, ticks = quick ? 20 : 400;
-  const Scenario scenario = BoxesOnAFloor(boxes, kRate_hz);
+  const scenario::Scenario scenario = BoxesOnAFloor(boxes, kRate_hz);
   physics::Simulation simulation(scenario.scene, scenario.script);
-  Sensing sensing(scenario.scene, scenario.sensing);
-  grammar::Monitor monitor(std::move(program), MakeEntityTable(scenario));
+  episode::Sensing sensing(scenario.scene, scenario.sensing);
+  grammar::Monitor monitor(std::move(program), episode::MakeEntityTable(scenario));
   std::vector<grammar::Event> events;
   while (simulation.snapshot().tick < kUntilAsleep_s * kRate_hz && simulation.Step())
     monitor.AdvanceBy(sensing.SenseChanges(simulation.snapshot()), events);
@@ -181,7 +181,7 @@ Figure WatchSleepers(std::shared_ptr<const grammar::Program> program, bool quick
   figure.operations = ticks;
   figure.simulated_s = figure.operations / kRate_hz;
   std::vector<physics::Snapshot> recording;
-  Stopwatch watch;
+  measure::Stopwatch watch;
   for (int i = 0; i < ticks; ++i) {
     simulation.Step();
     if (!sensing.Due(simulation.snapshot().tick) || recording.size() >= kKeptSnapshots) continue;
@@ -212,7 +212,7 @@ std::vector<Figure> Measure(bool quick) {
       measuring.Touches("a touch makes a condition true or false", "fact edge", Flicker::kFact),
       measuring.Touches("a touch begins or ends a grasp", "event boundary", Flicker::kGrasp),
       measuring.Binding(),
-      WatchSleepers(LoadGrammar(PREHEND_SOURCE_DIR, "pick_and_place", {}).program, quick)};
+      WatchSleepers(episode::LoadGrammar(PREHEND_SOURCE_DIR, "pick_and_place", {}).program, quick)};
 }
 
 /// 1234567 -> "1.23 M"
@@ -236,7 +236,7 @@ std::vector<std::string> Cells(const Figure& f) {
           OrDash(f.simulated_s > 0, Large(f.simulated_s / f.seconds)),
           OrDash(f.physics_s > 0, fmt::format("{:.2f} %", 100 * f.seconds / f.physics_s)),
           OrDash(f.bytes > 0, fmt::format("{:.0f}", f.bytes)),
-          OrDash(f.baseline_s > 0, f.agrees ? HashText(f.hash) : "DIFFERS")};
+          OrDash(f.baseline_s > 0, f.agrees ? episode::HashText(f.hash) : "DIFFERS")};
 }
 
 nlohmann::ordered_json FigureJson(const Figure& f) {
@@ -257,7 +257,7 @@ nlohmann::ordered_json FigureJson(const Figure& f) {
   if (f.simulated_s > 0) json["times_real_time"] = f.simulated_s / f.seconds;
   if (f.physics_s > 0) json["share_of_physics"] = f.seconds / f.physics_s;
   if (f.bytes > 0) json["bytes"] = f.bytes;
-  if (f.baseline_s > 0) json["hash"] = HashText(f.hash);
+  if (f.baseline_s > 0) json["hash"] = episode::HashText(f.hash);
   return json;
 }
 
@@ -277,11 +277,11 @@ int Run(const std::vector<std::string>& arguments) {
   if (has("--json"))
     std::puts(nlohmann::ordered_json{{"figures", list}}.dump(2).c_str());
   else
-    for (const std::string& line : AlignColumns(rows)) std::puts(line.c_str());
+    for (const std::string& line : truth::AlignColumns(rows)) std::puts(line.c_str());
   return std::ranges::all_of(figures, &Figure::agrees) ? 0 : 1;
 }
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::bench
 
-int main(int argc, char** argv) { return prehend::harness::Run({argv + 1, argv + argc}); }
+int main(int argc, char** argv) { return prehend::bench::Run({argv + 1, argv + argc}); }

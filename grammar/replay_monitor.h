@@ -3,7 +3,7 @@
 // its value at every frame, and every run for what became of it. The values come from the engine's
 // own evaluator, the intervals from the engine itself, so an explanation cannot say anything else
 // than the monitor does. It takes memory for every frame of what moves: it is for explanations and
-// plots, not for watching. Tested by tests/harness/explain/explain_test.cc
+// plots, not for watching. Tested by tests/harness/show/explain/explain_test.cc
 #pragma once
 
 #include <memory>

@@ -8,7 +8,7 @@
 
 #include "grammar/base/frame.h"
 
-namespace prehend::harness {
+namespace prehend::bench {
 
 class ChangeLog {
  public:
@@ -57,4 +57,4 @@ class ChangeLog {
   std::vector<grammar::ContactEnd> contact_ends_;
 };
 
-}  // namespace prehend::harness
+}  // namespace prehend::bench

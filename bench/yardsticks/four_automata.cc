@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "bench/yardsticks/worlds.h"
-#include "harness/speed/stopwatch.h"
+#include "harness/measure/speed/stopwatch.h"
 
-namespace prehend::harness {
+namespace prehend::bench {
 namespace {
 
 using grammar::Tick;
@@ -139,7 +139,7 @@ Watched WatchByHand(const ChangeLog& log, ByHand by_hand, std::size_t warm_up) {
   std::vector<int> changed;
   Watched watched;
   Recognised& recognised = watched.recognised;
-  Stopwatch watch;
+  measure::Stopwatch watch;
   std::uint64_t events_before = 0;
   for (std::size_t i = 0; i < log.size(); ++i) {
     if (i == warm_up) {
@@ -162,4 +162,4 @@ Watched WatchByHand(const ChangeLog& log, ByHand by_hand, std::size_t warm_up) {
   return watched;
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::bench

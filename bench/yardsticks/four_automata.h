@@ -5,7 +5,7 @@
 
 #include "bench/yardsticks/workload.h"
 
-namespace prehend::harness {
+namespace prehend::bench {
 
 /// Which automata are evaluated in a frame: of all objects, or of those that it says something
 /// about.
@@ -14,4 +14,4 @@ enum class ByHand { kEveryFrame, kOnChange };
 /// Plays a log of bench/yardsticks/worlds.h. The first `warm_up` frames do not count.
 Watched WatchByHand(const ChangeLog& log, ByHand by_hand, std::size_t warm_up = 0);
 
-}  // namespace prehend::harness
+}  // namespace prehend::bench

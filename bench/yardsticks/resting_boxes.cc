@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-namespace prehend::harness {
+namespace prehend::bench {
 
-Scenario BoxesOnAFloor(int count, int rate_hz) {
+scenario::Scenario BoxesOnAFloor(int count, int rate_hz) {
   constexpr double kSpacing_m = 0.12, kSize_m = 0.1;
   constexpr double kMaxDuration_s = 1800;
   const int side = static_cast<int>(std::ceil(std::sqrt(count)));
   const double middle_m = kSpacing_m * (side - 1) / 2;
-  Scenario scenario;
+  scenario::Scenario scenario;
   scenario.scene.world.rate_hz = rate_hz;
   scenario.sensing.sensing_hz = rate_hz / 2;
   scenario.script.settle_s = kMaxDuration_s;
@@ -33,4 +33,4 @@ Scenario BoxesOnAFloor(int count, int rate_hz) {
   return scenario;
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::bench

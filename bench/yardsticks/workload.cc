@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/sense/entity_table.h"
-#include "harness/speed/stopwatch.h"
+#include "harness/episode/sense/entity_table.h"
+#include "harness/measure/speed/stopwatch.h"
 
-namespace prehend::harness {
+namespace prehend::bench {
 namespace {
 
 constexpr std::string_view kRules = R"(
@@ -58,7 +58,7 @@ void Recognised::Add(int rule, int hand, int object, grammar::Interval interval)
 Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::size_t warm_up) {
   Watched watched;
   Recognised& recognised = watched.recognised;
-  Stopwatch watch;
+  measure::Stopwatch watch;
   std::uint64_t events_before = 0;
   std::vector<grammar::Event> events;
   const auto take = [&] {
@@ -87,4 +87,4 @@ Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::siz
   return watched;
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::bench

@@ -10,7 +10,7 @@
 #include "bench/yardsticks/change_log.h"
 #include "grammar/monitor.h"
 
-namespace prehend::harness {
+namespace prehend::bench {
 
 /// A grasp; a support of some duration; a touch of some duration without a grasp; a grasped object
 /// that leaves its support.
@@ -43,4 +43,4 @@ struct Watched {
 /// `warm_up` frames, new instances are bound and memory is allocated.
 Watched WatchByGrammar(const ChangeLog& log, grammar::Monitor& monitor, std::size_t warm_up = 0);
 
-}  // namespace prehend::harness
+}  // namespace prehend::bench

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-namespace prehend::harness {
+namespace prehend::bench {
 namespace {
 
 grammar::EntityTable MakeEntityTable(int objects) {
@@ -176,4 +176,4 @@ ChangeLog MakeFlicker(int objects, int frames, int per_frame, Flicker flicker) {
   return log;
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::bench

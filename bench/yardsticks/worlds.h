@@ -7,7 +7,7 @@
 
 #include "bench/yardsticks/change_log.h"
 
-namespace prehend::harness {
+namespace prehend::bench {
 
 inline constexpr grammar::Tick kWorldRate_hz = 240;  ///< a frame is a tick
 
@@ -27,4 +27,4 @@ enum class Flicker {
 };
 ChangeLog MakeFlicker(int objects, int frames, int per_frame, Flicker flicker);
 
-}  // namespace prehend::harness
+}  // namespace prehend::bench

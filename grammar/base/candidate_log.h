@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What became of each run of a rule. The engine notes it for explanations, if it is asked to.
-// Tested by tests/harness/explain/explain_test.cc
+// Tested by tests/harness/show/explain/explain_test.cc
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What stood in the grammar for a node: its text with the rule's roles as {0}, {1}, .., its unit
-// and its place. Tested by tests/harness/explain/explain_test.cc
+// and its place. Tested by tests/harness/show/explain/explain_test.cc
 #include <utility>
 
 #include "grammar/compile/lower.h"

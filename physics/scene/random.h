@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Seeded random numbers, the same on every machine and with every standard library. Tested by
-// tests/physics/motion/tracker_test.cc and tests/harness/read/sample_variations_test.cc
+// tests/physics/motion/tracker_test.cc and tests/harness/scenario/read/sample_variations_test.cc
 #pragma once
 
 #include <cmath>

@@ -51,15 +51,15 @@ const std::vector<LibraryRule>& LibraryRules() {
       {"yaml-cpp", std::regex("yaml-cpp/.*"), std::regex("harness/.*")},
       {"JSON", std::regex("nlohmann/.*"), std::regex("(harness|tests|bench)/.*")},
       {"fmt", std::regex("fmt/.*"), std::regex("(harness|tests|bench)/.*")},
-      {"CLI11", std::regex("CLI/.*"), std::regex("harness/command/parse_arguments\\.cc")},
+      {"CLI11", std::regex("CLI/.*"), std::regex("harness/cli/command/parse_arguments\\.cc")},
       {"pugixml", std::regex("pugixml\\.hpp"), std::regex("(harness|tests)/.*")},
       {"muParser", std::regex("muParser.*"), std::regex("tests/witnesses/.*/formula\\.cc")},
       {"tl::expected", std::regex("tl/.*"), std::regex("(harness|tests)/.*")},
       {"SLEEF", std::regex("sleef\\.h"), std::regex("physics/portable_math\\.cc")},
       {"xxHash", std::regex("xxhash\\.h"), std::regex("harness/(.*/)?content_hash\\.cc")},
-      {"SQLite", std::regex("sqlite3\\.h"), std::regex("(harness/episodes|bench)/.*")},
+      {"SQLite", std::regex("sqlite3\\.h"), std::regex("(harness/episode/episodes|bench)/.*")},
       {"zstd", std::regex("zstd\\.h"), std::regex("harness/(frames/columns|messages/unpack)\\.cc")},
-      {"LZ4", std::regex("lz4.*\\.h"), std::regex("harness/messages/unpack\\.cc")},
+      {"LZ4", std::regex("lz4.*\\.h"), std::regex("harness/exchange/messages/unpack\\.cc")},
       {"zlib", std::regex("zlib\\.h"),
        std::regex("harness/(replay/replay_data|messages/mcap_file)\\.cc")},
       {"OpenGL and OSMesa", std::regex("(GL/.*|GLES.*|EGL/.*)"), std::regex("render/.*")},
@@ -146,8 +146,8 @@ TEST(Architecture, ClosedFormsSeeNeitherGrammarNorOracle) {
     for (const Include& include : IncludesOf(file.text))
       EXPECT_FALSE((include.header.starts_with("grammar/") &&
                     !include.header.starts_with("grammar/base/")) ||
-                   include.header.starts_with("harness/oracle/") ||
-                   include.header.starts_with("harness/run/"))
+                   include.header.starts_with("harness/truth/oracle/") ||
+                   include.header.starts_with("harness/episode/run/"))
           << file.path << ":" << include.line << ": " << include.header;
   }
 }
@@ -201,8 +201,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"physics/world/world.cc", "<btBulletDynamicsCommon.h>", "Bullet does not belong here"},
         Case{"physics/bullet/world.cc", "<btBulletDynamicsCommon.h>", ""},
         Case{"harness/a.cc", "<GL/osmesa.h>", "OpenGL and OSMesa does not belong here"},
-        Case{"harness/cli/a.cc", "<CLI/CLI.hpp>", "CLI11 does not belong here"},
-        Case{"harness/command/parse_arguments.cc", "<CLI/CLI.hpp>", ""},
+        Case{"harness/cli/cli/a.cc", "<CLI/CLI.hpp>", "CLI11 does not belong here"},
+        Case{"harness/cli/command/parse_arguments.cc", "<CLI/CLI.hpp>", ""},
         Case{"grammar/a.cc", "<fstream>", "the grammar room has no files"},
         Case{"bench/a.cc", "<gtest/gtest.h>", "GoogleTest does not belong here"}));
 

@@ -38,8 +38,8 @@ std::string_view CommentIn(std::string_view line, bool is_cmake) {
   return {};
 }
 
-/// The paths of the project in a text, from its root: "harness/report/junit.cc". The last character
-/// is none of a sentence.
+/// The paths of the project in a text, from its root: "harness/suite/report/junit.cc". The last
+/// character is none of a sentence.
 std::vector<std::string> PathsIn(std::string_view text) {
   static const std::regex path(
       "(^|[^A-Za-z0-9_./-])((grammar|physics|render|harness|tests|bench|docs|scenarios|golden)"

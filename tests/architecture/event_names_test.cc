@@ -37,8 +37,9 @@ std::vector<std::string> NamesIn(const std::string& text, const std::set<std::st
 /// that it is about. Examples in help texts may name events, as here texts are compared whole. HTML
 /// has an attribute of the name of an event, too.
 bool MayNameEvents(const std::string& path) {
-  return path == "harness/report/report.cc" || path == "harness/report/explanations.cc" ||
-         path.starts_with("harness/oracle/") || path == "harness/base/default_grammar.h";
+  return path == "harness/suite/report/report.cc" ||
+         path == "harness/suite/report/explanations.cc" ||
+         path.starts_with("harness/truth/oracle/") || path == "harness/base/base/default_grammar.h";
 }
 
 TEST(EventNames, AreUnknownToTheProgram) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A function is read in one piece: at most kMostLines, a command less, tables more. What is laid
+// A function is read in one piece: at most kMostLinesOfFunction, a command less, tables more. What is laid
 // out by clang-format ends with a '}' alone in its line, below the first character of its head.
 #include <gtest/gtest.h>
 
@@ -14,10 +14,10 @@
 namespace prehend::architecture {
 namespace {
 
-constexpr int kMostLines = 80;
+constexpr int kMostLinesOfFunction = 80;
 /// Of a command, since what computes lies in other rooms.
 constexpr int kMostLinesOfCommands = 60;
-constexpr const char* kCommands = "harness/cli/";
+constexpr const char* kCommands = "harness/cli/cli/";
 
 /// Functions that return a table, a row after another; so does one that returns a Command.
 constexpr const char* kTables[] = {"grammar/compile/builtins.cc"};
@@ -80,7 +80,7 @@ TEST(FunctionLength, IsThatOfTheLongestFunction) {
 TEST(FunctionLength, FitsOnAScreenOutsideOfTables) {
   for (const SourceFile& file : SourceFiles({"grammar", "harness", "physics", "render"})) {
     if (std::ranges::count(kTables, file.path) > 0) continue;
-    const int most = file.path.starts_with(kCommands) ? kMostLinesOfCommands : kMostLines;
+    const int most = file.path.starts_with(kCommands) ? kMostLinesOfCommands : kMostLinesOfFunction;
     const Block longest = LongestIn(file.text);
     EXPECT_LE(longest.lines, most) << file.path << ":" << longest.line << ": " << longest.head;
   }

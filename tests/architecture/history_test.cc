@@ -30,7 +30,7 @@ std::vector<Commit> CommitsIn(const std::string& log) {
     at = end + 1;
     if (line.starts_with("@")) commits.push_back({line.substr(1)});
     if (commits.empty()) continue;
-    commits.back().oracle |= line.starts_with("harness/oracle/");
+    commits.back().oracle |= line.starts_with("harness/truth/oracle/");
     commits.back().library |= line.starts_with("grammar/library/");
   }
   return commits;
@@ -47,8 +47,8 @@ std::string OutputOf(const std::string& command) {
 
 TEST(History, CommitsThatChangeOracleAndLibraryAreFound) {
   const std::vector<Commit> commits = CommitsIn(
-      "@1 both\n\nharness/oracle/carry.cc\ngrammar/library/contact.grammar\n"
-      "@2 one\n\nharness/oracle/carry.cc\n@3 other\n\ngrammar/library/contact.grammar\n");
+      "@1 both\n\nharness/truth/oracle/carry.cc\ngrammar/library/contact.grammar\n"
+      "@2 one\n\nharness/truth/oracle/carry.cc\n@3 other\n\ngrammar/library/contact.grammar\n");
   ASSERT_EQ(commits.size(), 3u);
   EXPECT_TRUE(commits[0].ChangesBoth());
   EXPECT_FALSE(commits[1].ChangesBoth());
@@ -59,7 +59,7 @@ TEST(History, NoCommitChangesTheOracleTogetherWithTheLibrary) {
   const std::string log =
       OutputOf(std::string("git -C '") + PREHEND_SOURCE_DIR + "' log " + kSince +
                "..HEAD --no-merges --format='@%h %s' --name-only -- "
-               "harness/oracle grammar/library 2>/dev/null");
+               "harness/truth/oracle grammar/library 2>/dev/null");
   if (log.empty()) GTEST_SKIP() << "no history since " << kSince << " here";
   for (const Commit& commit : CommitsIn(log)) EXPECT_FALSE(commit.ChangesBoth()) << commit.subject;
 }

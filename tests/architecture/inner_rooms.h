@@ -15,6 +15,13 @@ using Arrows = std::map<std::string, std::set<std::string>>;
 /// The table of this project. `tests` and `bench` are not in it: they may include anything.
 const Arrows& ProjectArrows();
 
+/// The same between boxes of the drawing: the wings of harness, and the other top rooms whole.
+const Arrows& WingArrows();
+
+/// The box of an inner room: "harness/episode" of "harness/episode/run", "grammar" of
+/// "grammar/engine".
+std::string WingOf(const std::string& inner_room);
+
 /// The inner room of a path: its folder, e.g. "physics/bullet/core" of
 /// "physics/bullet/core/solver.h".
 std::string InnerRoomOf(const std::string& path);

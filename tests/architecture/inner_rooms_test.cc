@@ -68,6 +68,23 @@ TEST(InnerRooms, EveryIncludeFollowsAnArrow) {
 
 TEST(InnerRooms, FormNoCircle) { EXPECT_EQ(CircleIn(ProjectArrows()), ""); }
 
+TEST(Wings, HaveTheArrowsOfTheirRooms) {
+  Arrows used;
+  for (const auto& [room, targets] : ProjectArrows()) {
+    used[WingOf(room)];
+    for (const std::string& target : targets)
+      if (WingOf(target) != WingOf(room)) used[WingOf(room)].insert(WingOf(target));
+  }
+  EXPECT_EQ(used, WingArrows());
+  EXPECT_EQ(CircleIn(WingArrows()), "");
+  for (const auto& [wing, targets] : used) {
+    std::string line = wing;
+    for (const std::string& other : targets)
+      line += (other == *targets.begin() ? " -> " : ", ") + other;
+    std::puts(line.c_str());
+  }
+}
+
 TEST(InnerRooms, UnitsFormNoCircle) { EXPECT_EQ(CircleIn(UnitArrows(SourceFiles(kTopRooms))), ""); }
 
 /// Prints the table as it is used: each room, its files, and the rooms that it includes.
@@ -98,15 +115,16 @@ TEST(InnerRooms, HoldAtMostThirtyFilesAndAreAllUsed) {
 }
 
 TEST(InnerRoomsChecker, RefusesAnIncludeWithoutAnArrow) {
-  const Arrows arrows = {{"harness/run", {"harness/base"}}, {"harness/base", {}}};
+  const Arrows arrows = {{"harness/episode/run", {"harness/base/base"}}, {"harness/base/base", {}}};
   const std::vector<SourceFile> files = {
-      {"harness/run/a.h", "#include \"harness/base/b.h\"\n#include <vector>\n"},
-      {"harness/base/b.h", "\n#include \"harness/run/a.h\"\n"},
+      {"harness/episode/run/a.h", "#include \"harness/base/base/b.h\"\n#include <vector>\n"},
+      {"harness/base/base/b.h", "\n#include \"harness/episode/run/a.h\"\n"},
       {"harness/attic/c.h", ""}};
   EXPECT_EQ(
       Violations(files, arrows),
-      (std::vector<std::string>{"harness/base/b.h:2: harness/base must not include harness/run/a.h",
-                                "harness/attic/c.h: the room harness/attic is not in the table"}));
+      (std::vector<std::string>{
+          "harness/base/base/b.h:2: harness/base/base must not include harness/episode/run/a.h",
+          "harness/attic/c.h: the room harness/attic is not in the table"}));
 }
 
 TEST(InnerRoomsChecker, FindsACircleOfRooms) {

@@ -11,7 +11,7 @@
 #include "bench/yardsticks/four_automata.h"
 #include "bench/yardsticks/worlds.h"
 
-namespace prehend::harness {
+namespace prehend::bench {
 namespace {
 
 Recognised Watch(const ChangeLog& log) {
@@ -70,4 +70,4 @@ TEST(Speed, TheHashSeesEveryPartOfAnEvent) {
 }
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::bench

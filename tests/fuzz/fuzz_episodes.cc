@@ -12,15 +12,15 @@
 #include <iterator>
 #include <string>
 
-#include "harness/episodes/episode_file.h"
-#include "harness/episodes/record_episode.h"
+#include "harness/episode/episodes/episode_file.h"
+#include "harness/episode/episodes/record_episode.h"
 #include "tests/fuzz/recorded_story.h"
 
 namespace {
 
 using namespace prehend;
-using namespace prehend::harness;
-using namespace prehend::harness::episodes;
+using namespace prehend::fuzz;
+using namespace prehend::fuzz;
 namespace fs = std::filesystem;
 
 struct Recorded {
@@ -34,10 +34,11 @@ struct Recorded {
 const Recorded& Story() {
   static Recorded recorded;
   if (!recorded.bytes.empty()) return recorded;
-  const LoadedRun loaded = fuzz::LoadStory();
+  const episode::LoadedRun loaded = fuzz::LoadStory();
   recorded.layout = LayoutOf(loaded.scenario.scene);
   // To a file without checksums, which would refuse nearly all.
-  fs::copy_file(PREHEND_SOURCE_DIR "/tests/harness/episodes/version_2.episodes", recorded.path);
+  fs::copy_file(PREHEND_SOURCE_DIR "/tests/harness/episode/episodes/version_2.episodes",
+                recorded.path);
   EpisodeRecorder recorder({.file = recorded.path.string(),
                             .root = PREHEND_SOURCE_DIR,
                             .run = {.scenario_file = loaded.scenario.file},

@@ -8,13 +8,13 @@
 #include <map>
 #include <string>
 
-#include "harness/frames/frame_player.h"
+#include "harness/episode/frames/frame_player.h"
 #include "tests/fuzz/recorded_story.h"
 
 namespace {
 
 using namespace prehend;
-using namespace prehend::harness::episodes;
+using namespace prehend::fuzz;
 
 constexpr std::size_t kMostPartBytes = std::size_t{1} << 28;
 constexpr std::size_t kEditBytes = 5;
@@ -25,7 +25,7 @@ struct Recorded {
 };
 
 Recorded Record() {
-  const harness::LoadedRun loaded = fuzz::LoadStory();
+  const episode::LoadedRun loaded = fuzz::LoadStory();
   Recorded recorded{.layout = LayoutOf(loaded.scenario.scene), .parts = {}};
   ChunkWriter writer(recorded.layout);
   std::vector<Chunk> chunks;

@@ -6,18 +6,19 @@
 #include <cstdlib>
 #include <string>
 
-#include "harness/golden/golden.h"
+#include "harness/truth/golden/golden.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace prehend::harness;
+  using namespace prehend::fuzz;
   const std::string text(reinterpret_cast<const char*>(data), size);
-  const Result<Golden> read = ReadGolden("fuzz.timeline", text);
+  const Result<truth::Golden> read = truth::ReadGolden("fuzz.timeline", text);
   if (!read) {
     if (ErrorsOf(read).empty()) std::abort();  // refused without a word
     (void)Format(ErrorsOf(read));
     return 0;
   }
-  const Result<Golden> again = ReadGolden("again.timeline", WriteGolden(*read));
+  const Result<truth::Golden> again =
+      truth::ReadGolden("again.timeline", truth::WriteGolden(*read));
   if (!again || !(*again == *read)) std::abort();  // something is lost
   return 0;
 }

@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "harness/labels/read_labels.h"
+#include "harness/exchange/labels/read_labels.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace prehend::harness::labels;
+  using namespace prehend::fuzz;
   if (size == 0) return 0;
   LabelFile file{.file = "labels",
                  .text = std::string(reinterpret_cast<const char*>(data) + 1, size - 1),

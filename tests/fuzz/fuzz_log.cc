@@ -12,7 +12,7 @@
 #include <fstream>
 #include <string>
 
-#include "harness/import/import_poses.h"
+#include "harness/exchange/import/import_poses.h"
 #include "tests/fuzz/logs.h"
 #include "tests/program/bag_writer.h"
 #include "tests/program/mcap_writer.h"
@@ -74,7 +74,7 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** words) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace prehend::harness::import;
+  using namespace prehend::fuzz;
   static const Files files;
   if (size == 0) return 0;
   const int kind = data[0] % kKinds;
@@ -84,8 +84,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto imported =
       ImportPoses(path.string(), PREHEND_SOURCE_DIR "/docs/motion_capture/mcap_bodies.yaml");
   if (!imported) {
-    if (harness::ErrorsOf(imported).empty()) std::abort();  // refused without a word
-    (void)grammar::Format(harness::ErrorsOf(imported));
+    if (ErrorsOf(imported).empty()) std::abort();  // refused without a word
+    (void)grammar::Format(ErrorsOf(imported));
     return 0;
   }
   if (imported->episode.frames.size() > 1'000'000) std::abort();

@@ -8,12 +8,12 @@
 #include <sstream>
 #include <string>
 
-#include "harness/messages/binary_poses.h"
-#include "harness/messages/json_poses.h"
-#include "harness/messages/mcap_file.h"
+#include "harness/exchange/messages/binary_poses.h"
+#include "harness/exchange/messages/json_poses.h"
+#include "harness/exchange/messages/mcap_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace prehend::harness::messages;
+  using namespace prehend::fuzz;
   if (size == 0) return 0;
   std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   const int kind = data[0] % 8;

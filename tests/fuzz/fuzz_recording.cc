@@ -11,11 +11,11 @@
 #include <string>
 #include <string_view>
 
-#include "harness/sense/episode_file.h"
+#include "harness/episode/sense/episode_file.h"
 
 namespace {
 
-using namespace prehend::harness;
+using namespace prehend::fuzz;
 
 /// A file without a place on any disk.
 class MemoryFile {
@@ -26,11 +26,11 @@ class MemoryFile {
   ~MemoryFile() { close(descriptor_); }
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
-  Result<Recording> ReadAs(std::string_view bytes) {
+  Result<episode::Recording> ReadAs(std::string_view bytes) {
     if (ftruncate(descriptor_, 0) != 0 ||
         pwrite(descriptor_, bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
       std::abort();
-    return ReadRecording("/proc/self/fd/" + std::to_string(descriptor_));
+    return episode::ReadRecording("/proc/self/fd/" + std::to_string(descriptor_));
   }
 
  private:
@@ -41,17 +41,17 @@ class MemoryFile {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static MemoryFile file;
-  Result<Recording> read = file.ReadAs({reinterpret_cast<const char*>(data), size});
+  Result<episode::Recording> read = file.ReadAs({reinterpret_cast<const char*>(data), size});
   if (!read) {
     if (ErrorsOf(read).empty()) std::abort();  // refused without a word
     (void)Format(ErrorsOf(read));
     return 0;
   }
   std::ostringstream written;
-  EpisodeWriter writer(written, read->header);
-  for (EpisodeFrame& frame : read->frames) writer.Write(frame.View());
+  episode::EpisodeWriter writer(written, read->header);
+  for (episode::EpisodeFrame& frame : read->frames) writer.Write(frame.View());
   writer.Finish(read->end_tick);
-  const Result<Recording> again = file.ReadAs(written.str());
+  const Result<episode::Recording> again = file.ReadAs(written.str());
   if (!again || again->frames.size() != read->frames.size() || again->end_tick != read->end_tick)
     std::abort();  // something is lost
   return 0;

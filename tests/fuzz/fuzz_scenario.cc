@@ -5,14 +5,14 @@
 #include <cstdlib>
 #include <string>
 
-#include "harness/read/read_scenario.h"
-#include "harness/run/find_scenario.h"
-#include "harness/run/project_library.h"
+#include "harness/episode/run/find_scenario.h"
+#include "harness/episode/run/project_library.h"
+#include "harness/scenario/read/read_scenario.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace prehend::harness;
-  static const ScenarioLibrary library = ProjectLibrary(PREHEND_SOURCE_DIR);
-  const auto read = ReadScenarioText(
+  using namespace prehend::fuzz;
+  static const scenario::ScenarioLibrary library = episode::ProjectLibrary(PREHEND_SOURCE_DIR);
+  const auto read = scenario::ReadScenarioText(
       "fuzz.yaml", std::string(reinterpret_cast<const char*>(data), size), {}, library);
   if (!read && ErrorsOf(read).empty()) std::abort();  // refused without a word
   (void)Format(ErrorsOf(read));

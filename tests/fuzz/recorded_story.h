@@ -4,25 +4,24 @@
 
 #include <string>
 
-#include "harness/frames/chunk.h"
-#include "harness/run/load_run.h"
-#include "harness/run/run_scenario.h"
+#include "harness/episode/frames/chunk.h"
+#include "harness/episode/run/load_run.h"
+#include "harness/episode/run/run_scenario.h"
 
 namespace prehend::fuzz {
 
 /// A hand takes a carton, to the first grasp. Calls `look` with its snapshots, of which there are
 /// 480; returns how it ended.
 template <typename Look>
-harness::RunResult PlayStory(const harness::LoadedRun& loaded, const Look& look) {
-  harness::ScenarioRun run(loaded.scenario, loaded.program);
-  for (std::size_t i = 0; i < harness::episodes::kMostFramesOfChunk && run.Step(); ++i)
-    look(run.snapshot());
+episode::RunResult PlayStory(const episode::LoadedRun& loaded, const Look& look) {
+  episode::ScenarioRun run(loaded.scenario, loaded.program);
+  for (std::size_t i = 0; i < episode::kMostFramesOfChunk && run.Step(); ++i) look(run.snapshot());
   return run.Finish();
 }
 
-inline harness::LoadedRun LoadStory() {
+inline episode::LoadedRun LoadStory() {
   const std::string root = PREHEND_SOURCE_DIR;
-  return harness::LoadRun(
+  return episode::LoadRun(
              {.scenario_file = root + "/scenarios/pick_and_place/milk_carton_wrap.yaml"}, root)
       .value();
 }

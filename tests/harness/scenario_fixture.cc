@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace prehend::harness {
+namespace prehend::scenario {
 
 const char* const kProbe = R"(scenario: probe
 shows: a carton on a table
@@ -65,4 +65,4 @@ std::string Brief(const grammar::Diagnostics& diagnostics) {
   return all;
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::scenario

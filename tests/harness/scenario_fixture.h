@@ -5,9 +5,9 @@
 
 #include <string>
 
-#include "harness/read/read_scenario.h"
+#include "harness/scenario/read/read_scenario.h"
 
-namespace prehend::harness {
+namespace prehend::scenario {
 
 /// Reads without complaints as file "probe.yaml".
 extern const char* const kProbe;
@@ -22,4 +22,4 @@ std::string ProbeWith(const std::string& from, const std::string& to);
 /// "line:column: message | hint" for each, one a line; "--set:1:2: ..." when it is not in the file.
 std::string Brief(const grammar::Diagnostics& diagnostics);
 
-}  // namespace prehend::harness
+}  // namespace prehend::scenario

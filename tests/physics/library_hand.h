@@ -5,14 +5,13 @@
 #include <stdexcept>
 #include <string>
 
-#include "harness/read/read_hand_model.h"
+#include "harness/scenario/read/read_hand_model.h"
 
 namespace prehend::physics {
 
 inline HandModel LibraryHand(const std::string& name) {
-  auto read = harness::ReadHandModel(PREHEND_SOURCE_DIR "/physics/library/" + name + ".hand.yaml");
-  if (!read)
-    throw std::runtime_error("hand file " + name + ": " + harness::ErrorsOf(read).front().message);
+  auto read = scenario::ReadHandModel(PREHEND_SOURCE_DIR "/physics/library/" + name + ".hand.yaml");
+  if (!read) throw std::runtime_error("hand file " + name + ": " + ErrorsOf(read).front().message);
   return std::move(*read);
 }
 

@@ -175,7 +175,8 @@ TEST(Episodes, BadUseIsExplained) {
 TEST(Episodes, DamageIsNamedByEveryCommandThatLooksAtFrames) {
   // Of a version without checksums, so that other programs can damage it.
   const auto file = (FreshFolder("damaged_episodes") / "a.episodes").string();
-  std::filesystem::copy_file(PREHEND_SOURCE_DIR "/tests/harness/episodes/version_2.episodes", file);
+  std::filesystem::copy_file(
+      PREHEND_SOURCE_DIR "/tests/harness/episode/episodes/version_2.episodes", file);
   const std::string damage =
       "sqlite3 '" + file + "' \"UPDATE part SET data = substr(data, 1, length(data) / 2)\"";
   ASSERT_EQ(std::system(damage.c_str()), 0);

@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "harness/oracle/oracle.h"
-#include "harness/run/run_scenario.h"
-#include "harness/run/segment.h"
+#include "harness/episode/run/run_scenario.h"
+#include "harness/episode/run/segment.h"
+#include "harness/truth/oracle/oracle.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -98,17 +98,17 @@ ClosedFormWitness GrammarWitness(const std::string& name,
                                  std::shared_ptr<const grammar::Program> program) {
   return {name, [program](const ClosedFormRecording& recording) {
             grammar::Timeline found =
-                Resegment(recording.scenario, recording.frames, program, recording.end);
+                episode::Resegment(recording.scenario, recording.frames, program, recording.end);
             std::erase_if(found.events,
-                          [](const auto& event) { return !OracleDefines(event.event); });
+                          [](const auto& event) { return !truth::OracleDefines(event.event); });
             return found;
           }};
 }
 
-ClosedFormWitness OracleWitness(const OracleSettings& settings) {
+ClosedFormWitness OracleWitness(const truth::OracleSettings& settings) {
   return {"oracle", [settings](const ClosedFormRecording& recording) {
-            return TrueTimeline(recording.scenario.scene, recording.frames, recording.end,
-                                settings);
+            return truth::TrueTimeline(recording.scenario.scene, recording.frames, recording.end,
+                                       settings);
           }};
 }
 
@@ -146,7 +146,7 @@ Result<std::vector<ClosedFormScore>> ScoreOnClosedForms(
 std::string ClosedFormText(const std::vector<ClosedFormScore>& scores) {
   if (scores.empty()) return "";
   std::vector<std::string> names = {""};
-  for (const std::string_view name : OracleEvents()) names.emplace_back(name);
+  for (const std::string_view name : truth::OracleEvents()) names.emplace_back(name);
   std::string text = fmt::format("{:<16}", "boundaries");
   for (const ClosedFormScore& score : scores) text += fmt::format("  {:>22}", score.witness);
   text += "\n";
@@ -184,8 +184,8 @@ Json ClosedFormJson(const std::vector<ClosedFormScore>& scores) {
   return {{"closed_forms", std::move(all)}};
 }
 
-score::Testimony ByClosedForms(const ClosedFormScore& score) {
-  score::Testimony testimony;
+measure::Testimony ByClosedForms(const ClosedFormScore& score) {
+  measure::Testimony testimony;
   for (const ClosedFormRow& row : score.rows)
     for (const JudgedEvent& event : row.events)
       testimony.by_event[NameOf(event)] +=
@@ -196,9 +196,9 @@ score::Testimony ByClosedForms(const ClosedFormScore& score) {
 std::string WitnessTableWith(const nlohmann::json& score,
                              const std::vector<ClosedFormScore>& closed_forms) {
   std::vector<std::string> grammars;
-  std::vector<score::Witness> witnesses;
+  std::vector<measure::Witness> witnesses;
   for (const auto& row : score.at("witnesses")) {
-    score::Witness& witness = witnesses.emplace_back(row.at("witness"), row.at("proves"));
+    measure::Witness& witness = witnesses.emplace_back(row.at("witness"), row.at("proves"));
     grammars.clear();
     for (const auto& column : row.at("grammars")) {
       grammars.push_back(column.at("grammar"));
@@ -206,12 +206,12 @@ std::string WitnessTableWith(const nlohmann::json& score,
                                                             .confirmed = column.at("confirmed")};
     }
   }
-  score::Witness& paper =
+  measure::Witness& paper =
       witnesses.emplace_back("closed forms", "boundaries known on paper are found to the frame");
   for (const std::string& grammar : grammars)
     paper.of_grammars.push_back(
         ByClosedForms(*std::ranges::find(closed_forms, grammar, &ClosedFormScore::witness)));
-  return score::WitnessTable(grammars, witnesses);
+  return measure::WitnessTable(grammars, witnesses);
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

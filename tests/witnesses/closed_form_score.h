@@ -11,13 +11,13 @@
 
 #include "grammar/base/timeline.h"
 #include "grammar/monitor.h"
-#include "harness/base/result.h"
-#include "harness/oracle/settings.h"
-#include "harness/score/witnesses.h"
+#include "harness/base/base/result.h"
+#include "harness/measure/score/witnesses.h"
+#include "harness/truth/oracle/settings.h"
 #include "tests/witnesses/closed_form/agreement.h"
 #include "tests/witnesses/closed_form/closed_form.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 
 /// Who finds events in a recording.
 struct ClosedFormWitness {
@@ -27,7 +27,7 @@ struct ClosedFormWitness {
 /// Only events that docs/events.md defines count.
 ClosedFormWitness GrammarWitness(const std::string& name,
                                  std::shared_ptr<const grammar::Program> program);
-ClosedFormWitness OracleWitness(const OracleSettings& settings = {});
+ClosedFormWitness OracleWitness(const truth::OracleSettings& settings = {});
 
 /// The events of one story, in one sampling.
 struct ClosedFormRow {
@@ -53,11 +53,11 @@ std::string ClosedFormText(const std::vector<ClosedFormScore>& scores);
 nlohmann::ordered_json ClosedFormJson(const std::vector<ClosedFormScore>& scores);
 
 /// Boundaries that are right, of those that are known on paper or were recognised.
-score::Testimony ByClosedForms(const ClosedFormScore& score);
+measure::Testimony ByClosedForms(const ClosedFormScore& score);
 
 /// README's table: what `prehend score --json` says of each witness, and one more, the closed
 /// forms.
 std::string WitnessTableWith(const nlohmann::json& score,
                              const std::vector<ClosedFormScore>& closed_forms);
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

@@ -8,9 +8,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "harness/run/load_grammar.h"
+#include "harness/episode/run/load_grammar.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 constexpr const char* kStands = R"(closed_form: stands
@@ -36,7 +36,7 @@ Result<std::vector<ClosedFormScore>> ScoreOf(const std::string& text) {
   std::ofstream(folder / "stands.yaml") << text;
   return ScoreOnClosedForms(
       ClosedFormFiles(folder),
-      {GrammarWitness("contact", LoadGrammar(PREHEND_SOURCE_DIR, "contact", {}).program),
+      {GrammarWitness("contact", episode::LoadGrammar(PREHEND_SOURCE_DIR, "contact", {}).program),
        OracleWitness()});
 }
 
@@ -73,7 +73,7 @@ ClosedFormScore Mine() {
 }
 
 TEST(ByClosedForms, CountsBoundaries) {
-  const score::Testimony testimony = ByClosedForms(Mine());
+  const measure::Testimony testimony = ByClosedForms(Mine());
   EXPECT_EQ(testimony.by_event.at("reaching").of, 2);
   EXPECT_EQ(testimony.by_event.at("reaching").confirmed, 1);
 }
@@ -91,4 +91,4 @@ TEST(WitnessTable, HasARowOfClosedFormsBelowThoseOfScore) {
 }
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

@@ -9,18 +9,19 @@
 #include <map>
 #include <set>
 
-#include "harness/run/load_grammar.h"
+#include "harness/episode/run/load_grammar.h"
 #include "physics/scene/geometry.h"
 #include "tests/witnesses/closed_form_score.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 constexpr const char* kRoot = PREHEND_SOURCE_DIR;
 constexpr const char* kStories = PREHEND_SOURCE_DIR "/tests/witnesses/stories";
 
 ClosedFormWitness Grammar(const grammar::Overrides& overrides = {}) {
-  return GrammarWitness("pick_and_place", LoadGrammar(kRoot, "pick_and_place", overrides).program);
+  return GrammarWitness("pick_and_place",
+                        episode::LoadGrammar(kRoot, "pick_and_place", overrides).program);
 }
 
 std::vector<ClosedFormScore> Scores(const std::vector<ClosedFormWitness>& witnesses) {
@@ -90,39 +91,41 @@ TEST(ClosedForms, AreAllOnThePage) {
 struct Mutant {
   const char* name;
   grammar::Overrides grammar;
-  void (*oracle)(OracleSettings& settings);
+  void (*oracle)(truth::OracleSettings& settings);
 };
 
 const Mutant kMutants[] = {
     {"a dead-band of 40 mm",
      {{"reach_slack", "40 mm"}},
-     [](OracleSettings& s) { s.reach_dead_band_m = 0.040; }},
+     [](truth::OracleSettings& s) { s.reach_dead_band_m = 0.040; }},
     {"slides from 3 cm/s on",
      {{"slide_speed", "3 cm/s"}},
-     [](OracleSettings& s) { s.slide_speed_m_per_s = 0.03; }},
-    {"a rise of 5 cm", {{"lift_rise", "5 cm"}}, [](OracleSettings& s) { s.pick_up_rise_m = 0.05; }},
+     [](truth::OracleSettings& s) { s.slide_speed_m_per_s = 0.03; }},
+    {"a rise of 5 cm",
+     {{"lift_rise", "5 cm"}},
+     [](truth::OracleSettings& s) { s.pick_up_rise_m = 0.05; }},
     {"put-downs that may go back by 15 mm",
      {{"put_slack", "15 mm"}},
-     [](OracleSettings& s) { s.put_down_dead_band_m = 0.015; }},
+     [](truth::OracleSettings& s) { s.put_down_dead_band_m = 0.015; }},
     {"grips bridged for 150 ms",
      {{"grasp_bridge", "150 ms"}},
-     [](OracleSettings& s) { s.grasp_bridge_s = 0.150; }},
+     [](truth::OracleSettings& s) { s.grasp_bridge_s = 0.150; }},
     {"a region of interest of 20 cm",
      {{"reach_radius", "20 cm"}},
-     [](OracleSettings& s) { s.reach_radius_m = 0.20; }},
+     [](truth::OracleSettings& s) { s.reach_radius_m = 0.20; }},
     {"contacts bridged for 250 ms",
      {{"contact_bridge", "250 ms"}, {"support_bridge", "250 ms"}},
-     [](OracleSettings& s) { s.contact_bridge_s = 0.250; }},
+     [](truth::OracleSettings& s) { s.contact_bridge_s = 0.250; }},
     {"what slides for 6 cm",
      {{"slide_distance", "6 cm"}},
-     [](OracleSettings& s) { s.slide_displacement_m = 0.06; }},
+     [](truth::OracleSettings& s) { s.slide_displacement_m = 0.06; }},
 };
 
 class NumberOfBoth : public testing::TestWithParam<Mutant> {};
 
 TEST_P(NumberOfBoth, IsFoundOut) {
   const Mutant& mutant = GetParam();
-  OracleSettings settings;
+  truth::OracleSettings settings;
   mutant.oracle(settings);
   const std::vector<ClosedFormScore> scores =
       Scores({Grammar(mutant.grammar), OracleWitness(settings)});
@@ -169,4 +172,4 @@ TEST(ClosedForms, WhatAHandTouchesIsWhereItIs) {
 }
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "harness/golden/golden_files.h"
-#include "harness/judge/judge_golden.h"
-#include "harness/run/load_grammar.h"
+#include "harness/episode/run/load_grammar.h"
+#include "harness/suite/judge/judge_golden.h"
+#include "harness/truth/golden/golden_files.h"
 #include "tests/witnesses/closed_form_score.h"
 #include "tests/witnesses/elsewhere/elsewhere.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 constexpr const char* kRoot = PREHEND_SOURCE_DIR;
@@ -36,7 +36,7 @@ Result<std::vector<ClosedFormScore>> Scores(std::vector<std::string> grammars) {
   if (grammars.empty()) grammars = {"pick_and_place", "original_2020"};
   std::vector<ClosedFormWitness> witnesses;
   for (const std::string& name : grammars) {
-    const grammar::CompileResult compiled = LoadGrammar(kRoot, name, {});
+    const grammar::CompileResult compiled = episode::LoadGrammar(kRoot, name, {});
     if (!compiled.program) return tl::unexpected(compiled.diagnostics);
     witnesses.push_back(GrammarWitness(name, compiled.program));
   }
@@ -74,16 +74,16 @@ int RunElsewhere(const std::string& name, const std::vector<std::string>& transf
     std::cerr << "\n";
     return 2;
   }
-  auto loaded =
-      LoadRun({.scenario_file = std::string(kRoot) + "/scenarios/" + name + ".yaml"}, kRoot);
+  auto loaded = episode::LoadRun(
+      {.scenario_file = std::string(kRoot) + "/scenarios/" + name + ".yaml"}, kRoot);
   if (!loaded) return Complain(loaded.error());
-  const auto golden = GoldenFiles(kRoot).ReadGoldenOf(name);
+  const auto golden = truth::GoldenFiles(kRoot).ReadGoldenOf(name);
   if (!golden) return Complain(golden.error());
-  CheckedRun checked{.id = name, .loaded = std::move(*loaded), .result = {}, .explain = ""};
-  checked.result = RunScenario(checked.loaded.scenario, checked.loaded.program);
+  suite::CheckedRun checked{.id = name, .loaded = std::move(*loaded), .result = {}, .explain = ""};
+  checked.result = episode::RunScenario(checked.loaded.scenario, checked.loaded.program);
   nlohmann::json verdicts = nlohmann::json::array();
   if (checked.result.status.kind == physics::RunStatus::Kind::kCompleted) {
-    const Golden here = CompareWithGolden(*golden, checked).pending;
+    const truth::Golden here = suite::CompareWithGolden(*golden, checked).pending;
     for (const std::string& transform : transforms) {
       const TransformVerdict verdict = JudgeElsewhere(checked, here, transform);
       verdicts.push_back({{"transform", transform},
@@ -108,6 +108,6 @@ int Run(const std::vector<std::string>& arguments) {
 }
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses
 
-int main(int argc, char** argv) { return prehend::harness::Run({argv + 1, argv + argc}); }
+int main(int argc, char** argv) { return prehend::witnesses::Run({argv + 1, argv + argc}); }

@@ -7,7 +7,7 @@ namespace prehend::physics {
 namespace {
 
 Step Waiting(int hand, double over_s, StepOrder order = {}, double delay_s = 0) {
-  Step step{hand, WaitStep{}, over_s};
+  Step step{HandIndex(hand), WaitStep{}, over_s};
   step.order = std::move(order);
   step.delay_s = delay_s;
   return step;

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/timeline/match_events.h"
+#include "harness/truth/timeline/match_events.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 using grammar::NamedEvent;
@@ -84,8 +84,8 @@ std::vector<JudgedEvent> ClosedFormAgreement(const std::vector<KnownEvent>& trut
   const Tick frame = std::lround(std::ceil(rate_hz / recording.scenario.sensing.sensing_hz));
   const Judge judge(recording);
   std::vector<JudgedEvent> judged;
-  for (const LabelMatches& label :
-       MatchEvents(expected, recognised.events, {.collar = 2 * frame})) {
+  for (const truth::LabelMatches& label :
+       truth::MatchEvents(expected, recognised.events, {.collar = 2 * frame})) {
     for (const auto& [e, a] : label.pairs)
       judged.push_back(judge.Event(label.label, &known[e], &recognised.events[a]));
     for (const std::size_t e : label.only_expected)
@@ -119,4 +119,4 @@ std::string WrongBoundaries(const std::vector<JudgedEvent>& events) {
   return text;
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

@@ -10,7 +10,7 @@
 #include "grammar/base/timeline.h"
 #include "tests/witnesses/closed_form/closed_form.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 
 /// Begin or end of an event. It is right within one frame: no frame lies between the expected
 /// moment and the recognised one.
@@ -39,4 +39,4 @@ int RightBoundaries(const std::vector<JudgedEvent>& events);
 /// 1.3000 s (+100.0 ms); ends 2.0000 s".
 std::string WrongBoundaries(const std::vector<JudgedEvent>& events);
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 /// 48 frames per second, at ticks 10, 20, .. 100 of a world at 480 Hz, without the one at 50.
@@ -60,4 +60,4 @@ TEST(ClosedFormAgreement, CountsWhatIsMissingAndWhatThereIsNot) {
 }
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "grammar/base/frame.h"
-#include "harness/base/result.h"
-#include "harness/scenario/scenario.h"
+#include "harness/base/base/result.h"
+#include "harness/scenario/scenario/scenario.h"
 #include "physics/scene/snapshot.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 
 /// An event as derived from docs/events.md.
 struct KnownEvent {
@@ -22,8 +22,8 @@ struct KnownEvent {
 
 /// A story in one sampling.
 struct ClosedFormRecording {
-  std::string sampling;  ///< "240 Hz", or "120 Hz, frames lost"
-  Scenario scenario;     ///< the scene, without a script
+  std::string sampling;         ///< "240 Hz", or "120 Hz, frames lost"
+  scenario::Scenario scenario;  ///< the scene, without a script
   std::vector<physics::Snapshot> frames;
   grammar::Tick end = 0;  ///< the first tick after the episode
 };
@@ -42,4 +42,4 @@ Result<ClosedForm> ReadClosedFormText(const std::string& path, std::string text)
 /// The files of a folder, sorted.
 std::vector<std::string> ClosedFormFiles(const std::string& folder);
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

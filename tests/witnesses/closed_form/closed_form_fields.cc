@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/witnesses/closed_form/read_closed_form_test.cc
-#include "harness/format/scenario_formats.h"
-#include "harness/yaml/struct_format.h"
+#include "harness/base/yaml/struct_format.h"
+#include "harness/scenario/format/scenario_formats.h"
 #include "tests/witnesses/closed_form/closed_form_yaml.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 constexpr std::size_t kMaxFormulaBytes = 400;
@@ -122,7 +122,7 @@ ValueFormat<ClosedFormYaml> ClosedFormFormat() {
       .Optional("curves", &C::curves, named,
                 "Names for what changes with t; each may use those before it.")
       .Required("entities", &C::entities,
-                MapOf(Identifier(), EntityFormat(), 1, kMaxKinematicEntities),
+                MapOf(Identifier(), scenario::EntityFormat(), 1, kMaxKinematicEntities),
                 "Things, as in a scenario.")
       .Optional("motions", &C::motions,
                 MapOf(Identifier(), MotionFormat(), 0, kMaxKinematicEntities), "How entities move.")
@@ -138,4 +138,4 @@ ValueFormat<ClosedFormYaml> ClosedFormFormat() {
       .format();
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

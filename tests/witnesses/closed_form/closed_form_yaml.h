@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "harness/format/scenario_yaml.h"
-#include "harness/yaml/value_format.h"
+#include "harness/base/yaml/value_format.h"
+#include "harness/scenario/format/scenario_yaml.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 
 using FormulaYaml = Located<std::string>;        ///< its place is that of the first character
 using VectorFormula = std::vector<FormulaYaml>;  ///< three; or none where it may be left out
@@ -64,7 +64,7 @@ struct ClosedFormYaml {
   std::string shows;
   double lasts_s = 0;
   std::vector<Named<FormulaYaml>> numbers, curves;
-  std::vector<Named<EntityYaml>> entities;
+  std::vector<Named<scenario::EntityYaml>> entities;
   std::vector<Named<MotionYaml>> motions;
   std::vector<Named<KinematicHandYaml>> hands;
   std::vector<TouchYaml> contacts;
@@ -74,4 +74,4 @@ struct ClosedFormYaml {
 
 ValueFormat<ClosedFormYaml> ClosedFormFormat();
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 double Ramp(double t, double from, double to) {
@@ -105,4 +105,4 @@ tl::expected<Formula, FormulaError> FormulaScope::Read(const std::string& text) 
   return Formula(std::move(parser));
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

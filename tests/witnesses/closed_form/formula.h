@@ -12,7 +12,7 @@ namespace mu {
 class Parser;
 }
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 
 /// What is wrong with a formula.
 struct FormulaError {
@@ -53,4 +53,4 @@ class FormulaScope {
   std::vector<std::string> names_;
 };
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 double ValueOf(const std::string& text) {
@@ -81,4 +81,4 @@ TEST(Formula, SaysWhatIsWrongAndWhere) {
 }
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 using Eigen::Vector3d;
@@ -118,4 +118,4 @@ void Kinematics::AddTouches(physics::Snapshot& snapshot) {
   std::ranges::stable_sort(snapshot.contacts, {}, key);
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "grammar/base/frame.h"
-#include "harness/base/located.h"
+#include "harness/base/base/located.h"
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
 #include "tests/witnesses/closed_form/formula.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 
 using LocatedFormula = Located<std::optional<Formula>>;  ///< empty: not given
 using LocatedVector = std::array<LocatedFormula, 3>;     ///< all of them or none
@@ -80,4 +80,4 @@ class Kinematics {
   std::optional<NoNumber> no_number_;
 };
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

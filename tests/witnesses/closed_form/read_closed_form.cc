@@ -6,13 +6,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include "harness/base/project_paths.h"
-#include "harness/build/build_scene.h"
+#include "harness/base/base/project_paths.h"
+#include "harness/scenario/resolve/build_scene.h"
 #include "tests/witnesses/closed_form/closed_form.h"
 #include "tests/witnesses/closed_form/closed_form_yaml.h"
 #include "tests/witnesses/closed_form/kinematics.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,9 +114,9 @@ class Reader {
     scenario_.file = path_;
     scenario_.shows = entry_.shows;
     scenario_.scene.world.rate_hz = kRate_hz;
-    ScenarioYaml things;
+    scenario::ScenarioYaml things;
     things.entities = entry_.entities;
-    scenario_.scene.bodies = PlaceBodies(things, errors_);
+    scenario_.scene.bodies = scenario::PlaceBodies(things, errors_);
     for (const auto& entity : entry_.entities) {
       scenario_.body_classes.push_back(entity.value.class_name.value);
       scenario_.body_part_of.push_back(grammar::kNoEntity);
@@ -269,7 +269,7 @@ class Reader {
   const YamlDocument& document_;
   DiagnosticList errors_;
   ClosedFormYaml entry_;
-  Scenario scenario_;
+  scenario::Scenario scenario_;
 };
 
 }  // namespace
@@ -293,4 +293,4 @@ std::vector<std::string> ClosedFormFiles(const std::string& folder) {
   return files;
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

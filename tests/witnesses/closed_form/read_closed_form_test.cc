@@ -3,7 +3,7 @@
 
 #include "tests/witnesses/closed_form/closed_form.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 /// A box that is pushed along x from 0.5 s on, at 0.1 m/s.
@@ -183,4 +183,4 @@ TEST(ReadClosedForm, IsCalledAsItsFile) {
 }
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

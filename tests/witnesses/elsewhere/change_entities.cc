@@ -10,7 +10,7 @@
 
 #include "tests/witnesses/elsewhere/move_scenario.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 using Eigen::Vector3d;
@@ -53,7 +53,7 @@ void RenameOrder(physics::StepOrder& order) {
 
 }  // namespace
 
-std::map<std::string, std::string> NamesTurnedRound(const Scenario& scenario) {
+std::map<std::string, std::string> NamesTurnedRound(const scenario::Scenario& scenario) {
   std::set<std::string> written;
   for (const physics::Body& body : scenario.scene.bodies) written.insert(body.name);
   for (const physics::Hand& hand : scenario.scene.hands) written.insert(hand.name);
@@ -64,7 +64,8 @@ std::map<std::string, std::string> NamesTurnedRound(const Scenario& scenario) {
   return names;
 }
 
-Scenario Renamed(Scenario scenario, const std::map<std::string, std::string>& names) {
+scenario::Scenario Renamed(scenario::Scenario scenario,
+                           const std::map<std::string, std::string>& names) {
   const RenameIn rename{names};
   for (physics::Body& body : scenario.scene.bodies) rename(body.name);
   for (physics::Hand& hand : scenario.scene.hands) rename(hand.name);
@@ -79,10 +80,11 @@ Scenario Renamed(Scenario scenario, const std::map<std::string, std::string>& na
   return scenario;
 }
 
-Scenario WithCopy(Scenario scenario) {
+scenario::Scenario WithCopy(scenario::Scenario scenario) {
   std::map<std::string, std::string> names = NamesTurnedRound(scenario);
   for (auto& [written, name] : names) name = written + kOfTheCopy;
-  const Scenario copy = Renamed(Moved(scenario, {.X = {.p_m = {kToCopy_m, 0, 0}}}), names);
+  const scenario::Scenario copy =
+      Renamed(Moved(scenario, {.X = {.p_m = {kToCopy_m, 0, 0}}}), names);
   physics::Scene& scene = scenario.scene;
   const int bodies = static_cast<int>(scene.bodies.size());
   const int hands = static_cast<int>(scene.hands.size());
@@ -119,4 +121,4 @@ Scenario WithCopy(Scenario scenario) {
   return scenario;
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

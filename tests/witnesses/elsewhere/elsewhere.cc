@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "grammar/contents.h"
-#include "harness/judge/judge_claims.h"
-#include "harness/timeline/event_text.h"
-#include "harness/transform/transform.h"
+#include "harness/scenario/transform/transform.h"
+#include "harness/suite/judge/judge_claims.h"
+#include "harness/truth/timeline/event_text.h"
 #include "tests/witnesses/elsewhere/change_entities.h"
 #include "tests/witnesses/elsewhere/move_scenario.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 constexpr double kTurn_deg = 37;
@@ -26,7 +26,7 @@ bool IsDrawnInWorldAxes(const physics::TrackerSettings& tracking) {
 }
 
 /// Why the scenario, turned or mirrored, is another story; "": it is not.
-std::string WhyDirected(const Scenario& scenario) {
+std::string WhyDirected(const scenario::Scenario& scenario) {
   if (scenario.scene.world.planar) return "it is planar";
   for (const physics::Hand& hand : scenario.scene.hands) {
     if (hand.tracking && IsDrawnInWorldAxes(*hand.tracking))
@@ -37,7 +37,7 @@ std::string WhyDirected(const Scenario& scenario) {
 }
 
 /// Why a copy would not be alone; "": it is.
-std::string WhyNoRoomForCopy(const Scenario& scenario) {
+std::string WhyNoRoomForCopy(const scenario::Scenario& scenario) {
   if (!scenario.sensing.sensors.IsPerfect())
     return "the noise of its sensors is drawn for each entity by its place in the list";
   for (const physics::Body& body : scenario.scene.bodies) {
@@ -50,7 +50,7 @@ std::string WhyNoRoomForCopy(const Scenario& scenario) {
 }
 
 /// Why the transform makes another story of the scenario; "": it does not.
-std::string WhyNot(const Scenario& scenario, const std::string& transform) {
+std::string WhyNot(const scenario::Scenario& scenario, const std::string& transform) {
   if (transform == "turn" || transform == "mirror") {
     const std::string why = WhyDirected(scenario);
     const bool persons = transform == "mirror" && !scenario.scene.persons.empty();
@@ -71,7 +71,7 @@ void RenameBack(const std::map<std::string, std::string>& originals,
   for (grammar::NamedEvent& event : timeline.events) {
     for (grammar::Role& role : event.roles) {
       const auto original = originals.find(role.value);
-      if (!IsAttribute(role) && original != originals.end()) role.value = original->second;
+      if (!truth::IsAttribute(role) && original != originals.end()) role.value = original->second;
     }
     // The alphabet decides which of the two is named first.
     if (symmetric.contains(event.event) && event.roles[1].value < event.roles[0].value)
@@ -89,11 +89,12 @@ const std::vector<std::string>& TransformNames() {
   return names;
 }
 
-tl::expected<Elsewhere, std::string> ElsewhereAfter(const LoadedRun& loaded,
-                                                    const std::string& transform) {
-  const Scenario& scenario = loaded.scenario;
+tl::expected<suite::Elsewhere, std::string> ElsewhereAfter(const episode::LoadedRun& loaded,
+                                                           const std::string& transform) {
+  const scenario::Scenario& scenario = loaded.scenario;
   if (const std::string why = WhyNot(scenario, transform); !why.empty()) return tl::unexpected(why);
-  Elsewhere there{.name = transform, .scenario = scenario, .tolerance = DefaultTolerance(scenario)};
+  suite::Elsewhere there{
+      .name = transform, .scenario = scenario, .tolerance = scenario::DefaultTolerance(scenario)};
   physics::WorldSettings& world = there.scenario.scene.world;
   if (transform == "turn") {
     there.scenario = Moved(scenario, {.X = {.q = physics::FromRollPitchYaw({0, 0, kTurn_deg})}});
@@ -111,31 +112,32 @@ tl::expected<Elsewhere, std::string> ElsewhereAfter(const LoadedRun& loaded,
     there.scenario = WithCopy(scenario);
   } else if (transform == "rate") {
     world.rate_hz *= 2;
-    there.tolerance = TickAt(kToleranceAtOtherRate_s, world.rate_hz);
+    there.tolerance = truth::TickAt(kToleranceAtOtherRate_s, world.rate_hz);
   } else if (transform == "watch") {
     int& sensing_hz = there.scenario.sensing.sensing_hz;
     sensing_hz = std::min(2 * sensing_hz, world.rate_hz);
   } else {
-    const auto same = std::ranges::find(kTransforms, transform, NameOf);
-    if (same == kTransforms.end()) return tl::unexpected<std::string>("there is no such transform");
-    auto transformed = Transformed(scenario, *same);
+    const auto same = std::ranges::find(scenario::kTransforms, transform, scenario::NameOf);
+    if (same == scenario::kTransforms.end())
+      return tl::unexpected<std::string>("there is no such transform");
+    auto transformed = scenario::Transformed(scenario, *same);
     if (!transformed) return tl::unexpected(transformed.error());
     there.scenario = std::move(*transformed);
   }
   return there;
 }
 
-TransformVerdict JudgeElsewhere(const CheckedRun& checked, const Golden& here,
+TransformVerdict JudgeElsewhere(const suite::CheckedRun& checked, const truth::Golden& here,
                                 const std::string& transform) {
   const auto there = ElsewhereAfter(checked.loaded, transform);
   if (!there) return {transform, kNotApplied, there.error(), ""};
-  PlayElsewhere play = Play(*there, checked.loaded, here);
+  suite::PlayElsewhere play = suite::Play(*there, checked.loaded, here);
   // A claim that does not hold here either says nothing of the transform.
-  const std::vector<ClaimVerdict> claims_here =
-      JudgeClaims(checked.loaded, checked.result.timeline);
+  const std::vector<truth::ClaimVerdict> claims_here =
+      suite::JudgeClaims(checked.loaded, checked.result.timeline);
   for (std::size_t i = play.claims.size(); i-- > 0;)
-    if (IsContradicted(claims_here[i])) play.claims.erase(play.claims.begin() + i);
-  const Findings broken = BrokenIn(play, transform);
+    if (truth::IsContradicted(claims_here[i])) play.claims.erase(play.claims.begin() + i);
+  const suite::Findings broken = suite::BrokenIn(play, transform);
   if (!broken.empty())
     return {transform, kOtherStory, broken.front().reason, broken.front().details};
   if (play.differs.empty()) return {transform, kSameStory, "", ""};
@@ -145,4 +147,4 @@ TransformVerdict JudgeElsewhere(const CheckedRun& checked, const Golden& here,
   return {transform, kOtherStory, play.differs.front().reason, play.differs.front().details};
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

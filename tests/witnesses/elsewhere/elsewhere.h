@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same story elsewhere: each transform of harness/transform/transform.h, and turned, mirrored,
-// under other names, beside a copy, at other rates. A verdict must not depend on it. Tested by
-// tests/witnesses/elsewhere/elsewhere_test.cc
+// The same story elsewhere: each transform of harness/scenario/transform/transform.h, and turned,
+// mirrored, under other names, beside a copy, at other rates. A verdict must not depend on it.
+// Tested by tests/witnesses/elsewhere/elsewhere_test.cc
 #pragma once
 
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "harness/judge/ensemble.h"
+#include "harness/suite/judge/ensemble.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 
-/// nudge, shift, far, reorder, bystander (harness/transform/transform.h); and
+/// nudge, shift, far, reorder, bystander (harness/scenario/transform/transform.h); and
 /// turn: everything turned by 37 degrees about the vertical; mirror: in the plane y = 0, right
 /// hands become left ones; rename: other names, which the alphabet has the other way round; copies:
 /// a second copy, 13 m away, does the same at the same time; rate: physics in steps half as long,
@@ -21,8 +21,8 @@ const std::vector<std::string>& TransformNames();
 
 /// The scenario so changed, whose events are those of the original. Otherwise why the two are not
 /// the same story. `transform` is one of TransformNames().
-tl::expected<Elsewhere, std::string> ElsewhereAfter(const LoadedRun& loaded,
-                                                    const std::string& transform);
+tl::expected<suite::Elsewhere, std::string> ElsewhereAfter(const episode::LoadedRun& loaded,
+                                                           const std::string& transform);
 
 /// What became of one transform of a scenario.
 struct TransformVerdict {
@@ -40,7 +40,7 @@ inline constexpr const char* kNotApplied = "not applied";
 /// its golden. Where the golden is marked as unsteady, events may differ after a change that
 /// changes rounding; a claim that is broken is another story all the same, if it holds in the
 /// unchanged run.
-TransformVerdict JudgeElsewhere(const CheckedRun& checked, const Golden& here,
+TransformVerdict JudgeElsewhere(const suite::CheckedRun& checked, const truth::Golden& here,
                                 const std::string& transform);
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

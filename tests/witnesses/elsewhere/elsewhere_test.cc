@@ -3,26 +3,27 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/claims/parse_claim.h"
-#include "harness/run/load_run.h"
-#include "harness/run/run_scenario.h"
+#include "harness/episode/run/load_run.h"
+#include "harness/episode/run/run_scenario.h"
+#include "harness/truth/claims/parse_claim.h"
 #include "tests/witnesses/elsewhere/change_entities.h"
 #include "tests/witnesses/elsewhere/move_scenario.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
-LoadedRun Load(const std::string& scenario) {
+episode::LoadedRun Load(const std::string& scenario) {
   const std::string root = PREHEND_SOURCE_DIR;
-  return LoadRun({.scenario_file = root + "/scenarios/" + scenario + ".yaml"}, root).value();
+  return episode::LoadRun({.scenario_file = root + "/scenarios/" + scenario + ".yaml"}, root)
+      .value();
 }
 
-std::string WhyNot(const LoadedRun& loaded, const std::string& transform) {
+std::string WhyNot(const episode::LoadedRun& loaded, const std::string& transform) {
   const auto there = ElsewhereAfter(loaded, transform);
   return there ? "" : there.error();
 }
 
-Scenario After(const LoadedRun& loaded, const std::string& transform) {
+scenario::Scenario After(const episode::LoadedRun& loaded, const std::string& transform) {
   const auto there = ElsewhereAfter(loaded, transform);
   if (there) return there->scenario;
   ADD_FAILURE() << there.error();
@@ -30,10 +31,10 @@ Scenario After(const LoadedRun& loaded, const std::string& transform) {
 }
 
 TEST(Elsewhere, AMirrorImageOfAMirrorImageIsTheOriginal) {
-  LoadedRun loaded = Load("grasp/gem_of_flat_faces_is_grasped_and_placed");
-  const Scenario original = loaded.scenario;
+  episode::LoadedRun loaded = Load("grasp/gem_of_flat_faces_is_grasped_and_placed");
+  const scenario::Scenario original = loaded.scenario;
   loaded.scenario = After(loaded, "mirror");
-  const Scenario twice = After(loaded, "mirror");
+  const scenario::Scenario twice = After(loaded, "mirror");
   ASSERT_EQ(twice.scene.bodies.size(), original.scene.bodies.size());
   for (std::size_t i = 0; i < twice.scene.bodies.size(); ++i) {
     const auto &a = twice.scene.bodies[i], &b = original.scene.bodies[i];
@@ -43,9 +44,9 @@ TEST(Elsewhere, AMirrorImageOfAMirrorImageIsTheOriginal) {
 }
 
 TEST(Elsewhere, RightHandsBecomeLeftOnes) {
-  const LoadedRun loaded = Load("pick_and_place/milk_carton_wrap");
-  const Scenario& original = loaded.scenario;
-  const Scenario mirrored = After(loaded, "mirror");
+  const episode::LoadedRun loaded = Load("pick_and_place/milk_carton_wrap");
+  const scenario::Scenario& original = loaded.scenario;
+  const scenario::Scenario mirrored = After(loaded, "mirror");
   EXPECT_FALSE(original.scene.hands[0].model.left);
   EXPECT_TRUE(mirrored.scene.hands[0].model.left);
   EXPECT_EQ(mirrored.scene.hands[0].X_WH.p_m.y(), -original.scene.hands[0].X_WH.p_m.y());
@@ -58,7 +59,7 @@ TEST(Elsewhere, OtherStoriesAreRefused) {
 }
 
 TEST(Elsewhere, NoiseMakesAnotherStory) {
-  const LoadedRun noisy = Load("sensors/missed_touches_are_bridged");
+  const episode::LoadedRun noisy = Load("sensors/missed_touches_are_bridged");
   EXPECT_EQ(WhyNot(noisy, "mirror"),
             "the noise of its sensors is drawn along the axes of the world");
   for (const char* transform : {"reorder", "bystander", "copies"})
@@ -68,7 +69,7 @@ TEST(Elsewhere, NoiseMakesAnotherStory) {
 }
 
 TEST(Elsewhere, WhoSeesEveryTickSeesNoMore) {
-  LoadedRun loaded = Load("planar/disc_rolls_to_rest");
+  episode::LoadedRun loaded = Load("planar/disc_rolls_to_rest");
   loaded.scenario.sensing.sensing_hz = 300;
   EXPECT_EQ(After(loaded, "watch").sensing.sensing_hz, 480);
   loaded.scenario.sensing.sensing_hz = 480;
@@ -76,14 +77,14 @@ TEST(Elsewhere, WhoSeesEveryTickSeesNoMore) {
 }
 
 TEST(Elsewhere, WhatReachesFarHasNoRoomForACopy) {
-  LoadedRun loaded = Load("planar/disc_rolls_to_rest");
+  episode::LoadedRun loaded = Load("planar/disc_rolls_to_rest");
   loaded.scenario.scene.bodies[0].X_WB.p_m.x() = 7;
   EXPECT_EQ(WhyNot(loaded, "copies"),
             loaded.scenario.scene.bodies[0].name + " reaches too far for a copy beside it");
 }
 
 TEST(Elsewhere, NewNamesAreInTheOppositeOrder) {
-  const LoadedRun loaded = Load("gaze/eyes_lead_the_hand");
+  const episode::LoadedRun loaded = Load("gaze/eyes_lead_the_hand");
   const std::vector<physics::Body>& before = loaded.scenario.scene.bodies;
   const std::vector<physics::Body> after = After(loaded, "rename").scene.bodies;
   ASSERT_EQ(after.size(), before.size());
@@ -95,9 +96,9 @@ TEST(Elsewhere, NewNamesAreInTheOppositeOrder) {
 }
 
 TEST(Elsewhere, ACopyDoesWhatTheOriginalDoes) {
-  const LoadedRun loaded = Load("gaze/eyes_lead_the_hand");
-  const Scenario& original = loaded.scenario;
-  const Scenario both = After(loaded, "copies");
+  const episode::LoadedRun loaded = Load("gaze/eyes_lead_the_hand");
+  const scenario::Scenario& original = loaded.scenario;
+  const scenario::Scenario both = After(loaded, "copies");
   const std::size_t bodies = original.scene.bodies.size();
   ASSERT_EQ(both.scene.bodies.size(), 2 * bodies);
   for (std::size_t i = 0; i < bodies; ++i) {
@@ -123,24 +124,25 @@ TEST(Elsewhere, ACopyDoesWhatTheOriginalDoes) {
 }
 
 TEST(Elsewhere, PlacesThatOutcomesAskForMoveAlong) {
-  const auto ends_near_m = [](const Scenario& scenario) {
+  const auto ends_near_m = [](const scenario::Scenario& scenario) {
     return scenario.outcomes.at(0).conditions.at(1).wanted.near_m.value();
   };
-  const LoadedRun loaded = Load("trials/wrap_places_a_carton");
-  const Scenario& original = loaded.scenario;
+  const episode::LoadedRun loaded = Load("trials/wrap_places_a_carton");
+  const scenario::Scenario& original = loaded.scenario;
   ASSERT_EQ(ends_near_m(original), (std::vector<double>{0.15, -0.25}));
   EXPECT_EQ(ends_near_m(After(loaded, "mirror")), (std::vector<double>{0.15, 0.25}));
   EXPECT_EQ(ends_near_m(After(loaded, "far")), (std::vector<double>{4.15, 1.75}));
-  const Scenario turned = Moved(original, {.X = {.q = physics::FromRollPitchYaw({0, 0, 90})}});
+  const scenario::Scenario turned =
+      Moved(original, {.X = {.q = physics::FromRollPitchYaw({0, 0, 90})}});
   EXPECT_NEAR(ends_near_m(turned)[0], 0.25, 1e-12);
   EXPECT_NEAR(ends_near_m(turned)[1], 0.15, 1e-12);
 }
 
 /// What was recognised, and the same as a golden.
-std::pair<CheckedRun, Golden> Here(LoadedRun loaded) {
-  CheckedRun here{.id = "x", .loaded = std::move(loaded), .result = {}, .explain = ""};
-  here.result = RunScenario(here.loaded.scenario, here.loaded.program);
-  Golden golden{.ticks_per_second = here.result.timeline.ticks_per_second};
+std::pair<suite::CheckedRun, truth::Golden> Here(episode::LoadedRun loaded) {
+  suite::CheckedRun here{.id = "x", .loaded = std::move(loaded), .result = {}, .explain = ""};
+  here.result = episode::RunScenario(here.loaded.scenario, here.loaded.program);
+  truth::Golden golden{.ticks_per_second = here.result.timeline.ticks_per_second};
   for (const grammar::NamedEvent& event : here.result.timeline.events)
     golden.events.push_back({.event = event});
   EXPECT_FALSE(golden.events.empty());
@@ -170,9 +172,9 @@ TEST(Elsewhere, WhatScriptsNameHasItsNewName) {
       EXPECT_EQ(judged.says, kSameStory) << transform << ": " << judged.why;
     }
   }
-  Scenario orbits = Load("reach/slow_approach_is_one_reach").scenario;
+  scenario::Scenario orbits = Load("reach/slow_approach_is_one_reach").scenario;
   orbits.script.stages[0].steps[0].action = physics::OrbitStep{.around = "milk"};
-  const Scenario renamed = Renamed(orbits, {{"milk", "e1"}});
+  const scenario::Scenario renamed = Renamed(orbits, {{"milk", "e1"}});
   EXPECT_EQ(std::get<physics::OrbitStep>(renamed.script.stages[0].steps[0].action).around, "e1");
 }
 
@@ -189,8 +191,8 @@ TEST(Elsewhere, OtherRatesAreComparedInSeconds) {
 
 // A golden may be marked as unsteady; what the scenario expects must hold everywhere all the same.
 TEST(Elsewhere, ClaimsAreJudgedInEachPlay) {
-  LoadedRun loaded = Load("planar/disc_rolls_to_rest");
-  loaded.scenario.expects = {ParseClaim("no contact(disc, ramp)").value()};
+  episode::LoadedRun loaded = Load("planar/disc_rolls_to_rest");
+  loaded.scenario.expects = {truth::ParseClaim("no contact(disc, ramp)").value()};
   auto [here, golden] = Here(std::move(loaded));
   EXPECT_EQ(JudgeElsewhere(here, golden, "nudge").says, kSameStory)
       << "it does not hold here either";
@@ -214,4 +216,4 @@ TEST(Elsewhere, WhatMayDifferIsSaid) {
 }
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

@@ -9,7 +9,7 @@
 
 #include "physics/scene/mirror_image.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 using Eigen::Vector2d;
@@ -104,7 +104,7 @@ struct MoveStep {
 };
 
 /// The place that an outcome asks for.
-void Move(const Mover& motion, Outcome::Condition& condition) {
+void Move(const Mover& motion, scenario::Outcome::Condition& condition) {
   if (!condition.wanted.near_m) return;
   std::vector<double>& near_m = *condition.wanted.near_m;
   const Vector3d there = motion.Point({near_m[0], near_m[1], near_m.size() > 2 ? near_m[2] : 0});
@@ -113,7 +113,7 @@ void Move(const Mover& motion, Outcome::Condition& condition) {
 
 }  // namespace
 
-Scenario Moved(Scenario scenario, const WorldMotion& world_motion) {
+scenario::Scenario Moved(scenario::Scenario scenario, const WorldMotion& world_motion) {
   const Mover motion{world_motion};
   for (physics::Body& body : scenario.scene.bodies) Move(motion, body);
   for (physics::Joint& joint : scenario.scene.joints) Move(motion, joint);
@@ -126,9 +126,9 @@ Scenario Moved(Scenario scenario, const WorldMotion& world_motion) {
     for (physics::Step& step : stage.steps) std::visit(MoveStep{motion}, step.action);
     for (physics::PersonStep& step : stage.person_steps) std::visit(MoveStep{motion}, step.action);
   }
-  for (Outcome& outcome : scenario.outcomes)
-    for (Outcome::Condition& condition : outcome.conditions) Move(motion, condition);
+  for (scenario::Outcome& outcome : scenario.outcomes)
+    for (scenario::Outcome::Condition& condition : outcome.conditions) Move(motion, condition);
   return scenario;
 }
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

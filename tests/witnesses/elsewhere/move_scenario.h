@@ -3,9 +3,9 @@
 // outcomes included. Tested by tests/witnesses/elsewhere/elsewhere_test.cc
 #pragma once
 
-#include "harness/scenario/scenario.h"
+#include "harness/scenario/scenario/scenario.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 
 /// A motion of the whole world: first a mirror image in the plane y = 0, if any, then `X`, which
 /// turns about the vertical only.
@@ -15,6 +15,6 @@ struct WorldMotion {
 };
 
 /// In a mirror image right hands are left ones.
-Scenario Moved(Scenario scenario, const WorldMotion& motion);
+scenario::Scenario Moved(scenario::Scenario scenario, const WorldMotion& motion);
 
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses

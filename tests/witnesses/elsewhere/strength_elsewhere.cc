@@ -13,19 +13,19 @@
 #include <utility>
 #include <vector>
 
-#include "harness/run/load_run.h"
-#include "harness/run/outcome.h"
-#include "harness/run/run_trials.h"
+#include "harness/episode/run/load_run.h"
+#include "harness/episode/run/outcome.h"
+#include "harness/episode/run/run_trials.h"
 #include "physics/scene/geometry.h"
 #include "physics/simulation.h"
 #include "tests/witnesses/elsewhere/move_scenario.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 const std::string kRoot = PREHEND_SOURCE_DIR;
 
-RunRequest RequestFor(const std::string& scenario) {
+episode::RunRequest RequestFor(const std::string& scenario) {
   return {.scenario_file = kRoot + "/scenarios/" + scenario + ".yaml"};
 }
 
@@ -36,12 +36,12 @@ T OrExit(Result<T> result) {
   std::exit(2);
 }
 
-Scenario Turned(const Scenario& scenario, double yaw_deg) {
+scenario::Scenario Turned(const scenario::Scenario& scenario, double yaw_deg) {
   return Moved(scenario, {.X = {.q = physics::FromRollPitchYaw({0, 0, yaw_deg})}});
 }
 
 /// How far the centre of `body` rises above where it stands at first.
-double Rise_m(const Scenario& scenario, const std::string& body) {
+double Rise_m(const scenario::Scenario& scenario, const std::string& body) {
   const auto index = physics::FindBody(scenario.scene, body).index();
   const double stands_m = scenario.scene.bodies[index].X_WB.p_m.z();
   physics::Simulation simulation(scenario.scene, scenario.script);
@@ -56,9 +56,9 @@ int Crate(double step_kg) {
   constexpr int kLeast_kg = 4, kMost_kg = 8;
   constexpr double kLifted_m = 0.15;  // the hand rises by 0.2 m
   const auto rise_m = [](double mass_kg, double yaw_deg) {
-    RunRequest request = RequestFor("bimanual/one_hand_cannot_lift_nine_kilograms");
+    episode::RunRequest request = RequestFor("bimanual/one_hand_cannot_lift_nine_kilograms");
     request.settings = {"entities.crate.mass_kg=" + std::to_string(mass_kg)};
-    const LoadedRun loaded = OrExit(LoadRun(request, kRoot));
+    const episode::LoadedRun loaded = OrExit(episode::LoadRun(request, kRoot));
     return Rise_m(Turned(loaded.scenario, yaw_deg), "crate");
   };
   std::printf("| yaw |");
@@ -83,9 +83,9 @@ int Crate(double step_kg) {
   return most_kg - least_kg <= 0.03 * least_kg + step_kg ? 0 : 1;
 }
 
-bool EndsAsIntended(const Scenario& scenario) {
+bool EndsAsIntended(const scenario::Scenario& scenario) {
   physics::Simulation simulation(scenario.scene, scenario.script);
-  OutcomeWatch watch(scenario.scene, scenario.outcomes);
+  episode::OutcomeWatch watch(scenario.scene, scenario.outcomes);
   while (simulation.Step()) watch.Look(simulation.snapshot());
   return simulation.status().kind == physics::RunStatus::Kind::kCompleted &&
          watch.Judge(simulation.snapshot()) == scenario.outcomes.front().name;
@@ -97,12 +97,12 @@ int Trials(int count, const std::vector<std::string>& names) {
   std::printf("| `trials/` | right, 0 | right, %g | left, 0 | left, %g |\n|---|---|---|---|---|\n",
               kYaw_deg, kYaw_deg);
   for (const std::string& name : names) {
-    const RunRequest request = RequestFor("trials/" + name);
+    const episode::RunRequest request = RequestFor("trials/" + name);
     std::vector<int> placed(4, 0);
     for (int trial = 1; trial <= count; ++trial) {
-      const RunRequest drawn = OrExit(RequestOfTrial(request, kRoot, trial));
-      const Scenario right = OrExit(LoadRun(drawn, kRoot)).scenario;
-      const Scenario left = Moved(right, {.mirrors = true, .X = {}});
+      const episode::RunRequest drawn = OrExit(episode::RequestOfTrial(request, kRoot, trial));
+      const scenario::Scenario right = OrExit(episode::LoadRun(drawn, kRoot)).scenario;
+      const scenario::Scenario left = Moved(right, {.mirrors = true, .X = {}});
       placed[0] += EndsAsIntended(right);
       placed[1] += EndsAsIntended(Turned(right, kYaw_deg));
       placed[2] += EndsAsIntended(left);
@@ -118,11 +118,11 @@ int Trials(int count, const std::vector<std::string>& names) {
 }
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses
 
 int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
-  if (what == "crate") return prehend::harness::Crate(argc > 2 ? std::atof(argv[2]) : 0.05);
+  if (what == "crate") return prehend::witnesses::Crate(argc > 2 ? std::atof(argv[2]) : 0.05);
   if (what != "trials") {
     std::printf("usage: strength_elsewhere crate [STEP_KG] | trials [COUNT [NAME..]]\n");
     return 2;
@@ -132,5 +132,5 @@ int main(int argc, char** argv) {
     names = {"wrap_places_a_carton",           "pinch_places_a_box",    "tripod_places_a_box",
              "precision_sphere_places_a_ball", "lateral_places_a_slab", "gripper_places_a_box",
              "sliding_jaws_place_a_box"};
-  return prehend::harness::Trials(argc > 2 ? std::atoi(argv[2]) : 200, names);
+  return prehend::witnesses::Trials(argc > 2 ? std::atoi(argv[2]) : 200, names);
 }

@@ -13,12 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include "harness/run/load_run.h"
+#include "harness/episode/run/load_run.h"
 #include "physics/scene/geometry.h"
 #include "physics/simulation.h"
 #include "tests/witnesses/elsewhere/move_scenario.h"
 
-namespace prehend::harness {
+namespace prehend::witnesses {
 namespace {
 
 using Eigen::Vector3d;
@@ -124,13 +124,14 @@ class Comparison {
 
 /// When play and image are first a nanometre apart.
 double PartedAt_s(const std::string& name, const WorldMotion& motion) {
-  const auto loaded = LoadRun({.scenario_file = kRoot + "/scenarios/" + name + ".yaml"}, kRoot);
+  const auto loaded =
+      episode::LoadRun({.scenario_file = kRoot + "/scenarios/" + name + ".yaml"}, kRoot);
   if (!loaded) {
     std::printf("%s", grammar::Format(loaded.error()).c_str());
     std::exit(2);
   }
   std::printf("%s\n", name.c_str());
-  const Scenario image = Moved(loaded->scenario, motion);
+  const scenario::Scenario image = Moved(loaded->scenario, motion);
   physics::Simulation here(loaded->scenario.scene, loaded->scenario.script);
   physics::Simulation there(image.scene, image.script);
   Comparison comparison(loaded->scenario.scene, motion);
@@ -140,10 +141,10 @@ double PartedAt_s(const std::string& name, const WorldMotion& motion) {
 }
 
 }  // namespace
-}  // namespace prehend::harness
+}  // namespace prehend::witnesses
 
 int main(int argc, char** argv) {
-  using prehend::harness::WorldMotion;
+  using prehend::witnesses::WorldMotion;
   const std::string how = argc > 3 ? argv[1] : "";
   WorldMotion motion{.mirrors = how == "mirror", .X = {}};
   if (how == "turn") motion.X.q = prehend::physics::FromRollPitchYaw({0, 0, 37});
@@ -153,6 +154,6 @@ int main(int argc, char** argv) {
   }
   bool in_time = true;
   for (int i = 3; i < argc; ++i)
-    in_time = prehend::harness::PartedAt_s(argv[i], motion) >= std::atof(argv[2]) && in_time;
+    in_time = prehend::witnesses::PartedAt_s(argv[i], motion) >= std::atof(argv[2]) && in_time;
   return in_time ? 0 : 1;
 }

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/base/base/atomic_file.h. Tested by tests/harness/base/base/atomic_file_test.cc
+#include "harness/base/base/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+
+namespace prehend::inline base {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Empty, or why no file can be put at `path`: what is there is not to be replaced.
+std::string WhyNotReplaceable(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);  // of what a link points to
+  const std::string cannot = "cannot write " + path.string() + ": ";
+  if (!path.has_filename() && !fs::exists(status)) return cannot + "it names no file";
+  if (fs::is_directory(status)) return cannot + "it is a folder";
+  if (!fs::exists(status))
+    return fs::is_symlink(path, error) ? cannot + "it is a link to a file that does not exist" : "";
+  const bool is_own_output =
+      fs::equivalent(path, "/dev/stdout", error) || fs::equivalent(path, "/dev/stderr", error);
+  if (is_own_output || !fs::is_regular_file(status)) {
+    return cannot + "it is " +
+           (is_own_output ? "an output of this program" : "a device or a pipe") +
+           ", wanted a file; standard output is written as '-'";
+  }
+  return access(path.c_str(), W_OK) == 0 ? "" : cannot + std::strerror(errno);
+}
+
+/// By which an open file without a name can be opened and linked.
+fs::path NameOf(int file) { return "/proc/self/fd/" + std::to_string(file); }
+
+}  // namespace
+
+std::string MakeFolderOf(const fs::path& path) {
+  std::error_code error;
+  if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
+  return error ? "cannot create " + path.parent_path().string() + ": " + error.message() : "";
+}
+
+AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
+  if (path == "-") {
+    stream_ = &std::cout;
+    return;
+  }
+  problem_ = WhyNotReplaceable(path);
+  if (problem_.empty()) problem_ = MakeFolderOf(path);
+  if (!problem_.empty()) return;
+  std::error_code error;
+  target_ = fs::weakly_canonical(path, error);
+  unfinished_ = target_.string() + "." + std::to_string(getpid()) + ".unfinished";
+  const fs::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
+  nameless_ = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (nameless_ >= 0) file_.open(NameOf(nameless_), std::ios::binary);
+  if (!file_.is_open()) {
+    ForgetNameless();
+    file_.open(unfinished_, std::ios::binary);
+  }
+  if (!file_) {
+    problem_ = "cannot write " + path.string() + ": " + std::strerror(errno);
+  } else if (fs::exists(target_, error)) {
+    fs::permissions(nameless_ >= 0 ? NameOf(nameless_) : unfinished_,
+                    fs::status(target_, error).permissions(), error);
+  }
+}
+
+AtomicFile::~AtomicFile() {
+  ForgetNameless();
+  std::error_code error;
+  if (!unfinished_.empty()) fs::remove(unfinished_, error);
+}
+
+void AtomicFile::ForgetNameless() {
+  if (nameless_ >= 0) close(nameless_);
+  nameless_ = -1;
+}
+
+std::string AtomicFile::Commit() {
+  if (!problem_.empty()) return problem_;
+  const std::string cannot = "cannot write " + path_.string() + ": ";
+  if (file_.is_open()) file_.close();
+  if (!stream_->flush()) return cannot + "not all of it could be written; is the disk full?";
+  if (unfinished_.empty()) return "";
+  if (nameless_ >= 0 && linkat(AT_FDCWD, NameOf(nameless_).c_str(), AT_FDCWD, unfinished_.c_str(),
+                               AT_SYMLINK_FOLLOW) != 0)
+    return cannot + std::strerror(errno);
+  ForgetNameless();
+  std::error_code error;
+  fs::rename(unfinished_, target_, error);
+  return error ? cannot + error.message() : "";
+}
+
+FolderLock::FolderLock(const fs::path& folder)
+    : folder_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  while (folder_ >= 0 && flock(folder_, LOCK_EX) != 0 && errno == EINTR) {
+  }
+}
+
+FolderLock::~FolderLock() {
+  if (folder_ >= 0) close(folder_);
+}
+
+std::string WhyNotWritable(const fs::path& path) { return AtomicFile(path).problem(); }
+
+std::string WriteTextFile(const fs::path& path, std::string_view text) {
+  AtomicFile file(path);
+  file.stream() << text;
+  return file.Commit();
+}
+
+}  // namespace prehend::inline base

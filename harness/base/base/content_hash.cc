@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/base/base/content_hash.h. Tested by tests/harness/base/base/content_hash_test.cc
+#include "harness/base/base/content_hash.h"
+
+#include <fmt/format.h>
+#include <link.h>
+#include <sys/stat.h>
+#include <xxhash.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace prehend::inline base {
+namespace {
+
+/// For dl_iterate_phdr: adds "path size seconds" of one library. Its bytes would take too long.
+int AddLibrary(dl_phdr_info* info, std::size_t, void* text) {
+  struct stat status {};
+  if (info->dlpi_name && *info->dlpi_name && stat(info->dlpi_name, &status) == 0) {
+    *static_cast<std::string*>(text) +=
+        fmt::format("{} {} {}\n", info->dlpi_name, status.st_size, status.st_mtim.tv_sec);
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::string ContentHash(std::string_view bytes) {
+  return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
+}
+
+std::uint64_t ContentHashAt(std::uint64_t place, std::string_view bytes) {
+  return XXH3_64bits_withSeed(bytes.data(), bytes.size(), place);
+}
+
+std::string FileHash(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return kNoFile;
+  const auto size = std::filesystem::file_size(path, error);
+  if (error) return kNoFile;
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes(size, '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return file.is_open() && !file.bad() ? ContentHash(bytes) : kNoFile;
+}
+
+FileHashes HashFiles(const std::vector<std::string>& paths) {
+  FileHashes hashes;
+  for (const std::string& path : paths) hashes[path] = FileHash(path);
+  return hashes;
+}
+
+std::string ProgramHash() {
+  std::string libraries;
+  dl_iterate_phdr(AddLibrary, &libraries);
+  return ContentHash(FileHash("/proc/self/exe") + libraries);
+}
+
+}  // namespace prehend::inline base

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/base/base/project_paths.h. Tested by tests/harness/episode/run/find_scenario_test.cc
+// and tests/program/project_test.cc
+#include "harness/base/base/project_paths.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "harness/base/base/text_file.h"
+
+namespace prehend::inline base {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kLibrary = "grammar/library";
+
+/// The nearest folder, `folder` or above it, that has this in it.
+std::optional<std::string> RootAbove(fs::path folder, const char* what) {
+  std::error_code error;
+  for (;; folder = folder.parent_path()) {
+    if (fs::exists(folder / what, error)) return folder.string();
+    if (folder == folder.parent_path()) return std::nullopt;
+  }
+}
+
+std::vector<std::string> Folders(const std::string& root, const char* own, const char* library) {
+  std::vector<std::string> folders;
+  std::error_code error;
+  const std::string shipped = ShippedRoot();
+  if (fs::is_directory(fs::path(root) / own, error)) folders.push_back(fs::path(root) / own);
+  if (fs::is_directory(fs::path(root) / library, error) || shipped.empty())
+    folders.push_back(fs::path(root) / library);
+  else
+    folders.push_back(fs::path(shipped) / library);
+  return folders;
+}
+
+std::vector<std::string> Names(const std::vector<std::string>& folders, std::string_view ending) {
+  std::vector<std::string> names;
+  for (const std::string& folder : folders) {
+    for (std::string& name : NamesIn(folder, ending)) names.push_back(std::move(name));
+  }
+  std::ranges::sort(names);
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+std::string PathIn(const std::vector<std::string>& folders, const std::string& file) {
+  std::error_code error;
+  for (const std::string& folder : folders) {
+    const fs::path path = fs::path(folder) / file;
+    if (fs::symlink_status(path, error).type() != fs::file_type::not_found) return path.string();
+  }
+  return (fs::path(folders.back()) / file).string();
+}
+
+}  // namespace
+
+std::string ShippedRoot() {
+  static const std::string root = [] {
+    std::error_code error;
+    const fs::path executable = fs::read_symlink("/proc/self/exe", error);
+    return RootAbove(executable.parent_path(), kLibrary).value_or("");
+  }();
+  return root;
+}
+
+bool IsOwnProject(const std::string& root) {
+  std::error_code error;
+  return !fs::is_directory(fs::path(root) / kLibrary, error);
+}
+
+bool IsCalledIn(const std::string& root) {
+  if (const char* home = std::getenv("PREHEND_HOME"); home && *home) return true;
+  std::error_code error;
+  const fs::path here = fs::current_path(error), folder = fs::weakly_canonical(root, error);
+  return std::mismatch(folder.begin(), folder.end(), here.begin(), here.end()).first ==
+         folder.end();
+}
+
+std::vector<std::string> GrammarFolders(const std::string& root) {
+  return Folders(root, "grammars", kLibrary);
+}
+std::vector<std::string> HandFolders(const std::string& root) {
+  return Folders(root, "hands", "physics/library");
+}
+
+std::optional<std::string> FindProjectRoot() {
+  std::error_code error;
+  if (const char* home = std::getenv("PREHEND_HOME"); home && *home) {
+    const bool is_project = fs::is_directory(fs::path(home) / kLibrary, error) ||
+                            fs::exists(fs::path(home) / kProjectFile, error);
+    return is_project ? std::optional<std::string>(home) : std::nullopt;
+  }
+  const fs::path here = fs::current_path(error);
+  if (auto root = RootAbove(here, kProjectFile)) return root;
+  if (!ShippedRoot().empty()) return ShippedRoot();
+  return RootAbove(here, kLibrary);
+}
+
+std::vector<std::string> FilesIn(const std::string& folder, std::string_view ending) {
+  std::vector<std::string> files;
+  std::error_code error;
+  for (const fs::directory_entry& file : fs::directory_iterator(folder, error)) {
+    const std::string name = file.path().filename().string();
+    if (name.ends_with(ending)) files.push_back(name);
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<std::string> NamesIn(const std::string& folder, std::string_view ending) {
+  std::vector<std::string> names;
+  for (const std::string& file : FilesIn(folder, ending)) {
+    if (ReadableName(file) == file) names.push_back(file.substr(0, file.size() - ending.size()));
+  }
+  return names;
+}
+
+std::vector<std::string> GrammarNames(const std::string& root) {
+  return Names(GrammarFolders(root), kGrammarEnding);
+}
+std::vector<std::string> HandNames(const std::string& root) {
+  return Names(HandFolders(root), kHandEnding);
+}
+
+std::string InProjectOrShipped(const std::string& root, const std::string& path) {
+  std::error_code error;
+  const fs::path own = fs::path(root) / path;
+  const std::string shipped = ShippedRoot();
+  return fs::exists(own, error) || shipped.empty() ? own.string()
+                                                   : (fs::path(shipped) / path).string();
+}
+
+std::string GrammarPath(const std::string& root, const std::string& name) {
+  return PathIn(GrammarFolders(root), name + kGrammarEnding);
+}
+std::string HandPath(const std::string& root, const std::string& name) {
+  return PathIn(HandFolders(root), name + kHandEnding);
+}
+
+}  // namespace prehend::inline base

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where things are: the project's root, and the grammars and hands of its libraries. A project of
+// one's own (docs/projects.md) has its grammars and hands first; what ships with the program comes
+// second. Tested by tests/harness/episode/run/find_scenario_test.cc and
+// tests/program/project_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace prehend::inline base {
+
+inline constexpr const char* kGrammarEnding = ".grammar";
+inline constexpr const char* kHandEnding = ".hand.yaml";
+
+/// In the root of a project of one's own.
+inline constexpr const char* kProjectFile = "prehend.yaml";
+
+/// The folder that holds scenarios/, golden/, ..: $PREHEND_HOME if that is set; else the nearest
+/// ancestor of the working directory that has a prehend.yaml; else ShippedRoot(), or the nearest
+/// ancestor of the working directory with grammar/library.
+std::optional<std::string> FindProjectRoot();
+
+/// What ships with the program: the nearest ancestor of the executable with grammar/library; "" if
+/// there is none.
+std::string ShippedRoot();
+/// Whether `root` is a project of one's own, which uses what ships.
+bool IsOwnProject(const std::string& root);
+
+/// Whether the program is called in `root` or below it, or was told by $PREHEND_HOME to work there.
+bool IsCalledIn(const std::string& root);
+
+/// Where grammars are: root/grammars and root/grammar/library, those that exist, and for a project
+/// without the latter what ships. Likewise hands: root/hands and root/physics/library.
+std::vector<std::string> GrammarFolders(const std::string& root);
+std::vector<std::string> HandFolders(const std::string& root);
+
+/// The files in `folder` with this ending, sorted.
+std::vector<std::string> FilesIn(const std::string& folder, std::string_view ending);
+
+/// What they are called without the ending; only those with a ReadableName(), as no other can be
+/// asked for.
+std::vector<std::string> NamesIn(const std::string& folder, std::string_view ending);
+
+/// The names of all grammars and hands of a project, sorted, each once.
+std::vector<std::string> GrammarNames(const std::string& root);
+std::vector<std::string> HandNames(const std::string& root);
+
+/// ROOT/PATH, or of a project without it what ships.
+std::string InProjectOrShipped(const std::string& root, const std::string& path);
+
+/// FOLDER/NAME.grammar and FOLDER/NAME.hand.yaml in the first folder that has the file; if none
+/// has, in the last one.
+std::string GrammarPath(const std::string& root, const std::string& name);
+std::string HandPath(const std::string& root, const std::string& name);
+
+}  // namespace prehend::inline base

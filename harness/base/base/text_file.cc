@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/base/base/text_file.h. Tested by tests/harness/base/base/text_file_test.cc
+#include "harness/base/base/text_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace prehend::inline base {
+namespace {
+
+using grammar::Diagnostic;
+using grammar::Diagnostics;
+
+/// Bytes of the well-formed UTF-8 sequence that starts `text`, 0 when there is none (Unicode 15,
+/// table 3-7).
+std::size_t Utf8Length(std::string_view text) {
+  const auto byte = [&](std::size_t i) -> unsigned {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  const auto continues = [&](std::size_t i) { return (byte(i) & 0xC0) == 0x80; };
+  const unsigned lead = byte(0), second = byte(1);
+  if (lead < 0x80) return 1;
+  if (lead >= 0xC2 && lead <= 0xDF) return continues(1) ? 2 : 0;
+  if (lead >= 0xE0 && lead <= 0xEF) {
+    const bool overlong = lead == 0xE0 && second < 0xA0;
+    const bool surrogate = lead == 0xED && second > 0x9F;
+    return continues(1) && continues(2) && !overlong && !surrogate ? 3 : 0;
+  }
+  if (lead >= 0xF0 && lead <= 0xF4) {
+    const bool overlong = lead == 0xF0 && second < 0x90;
+    const bool too_large = lead == 0xF4 && second > 0x8F;
+    return continues(1) && continues(2) && continues(3) && !overlong && !too_large ? 4 : 0;
+  }
+  return 0;
+}
+
+char32_t CodePoint(std::string_view sequence) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(sequence[i]); };
+  if (sequence.size() == 1) return byte(0);
+  char32_t code = byte(0) & (0xFFu >> (sequence.size() + 1));
+  for (std::size_t i = 1; i < sequence.size(); ++i) code = code << 6 | (byte(i) & 0x3Fu);
+  return code;
+}
+
+bool IsBetween(char32_t code, char32_t first, char32_t last) {
+  return code >= first && code <= last;
+}
+
+bool IsControl(char32_t code) {
+  return (code < 0x20 && code != '\n' && code != '\t') || IsBetween(code, 0x7F, 0x9F);
+}
+
+/// What a text file that a person wrote does not hold: "" or its name.
+std::string_view NameOfStrange(char32_t code) {
+  if (IsControl(code)) return "control character";
+  if (IsBetween(code, 0x202A, 0x202E) || IsBetween(code, 0x2066, 0x2069))
+    return "character that turns the direction of writing";
+  if (IsBetween(code, 0x2028, 0x2029)) return "line end that only Unicode knows";
+  if ((code & 0xFFFE) == 0xFFFE || IsBetween(code, 0xFDD0, 0xFDEF))
+    return "code point that is no character";
+  return {};
+}
+
+/// The sequence that starts `text` is fit for a text file.
+bool IsFit(std::string_view text, std::size_t length) {
+  return length > 0 && NameOfStrange(CodePoint(text.substr(0, length))).empty();
+}
+
+/// Each sequence that is not fit, or that is one of `others`, becomes U+FFFD.
+std::string Readable(std::string_view bytes, std::string_view others) {
+  std::string text;
+  text.reserve(bytes.size());
+  while (!bytes.empty()) {
+    const std::size_t length = Utf8Length(bytes);
+    const bool fits = IsFit(bytes, length) && others.find(bytes.front()) == std::string_view::npos;
+    text += fits ? bytes.substr(0, length) : std::string_view("\uFFFD");
+    bytes.remove_prefix(std::max<std::size_t>(1, length));
+  }
+  return text;
+}
+
+/// Without the line itself: printing it could garble a terminal.
+Diagnostic NotText(const std::string& file, std::string_view text, std::size_t offset,
+                   std::string message) {
+  const auto before = text.substr(0, offset);
+  const auto line_start = before.rfind('\n') + 1;  // npos + 1 == 0: the first line
+  const int line = 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n'));
+  return {.file = file,
+          .place = {line, 1 + static_cast<int>(offset - line_start)},
+          .message = std::move(message),
+          .source_line = {},
+          .hint = "is this a text file, saved as UTF-8?"};
+}
+
+/// With a byte order mark, or as two letters of English look in it.
+bool IsUtf16(std::string_view text) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return true;
+  if (text.size() < 4) return false;
+  const auto is_zero = [&](std::size_t i) { return text[i] == '\0'; };
+  return is_zero(0) != is_zero(1) && is_zero(0) == is_zero(2) && is_zero(1) == is_zero(3);
+}
+
+std::string WithUnixLineEnds(std::string text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\r' && i + 1 < text.size() && text[i + 1] == '\n') continue;
+    out += text[i];
+  }
+  return out;
+}
+
+/// Why the file at `path` cannot be read as text, found without opening it; empty when it can.
+std::string WhyNotReadable(const std::string& path, std::uintmax_t most_bytes) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status))
+    return error && error != std::errc::no_such_file_or_directory
+               ? "cannot be read: " + error.message()
+               : "no such file";
+  if (std::filesystem::is_directory(status)) return "is a directory, not a file";
+  if (!std::filesystem::is_regular_file(status)) return "is not a regular file";
+  const auto size = std::filesystem::file_size(path, error);
+  if (error) return "cannot be read: " + error.message();
+  if (size > most_bytes) {
+    return fmt::format("is too large: {:.1f} MiB, at most {} MiB are read",
+                       static_cast<double>(size) / (1 << 20), most_bytes >> 20);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string ReadableText(std::string_view bytes) { return Readable(bytes, ""); }
+
+std::string ReadableName(std::string_view bytes) { return Readable(bytes, "\t\n"); }
+
+std::string StrangeIn(std::string_view value) {
+  for (std::size_t i = 0; i < value.size();) {
+    const std::size_t length = Utf8Length(value.substr(i));
+    if (length == 0)
+      return fmt::format("byte 0x{:02x} that is not UTF-8", static_cast<unsigned char>(value[i]));
+    const char32_t code = CodePoint(value.substr(i, length));
+    const std::string_view name = code == '\t' ? "control character" : NameOfStrange(code);
+    if (!name.empty()) return fmt::format("{} U+{:04X}", name, static_cast<unsigned>(code));
+    i += length;
+  }
+  return "";
+}
+
+Diagnostics CheckText(const std::string& file, std::string_view text) {
+  if (text.empty())
+    return {
+        {.file = file, .place = {}, .message = "the file is empty", .source_line = {}, .hint = {}}};
+  if (IsUtf16(text)) {
+    Diagnostic wide = NotText(file, text, 0, "expected UTF-8, found UTF-16");
+    wide.hint = "save it as UTF-8";
+    return {std::move(wide)};
+  }
+  for (std::size_t i = 0; i < text.size();) {
+    if (text[i] == '\r') {
+      Diagnostic alone = NotText(file, text, i, "a carriage return without a line feed");
+      alone.hint = "lines end with a line feed, or with both";
+      return {std::move(alone)};
+    }
+    const std::size_t length = Utf8Length(text.substr(i));
+    if (length == 0) {
+      return {
+          NotText(file, text, i,
+                  fmt::format("byte 0x{:02x} is not UTF-8", static_cast<unsigned char>(text[i])))};
+    }
+    const char32_t code = CodePoint(text.substr(i, length));
+    if (const auto name = NameOfStrange(code); !name.empty()) {
+      const auto number = static_cast<unsigned>(code);
+      return {NotText(file, text, i,
+                      length == 1
+                          ? fmt::format("{} 0x{:02x}; this looks like a binary file", name, number)
+                          : fmt::format("{} U+{:04X}", name, number))};
+    }
+    i += length;
+  }
+  return {};
+}
+
+Result<std::string> ReadTextFile(const std::string& path, std::uintmax_t most_bytes) {
+  const auto refuse = [&](std::string why) {
+    Diagnostic diagnostic;
+    diagnostic.file = ReadableName(path);
+    diagnostic.message = std::move(why);
+    return tl::unexpected(grammar::Diagnostics{diagnostic});
+  };
+  if (ReadableName(path) != path)
+    return refuse("the name of this file holds what is no printable text; rename it");
+  if (auto why = WhyNotReadable(path, most_bytes); !why.empty()) return refuse(std::move(why));
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return refuse(std::string("cannot be read: ") + std::strerror(errno));
+  std::string text = WithUnixLineEnds({std::istreambuf_iterator<char>(stream), {}});
+  if (stream.bad()) return refuse("cannot be read to its end");
+  if (auto diagnostics = CheckText(path, text); !diagnostics.empty())
+    return tl::unexpected(std::move(diagnostics));
+  return text;
+}
+
+}  // namespace prehend::inline base

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads a small text file that a person wrote, and refuses anything else.
+// Tested by tests/harness/base/base/text_file_test.cc
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "harness/base/base/result.h"
+
+namespace prehend::inline base {
+
+/// Enough for 10,000 entities on a line each; a larger file is a mistake and would only cost time.
+inline constexpr std::uintmax_t kMaxTextFileBytes = 4u << 20;
+
+/// The text, without a byte order mark and with CR LF turned into LF; at most `most_bytes` are
+/// read. Reports a file whose name is
+/// not a ReadableName() (and names it so), that is missing, unreadable or too large (by its size,
+/// without reading it), a directory or device, and what CheckText() reports.
+Result<std::string> ReadTextFile(const std::string& path,
+                                 std::uintmax_t most_bytes = kMaxTextFileBytes);
+
+/// Reports a text that is empty, is not UTF-8, or holds control characters (a binary file): those
+/// of ASCII and U+0080 to U+009F, which terminals obey; what turns the direction of writing (U+202A
+/// to U+202E, U+2066 to U+2069); line ends of Unicode's own (U+2028, U+2029); and code points that
+/// are no characters, which XML cannot carry (U+FFFE, U+FFFF and their like).
+grammar::Diagnostics CheckText(const std::string& file, std::string_view text);
+
+/// Bytes from elsewhere (the output of a process) as text: each byte that CheckText() would report
+/// becomes U+FFFD. XML 1.0 and JSON can carry the result.
+std::string ReadableText(std::string_view bytes);
+/// Likewise of a name of a file or folder, which stands in one line and one cell: tabs and line
+/// ends become U+FFFD, too.
+std::string ReadableName(std::string_view bytes);
+
+/// The first thing in a value of one file that CheckText() would report, or a tab: "control
+/// character U+009B"; "" if there is none.
+std::string StrangeIn(std::string_view value);
+
+}  // namespace prehend::inline base

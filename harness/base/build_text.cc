@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: Apache-2.0
-// See harness/base/build_text.h. harness/CMakeLists.txt knows the compiler.
-#include "harness/base/build_text.h"
-
-namespace prehend::harness {
-
-std::string BuildText() { return PREHEND_BUILD; }
-
-}  // namespace prehend::harness

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Collects the errors of one document while it is read, in any order, and returns them sorted by
+// place. Tested by tests/harness/base/yaml/struct_format_test.cc
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/base/yaml/located_yaml.h"
+
+namespace prehend::inline base {
+
+/// Keeps the first grammar::kMostDiagnostics that are added.
+class DiagnosticList {
+ public:
+  /// The document outlives this object.
+  explicit DiagnosticList(const YamlDocument& document) : document_(document) {}
+
+  void Add(Where where, std::string message, std::string hint = {});
+  /// For example "did you mean 'mass_kg'?", or the list of candidates when nothing is near.
+  void AddUnknownName(Where where, std::string message, const std::string& name,
+                      const std::vector<std::string>& candidates);
+
+  /// "FILE:LINE:COLUMN", for what is found out only when the scenario runs.
+  std::string PlaceText(Where where) const;
+
+  bool empty() const { return found_.empty(); }
+  /// Sorted by place; errors at the same place in the order they were added.
+  grammar::Diagnostics Sorted() const;
+
+ private:
+  const YamlDocument& document_;
+  std::vector<std::pair<Where, grammar::Diagnostic>> found_;
+};
+
+}  // namespace prehend::inline base

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/base/yaml/yaml_scalar_test.cc
+#include "harness/base/yaml/yaml_scalar.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace prehend::inline base {
+namespace {
+
+bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+
+/// Length of the run of digits at `at`.
+std::size_t Digits(std::string_view text, std::size_t at) {
+  std::size_t n = 0;
+  while (at + n < text.size() && IsDigit(text[at + n])) ++n;
+  return n;
+}
+
+/// A number as in JSON (RFC 8259): all YAML readers agree on these, and from_chars() reads them.
+struct JsonNumber {
+  bool matches = false;
+  bool integer = false;
+};
+JsonNumber MatchJsonNumber(std::string_view text) {
+  std::size_t at = text.starts_with('-') ? 1 : 0;
+  const std::size_t whole = Digits(text, at);
+  if (whole == 0 || (whole > 1 && text[at] == '0')) return {};
+  at += whole;
+  bool integer = true;
+  if (at < text.size() && text[at] == '.') {
+    const std::size_t fraction = Digits(text, at + 1);
+    if (fraction == 0) return {};
+    at += 1 + fraction;
+    integer = false;
+  }
+  if (at < text.size() && (text[at] == 'e' || text[at] == 'E')) {
+    ++at;
+    if (at < text.size() && (text[at] == '+' || text[at] == '-')) ++at;
+    const std::size_t exponent = Digits(text, at);
+    if (exponent == 0) return {};
+    at += exponent;
+    integer = false;
+  }
+  return {at == text.size(), integer};
+}
+
+std::string LowerCase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return lower;
+}
+
+template <std::size_t N>
+bool OneOf(std::string_view text, const std::string_view (&words)[N]) {
+  return std::find(std::begin(words), std::end(words), text) != std::end(words);
+}
+
+ScalarMeaning Ambiguous(std::string reason, std::string remedy) {
+  ScalarMeaning meaning;
+  meaning.ambiguous = std::move(reason);
+  meaning.remedy = std::move(remedy);
+  return meaning;
+}
+
+/// Scalars that look like a number, or are a number only to some readers.
+std::optional<ScalarMeaning> AmbiguousNumber(const std::string& text) {
+  const std::string_view unsigned_text =
+      std::string_view(text).substr(text.find_first_not_of("+-") == 1 ? 1 : 0);
+  const std::string lower = LowerCase(unsigned_text);
+  static constexpr std::string_view kNotFinite[] = {"nan", ".nan", "inf", ".inf", "infinity"};
+  if (OneOf(lower, kNotFinite)) return Ambiguous("not a finite number", "write a finite number");
+  if (lower.empty() ||
+      !(IsDigit(lower[0]) || (lower[0] == '.' && lower.size() > 1 && IsDigit(lower[1]))))
+    return {};
+
+  const auto only = [&](std::string_view allowed) {
+    return lower.find_first_not_of(allowed) == std::string::npos;
+  };
+  if (lower.starts_with("0x") || lower.starts_with("0o") || lower.starts_with("0b")) {
+    return Ambiguous("a number in another base to some YAML readers", "write a decimal number");
+  }
+  if (only("0123456789_.") && lower.find('_') != std::string::npos) {
+    return Ambiguous("only some YAML readers take '_' for a separator",
+                     "write the digits without '_'");
+  }
+  if (only("0123456789:.") && lower.find(':') != std::string::npos) {
+    return Ambiguous("a number in base 60 to some YAML readers",
+                     "write seconds as a decimal number, or quote it");
+  }
+  if (only("0123456789") && lower[0] == '0') {
+    const std::size_t significant = std::min(lower.find_first_not_of('0'), lower.size() - 1);
+    return Ambiguous("a leading zero means octal to some YAML readers",
+                     fmt::format("write {}", lower.substr(significant)));
+  }
+  if (text[0] == '+') return Ambiguous("a number with a plus sign", "remove the '+'");
+  if (only("0123456789.") && std::count(lower.begin(), lower.end(), '.') == 1) {
+    return Ambiguous("a number without a digit on both sides of the point",
+                     "write for example 0.5 or 5.0");
+  }
+  return {};
+}
+
+}  // namespace
+
+ScalarMeaning MeaningOf(const YamlNode& node) {
+  ScalarMeaning meaning;
+  const std::string& text = node.text;
+  if (node.quoted) {
+    meaning.string = text;
+    return meaning;
+  }
+  if (const JsonNumber match = MatchJsonNumber(text); match.matches) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || !std::isfinite(value))
+      return Ambiguous("outside the range of numbers", "");
+    meaning.number = value;
+    meaning.integer = match.integer;
+    return meaning;
+  }
+  if (text == "true" || text == "false") {
+    meaning.flag = text == "true";
+    return meaning;
+  }
+  const std::string lower = LowerCase(text);
+  static constexpr std::string_view kTrue[] = {"yes", "on", "y", "true"};
+  static constexpr std::string_view kFalse[] = {"no", "off", "n", "false"};
+  if (OneOf(lower, kTrue) || OneOf(lower, kFalse)) {
+    return Ambiguous("true or false to some YAML readers",
+                     "write a number, true or false, or text in quotes");
+  }
+  if (auto number = AmbiguousNumber(text)) return *number;
+  meaning.string = text;
+  return meaning;
+}
+
+std::optional<double> NumberOf(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::kScalar) return std::nullopt;
+  const auto number = MeaningOf(node).number;
+  return number && std::abs(*number) <= kMaxNumber ? number : std::nullopt;
+}
+
+std::string Describe(const YamlNode& node) {
+  switch (node.kind) {
+    case YamlNode::Kind::kNull:
+      return node.text.empty() ? "nothing" : fmt::format("'{}'", node.text);
+    case YamlNode::Kind::kSequence:
+      return "a list";
+    case YamlNode::Kind::kMapping:
+      return "a mapping";
+    case YamlNode::Kind::kScalar:
+      break;
+  }
+  constexpr std::size_t kMaxShown = 40;
+  std::string shown = node.text;
+  if (shown.size() > kMaxShown) {
+    std::size_t cut = kMaxShown;  // not within a UTF-8 sequence
+    while (cut > 0 && (static_cast<unsigned char>(shown[cut]) & 0xC0) == 0x80) --cut;
+    shown = shown.substr(0, cut) + "...";
+  }
+  return node.quoted ? fmt::format("the text '{}'", shown) : fmt::format("'{}'", shown);
+}
+
+std::string LookAlikeRemedy(std::string_view text) {
+  struct Pair {
+    std::string_view found, meant;
+  };
+  constexpr Pair kPairs[] = {{"\u2212", "-"},  {"\u2013", "-"},  {"\u2014", "-"}, {"\u201c", "\""},
+                             {"\u201d", "\""}, {"\u201e", "\""}, {"\u2018", "'"}, {"\u2019", "'"},
+                             {"\uff1a", ":"},  {"\uff0c", ","},  {"\u00a0", " "}, {"\u202f", " "},
+                             {"\u3000", " "}};
+  for (const auto& [found, meant] : kPairs) {
+    if (text.find(found) == std::string_view::npos) continue;
+    return meant == " " ? "it contains a non-standard space character; retype it"
+                        : fmt::format("'{}' is not '{}'; retype it", found, meant);
+  }
+  return "";
+}
+
+}  // namespace prehend::inline base

@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend check: the regression suite. Tested by tests/program/command_line_test.cc and
+// tests/program/runner_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "harness/base/base/atomic_file.h"
+#include "harness/base/base/project_paths.h"
+#include "harness/base/base/shell_quote.h"
+#include "harness/cli/command/command.h"
+#include "harness/episode/episode/find_episodes.h"
+#include "harness/episode/episodes/record_episode.h"
+#include "harness/episode/episodes/schema.h"
+#include "harness/suite/check/causes.h"
+#include "harness/suite/check/run_suite.h"
+#include "harness/suite/report/junit.h"
+#include "harness/suite/report/page_texts.h"
+#include "harness/suite/report/report.h"
+
+namespace prehend::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDefaultTimeLimit_s = 120;
+constexpr std::uint64_t kDefaultMemoryLimit_mb = 1000;
+constexpr int kMaxRepeats = 10'000;
+
+std::string ShardProblem(const std::string& shard) {
+  return suite::ParseShard(shard)
+             ? ""
+             : "found '" + shard + "', wanted I/N, like 2/3 for the second of three";
+}
+
+/// Its limits are too large to be worth a place in the help.
+ValueRule AnySeed() {
+  ValueRule rule = IntegersFrom(0, std::int64_t{1} << 62);
+  rule.range.clear();
+  return rule;
+}
+
+std::vector<Option> SelectionOptions() {
+  return InGroup(
+      "Which scenarios",
+      {
+          {.name = "names",
+           .help =
+               "names, skill/name, globs or files, also episode files and recordings of trackers; "
+               "default: all scenarios",
+           .repeatable = true},
+          FilterOption(),
+          {.name = "--shard",
+           .help = "keep part I of N equal parts",
+           .placeholder = "I/N",
+           .rule = {.problem = ShardProblem}},
+          {.name = "--changed",
+           .help = "skip scenarios that passed, if no file and no part of the program that "
+                   "they depend on changed since"},
+      });
+}
+
+std::vector<Option> RunningOptions() {
+  return InGroup("How they run",
+                 {
+                     JobsOption("scenarios"),
+                     TimeLimitOption(0.1, 86400),
+                     MemoryLimitOption(),
+                     {.name = "--repeat",
+                      .help = "run each scenario N times; a scenario whose results or state hashes "
+                              "differ is flaky and fails",
+                      .placeholder = "N",
+                      .rule = IntegersFrom(1, kMaxRepeats)},
+                     {.name = "--shuffle",
+                      .help = "run in a random order with this seed; default: the slowest first",
+                      .placeholder = "SEED",
+                      .rule = AnySeed()},
+                     GrammarOption(),
+                     SettingsOption(),
+                 });
+}
+
+std::string RecordProblem(const std::string& file) {
+  return episode::IsEpisodeFile(file) ? "" : "found '" + file + "', wanted a file NAME.episodes";
+}
+
+std::string ReplayProblem(const std::string& word) {
+  if (word == "failures" || word == "all" || word == "none") return "";
+  return "found '" + word + "', wanted failures, all or none";
+}
+
+/// A page that cannot show replays gets none.
+suite::Replays ReplaysOf(const ParsedOptions& options) {
+  const std::string word = options.TextOr("--replay", "failures");
+  if (word == "none" || suite::ReplayBundle().empty()) return suite::Replays::kNone;
+  return word == "all" ? suite::Replays::kAll : suite::Replays::kFailures;
+}
+
+std::vector<Option> ResultOptions() {
+  return InGroup(
+      "What is written",
+      {
+          {.name = "--report",
+           .help = "folder for index.html and pictures; default: build/report of the project, "
+                   "or, outside of it, of this folder",
+           .placeholder = "DIR",
+           .is_output = true},
+          {.name = "--junit",
+           .help = "also write the verdicts as JUnit XML; -: print it instead of text",
+           .placeholder = "FILE",
+           .is_output = true},
+          {.name = "--record",
+           .help = "also write each episode to FILE, NAME.episodes (docs/episodes.md)",
+           .placeholder = "FILE",
+           .rule = {.range = {}, .problem = RecordProblem},
+           .is_output = true},
+          {.name = "--no-pictures", .help = "draw no pictures"},
+          {.name = "--replay",
+           .help = "of which scenarios the page has a 3D replay: failures (the default), "
+                   "all, none",
+           .placeholder = "WHICH",
+           .rule = {.range = {}, .problem = ReplayProblem}},
+          {.name = "--verbose",
+           .help = "print the details of every failure, also of more than ten"},
+          JsonOption(),
+      });
+}
+
+std::uint64_t MemoryLimit_bytes(const ParsedOptions& options) {
+#ifdef __SANITIZE_ADDRESS__
+  (void)options;
+  return 0;  // shadow memory exceeds any limit
+#else
+  return options.UnsignedOr("--memory-limit-mb", kDefaultMemoryLimit_mb) * kMegabyte;
+#endif
+}
+
+/// Who is somewhere else than in the project finds the report there.
+std::string DefaultReport(const std::string& root) {
+  return (IsCalledIn(root) ? fs::path(root) / "build/report" : fs::path("build/report")).string();
+}
+
+suite::SuiteRequest RequestFrom(const ParsedOptions& options, const CommandContext& context,
+                                suite::ScenarioSelection selection) {
+  suite::SuiteRequest request{
+      .selection = std::move(selection),
+      .changes = {options.Text("--grammar"), options.All("--set")},
+      .root = context.root,
+      .report_folder = options.TextOr("--report", DefaultReport(context.root)),
+      .record_file = options.Text("--record"),
+      .today = context.today,
+      .pictures = !options.Has("--no-pictures"),
+      .replays = ReplaysOf(options),
+      .only_changed = options.Has("--changed"),
+      .repeat = options.IntOr("--repeat", 1),
+      .shuffle_seed = {},
+      .limits = {}};
+  if (options.Has("--shuffle")) request.shuffle_seed = options.UnsignedOr("--shuffle", 0);
+  request.limits = {.jobs = options.IntOr("--jobs", CoreCount()),
+                    .time_limit_s = options.NumberOr("--time-limit-s", kDefaultTimeLimit_s),
+                    .memory_limit_bytes = MemoryLimit_bytes(options)};
+  return request;
+}
+
+std::string Indented(const std::string& text) {
+  std::string indented;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    indented += "    " + text.substr(begin, end - begin) + "\n";
+    begin = end + 1;
+  }
+  return indented;
+}
+
+std::string Colored(suite::Verdict verdict, bool colored) {
+  const std::string name(Name(verdict));
+  if (!colored) return name;
+  const bool good = verdict == suite::Verdict::kPassed || verdict == suite::Verdict::kUnchanged;
+  const int color = good ? 32 : verdict == suite::Verdict::kPending ? 33 : 31;
+  return fmt::format("\033[{}m{}\033[0m", color, name);
+}
+
+/// With more failures their details are in the report only, unless they are asked for.
+constexpr std::ptrdiff_t kMostDetailed = 10;
+
+struct TextOptions {
+  bool as_files_say = true;  ///< the command line changed no grammar and no setting, so that a
+                             ///< difference can be accepted
+  bool verbose = false;      ///< details of however many failures
+};
+
+/// `page`: the report; "": it could not be written.
+void PrintText(const std::vector<suite::ScenarioVerdict>& verdicts, const TextOptions& options,
+               const std::string& page, const CommandContext& context) {
+  const auto failed = std::ranges::count_if(verdicts, [](const suite::ScenarioVerdict& verdict) {
+    return verdict.exit_code != ExitCode::kAgrees && verdict.exit_code != ExitCode::kPending;
+  });
+  const bool brief = failed > kMostDetailed && !options.verbose;
+  for (const suite::ScenarioVerdict& verdict : verdicts) {
+    const std::string note = verdict.reason.empty() ? MarginText(verdict) : verdict.reason;
+    context.out << fmt::format("{}  {}{}{}\n", Colored(verdict.verdict, context.colored),
+                               verdict.scenario, note.empty() ? "" : "  ", note);
+    if (brief && verdict.exit_code != ExitCode::kAgrees) continue;
+    context.out << Indented(suite::NotesText(verdict));
+    context.out << Indented(verdict.details);  // of what passed: claims that were not judged
+    if (verdict.exit_code == ExitCode::kAgrees) continue;
+    context.out << "    " << suite::CommandLabel(verdict) << ": " << verdict.command << "\n";
+  }
+  const suite::Tally tally = suite::Count(verdicts);
+  const std::string smallest = suite::SmallestMarginText(verdicts);
+  if (!smallest.empty()) context.out << smallest << "\n";
+  context.out << suite::BrittleText(suite::BrittlePasses(verdicts))
+              << suite::CausesText(suite::CausesOf(verdicts));
+  if (brief)
+    context.out << fmt::format("{} failures: details are in the report, or printed by --verbose\n",
+                               failed);
+  if (!page.empty()) context.out << "report: " << page << "\n";
+  if (options.as_files_say &&
+      std::ranges::any_of(verdicts, &suite::ScenarioVerdict::DiffersFromGolden))
+    context.out << "If the new behaviour is intended: " << CommandText({"review"}) << "\n";
+  // Others are of no golden of this project.
+  const auto acceptable = std::ranges::count_if(verdicts, suite::LeadsToReview);
+  if (acceptable > 0) {
+    context.out << fmt::format("{}: review {}, then accept {} with a reason\n",
+                               acceptable == 1
+                                   ? "1 new scenario has no golden"
+                                   : fmt::format("{} new scenarios have no golden", acceptable),
+                               acceptable == 1 ? "it" : "them", acceptable == 1 ? "it" : "each");
+  }
+  if (tally.unchanged > 0)
+    context.out << fmt::format("{} unchanged since the last pass: not run again\n",
+                               tally.unchanged);
+  context.out << fmt::format("{} passed, {} failed\n", tally.passed, tally.failed);
+}
+
+nlohmann::ordered_json SummaryJson(const std::vector<suite::ScenarioVerdict>& verdicts,
+                                   const std::string& page) {
+  const suite::Tally tally = suite::Count(verdicts);
+  nlohmann::ordered_json scenarios = nlohmann::ordered_json::array();
+  for (const suite::ScenarioVerdict& verdict : verdicts) {
+    scenarios.push_back(suite::VerdictJson(verdict));
+  }
+  return {{"passed", tally.passed},
+          {"failed", tally.failed},
+          {"pending", tally.pending},
+          {"unchanged", tally.unchanged},
+          {"report", page},
+          {"scenarios", scenarios},
+          {"causes", suite::CausesJson(suite::CausesOf(verdicts))},
+          {"brittle", suite::BrittleJson(suite::BrittlePasses(verdicts))}};
+}
+
+/// "" if every episode that should be recorded was.
+std::string NotRecordedText(const std::vector<suite::ScenarioVerdict>& verdicts) {
+  const auto count = std::ranges::count_if(verdicts, [](const suite::ScenarioVerdict& verdict) {
+    return !verdict.not_recorded.empty();
+  });
+  if (count == 0) return "";
+  const auto first = std::ranges::find_if(verdicts, [](const suite::ScenarioVerdict& verdict) {
+    return !verdict.not_recorded.empty();
+  });
+  return fmt::format("--record: {} of {} episodes were not recorded; the first, {}: {}", count,
+                     verdicts.size(), first->scenario, first->not_recorded);
+}
+
+/// ": stopped by SIGINT; 12 of 232 scenarios were not checked", or "".
+std::string StoppedText(const suite::SuiteRequest& request,
+                        const std::vector<suite::ScenarioVerdict>& verdicts, Interrupt& interrupt) {
+  if (!interrupt.Came()) return "";
+  const auto all = request.selection.scenarios.size();
+  const auto checked = verdicts.size() - request.selection.orphans.size();
+  return fmt::format(": stopped by {}; {} of {} scenarios were not checked", interrupt.Name(),
+                     all - checked, all);
+}
+
+/// What cannot be written, or "". Found out before the scenarios run, which takes long.
+std::string WhyNotWritten(const ParsedOptions& options, const std::string& page) {
+  std::string problem = WhyNotWritable(page);
+  if (!problem.empty()) return "--report: " + problem;
+  if (options.Has("--junit")) problem = WhyNotWritable(options.Text("--junit"));
+  if (!problem.empty()) return "--junit: " + problem;
+  if (options.Has("--record")) problem = episode::WhyNotRecordable(options.Text("--record"));
+  return problem.empty() ? "" : "--record: " + problem;
+}
+
+suite::SuiteProgress ProgressOn(const CommandContext& context) {
+  if (!context.progress) return {};
+  return [&](std::size_t done, std::size_t all, const std::string& id) {
+    context.err << fmt::format("\r\033[K[{}/{}] {}", done, all, id) << std::flush;
+    if (done == all) context.err << "\r\033[K" << std::flush;
+  };
+}
+
+ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--changed") && (options.Has("--grammar") || options.Has("--set"))) {
+    return Complain(context, ExitCode::kBadInput,
+                    "--changed compares files; it cannot be combined with --grammar or --set");
+  }
+  const std::string junit = options.Text("--junit");
+  if (junit == "-" && options.Has("--json")) {
+    return Complain(context, ExitCode::kBadInput,
+                    "--junit - contradicts --json: both would be printed");
+  }
+  auto selection =
+      suite::SelectScenarios(options.All("names"), options.All("--filter"), context.root);
+  if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
+  const auto played =
+      std::ranges::find_if(selection->scenarios, [](const episode::ScenarioFile& file) {
+        return episode::EpisodeKindOf(file.path) != episode::EpisodeKind::kScenario;
+      });
+  for (const char* of_play : {"--record", "--repeat"}) {
+    if (played != selection->scenarios.end() && options.Has(of_play))
+      return Complain(context, ExitCode::kBadInput,
+                      fmt::format("{} plays scenarios; {} is a recording", of_play, played->path));
+  }
+  if (options.Has("--shard")) {
+    suite::KeepShard(*suite::ParseShard(options.Text("--shard")), *selection);
+    if (selection->scenarios.empty() && selection->orphans.empty())
+      return Complain(context, ExitCode::kNothing,
+                      "this shard is empty; fewer scenarios are selected than there are shards");
+  }
+  const suite::SuiteRequest request = RequestFrom(options, context, std::move(*selection));
+  const std::string page = (fs::path(request.report_folder) / "index.html").string();
+  std::string problem = WhyNotWritten(options, page);
+  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, problem);
+  Interrupt interrupt;
+  const std::vector<suite::ScenarioVerdict> verdicts =
+      suite::RunSuite(request, ProgressOn(context), &interrupt);
+  const std::string stopped = StoppedText(request, verdicts, interrupt);
+  if (context.progress && !stopped.empty()) context.err << "\r\033[K";
+
+  suite::ReportHeader header =
+      suite::HeaderOf(CommandText(context.words) + stopped, context.root, context.today);
+  header.folder = request.report_folder;
+  problem = WriteTextFile(page, suite::ReportHtml(verdicts, header));
+  if (problem.empty() && options.Has("--junit"))
+    problem = WriteTextFile(junit, suite::JunitXml(verdicts));
+  if (options.Has("--json")) {
+    nlohmann::ordered_json summary = SummaryJson(verdicts, problem.empty() ? page : "");
+    if (interrupt.Came()) summary["stopped_by"] = interrupt.Name();
+    context.out << summary.dump(2) << "\n";
+  } else if (junit != "-") {
+    PrintText(verdicts,
+              {.as_files_say = !options.Has("--grammar") && !options.Has("--set"),
+               .verbose = options.Has("--verbose")},
+              problem.empty() ? page : "", context);
+  }
+  if (!stopped.empty()) {
+    context.out.flush();
+    context.err << "prehend" << stopped << std::endl;
+    interrupt.EndProcess();
+  }
+  if (problem.empty()) problem = NotRecordedText(verdicts);
+  return problem.empty() ? suite::WorstOf(verdicts)
+                         : Complain(context, ExitCode::kFailure, problem);
+}
+
+}  // namespace
+
+Command CheckCommand() {
+  return {.name = "check",
+          .summary = "Run scenarios and compare them with their goldens: the regression suite",
+          .examples = {"check", "check milk_carton_wrap 'slide/*' my/scenario.yaml",
+                       "check --filter tag:smoke --filter '!reach/*' --no-pictures --jobs 1",
+                       "check --changed", "check --record suite.episodes --no-pictures",
+                       "check --shard 2/3 --junit verdicts.xml", "check 'slide/*' --repeat 10",
+                       "check --grammar my/rules.grammar --json"},
+          .options = Joined(SelectionOptions(), Joined(RunningOptions(), ResultOptions())),
+          .run = RunCheck};
+}
+
+}  // namespace prehend::cli

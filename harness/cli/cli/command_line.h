@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line: dispatches to a command, reports usage errors, prints help.
+// Tested by tests/program/command_line_test.cc
+#pragma once
+
+#include "harness/base/base/exit_code.h"
+
+namespace prehend::cli {
+
+/// All of `prehend`. Reads the environment: PREHEND_HOME, PREHEND_COMMAND, CI,
+/// NO_COLOR.
+ExitCode RunCommandLine(int argc, const char* const* argv);
+
+}  // namespace prehend::cli

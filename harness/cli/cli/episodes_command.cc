@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend episode list: what episode files hold. prehend episode verify: their frames, checked
+// against their state hashes. prehend episode migrate: files of an older version. Tested by
+// tests/program/episodes_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "harness/cli/command/typed_episode.h"
+#include "harness/episode/episode/resegment_many.h"
+#include "harness/episode/episodes/episode_file.h"
+#include "harness/episode/episodes/migrate.h"
+#include "harness/truth/timeline/event_text.h"
+
+namespace prehend::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json RowJson(const std::string& file, const episode::EpisodeRow& row) {
+  return {{"file", file},
+          {"episode", row.id},
+          {"uuid", row.uuid},
+          {"scenario", row.scenario},
+          {"status", row.status},
+          {"seconds", static_cast<double>(row.ticks) / static_cast<double>(row.ticks_per_second)},
+          {"grammar", row.grammar},
+          {"outcome", row.outcome},
+          {"state_hash", row.state_hash},
+          {"recorded_on", row.recorded_on}};
+}
+
+ExitCode RunEpisodes(const ParsedOptions& options, const CommandContext& context) {
+  std::vector<std::vector<std::string>> table = {
+      {"episode", "status", "seconds", "state_hash", "recorded_on", "scenario"}};
+  Json json = Json::array();
+  for (const std::string& path : options.All("files")) {
+    if (episode::EpisodeKindOf(path) != episode::EpisodeKind::kEpisodeFile) {
+      const auto other = episode::FindEpisodes({&path, 1}, "", context.root);
+      return other ? Complain(context, ExitCode::kBadInput,
+                              episode::Lack(*other, episode::Need::kEpisodeFile))
+                   : Complain(context, other.error());
+    }
+    const auto file = episode::EpisodeFile::Open(path);
+    if (!file) return Complain(context, file.error());
+    for (const episode::EpisodeRow& row : file->episodes()) {
+      json.push_back(RowJson(path, row));
+      table.push_back(
+          {std::to_string(row.id), row.status, truth::SecondsText(row.ticks, row.ticks_per_second),
+           row.state_hash.empty() ? "-" : row.state_hash, row.recorded_on, row.scenario});
+    }
+  }
+  if (options.Has("--json")) {
+    context.out << json.dump(2) << "\n";
+  } else {
+    for (const std::string& line : truth::AlignColumns(table)) context.out << line << "\n";
+  }
+  return json.empty() ? ExitCode::kNothing : ExitCode::kAgrees;
+}
+
+}  // namespace
+
+Command EpisodesCommand() {
+  return {.name = "episode list",
+          .summary = "List what episode files hold",
+          .examples = {"episode list suite.episodes",
+                       "episode list monday.episodes tuesday.episodes --json"},
+          .options = {EpisodeFilesArgument(), JsonOption()},
+          .run = RunEpisodes};
+}
+
+namespace {
+
+ExitCode RunVerify(const ParsedOptions& options, const CommandContext& context) {
+  const auto selected =
+      FindEpisodesOrComplain("files", options, context, {episode::Need::kEpisodeFile});
+  if (!selected) return selected.error();
+  const std::vector<episode::Resegmented> results =
+      episode::ResegmentAll(*selected, {.root = context.root,
+                                        .choice = {},
+                                        .compare = true,
+                                        .replay = true,
+                                        .jobs = options.IntOr("--jobs", CoreCount())});
+  ExitCode worst = ExitCode::kAgrees;
+  std::size_t same = 0, unfinished = 0;
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const episode::Resegmented& result : results) {
+    const std::string heading = fmt::format("episode {} of {}: {}\n", *result.episode.number,
+                                            result.episode.file, result.episode.scenario);
+    if (!result.problem.empty()) {
+      context.err << result.problem;
+      worst = ExitCode::kBadInput;
+    } else if (!result.differences.empty()) {
+      context.err << heading << result.differences;
+      if (worst == ExitCode::kAgrees) worst = ExitCode::kDiffers;
+    } else if (result.finished) {
+      ++same;
+    } else {
+      ++unfinished;
+    }
+    json.push_back({{"file", result.episode.file},
+                    {"episode", *result.episode.number},
+                    {"scenario", result.episode.scenario},
+                    {"finished", result.finished},
+                    {"same", result.problem.empty() && result.differences.empty()}});
+  }
+  if (options.Has("--json")) {
+    context.out << json.dump(2) << "\n";
+  } else {
+    context.out << fmt::format("{} of {} episodes have the frames and events that were recorded\n",
+                               same, results.size());
+    if (unfinished > 0)
+      context.out << fmt::format(
+          "{} were cut off while they were recorded: nothing to compare with\n", unfinished);
+  }
+  return worst;
+}
+
+}  // namespace
+
+Command VerifyCommand() {
+  return {
+      .name = "episode verify",
+      .summary = "Read every frame of recorded episodes again and check them by their hashes",
+      .examples = {"episode verify suite.episodes",
+                   "episode verify suite.episodes --episode 'slide/*'"},
+      .options = {EpisodeFilesArgument(), EpisodesOption(), JobsOption("episodes"), JsonOption()},
+      .run = RunVerify};
+}
+
+namespace {
+
+ExitCode RunMigrate(const ParsedOptions& options, const CommandContext& context) {
+  const std::string& output = options.Text("--output");
+  const auto migrated = episode::MigrateFile(options.Text("file"), output, context.root);
+  if (!migrated) return Complain(context, migrated.error());
+  context.out << fmt::format("{}: {} episode{}, {} bytes ({} before)\n", output, migrated->episodes,
+                             migrated->episodes == 1 ? "" : "s", migrated->to_bytes,
+                             migrated->from_bytes);
+  return ExitCode::kAgrees;
+}
+
+}  // namespace
+
+Command MigrateCommand() {
+  return {.name = "episode migrate",
+          .summary = "Write an episode file of an older version as one of this version",
+          .examples = {"episode migrate old.episodes -o new.episodes"},
+          .options = {{.name = "file",
+                       .help = "an episode file that other commands refuse as too old",
+                       .required = true},
+                      Required(OutputOption("the new file; the old one stays as it is",
+                                            "FILE.episodes"))},
+          .run = RunMigrate};
+}
+
+}  // namespace prehend::cli

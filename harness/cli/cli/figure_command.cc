@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend figure: the paper's figures from runs of one's own. Tested by
+// tests/program/figure_test.cc
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "harness/base/base/atomic_file.h"
+#include "harness/cli/command/command.h"
+#include "harness/cli/command/other_view.h"
+#include "harness/cli/command/picture_options.h"
+#include "harness/cli/command/typed_episode.h"
+#include "harness/show/figures/comparison_sheet.h"
+#include "harness/show/figures/find_grasps.h"
+#include "harness/show/pictures/svg_file.h"
+#include "harness/suite/check/select_scenarios.h"
+
+namespace prehend::cli {
+namespace {
+
+constexpr std::size_t kKeyFrames = 10;
+constexpr int kMostScenes = 10;
+constexpr double kSheetWidth_px = 1100;
+
+struct Kind {
+  const char* name;
+  const char* scenario;  ///< unless another one is asked for
+  int scenes;            ///< above a chart, unless asked otherwise; -1: it has no chart
+  const char* help;
+
+  bool HasChart() const { return scenes >= 0; }
+};
+constexpr Kind kKinds[] = {
+    {"keyframes", "pick_and_place/milk_carton_wrap", -1,
+     "up to ten moments of what hands do, on one sheet"},
+    {"phases", "pick_and_place/milk_carton_wrap", 5, "all events over time, with scenes"},
+    {"grasps", "*", -1, "each style of grasp holding something, with its sensors"},
+    {"plate", "bimanual/two_hands_carry_a_plate_of_a_kilogram", 3,
+     "height of what moves, trigger and force of each hand, over time"},
+    {"gaze", "gaze/eyes_lead_the_hand", 3, "what a person sees, for how long, and how far it is"}};
+
+const Kind* KindOf(const std::string& name) {
+  const auto kind = std::ranges::find(kKinds, name, [](const Kind& one) { return one.name; });
+  return kind == std::end(kKinds) ? nullptr : kind;
+}
+
+std::string KindProblem(const std::string& name) {
+  if (KindOf(name)) return "";
+  return "found '" + name + "', wanted keyframes, phases, grasps, plate or gaze";
+}
+
+std::string KindHelp() {
+  std::string help;
+  for (const Kind& kind : kKinds)
+    help += fmt::format("{}{}: {}; default: {}", help.empty() ? "" : "\n", kind.name, kind.help,
+                        kind.scenario);
+  return help;
+}
+
+/// Of any kind of episode.
+tl::expected<PlayedRun, ExitCode> PlayTyped(const std::string& typed, const ParsedOptions& options,
+                                            const CommandContext& context) {
+  auto episode = OpenEpisodeOrComplain(typed, options, context);
+  if (!episode) return tl::unexpected(episode.error());
+  return PlayOrComplain(std::move(*episode), context);
+}
+
+ExitCode WriteSheet(const show::Sheet& sheet, const show::SceneFormat& format,
+                    const show::ScenePainter& painter, const ParsedOptions& options,
+                    const CommandContext& context) {
+  if (!painter.error().empty())
+    return Complain(context, ExitCode::kFailure, "no picture: " + painter.error());
+  const std::string file = options.Text("--output");
+  const std::string problem = show::WriteDrawing(file, SheetSvg(sheet, format.chart));
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  context.out << file << "\n";
+  return ExitCode::kAgrees;
+}
+
+ExitCode DrawKeyFrames(const PlayedRun& played, const ParsedOptions& options,
+                       const CommandContext& context) {
+  const show::SceneFormat format = SceneFormatOf(options, "hand", kSheetWidth_px);
+  show::ScenePainter painter;
+  const show::Sheet sheet = show::KeyFrameSheet(
+      played.loaded.scenario, played.run,
+      show::KeyMoments(played.run, WindowOf(options, played.run), kKeyFrames), format, painter);
+  return WriteSheet(sheet, format, painter, options, context);
+}
+
+/// One scenario per style: the first in which a hand holds something so.
+ExitCode DrawGrasps(const std::string& typed, const ParsedOptions& options,
+                    const CommandContext& context) {
+  const auto selection = suite::SelectScenarios({typed}, {}, context.root);
+  if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
+  std::vector<episode::RunRequest> scenarios;
+  for (const episode::ScenarioFile& file : selection->scenarios)
+    scenarios.push_back(RequestOf(options, file.path));
+  const auto grasps = show::FindGrasps(std::move(scenarios), context.root);
+  if (!grasps) return Complain(context, grasps.error());
+  if (grasps->empty())
+    return Complain(context, ExitCode::kNothing,
+                    "in no scenario of '" + typed + "' a hand holds something in a style");
+  const show::SceneFormat format = SceneFormatOf(options, "hand", kSheetWidth_px);
+  show::ScenePainter painter;
+  const show::Sheet sheet = show::GraspSheet(show::ScenesOf(*grasps), format, painter);
+  return WriteSheet(sheet, format, painter, options, context);
+}
+
+/// Of the chart's scenes: those that are asked for, else those that tell most.
+tl::expected<std::vector<show::KeyMoment>, ExitCode> MomentsOf(const Kind& kind,
+                                                               const PlayedRun& played,
+                                                               const ParsedOptions& options,
+                                                               const CommandContext& context) {
+  const episode::RunResult& run = played.run;
+  const show::Window window = WindowOf(options, run);
+  if (options.Has("--at")) {
+    auto moments = show::NamedMoments(WordsOf(options.Text("--at")), *played.loaded.program, run);
+    if (!moments)
+      return tl::unexpected(Complain(context, ExitCode::kBadInput, "--at: " + moments.error()));
+    if (moments->size() > kMostScenes)
+      return tl::unexpected(Complain(
+          context, ExitCode::kBadInput,
+          fmt::format("--at: found {} moments, wanted at most {}", moments->size(), kMostScenes)));
+    return std::move(*moments);
+  }
+  const auto count = static_cast<std::size_t>(options.IntOr("--scenes", kind.scenes));
+  const std::string name = kind.name;
+  if (name == "gaze") return LongestLooks(played.loaded.scenario, run, window, count);
+  return name == "phases" ? show::EventMoments(run, window, count)
+                          : show::SpreadScenes(run, window, count);
+}
+
+ExitCode DrawChart(const Kind& kind, const PlayedRun& played, const ParsedOptions& options,
+                   const CommandContext& context) {
+  const scenario::Scenario& scenario = played.loaded.scenario;
+  const show::Window window = WindowOf(options, played.run);
+  std::optional<show::Chart> chart;
+  const std::string name = kind.name;
+  if (name == "phases") chart = show::PhasesChart(scenario, played.run, window);
+  if (options.Has("--against")) {
+    const auto other = OtherViewOrComplain(played, options.Text("--against"), context);
+    if (!other) return other.error();
+    chart = show::ComparisonChart(scenario, {.name = other->name, .events = &other->run},
+                                  {.name = scenario.grammar, .events = &played.run},
+                                  other->comparison, window);
+  }
+  if (name == "plate") chart = show::SeriesChart(scenario, played.run, window);
+  if (name == "gaze") chart = show::GazeChart(scenario, played.run, window);
+  if (!chart)
+    return Complain(context, ExitCode::kNothing,
+                    scenario.name + " has no person, whose gaze could be shown");
+  const auto moments = MomentsOf(kind, played, options, context);
+  if (!moments) return moments.error();
+  show::SceneFormat format = SceneFormatOf(options, name == "gaze" ? "body" : "action", 900);
+  format.picture.ghosts = false;
+  format.picture.paths = name == "phases";
+  format.picture.labels = false;
+  if (!moments->empty() && !show::CanDrawPictures())
+    context.err << "prehend: warning: this build draws no scenes; the chart is alone\n";
+  if (moments->empty() || !show::CanDrawPictures())
+    return WriteSheet({.chart = std::move(chart)}, format, {}, options, context);
+  show::ScenePainter painter;
+  const show::Sheet sheet =
+      WithScenes(std::move(*chart), scenario, played.run, *moments, format, painter);
+  return WriteSheet(sheet, format, painter, options, context);
+}
+
+/// Why these options do not go together, or "".
+std::string WhyNot(const Kind& kind, const ParsedOptions& options) {
+  if (std::string_view(kind.name) != "phases" && options.Has("--against"))
+    return "--against is for phases";
+  for (const char* of_charts : {"--scenes", "--at"}) {
+    if (!kind.HasChart() && options.Has(of_charts))
+      return fmt::format("{} is for charts: phases, plate, gaze", of_charts);
+  }
+  if (options.Has("--scenes") && options.Has("--at")) return "--scenes and --at exclude each other";
+  return show::WhyNoDrawingFile(options.Text("--output"));
+}
+
+ExitCode RunFigure(const ParsedOptions& options, const CommandContext& context) {
+  const Kind& kind = *KindOf(options.Text("kind"));
+  std::string problem = WhyNot(kind, options);
+  if (problem.empty()) problem = WhyNotWritable(options.Text("--output"));
+  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, problem);
+  const std::string typed = options.TextOr("EPISODE", kind.scenario);
+  if (std::string_view(kind.name) == "grasps") return DrawGrasps(typed, options, context);
+  const auto played = PlayTyped(typed, options, context);
+  if (!played) return played.error();
+  problem = WhyNotShown(options, played->loaded.scenario, played->run);
+  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, problem);
+  return kind.HasChart() ? DrawChart(kind, *played, options, context)
+                         : DrawKeyFrames(*played, options, context);
+}
+
+}  // namespace
+
+Command FigureCommand() {
+  return {
+      .name = "figure",
+      .summary = "Draw a figure for a paper from a run: key frames, phases, grasps, gaze",
+      .examples = {"figure keyframes -o keyframes.png",
+                   "figure phases slide/hop_divides_a_slide -o phases.pdf",
+                   "figure phases milk_carton_wrap --against original_2020 -o two.pdf",
+                   "figure plate --from 1 --to 4 -o plate.svg --transparent",
+                   "figure gaze suite.episodes --episode gaze/eyes_lead_the_hand -o gaze.png"},
+      .options = Joined(
+          {{.name = "kind",
+            .help = KindHelp(),
+            .rule = {.range = {}, .problem = KindProblem},
+            .required = true},
+           {.name = "EPISODE",
+            .help = "a scenario, an episode file or a recording; for grasps a glob of scenarios"},
+           EpisodeOption(),
+           Required(OutputOption("the file: .svg, .pdf or .png")),
+           {.name = "--against",
+            .help = "of phases: the same episode by another grammar, or the golden, beside it",
+            .placeholder = kViewForm},
+           {.name = "--scenes",
+            .help = "how many scenes are above a chart, 0 to 10; default: phases 5, others 3",
+            .placeholder = "N",
+            .rule = IntegersFrom(0, kMostScenes)},
+           {.name = "--at",
+            .help = "when these are: EVENT.begin, EVENT.end or seconds, with commas between them",
+            .placeholder = "TIME,.."}},
+          Joined(Joined(LookOptions(), PartOptions()), {GrammarOption(), SettingsOption()})),
+      .run = RunFigure};
+}
+
+}  // namespace prehend::cli

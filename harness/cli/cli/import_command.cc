@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend import: poses of a tracker become a recording, recordings become episodes.
+// Tested by tests/program/import_test.cc
+#include <fmt/format.h>
+
+#include "harness/cli/command/command.h"
+#include "harness/cli/command/write_recording.h"
+#include "harness/episode/episodes/schema.h"
+#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/missing_facts.h"
+#include "harness/exchange/import/import_poses.h"
+#include "harness/exchange/import/import_table.h"
+
+namespace prehend::cli {
+namespace {
+
+/// Says what the grammar will miss. Its exit code: kNothing if it can recognise nothing.
+ExitCode LookWith(const grammar::Program& program, episode::Recording& episode,
+                  const CommandContext& context) {
+  Warn(context, episode::Warnings(program, episode.header.entity_table));
+  const episode::MissingFacts missing = episode::FindMissingFacts(episode, program);
+  context.err << missing.warnings;
+  return missing.nothing_left ? ExitCode::kNothing : ExitCode::kAgrees;
+}
+
+/// A recording becomes an episode, without a map.
+ExitCode ImportLines(const std::string& file, const ParsedOptions& options,
+                     const CommandContext& context) {
+  const std::string& output = options.Text("--output");
+  if (options.Has("--map"))
+    return Complain(context, ExitCode::kBadInput,
+                    "--map is for poses; " + file + " is a recording, which says what it means");
+  if (!options.Has("--check") && !episode::IsEpisodeFile(output))
+    return Complain(context, ExitCode::kBadInput,
+                    file + " is a recording already; -o NAME.episodes keeps it as an episode");
+  Result<episode::Recording> recording = episode::ReadRecording(file);
+  if (!recording) return Complain(context, recording.error());
+  const std::string grammar = options.Text("--grammar");
+  const grammar::CompileResult compiled =
+      episode::LoadGrammarOf(recording->header, grammar, context.root);
+  if (!compiled.program) return Complain(context, compiled.diagnostics);
+  const ExitCode exit_code = LookWith(*compiled.program, *recording, context);
+  if (options.Has("--check")) return exit_code;
+  const ExitCode written = WriteRecording(*recording, output, file, grammar, context);
+  if (written != ExitCode::kAgrees) return written;
+  context.out << fmt::format("{}: {}, {} frames\n", output, recording->header.episode,
+                             recording->frames.size());
+  return exit_code;
+}
+
+ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) {
+  const std::string output = options.Text("--output"), poses = options.Text("poses");
+  const bool check = options.Has("--check");
+  if (check == !output.empty())
+    return Complain(context, ExitCode::kBadInput,
+                    "expected either -o, the recording to write, or --check, to write nothing");
+  if (episode::EpisodeKindOf(poses) == episode::EpisodeKind::kJsonLines)
+    return ImportLines(poses, options, context);
+  if (!options.Has("--map"))
+    return Complain(context, ExitCode::kBadInput,
+                    poses +
+                        " needs --map, a file that says what it means "
+                        "(docs/motion-capture.md)");
+  auto imported = exchange::ImportPoses(poses, options.Text("--map"));
+  if (!imported) return Complain(context, imported.error());
+  episode::Recording& episode = imported->episode;
+  for (const std::string& warning : imported->warnings)
+    context.err << "warning: " << warning << "\n";
+  const grammar::CompileResult compiled =
+      episode::LoadGrammarOf(episode.header, options.Text("--grammar"), context.root);
+  if (!compiled.program) return Complain(context, compiled.diagnostics);
+  const ExitCode exit_code = check || options.Has("--grammar")
+                                 ? LookWith(*compiled.program, episode, context)
+                                 : ExitCode::kAgrees;
+  if (!check) {
+    if (episode::IsEpisodeFile(output)) episode::BridgeLooks(episode);
+    const ExitCode written =
+        WriteRecording(episode, output, poses, options.Text("--grammar"), context);
+    if (written != ExitCode::kAgrees) return written;
+  }
+  if (output != "-") context.out << exchange::ImportTable(*imported);
+  return exit_code;
+}
+
+}  // namespace
+
+Command ImportCommand() {
+  return {
+      .name = "import",
+      .summary = "Make a recording of a tracker's poses, or an episode of a recording",
+      .examples = {"import poses.csv --map bodies.yaml --check",
+                   "import poses.csv --map bodies.yaml -o take.jsonl",
+                   "episode resegment take.jsonl", "import take.jsonl -o takes.episodes"},
+      .options = {{.name = "poses",
+                   .help = "a file with poses of hands and things, CSV, BVH, MCAP or a bag "
+                           "(docs/motion-capture.md), or a recording (docs/recording-format.md)",
+                   .required = true},
+                  {.name = "--map",
+                   .help = "of poses, what the file means: unit, axes, times, columns, bodies",
+                   .placeholder = "MAP.yaml"},
+                  OutputOption(
+                      "the recording (docs/recording-format.md), -: standard output; or an episode "
+                      "file, NAME.episodes, to which it is added (docs/episodes.md)"),
+                  {.name = "--check",
+                   .help = "write nothing; show what the file has, and what a grammar will miss"},
+                  {.name = "--grammar",
+                   .help = "the grammar to look with; default: that of the map",
+                   .placeholder = "GRAMMAR"}},
+      .run = RunImport};
+}
+
+}  // namespace prehend::cli

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend new: a commented scenario to start from, or a project of one's own. Tested by
+// tests/program/command_line_test.cc and tests/program/project_test.cc
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "harness/base/base/atomic_file.h"
+#include "harness/base/base/default_grammar.h"
+#include "harness/base/base/project_paths.h"
+#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/text_file.h"
+#include "harness/cli/command/command.h"
+#include "harness/episode/run/project_library.h"
+#include "harness/scenario/format/scenario_copy.h"
+#include "harness/scenario/format/scenario_fields.h"
+#include "harness/scenario/read/read_scenario.h"
+#include "harness/scenario/templates/new_scenario.h"
+
+namespace prehend::cli {
+namespace {
+
+constexpr const char* kDefaultSkill = kDefaultGrammar;
+
+constexpr std::string_view kModeline = "# yaml-language-server: $schema=../scenario.schema.json\n";
+
+/// The text that a new scenario starts from.
+struct Model {
+  std::string path;  ///< of the template: where it would stand in the default folder
+  std::string text;
+  std::string skill;
+  std::optional<scenario::NewScenario> made;  ///< from a template
+};
+
+/// The text of the scenario for `path`, with the line that editors look for. Errors of the model
+/// are reported in the model's own file or template; then nothing is returned.
+std::optional<std::string> Composed(const Model& model, const std::filesystem::path& path,
+                                    const CommandContext& context) {
+  const scenario::ScenarioLibrary library = episode::ProjectLibrary(context.root);
+  if (const auto as_it_is = scenario::ReadScenarioText(model.path, model.text, {}, library);
+      !as_it_is) {
+    grammar::Diagnostics errors = as_it_is.error();
+    for (grammar::Diagnostic& error : errors)
+      if (model.made && error.file == model.path)
+        error = scenario::InTemplate(*model.made, std::move(error));
+    Complain(context, errors);
+    return std::nullopt;
+  }
+  Result<std::string> copy = scenario::CopyOfScenario(model.path, model.text, path);
+  if (copy) {
+    const bool has_modeline = copy->find("yaml-language-server:") != std::string::npos;
+    if (!has_modeline) copy->insert(0, kModeline);
+    std::error_code error;
+    std::filesystem::create_directories(path.parent_path(), error);  // for paths that go through it
+    const Result<scenario::Scenario> read =
+        scenario::ReadScenarioText(path.string(), *copy, {}, library);
+    if (read) return *copy;
+    std::filesystem::remove(path.parent_path(), error);  // only when it is empty
+    copy = tl::unexpected(read.error());
+  }
+  Complain(context, copy.error());
+  return std::nullopt;
+}
+
+constexpr const char* kOwnGrammar =
+    R"(# Rules of your own. The language: docs/grammar-tutorial.md of prehend teaches it.
+grammar my_rules
+
+use pick_and_place      # from what ships with prehend: reaching, grasping, picking_up, transporting, ..
+
+param still_below = 5 cm/s
+param still_for   = 0.3 s
+
+# A thing is held in the air and does not move.
+event held_still(hand: Hand, object: Movable)
+  while grasping(hand, object) and not supported_by(object, any) and speed(object) < still_below
+  bridging 50 ms
+  lasting still_for
+)";
+
+constexpr const char* kProjectText =
+    R"(# The root of a project of prehend. Only the place of this file matters: prehend, called in this folder or
+# below it, uses its scenarios, goldens, grammars and hands first, and what ships with prehend second.
+)";
+
+constexpr const char* kProjectReadme = R"(# A project of prehend
+
+| folder | holds |
+|---|---|
+| `scenarios/SKILL/NAME.yaml` | what happens, and what must be recognised |
+| `golden/SKILL/NAME.timeline` | what was accepted, written by `prehend accept` |
+| `grammars/NAME.grammar` | your rules; a file here comes before one of the same name that ships with prehend |
+| `hands/NAME.hand.yaml` | your hands, likewise |
+| `build/` | reports and what waits for review; can be deleted |
+
+    prehend check                   # all scenarios of this project, with a web page
+    prehend review                  # what is new or differs
+    prehend accept carton_is_held_still --reason "..."
+    prehend new cup_is_lifted       # one more scenario
+    prehend run milk_carton_wrap    # scenarios that ship with prehend can be run, too
+)";
+
+constexpr const char* kEditorSettings = R"({
+  "yaml.schemas": {"./scenarios/scenario.schema.json": "scenarios/**/*.yaml"}
+}
+)";
+
+/// A scenario of a project with rules of its own.
+std::string FirstScenario(const scenario::Templates& templates) {
+  std::string text = scenario::ComposeScenario(templates, "carton_is_carried", "carry").text;
+  const auto replace = [&](std::string_view from, std::string_view to) {
+    if (const std::size_t at = text.find(from); at != text.npos) text.replace(at, from.size(), to);
+  };
+  replace("scenario: name", "scenario: carton_is_held_still");
+  replace("a carton is picked up, carried",
+          "a carton is picked up, held still for a moment, carried");
+  replace("grammar: pick_and_place   # a file of grammar/library/, without \".grammar\"",
+          "grammar: my_rules   # grammars/my_rules.grammar");
+  replace("  - no sliding\n", "  - no sliding\n  - one held_still(right_hand, carton)\n");
+  replace("  - right_hand: {carry_to_m",
+          "  - right_hand: {wait_s: 0.5}\n  - right_hand: {carry_to_m");
+  replace("at: transporting.begin", "at: held_still.begin");
+  return text;
+}
+
+/// `new --project DIR`.
+ExitCode MakeProject(const std::string& typed, const CommandContext& context) {
+  namespace fs = std::filesystem;
+  const fs::path folder = typed;
+  std::error_code error;
+  if (fs::exists(folder, error) &&
+      !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
+    return Complain(context, ExitCode::kBadInput,
+                    "--project: found " + ReadableName(typed) +
+                        ", which is not empty; wanted a new or an empty folder");
+  const Result<scenario::Templates> templates = scenario::ReadTemplates(ShippedRoot());
+  if (!templates) return Complain(context, templates.error());
+  const std::pair<const char*, std::string> files[] = {
+      {"scenarios/pick_and_place/carton_is_held_still.yaml", FirstScenario(*templates)},
+      {"scenarios/scenario.schema.json", scenario::ScenarioSchema()},
+      {"grammars/my_rules.grammar", kOwnGrammar},
+      {"README.md", kProjectReadme},
+      {".vscode/settings.json", kEditorSettings},
+      {".gitignore", "build/\n"},
+      {kProjectFile, kProjectText},  // last: without it the folder is no project
+  };
+  for (const auto& [name, text] : files) {
+    const std::string problem = WriteTextFile(folder / name, text);
+    if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+    context.out << (folder / name).string() << "\n";
+  }
+  context.out << "next:\n  cd " << ShellQuoted(typed) << "\n";
+  for (const char* command : {"run", "check", "review"}) {
+    const std::vector<std::string> words = {command, "carton_is_held_still"};
+    context.out << "  " << CommandText(words) << "\n";
+  }
+  context.out << "  " << CommandText({"accept", "carton_is_held_still"}) << " --reason \"...\"\n";
+  return ExitCode::kAgrees;
+}
+
+/// A small letter, then small letters, digits and '_', at most 64 in all.
+bool IsName(std::string_view word) {
+  return !word.empty() && word.size() <= 64 && word.front() >= 'a' && word.front() <= 'z' &&
+         word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == word.npos;
+}
+
+/// `word` as a name, if it becomes one by small letters and '_'; else "".
+std::string AsName(std::string word) {
+  for (char& letter : word) {
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    if (letter == '-' || letter == ' ') letter = '_';
+  }
+  return IsName(word) ? word : "";
+}
+
+/// "SKILL/NAME" or "NAME" as typed.
+struct TypedName {
+  std::string skill, name;
+};
+
+tl::expected<TypedName, ExitCode> ReadName(const std::string& typed,
+                                           const CommandContext& context) {
+  const std::size_t slash = typed.find('/');
+  TypedName words{.skill = slash == typed.npos ? "" : typed.substr(0, slash),
+                  .name = slash == typed.npos ? typed : typed.substr(slash + 1)};
+  if (IsName(words.name) && (slash == typed.npos || IsName(words.skill))) return words;
+  const std::string fitting = slash == typed.npos ? AsName(words.name) : "";
+  return tl::unexpected(Complain(
+      context, ExitCode::kBadInput,
+      "'" + typed +
+          "' is not a scenario name; wanted a small letter, then small letters, digits and '_', at "
+          "most 64 in all, like " +
+          (fitting.empty() ? "slide_then_transport" : fitting) +
+          "; a folder may precede it, like slide/slide_then_transport"));
+}
+
+/// What the new scenario starts from: another one, or a template by its name.
+tl::expected<Model, ExitCode> ModelFor(const std::string& name, const ParsedOptions& options,
+                                       const CommandContext& context) {
+  if (options.Has("--like")) {
+    if (options.Has("--verb"))
+      return tl::unexpected(Complain(context, ExitCode::kBadInput,
+                                     "--like starts from a scenario, --verb from a template: give "
+                                     "one of them"));
+    const auto like = FindScenarioOrComplain(options.Text("--like"), context);
+    if (!like) return tl::unexpected(like.error());
+    Result<std::string> read = ReadTextFile(like->path);
+    if (!read) return tl::unexpected(Complain(context, read.error()));
+    return Model{.path = like->path,
+                 .text = std::move(*read),
+                 .skill = like->skill.empty() ? kDefaultSkill : like->skill,
+                 .made = {}};
+  }
+  const std::string verb = options.Has("--verb") ? options.Text("--verb") : "";
+  if (const std::string problem = scenario::WhyNoVerb(verb, scenario::VerbNames(context.root));
+      !problem.empty())
+    return tl::unexpected(Complain(context, ExitCode::kBadInput, "--verb: " + problem));
+  const Result<scenario::Templates> templates = scenario::ReadTemplates(context.root);
+  if (!templates) return tl::unexpected(Complain(context, templates.error()));
+  scenario::NewScenario made = scenario::ComposeScenario(*templates, name, verb);
+  const auto path = std::filesystem::path(context.root) / "scenarios" / kDefaultSkill / "name.yaml";
+  return Model{
+      .path = path.string(), .text = made.text, .skill = kDefaultSkill, .made = std::move(made)};
+}
+
+/// Says what was written, and what comes next; `id` is what commands call it.
+void SayWhatIsNext(const Model& model, const std::string& path, const std::string& id,
+                   bool in_project, const CommandContext& context) {
+  if (model.made && !model.made->note.empty()) context.err << "note: " << model.made->note << "\n";
+  context.out << path << "\n";
+  if (model.made) context.out << "shows: " << model.made->what << "\n";
+  context.out << "next: edit it; write what it shows into 'shows' and 'expects' before its first "
+                 "run; then\n";
+  for (const char* command : {"validate", "run", "render"})
+    context.out << "  " << CommandText({command, id}) << "\n";
+  if (!in_project) {
+    context.out
+        << "this folder is in no project, so the file stands alone; a project keeps goldens: "
+        << CommandText({"new", "--project", "DIR"}) << "\n";
+    return;
+  }
+  for (const char* command : {"check", "review"})
+    context.out << "  " << CommandText({command, id}) << "\n";
+  context.out << "  " << CommandText({"accept", id}) << " --reason \"...\"\n";
+}
+
+/// In a folder that is in no project: a file there. It cannot go among the scenarios that ship.
+ExitCode WriteHere(const Model& model, const std::string& name, const CommandContext& context) {
+  namespace fs = std::filesystem;
+  const fs::path path = fs::current_path() / (name + ".yaml");
+  std::error_code error;
+  if (fs::symlink_status(path, error).type() != fs::file_type::not_found)
+    return Complain(context, ExitCode::kBadInput, "this file exists: " + path.string());
+  auto text = Composed(model, path, context);
+  if (!text) return ExitCode::kBadInput;
+  const std::string schema = (fs::path(context.root) / "scenarios/scenario.schema.json").string();
+  if (text->starts_with(kModeline))
+    text->replace(0, kModeline.size(), "# yaml-language-server: $schema=" + schema + "\n");
+  const std::string problem = WriteTextFile(path, *text);
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  SayWhatIsNext(model, path.string(), name + ".yaml", false, context);
+  return ExitCode::kAgrees;
+}
+
+ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--project")) {
+    if (options.Has("name") || options.Has("--like") || options.Has("--verb"))
+      return Complain(context, ExitCode::kBadInput,
+                      "--project makes a project, not a scenario: leave out the other words");
+    return MakeProject(options.Text("--project"), context);
+  }
+  if (!options.Has("name"))
+    return Complain(context, ExitCode::kBadInput,
+                    "the name of the scenario is missing, like 'new cup_is_lifted'; for a project "
+                    "of your own: --project DIR");
+  const auto typed = ReadName(options.Text("name"), context);
+  if (!typed) return typed.error();
+  const std::string& name = typed->name;
+  const auto model = ModelFor(name, options, context);
+  if (!model) return model.error();
+  const std::string skill = typed->skill.empty() ? model->skill : typed->skill;
+  if (skill == episode::kShowsErrors || skill == episode::kTemplates) {
+    const std::string holds =
+        skill == episode::kTemplates ? "templates of 'new'" : "examples of errors";
+    return Complain(context, ExitCode::kBadInput,
+                    "scenarios/" + skill + "/ holds " + holds +
+                        ", which no command reads as scenarios; choose another folder, like " +
+                        std::string(kDefaultSkill) + "/" + name);
+  }
+  if (!IsOwnProject(context.root) && !IsCalledIn(context.root))
+    return WriteHere(*model, name, context);
+  for (const episode::ScenarioFile& scenario : episode::ListScenarios(context.root)) {
+    if (scenario.name == name)
+      return Complain(context, ExitCode::kBadInput,
+                      "a scenario of this name exists: " + scenario.path);
+  }
+  const auto path = std::filesystem::path(context.root) / "scenarios" / skill / (name + ".yaml");
+  const auto text = Composed(*model, path, context);
+  if (!text) return ExitCode::kBadInput;
+  const std::string problem = WriteTextFile(path, *text);
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  SayWhatIsNext(*model, path.string(), episode::ScenarioId(skill, name), true, context);
+  return ExitCode::kAgrees;
+}
+
+}  // namespace
+
+Command NewCommand() {
+  return {
+      .name = "new",
+      .summary = "Write a commented scenario that does what its name says, or a project",
+      .examples = {"new bottle_is_shaken", "new first_try --verb pour",
+                   "new slide/carton_slides_far --like carton_slides_then_is_transported",
+                   "new --project my_kitchen"},
+      .options = {{.name = "name",
+                   .help =
+                       "what the scenario claims, like bottle_is_shaken; or skill/name. The verb "
+                       "and the thing are taken from it. In a folder of no project the file is "
+                       "written there"},
+                  {.name = "--verb",
+                   .help = fmt::format(
+                       "what happens, if the name does not say so: {}",
+                       fmt::join(scenario::VerbNames(FindProjectRoot().value_or("")), ", ")),
+                   .placeholder = "VERB"},
+                  {.name = "--like",
+                   .help = "start from this scenario instead of a template",
+                   .placeholder = "SCENARIO"},
+                  {.name = "--project",
+                   .help = "make a project of your own in this new folder (docs/projects.md)",
+                   .placeholder = "DIR"}},
+      .run = RunNew};
+}
+
+}  // namespace prehend::cli

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend scenario poses: where everything is at a moment, as a scenario would say it. Tested by
+// tests/program/poses_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "harness/cli/command/command.h"
+#include "harness/cli/command/typed_episode.h"
+#include "harness/episode/episodes/schema.h"
+#include "harness/episode/run/event_time.h"
+#include "harness/episode/run/run_text.h"
+#include "harness/truth/timeline/event_text.h"
+
+namespace prehend::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Tenths of millimetres and of degrees; no "-0".
+double Rounded(double value, double steps) {
+  const double rounded = std::round(value * steps) / steps;
+  return rounded == 0 ? 0 : rounded;
+}
+
+std::string VectorText(const Eigen::Vector3d& v, double steps) {
+  return fmt::format("[{:g}, {:g}, {:g}]", Rounded(v.x(), steps), Rounded(v.y(), steps),
+                     Rounded(v.z(), steps));
+}
+
+std::string PoseText(const physics::Pose& pose) {
+  std::string text = "at_m: " + VectorText(pose.p_m, 1e4);
+  const std::string rpy = VectorText(physics::ToRollPitchYaw(pose.q), 10);
+  if (rpy != "[0, 0, 0]") text += ", rpy_deg: " + rpy;
+  return text;
+}
+
+Json PoseJson(const physics::Pose& pose) {
+  const Eigen::Vector3d rpy_deg = physics::ToRollPitchYaw(pose.q);
+  return {{"at_m", {pose.p_m.x(), pose.p_m.y(), pose.p_m.z()}},
+          {"rpy_deg", {rpy_deg.x(), rpy_deg.y(), rpy_deg.z()}}};
+}
+
+/// The far end of a link: a fingertip, if nothing is fixed to it.
+Eigen::Vector3d TipOf(const physics::HandLink& link, const physics::Pose& X_WL) {
+  return X_WL * Eigen::Vector3d(link.length_m / 2, 0, 0);
+}
+
+/// Links that no other link hangs on.
+std::vector<std::size_t> LastLinks(const physics::HandModel& model) {
+  std::vector<std::size_t> last;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const bool has_child = std::ranges::any_of(model.links, [&](const physics::HandLink& other) {
+      return other.parent == physics::LinkIndex(i);
+    });
+    if (!has_child) last.push_back(i);
+  }
+  return last;
+}
+
+void PrintPoses(const scenario::Scenario& scenario, const physics::Snapshot& now, double time_s,
+                std::ostream& out) {
+  const physics::Scene& scene = scenario.scene;
+  std::vector<std::vector<std::string>> rows;
+  out << fmt::format("# {} at {:.4f} s\n", scenario.name, time_s);
+  for (std::size_t h = 0; h < scene.hands.size(); ++h) {
+    const physics::HandState& hand = now.hands[h];
+    rows.push_back({scene.hands[h].name + ":", "{" + PoseText(hand.palm.X_WB) + "}",
+                    fmt::format("# palm; grip {:g}", Rounded(hand.trigger, 1000))});
+    rows.push_back({"", "{" + PoseText(hand.X_WTarget) + "}", "# its tracked target"});
+    for (const std::size_t i : LastLinks(scene.hands[h].model)) {
+      const physics::HandLink& link = scene.hands[h].model.links[i];
+      rows.push_back({"", "{at_m: " + VectorText(TipOf(link, hand.X_WL[i]), 1e4) + "}",
+                      "# end of " + link.name});
+    }
+  }
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const physics::Body& body = scene.bodies[i];
+    if (body.grains) continue;
+    rows.push_back(
+        {body.name + ":", "{" + PoseText(now.bodies[i].X_WB) + "}", body.fixed ? "# fixed" : ""});
+  }
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+    const physics::Joint& joint = scene.joints[i];
+    if (joint.kind == physics::JointKind::kFixed || joint.kind == physics::JointKind::kBall)
+      continue;
+    const double range = joint.upper - joint.lower;
+    if (!(range > 0)) continue;
+    rows.push_back({"", "",
+                    fmt::format("# joint of {}: {:.1f} % of its range", scene.body(joint.body).name,
+                                100 * (now.joints[i].position - joint.lower) / range)});
+  }
+  for (const std::string& line : truth::AlignColumns(rows)) out << line << "\n";
+}
+
+Json PosesJson(const scenario::Scenario& scenario, const physics::Snapshot& now, double time_s) {
+  const physics::Scene& scene = scenario.scene;
+  Json hands = Json::object(), bodies = Json::object();
+  for (std::size_t h = 0; h < scene.hands.size(); ++h) {
+    const physics::HandState& hand = now.hands[h];
+    Json one = PoseJson(hand.palm.X_WB);
+    one["trigger"] = hand.trigger;
+    one["target"] = PoseJson(hand.X_WTarget);
+    for (const std::size_t i : LastLinks(scene.hands[h].model)) {
+      const Eigen::Vector3d tip = TipOf(scene.hands[h].model.links[i], hand.X_WL[i]);
+      one["tips"][scene.hands[h].model.links[i].name] = {tip.x(), tip.y(), tip.z()};
+    }
+    hands[scene.hands[h].name] = std::move(one);
+  }
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    bodies[scene.bodies[i].name] = PoseJson(now.bodies[i].X_WB);
+  return {{"scenario", scenario.name}, {"time_s", time_s}, {"hands", hands}, {"entities", bodies}};
+}
+
+ExitCode RunPoses(const ParsedOptions& options, const CommandContext& context) {
+  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
+  if (!episode) return episode.error();
+  const std::string at = options.TextOr("--at", "0");
+  if (const auto problem = episode::WhyNoEventTime(at, *episode->program()))
+    return Complain(context, ExitCode::kBadInput,
+                    "--at: " + problem->message + "; " + problem->hint);
+  const auto played = PlayOrComplain(std::move(*episode), context);
+  if (!played) return played.error();
+  const episode::RunResult& run = played->run;
+  const scenario::Scenario& scenario = played->loaded.scenario;
+  const episode::FoundTime moment = episode::FindEventTime(at, run);
+  if (!moment.missed.empty())
+    context.err << "prehend: warning: " << moment.missed << "; this is the end of the run\n";
+  const auto found =
+      std::ranges::lower_bound(run.recording, moment.tick, {}, &physics::Snapshot::tick);
+  const physics::Snapshot& now = found == run.recording.end() ? run.recording.back() : *found;
+  const double time_s =
+      static_cast<double>(now.tick) / static_cast<double>(run.timeline.ticks_per_second);
+  if (options.Has("--json"))
+    context.out << PosesJson(scenario, now, time_s).dump(2) << "\n";
+  else
+    PrintPoses(scenario, now, time_s, context.out);
+  return ExitCode::kAgrees;
+}
+
+}  // namespace
+
+Command PosesCommand() {
+  return {
+      .name = "scenario poses",
+      .summary = "Print where hands and things are at a moment, ready to paste",
+      .examples =
+          {"scenario poses milk_carton_wrap", "scenario poses milk_carton_wrap --at grasping.begin",
+           "scenario poses suite.episodes --episode slide/hop_divides_a_slide --at 1.5 --json"},
+      .options = {EpisodeArgument(),
+                  EpisodeOption(),
+                  {.name = "--at",
+                   .help = "when: EVENT.begin, EVENT.end, or seconds; default: 0",
+                   .placeholder = "TIME"},
+                  GrammarOption(),
+                  SettingsOption(),
+                  JsonOption()},
+      .run = RunPoses};
+}
+
+}  // namespace prehend::cli

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend episode query: questions to recorded episodes. Tested by tests/program/query_test.cc
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/cli/command/command.h"
+#include "harness/cli/command/moment_pictures.h"
+#include "harness/episode/episode/keep_episodes.h"
+#include "harness/episode/episodes/query_events.h"
+#include "harness/show/pictures/pictures.h"
+#include "harness/truth/timeline/event_text.h"
+
+namespace prehend::cli {
+namespace {
+
+using episode::EventAnswer;
+using episode::EventQuestion;
+using Json = nlohmann::ordered_json;
+
+double SecondsAt(const EventAnswer& answer, grammar::Tick tick) {
+  return static_cast<double>(tick) / static_cast<double>(answer.ticks_per_second);
+}
+
+std::string RolesText(const grammar::NamedEvent& event) {
+  std::string text;
+  for (const grammar::Role& role : event.roles)
+    text += (text.empty() ? "" : " ") + role.name + "=" + role.value;
+  return text;
+}
+
+Json EventJson(const EventAnswer& answer, const grammar::NamedEvent& event) {
+  Json roles = Json::object();
+  for (const grammar::Role& role : event.roles) roles[role.name] = role.value;
+  return {{"event", event.event},
+          {"roles", std::move(roles)},
+          {"begin_s", SecondsAt(answer, event.interval.begin)},
+          {"end_s", SecondsAt(answer, event.interval.end)}};
+}
+
+/// `pictures`: one file per answer, or none.
+void PrintQueryJson(const std::vector<EventAnswer>& answers,
+                    const std::vector<std::string>& pictures, bool parts, std::ostream& out) {
+  Json all = Json::array();
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const EventAnswer& answer = answers[i];
+    Json one = {{"file", answer.file}, {"episode", answer.episode}, {"scenario", answer.scenario}};
+    one.update(EventJson(answer, answer.event));
+    for (const grammar::NamedEvent& part : answer.parts) {
+      if (parts) one["parts"].push_back(EventJson(answer, part));
+    }
+    if (!pictures.empty()) one["picture"] = pictures[i];
+    all.push_back(std::move(one));
+  }
+  out << all.dump(2) << "\n";
+}
+
+std::string Csv(const std::string& cell) {
+  if (cell.find_first_of(",\"\n") == std::string::npos) return cell;
+  std::string quoted = "\"";
+  for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+void PrintQueryTable(const std::vector<EventAnswer>& answers,
+                     const std::vector<std::string>& pictures, bool parts, bool csv,
+                     std::ostream& out) {
+  std::vector<std::vector<std::string>> rows = {
+      {"file", "episode", "scenario", "event", "begin_s", "end_s", "roles"}};
+  if (!pictures.empty()) rows[0].push_back("picture");
+  const auto add = [&](std::size_t i, const grammar::NamedEvent& event, bool is_part) {
+    const EventAnswer& answer = answers[i];
+    rows.push_back({answer.file, std::to_string(answer.episode), answer.scenario,
+                    (is_part && !csv ? "  " : "") + event.event,
+                    truth::SecondsText(event.interval.begin, answer.ticks_per_second),
+                    truth::SecondsText(event.interval.end, answer.ticks_per_second),
+                    RolesText(event)});
+    if (!pictures.empty()) rows.back().push_back(is_part ? "" : pictures[i]);
+  };
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    add(i, answers[i].event, false);
+    for (const grammar::NamedEvent& part : answers[i].parts) {
+      if (parts) add(i, part, true);
+    }
+  }
+  if (csv) {
+    for (const std::vector<std::string>& row : rows) {
+      for (std::size_t i = 0; i < row.size(); ++i) out << (i ? "," : "") << Csv(row[i]);
+      out << "\n";
+    }
+    return;
+  }
+  for (const std::string& line : truth::AlignColumns(rows)) out << line << "\n";
+  out << answers.size() << (answers.size() == 1 ? " answer\n" : " answers\n");
+}
+
+std::string RoleProblem(const std::string& text) {
+  return episode::ParseRoleCondition(text)
+             ? ""
+             : "found '" + text + "', wanted ROLE=VALUE, like object=milk or any=milk";
+}
+
+std::string RelationProblem(const std::string& text) {
+  std::string problem;
+  (void)episode::ParseRelation(text, problem);
+  return problem;
+}
+
+EventQuestion EventQuestionOf(const ParsedOptions& options) {
+  EventQuestion question{.scenario = options.Text("--episode"), .event = options.Text("--event")};
+  for (const auto& [option, conditions] :
+       {std::pair{"--role", &question.roles}, std::pair{"--class", &question.classes},
+        std::pair{"--part-of", &question.parts_of}}) {
+    for (const std::string& text : options.All(option))
+      conditions->push_back(*episode::ParseRoleCondition(text));
+  }
+  for (const auto& [option, bound] :
+       {std::pair{"--at-least-s", &question.at_least_s},
+        std::pair{"--at-most-s", &question.at_most_s}, std::pair{"--from", &question.from_s},
+        std::pair{"--to", &question.until_s}}) {
+    if (options.Has(option)) *bound = options.NumberOr(option, 0);
+  }
+  std::string problem;
+  for (const std::string& text : options.All("--relation"))
+    question.relations.push_back(*episode::ParseRelation(text, problem));
+  question.with = options.All("--with");
+  return question;
+}
+
+/// Why no event can have one of the roles that are asked for, or "".
+std::string UnknownRole(const EventQuestion& question, const std::set<std::string>& known) {
+  for (const auto& [option, conditions] :
+       {std::pair{"--role", &question.roles}, std::pair{"--class", &question.classes},
+        std::pair{"--part-of", &question.parts_of}}) {
+    for (const episode::RoleCondition& condition : *conditions) {
+      if (known.empty() || condition.role == "any" || known.contains(condition.role)) continue;
+      const std::vector<std::string> names(known.begin(), known.end());
+      const std::string near = grammar::NearestName(condition.role, names);
+      return fmt::format("{}: no event has a role '{}'; {}", option, condition.role,
+                         near.empty() ? fmt::format("there are: {}", fmt::join(names, ", "))
+                                      : fmt::format("did you mean '{}'?", near));
+    }
+  }
+  return "";
+}
+
+ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--json") && options.Has("--csv"))
+    return Complain(context, ExitCode::kBadInput, "--json contradicts --csv; give one of them");
+  if (options.Has("--show") && !show::CanDrawPictures())
+    return Complain(context, ExitCode::kBadInput, "--show: this build draws no pictures");
+  const EventQuestion question = EventQuestionOf(options);
+  std::vector<EventAnswer> answers;
+  episode::KnownNames known;
+  episode::EpisodeKeeper keeper(context.root, context.today);
+  for (std::string path : options.All("EPISODES")) {
+    if (episode::EpisodeKindOf(path) != episode::EpisodeKind::kEpisodeFile) {
+      const auto name = episode::FindEpisode(path, "", context.root);
+      if (!name) return Complain(context, name.error());
+      const Result<episode::EpisodeName> kept = keeper.Keep(*name);
+      if (!kept) return Complain(context, kept.error());
+      path = kept->file;
+    }
+    auto found = episode::Ask(path, question, known);
+    if (!found) return Complain(context, found.error());
+    answers.insert(answers.end(), found->begin(), found->end());
+  }
+  if (const std::string why = UnknownRole(question, known.roles); !why.empty())
+    return Complain(context, ExitCode::kBadInput, why);
+  const std::vector<std::string> events(known.events.begin(), known.events.end());
+  if (const std::string near = grammar::NearestName(question.event, events);
+      answers.empty() && !known.events.contains(question.event) && !near.empty())
+    context.err << fmt::format("prehend: no event is called '{}'; did you mean '{}'?\n",
+                               question.event, near);
+  MomentPictures drawn;
+  if (options.Has("--show")) {
+    std::vector<Moment> moments;
+    for (const EventAnswer& answer : answers) moments.push_back(MomentOf(answer));
+    drawn = DrawMoments(moments, options.Text("--show"), context.root);
+  }
+  for (EventAnswer& answer : answers) answer.file = keeper.SourceOf(answer.file);
+  if (options.Has("--json"))
+    PrintQueryJson(answers, drawn.files, options.Has("--parts"), context.out);
+  else
+    PrintQueryTable(answers, drawn.files, options.Has("--parts"), options.Has("--csv"),
+                    context.out);
+  if (!drawn.error.empty()) return Complain(context, ExitCode::kFailure, "--show: " + drawn.error);
+  return answers.empty() ? ExitCode::kNothing : ExitCode::kAgrees;
+}
+
+Option RoleOption(const std::string& name, const std::string& help,
+                  const std::string& placeholder) {
+  return {.name = name,
+          .help = help + "; may be repeated",
+          .placeholder = placeholder,
+          .rule = {.range = {}, .problem = RoleProblem},
+          .repeatable = true};
+}
+
+Option SecondsOption(const std::string& name, const std::string& help) {
+  return {.name = name, .help = help, .placeholder = "S", .rule = NumbersFrom(0, 1e6)};
+}
+
+}  // namespace
+
+Command QueryCommand() {
+  return {
+      .name = "episode query",
+      .summary = "Find events in recorded episodes",
+      .examples =
+          {"episode query suite.episodes --event sliding --class object=CerealBox",
+           "episode query suite.episodes --event grasping --class object=Handle --part-of "
+           "object=Door",
+           "episode query suite.episodes --event pick_and_place --parts --json",
+           "episode query *.episodes --event sliding --relation 'meets transporting' --csv",
+           "episode query suite.episodes --event grasping --class object=Handle --show shown"},
+      .options = {EpisodesArgument(),
+                  {.name = "--event", .help = "its name, or a glob", .placeholder = "NAME"},
+                  RoleOption("--role", "who or what has a role (of any role: any=NAME)",
+                             "ROLE=NAME"),
+                  RoleOption("--class", "of which class it is, directly or not", "ROLE=CLASS"),
+                  RoleOption("--part-of",
+                             "of what it is a part, directly or not: an entity or a class",
+                             "ROLE=NAME"),
+                  SecondsOption("--at-least-s", "the event lasts at least so long"),
+                  SecondsOption("--at-most-s", "the event lasts at most so long"),
+                  SecondsOption("--from", "it begins at this time of its episode or later"),
+                  SecondsOption("--to", "it ends at this time of its episode or earlier"),
+                  {.name = "--relation",
+                   .help = "how it lies to another event of its episode, in Allen's words "
+                           "(before, meets, overlaps, starts, inside, finishes, equals, ..); "
+                           "may be repeated",
+                   .placeholder = "'RELATION EVENT'",
+                   .rule = {.range = {}, .problem = RelationProblem},
+                   .repeatable = true},
+                  EpisodesOption(),
+                  {.name = "--with",
+                   .help = "it has a part of this name (see --parts); may be repeated",
+                   .placeholder = "EVENT",
+                   .repeatable = true},
+                  {.name = "--parts",
+                   .help = "below each event also its parts: those that begin within it and have "
+                           "no other participants"},
+                  {.name = "--show",
+                   .help = "draw each answer into this folder: the world when the event begins, "
+                           "with the paths of its hand and its thing until it ends",
+                   .placeholder = "FOLDER"},
+                  JsonOption(),
+                  {.name = "--csv", .help = "print CSV instead of a table"}},
+      .run = RunQuery};
+}
+
+}  // namespace prehend::cli

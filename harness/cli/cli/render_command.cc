@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend render. Tested by tests/program/command_line_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "harness/base/base/atomic_file.h"
+#include "harness/cli/command/command.h"
+#include "harness/cli/command/other_view.h"
+#include "harness/cli/command/picture_options.h"
+#include "harness/cli/command/typed_episode.h"
+#include "harness/episode/episodes/schema.h"
+#include "harness/episode/run/run_text.h"
+#include "harness/show/figures/comparison_sheet.h"
+#include "harness/show/pictures/choose_pictures.h"
+#include "harness/show/pictures/film.h"
+#include "harness/show/pictures/pictures.h"
+#include "harness/show/pictures/svg_file.h"
+#include "harness/suite/judge/accept_golden.h"
+#include "harness/suite/judge/compare_engines.h"
+#include "harness/truth/golden/golden_files.h"
+
+namespace prehend::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kLeastSide_px = 64, kMostSide_px = 4096, kMostSheetSide_px = 8192;
+constexpr int kMostColumns = 8;
+constexpr std::size_t kMostPictures = 64;
+constexpr double kComparisonWidth_px = 900;
+
+struct Size {
+  int width_px = 0, height_px = 0;
+};
+
+/// Of "1200x800".
+std::optional<Size> SizeOf(const std::string& text) {
+  Size size;
+  const char* end = text.data() + text.size();
+  const auto [cross, width_error] = std::from_chars(text.data(), end, size.width_px);
+  if (width_error != std::errc() || cross == end || *cross != 'x') return std::nullopt;
+  const auto [stop, height_error] = std::from_chars(cross + 1, end, size.height_px);
+  if (height_error != std::errc() || stop != end) return std::nullopt;
+  const auto fits = [](int side_px) { return side_px >= kLeastSide_px && side_px <= kMostSide_px; };
+  return fits(size.width_px) && fits(size.height_px) ? std::optional(size) : std::nullopt;
+}
+
+ValueRule Sizes() {
+  return {
+      fmt::format("WxH, each {} to {}", kLeastSide_px, kMostSide_px), [](const std::string& value) {
+        return SizeOf(value)
+                   ? ""
+                   : fmt::format("expected a size like 1280x720, each side {} to {}, found '{}'",
+                                 kLeastSide_px, kMostSide_px, value);
+      }};
+}
+
+struct Part {
+  const char* name;
+  bool show::PictureFormat::*shown;
+};
+constexpr Part kParts[] = {
+    {"title", &show::PictureFormat::title}, {"labels", &show::PictureFormat::labels},
+    {"strip", &show::PictureFormat::strip}, {"ghosts", &show::PictureFormat::ghosts},
+    {"paths", &show::PictureFormat::paths}, {"gaze", &show::PictureFormat::gaze}};
+
+ValueRule PartsOfPicture() {
+  return {"title, labels, strip, ghosts, paths, gaze", [](const std::string& value) {
+            for (const std::string& word : WordsOf(value)) {
+              const auto is = [&](const Part& part) { return word == part.name; };
+              if (std::ranges::none_of(kParts, is))
+                return fmt::format(
+                    "expected some of title, labels, strip, ghosts, paths, gaze, "
+                    "with commas between them, found '{}'",
+                    word);
+            }
+            return std::string();
+          }};
+}
+
+show::PictureFormat FormatOf(const ParsedOptions& options) {
+  show::PictureFormat format = FormatOfOptions(options);
+  if (const auto size = SizeOf(options.Text("--size"))) {
+    format.width_px = size->width_px;
+    format.height_px = size->height_px;
+  }
+  for (const std::string& words : options.All("--without")) {
+    for (const std::string& word : WordsOf(words))
+      for (const Part& part : kParts)
+        if (word == part.name) format.*part.shown = false;
+  }
+  return format;
+}
+
+show::PictureChoice ChoiceOf(const ParsedOptions& options) {
+  show::PictureChoice choice{.camera = options.Text("--camera"), .all = options.Has("--sheet")};
+  if (options.Has("--at")) choice.at = WordsOf(options.Text("--at"));
+  return choice;
+}
+
+/// Why these pictures do not fit on one sheet, or "".
+std::string WhyNoSheet(const ParsedOptions& options, std::size_t pictures) {
+  if (pictures > kMostPictures)
+    return fmt::format("--at: found {} moments, wanted at most {}", pictures, kMostPictures);
+  if (!options.Has("--sheet")) {
+    return pictures > 1 && options.Has("--output")
+               ? "--at: several moments in one file need --sheet, the number of columns"
+               : "";
+  }
+  if (!options.Has("--output")) return "--sheet needs --output, the file of the sheet";
+  const show::PictureFormat format = FormatOf(options);
+  const int columns = options.IntOr("--sheet", 1);
+  const int rows = (static_cast<int>(pictures) + columns - 1) / columns;
+  if (columns * format.width_px <= kMostSheetSide_px &&
+      rows * format.height_px <= kMostSheetSide_px)
+    return "";
+  return fmt::format(
+      "--sheet: {} x {} pixels are too many, at most {} per side; choose a smaller "
+      "--size",
+      columns * format.width_px, rows * format.height_px, kMostSheetSide_px);
+}
+
+show::PictureResult Draw(const ParsedOptions& options, const episode::LoadedRun& loaded,
+                         const episode::RunResult& run, const std::string& root) {
+  const std::string output = options.Text("--output");
+  const show::PictureFormat format = FormatOf(options);
+  if (options.Has("--sheet"))
+    return show::DrawSheet(loaded.scenario, run, loaded.scenario.pictures,
+                           options.IntOr("--sheet", 1), output, format);
+  if (!output.empty())
+    return show::DrawPicture(loaded.scenario, run, loaded.scenario.pictures.front(), output,
+                             format);
+  const fs::path folder = fs::path(root) / "build" / "pictures" / loaded.scenario.skill;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  return show::DrawPictures(loaded.scenario, run, folder.string(), format);
+}
+
+/// What is made instead of pictures, and which options it has no use for.
+struct Product {
+  const char* option;
+  std::vector<const char*> unused;
+};
+const Product kProducts[] = {
+    {"--strip", {"--at", "--sheet", "--json", "--size", "--camera", "--theme", "--regions"}},
+    {"--against", {"--at", "--sheet", "--json", "--size", "--without"}},
+    {"--film", {"--at", "--sheet", "--json", "--output"}}};
+
+/// Why these options do not go together, or "".
+std::string WhyNotTogether(const ParsedOptions& options) {
+  const char* asked = nullptr;
+  for (const Product& product : kProducts) {
+    if (!options.Has(product.option)) continue;
+    if (asked) return fmt::format("{} and {} exclude each other", asked, product.option);
+    asked = product.option;
+    for (const char* option : product.unused) {
+      if (options.Has(option)) return fmt::format("{} does not go with {}", option, asked);
+    }
+  }
+  for (const char* of_film : {"--fps", "--speed"}) {
+    if (options.Has(of_film) && !options.Has("--film"))
+      return fmt::format("{} is for --film", of_film);
+  }
+  return "";
+}
+
+/// The run of a scenario or of an episode, with every frame.
+tl::expected<PlayedRun, ExitCode> Play(const ParsedOptions& options,
+                                       const CommandContext& context) {
+  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
+  if (!episode) return tl::unexpected(episode.error());
+  auto played = PlayOrComplain(std::move(*episode), context);
+  if (!played) return played;
+  const std::string why = WhyNotShown(options, played->loaded.scenario, played->run);
+  if (!why.empty()) return tl::unexpected(Complain(context, ExitCode::kBadInput, why));
+  return played;
+}
+
+/// Writes it where the command line says, or below build/pictures.
+ExitCode WriteOut(const std::string& svg, const ParsedOptions& options,
+                  const scenario::Scenario& scenario, const std::string& ending,
+                  const CommandContext& context) {
+  const fs::path file = options.TextOr("--output", (fs::path(context.root) / "build" / "pictures" /
+                                                    scenario.skill / (scenario.name + ending))
+                                                       .string());
+  const std::string problem = show::WriteDrawing(file, svg);
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  context.out << file.string() << "\n";
+  return ExitCode::kAgrees;
+}
+
+ExitCode RenderStrip(const ParsedOptions& options, const CommandContext& context) {
+  const auto played = Play(options, context);
+  if (!played) return played.error();
+  const episode::LoadedRun& loaded = played->loaded;
+  const episode::RunResult& run = played->run;
+  show::Chart chart = show::PhasesChart(loaded.scenario, run, WindowOf(options, run));
+  for (const std::string& words : options.All("--without")) {
+    if (std::ranges::count(WordsOf(words), "title") > 0) chart.title.clear();
+  }
+  return WriteOut(show::ChartSvg(chart, SceneFormatOf(options, "", kComparisonWidth_px).chart),
+                  options, loaded.scenario, ".strip.svg", context);
+}
+
+/// Golden pictures, the same as they are now, and what differs.
+ExitCode ComparePictures(const PlayedRun& played, const ParsedOptions& options,
+                         const CommandContext& context) {
+  const scenario::Scenario& scenario = played.loaded.scenario;
+  const std::string id = episode::ScenarioId(scenario.skill, scenario.name);
+  show::ScenePainter painter;
+  const show::Sheet sheet = show::GoldenPicturesSheet(
+      id, scenario, played.run, truth::GoldenFiles(context.root).PicturesOf(id), painter);
+  if (sheet.rows.empty())
+    return Complain(context, ExitCode::kNothing,
+                    "--against: " + id + " has no golden pictures; " +
+                        suite::AcceptPicturesCommand(id) + " keeps those of now");
+  if (!painter.error().empty())
+    return Complain(context, ExitCode::kFailure, "no picture: " + painter.error());
+  return WriteOut(SheetSvg(sheet, SceneFormatOf(options, "", kComparisonWidth_px).chart), options,
+                  scenario, ".against-pictures.png", context);
+}
+
+ExitCode RenderComparison(const ParsedOptions& options, const CommandContext& context) {
+  const auto played = Play(options, context);
+  if (!played) return played.error();
+  const std::string against = options.Text("--against");
+  if (against == "pictures") return ComparePictures(*played, options, context);
+  const auto other = OtherViewOrComplain(*played, against, context);
+  if (!other) return other.error();
+  const episode::LoadedRun& loaded = played->loaded;
+  const episode::RunResult& run = played->run;
+  const bool in_other_engine = !other->run.recording.empty();
+  const show::Side first{
+      .name = other->name, .events = &other->run, .scenes = in_other_engine ? &other->run : &run},
+      second{.name = in_other_engine ? suite::NameOf(loaded.scenario.scene.world.engine)
+                                     : loaded.scenario.grammar,
+             .events = &run,
+             .scenes = &run};
+  const show::SceneFormat format = SceneFormatOf(options, "action", kComparisonWidth_px);
+  show::ScenePainter painter;
+  const show::Sheet sheet = ComparisonSheet(loaded.scenario, first, second, other->comparison,
+                                            WindowOf(options, run), format, painter);
+  if (!painter.error().empty())
+    return Complain(context, ExitCode::kFailure, "no picture: " + painter.error());
+  return WriteOut(SheetSvg(sheet, format.chart), options, loaded.scenario,
+                  ".against-" + other->name + ".png", context);
+}
+
+ExitCode RenderFilm(const ParsedOptions& options, const CommandContext& context) {
+  const std::string path = options.Text("--film");
+  if (const std::string why = show::WhyNoFilm(path); !why.empty())
+    return Complain(context, ExitCode::kBadInput, "--film: " + why);
+  const auto played = Play(options, context);
+  if (!played) return played.error();
+  const episode::LoadedRun& loaded = played->loaded;
+  const episode::RunResult& run = played->run;
+  const show::Window window = WindowOf(options, run);
+  const show::FilmFormat film{.from_s = window.from_s,
+                              .to_s = window.to_s,
+                              .frames_per_s = options.NumberOr("--fps", 30),
+                              .speed = options.NumberOr("--speed", 1)};
+  if (const std::string why = show::WhyTooLong(film); !why.empty())
+    return Complain(context, ExitCode::kBadInput, "--film: " + why);
+  show::PictureFormat format = FormatOf(options);
+  if (!options.Has("--size")) format.width_px = 960, format.height_px = 540;
+  format.ghosts = false;
+  const std::string why = show::DrawFilm(loaded.scenario, run, options.TextOr("--camera", "action"),
+                                         film, format, path);
+  if (!why.empty()) return Complain(context, ExitCode::kFailure, "no film: " + why);
+  context.out << path << "\n";
+  return ExitCode::kAgrees;
+}
+
+ExitCode RenderPictures(const ParsedOptions& options, const CommandContext& context) {
+  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
+  if (!episode) return episode.error();
+  episode::LoadedRun* loaded = &episode->loaded();
+  const show::PictureChoice choice = ChoiceOf(options);
+  std::vector<scenario::PictureYaml> asked;
+  if (options.Has("--at") || options.Has("--camera") || options.Has("--output"))
+    asked = show::ChosenPictures(choice, loaded->scenario);
+  for (const std::string& why :
+       {show::WhyNotChosen(choice, asked, loaded->scenario, *loaded->program),
+        WhyNoPart(FormatOf(options), loaded->scenario), WhyNoSheet(options, asked.size())}) {
+    if (!why.empty()) return Complain(context, ExitCode::kBadInput, why);
+  }
+  if (!asked.empty()) loaded->scenario.pictures = std::move(asked);
+  if (loaded->scenario.pictures.empty()) {
+    return Complain(context, ExitCode::kNothing,
+                    "the scenario defines no pictures; --at asks for one");
+  }
+
+  const Result<episode::RunResult> played = episode->Run(true);
+  if (!played) return Complain(context, played.error());
+  const episode::RunResult& run = *played;
+  const show::PictureResult drawn = Draw(options, *loaded, run, context.root);
+  for (const show::WrittenPicture& picture : drawn.pictures) {
+    if (!picture.missed.empty())
+      context.err << "prehend: warning: " << picture.file << ": " << picture.missed
+                  << "; the picture shows the end of the run\n";
+  }
+  if (options.Has("--json")) {
+    episode::OrderedJson json = episode::RunJson(episode::HeadingOf(loaded->scenario, run), run);
+    json["pictures"] = episode::OrderedJson::array();
+    for (const show::WrittenPicture& picture : drawn.pictures) {
+      json["pictures"].push_back({{"file", picture.file}, {"caption", picture.caption}});
+    }
+    context.out << json.dump(2) << "\n";
+  } else {
+    std::string last;  // the pictures of a sheet have one file
+    for (const show::WrittenPicture& picture : drawn.pictures) {
+      if (picture.file != last) context.out << picture.file << "\n";
+      last = picture.file;
+    }
+  }
+  if (!drawn.error.empty())
+    return Complain(context, ExitCode::kFailure, "no picture: " + drawn.error);
+  if (run.status.kind == physics::RunStatus::Kind::kCompleted) return ExitCode::kAgrees;
+  return Complain(context, ExitCode::kFailure, episode::StatusText(run));
+}
+
+/// Why there can be no such file, or "".
+std::string WhyNoOutput(const ParsedOptions& options) {
+  if (!options.Has("--output")) return "";
+  const std::string output = options.Text("--output");
+  std::string why;
+  if (output == "-")
+    why = "found '-', wanted a file; pictures are not printed";
+  else if (options.Has("--strip") || options.Has("--against"))
+    why = show::WhyNoDrawingFile(output);
+  else if (output.ends_with(".svg") || output.ends_with(".pdf"))
+    why = fmt::format(
+        "found '{}', wanted a file NAME.png; scenes are drawn in pixels, --strip is "
+        "the timeline alone",
+        output);
+  if (why.empty()) why = AtomicFile(output).problem();
+  // A picture is a PNG, whatever its file is called.
+  if (why.empty() && !options.Has("--strip") && !options.Has("--against") &&
+      !output.ends_with(".png"))
+    why = fmt::format("found '{}', wanted a file NAME.png", output);
+  return why.empty() ? "" : "--output: " + why;
+}
+
+ExitCode RunRender(const ParsedOptions& options, const CommandContext& context) {
+  for (const std::string& why : {WhyNotTogether(options), WhyNoOutput(options)})
+    if (!why.empty()) return Complain(context, ExitCode::kBadInput, why);
+  if (options.Has("--strip")) return RenderStrip(options, context);
+  if (options.Has("--against")) return RenderComparison(options, context);
+  if (options.Has("--film")) return RenderFilm(options, context);
+  return RenderPictures(options, context);
+}
+
+std::vector<Option> OptionsInsteadOfPictures() {
+  return InGroup("Instead of pictures",
+                 {{.name = "--strip", .help = "the timeline alone"},
+                  {.name = "--against",
+                   .help = "compare with the golden, another grammar, the other engine "
+                           "(bullet, box2d): both timelines, and the scenes at each "
+                           "boundary that differs. 'pictures': golden pictures, those of "
+                           "now, and what differs",
+                   .placeholder = "golden|pictures|GRAMMAR|ENGINE"},
+                  {.name = "--film",
+                   .help = "a film: NAME.webp (img2webp), NAME.mp4 (ffmpeg), or a folder "
+                           "of frames; 960x540 unless --size says otherwise",
+                   .placeholder = "FILE|FOLDER",
+                   .is_output = true},
+                  {.name = "--fps",
+                   .help = "frames in a second of the film; default: 30",
+                   .placeholder = "N",
+                   .rule = NumbersFrom(1, 120)},
+                  {.name = "--speed",
+                   .help = "seconds of the episode in a second of the film; default: 1",
+                   .placeholder = "N",
+                   .rule = NumbersFrom(0.01, 100)}});
+}
+
+}  // namespace
+
+Command RenderCommand() {
+  return {
+      .name = "render",
+      .summary = "Draw a scenario's pictures, one of your own, a comparison, a film",
+      .examples = {"render milk_carton_wrap", "render milk_carton_wrap -o milk.png",
+                   "render suite.episodes --episode slide/hop_divides_a_slide -o hop.png",
+                   "render milk_carton_wrap --at transporting.begin --camera left -o left.png",
+                   "render milk_carton_wrap --at reaching.begin,putting_down.end --sheet 2 --theme "
+                   "print -o sheet.png",
+                   "render milk_carton_wrap --strip -o strip.pdf",
+                   "render milk_carton_wrap --against original_2020 -o two_grammars.png",
+                   "render milk_carton_wrap --film milk.webp --speed 0.5"},
+      .options = Joined(
+          Joined({EpisodeArgument(),
+                  EpisodeOption(),
+                  OutputOption("the PNG file; default: build/pictures/SKILL/NAME.png. --strip and "
+                               "--against also write .svg and .pdf"),
+                  {.name = "--at",
+                   .help = "when: EVENT.begin, EVENT.end, or seconds; for a sheet several, "
+                           "with commas between them",
+                   .placeholder = "TIME"},
+                  {.name = "--sheet",
+                   .help = "all pictures in one file, with so many columns",
+                   .placeholder = "N",
+                   .rule = IntegersFrom(1, kMostColumns)}},
+                 OptionsInsteadOfPictures()),
+          Joined(Joined(LookOptions(), PartOptions()),
+                 {{.name = "--size",
+                   .help = "pixels of a picture; default: 1280x720",
+                   .placeholder = "WxH",
+                   .rule = Sizes()},
+                  {.name = "--without",
+                   .help = "leave these out",
+                   .placeholder = "PART,..",
+                   .rule = PartsOfPicture(),
+                   .repeatable = true},
+                  GrammarOption(),
+                  SettingsOption(),
+                  {.name = "--json",
+                   .help = "print the run as one JSON object, with the files of its pictures"}})),
+      .run = RunRender};
+}
+
+}  // namespace prehend::cli

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend run. Tested by tests/program/command_line_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "harness/base/base/atomic_file.h"
+#include "harness/base/base/content_hash.h"
+#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/text_file.h"
+#include "harness/cli/command/command.h"
+#include "harness/episode/episodes/record_run.h"
+#include "harness/episode/episodes/schema.h"
+#include "harness/episode/run/run_text.h"
+#include "harness/episode/run/run_trials.h"
+#include "harness/suite/check/check_scenario.h"
+#include "harness/suite/judge/judge_claims.h"
+#include "harness/suite/report/report.h"
+
+namespace prehend::cli {
+namespace {
+
+constexpr int kMaxTrials = 100000;
+
+/// The command that plays one trial again, without its number.
+std::string TrialCommand(const ParsedOptions& options) {
+  std::vector<std::string> words = {"run", options.Text("scenario")};
+  if (options.Has("--grammar")) {
+    words.push_back("--grammar");
+    words.push_back(options.Text("--grammar"));
+  }
+  for (const std::string& setting : options.All("--set")) {
+    words.push_back("--set");
+    words.push_back(setting);
+  }
+  return CommandText(words);
+}
+
+episode::RecordRequest RecordingOf(const episode::RunRequest& request,
+                                   const std::vector<std::string>& files,
+                                   const ParsedOptions& options, const CommandContext& context) {
+  return {options.Text("--record"), context.root, request, files, context.today, ProgramHash()};
+}
+
+ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& request,
+                     const CommandContext& context) {
+  episode::TrialSettings settings{.count = options.IntOr("--trials", 1),
+                                  .jobs = options.IntOr("--jobs", CoreCount())};
+  const std::string file = options.Text("--record");
+  if (options.Has("--record")) {
+    if (!episode::IsEpisodeFile(file))
+      return Complain(context, ExitCode::kBadInput,
+                      "--record: many trials need an episode file, NAME.episodes");
+    if (const std::string problem = episode::WhyNotRecordable(file); !problem.empty())
+      return Complain(context, ExitCode::kBadInput, "--record: " + problem);
+    settings.play = [&](int trial, const episode::RunRequest& varied) {
+      return episode::RecordTrial(trial, varied, RecordingOf(varied, {}, options, context));
+    };
+  }
+  const auto report = episode::RunTrials(request, context.root, settings, [&](int done) {
+    if (context.progress)
+      context.err << "\r\033[K[" << done << "/" << settings.count << "]" << std::flush;
+  });
+  if (context.progress) context.err << "\r\033[K" << std::flush;
+  if (!report) return Complain(context, report.error());
+  if (options.Has("--json")) {
+    context.out << episode::TrialJson(*report).dump(2) << "\n";
+  } else {
+    context.out << episode::TrialTable(*report, TrialCommand(options));
+  }
+  const auto lost = std::ranges::count_if(report->results, [](const episode::TrialResult& result) {
+    return !result.not_recorded.empty();
+  });
+  if (lost == 0) return ExitCode::kAgrees;
+  const auto first = std::ranges::find_if(report->results, [](const episode::TrialResult& result) {
+    return !result.not_recorded.empty();
+  });
+  return Complain(context, ExitCode::kFailure,
+                  fmt::format("--record: {} of {} trials are not in the file: {}", lost,
+                              report->results.size(), first->not_recorded));
+}
+
+/// The run as a page, judged as a check judges it. Returns "", or why it could not be written.
+std::string WriteReport(const ParsedOptions& options, const CommandContext& context,
+                        const episode::ScenarioFile& file, const episode::RunRequest& request,
+                        const episode::LoadedRun& loaded, const episode::RunResult& run,
+                        const std::vector<std::string>& files) {
+  const suite::CheckRequest check{.episode = NameOf(file),
+                                  .changes = {request.grammar, request.settings},
+                                  .id = episode::IdOf(file),
+                                  .root = context.root,
+                                  .replays = suite::Replays::kAll,
+                                  .explain = true,
+                                  .pictures = false,
+                                  .leave_nothing_behind = true,
+                                  .in_project = file.in_project,
+                                  .today = context.today,
+                                  .program = ProgramHash()};
+  const suite::ScenarioVerdict verdict = suite::JudgeRun(check, loaded, run, files);
+  suite::ReportHeader header =
+      suite::HeaderOf(CommandText(context.words), context.root, context.today);
+  header.title = "Run of " + verdict.scenario;
+  return WriteTextFile(options.Text("--report"), suite::ReportHtml({verdict}, header));
+}
+
+/// Options that contradict each other, or a report that cannot be written.
+std::string WhyRefused(const ParsedOptions& options) {
+  for (const char* of_one_run : {"--trial", "--measure", "--report"}) {
+    if (options.Has("--trials") && options.Has(of_one_run))
+      return fmt::format("{} needs a single run; --trials makes many", of_one_run);
+  }
+  if (options.Has("--trials")) return "";
+  for (const char* of_output : {"--json", "--measure"}) {
+    if (options.Text("--record") == "-" && options.Has(of_output))
+      return fmt::format("--record - contradicts {}: both would be printed", of_output);
+  }
+  if (!options.Has("--report")) return "";
+  const std::string problem = WhyNotWritable(options.Text("--report"));
+  return problem.empty() ? "" : "--report: " + problem;
+}
+
+void Print(const episode::LoadedRun& loaded, const episode::RunResult& run,
+           const std::vector<truth::ClaimVerdict>& claims, const ParsedOptions& options,
+           const CommandContext& context) {
+  for (const std::string& note : episode::NoteLines(loaded.scenario, run))
+    context.err << note << "\n";
+  const bool measure = options.Has("--measure");
+  if (options.Has("--json")) {
+    episode::OrderedJson json = episode::RunJson(episode::HeadingOf(loaded.scenario, run), run);
+    json["claims"] = truth::ClaimsJson(claims);
+    if (measure) json["measured"] = episode::MeasurementJson(episode::Measure(run));
+    context.out << json.dump(2) << "\n";
+  } else if (options.Text("--record") != "-") {
+    context.out << episode::RunTable(run);
+    if (measure) context.out << episode::MeasurementText(episode::Measure(run));
+    context.out << std::flush;
+  }
+  context.err << truth::TextOfContradicted(claims);
+}
+
+ExitCode PlayOne(const episode::ScenarioFile& file, const episode::RunRequest& request,
+                 const ParsedOptions& options, const CommandContext& context) {
+  std::vector<std::string> files;
+  const Result<episode::LoadedRun> loaded = episode::LoadRun(request, context.root, &files);
+  if (!loaded) return Complain(context, loaded.error());
+  Warn(context, loaded->warnings);
+  std::optional<episode::RunRecorder> recorder;
+  if (options.Has("--record")) {
+    recorder.emplace(RecordingOf(request, files, options, context), loaded->scenario);
+    if (!recorder->problem().empty())
+      return Complain(context, ExitCode::kBadInput, "--record: " + recorder->problem());
+  }
+  const episode::RunResult run = episode::PlayScenario(
+      *loaded, {.record = options.Has("--report"), .measure = options.Has("--measure")},
+      recorder ? &*recorder : nullptr);
+  const bool completed = run.status.kind == physics::RunStatus::Kind::kCompleted;
+  // Of an unfinished run the claims may still come true.
+  const std::vector<truth::ClaimVerdict> claims =
+      completed ? suite::JudgeClaims(*loaded, run.timeline) : std::vector<truth::ClaimVerdict>{};
+  Print(*loaded, run, claims, options, context);
+  if (recorder && !recorder->problem().empty())
+    return Complain(context, ExitCode::kFailure, "--record: " + recorder->problem());
+  if (options.Has("--report")) {
+    const std::string problem = WriteReport(options, context, file, request, *loaded, run, files);
+    if (!problem.empty()) return Complain(context, ExitCode::kFailure, "--report: " + problem);
+  }
+  return completed ? ExitCode::kAgrees
+                   : Complain(context, ExitCode::kFailure, episode::StatusText(run));
+}
+
+ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
+  const auto file = FindScenarioOrComplain(options.Text("scenario"), context);
+  if (!file) return file.error();
+  episode::RunRequest request = RequestOf(options, file->path);
+  if (const std::string why = WhyRefused(options); !why.empty())
+    return Complain(context, ExitCode::kBadInput, why);
+  if (options.Has("--trials")) return CountTrials(options, request, context);
+  if (options.Has("--trial")) {
+    auto varied = episode::RequestOfTrial(request, context.root, options.IntOr("--trial", 1));
+    if (!varied) return Complain(context, varied.error());
+    context.err << episode::SampledText(request, *varied);
+    request = std::move(*varied);
+  }
+  return PlayOne(*file, request, options, context);
+}
+
+}  // namespace
+
+Command RunCommand() {
+  return {
+      .name = "run",
+      .summary = "Simulate one scenario and print the events that its grammar recognises",
+      .examples = {"run milk_carton_wrap", "run milk_carton_wrap --json",
+                   "run milk_carton_wrap --record milk.episodes",
+                   "run milk_carton_wrap --report milk.html",
+                   "run milk_carton_wrap --set entities.milk.mass_kg=8",
+                   "run milk_carton_wrap --set lift_rise=10cm --measure",
+                   "run furniture/drawer_is_opened_with_hook --trials 50",
+                   "run furniture/drawer_is_opened_with_hook --trial 17",
+                   "run my/scenario.yaml --grammar my/rules.grammar"},
+      .options =
+          {ScenarioArgument(),
+           GrammarOption(),
+           SettingsOption(),
+           {.name = "--trials",
+            .help = "simulate N variations of the scenario and count the outcomes",
+            .placeholder = "N",
+            .rule = IntegersFrom(1, kMaxTrials)},
+           {.name = "--trial",
+            .help = "simulate variation K only",
+            .placeholder = "K",
+            .rule = IntegersFrom(1, kMaxTrials)},
+           JobsOption("trials"),
+           JsonOption(),
+           {.name = "--record",
+            .help = "write the episode to FILE: NAME.episodes holds many episodes and all of each; "
+                    "any other ending: what the grammar sees, as JSON Lines; -: print these "
+                    "instead of the table. With --trials: NAME.episodes, an episode per trial",
+            .placeholder = "FILE",
+            .is_output = true},
+           {.name = "--report",
+            .help = "also write the run as a web page with its 3D replay, judged as by check",
+            .placeholder = "FILE",
+            .is_output = true},
+           {.name = "--measure", .help = "print where the time went, and the peak memory"}},
+      .run = RunOne,
+      .note =
+          "It shows and does not judge: claims that the events contradict are printed, and the "
+          "exit\n"
+          "code is 0 all the same. 'check' judges."};
+}
+
+}  // namespace prehend::cli

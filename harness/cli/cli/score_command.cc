@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend score: grammars against the physical oracle. Tested by tests/program/score_test.cc
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "harness/base/base/default_grammar.h"
+#include "harness/cli/command/typed_episode.h"
+#include "harness/measure/score/score_json.h"
+#include "harness/measure/score/score_labels.h"
+#include "harness/measure/score/score_scenarios.h"
+#include "harness/suite/check/select_scenarios.h"
+
+namespace prehend::cli {
+namespace {
+
+/// `score TAKES --truth LABELS`: against what people marked.
+ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) {
+  for (const char* other : {"--filter", "--event"}) {
+    if (options.Has(other))
+      return Complain(
+          context, ExitCode::kBadInput,
+          fmt::format("--truth compares what the labels mean: {} does not apply", other));
+  }
+  if (!options.Has("names"))
+    return Complain(context, ExitCode::kNothing,
+                    "--truth: which recordings? score take1.jsonl --truth take1.csv");
+  auto episodes = FindEpisodesOrComplain("names", options, context);
+  if (!episodes) return episodes.error();
+  const double collar_s = options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
+  std::string warnings;
+  const auto scores = measure::ScoreLabels(
+      {.root = context.root,
+       .episodes = std::move(*episodes),
+       .grammars = options.All("--grammar"),
+       .settings = options.All("--set"),
+       .label_files = options.All("--truth"),
+       .label_map = options.Text("--map"),
+       .backward = options.Has("--skip-bad-labels") ? exchange::Backward::kSkip
+                                                    : exchange::Backward::kRefuse,
+       .collar_s = collar_s},
+      warnings);
+  context.err << warnings;
+  if (!scores) return Complain(context, scores.error());
+  if (options.Has("--json")) {
+    nlohmann::ordered_json json = measure::ScoresJson(scores->of_grammars, collar_s);
+    json["by_hand"] = measure::ScoresJson(scores->by_hand, collar_s);
+    context.out << json.dump(2) << "\n";
+  } else {
+    context.out << measure::LabelScoresText(*scores, collar_s, options.Has("--verbose"));
+  }
+  return ExitCode::kAgrees;
+}
+
+/// `score`: against what physically happened, in scenarios.
+ExitCode RunScenarios(const measure::ScoredGrammars& grammars,
+                      const std::vector<std::string>& events, const grammar::Overrides& settings,
+                      const ParsedOptions& options, const CommandContext& context) {
+  const auto selection =
+      suite::SelectScenarios(options.All("names"), options.All("--filter"), context.root);
+  if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
+  std::vector<measure::ScoreRequest> requests;
+  for (const episode::ScenarioFile& file : selection->scenarios) {
+    if (const std::string lack = episode::Lacks(NameOf(file), episode::Need::kGroundTruth);
+        !lack.empty())
+      return Complain(context, ExitCode::kBadInput, lack);
+    requests.push_back(
+        {NameOf(file), episode::IdOf(file), context.root, grammars.names, events, settings});
+  }
+  const double collar_s = options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
+  const auto scores = measure::ScoreScenarios(requests, grammars, collar_s, CoreCount());
+  ExitCode worst = ExitCode::kAgrees;
+  for (const measure::NotScored& one : scores.not_scored) {
+    context.err << "prehend: " << one.id << " was not scored: " << one.why;
+    if (worst != ExitCode::kFailure)
+      worst = one.is_bad_input ? ExitCode::kBadInput : ExitCode::kFailure;
+  }
+  if (scores.of_grammars.empty()) return worst;  // no table of nothing
+  if (options.Has("--json")) {
+    nlohmann::ordered_json json = measure::ScoresJson(scores.of_grammars, collar_s);
+    json["witnesses"] = measure::WitnessesJson(scores.of_grammars, scores.witnesses);
+    context.out << json.dump(2) << "\n";
+  } else {
+    context.out << measure::ScenarioScoresText(scores, collar_s, options.Has("--verbose"));
+  }
+  return worst;
+}
+
+ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--truth")) return RunLabels(options, context);
+  std::vector<std::string> names = options.All("--grammar");
+  // The baseline keeps the authors' numbers.
+  if (names.empty())
+    names = options.Has("--set") ? std::vector<std::string>{kDefaultGrammar}
+                                 : std::vector<std::string>{kDefaultGrammar, "original_2020"};
+  const Result<grammar::Overrides> settings = episode::ParameterSettings(options.All("--set"));
+  if (!settings) return Complain(context, settings.error());
+  for (const char* of_labels : {"--map", "--episode", "--skip-bad-labels"}) {
+    if (options.Has(of_labels))
+      return Complain(context, ExitCode::kBadInput,
+                      fmt::format("{} needs --truth: where are the labels?", of_labels));
+  }
+  const std::vector<std::string> events = measure::EventsIn(options.All("--event"));
+  if (const std::string unknown = measure::UnknownEvent(events); !unknown.empty())
+    return Complain(context, ExitCode::kBadInput, unknown);
+  Result<measure::ScoredGrammars> grammars =
+      measure::CompileToScore(context.root, names, *settings, events);
+  if (!grammars) return Complain(context, grammars.error());
+  return RunScenarios(*grammars, events, *settings, options, context);
+}
+
+}  // namespace
+
+Command ScoreCommand() {
+  return {.name = "score",
+          .summary = "Score grammars against what physically happened",
+          .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
+                       "score --grammar my/rules.grammar --event grasping,sliding",
+                       "score 'slide/*' --collar-ms 20 --json",
+                       "score take1.jsonl take2.jsonl --truth labels --map labels.yaml"},
+          .options = Joined(
+              {{.name = "names",
+                .help = "names, skill/name, globs or files; default: all scenarios",
+                .repeatable = true},
+               FilterOption(),
+               {.name = "--grammar",
+                .help = "a grammar to score; may be repeated; default: pick_and_place and "
+                        "original_2020 (with --set the first alone); with --truth that of the "
+                        "recordings",
+                .placeholder = "NAME|FILE",
+                .repeatable = true},
+               ParametersOption(),
+               EpisodesOption(),
+               {.name = "--event",
+                .help = "score only these events; default: all that docs/events.md defines",
+                .placeholder = "NAME,..",
+                .repeatable = true},
+               {.name = "--verbose",
+                .help = "list every event that differs from what a witness says, or "
+                        "from the labels"},
+               JsonOption()},
+              TruthOptions(
+                  "labels by people (.csv, .eaf, .TextGrid) of the recordings or episode files "
+                  "that are named, one file for each or a folder (docs/labels.md); may be repeated",
+                  "FILE|FOLDER")),
+          .run = RunScore};
+}
+
+}  // namespace prehend::cli

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend grammar sweep and margins: a grammar's parameters on recorded episodes. Tested by
+// tests/program/sweep_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "harness/base/base/atomic_file.h"
+#include "harness/cli/command/command.h"
+#include "harness/cli/command/typed_episode.h"
+#include "harness/exchange/labels/label_files.h"
+#include "harness/exchange/labels/read_labels.h"
+#include "harness/measure/sweep/margins.h"
+#include "harness/measure/sweep/plateau.h"
+#include "harness/measure/sweep/sweep.h"
+#include "harness/measure/sweep/sweep_progress.h"
+#include "harness/show/pictures/svg_file.h"
+
+namespace prehend::cli {
+namespace {
+
+constexpr double kDefaultWithin_percent = 0.5;
+
+std::string AxisProblem(const std::string& text) {
+  std::string problem;
+  (void)measure::ParseAxis(text, problem);
+  return problem;
+}
+
+constexpr double kDefaultMargin_percent = 1;
+
+/// What both commands have in common. Nothing, after a complaint.
+std::optional<measure::SweepRequest> RequestFrom(const ParsedOptions& options,
+                                                 const std::vector<const char*>& outputs,
+                                                 const CommandContext& context) {
+  measure::SweepRequest request{.root = context.root,
+                                .grammar = options.Text("--grammar"),
+                                .settings = options.All("--set"),
+                                .axes = {}};
+  if (const std::string why = measure::SetTruth(options.All("--truth"), request); !why.empty()) {
+    Complain(context, ExitCode::kBadInput, why);
+    return std::nullopt;
+  }
+  request.label_map = options.Text("--map");
+  for (const char* of_labels : {"--map", "--skip-bad-labels"}) {
+    if (request.truth == measure::Truth::kLabels || !options.Has(of_labels)) continue;
+    Complain(context, ExitCode::kBadInput,
+             fmt::format("{} needs labels: --truth FILE or FOLDER", of_labels));
+    return std::nullopt;
+  }
+  request.collar_s = options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
+  // People agree to a few tenths of a second; goldens are exact.
+  request.by_overlap = request.truth == measure::Truth::kLabels && !options.Has("--collar-ms");
+  request.skip_bad_labels = options.Has("--skip-bad-labels");
+  request.jobs = options.IntOr("--jobs", CoreCount());
+  for (const char* output : outputs) {
+    const std::string why = options.Has(output) ? WhyNotWritable(options.Text(output)) : "";
+    if (why.empty()) continue;
+    Complain(context, ExitCode::kBadInput, std::string(output) + ": " + why);
+    return std::nullopt;
+  }
+  return request;
+}
+
+/// The recordings, or the exit code after a complaint. Where no grammar was named, `request` gets
+/// theirs.
+tl::expected<std::vector<episode::EpisodeName>, ExitCode> EpisodesFrom(
+    const ParsedOptions& options, measure::SweepRequest& request, const CommandContext& context) {
+  auto episodes = FindEpisodesOrComplain("EPISODES", options, context);
+  if (!episodes) return episodes;
+  if (request.grammar.empty()) {
+    Result<std::string> own = exchange::OwnGrammar(*episodes);
+    if (!own) return tl::unexpected(Complain(context, own.error()));
+    request.grammar = std::move(*own);
+  }
+  return *episodes;
+}
+
+/// Nothing if there is something to print. Labels that do not fit are bad input; of other truths
+/// what has none is left out.
+std::optional<ExitCode> ComplainOf(const measure::SweepResult& result,
+                                   const measure::SweepRequest& request,
+                                   const CommandContext& context) {
+  if (result.IsRefused(request))
+    return Complain(context, ExitCode::kBadInput,
+                    (result.unread.empty() ? result.left_out : result.unread).front());
+  context.err << result.label_warning;
+  for (const std::string& line : result.left_out)
+    context.err << "prehend: left out: " << line << "\n";
+  if (result.episodes == 0)
+    return Complain(context, ExitCode::kNothing, "no episode has events to compare with");
+  return std::nullopt;
+}
+
+template <typename Measure>
+auto WithProgress(measure::SweepRequest& request, std::size_t episodes,
+                  const CommandContext& context, const Measure& measure) {
+  measure::SweepProgress progress(episodes, context.progress, context.err);
+  request.progress = [&](std::size_t done, std::size_t all) { progress.Tell(done, all); };
+  return measure();
+}
+
+ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context) {
+  auto request = RequestFrom(options, {"--output"}, context);
+  if (!request) return ExitCode::kBadInput;
+  const auto episodes = EpisodesFrom(options, *request, context);
+  if (!episodes) return episodes.error();
+  const double within = options.NumberOr("--within", kDefaultMargin_percent) / 100;
+  std::string problem;
+  // After each parameter, so that it is there if somebody ends it.
+  const auto write = [&](const measure::Margins& margins) {
+    if (options.Has("--output") && !margins.sweep.IsRefused(*request))
+      problem = WriteTextFile(options.Text("--output"), MarginsCsv(margins));
+  };
+  const auto margins = WithProgress(*request, episodes->size(), context, [&] {
+    return measure::FindMargins(*episodes, *request, within, options.All("--over"), write);
+  });
+  if (!margins) return Complain(context, margins.error());
+  if (const auto refused = ComplainOf(margins->sweep, *request, context)) return *refused;
+  context.out << measure::MarginsText(*margins, within);
+  return problem.empty() ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, problem);
+}
+
+ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
+  auto request = RequestFrom(options, {"--output", "--picture"}, context);
+  if (!request) return ExitCode::kBadInput;
+  if (const std::string why = measure::SetAxes(options.All("--over"), *request); !why.empty())
+    return Complain(context, ExitCode::kBadInput, why);
+  const auto episodes = EpisodesFrom(options, *request, context);
+  if (!episodes) return episodes.error();
+  const auto result = WithProgress(*request, episodes->size(), context,
+                                   [&] { return measure::Sweep(*episodes, *request); });
+  if (!result) return Complain(context, result.error());
+  if (const auto problem = ComplainOf(*result, *request, context)) return *problem;
+
+  const double within = options.NumberOr("--within", kDefaultWithin_percent) / 100;
+  const std::string csv = measure::CsvText(request->axes, result->points);
+  std::string problem;
+  if (options.Has("--output")) problem = WriteTextFile(options.Text("--output"), csv);
+  if (problem.empty() && options.Has("--picture"))
+    problem = show::WriteDrawing(
+        options.Text("--picture"),
+        measure::HeatMapSvg(request->axes, result->points,
+                            measure::FindPlateau(request->axes, result->points, within)));
+  if (!options.Has("--output")) context.out << csv;
+  context.out << measure::PlateauText(request->axes, *result, within);
+  return problem.empty() ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, problem);
+}
+
+/// What both commands take, and what is theirs alone.
+std::vector<Option> SweepOptions(const std::vector<Option>& own) {
+  std::vector<Option> options = {EpisodesArgument(), GrammarOption(), ParametersOption(),
+                                 EpisodesOption(), JobsOption("episodes")};
+  options = Joined(
+      options,
+      TruthOptions(
+          "what the events are compared with: golden (default), oracle, recorded (the events of "
+          "the "
+          "recording), or labels by people: one file for each recording (.csv, .eaf, .TextGrid, "
+          ".timeline) or a folder (docs/labels.md)",
+          "golden|oracle|recorded|FILE|FOLDER"));
+  return Joined(options, own);
+}
+
+Option WithinOption(const std::string& help) {
+  return {.name = "--within", .help = help, .placeholder = "PERCENT", .rule = NumbersFrom(0, 100)};
+}
+
+}  // namespace
+
+Command MarginsCommand() {
+  return {.name = "grammar margins",
+          .summary = "How far each parameter of a grammar may be from its value",
+          .examples = {"grammar margins suite.episodes --truth oracle --grammar my/rules.grammar",
+                       "grammar margins take1.jsonl take2.jsonl --truth labels --map labels.yaml "
+                       "-o margins.csv"},
+          .options = SweepOptions(
+              {{.name = "--over",
+                .help = "try this parameter instead of all; may be repeated",
+                .placeholder = "NAME",
+                .repeatable = true},
+               WithinOption("how many percent of F1 a score may be below the best; default: 1"),
+               OutputOption("also write a CSV file, again after each parameter")}),
+          .run = RunMargins};
+}
+
+Command SweepCommand() {
+  return {
+      .name = "grammar sweep",
+      .summary = "Try a grammar's parameters on recorded episodes",
+      .examples =
+          {"grammar sweep suite.episodes --over reach_radius=10cm..50cm:9 -o sweep.csv",
+           "grammar sweep suite.episodes --over reach_radius=10cm..50cm:9 --truth oracle --picture "
+           "sweep.png",
+           "grammar sweep *.episodes --over reach_radius=10cm..50cm:9 --over lift_rise=2cm..8cm:7"},
+      .options = SweepOptions(
+          {{.name = "--over",
+            .help =
+                "try so many values of this parameter, evenly spaced; repeated: all combinations",
+            .placeholder = "NAME=FROM..TO:COUNT",
+            .rule = {.range = {}, .problem = AxisProblem},
+            .repeatable = true},
+           WithinOption("the plateau: settings whose F1 is within so many percent of the best; "
+                        "default: 0.5"),
+           OutputOption("the CSV file; default: print it"),
+           {.name = "--picture",
+            .help = "a heat map of one or two parameters: NAME.svg, NAME.png or NAME.pdf",
+            .placeholder = "FILE",
+            .rule = {.range = {}, .problem = show::WhyNoDrawingFile},
+            .is_output = true}}),
+      .run = RunSweep};
+}
+
+}  // namespace prehend::cli

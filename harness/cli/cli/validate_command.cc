@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend validate: reads, never runs. Tested by tests/program/command_line_test.cc
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "grammar/describe.h"
+#include "harness/base/base/content_hash.h"
+#include "harness/base/base/text_file.h"
+#include "harness/cli/command/command.h"
+#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/validate_claims.h"
+#include "harness/suite/judge/unreferenced_goldens.h"
+#include "harness/suite/judge/validate_golden.h"
+#include "harness/truth/golden/golden_files.h"
+
+namespace prehend::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Validated {
+  std::string file;
+  grammar::Diagnostics diagnostics;
+  std::string description = {};  ///< of a grammar without errors
+  grammar::Diagnostics warnings = {};
+  std::vector<std::string> inputs = {};  ///< every file that was read
+};
+
+/// With the parameters that `--set` gives.
+Validated ValidateGrammar(const std::string& name_or_path, const ParsedOptions& options,
+                          const std::string& root) {
+  Validated validated{.file = episode::GrammarFile(root, name_or_path)};
+  Result<grammar::Overrides> settings = episode::ParameterSettings(options.All("--set"));
+  if (!settings) {
+    validated.diagnostics = std::move(settings.error());
+    return validated;
+  }
+  grammar::CompileResult compiled =
+      episode::LoadGrammar(root, name_or_path, *settings, &validated.inputs);
+  validated.diagnostics = std::move(compiled.diagnostics);
+  if (compiled.program) validated.description = Text(Describe(*compiled.program));
+  validated.warnings = std::move(compiled.warnings);
+  return validated;
+}
+
+/// Checks the golden of a scenario. Its events belong to the scenario's own grammar: with another
+/// one only its syntax is checked.
+void AddGolden(const episode::ScenarioFile& file, const ParsedOptions& options,
+               const Result<episode::LoadedRun>& loaded, const std::string& root,
+               Validated& validated) {
+  const truth::GoldenFiles goldens(root);
+  const std::string path = goldens.GoldenPath(episode::IdOf(file)).string();
+  validated.inputs.push_back(path);
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return;
+  const bool as_it_is = !options.Has("--grammar") && !options.Has("--set");
+  std::ranges::move(loaded && as_it_is ? suite::ValidateGolden(path, episode::IdOf(file), *loaded)
+                                       : ErrorsOf(goldens.ReadGoldenOf(episode::IdOf(file))),
+                    std::back_inserter(validated.diagnostics));
+  if (!loaded || !as_it_is) return;
+  const std::size_t asked = loaded->scenario.pictures.size();
+  for (const fs::path& picture : suite::UnrequestedPictures(episode::IdOf(file), asked, root))
+    validated.diagnostics.push_back(
+        grammar::Diagnostic{.file = ReadableName(file.path),
+                            .place = {},
+                            .message = suite::UnrequestedText(picture, asked),
+                            .source_line = {},
+                            .hint = {}});
+}
+
+/// A golden whose scenario no longer exists.
+Validated ValidateOrphan(const suite::UnreferencedGolden& orphan) {
+  Validated validated{.file = ReadableName(orphan.files.front().string()), .diagnostics = {}};
+  for (const fs::path& file : orphan.files)
+    validated.diagnostics.push_back(grammar::Diagnostic{
+        .file = ReadableName(file.string()),
+        .place = {},
+        .message = "belongs to no scenario",
+        .source_line = {},
+        .hint = "remove it, or bring scenarios/" + orphan.scenario + ".yaml back"});
+  return validated;
+}
+
+/// After reporting that there is no such file or scenario, the exit code.
+tl::expected<Validated, ExitCode> Validate(const std::string& typed, const ParsedOptions& options,
+                                           const CommandContext& context) {
+  if (typed.ends_with(".grammar")) return ValidateGrammar(typed, options, context.root);
+  if (typed.ends_with(".timeline")) {
+    Validated validated{.file = typed, .diagnostics = {}};
+    validated.diagnostics = suite::ValidateGoldenFile(typed, context.root, validated.inputs);
+    return validated;
+  }
+  const auto file = FindScenarioOrComplain(typed, context);
+  if (!file) return tl::unexpected(file.error());
+  Validated validated{.file = ReadableName(file->path)};
+  Result<episode::LoadedRun> loaded =
+      episode::LoadRun(RequestOf(options, file->path), context.root, &validated.inputs);
+  validated.diagnostics = ErrorsOf(loaded);
+  if (file->in_project) AddGolden(*file, options, loaded, context.root, validated);
+  if (!loaded) return validated;
+  validated.warnings = std::move(loaded->warnings);
+  std::ranges::move(episode::UndecidedClaims(loaded->scenario, loaded->document, *loaded->program),
+                    std::back_inserter(validated.warnings));
+  return validated;
+}
+
+nlohmann::ordered_json ToJson(const grammar::Diagnostics& diagnostics) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const grammar::Diagnostic& diagnostic : diagnostics) {
+    all.push_back({{"file", diagnostic.file},
+                   {"line", diagnostic.place.line},
+                   {"column", diagnostic.place.column},
+                   {"message", diagnostic.message},
+                   {"hint", diagnostic.hint}});
+  }
+  return all;
+}
+
+nlohmann::ordered_json ToJson(const Validated& validated) {
+  return {{"file", validated.file},
+          {"ok", validated.diagnostics.empty()},
+          {"diagnostics", ToJson(validated.diagnostics)},
+          {"warnings", ToJson(validated.warnings)}};
+}
+
+/// What was typed; by default every scenario, or with --grammar that grammar alone.
+std::vector<std::string> Names(const ParsedOptions& options, const CommandContext& context) {
+  std::vector<std::string> names = options.All("files");
+  if (!names.empty()) return names;
+  if (options.Has("--grammar"))
+    return {episode::GrammarFile(context.root, options.Text("--grammar"))};
+  for (const episode::ScenarioFile& file : episode::ListScenarios(context.root))
+    names.push_back(episode::IdOf(file));
+  return names;
+}
+
+/// Validates everything, then again what a saved file affects, and new scenarios.
+[[noreturn]] void Watch(const ParsedOptions& options, const CommandContext& context) {
+  constexpr auto kPeriod = std::chrono::milliseconds(300);
+  std::map<std::string, FileHashes> seen;
+  for (;; std::this_thread::sleep_for(kPeriod)) {
+    for (const std::string& name : Names(options, context)) {
+      const auto known = seen.find(name);
+      const bool affected =
+          known == seen.end() || std::ranges::any_of(known->second, [](const auto& file) {
+            return FileHash(file.first) != file.second;
+          });
+      if (!affected) continue;
+      const auto validated = Validate(name, options, context);
+      seen[name] = validated ? HashFiles(validated->inputs) : FileHashes{};
+      if (!validated) continue;
+      context.out << (validated->diagnostics.empty() ? "ok: " : "wrong: ") << validated->file
+                  << "\n"
+                  << grammar::Format(validated->diagnostics) << std::flush;
+    }
+  }
+}
+
+ExitCode RunValidate(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--on-save")) Watch(options, context);
+  const std::vector<std::string> names = Names(options, context);
+  if (names.empty())
+    return Complain(context, ExitCode::kNothing,
+                    "there is no scenario in " + context.root + "/scenarios");
+  std::vector<Validated> all;
+  for (const std::string& name : names) {
+    auto validated = Validate(name, options, context);
+    if (!validated) return validated.error();
+    all.push_back(std::move(*validated));
+  }
+  const bool everything = options.All("files").empty() && !options.Has("--grammar");
+  for (const suite::UnreferencedGolden& orphan :
+       everything
+           ? suite::FindUnreferencedGoldens(episode::ListScenarios(context.root), context.root)
+           : std::vector<suite::UnreferencedGolden>())
+    all.push_back(ValidateOrphan(orphan));
+
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  grammar::Diagnostics diagnostics;
+  for (const Validated& validated : all) {
+    json.push_back(ToJson(validated));
+    diagnostics.insert(diagnostics.end(), validated.diagnostics.begin(),
+                       validated.diagnostics.end());
+    Warn(context, validated.warnings);
+    if (!options.Has("--json") && validated.diagnostics.empty())
+      context.out << "ok: " << validated.file << "\n" << validated.description;
+  }
+  if (options.Has("--json")) context.out << nlohmann::ordered_json{{"files", json}}.dump(2) << "\n";
+  return diagnostics.empty() ? ExitCode::kAgrees : Complain(context, diagnostics);
+}
+
+}  // namespace
+
+Command ValidateCommand() {
+  return {.name = "validate",
+          .summary = "Read scenarios, grammars and goldens without running anything",
+          .examples = {"validate", "validate milk_carton_wrap my/scenario.yaml",
+                       "validate my/rules.grammar", "validate --grammar pick_and_place",
+                       "validate --on-save"},
+          .options = {{.name = "files",
+                       .help = "scenarios (names or files), .grammar or .timeline files; default: "
+                               "all scenarios",
+                       .repeatable = true},
+                      GrammarOption(),
+                      SettingsOption(),
+                      JsonOption(),
+                      {.name = "--on-save",
+                       .help = "validate again what a saved file affects, until interrupted"}},
+          .run = RunValidate};
+}
+
+}  // namespace prehend::cli

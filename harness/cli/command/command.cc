@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// What commands share. Tested by tests/program/command_line_test.cc
+#include "harness/cli/command/command.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <thread>
+#include <utility>
+
+#include "harness/base/base/shell_quote.h"
+#include "harness/base/process/worker_pool.h"
+#include "harness/episode/episode/lacks.h"
+
+namespace prehend::cli {
+namespace {
+
+constexpr std::uint64_t kMemoryLimit_mb = 4000;
+// What has no end by itself, or does as much as it is told to: no limit of time unless one is
+// given.
+constexpr const char* kEndless[] = {"--on-save", "--trials"};
+
+bool HasOption(const Command& command, const std::string& name) {
+  return std::ranges::any_of(command.options,
+                             [&](const Option& option) { return option.name == name; });
+}
+
+WorkerLimits LimitsOf(const ParsedOptions& options, const std::vector<std::string>& endless,
+                      double time_limit_s) {
+  if (std::ranges::any_of(endless, [&](const std::string& name) { return options.Has(name); }))
+    time_limit_s = 0;
+#ifdef __SANITIZE_ADDRESS__
+  time_limit_s = 0;  // several times slower; shadow memory exceeds any limit
+  constexpr std::uint64_t memory_limit_mb = 0;
+#else
+  const std::uint64_t memory_limit_mb = options.UnsignedOr("--memory-limit-mb", kMemoryLimit_mb);
+#endif
+  return {.jobs = 1,
+          .time_limit_s = options.NumberOr("--time-limit-s", time_limit_s),
+          .memory_limit_bytes = memory_limit_mb * kMegabyte};
+}
+
+}  // namespace
+
+Command Limited(Command command, double time_limit_s) {
+  std::vector<std::string> endless;
+  for (const char* name : kEndless) {
+    if (HasOption(command, name)) endless.emplace_back(name);
+  }
+  command.options =
+      Joined(std::move(command.options), {TimeLimitOption(0, 86400), MemoryLimitOption()});
+  command.run = [run = std::move(command.run), endless, time_limit_s](
+                    const ParsedOptions& options, const CommandContext& context) {
+    const LimitedEnd end = RunWithinLimits([&] { return static_cast<int>(run(options, context)); },
+                                           LimitsOf(options, endless, time_limit_s));
+    if (end.reason.empty()) return static_cast<ExitCode>(end.status);
+    const bool by_limit =
+        end.reason.starts_with("no end after") || end.reason.starts_with("it needs more memory");
+    return Complain(context, ExitCode::kFailure,
+                    end.reason + (by_limit ? "; see --time-limit-s and --memory-limit-mb" : ""));
+  };
+  return command;
+}
+
+int CoreCount() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+episode::RunRequest RequestOf(const ParsedOptions& options, const std::string& scenario_file) {
+  return {.scenario_file = scenario_file,
+          .grammar = options.Text("--grammar"),
+          .settings = options.All("--set")};
+}
+
+tl::expected<episode::ScenarioFile, ExitCode> FindScenarioOrComplain(
+    const std::string& typed, const CommandContext& context) {
+  const auto found = episode::FindEpisodes({&typed, 1}, "", context.root);
+  if (!found) return tl::unexpected(Complain(context, found.error()));
+  const episode::EpisodeName& first = found->front();
+  if (const std::string lack = episode::Lacks(first, episode::Need::kScenario); !lack.empty())
+    return tl::unexpected(Complain(context, ExitCode::kBadInput, lack));
+  return episode::ScenarioAt(episode::ListScenarios(context.root), first.file);
+}
+
+ExitCode Complain(const CommandContext& context, const episode::NotFound& none) {
+  if (!none.diagnostics.empty()) return Complain(context, none.diagnostics);
+  std::vector<std::string> corrected;
+  if (!none.nearest.empty()) {
+    corrected = context.words;
+    std::ranges::replace(corrected, none.typed, none.nearest);
+  }
+  return ComplainWithCorrection(context, none.exit_code, none.message, corrected);
+}
+
+ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message) {
+  // What cannot have succeeded is not worth repeating; what failed may be looked into.
+  return ComplainWithCorrection(
+      context, code, message,
+      code == ExitCode::kFailure ? context.words : std::vector<std::string>());
+}
+
+ExitCode ComplainWithCorrection(const CommandContext& context, ExitCode code,
+                                const std::string& message,
+                                const std::vector<std::string>& corrected) {
+  context.err << "prehend: " << message << "\n";
+  if (!corrected.empty()) context.err << "  again: " << CommandText(corrected) << "\n";
+  return code;
+}
+
+ExitCode Complain(const CommandContext& context, const grammar::Diagnostics& diagnostics) {
+  constexpr std::size_t kMaxPrinted = 100;  // nobody reads on
+  const std::size_t printed = std::min(diagnostics.size(), kMaxPrinted);
+  for (std::size_t i = 0; i < printed; ++i) context.err << Format(diagnostics[i]);
+  if (printed < diagnostics.size())
+    context.err << "and " << (diagnostics.size() < grammar::kMostDiagnostics ? "" : "at least ")
+                << diagnostics.size() - printed << " more\n";
+  const bool can_be_fixed = std::ranges::any_of(diagnostics, [](const auto& diagnostic) {
+    std::error_code error;
+    return std::filesystem::exists(diagnostic.file, error);
+  });
+  if (can_be_fixed) context.err << "  again: " << CommandText(context.words) << "\n";
+  return ExitCode::kBadInput;
+}
+
+void Warn(const CommandContext& context, const grammar::Diagnostics& warnings) {
+  if (!warnings.empty()) context.err << Format(warnings);
+}
+
+}  // namespace prehend::cli

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// A command of `prehend`: its name, what it accepts, what it does. Each stands in a file of its own
+// and is listed in harness/cli/cli/command_line.cc. Results go to `out`, diagnostics to `err`.
+// Tested by tests/program/command_line_test.cc
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "grammar/base/diagnostic.h"
+#include "harness/base/base/exit_code.h"
+#include "harness/cli/command/options.h"
+#include "harness/cli/command/shared_options.h"
+#include "harness/episode/episode/find_episodes.h"
+#include "harness/episode/run/find_scenario.h"
+#include "harness/episode/run/load_run.h"
+
+namespace prehend::cli {
+
+/// What a command may know about its surroundings.
+struct CommandContext {
+  std::ostream& out;
+  std::ostream& err;
+  std::string root;                ///< the project's folder
+  std::string today;               ///< YYYY-MM-DD
+  std::vector<std::string> words;  ///< what was typed after the program's name
+  bool in_ci = false;              ///< there is no person who could accept a golden
+  bool colored = false;            ///< `out` may be coloured
+  bool progress = false;           ///< `err` is a terminal
+};
+
+struct Command {
+  std::string name;
+  std::string summary;
+  std::vector<std::string> examples;  ///< without the program's name
+  std::vector<Option> options;
+  std::function<ExitCode(const ParsedOptions& options, const CommandContext& context)> run = {};
+  std::string note = {};  ///< said at the end of its --help
+};
+
+Command ListCommand();
+Command PosesCommand();
+Command ValidateCommand();
+Command RunCommand();
+Command CheckCommand();
+Command AcceptCommand();
+Command ReviewCommand();
+Command RenderCommand();
+Command NewCommand();
+Command ImportCommand();
+Command ResegmentCommand();
+Command SchemaCommand();
+Command BenchCommand();
+Command ScoreCommand();
+Command ExplainCommand();
+Command TracksCommand();
+Command EpisodesCommand();
+Command MigrateCommand();
+Command VerifyCommand();
+Command ReportCommand();
+Command QueryCommand();
+Command SweepCommand();
+Command MarginsCommand();
+Command FigureCommand();
+Command TryCommand();
+Command WatchCommand();
+Command KnowledgeCommand();
+Command AskCommand();
+
+/// The same command, in a process of its own, with the options --time-limit-s (`time_limit_s` where
+/// it is not given) and --memory-limit-mb. A run beyond a limit, or one that crashes, ends with
+/// exit code 3 and a message.
+Command Limited(Command command, double time_limit_s);
+
+/// The number of processes that keep this machine busy.
+int CoreCount();
+
+/// --grammar and --set.
+episode::RunRequest RequestOf(const ParsedOptions& options, const std::string& scenario_file);
+
+/// The scenario that was typed, by name or path; otherwise, after reporting the nearest name, or
+/// what an episode of another kind lacks, the exit code.
+tl::expected<episode::ScenarioFile, ExitCode> FindScenarioOrComplain(const std::string& typed,
+                                                                     const CommandContext& context);
+
+/// Prints "prehend: MESSAGE" to `err`, of a failure also the command that shows it again, and
+/// returns `code`.
+ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message);
+
+ExitCode Complain(const CommandContext& context, const episode::NotFound& none);
+
+/// The same, with the words of the command that should have been typed.
+ExitCode ComplainWithCorrection(const CommandContext& context, ExitCode code,
+                                const std::string& message,
+                                const std::vector<std::string>& corrected);
+
+/// Prints what is wrong with files or with values of options. The command is printed again when
+/// there is a file to fix.
+ExitCode Complain(const CommandContext& context, const grammar::Diagnostics& diagnostics);
+
+/// Prints warnings to `err`; nothing when there are none.
+void Warn(const CommandContext& context, const grammar::Diagnostics& warnings);
+
+}  // namespace prehend::cli

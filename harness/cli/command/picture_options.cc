@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/cli/command/picture_options.h. Tested by tests/program/render_test.cc
+#include "harness/cli/command/picture_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace prehend::cli {
+namespace {
+
+ValueRule Themes() {
+  return {"light or print", [](const std::string& value) {
+            return value == "light" || value == "print"
+                       ? std::string()
+                       : fmt::format("expected light or print, found '{}'", value);
+          }};
+}
+
+}  // namespace
+
+std::vector<Option> PartOptions() {
+  return {
+      {.name = "--from",
+       .help = "begin of the part whose events, paths and ghosts are shown, seconds",
+       .placeholder = "S",
+       .rule = NumbersFrom(0, 1e6)},
+      {.name = "--to",
+       .help = "end of that part; default: all, but paths and ghosts of an episode of "
+               "more than 15 s only around the moment",
+       .placeholder = "S",
+       .rule = NumbersFrom(0, 1e6)},
+      {.name = "--hand", .help = "paths, ghosts and rows of this hand only", .placeholder = "HAND"},
+      {.name = "--of",
+       .help = "the path of this thing, and only events that it takes part in",
+       .placeholder = "NAME"}};
+}
+
+std::vector<Option> LookOptions() {
+  return {{.name = "--camera",
+           .help = "from where: front, left, right, top, three_quarter; hand, action or "
+                   "body, which are nearer to what they name; a camera of the scenario; "
+                   "or X,Y,Z:X,Y,Z[:DEG], a place, what it looks at, and the view's height",
+           .placeholder = "CAMERA"},
+          {.name = "--text",
+           .help = "scale of all text; default: 1",
+           .placeholder = "SCALE",
+           .rule = NumbersFrom(0.3, 5)},
+          {.name = "--theme",
+           .help = "light, or print: on white paper",
+           .placeholder = "THEME",
+           .rule = Themes()},
+          {.name = "--transparent", .help = "without a ground: for slides and posters"},
+          {.name = "--regions",
+           .help = "the regions of interest of what hands do at the moment, and a star above "
+                   "each thing that a hand may be reaching for"}};
+}
+
+show::PictureFormat FormatOfOptions(const ParsedOptions& options) {
+  show::PictureFormat format{.text_scale = options.NumberOr("--text", 1),
+                             .print = options.Text("--theme") == "print",
+                             .transparent = options.Has("--transparent"),
+                             .only = options.Text("--hand"),
+                             .of = options.Text("--of"),
+                             .regions = options.Has("--regions")};
+  if (options.Has("--from")) format.from_s = options.NumberOr("--from", 0);
+  if (options.Has("--to")) format.to_s = options.NumberOr("--to", 0);
+  return format;
+}
+
+std::string WhyNoPart(const show::PictureFormat& format, const scenario::Scenario& scenario) {
+  if (format.from_s.value_or(0) >= format.to_s.value_or(1e9))
+    return fmt::format("--from: found {:g} s, wanted less than --to, {:g} s",
+                       format.from_s.value_or(0), format.to_s.value_or(0));
+  const auto unknown = [](const char* option, const std::string& name,
+                          const std::vector<std::string>& known) -> std::string {
+    if (name.empty() || std::ranges::find(known, name) != known.end()) return "";
+    return fmt::format("{}: found '{}', wanted one of {}", option, name, fmt::join(known, ", "));
+  };
+  std::vector<std::string> hands, all;
+  for (const physics::Hand& hand : scenario.scene.hands) hands.push_back(hand.name);
+  for (const physics::Body& body : scenario.scene.bodies) all.push_back(body.name);
+  all.insert(all.end(), hands.begin(), hands.end());
+  const std::string why = unknown("--hand", format.only, hands);
+  return why.empty() ? unknown("--of", format.of, all) : why;
+}
+
+std::string WhyNotShown(const ParsedOptions& options, const scenario::Scenario& scenario,
+                        const episode::RunResult& run) {
+  std::string why = WhyNoPart(FormatOfOptions(options), scenario);
+  const double from_s = options.NumberOr("--from", 0), end_s = show::WholeOf(run).to_s;
+  if (why.empty() && from_s >= end_s)
+    why = fmt::format("--from: found {:g} s, wanted less than the episode's end, {:g} s", from_s,
+                      end_s);
+  if (!why.empty() || !options.Has("--camera")) return why;
+  const auto no_camera = scenario::WhyNoCamera(scenario, options.Text("--camera"));
+  return no_camera ? "--" + *no_camera : "";
+}
+
+show::Window WindowOf(const ParsedOptions& options, const episode::RunResult& run) {
+  show::Window window = show::WholeOf(run);
+  window.from_s = options.NumberOr("--from", window.from_s);
+  window.to_s = std::min(window.to_s, options.NumberOr("--to", window.to_s));
+  window.hand = options.Text("--hand");
+  window.entity = options.Text("--of");
+  return window;
+}
+
+show::SceneFormat SceneFormatOf(const ParsedOptions& options, const std::string& camera,
+                                double width_px) {
+  return {.camera = options.TextOr("--camera", camera),
+          .picture = FormatOfOptions(options),
+          .chart = {.width_px = width_px,
+                    .text_px = 12 * options.NumberOr("--text", 1),
+                    .transparent = options.Has("--transparent")}};
+}
+
+std::vector<std::string> WordsOf(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return words;
+}
+
+}  // namespace prehend::cli

@@ -1,7 +1,0 @@
-// SPDX-License-Identifier: Apache-2.0
-// prehend: see harness/cli/command_line.h.
-#include "harness/cli/command_line.h"
-
-int main(int argc, char** argv) {
-  return static_cast<int>(prehend::harness::RunCommandLine(argc, argv));
-}

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// An episode: something with entities, a rate, frames and an end, whatever it came from.
+// OpenEpisode() in harness/episode/episode/open_episode.h opens one; a scenario is simulated when
+// its frames are asked for. Tested by tests/program/episode_kinds_test.cc
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/episode/episodes/load_episode.h"
+#include "harness/episode/run/episode_name.h"
+#include "harness/episode/run/segment_recording.h"
+
+namespace prehend::episode {
+
+using GrammarChoice = GrammarChoice;
+
+class Episode {
+ public:
+  const EpisodeName& name() const { return name_; }
+  /// Otherwise nothing is known but what a grammar sees: no forces, no ground truth.
+  bool was_simulated() const { return name_.origin != Origin::kRecording; }
+  /// The scenario and the grammar, with its warnings. Of a recording the scenario has the scene
+  /// that stands in for it: for pictures, not to be sensed.
+  const LoadedRun& loaded() const { return loaded_; }
+  LoadedRun& loaded() { return loaded_; }
+  const std::shared_ptr<const grammar::Program>& program() const { return loaded_.program; }
+  grammar::EntityTable entities() const;
+  /// Null unless it is one of an episode file.
+  const EpisodeRow* row() const { return file_ ? &row_ : nullptr; }
+  const EpisodeFile* file() const { return file_.get(); }
+  /// Null if it was simulated.
+  Recording* recording() { return recording_ ? &*recording_ : nullptr; }
+
+  /// What `prehend run` prints; a scenario is simulated, once. `frames`: with every snapshot.
+  Result<RunResult> Run(bool frames);
+  /// After Run(): of a recording, what it does not have of what the grammar asks for.
+  const MissingFacts& missing() const { return missing_; }
+  /// The same of a recording, with what it does not have of what the grammar asks for.
+  Result<SegmentedRecording> SegmentRecorded();
+  /// What was recognised when it was recorded; of a scenario, what its run recognises.
+  Result<grammar::Timeline> Recorded();
+
+  struct End {
+    grammar::Tick tick = 1;  ///< the first one after the episode
+    std::string failure;     ///< "", or why its simulation ended early
+  };
+  /// Calls `look` with every frame that a grammar sees.
+  End EachFrame(const std::function<void(const grammar::Frame&)>& look);
+
+  /// What any grammar recognises. The frames are simulated or read once, and kept.
+  Result<grammar::Timeline> Segment(const std::shared_ptr<const grammar::Program>& program);
+  /// One per tick of physics.
+  Result<std::vector<physics::Snapshot>> Snapshots();
+  /// The first tick after the episode; an error if it did not come to a good end.
+  Result<grammar::Tick> EndTick();
+
+ private:
+  friend class EpisodeOpener;
+  Episode(EpisodeName name, LoadedRun loaded)
+      : name_(std::move(name)), loaded_(std::move(loaded)) {}
+
+  const RunResult& Played();
+  Result<std::vector<physics::Snapshot>> ReadSnapshots(
+      const std::function<bool(std::int64_t)>& wanted) const;
+  tl::unexpected<grammar::Diagnostics> Failure(const std::string& message) const;
+
+  EpisodeName name_;
+  LoadedRun loaded_;
+  std::shared_ptr<const EpisodeFile> file_;
+  EpisodeRow row_;
+  std::optional<Recording> recording_;
+  MissingFacts missing_;
+  std::optional<RunResult> played_;                       ///< of a scenario, with its snapshots
+  std::optional<std::vector<physics::Snapshot>> sensed_;  ///< of a recorded run, what is due
+};
+
+}  // namespace prehend::episode

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// What was typed -> names of episodes. The one place that looks at a file to find out which kind it
+// is. Tested by tests/program/episode_kinds_test.cc
+#pragma once
+
+#include <span>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "harness/base/base/exit_code.h"
+#include "harness/base/base/result.h"
+#include "harness/episode/run/episode_name.h"
+
+namespace prehend::episode {
+
+enum class EpisodeKind { kScenario, kJsonLines, kEpisodeFile };
+
+/// By its first bytes, or its ending if it does not exist; what is neither is a scenario's name.
+EpisodeKind EpisodeKindOf(const std::string& typed);
+
+/// Why there are no such episodes.
+struct NotFound {
+  ExitCode exit_code = ExitCode::kBadInput;
+  std::string message;               ///< or
+  grammar::Diagnostics diagnostics;  ///< of files that cannot be read
+  std::string typed, nearest;        ///< a scenario that does not exist, and what was meant; or ""
+};
+
+/// The episodes of all that was typed, in its order: scenarios (name, skill/name or file),
+/// recordings, and of episode files those that `which` selects: a number, a scenario (name,
+/// skill/name) or a glob; "": all. Never empty. `root`: the project's.
+tl::expected<std::vector<EpisodeName>, NotFound> FindEpisodes(std::span<const std::string> typed,
+                                                              const std::string& which,
+                                                              const std::string& root);
+/// Where a single one is wanted.
+tl::expected<EpisodeName, NotFound> FindEpisode(const std::string& typed, const std::string& which,
+                                                const std::string& root);
+
+/// All of one episode file.
+Result<std::vector<EpisodeName>> EpisodesOf(const std::string& file);
+
+}  // namespace prehend::episode

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one place that opens an episode, of any kind. Tested by tests/program/episode_kinds_test.cc
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "harness/episode/episode/episode.h"
+
+namespace prehend::episode {
+
+/// Opens episodes one after another; what several of them need is read once.
+class EpisodeOpener {
+ public:
+  /// `root`: the project's.
+  explicit EpisodeOpener(std::string root) : root_(std::move(root)), loader_(root_) {}
+
+  /// Reads the scenario and the grammar, of a recording its frames, too. `choice`: settings of a
+  /// scenario may be fields of it. `files` receives what a scenario was read from.
+  Result<Episode> Open(const EpisodeName& name, const GrammarChoice& choice = {},
+                       std::vector<std::string>* files = nullptr);
+
+ private:
+  Result<Episode> OpenLines(const EpisodeName& name, const GrammarChoice& choice);
+  Result<Episode> OpenKept(const EpisodeName& name, const GrammarChoice& choice);
+
+  std::string root_;
+  EpisodeLoader loader_;
+  std::shared_ptr<const EpisodeFile> file_;
+};
+
+/// A single one.
+Result<Episode> OpenEpisode(const EpisodeName& name, const GrammarChoice& choice,
+                            const std::string& root, std::vector<std::string>* files = nullptr);
+
+}  // namespace prehend::episode

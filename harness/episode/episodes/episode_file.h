@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads an episode file: what episodes it has, what they were made from, their events, and any
+// frame of them. Tested by tests/harness/episode/episodes/episode_file_test.cc
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "grammar/base/timeline.h"
+#include "harness/base/base/result.h"
+#include "harness/episode/episodes/schema.h"
+#include "harness/episode/episodes/task_files.h"
+#include "harness/episode/frames/frame_player.h"
+#include "physics/simulation.h"
+
+namespace prehend::episode {
+
+struct EpisodeRow {
+  std::int64_t id = 0;
+  std::string uuid;
+  std::string scenario;   ///< skill/name
+  std::string status;     ///< recording (not finished), completed, failed, unfinished
+  bool simulated = true;  ///< otherwise a recording: frames as a grammar sees them
+  std::string grammar;
+  grammar::Tick ticks_per_second = 480;
+  grammar::Tick ticks = 0;  ///< of one that is not finished: those that can be read
+  std::string state_hash;   ///< "0x.."; empty if it is not finished
+  std::string outcome;
+  std::string recorded_on;
+  physics::RunStatus end;  ///< how the run ended; one that is not finished has failed
+};
+
+/// An entity as a file keeps it.
+struct KeptEntity {
+  std::string name;
+  std::vector<std::string> classes;   ///< the most specific first
+  int part_of = -1;                   ///< index of an entity of the same episode, or -1
+  std::string uuid;                   ///< the same in all episodes of a task
+  double mass_kg = 0;                 ///< 0: it has none
+  std::array<double, 3> size_m = {};  ///< of its bounding box
+};
+
+/// What was run, as a file keeps it.
+struct KeptTask {
+  struct Asset {
+    std::string path, hash;  ///< XXH3 of its content
+  };
+  std::string uuid, shows;
+  std::vector<Asset> assets;
+};
+
+/// A file that is open for reading. Functions that return a Result report damage with the file.
+class EpisodeFile {
+ public:
+  static Result<EpisodeFile> Open(const std::string& path);
+  /// A file of an older version, to be migrated.
+  static Result<EpisodeFile> OpenOld(const std::string& path);
+  ~EpisodeFile();
+  EpisodeFile(EpisodeFile&&) noexcept;
+
+  const std::string& path() const { return path_; }
+  /// Of its format.
+  std::int64_t version() const { return version_; }
+  /// In the order in which they were begun.
+  const std::vector<EpisodeRow>& episodes() const { return episodes_; }
+
+  Result<TaskFiles> TaskOf(const EpisodeRow& episode) const;
+  /// The same without the contents of its files.
+  Result<KeptTask> DescribeTaskOf(const EpisodeRow& episode) const;
+  /// What was recognised when it was recorded.
+  Result<grammar::Timeline> TimelineOf(const EpisodeRow& episode) const;
+  /// In the order of their numbers.
+  Result<std::vector<KeptEntity>> EntitiesOf(const EpisodeRow& episode) const;
+  Result<std::vector<physics::ScriptNote>> NotesOf(const EpisodeRow& episode) const;
+
+  /// Calls `look` with this part of each chunk, in their order. Returns "", or what is damaged: a
+  /// part that is missing, or for which `look` says false.
+  std::string EachPart(const EpisodeRow& episode, std::size_t part,
+                       const std::function<bool(std::string_view)>& look) const;
+
+ private:
+  friend class EpisodeFrames;
+  struct State;
+  EpisodeFile(std::string path, std::unique_ptr<State> state);
+  static Result<EpisodeFile> OpenAny(const std::string& path, Versions wanted);
+
+  std::string path_;
+  std::int64_t version_ = kSchemaVersion;
+  std::unique_ptr<State> state_;
+  std::vector<EpisodeRow> episodes_;
+};
+
+/// The frames of one episode. The file outlives it.
+class EpisodeFrames {
+ public:
+  EpisodeFrames(const EpisodeFile& file, const EpisodeRow& episode, FrameLayout layout);
+  ~EpisodeFrames();
+
+  /// Calls `look` with each frame that is `wanted`, in their order. Returns "", or what is damaged.
+  std::string Play(const std::function<void(const physics::Snapshot&)>& look,
+                   const std::function<bool(std::int64_t tick)>& wanted = {}, bool links = true);
+
+  /// The last frame up to this tick; nothing if there is none, or it is damaged. Which bodies may
+  /// have moved is not known of it. Takes time with the logarithm of the number of frames.
+  std::optional<physics::Snapshot> At(std::int64_t tick);
+
+  struct Moment {
+    std::int64_t tick = 0;
+    physics::BodyState body;
+  };
+  /// All frames of one body. Nothing if it is damaged.
+  std::optional<std::vector<Moment>> TrackOf(std::size_t body);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+  std::string damage_;  ///< why there is no state
+};
+
+}  // namespace prehend::episode

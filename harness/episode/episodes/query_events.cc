@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/episode/episodes/query_events.h. Tested by tests/program/query_test.cc
+#include "harness/episode/episodes/query_events.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+
+#include "grammar/base/allen.h"
+#include "grammar/base/diagnostic.h"
+
+namespace prehend::episode {
+namespace {
+
+bool Fits(const std::string& pattern, const std::string& text) {
+  return fnmatch(pattern.c_str(), text.c_str(), 0) == 0;
+}
+
+const KeptEntity* EntityNamed(const std::string& name, const std::vector<KeptEntity>& entities) {
+  const auto found = std::ranges::find(entities, name, &KeptEntity::name);
+  return found == entities.end() ? nullptr : &*found;
+}
+
+class Asker {
+ public:
+  Asker(const EventQuestion& question, const std::vector<KeptEntity>& entities,
+        const grammar::Timeline& timeline)
+      : question_(question), entities_(entities), timeline_(timeline) {}
+
+  bool Holds(const grammar::NamedEvent& event) const {
+    const auto seconds = [&](grammar::Tick ticks) {
+      return static_cast<double>(ticks) / static_cast<double>(timeline_.ticks_per_second);
+    };
+    const double begin = seconds(event.interval.begin), end = seconds(event.interval.end);
+    if (!question_.event.empty() && !Fits(question_.event, event.event)) return false;
+    if (question_.at_least_s && end - begin < *question_.at_least_s) return false;
+    if (question_.at_most_s && end - begin > *question_.at_most_s) return false;
+    if (question_.from_s && begin < *question_.from_s) return false;
+    if (question_.until_s && end > *question_.until_s) return false;
+    return AllHold(question_.roles, event,
+                   [](const std::string& value, const std::string& wanted) {
+                     return Fits(wanted, value);
+                   }) &&
+           AllHold(question_.classes, event,
+                   [&](const std::string& value, const std::string& wanted) {
+                     const KeptEntity* entity = Find(value);
+                     return entity && IsA(*entity, wanted);
+                   }) &&
+           AllHold(question_.parts_of, event,
+                   [&](const std::string& value, const std::string& wanted) {
+                     return IsPartOf(value, wanted);
+                   }) &&
+           std::ranges::all_of(question_.relations,
+                               [&](const EventQuestion::Relation& relation) {
+                                 return HasRelation(event, relation);
+                               }) &&
+           (question_.with.empty() || HasParts(event));
+  }
+
+ private:
+  template <typename Test>
+  static bool AllHold(const std::vector<RoleCondition>& conditions,
+                      const grammar::NamedEvent& event, const Test& test) {
+    return std::ranges::all_of(conditions, [&](const RoleCondition& condition) {
+      return std::ranges::any_of(event.roles, [&](const grammar::Role& role) {
+        return (condition.role == "any" || condition.role == role.name) &&
+               test(role.value, condition.value);
+      });
+    });
+  }
+
+  bool HasParts(const grammar::NamedEvent& event) const {
+    const auto parts = PartsOf(event, timeline_, entities_);
+    return std::ranges::all_of(question_.with, [&](const std::string& name) {
+      return std::ranges::any_of(
+          parts, [&](const grammar::NamedEvent* part) { return Fits(name, part->event); });
+    });
+  }
+
+  const KeptEntity* Find(const std::string& name) const { return EntityNamed(name, entities_); }
+
+  static bool IsA(const KeptEntity& entity, const std::string& wanted) {
+    return std::ranges::any_of(entity.classes,
+                               [&](const std::string& known) { return Fits(wanted, known); });
+  }
+
+  bool IsPartOf(const std::string& name, const std::string& wanted) const {
+    const KeptEntity* entity = Find(name);
+    for (std::size_t step = 0; entity && step < entities_.size(); ++step) {
+      const auto whole = static_cast<std::size_t>(entity->part_of);
+      if (entity->part_of < 0 || whole >= entities_.size()) return false;
+      entity = &entities_[whole];
+      if (Fits(wanted, entity->name) || IsA(*entity, wanted)) return true;
+    }
+    return false;
+  }
+
+  bool HasRelation(const grammar::NamedEvent& event,
+                   const EventQuestion::Relation& relation) const {
+    return std::ranges::any_of(timeline_.events, [&](const grammar::NamedEvent& other) {
+      return &other != &event && Fits(relation.event, other.event) &&
+             grammar::kAllenNames[static_cast<std::size_t>(
+                 grammar::Relate(event.interval, other.interval))] == relation.relation;
+    });
+  }
+
+  const EventQuestion& question_;
+  const std::vector<KeptEntity>& entities_;
+  const grammar::Timeline& timeline_;
+};
+
+}  // namespace
+
+std::vector<const grammar::NamedEvent*> PartsOf(const grammar::NamedEvent& whole,
+                                                const grammar::Timeline& timeline,
+                                                const std::vector<KeptEntity>& entities) {
+  std::vector<const grammar::NamedEvent*> parts;
+  for (const grammar::NamedEvent& event : timeline.events) {
+    if (&event == &whole || event.interval.begin < whole.interval.begin ||
+        event.interval.begin >= whole.interval.end)
+      continue;
+    const bool same_participants = std::ranges::all_of(event.roles, [&](const auto& role) {
+      return std::ranges::any_of(whole.roles, [&](const grammar::Role& other) {
+        return other.value == role.value || !EntityNamed(role.value, entities);
+      });
+    });
+    if (same_participants) parts.push_back(&event);
+  }
+  return parts;
+}
+
+std::optional<RoleCondition> ParseRoleCondition(std::string_view text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string_view::npos || equals == 0 || equals + 1 == text.size())
+    return std::nullopt;
+  return RoleCondition{std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
+}
+
+std::optional<EventQuestion::Relation> ParseRelation(std::string_view text, std::string& problem) {
+  const std::size_t blank = text.find(' ');
+  const std::string name(text.substr(0, blank));
+  const std::vector<std::string> known(grammar::kAllenNames.begin(), grammar::kAllenNames.end());
+  if (std::ranges::find(known, name) == known.end()) {
+    const std::string near = grammar::NearestName(name, known);
+    problem = fmt::format("found '{}', wanted one of Allen's relations; {}", name,
+                          near.empty() ? fmt::format("they are {}", fmt::join(known, ", "))
+                                       : fmt::format("did you mean '{}'?", near));
+    return std::nullopt;
+  }
+  if (blank == std::string_view::npos || blank + 1 == text.size()) {
+    problem =
+        fmt::format("found '{}', wanted an event after it, like '{} transporting'", text, name);
+    return std::nullopt;
+  }
+  return EventQuestion::Relation{name, std::string(text.substr(blank + 1))};
+}
+
+Result<std::vector<EventAnswer>> Ask(const std::string& path, const EventQuestion& question,
+                                     KnownNames& known) {
+  const Result<EpisodeFile> file = EpisodeFile::Open(path);
+  if (!file) return tl::unexpected(file.error());
+  std::vector<EventAnswer> answers;
+  for (const EpisodeRow& row : file->episodes()) {
+    const std::size_t slash = row.scenario.rfind('/');
+    const std::string name = slash == std::string::npos ? "" : row.scenario.substr(slash + 1);
+    if (!question.scenario.empty() && !Fits(question.scenario, row.scenario) &&
+        !Fits(question.scenario, name))
+      continue;
+    const Result<grammar::Timeline> timeline = file->TimelineOf(row);
+    if (!timeline) return tl::unexpected(timeline.error());
+    const Result<std::vector<KeptEntity>> entities = file->EntitiesOf(row);
+    if (!entities) return tl::unexpected(entities.error());
+    const Asker asker(question, *entities, *timeline);
+    for (const grammar::NamedEvent& event : timeline->events) {
+      known.events.insert(event.event);
+      for (const grammar::Role& role : event.roles) known.roles.insert(role.name);
+      if (!asker.Holds(event)) continue;
+      EventAnswer& answer = answers.emplace_back();
+      answer = {path, row.id, row.scenario, row.ticks_per_second, event, {}};
+      for (const grammar::NamedEvent* part : PartsOf(event, *timeline, *entities))
+        answer.parts.push_back(*part);
+    }
+  }
+  return answers;
+}
+
+}  // namespace prehend::episode

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/episode/episodes/record_episode.h. Tested by
+// tests/harness/episode/episodes/episode_file_test.cc
+#include "harness/episode/episodes/record_episode.h"
+
+#include "harness/episode/episodes/schema.h"
+#include "harness/episode/episodes/task_files.h"
+#include "harness/episode/episodes/write_rows.h"
+#include "harness/episode/frames/chunk.h"
+#include "harness/episode/sense/entity_table.h"
+
+namespace prehend::episode {
+namespace {
+
+const char* EngineName(physics::Engine engine) {
+  switch (engine) {
+    case physics::Engine::kBullet:
+      return "bullet";
+    case physics::Engine::kBox2d:
+      return "box2d";
+    case physics::Engine::kBulletStock:
+      return "bullet_stock";
+  }
+  return "";
+}
+
+NewTask TaskOf(const RecordRequest& request, const scenario::Scenario& scenario) {
+  return {.files = PackTask(request.run, request.files, request.root),
+          .scenario = ScenarioId(scenario.skill, scenario.name),
+          .shows = scenario.shows,
+          .entities = MakeEntityTable(scenario)};
+}
+
+NewEpisode EpisodeOf(const RecordRequest& request, const scenario::Scenario& scenario) {
+  return {.grammar = scenario.grammar,
+          .ticks_per_second = scenario.scene.world.rate_hz,
+          .engine = EngineName(scenario.scene.world.engine),
+          .seed = static_cast<std::int64_t>(scenario.scene.world.seed),
+          .program_hash = request.program_hash,
+          .recorded_on = request.recorded_on};
+}
+
+}  // namespace
+
+struct EpisodeRecorder::State {
+  Database database;
+  const scenario::Scenario& scenario;
+  std::int64_t episode;
+  ChunkWriter writer;
+  ChunkRows rows;
+
+  State(Database opened, const scenario::Scenario& played, std::int64_t id)
+      : database(std::move(opened)),
+        scenario(played),
+        episode(id),
+        writer(LayoutOf(played.scene)),
+        rows(database, id) {}
+};
+
+EpisodeRecorder::EpisodeRecorder(const RecordRequest& request, const scenario::Scenario& scenario)
+    : file_(request.file) {
+  try {
+    Database database = OpenToWrite(request.file);
+    Transaction transaction(database);
+    const std::int64_t task = WriteTask(database, TaskOf(request, scenario));
+    const std::int64_t episode = WriteEpisode(database, task, EpisodeOf(request, scenario));
+    transaction.Commit();
+    state_ = std::make_unique<State>(std::move(database), scenario, episode);
+  } catch (const DatabaseError& error) {
+    problem_ = file_ + ": " + error.what();
+  }
+}
+
+EpisodeRecorder::~EpisodeRecorder() = default;
+EpisodeRecorder::EpisodeRecorder(EpisodeRecorder&&) noexcept = default;
+
+void EpisodeRecorder::Add(const physics::Snapshot& snapshot) {
+  if (!problem_.empty()) return;
+  state_->writer.Add(snapshot);
+  if (state_->writer.IsFull()) WriteChunk();
+}
+
+void EpisodeRecorder::WriteChunk() {
+  State& state = *state_;
+  const Chunk chunk = state.writer.Take();
+  try {
+    Transaction transaction(state.database);
+    state.rows.Write(chunk);
+    transaction.Commit();
+  } catch (const DatabaseError& error) {
+    problem_ = file_ + ": " + error.what();
+  }
+}
+
+void EpisodeRecorder::Finish(const RunResult& run) {
+  if (problem_.empty() && state_->writer.frames() > 0) WriteChunk();
+  if (!problem_.empty()) return;
+  State& state = *state_;
+  const bool completed = run.status.kind == physics::RunStatus::Kind::kCompleted;
+  try {
+    Transaction transaction(state.database);
+    WriteEnd(state.database, state.episode, completed ? kCompleted : kFailed, run,
+             MakeEntityTable(state.scenario));
+    transaction.Commit();
+  } catch (const DatabaseError& error) {
+    problem_ = file_ + ": " + error.what();
+  }
+}
+
+std::string WhyNotRecordable(const std::string& file) {
+  try {
+    (void)OpenToWrite(file);
+  } catch (const DatabaseError& error) {
+    return file + ": " + error.what();
+  }
+  return "";
+}
+
+}  // namespace prehend::episode

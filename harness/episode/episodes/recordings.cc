@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/episode/episodes/recordings.h. Tested by
+// tests/harness/episode/episodes/recordings_test.cc
+#include "harness/episode/episodes/recordings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "grammar/contents.h"
+#include "harness/episode/episodes/schema.h"
+#include "harness/episode/episodes/write_rows.h"
+#include "harness/episode/frames/recorded_frames.h"
+#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/sense/episode_stream.h"
+#include "physics/scene/state_hash.h"
+
+namespace prehend::episode {
+namespace {
+
+constexpr std::size_t kMostChunkBytes = std::size_t{1} << 28;
+/// Of a recording, a chunk has one part.
+constexpr std::size_t kFramesPart = 0;
+
+grammar::Diagnostics NotRead(const EpisodeFile& file, const EpisodeRow& row,
+                             const std::string& message) {
+  return {{.file = file.path(),
+           .place = {},
+           .message = fmt::format("episode {} ({}): {}", row.id, row.scenario, message),
+           .source_line = {},
+           .hint = {}}};
+}
+
+std::string FirstLine(const EpisodeHeader& header) {
+  std::ostringstream line;
+  const EpisodeWriter writer(line, header);
+  return std::move(line).str();
+}
+
+/// `where`: for messages.
+Result<EpisodeHeader> ReadFirstLine(const std::string& where, const std::string& line) {
+  EpisodeStream stream(where);
+  grammar::Diagnostics wrong = stream.Take(line);
+  if (!wrong.empty()) return tl::unexpected(std::move(wrong));
+  return stream.header();
+}
+
+bool IsPath(const std::string& grammar) {
+  return grammar.find('/') != std::string::npos || grammar.ends_with(".grammar");
+}
+
+NewTask TaskOf(const ImportRequest& request, const EpisodeHeader& header,
+               const std::vector<std::string>& grammars) {
+  std::string asked = request.grammar;
+  if (asked.empty() && IsPath(header.grammar)) asked = header.grammar;
+  NewTask task{.files = PackTask({request.source, asked, {}}, grammars, request.root),
+               .scenario = header.episode,
+               .shows = {},
+               .entities = header.entity_table};
+  task.files.files[kHeaderFile] = FirstLine(header);
+  return task;
+}
+
+void WriteFrames(const Database& database, std::int64_t row, const Recording& recording) {
+  ChunkRows rows(database, row);
+  Compressor compressor(9);
+  std::span<const EpisodeFrame> left = recording.frames;
+  while (!left.empty()) {
+    const auto frames = left.first(FramesOfChunk(left));
+    const std::string bytes = EncodeRecordedFrames(frames, recording.placed,
+                                                   recording.header.entity_table.ticks_per_second);
+    rows.Write({.first_tick = frames.front().tick,
+                .last_tick = frames.back().tick,
+                .frames = frames.size(),
+                .parts = {{kFramesPart, std::string(compressor.Pack(bytes))}}});
+    left = left.subspan(frames.size());
+  }
+}
+
+}  // namespace
+
+std::uint64_t HashOfFrames(const Recording& recording) {
+  physics::StateHash hash;
+  const auto add = [&](double value) { hash.Add(&value, 1); };
+  const auto add_integer = [&](std::int64_t value) { hash.Add(static_cast<std::uint64_t>(value)); };
+  for (const EpisodeFrame& frame : recording.frames) {
+    add_integer(frame.tick);
+    for (const grammar::EntitySample& look : frame.entities) {
+      hash.Add({.X_WB = {look.p_WB_m, look.q_WB},
+                .v_WB_m_per_s = look.v_WB_m_per_s,
+                .w_WB_rad_per_s = look.w_WB_rad_per_s});
+      add(look.joint_position);
+      add(look.joint_fraction);
+      add_integer(look.gazes_at);
+    }
+    for (const grammar::HandSample& hand : frame.hands) {
+      add(hand.trigger);
+      add_integer(hand.style);
+      hash.Add(hand.ahead_W.data(), 3);
+    }
+    for (const auto& of_hand : frame.collision_spheres) {
+      for (const grammar::CollisionSphere& sphere : of_hand) {
+        hash.Add(sphere.p_W_m.data(), 3);
+        add(sphere.radius_m);
+      }
+    }
+    for (const grammar::Touch& touch : frame.touches) {
+      add_integer(touch.a);
+      add_integer(touch.b);
+      add(touch.up_on_a);
+      add(touch.up_on_b);
+      add(touch.normal_force_n);
+      add(touch.vertical_speed_m_per_s);
+      hash.Add(touch.p_W_m.data(), 3);
+      hash.Add(touch.nhat_BA_W.data(), 3);
+      add_integer(touch.sensor_sets);
+    }
+  }
+  return hash.value();
+}
+
+Result<ImportedRecording> ImportRecording(const ImportRequest& request, Recording& recording) {
+  // What is segmented now is what is read later.
+  Result<EpisodeHeader> kept = ReadFirstLine(request.source, FirstLine(recording.header));
+  if (!kept) return tl::unexpected(std::move(kept.error()));
+  recording.header = std::move(*kept);
+  std::vector<std::string> grammars;
+  grammar::CompileResult compiled =
+      LoadGrammarOf(recording.header, request.grammar, request.root, {}, &grammars);
+  if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
+  auto segmented = SegmentRecording(recording, std::move(compiled.program), request.source);
+  if (!segmented) return tl::unexpected(std::move(segmented.error()));
+  ImportedRecording imported{.segmented = std::move(*segmented), .problem = {}};
+  const EpisodeHeader& header = recording.header;
+  RunResult end;
+  end.ticks = recording.end_tick - 1;
+  end.state_hash = HashOfFrames(recording);
+  end.timeline = imported.segmented.timeline;
+  try {
+    const Database database = OpenToWrite(request.file);
+    Transaction transaction(database);
+    const std::int64_t task = WriteTask(database, TaskOf(request, header, grammars));
+    const std::int64_t row = WriteEpisode(database, task,
+                                          {.grammar = GrammarName(*imported.segmented.program),
+                                           .ticks_per_second = header.entity_table.ticks_per_second,
+                                           .engine = kNoEngine,
+                                           .seed = 0,
+                                           .program_hash = request.program_hash,
+                                           .recorded_on = request.recorded_on});
+    WriteFrames(database, row, recording);
+    WriteEnd(database, row, recording.says_its_end ? kCompleted : kUnfinished, end,
+             header.entity_table);
+    transaction.Commit();
+  } catch (const DatabaseError& error) {
+    imported.problem = request.file + ": " + error.what();
+  }
+  return imported;
+}
+
+Result<EpisodeHeader> ReadRecordingHeader(const EpisodeFile& file, const EpisodeRow& row) {
+  const Result<TaskFiles> task = file.TaskOf(row);
+  if (!task) return tl::unexpected(task.error());
+  const auto header = task->files.find(kHeaderFile);
+  if (header == task->files.end())
+    return tl::unexpected(NotRead(file, row, "the file is damaged: it has no entities"));
+  return ReadFirstLine(file.path() + ": " + kHeaderFile, header->second);
+}
+
+Result<Recording> ReadRecording(const EpisodeFile& file, const EpisodeRow& row) {
+  Result<EpisodeHeader> header = ReadRecordingHeader(file, row);
+  if (!header) return tl::unexpected(std::move(header.error()));
+  Recording recording;
+  recording.header = std::move(*header);
+  recording.end_tick = row.ticks + 1;
+  recording.says_its_end = row.status == kCompleted;
+  Compressor compressor;
+  const std::string damage = file.EachPart(row, kFramesPart, [&](std::string_view packed) {
+    const auto bytes = compressor.Unpack(packed, kMostChunkBytes);
+    auto decoded = bytes ? DecodeRecordedFrames(*bytes, recording.header.entity_table)
+                         : std::optional<RecordedFrames>();
+    if (!decoded) return false;
+    const bool follows =
+        recording.frames.empty() || recording.frames.back().tick < decoded->frames.front().tick;
+    if (!follows || recording.frames.size() + decoded->frames.size() > kMaxEpisodeFrames)
+      return false;
+    std::ranges::move(decoded->frames, std::back_inserter(recording.frames));
+    recording.placed = std::move(decoded->placed);
+    return true;
+  });
+  if (!damage.empty()) return tl::unexpected(NotRead(file, row, damage));
+  if (recording.frames.empty() || recording.frames.back().tick >= recording.end_tick)
+    return tl::unexpected(NotRead(file, row, "the file is damaged: frames are missing"));
+  return recording;
+}
+
+}  // namespace prehend::episode

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tables of an episode file (docs/episodes.md), and which files are such. Tested by
+// tests/harness/episode/episodes/episode_file_test.cc
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "harness/episode/episodes/database.h"
+
+namespace prehend::episode {
+
+inline constexpr std::int64_t kApplicationId = 0x70726568;  ///< "preh"
+/// Of the format. Files of version 2 are the same without checksums; of version 1 the frames are
+/// coded otherwise.
+inline constexpr std::int64_t kSchemaVersion = 3;
+struct Versions {
+  std::int64_t first = 1, last = 1;
+};
+inline constexpr Versions kReadable = {2, kSchemaVersion};
+inline constexpr Versions kMigratable = {1, kSchemaVersion - 1};
+/// A part's row is its chunk's times this, plus the number of the part.
+inline constexpr std::int64_t kPartsPerChunk = 1 << 20;
+
+/// Whether a file is meant to be an episode file: it is an SQLite database, or does not exist yet
+/// and ends with `.episodes`.
+bool IsEpisodeFile(const std::string& path);
+
+/// Opens a file for writing; creates it with its tables if it is not there. A file keeps its
+/// version. Throws DatabaseError.
+Database OpenToWrite(const std::string& path);
+
+/// Opens a file of one of these versions for reading. Throws DatabaseError with the reason why it
+/// is none.
+Database OpenToRead(const std::string& path, Versions wanted = kReadable);
+
+/// A random one (version 4, RFC 9562).
+std::string NewUuid();
+/// The same for the same text (version 8).
+std::string UuidOf(const std::string& text);
+
+}  // namespace prehend::episode

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/episode/episodes/task_files.h. Tested by
+// tests/harness/episode/episodes/task_files_test.cc
+#include "harness/episode/episodes/task_files.h"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "harness/base/base/atomic_file.h"
+#include "harness/base/base/content_hash.h"
+#include "harness/base/base/project_paths.h"
+
+namespace prehend::episode {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Relative to the project, or to what ships with the program, whose folders have other names.
+std::string Stored(const std::string& path, const fs::path& root) {
+  const fs::path whole = fs::absolute(path).lexically_normal();
+  for (const fs::path& home : {root, fs::path(ShippedRoot())}) {
+    const fs::path relative = home.empty() ? fs::path() : whole.lexically_relative(home);
+    if (!relative.empty() && *relative.begin() != "..") return relative.generic_string();
+  }
+  return whole.generic_string();
+}
+
+}  // namespace
+
+std::string TaskFiles::Identity() const {
+  std::string text = run.scenario_file + "\n" + run.grammar + "\n";
+  for (const std::string& setting : run.settings) text += setting + "\n";
+  for (const auto& [path, content] : files) text += path + " " + ContentHash(content) + "\n";
+  return text;
+}
+
+TaskFiles PackTask(const RunRequest& run, const std::vector<std::string>& tried,
+                   const std::string& root) {
+  const fs::path home = fs::absolute(root).lexically_normal();
+  TaskFiles task{.run = run, .files = {}};
+  task.run.scenario_file = Stored(run.scenario_file, home);
+  std::error_code error;
+  if (run.grammar.find('/') != std::string::npos || run.grammar.ends_with(".grammar"))
+    task.run.grammar = Stored(run.grammar, home);
+  std::vector<std::string> paths = tried;
+  // The scenario's own grammar is not read then, but has to be known.
+  for (const std::string& name : GrammarNames(root)) {
+    if (!run.grammar.empty()) paths.push_back(GrammarPath(root, name));
+  }
+  for (const std::string& path : paths) {
+    if (!fs::is_regular_file(path, error)) continue;
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream content;
+    content << file.rdbuf();
+    task.files[Stored(path, home)] = std::move(content).str();
+  }
+  return task;
+}
+
+UnpackedTasks::UnpackedTasks() : root_(folder_.path().string() + "/project") {
+  std::error_code error;
+  if (folder_.path().empty()) return;
+  fs::create_directories(root_ + "/grammar/library", error);
+  fs::create_directories(root_ + "/physics/library", error);
+}
+
+std::string UnpackedTasks::PathOf(const std::string& path) const {
+  // A file says where it wants to be: it stays below the folder.
+  const fs::path normal = fs::path("/" + path).lexically_normal().relative_path();
+  return (path.starts_with('/') ? folder_.path() / "outside" : fs::path(root_)) / normal;
+}
+
+std::string UnpackedTasks::Unpack(const TaskFiles& task) {
+  if (!folder_.problem().empty()) return folder_.problem();
+  for (const auto& [path, content] : task.files) {
+    const std::string hash = ContentHash(content);
+    const auto [known, is_new] = written_.try_emplace(path, hash);
+    if (!is_new && known->second == hash) continue;
+    known->second = hash;
+    if (!path.starts_with("scenarios/") || path.ends_with(".grammar")) ++writes_;
+    const std::string problem = WriteTextFile(PathOf(path), content);
+    if (!problem.empty()) return problem;
+  }
+  return "";
+}
+
+RunRequest UnpackedTasks::RequestOf(const TaskFiles& task) const {
+  RunRequest run = task.run;
+  run.scenario_file = PathOf(run.scenario_file);
+  if (task.files.contains(run.grammar)) run.grammar = PathOf(run.grammar);
+  return run;
+}
+
+std::string UnpackedTasks::Original(const std::string& path) const {
+  const std::string outside = folder_.path().string() + "/outside";
+  if (path.starts_with(root_ + "/")) return path.substr(root_.size() + 1);
+  if (path.starts_with(outside + "/")) return path.substr(outside.size());
+  return path;
+}
+
+}  // namespace prehend::episode

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files that a run was made from, kept with its episode, so that it can be loaded again where
+// the project has changed or is not there. Tested by
+// tests/harness/episode/episodes/task_files_test.cc
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "harness/base/base/temporary_folder.h"
+#include "harness/episode/run/load_run.h"
+
+namespace prehend::episode {
+
+struct TaskFiles {
+  /// Its scenario and its grammar, if that is a file, are keys of `files`.
+  RunRequest run;
+  /// Path -> content. A path is relative to the project's folder or, outside of it, absolute.
+  std::map<std::string, std::string> files;
+
+  /// Equal texts: the same files, the same settings.
+  std::string Identity() const;
+};
+
+/// `tried`: all paths that LoadRun() tried; those that do not exist are left out.
+TaskFiles PackTask(const RunRequest& run, const std::vector<std::string>& tried,
+                   const std::string& root);
+
+/// A folder in which tasks are unpacked, to be loaded as if they were the project; it is removed at
+/// the end.
+class UnpackedTasks {
+ public:
+  UnpackedTasks();
+
+  /// Writes the files that are not there yet. Returns "" or what went wrong.
+  std::string Unpack(const TaskFiles& task);
+  /// After Unpack(): what LoadRun() needs.
+  RunRequest RequestOf(const TaskFiles& task) const;
+  const std::string& root() const { return root_; }
+  /// How often a file that is no scenario was written: as long as it is the same, what was read
+  /// from them holds.
+  std::size_t writes() const { return writes_; }
+  /// A path in the folder as it was in the project.
+  std::string Original(const std::string& path) const;
+
+ private:
+  std::string PathOf(const std::string& path) const;
+
+  TemporaryFolder folder_;
+  std::string root_;
+  std::size_t writes_ = 0;
+  std::map<std::string, std::string> written_;  ///< path -> content hash
+};
+
+}  // namespace prehend::episode

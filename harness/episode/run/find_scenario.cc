@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/episode/run/find_scenario_test.cc
+#include "harness/episode/run/find_scenario.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <tuple>
+
+#include "grammar/base/diagnostic.h"
+#include "harness/base/base/project_paths.h"
+#include "harness/base/base/text_file.h"
+
+namespace prehend::episode {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kGraspsEnding = ".grasps.yaml";
+constexpr const char* kScenarioEnding = ".yaml";
+
+/// The shortest of the names that contain a part; "" when none does, or when the part is of nearly
+/// all names.
+std::string ShortestWith(const std::string& part, const std::vector<std::string>& names) {
+  constexpr std::size_t kMinPartLength = 3;
+  std::string shortest;
+  if (part.size() < kMinPartLength) return shortest;
+  for (const std::string& name : names) {
+    const bool is_shorter = shortest.empty() || name.size() < shortest.size();
+    if (is_shorter && name.find(part) != std::string::npos) shortest = name;
+  }
+  return shortest;
+}
+
+std::vector<const ScenarioFile*> Matching(const std::vector<ScenarioFile>& scenarios,
+                                          const std::string& typed) {
+  std::vector<const ScenarioFile*> matching;
+  for (const ScenarioFile& scenario : scenarios) {
+    if (typed == scenario.name || typed == IdOf(scenario)) matching.push_back(&scenario);
+  }
+  return matching;
+}
+
+}  // namespace
+
+std::vector<ScenarioFile> ListScenarios(const std::string& root) {
+  const fs::path folder = fs::path(root) / "scenarios";
+  std::vector<ScenarioFile> scenarios;
+  const auto add = [&](const fs::path& in, const std::string& skill) {
+    for (const std::string& file : FilesIn(in.string(), kScenarioEnding)) {
+      if (file.ends_with(kHandEnding) || file.ends_with(kGraspsEnding))
+        continue;  // what scenarios use
+      const std::string name = fs::path(file).stem().string();
+      scenarios.push_back({skill, ReadableName(name), (in / file).string()});
+    }
+  };
+  add(folder, "");
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string skill = entry.path().filename().string();
+    if (entry.is_directory(error) && skill != kShowsErrors && skill != kTemplates)
+      add(entry.path(), ReadableName(skill));
+  }
+  std::sort(scenarios.begin(), scenarios.end(), [](const ScenarioFile& a, const ScenarioFile& b) {
+    return std::tie(a.skill, a.name) < std::tie(b.skill, b.name);
+  });
+  return scenarios;
+}
+
+std::vector<ScenarioFile> ShippedScenarios(const std::string& root) {
+  if (!IsOwnProject(root) || ShippedRoot().empty()) return {};
+  return ListScenarios(ShippedRoot());
+}
+
+std::optional<std::string> FindScenario(const std::vector<ScenarioFile>& scenarios,
+                                        const std::string& typed) {
+  const auto matching = Matching(scenarios, typed);
+  if (matching.size() == 1) return matching.front()->path;
+  std::error_code error;
+  const bool is_path = typed.find('.') != std::string::npos || fs::exists(typed, error);
+  if (matching.empty() && is_path) return typed;
+  return std::nullopt;
+}
+
+ScenarioFile ScenarioAt(const std::vector<ScenarioFile>& scenarios, const std::string& path) {
+  const auto known = std::ranges::find(scenarios, path, &ScenarioFile::path);
+  if (known != scenarios.end()) return *known;
+  for (const ScenarioFile& scenario : scenarios) {
+    std::error_code error;
+    if (fs::equivalent(scenario.path, path, error)) return scenario;
+  }
+  return {.skill = "", .name = fs::path(path).stem().string(), .path = path, .in_project = false};
+}
+
+std::string IdOf(const ScenarioFile& file) {
+  if (!file.in_project) return file.path;
+  return file.skill.empty() ? file.name : file.skill + "/" + file.name;
+}
+
+std::string NearestScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed) {
+  if (!Matching(scenarios, typed).empty()) return "";  // a name that several skills share
+  std::vector<std::string> names;
+  for (const ScenarioFile& scenario : scenarios) names.push_back(scenario.name);
+  const std::string name = typed.substr(typed.rfind('/') + 1);
+  const std::string near = grammar::NearestName(name, names);
+  return near.empty() ? ShortestWith(name, names) : near;
+}
+
+std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed) {
+  std::vector<std::string> in_skills;
+  for (const ScenarioFile* scenario : Matching(scenarios, typed))
+    in_skills.push_back(IdOf(*scenario));
+  if (in_skills.size() > 1) return fmt::format("which one: {}?", fmt::join(in_skills, ", "));
+  const std::string near = NearestScenario(scenarios, typed);
+  return near.empty() ? "" : fmt::format("did you mean '{}'?", near);
+}
+
+EpisodeName NameOf(const ScenarioFile& file) {
+  return {file.path, file.episode, IdOf(file), file.origin, ""};
+}
+
+ScenarioFile ScenarioOf(const EpisodeName& episode, const std::vector<ScenarioFile>& all) {
+  ScenarioFile file = ScenarioAt(all, episode.file);
+  file.origin = episode.origin;
+  if (!episode.number) return file;
+  const std::size_t slash = std::min(episode.scenario.rfind('/'), episode.scenario.size());
+  const bool has_skill = slash < episode.scenario.size();
+  file.skill = has_skill ? episode.scenario.substr(0, slash) : "";
+  file.name = has_skill ? episode.scenario.substr(slash + 1) : episode.scenario;
+  file.in_project = std::ranges::find(all, episode.scenario, IdOf) != all.end();
+  file.episode = episode.number;
+  return file;
+}
+
+}  // namespace prehend::episode

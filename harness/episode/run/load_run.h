@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads what a run needs from files: the scenario and its compiled grammar, with the changes of the
+// command line. Tested by tests/harness/episode/run/load_run_test.cc
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "grammar/monitor.h"
+#include "harness/base/base/result.h"
+#include "harness/base/yaml/located_yaml.h"
+#include "harness/scenario/read/scenario_library.h"
+#include "harness/scenario/scenario/scenario.h"
+
+namespace prehend::episode {
+
+struct RunRequest {
+  std::string scenario_file;
+  std::string grammar;                ///< name or path; empty: the scenario's own
+  std::vector<std::string> settings;  ///< "name=value": a field of the scenario when the name has a
+                                      ///< dot or is that of a field, else a parameter
+};
+
+struct LoadedRun {
+  scenario::Scenario scenario;  ///< its `grammar` is the name of the grammar that is used
+  std::shared_ptr<const grammar::Program> program;
+  grammar::Diagnostics
+      warnings;  ///< of scenario and grammar: what is allowed but is probably a mistake
+  YamlDocument document = {};  ///< the scenario's file, without `settings`; empty of a recording
+};
+
+/// `files` receives every path that was tried, also if there is no result.
+Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
+                          std::vector<std::string>* files = nullptr);
+
+/// Compiles a grammar of this name or path with these parameters.
+using GrammarLoader = std::function<grammar::CompileResult(const std::string& name_or_path,
+                                                           const grammar::Overrides& overrides)>;
+
+/// The same with a library and a loader that have been used before, so that what they have read is
+/// not read again.
+Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
+                          const scenario::ScenarioLibrary& library,
+                          const GrammarLoader& load_grammar,
+                          std::vector<std::string>* files = nullptr);
+
+/// Whether this name in a setting is a field of the scenario; otherwise it is a parameter of its
+/// grammar.
+bool IsFieldOfScenario(const std::string& name);
+
+/// Settings "name=value" that are all parameters of a grammar.
+Result<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings);
+
+/// "skill/name", as in goldens, reports and on the command line.
+std::string ScenarioId(const std::string& skill, const std::string& name);
+
+}  // namespace prehend::episode

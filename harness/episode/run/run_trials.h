@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs many seeded variations (`vary:`) of one scenario and classifies each by its `outcomes:`.
+// Tested by tests/harness/episode/run/run_trials_test.cc
+#pragma once
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "harness/episode/run/load_run.h"
+
+namespace prehend::episode {
+
+struct TrialResult {
+  int trial = 1;
+  std::string outcome;       ///< one of the scenario's, "other" or "failed"
+  std::string reason;        ///< why it failed, if it did
+  std::string not_recorded;  ///< why it is not in the episode file, if it should be
+};
+
+struct TrialSettings {
+  int count = 1;
+  int jobs = 1;  ///< processes at a time
+  /// Plays a trial in a process of its own, to do more than to classify it. Empty: physics only.
+  std::function<TrialResult(int trial, const RunRequest& varied)> play = {};
+};
+
+struct TrialReport {
+  std::vector<std::string> outcomes;  ///< of the scenario; the first is the intended one
+  std::vector<TrialResult> results;   ///< trial 1, 2, ...
+};
+
+/// Runs the trials 1 .. count of a scenario. A scenario without outcomes is an error.
+Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
+                              const TrialSettings& settings,
+                              const std::function<void(int done)>& progress = {});
+
+/// The request, with the values drawn for one trial added to its settings.
+Result<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root, int trial);
+
+/// The drawn values of such a request, a line each: "sampled: entities.drawer.mass_kg=1.1".
+std::string SampledText(const RunRequest& request, const RunRequest& varied);
+
+/// For programs: `trials`, `outcomes` (name to count) and `results` (`trial`, `outcome`, `reason`).
+nlohmann::ordered_json TrialJson(const TrialReport& report);
+
+/// The count of each outcome, and the trials that did not end with the first one, each with the
+/// command that repeats it: `command` and the number of the trial.
+std::string TrialTable(const TrialReport& report, const std::string& command);
+
+}  // namespace prehend::episode

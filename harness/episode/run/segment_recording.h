@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recording (docs/recording-format.md) and the events that a grammar recognises in it. Tested by
+// tests/program/recording_test.cc and tests/program/golden_of_recording_test.cc
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "grammar/base/timeline.h"
+#include "harness/episode/run/load_run.h"
+#include "harness/episode/run/missing_facts.h"
+
+namespace prehend::episode {
+
+struct SegmentedRecording {
+  std::string name;  ///< of the episode
+  std::shared_ptr<const grammar::Program> program;
+  grammar::Timeline timeline;
+  grammar::Tick end = 1;          ///< the first tick after the episode
+  grammar::Tick frame_ticks = 1;  ///< from one frame to the next: the median
+  bool says_its_end = false;      ///< otherwise it may be cut off
+  grammar::Diagnostics warnings;  ///< of the grammar
+  MissingFacts missing;           ///< what the grammar asks for and the recording does not have
+};
+
+/// `request.scenario_file` is the recording; its settings are parameters of the grammar.
+Result<SegmentedRecording> SegmentRecording(const RunRequest& request, const std::string& root);
+
+/// The same of a recording that has been read, and a grammar. `file` is for messages.
+Result<SegmentedRecording> SegmentRecording(Recording& recording,
+                                            std::shared_ptr<const grammar::Program> program,
+                                            const std::string& file);
+
+/// Only its events.
+Result<grammar::Timeline> SegmentFrames(Recording& recording,
+                                        const std::shared_ptr<const grammar::Program>& program,
+                                        const std::string& file);
+
+}  // namespace prehend::episode

@@ -1,0 +1,550 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads an episode line by line, with the field tables and error messages of scenario files. Tested
+// by tests/harness/episode/sense/episode_file_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <variant>
+
+#include "grammar/base/check.h"
+#include "grammar/base/tracking.h"
+#include "harness/base/base/text_file.h"
+#include "harness/base/yaml/error_at.h"
+#include "harness/base/yaml/located_json.h"
+#include "harness/episode/sense/episode_file.h"
+#include "harness/episode/sense/episode_format.h"
+#include "harness/episode/sense/episode_stream.h"
+#include "harness/episode/sense/scan_frame.h"
+#include "harness/scenario/scenario/classes.h"
+
+namespace prehend::episode {
+namespace {
+
+LookBridge BridgeOf(const EpisodeHeader& header) {
+  const double most = header.bridge_s * static_cast<double>(header.entity_table.ticks_per_second);
+  return {header.entity_table.entities.size(), static_cast<grammar::Tick>(most)};
+}
+
+}  // namespace
+
+/// Reads line after line into an episode. The first line with an error ends it.
+class EpisodeReader {
+ public:
+  explicit EpisodeReader(std::string file) : file_(std::move(file)), line_format_(LineFormat()) {}
+
+  grammar::Diagnostics diagnostics;
+  Recording episode;
+
+  void TakeLine(const std::string& text) {
+    ++line_;
+    if (TakeUsualFrame(text)) return;
+    if (text.find_first_not_of(" \r") == std::string::npos) return;
+    auto document = ParseJson(file_, text);
+    if (!document) return Report(std::move(document.error()));
+    DiagnosticList errors(*document);
+    if (!header_) {
+      HeaderEntry header;
+      if (HeaderFormat().Read(document->root, errors, header)) {
+        TakeHeader(header, errors);
+        if (document->root.Find("grammar"))
+          episode.header.grammar_named = ErrorAt(*document, header.grammar.where);
+        episode.header.grammar_named.place.line = line_;
+      }
+      header_ = true;
+    } else {
+      LineEntry line;
+      if (line_format_.Read(document->root, errors, line)) {
+        std::visit([&](const auto& entry) { Take(entry, errors); }, line);
+      }
+    }
+    if (!errors.empty()) Report(errors.Sorted());
+  }
+
+  /// As if the line had not been there, if there is anything wrong with it. Only the last frame is
+  /// kept.
+  grammar::Diagnostics TakeLineOrNothing(const std::string& text) {
+    const EpisodeFrame now = now_;
+    const std::vector<bool> has_ahead = has_ahead_, has_spheres = has_spheres_;
+    const LookBridge bridge = bridge_;
+    const std::size_t frames = episode.frames.size();
+    const bool said_its_end = episode.says_its_end;
+    const grammar::Tick end_tick = episode.end_tick;
+    TakeLine(text);
+    grammar::Diagnostics found = std::move(diagnostics);
+    diagnostics.clear();
+    if (!found.empty() && had_header_) {
+      now_ = now;
+      has_ahead_ = has_ahead;
+      has_spheres_ = has_spheres;
+      bridge_ = bridge;
+      episode.frames.resize(frames);
+      episode.says_its_end = said_its_end;
+      episode.end_tick = end_tick;
+    }
+    if (found.empty() && header_) had_header_ = true;
+    if (episode.frames.size() > 1) episode.frames.erase(episode.frames.begin());
+    return found;
+  }
+  bool has_header() const { return had_header_; }
+
+  void Finish() {
+    if (!diagnostics.empty()) return;
+    if (!header_) return Report("the file is empty", "");
+    if (episode.frames.empty())
+      return Report("the recording has no frames",
+                    "each line after the first is one: {\"tick\": 0, ...}");
+    if (!episode.says_its_end) episode.end_tick = episode.frames.back().tick + 1;
+    episode.gaps = Gaps();
+  }
+
+  std::vector<LookGaps> Gaps() const { return bridge_.Gaps(); }
+
+  void Report(std::string message, std::string hint) {
+    diagnostics.push_back({.file = file_,
+                           .place = {std::max(line_, 1), 1},
+                           .message = std::move(message),
+                           .source_line = {},
+                           .hint = std::move(hint)});
+  }
+
+ private:
+  /// False, with nothing changed, if it is something else, or if there is anything to say about it.
+  bool TakeUsualFrame(const std::string& text) {
+    if (!header_ || !ScanFrame(text, scanned_) || episode.says_its_end) return false;
+    if (!episode.frames.empty() && scanned_.tick.value <= now_.tick) return false;
+    const auto known = [&](const auto& entry) {
+      return std::find(names_.begin(), names_.end(), entry.name) != names_.end();
+    };
+    const auto known_hand = [&](const auto& entry) {
+      return std::ranges::any_of(hands_, [&](int hand) { return names_[hand] == entry.name; });
+    };
+    if (!std::ranges::all_of(scanned_.samples, known) ||
+        !std::ranges::all_of(scanned_.hands, known_hand) ||
+        episode.frames.size() >= kMaxEpisodeFrames)
+      return false;
+    DiagnosticList errors(no_document_);
+    Take(scanned_, errors);
+    PREHEND_CHECK(errors.empty());
+    return true;
+  }
+
+  void Report(grammar::Diagnostics found) {
+    for (grammar::Diagnostic& diagnostic : found) diagnostic.place.line = line_;
+    diagnostics = std::move(found);
+  }
+
+  void TakeHeader(const HeaderEntry& header, DiagnosticList& errors) {
+    episode.header.episode = header.episode;
+    episode.header.grammar = header.grammar.value;
+    grammar::EntityTable& entity_table = episode.header.entity_table;
+    entity_table.ticks_per_second = header.ticks_per_second;
+    entity_table.styles = header.styles;
+    for (const Named<MemberEntry>& entry : header.entities) names_.push_back(entry.name);
+    for (const Named<MemberEntry>& entry : header.entities) {
+      const MemberEntry& m = entry.value;
+      grammar::EntityInfo& member = entity_table.entities.emplace_back();
+      member.name = entry.name;
+      member.p_BC_m = m.centre_m;
+      member.half_size_m = m.size_m / 2;
+      member.solid = SolidOf(m.parts);
+      member.round = m.round;
+      member.mass_kg = m.mass_kg;
+      member.strength_n = m.strength_n;
+      if (m.part_of) member.part_of = IndexOf(m.part_of->value, m.part_of->where, errors);
+      if (m.hand) {
+        member.classes = {"Hand", "Entity"};
+        member.sensor_sets = m.sensor_sets;
+        hands_.push_back(static_cast<int>(entity_table.entities.size()) - 1);
+      } else {
+        member.classes = ClassesOf(m);
+      }
+      CheckMember(entry, errors);
+    }
+    CheckParts(header, errors);
+    episode.header.bridge_s = header.bridge_s;
+    now_.entities.resize(names_.size(), grammar::NotTracked());
+    bridge_ = BridgeOf(episode.header);
+    for (const int hand : hands_) now_.hands.push_back({.entity = hand, .collision_spheres = {}});
+    now_.collision_spheres.resize(hands_.size());
+    has_ahead_.resize(hands_.size());
+    has_spheres_.resize(hands_.size());
+  }
+
+  static void CheckMember(const Named<MemberEntry>& entry, DiagnosticList& errors) {
+    const MemberEntry& m = entry.value;
+    const auto add = [&](const std::string& what) {
+      errors.Add(entry.name_where, fmt::format("'{}': {}", entry.name, what));
+    };
+    if (!m.hand && m.class_name == "Hand") add("only a hand has the class 'Hand': 'hand: true'");
+    if (const std::string twice = Repeated(m.kinds); !twice.empty())
+      add("the kind '" + twice + "' is given twice");
+    if (const std::string twice = Repeated(m.sensor_sets); !twice.empty())
+      add("the sensor set '" + twice + "' is given twice");
+  }
+
+  /// The first name that is there before; "" if there is none.
+  static std::string Repeated(const std::vector<std::string>& names) {
+    for (auto name = names.begin(); name != names.end(); ++name) {
+      if (std::find(names.begin(), name, *name) != name) return *name;
+    }
+    return "";
+  }
+
+  /// Nothing is a part of itself, however many parts lie between.
+  void CheckParts(const HeaderEntry& header, DiagnosticList& errors) const {
+    const std::vector<grammar::EntityInfo>& members = episode.header.entity_table.entities;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      int whole = members[i].part_of;
+      for (std::size_t steps = 0; whole != grammar::kNoEntity && steps < members.size(); ++steps) {
+        if (whole == static_cast<int>(i)) {
+          errors.Add(header.entities[i].value.part_of->where,
+                     fmt::format("'{}' is a part of itself", members[i].name));
+          return;
+        }
+        whole = members[static_cast<std::size_t>(whole)].part_of;
+      }
+    }
+  }
+
+  static grammar::Solid SolidOf(const std::vector<PartEntry>& entries) {
+    std::vector<grammar::SolidPart> parts;
+    for (const PartEntry& entry : entries) {
+      grammar::SolidPart& part = parts.emplace_back();
+      if (entry.box) part.shape = *entry.box;
+      if (entry.sphere) part.shape = *entry.sphere;
+      if (entry.cylinder) part.shape = *entry.cylinder;
+      if (entry.capsule) part.shape = *entry.capsule;
+      if (entry.hull) part.shape = *entry.hull;
+      part.p_BS_m = entry.at_m;
+      const Eigen::Vector4d& q = entry.quat_wxyz;
+      part.q_BS = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+    }
+    return grammar::Solid(std::move(parts));
+  }
+
+  /// Classes of an entity that is not a hand.
+  static std::vector<std::string> ClassesOf(const MemberEntry& m) {
+    std::vector<std::string> classes = {m.class_name};
+    classes.insert(classes.end(), m.kinds.begin(), m.kinds.end());
+    if (!m.abstract.empty()) {
+      classes.insert(classes.end(), {m.abstract, "Abstract"});
+    } else if (m.grains) {
+      classes.emplace_back("Grains");
+    } else if (!m.person) {
+      classes.insert(classes.end(), {m.fixed      ? "Fixed"
+                                     : m.jointed  ? "Jointed"
+                                     : m.attached ? "Attached"
+                                                  : "Movable",
+                                     "Thing"});
+    }
+    classes.emplace_back("Entity");
+    return classes;
+  }
+
+  /// The entity of this name; otherwise kNoEntity, and an error is reported.
+  int IndexOf(const std::string& name, const Where& where, DiagnosticList& errors) const {
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    if (found != names_.end()) return static_cast<int>(found - names_.begin());
+    errors.AddUnknownName(where, fmt::format("no entity is called '{}'", name), name, names_);
+    return grammar::kNoEntity;
+  }
+
+  void Take(const EndEntry& entry, DiagnosticList& errors) {
+    if (episode.says_its_end)
+      return errors.Add(entry.end_tick.where, "a second line with 'end_tick'");
+    episode.says_its_end = true;
+    episode.end_tick = entry.end_tick.value;
+    if (!episode.frames.empty() && episode.end_tick <= episode.frames.back().tick) {
+      errors.Add(
+          entry.end_tick.where,
+          fmt::format("end_tick: expected more than {}, the tick of the last frame, found {}",
+                      episode.frames.back().tick, episode.end_tick));
+    }
+  }
+
+  void Take(const FrameEntry& entry, DiagnosticList& errors) {
+    const grammar::Tick before = now_.tick, tick = entry.tick.value;
+    const bool first = episode.frames.empty();
+    if (episode.says_its_end)
+      return errors.Add(entry.tick.where, "a frame after the line with 'end_tick'");
+    if (!first && tick <= before) {
+      return errors.Add(entry.tick.where,
+                        fmt::format("the ticks must increase: {} comes after {}", tick, before));
+    }
+    const double dt_s = static_cast<double>(tick - before) /
+                        static_cast<double>(episode.header.entity_table.ticks_per_second);
+    now_.tick = tick;
+    for (grammar::EntitySample& look : now_.entities) {
+      if (IsTracked(look)) look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
+    }
+    for (const Named<SampleEntry>& sample : entry.samples) {
+      const int index = IndexOf(sample.name, sample.name_where, errors);
+      if (index == grammar::kNoEntity) continue;
+      const auto entity = static_cast<std::size_t>(index);
+      if (sample.value.not_tracked) {
+        now_.entities[entity] = grammar::NotTracked();
+        continue;
+      }
+      episode.placed.resize(now_.entities.size());
+      episode.placed[entity] = true;
+      const double since_s = SinceLastLook_s(entity, dt_s);
+      TakeSample(sample.value, first ? 0 : since_s, now_.entities[entity]);
+      if (const auto& gazes_at = sample.value.gazes_at) {
+        now_.entities[index].gazes_at = IndexOf(gazes_at->value, gazes_at->where, errors);
+      }
+    }
+    for (const Named<HandEntry>& hand : entry.hands) TakeHand(hand, errors);
+    FollowTheirSamples();
+    now_.touches.clear();
+    for (const TouchEntry& touch : entry.touches) TakeTouch(touch, errors);
+    std::sort(now_.touches.begin(), now_.touches.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.a, a.b) < std::pair(b.a, b.b);
+    });
+    episode.frames.push_back(now_);
+    bridge_.Fill(tick, episode.frames.back().entities);
+    if (episode.frames.size() > kMaxEpisodeFrames)
+      errors.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
+  }
+
+  /// The time since the look that its velocity follows from, which `now_` holds then; 0 if how it
+  /// came here is not known.
+  double SinceLastLook_s(std::size_t entity, double dt_s) {
+    if (IsTracked(now_.entities[entity])) return dt_s;
+    const LookBridge::Seen* last = bridge_.LastOf(entity, now_.tick);
+    now_.entities[entity] = last ? last->look : grammar::EntitySample();
+    return last ? static_cast<double>(now_.tick - last->tick) /
+                      static_cast<double>(episode.header.entity_table.ticks_per_second)
+                : 0;
+  }
+
+  /// Velocities that are not given are computed from the previous sample and this one.
+  static void TakeSample(const SampleEntry& entry, double dt_s, grammar::EntitySample& look) {
+    const grammar::EntitySample before = look;
+    look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
+    look.p_WB_m = entry.at_m;
+    if (entry.quat_wxyz) {
+      const Eigen::Vector4d& q = entry.quat_wxyz->value;
+      look.q_WB = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+    }
+    look.asleep = entry.asleep;
+    look.joint_position = entry.joint_position;
+    look.joint_fraction = entry.joint_fraction;
+    look.gazes_at = grammar::kNoEntity;
+    if (dt_s > 0) {
+      look.v_WB_m_per_s = (look.p_WB_m - before.p_WB_m) / dt_s;
+      const Eigen::AngleAxisd turn(look.q_WB * before.q_WB.conjugate());
+      look.w_WB_rad_per_s = turn.axis() * turn.angle() / dt_s;
+    }
+    if (entry.v_m_per_s) look.v_WB_m_per_s = *entry.v_m_per_s;
+    if (entry.w_rad_per_s) look.w_WB_rad_per_s = *entry.w_rad_per_s;
+  }
+
+  void TakeHand(const Named<HandEntry>& named, DiagnosticList& errors) {
+    const int entity = IndexOf(named.name, named.name_where, errors);
+    if (entity == grammar::kNoEntity) return;
+    const auto found = std::find(hands_.begin(), hands_.end(), entity);
+    if (found == hands_.end())
+      return errors.Add(named.name_where, fmt::format("'{}' is not a hand", named.name),
+                        "its entity has no 'hand: true'");
+    const auto slot = static_cast<std::size_t>(found - hands_.begin());
+    const HandEntry& entry = named.value;
+    grammar::HandSample& hand = now_.hands[slot];
+    hand.trigger = entry.trigger;
+    if (entry.ahead && entry.ahead->isZero())
+      errors.Add(named.name_where,
+                 fmt::format("'{}': ahead: expected a direction, found [0, 0, 0]", named.name));
+    has_ahead_[slot] = entry.ahead && !entry.ahead->isZero();
+    if (has_ahead_[slot]) hand.ahead_W = entry.ahead->normalized();
+    if (entry.style) {
+      const std::vector<std::string>& styles = episode.header.entity_table.styles;
+      const auto style = std::find(styles.begin(), styles.end(), entry.style->value);
+      if (style == styles.end())
+        errors.AddUnknownName(entry.style->where,
+                              fmt::format("no style is called '{}'", entry.style->value),
+                              entry.style->value, styles);
+      hand.style = static_cast<int>(style - styles.begin());
+    }
+    std::vector<grammar::CollisionSphere>& collision_spheres = now_.collision_spheres[slot];
+    collision_spheres.clear();
+    for (const Eigen::Vector4d& f : entry.collision_spheres_m) {
+      if (f[3] < 0)
+        errors.Add(named.name_where,
+                   fmt::format("'{}': a collision sphere of radius {:g}", named.name, f[3]));
+      collision_spheres.push_back({f.head<3>(), std::max(f[3], 0.0)});
+    }
+    has_spheres_[slot] = !collision_spheres.empty();
+  }
+
+  /// What was not given of a hand is where its sample is, also in frames that do not mention it.
+  void FollowTheirSamples() {
+    for (std::size_t slot = 0; slot < hands_.size(); ++slot) {
+      const grammar::EntitySample& look = now_.entities[static_cast<std::size_t>(hands_[slot])];
+      if (!IsTracked(look)) {
+        now_.collision_spheres[slot].resize(
+            std::max<std::size_t>(now_.collision_spheres[slot].size(), 1));
+        continue;
+      }
+      if (!has_ahead_[slot]) now_.hands[slot].ahead_W = look.q_WB * Eigen::Vector3d::UnitX();
+      if (!has_spheres_[slot]) now_.collision_spheres[slot].assign(1, {look.p_WB_m, 0});
+    }
+  }
+
+  void TakeTouch(const TouchEntry& entry, DiagnosticList& errors) {
+    int a = IndexOf(entry.a.value, entry.a.where, errors),
+        b = IndexOf(entry.b.value, entry.b.where, errors);
+    if (a == grammar::kNoEntity || b == grammar::kNoEntity) return;
+    if (a == b)
+      return errors.Add(entry.b.where, fmt::format("'{}' cannot touch itself", entry.b.value));
+    grammar::Touch touch{.a = a,
+                         .b = b,
+                         .up_on_a = entry.up_on_a,
+                         .up_on_b = entry.up_on_b.value_or(-entry.up_on_a),
+                         .normal_force_n = entry.force_n};
+    touch.vertical_speed_m_per_s = entry.vertical_speed_m_per_s.value_or(SpeedAtTheUpper(touch));
+    if (entry.at_m && entry.normal) {
+      touch.p_W_m = *entry.at_m;
+      touch.nhat_BA_W = entry.normal->normalized();
+    }
+    for (const Located<std::string>& set : entry.sensor_sets)
+      touch.sensor_sets |= SetBit(set, a, b, errors);
+    if (a > b) {
+      std::swap(touch.a, touch.b);
+      std::swap(touch.up_on_a, touch.up_on_b);
+      touch.nhat_BA_W = -touch.nhat_BA_W;
+    }
+    const bool twice =
+        std::any_of(now_.touches.begin(), now_.touches.end(),
+                    [&](const grammar::Touch& t) { return t.a == touch.a && t.b == touch.b; });
+    if (twice)
+      return errors.Add(entry.a.where, fmt::format("the touch of '{}' and '{}' is given twice",
+                                                   entry.a.value, entry.b.value));
+    now_.touches.push_back(touch);
+  }
+
+  /// Where no contact point is recorded, the position of the upper entity is close to it.
+  double SpeedAtTheUpper(const grammar::Touch& touch) const {
+    const grammar::EntitySample &a = now_.entities[static_cast<std::size_t>(touch.a)],
+                                &b = now_.entities[static_cast<std::size_t>(touch.b)];
+    if (!IsTracked(a) || !IsTracked(b)) return 0;
+    return grammar::VerticalSpeedBetween(a, b, (touch.up_on_a >= touch.up_on_b ? a : b).p_WB_m);
+  }
+
+  std::uint32_t SetBit(const Located<std::string>& set, int a, int b,
+                       DiagnosticList& errors) const {
+    const std::vector<grammar::EntityInfo>& members = episode.header.entity_table.entities;
+    const std::vector<std::string>& sets =
+        !members[a].sensor_sets.empty() ? members[a].sensor_sets : members[b].sensor_sets;
+    const auto found = std::find(sets.begin(), sets.end(), set.value);
+    if (found != sets.end()) return std::uint32_t{1} << (found - sets.begin());
+    errors.AddUnknownName(set.where, fmt::format("no sensor set is called '{}'", set.value),
+                          set.value, sets);
+    return 0;
+  }
+
+  std::string file_;
+  ValueFormat<LineEntry> line_format_;
+  int line_ = 0;
+  bool header_ = false;
+  bool had_header_ = false;  ///< a good one
+  std::vector<std::string> names_;
+  std::vector<int> hands_;
+  std::vector<bool> has_ahead_, has_spheres_;  ///< of each hand: its last mention gave them
+  FrameEntry scanned_;                         ///< of TakeUsualFrame(); kept for its memory
+  YamlDocument no_document_;
+  EpisodeFrame now_;  ///< what is not tracked is not, however short
+  LookBridge bridge_;
+};
+
+grammar::Frame EpisodeFrame::View() {
+  for (std::size_t i = 0; i < hands.size(); ++i) hands[i].collision_spheres = collision_spheres[i];
+  return {tick, entities, hands, touches};
+}
+
+void BridgeLooks(Recording& episode) {
+  LookBridge bridge = BridgeOf(episode.header);
+  for (EpisodeFrame& frame : episode.frames) bridge.Fill(frame.tick, frame.entities);
+  episode.gaps = bridge.Gaps();
+}
+
+struct EpisodeStream::Reader {
+  EpisodeReader lines;
+};
+
+EpisodeStream::EpisodeStream(const std::string& name)
+    : reader_(std::make_unique<Reader>(Reader{EpisodeReader(name)})) {}
+EpisodeStream::~EpisodeStream() = default;
+
+grammar::Diagnostics EpisodeStream::Take(const std::string& line) {
+  std::vector<EpisodeFrame>& frames = reader_->lines.episode.frames;
+  const bool first = frames.empty();
+  const grammar::Tick before = first ? 0 : frames.back().tick;
+  grammar::Diagnostics found = reader_->lines.TakeLineOrNothing(line);
+  const bool is_new = !frames.empty() && (first || frames.back().tick != before);
+  frame_ = is_new ? &frames.back() : nullptr;
+  return found;
+}
+
+bool EpisodeStream::has_header() const { return reader_->lines.has_header(); }
+const EpisodeHeader& EpisodeStream::header() const { return reader_->lines.episode.header; }
+std::string EpisodeStream::gaps() const {
+  return has_header() ? GapsText(header().entity_table, reader_->lines.Gaps()) : "";
+}
+bool EpisodeStream::says_its_end() const { return reader_->lines.episode.says_its_end; }
+grammar::Tick EpisodeStream::end_tick() const {
+  const Recording& episode = reader_->lines.episode;
+  if (episode.says_its_end) return episode.end_tick;
+  return episode.frames.empty() ? 0 : episode.frames.back().tick + 1;
+}
+
+Result<Recording> ReadRecording(const std::string& path) {
+  EpisodeReader reader(path);
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    reader.diagnostics.push_back(
+        {.file = path,
+         .place = {},
+         .message = std::filesystem::exists(path, error) ? "is not a regular file" : "no such file",
+         .source_line = {},
+         .hint = {}});
+    return tl::unexpected(std::move(reader.diagnostics));
+  }
+  if (const auto size = std::filesystem::file_size(path, error); error || size > kMaxEpisodeBytes) {
+    reader.diagnostics.push_back(
+        {.file = path,
+         .place = {},
+         .message = fmt::format("is larger than {} MiB", kMaxEpisodeBytes >> 20),
+         .source_line = {},
+         .hint = {}});
+    return tl::unexpected(std::move(reader.diagnostics));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    reader.diagnostics.push_back({.file = path,
+                                  .place = {},
+                                  .message = std::string("cannot be read: ") + std::strerror(errno),
+                                  .source_line = {},
+                                  .hint = {}});
+    return tl::unexpected(std::move(reader.diagnostics));
+  }
+  for (std::string line; reader.diagnostics.empty() && std::getline(stream, line);) {
+    if (line.ends_with('\r')) line.pop_back();  // written on Windows
+    if (line.size() > kMaxEpisodeLineBytes) {
+      reader.TakeLine(" ");
+      reader.Report(
+          fmt::format("a line of {} bytes; at most {} are read", line.size(), kMaxEpisodeLineBytes),
+          "one frame per line");
+      break;
+    }
+    reader.TakeLine(line);
+  }
+  reader.Finish();
+  if (!reader.diagnostics.empty()) return tl::unexpected(std::move(reader.diagnostics));
+  return std::move(reader.episode);
+}
+
+}  // namespace prehend::episode

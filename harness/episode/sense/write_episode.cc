@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes an episode, see harness/episode/sense/episode_file.h. Tested by
+// tests/harness/episode/sense/episode_file_test.cc
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "grammar/base/tracking.h"
+#include "harness/episode/sense/episode_file.h"
+#include "harness/scenario/scenario/classes.h"
+
+namespace prehend::episode {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ToJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Json ToJson(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+
+bool IsHand(const grammar::EntityInfo& member) { return member.classes.front() == "Hand"; }
+
+/// Classes of an entity that is not a hand: its own, its base classes, the built-in ones.
+void AddClasses(const std::vector<std::string>& classes, Json& json) {
+  const auto given =
+      std::find_if(classes.begin() + 1, classes.end(), scenario::IsScenarioBuiltinClass);
+  json["class"] = classes.front();
+  if (given != classes.begin() + 1)
+    json["kinds"] = std::vector<std::string>(classes.begin() + 1, given);
+  json["fixed"] = *given == "Fixed";
+  if (*given == "Jointed") json["jointed"] = true;
+  if (*given == "Attached") json["attached"] = true;
+  if (*given == "Entity") json["person"] = true;
+  if (*given == "Grains") json["grains"] = true;
+  if (given + 1 != classes.end() && *(given + 1) == "Abstract") json["abstract"] = *given;
+}
+
+/// A shape as [its key, what it says].
+struct ShapeJson {
+  std::pair<const char*, Json> operator()(const grammar::Box& box) const {
+    return {"box", {{"size_m", ToJson(2 * box.half_size_m)}}};
+  }
+  std::pair<const char*, Json> operator()(const grammar::Ball& ball) const {
+    return {"sphere", {{"radius_m", ball.radius_m}}};
+  }
+  std::pair<const char*, Json> operator()(const grammar::Cylinder& cylinder) const {
+    return {"cylinder", Round(cylinder.radius_m, cylinder.half_length_m)};
+  }
+  std::pair<const char*, Json> operator()(const grammar::Capsule& capsule) const {
+    return {"capsule", Round(capsule.radius_m, capsule.half_length_m)};
+  }
+  std::pair<const char*, Json> operator()(const grammar::Hull& hull) const {
+    Json points = Json::array();
+    for (const Eigen::Vector3d& point : hull.points_m) points.push_back(ToJson(point));
+    return {"hull", {{"points_m", std::move(points)}}};
+  }
+
+ private:
+  static Json Round(double radius_m, double half_length_m) {
+    return {{"radius_m", radius_m}, {"length_m", 2 * half_length_m}};
+  }
+};
+
+Json PartJson(const grammar::SolidPart& part) {
+  auto [key, shape] = std::visit(ShapeJson{}, part.shape);
+  Json json = {{key, std::move(shape)}};
+  if (!part.p_BS_m.isZero(0)) json["at_m"] = ToJson(part.p_BS_m);
+  if (part.q_BS.vec() != Eigen::Vector3d::Zero()) json["quat_wxyz"] = ToJson(part.q_BS);
+  return json;
+}
+
+Json MemberJson(const grammar::EntityInfo& member, const grammar::EntityTable& entity_table) {
+  Json json = {{"centre_m", ToJson(member.p_BC_m)}, {"size_m", ToJson(2 * member.half_size_m)}};
+  for (const grammar::SolidPart& part : member.solid.parts())
+    json["parts"].push_back(PartJson(part));
+  if (member.part_of != grammar::kNoEntity)
+    json["part_of"] = entity_table.entities[member.part_of].name;
+  if (member.mass_kg > 0) json["mass_kg"] = member.mass_kg;
+  if (member.strength_n > 0) json["strength_n"] = member.strength_n;
+  if (IsHand(member)) {
+    json["hand"] = true;
+    json["sensor_sets"] = member.sensor_sets;
+  } else {
+    AddClasses(member.classes, json);
+    if (member.round) json["round"] = true;
+  }
+  return json;
+}
+
+Json SampleJson(const grammar::EntitySample& look, const grammar::EntityTable& entity_table) {
+  if (!grammar::IsTracked(look)) return nullptr;
+  Json json = {{"at_m", ToJson(look.p_WB_m)},
+               {"quat_wxyz", ToJson(look.q_WB)},
+               {"v_m_per_s", ToJson(look.v_WB_m_per_s)},
+               {"w_rad_per_s", ToJson(look.w_WB_rad_per_s)}};
+  if (look.asleep) json["asleep"] = true;
+  if (look.joint_position != 0) json["joint_position"] = look.joint_position;
+  if (look.joint_fraction != 0) json["joint_fraction"] = look.joint_fraction;
+  if (look.gazes_at != grammar::kNoEntity)
+    json["gazes_at"] = entity_table.entities[look.gazes_at].name;
+  return json;
+}
+
+Json HandJson(const grammar::HandSample& hand, const grammar::EntityTable& entity_table) {
+  Json collision_spheres = Json::array();
+  for (const grammar::CollisionSphere& collision_sphere : hand.collision_spheres) {
+    collision_spheres.push_back({collision_sphere.p_W_m.x(), collision_sphere.p_W_m.y(),
+                                 collision_sphere.p_W_m.z(), collision_sphere.radius_m});
+  }
+  Json json = {{"trigger", hand.trigger},
+               {"ahead", ToJson(hand.ahead_W)},
+               {"collision_spheres_m", std::move(collision_spheres)}};
+  if (hand.style >= 0 && hand.style < static_cast<int>(entity_table.styles.size()))
+    json["style"] = entity_table.styles[hand.style];
+  return json;
+}
+
+Json TouchJson(const grammar::Touch& touch, const grammar::EntityTable& entity_table) {
+  Json json = {{"a", entity_table.entities[touch.a].name},
+               {"b", entity_table.entities[touch.b].name},
+               {"up_on_a", touch.up_on_a},
+               {"up_on_b", touch.up_on_b},
+               {"force_n", touch.normal_force_n},
+               {"vertical_speed_m_per_s", touch.vertical_speed_m_per_s}};
+  if (!touch.nhat_BA_W.isZero()) {
+    json["at_m"] = ToJson(touch.p_W_m);
+    json["normal"] = ToJson(touch.nhat_BA_W);
+  }
+  for (const int one : {touch.a, touch.b}) {
+    const std::vector<std::string>& sets = entity_table.entities[one].sensor_sets;
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+      if (touch.sensor_sets >> i & 1) json["sensor_sets"].push_back(sets[i]);
+    }
+    if (!sets.empty()) break;  // of two hands, the sets are those of the first
+  }
+  return json;
+}
+
+}  // namespace
+
+EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header)
+    : out_(out), entity_table_(header.entity_table), shown_(header.entity_table.entities.size()) {
+  Json entities = Json::object();
+  for (const grammar::EntityInfo& member : entity_table_.entities)
+    entities[member.name] = MemberJson(member, entity_table_);
+  Json first = {{"recording", kEpisodeVersion},
+                {"episode", header.episode},
+                {"grammar", header.grammar},
+                {"ticks_per_second", entity_table_.ticks_per_second}};
+  if (header.bridge_s != kBridge_s) first["bridge_s"] = header.bridge_s;
+  first["styles"] = entity_table_.styles;
+  first["entities"] = std::move(entities);
+  out_ << first.dump() << "\n";
+}
+
+void EpisodeWriter::Write(const grammar::Frame& frame) {
+  Json samples = Json::object();
+  for (std::size_t i = 0; i < frame.entities.size(); ++i) {
+    Json sample = SampleJson(frame.entities[i], entity_table_);
+    std::string text = sample.dump();
+    if (text == shown_[i]) continue;
+    samples[entity_table_.entities[i].name] = std::move(sample);
+    shown_[i] = std::move(text);
+  }
+  Json hands = Json::object(), touches = Json::array();
+  for (const grammar::HandSample& hand : frame.hands)
+    hands[entity_table_.entities[hand.entity].name] = HandJson(hand, entity_table_);
+  for (const grammar::Touch& touch : frame.touches)
+    touches.push_back(TouchJson(touch, entity_table_));
+  out_ << Json{{"tick", frame.tick},
+               {"samples", std::move(samples)},
+               {"hands", std::move(hands)},
+               {"touches", std::move(touches)}}
+              .dump()
+       << "\n";
+}
+
+void EpisodeWriter::Finish(grammar::Tick end_tick) {
+  out_ << Json{{"end_tick", end_tick}}.dump() << "\n";
+}
+
+}  // namespace prehend::episode

@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/import/import_map.h. Tested by tests/program/import_test.cc
+#include "harness/exchange/import/import_map.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "harness/base/base/text_file.h"
+
+namespace prehend::exchange {
+namespace {
+
+constexpr double kMaxPosition_m = 1e4;
+constexpr double kMostTilt_deg = 60;  ///< of `up` from `axes`: farther is another axis
+
+ValueFormat<Columns> ColumnsFormat() {
+  const auto name = WithPlace(Text(200));
+  return StructFormat<Columns>("columns")
+      .Optional("body", &Columns::body, Text(200),
+                "The column with the body's name, of a file with one body per row.")
+      .Optional("time", &Columns::time, Text(200),
+                "The column with the time. Without it, rows are 1 / rate_hz apart.")
+      .Required("position", &Columns::position, ListOf(name, 3, 3),
+                "The columns of x, y and z. '{}' stands for the body's name.")
+      .Optional("quaternion", &Columns::quaternion, ListOf(name, 4, 4),
+                "The columns of the orientation, in the order of quaternion_order.")
+      .format();
+}
+
+ValueFormat<McapKeys> McapFormat() {
+  return StructFormat<McapKeys>("mcap")
+      .Optional("world", &McapKeys::world, Text(200),
+                "The coordinate frame of the recording. Default: the root of the tree of frames.")
+      .Optional(
+          "clock", &McapKeys::clock,
+          Choice<Clock>(
+              {{"header", Clock::kHeader}, {"log", Clock::kLog}, {"publish", Clock::kPublish}}),
+          "Which time of a message counts: when it was measured, logged or published.")
+      .format();
+}
+
+ValueFormat<MappedEntity> EntityFormat() {
+  using E = MappedEntity;
+  return StructFormat<E>("entity")
+      .NamedByKey()
+      .Optional("from", &E::from, Text(200), "The body in the file of poses.")
+      .Optional("at_m", &E::at_m, Vector<3>(-kMaxPosition_m, kMaxPosition_m),
+                "Where it stands, z up, of what no tracker sees: a table.")
+      .Optional("quat_wxyz", &E::quat_wxyz, UnitQuaternion(), "How it is turned there.")
+      .Optional("hand", &E::hand, Flag(), "It is a hand.")
+      .Optional("fixed", &E::fixed, Flag(), "It never moves.")
+      .Optional("class", &E::class_name, Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'"),
+                "What it is; not of hands.")
+      .Required("size_m", &E::size_m, Vector<3>(0, kMaxPosition_m),
+                "The edges of its bounding box.")
+      .Optional("offset_m", &E::offset_m, Vector<3>(-10, 10),
+                "From the origin of its markers to its centre, in the body's frame, z up.")
+      .Optional("upright_at_s", &E::upright_at_s, Number(0, 1e6),
+                "A time at which it stands upright: its orientation there counts as not turned.")
+      .Optional("axes_quat_wxyz", &E::axes_quat_wxyz, UnitQuaternion(),
+                "How it is turned, as it stands upright, in the axes of its markers.")
+      .Optional("ahead", &E::ahead, Vector<3>(-1, 1),
+                "Where a hand reaches, in its own frame, z up.")
+      .ExactlyOneOf({"from", "at_m"})
+      .AtMostOneOf({"upright_at_s", "axes_quat_wxyz"})
+      .format();
+}
+
+ValueFormat<ImportMap> MapFormat() {
+  using M = ImportMap;
+  const auto name = Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'");
+  std::vector<std::pair<std::string, Doubt>> doubts;
+  for (std::size_t i = 0; i < kDoubtNames.size(); ++i)
+    doubts.emplace_back(kDoubtNames[i], static_cast<Doubt>(i));
+  return StructFormat<M>("a map")
+      .Required("import", &M::version, Integer<int>(1, 1), "The version of this format.")
+      .Optional("episode", &M::episode, name, "The recording's name.")
+      .Optional("grammar", &M::grammar, name, "The grammar that segments it.")
+      .Optional("unit", &M::unit,
+                Choice<LengthUnit>({{"m", LengthUnit::kMetre},
+                                    {"cm", LengthUnit::kCentimetre},
+                                    {"mm", LengthUnit::kMillimetre},
+                                    {"inch", LengthUnit::kInch}}),
+                "The unit of positions in the file.")
+      .Optional("metres_per_unit", &M::metres_per_unit, Number(1e-6, 1e3),
+                "The same as a number, where it is none of these.")
+      .ExactlyOneOf({"unit", "metres_per_unit"})
+      .Optional("axes", &M::axes, Choice<int>({{"x_up", 0}, {"y_up", 1}, {"z_up", 2}}),
+                "Which axis of the file points up. This, or up, or both.")
+      .Optional("up", &M::up, Vector<3>(-1e6, 1e6),
+                "The direction of up in the file's axes, of any length, where no axis points up.")
+      .Optional(
+          "quaternion_order", &M::quaternion_order,
+          Choice<QuaternionOrder>(
+              {{"wxyz", QuaternionOrder::kWxyz}, {"xyzw", QuaternionOrder::kXyzw}}),
+          "The order of the four columns of columns.quaternion; of MCAP, of the fields x, y, z, w.")
+      .Optional("time_unit", &M::time_unit,
+                Choice<TimeUnit>({{"s", TimeUnit::kSecond},
+                                  {"ms", TimeUnit::kMillisecond},
+                                  {"us", TimeUnit::kMicrosecond},
+                                  {"ns", TimeUnit::kNanosecond},
+                                  {"frame", TimeUnit::kFrame}}),
+                "Of CSV: the unit of the time column; frame: a number, rate_hz per second.")
+      .Optional("rate_hz", &M::rate_hz, Number(0.1, 10'000),
+                "Frames per second. It is compared with the times.")
+      .Optional("separator", &M::separator,
+                Choice<Separator>({{"comma", Separator::kComma},
+                                   {"semicolon", Separator::kSemicolon},
+                                   {"tab", Separator::kTab}}),
+                "What separates columns.")
+      .Optional("header_line", &M::header_line, Integer<int>(1, 1000),
+                "The line with the names of the columns; those before it are not read.")
+      .Optional("missing", &M::missing, ListOf(Text(40), 0, 20),
+                "Cells that mean 'not tracked', besides empty ones: [nan].")
+      .Optional("zero_is_missing", &M::zero_is_missing, Flag(),
+                "A body at exactly 0, 0, 0 is not tracked.")
+      .Optional("bridge_s", &M::bridge_s, Number(0, 60),
+                "The longest time without a pose that is filled with a straight line.")
+      .Optional(
+          "lost", &M::lost,
+          Choice<Lost>(
+              {{"refuse", Lost::kRefuse}, {"hold", Lost::kHold}, {"unknown", Lost::kUnknown}}),
+          "What is done where a body is not tracked for longer: nothing is imported, it "
+          "stays where it was, or nobody knows where it is.")
+      .Optional("smooth_s", &M::smooth_s, Number(0, 2),
+                "Each pose is the mean of those at most half of this before or after it.")
+      .Optional("sure", &M::sure, ListOf(Choice<Doubt>(doubts), 0, kDoubtNames.size()),
+                "Looks wrong, but is right.")
+      .Optional("ticks_per_second", &M::ticks_per_second, Integer<std::int64_t>(100, 1'000'000),
+                "The recording's unit of time.")
+      .Optional("columns", &M::columns, ColumnsFormat(), "Of CSV: where the values stand.")
+      .Optional("mcap", &M::mcap, McapFormat(), "Of MCAP: frame and clock.")
+      .Required("entities", &M::entities, MapOf(name, EntityFormat(), 1, 1000),
+                "What the bodies are, and what no tracker sees.")
+      .format();
+}
+
+/// What only files of comma-separated values have.
+void CheckColumns(const ImportMap& map, const YamlNode& root, DiagnosticList& errors) {
+  const Columns& columns = map.columns;
+  if (columns.position.empty()) {
+    errors.Add(root.where, "'columns' is missing: a CSV file needs it",
+               "columns: {time: t, position: [\"{}_x\", \"{}_y\", \"{}_z\"]}");
+    return;
+  }
+  if (!map.time_unit) {
+    errors.Add(root.where, "'time_unit' is missing: a CSV file needs it",
+               "time_unit: s, ms, us, ns or frame");
+    return;
+  }
+  for (const auto* list : {&columns.position, &columns.quaternion}) {
+    for (const Located<std::string>& column : *list) {
+      const bool names_body = column.value.find("{}") != std::string::npos;
+      if (columns.body && names_body)
+        errors.Add(column.where, fmt::format("'{}' stands for all bodies of a row, but "
+                                             "columns.body says that a row has one",
+                                             column.value));
+      if (!columns.body && !names_body)
+        errors.Add(column.where, fmt::format("'{}' names no body", column.value),
+                   "write '{}' where the body's name stands, or say in columns.body which column "
+                   "has it");
+    }
+  }
+  std::vector<std::string> upright;
+  for (const Named<MappedEntity>& entity : map.entities) {
+    if (columns.quaternion.empty() && entity.value.from && SaysAxes(entity.value))
+      upright.push_back(entity.name);
+  }
+  if (!upright.empty())
+    errors.Add(columns.position.front().where,
+               fmt::format("columns.quaternion is missing, and upright_at_s or axes_quat_wxyz of "
+                           "{} needs bodies with "
+                           "orientations",
+                           fmt::join(upright, ", ")),
+               "quaternion: [the four columns, in quaternion_order]; or, if the file has positions "
+               "only, leave these out");
+  if (!columns.quaternion.empty() && !map.quaternion_order)
+    errors.Add(columns.quaternion.front().where,
+               "quaternion_order is missing: which of the four columns is w",
+               "quaternion_order: xyzw, if w is the last; wxyz, if it is the first");
+  if (!columns.time && !map.rate_hz)
+    errors.Add(columns.where, "neither columns.time nor rate_hz says when a row is");
+  if (!columns.time && columns.body)
+    errors.Add(columns.where, "a file with one body per row needs columns.time");
+  if (map.time_unit->value == TimeUnit::kFrame && !map.rate_hz)
+    errors.Add(map.time_unit->where, "time_unit: frame needs rate_hz");
+}
+
+void CheckUp(const ImportMap& map, const YamlNode& root, DiagnosticList& errors) {
+  if (!map.axes && !map.up)
+    return errors.Add(root.where, "'axes' is missing: which axis of the file points up",
+                      "axes: x_up, y_up or z_up; or, where none does, up: [0, -0.82, -0.57], the "
+                      "direction of up in the file's axes");
+  if (!map.up) return;
+  if (map.up->value.norm() < 1e-6)
+    return errors.Add(map.up->where, "expected the direction of up, found a vector of length 0",
+                      "the direction in the file's axes, of any length: up: [0, 1, 0.2]");
+  if (!map.axes) return;
+  const double degrees = std::acos(map.up->value.normalized()[map.axes->value]) * 180 / EIGEN_PI;
+  if (degrees > kMostTilt_deg)
+    errors.Add(map.up->where,
+               fmt::format("up is {:.0f} degrees away from the {} of the file, which 'axes' says "
+                           "points up",
+                           degrees, "xyz"[map.axes->value]),
+               "leave out 'axes', or correct one of the two");
+}
+
+/// Rules across keys.
+void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
+              DiagnosticList& errors) {
+  const bool is_csv = format == PoseFormat::kCsv;
+  CheckUp(map, root, errors);
+  if (is_csv) {
+    CheckColumns(map, root, errors);
+  } else {
+    if (!map.columns.position.empty())
+      errors.Add(map.columns.where, "'columns' are those of CSV files; this one has names");
+    if (map.time_unit)
+      errors.Add(map.time_unit->where, "'time_unit' is that of CSV files; this one has its own");
+  }
+  if (format == PoseFormat::kBvh && map.quaternion_order)
+    errors.Add(map.quaternion_order->where, "BVH has angles, and no quaternions");
+  if (format != PoseFormat::kMcap && map.mcap.where.place.line > 0)
+    errors.Add(map.mcap.where, "'mcap' says something of MCAP files; this is none");
+  bool tracked = false;
+  for (const Named<MappedEntity>& entity : map.entities) {
+    const MappedEntity& e = entity.value;
+    tracked = tracked || e.from;
+    if (e.hand && (e.fixed || e.class_name != "Object"))
+      errors.Add(entity.name_where,
+                 fmt::format("'{}': a hand has no class and is not fixed", entity.name));
+    if (e.upright_at_s && e.at_m)
+      errors.Add(e.upright_at_s->where, "upright_at_s needs a body with orientations");
+    if (e.axes_quat_wxyz && e.at_m)
+      errors.Add(e.axes_quat_wxyz->where, "axes_quat_wxyz needs a body with orientations");
+    if (e.ahead && !e.hand) errors.Add(e.ahead->where, "only a hand reaches 'ahead'");
+    if (e.ahead && e.ahead->value.norm() < 0.1)
+      errors.Add(e.ahead->where, "expected a direction, found one of length below 0.1");
+  }
+  if (!tracked && !map.entities.empty())
+    errors.Add(map.entities.front().name_where, "no entity is 'from' a body of the file");
+}
+
+std::string EndingOf(const std::string& poses_path) {
+  std::string ending = std::filesystem::path(poses_path).extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+}  // namespace
+
+bool ImportMap::IsSure(Doubt doubt) const { return std::ranges::find(sure, doubt) != sure.end(); }
+
+double ImportMap::MetresPerUnit() const {
+  if (metres_per_unit) return metres_per_unit->value;
+  constexpr std::array kMetres = {1.0, 1e-2, 1e-3, 0.0254};
+  return kMetres[static_cast<std::size_t>(unit->value)];
+}
+
+Eigen::Quaterniond ImportMap::AxesTurn() const {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  if (axes && axes->value == 0) turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+  if (axes && axes->value == 1) turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return Eigen::Quaterniond(turn);
+}
+
+Eigen::Quaterniond ImportMap::WorldTurn() const {
+  const Eigen::Quaterniond turn = AxesTurn();
+  if (!up) return turn;
+  return Eigen::Quaterniond::FromTwoVectors(turn * up->value.normalized(),
+                                            Eigen::Vector3d::UnitZ()) *
+         turn;
+}
+
+Eigen::Vector3d ImportMap::Up() const {
+  return up ? Eigen::Vector3d(up->value.normalized()) : Eigen::Vector3d::Unit(axes->value);
+}
+
+bool IsBag(const std::string& poses_path) { return EndingOf(poses_path) == ".bag"; }
+
+Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
+  const std::string ending = EndingOf(poses_path);
+  if (ending == ".bvh") return PoseFormat::kBvh;
+  if (ending == ".mcap" || ending == ".bag") return PoseFormat::kMcap;
+  static const std::map<std::string, std::string> kOthers = {
+      {".db3", "convert it, with the program that comes with MCAP: mcap convert IN.db3 OUT.mcap"},
+      {".c3d", "export poses of rigid bodies as CSV; C3D mostly holds single markers"},
+      {".fbx", "export it as BVH"},
+      {".trc", "export poses of rigid bodies as CSV; TRC holds single markers"}};
+  const auto other = kOthers.find(ending);
+  if (other == kOthers.end()) return PoseFormat::kCsv;
+  return tl::unexpected(grammar::Diagnostics{
+      {.file = ReadableName(poses_path),
+       .place = {},
+       .message =
+           fmt::format("files {} are not read; CSV, BVH, MCAP and bags of ROS 1 are", ending),
+       .source_line = {},
+       .hint = other->second}});
+}
+
+Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format) {
+  Result<YamlDocument> document = ReadYamlFile(path);
+  if (!document) return tl::unexpected(std::move(document.error()));
+  MapFile file{.document = std::move(*document), .map = {}};
+  DiagnosticList errors(file.document);
+  if (MapFormat().Read(file.document.root, errors, file.map))
+    CheckMap(file.map, format, file.document.root, errors);
+  if (!errors.empty()) return tl::unexpected(errors.Sorted());
+  return file;
+}
+
+std::string ImportMapSchema() { return MapFormat().schema().json().dump(2) + "\n"; }
+
+}  // namespace prehend::exchange

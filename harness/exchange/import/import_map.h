@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// The map of an import: what a file of poses means. Its keys are in docs/motion-capture.md. Tested
+// by tests/program/import_test.cc
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/base/base/result.h"
+#include "harness/base/yaml/struct_format.h"
+
+namespace prehend::exchange {
+
+/// What is imported, by the ending of its name. Bags of ROS 1 hold messages as MCAP files do.
+enum class PoseFormat { kCsv, kBvh, kMcap };
+enum class LengthUnit { kMetre, kCentimetre, kMillimetre, kInch };
+enum class TimeUnit { kSecond, kMillisecond, kMicrosecond, kNanosecond, kFrame };
+enum class QuaternionOrder { kWxyz, kXyzw };
+enum class Separator { kComma, kSemicolon, kTab };
+enum class Lost { kRefuse, kHold, kUnknown };
+enum class Clock { kHeader, kLog, kPublish };
+/// What looks wrong, and is accepted because the map says that it is right.
+enum class Doubt { kUnit, kAxes, kQuaternionOrder, kTime, kPlace, kZero, kUpright };
+
+inline constexpr std::array kDoubtNames = {"unit",  "axes", "quaternion_order", "time",
+                                           "place", "zero", "upright"};
+
+/// The names of columns. `{}` in a name stands for the body's name: then a row has all bodies.
+struct Columns {
+  Where where;
+  std::optional<Located<std::string>> body;  ///< holds the body's name: then a row has one body
+  std::optional<Located<std::string>> time;
+  std::vector<Located<std::string>> position;    ///< of x, y, z
+  std::vector<Located<std::string>> quaternion;  ///< four in `quaternion_order`, or none
+};
+
+/// Of MCAP files.
+struct McapKeys {
+  Where where;
+  std::optional<Located<std::string>> world;  ///< the coordinate frame that is the recording's
+  Clock clock = Clock::kHeader;               ///< which of a message's times counts
+};
+
+/// One entity of the recording.
+struct MappedEntity {
+  std::optional<Located<std::string>> from;  ///< the body in the file
+  std::optional<Eigen::Vector3d> at_m;       ///< of what no tracker sees
+  Eigen::Vector4d quat_wxyz = {1, 0, 0, 0};
+  bool hand = false;
+  bool fixed = false;
+  std::string class_name = "Object";
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
+  /// From the markers' origin to the entity's, in the body's frame, z up, metres.
+  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
+  std::optional<Located<double>> upright_at_s;  ///< when it stands as it is described, not turned
+  /// How it is turned in its markers' axes, this or the time.
+  std::optional<Located<Eigen::Vector4d>> axes_quat_wxyz;
+  std::optional<Located<Eigen::Vector3d>> ahead;  ///< of a hand: where it reaches, likewise; x
+};
+
+/// Whether the map says how it is turned in its markers' axes.
+inline bool SaysAxes(const MappedEntity& e) { return e.upright_at_s || e.axes_quat_wxyz; }
+
+/// The whole file.
+struct ImportMap {
+  int version = 1;
+  std::string episode;  ///< "": as the file of poses is called
+  Located<std::string> grammar = {"pick_and_place_from_motion", {}};
+  std::optional<Located<LengthUnit>> unit;         ///< this, or
+  std::optional<Located<double>> metres_per_unit;  ///< this
+  std::optional<Located<int>> axes;  ///< which axis of the file is up: 0 x, 1 y, 2 z; this or
+  std::optional<Located<Eigen::Vector3d>> up;  ///< the direction of up in the file's axes, or both
+  std::optional<Located<QuaternionOrder>> quaternion_order;
+  std::optional<Located<TimeUnit>> time_unit;  ///< of CSV only
+  std::optional<Located<double>> rate_hz;
+  Separator separator = Separator::kComma;
+  int header_line = 1;
+  std::vector<std::string> missing;  ///< cells that mean "not tracked", besides empty ones
+  bool zero_is_missing = false;
+  double bridge_s = 0.1;  ///< the longest gap that is filled with a straight line
+  Lost lost = Lost::kRefuse;
+  double smooth_s = 0;  ///< poses are means over so long, where nothing was lost
+  std::vector<Doubt> sure;
+  std::int64_t ticks_per_second = 10'000;
+  Columns columns;  ///< of CSV only
+  McapKeys mcap;
+  std::vector<Named<MappedEntity>> entities;
+
+  bool IsSure(Doubt doubt) const;
+  double MetresPerUnit() const;
+  /// From the file's axes to those of which `axes` is z: of positions, and of bodies' own axes.
+  Eigen::Quaterniond AxesTurn() const;
+  /// From the file's axes to the recording's, z up: of positions. `up` turns the world, the
+  /// shortest way, and not the bodies' own axes.
+  Eigen::Quaterniond WorldTurn() const;
+  /// In the file's axes.
+  Eigen::Vector3d Up() const;
+  /// Where the map says what is up.
+  const Where& UpWhere() const { return up ? up->where : axes->where; }
+  /// Where the map says it.
+  const Where& UnitWhere() const { return unit ? unit->where : metres_per_unit->where; }
+};
+
+/// The map with the document that its places refer to.
+struct MapFile {
+  YamlDocument document;
+  ImportMap map;
+};
+
+bool IsBag(const std::string& poses_path);
+
+/// A kind of file that is not read is an error that says what helps.
+Result<PoseFormat> PoseFormatOf(const std::string& poses_path);
+
+/// For a file of this format. Errors have their places.
+Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format);
+
+/// The JSON Schema of maps, as text.
+std::string ImportMapSchema();
+
+}  // namespace prehend::exchange

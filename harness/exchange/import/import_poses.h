@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// A file of poses and its map -> a recording in metres, z up, with one time base. Tested by
+// tests/program/import_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/episode/sense/episode_file.h"
+#include "harness/exchange/import/pose_file.h"
+
+namespace prehend::exchange {
+
+/// What became of one entity.
+struct EntityReport {
+  std::string name, from;  ///< from: the body, or "" if the map says where it stands
+  std::size_t poses = 0;
+  double rate_hz = 0;          ///< the usual one
+  std::size_t bridged = 0;     ///< gaps that were filled
+  double bridged_s = 0;        ///< of them all
+  std::size_t lost = 0;        ///< gaps in which it is held where it was
+  double lost_s = 0;           ///< of them all
+  Eigen::AlignedBox3d extent;  ///< of its origin, in the recording
+  /// How it is turned in its markers' axes, if the map says when it is upright.
+  std::optional<Eigen::Quaterniond> axes;
+};
+
+struct Imported {
+  episode::Recording episode;
+  std::vector<EntityReport> entities;
+  double duration_s = 0;
+  std::vector<std::string> warnings;  ///< one line each
+};
+
+/// Reads, doubts and converts. Nothing comes of a file with errors.
+Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path);
+
+}  // namespace prehend::exchange

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/import/log_series.h. Tested by tests/program/import_messages_test.cc
+#include "harness/exchange/import/log_series.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/base/base/text_file.h"
+#include "harness/exchange/import/pose_file.h"
+
+namespace prehend::exchange {
+
+namespace {
+
+constexpr std::size_t kMostSeries = 10'000, kMostPoses = 5'000'000;
+constexpr std::size_t kPosesOfAnyFile = 250'000;  ///< and one more for each four bytes of the file
+constexpr std::int64_t kLast_ns = std::int64_t{1} << 62;  ///< in the year 2116
+constexpr std::int64_t kMostBack_ns = 1'000'000'000;      ///< more than this is another clock
+constexpr std::size_t kMostLookedAt = 100'000;  ///< poses of a topic that nobody asked for
+constexpr std::size_t kMostSeen = 1000;         ///< bodies of a topic
+constexpr std::size_t kMostSeenOfFile = 20'000;
+
+constexpr double kMostApart_m = 0.1;  ///< of a body, twice in a message
+
+double InSeconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+
+/// "/frame[Cup]" is of the topic "/frame".
+bool IsOfTopic(const std::string& from, const std::string& topic) {
+  return from.starts_with(topic) &&
+         (from.size() == topic.size() || from[topic.size()] == '[' || from[topic.size()] == ':');
+}
+
+}  // namespace
+
+std::string FrameName(std::string name) {
+  if (name.starts_with('/')) name.erase(0, 1);
+  return name;
+}
+
+std::vector<std::string> LogTopic::Names(const std::string& topic, bool unasked_only) const {
+  std::vector<std::string> names;
+  if (!reader) return names;
+  const std::vector<PoseField>& fields = reader->fields();
+  const bool has_poses = std::ranges::find(fields, true, &PoseField::oriented) != fields.end();
+  for (const auto& [field, keys] : seen) {
+    if (has_poses && !fields[field].oriented) continue;
+    const bool is_asked = std::ranges::any_of(asked, [&](const AskedBody& body) {
+      return body.links.contains(field) && body.address.keys == keys;
+    });
+    if (!is_asked || !unasked_only)
+      names.push_back(AddressOf(ReadableName(topic), fields, field, keys));
+  }
+  return names;
+}
+
+LogSeries::LogSeries(const ImportMap& map, std::uint64_t file_bytes)
+    : map_(map),
+      order_(map.quaternion_order ? map.quaternion_order->value : QuaternionOrder::kXyzw),
+      file_bytes_(file_bytes),
+      most_poses_(std::min<std::uint64_t>(kMostPoses, kPosesOfAnyFile + file_bytes / 4)),
+      nan_is_missing_(std::ranges::find(map.missing, "nan") != map.missing.end()) {}
+
+void LogSeries::TakeChannel(const LogChannel& channel) {
+  std::string why;
+  Source source{.reader = readers_.Of(channel, why)};
+  const bool is_known = topics.contains(channel.topic);
+  LogTopic& topic = topics[channel.topic];
+  source.topic = &topic;
+  if (topic.reader && source.reader)
+    source.other_type = topic.reader->fields() != source.reader->fields();
+  if (!is_known || (!topic.reader && source.reader)) {
+    topic.reader = source.reader;
+    topic.why_not = why;
+    topic.of_frames = MessageReaders::IsOfFrames(channel);
+    Ask(channel.topic, topic);
+  }
+  sources_.emplace(&channel, std::move(source));
+}
+
+/// What the map says of it.
+void LogSeries::Ask(const std::string& topic_name, LogTopic& topic) {
+  topic.asked.clear();
+  if (!topic.reader || topic.reader->bodies() == MessageReader::Bodies::kByName) return;
+  const std::vector<PoseField>& fields = topic.reader->fields();
+  topic.wanted.assign(fields.size(), topic.reader->bodies() == MessageReader::Bodies::kFrames);
+  for (const Named<MappedEntity>& entity : map_.entities) {
+    if (!entity.value.from || !IsOfTopic(entity.value.from->value, topic_name)) continue;
+    AskedBody body{.from = entity.value.from->value, .address = {}, .links = {}};
+    const auto address = ParseBodyAddress(std::string_view(body.from).substr(topic_name.size()));
+    if (!address) continue;
+    body.address = *address;
+    for (const std::size_t field : FieldsOf(body.address, fields)) {
+      body.links[field];
+      topic.wanted[field] = true;
+    }
+    topic.asked.push_back(std::move(body));
+  }
+}
+
+std::string LogSeries::TakeMessage(const LogMessage& message) {
+  const Source& source = sources_.at(&message.channel);
+  if (!source.reader) return "";
+  const std::string why = TakePoses(message, source);
+  if (why.empty()) return "";
+  return fmt::format("a message of '{}', logged at {:.6f} s: {}",
+                     ReadableName(message.channel.topic), InSeconds(message.log_ns), why);
+}
+
+std::string LogSeries::TakePoses(const LogMessage& message, const Source& source) {
+  LogTopic& topic = *source.topic;
+  const MessageReader::Bodies bodies = source.reader->bodies();
+  const bool matters = bodies != MessageReader::Bodies::kOfTopic || !topic.asked.empty();
+  if (!matters && (source.other_type || topic.looked_at > kMostLookedAt)) return "";
+  if (source.other_type) return "the messages of this topic are of two types";
+  ++messages_;
+  std::vector<MessagePose> read;
+  std::string why = source.reader->Decode(message.data, topic.wanted, read);
+  if (!why.empty() && !matters) topic.looked_at = kMostLookedAt + 1;
+  if (!why.empty()) return matters ? why : "";
+  for (const MessagePose& pose : read) {
+    if (bodies == MessageReader::Bodies::kByName) {
+      why = TakePose(message, pose, pose.name, named[pose.name]);
+      if (!why.empty()) return why;
+      continue;
+    }
+    if (bodies == MessageReader::Bodies::kFrames) {
+      if (pose.name.empty()) return "a transform without 'child_frame_id'";
+      why = TakePose(message, pose, pose.name, tree.links[FrameName(pose.name)]);
+      if (!why.empty()) return why;
+    }
+    Look(pose, topic);
+    why = TakeAsked(message, pose, topic);
+    if (!why.empty()) return why;
+  }
+  if (tree.links.size() + named.size() > kMostSeries)
+    return fmt::format("more than {} frames and bodies", kMostSeries);
+  if (poses_ <= most_poses_) return "";
+  return most_poses_ == kMostPoses ? fmt::format("more than {} poses", kMostPoses)
+                                   : fmt::format("more than {} poses in a file of {} KiB",
+                                                 most_poses_, file_bytes_ >> 10);
+}
+
+std::string LogSeries::TakeAsked(const LogMessage& message, const MessagePose& pose,
+                                 LogTopic& topic) {
+  for (AskedBody& body : topic.asked) {
+    const auto found = body.links.find(pose.field);
+    if (found == body.links.end() || body.address.keys != pose.keys) continue;
+    topic.lacks_times = topic.lacks_times || !pose.stamp_ns;
+    FrameLink& link = found->second;
+    const std::size_t before = link.poses.size();
+    std::string why = TakePose(message, pose, body.from, link);
+    if (!why.empty()) return why;
+    if (link.poses.size() == before) continue;
+    const bool again = body.last_message == messages_ && before > 0;
+    body.last_message = messages_;
+    if (!again) continue;
+    // Some drivers send two frames in a message.
+    const TimedPose last = link.poses.back();
+    link.poses.pop_back();
+    const double apart_m = (link.poses.back().p - last.p).norm() * map_.MetresPerUnit();
+    if (apart_m > kMostApart_m)
+      return fmt::format("'{}' is in it twice, {:.2f} m apart", body.from, apart_m);
+    link.poses.back() = last;
+    ++body.repeats;
+  }
+  return "";
+}
+
+void LogSeries::Look(const MessagePose& pose, LogTopic& topic) {
+  if (++topic.looked_at > kMostLookedAt || topic.seen.size() >= kMostSeen ||
+      seen_ >= kMostSeenOfFile)
+    return;
+  seen_ += topic.seen.emplace(pose.field, pose.keys).second ? 1 : 0;
+}
+
+std::string LogSeries::TakePose(const LogMessage& message, const MessagePose& pose,
+                                const std::string& name, FrameLink& link) {
+  const bool fixed = message.channel.topic.ends_with("tf_static");
+  const std::string frame = FrameName(pose.frame);
+  if (link.poses.empty()) {
+    link.parent = frame;
+    link.fixed = fixed;
+  } else if (link.parent != frame) {
+    return fmt::format("'{}' is in the frame '{}', and before it was in '{}'", name, frame,
+                       link.parent);
+  }
+  std::int64_t ns = map_.mcap.clock == Clock::kPublish ? message.publish_ns : message.log_ns;
+  if (map_.mcap.clock == Clock::kHeader && pose.stamp_ns) {
+    ns = *pose.stamp_ns;
+    if (ns == 0 && !fixed)
+      return fmt::format(
+          "'{}' has the time 0 in its header; if it has no clock, the map says "
+          "mcap: {{clock: log}}",
+          name);
+  }
+  if (ns < 0 || ns > kLast_ns)
+    return fmt::format("'{}' has the time {:.0f} s; expected one of the years 1970 to 2116", name,
+                       static_cast<double>(static_cast<std::uint64_t>(ns)) * 1e-9);
+  if (!link.poses.empty() && ns < link.poses.back().ns - kMostBack_ns)
+    return fmt::format(
+        "the times of '{}' go back from {:.6f} to {:.6f} s: its clock was set, or "
+        "these are two recordings",
+        name, InSeconds(link.poses.back().ns), InSeconds(ns));
+  if (pose.missing || (map_.zero_is_missing && pose.p.isZero(0))) return "";
+  if (!pose.p.allFinite() || !pose.xyzw.allFinite()) {
+    if (nan_is_missing_) return "";
+    return fmt::format(
+        "'{}' has a pose that is no number; if that means 'not tracked', the map "
+        "says missing: [nan]",
+        name);
+  }
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  if (pose.oriented) {
+    const double length = pose.xyzw.norm();
+    if (std::abs(length - 1) > kUnitTolerance)
+      return fmt::format(
+          "'{}': expected a unit quaternion, found one of length {:.4g}{}", name, length,
+          pose.p.isZero(0) ? "; if a body at exactly 0, 0, 0 is not tracked, the map "
+                             "says zero_is_missing: true"
+                           : "");
+    const Eigen::Vector4d& v = pose.xyzw;
+    q = Eigen::Quaterniond(v[3], v[0], v[1], v[2]);
+    if (order_ == QuaternionOrder::kWxyz) q = Eigen::Quaterniond(v[0], v[1], v[2], v[3]);
+  }
+  link.poses.push_back({.ns = ns, .p = pose.p, .q = q.normalized()});
+  ++poses_;
+  return "";
+}
+
+}  // namespace prehend::exchange

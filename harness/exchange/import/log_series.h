@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Poses of a log of messages, over time: of the bodies that a map asks for, of named bodies and of
+// the frames of a tree; and what else could be asked for. Tested by
+// tests/program/import_messages_test.cc
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/exchange/import/frame_tree.h"
+#include "harness/exchange/import/import_map.h"
+#include "harness/exchange/messages/body_address.h"
+#include "harness/exchange/messages/message_reader.h"
+
+namespace prehend::exchange {
+
+/// Topics of tf may begin their names with a slash, and mean the same.
+std::string FrameName(std::string name);
+
+/// What a map says of a topic: "/frame[Cup]".
+struct AskedBody {
+  std::string from;
+  BodyAddress address;
+  std::map<std::size_t, FrameLink> links;  ///< of each field that it can mean
+  std::size_t repeats = 0;                 ///< messages in which it comes again: the last counts
+  std::uint64_t last_message = 0;          ///< in which it has a pose
+};
+
+struct LogTopic {
+  std::shared_ptr<const MessageReader> reader;  ///< null: it is not read, and
+  std::string why_not;
+  std::vector<AskedBody> asked;
+  bool of_frames = false;    ///< its type is that of tf
+  std::vector<bool> wanted;  ///< which of its fields are asked for
+  /// Fields and keys of bodies, not all of very many.
+  std::set<std::pair<std::size_t, std::vector<std::string>>> seen;
+  std::size_t looked_at = 0;  ///< poses
+  bool lacks_times = false;   ///< of poses that were asked for
+
+  /// Bodies that could be asked for, as a map names them; positions only if there are no poses.
+  std::vector<std::string> Names(const std::string& topic, bool unasked_only) const;
+};
+
+class LogSeries {
+ public:
+  /// `most_poses`: in a file of this size.
+  LogSeries(const ImportMap& map, std::uint64_t file_bytes);
+
+  void TakeChannel(const LogChannel& channel);
+  /// Returns what is wrong with the message, or "".
+  std::string TakeMessage(const LogMessage& message);
+
+  QuaternionOrder quaternion_order() const { return order_; }
+
+  std::map<std::string, LogTopic> topics;
+  std::map<std::string, FrameLink> named;  ///< bodies with names of their own
+  FrameTree tree;
+
+ private:
+  struct Source {
+    std::shared_ptr<const MessageReader> reader;
+    LogTopic* topic = nullptr;
+    bool other_type = false;  ///< than the topic's first channel
+  };
+
+  std::string TakePoses(const LogMessage& message, const Source& source);
+  void Ask(const std::string& topic_name, LogTopic& topic);
+  void Look(const MessagePose& pose, LogTopic& topic);
+  std::string TakeAsked(const LogMessage& message, const MessagePose& pose, LogTopic& topic);
+  std::string TakePose(const LogMessage& message, const MessagePose& pose, const std::string& name,
+                       FrameLink& link);
+
+  const ImportMap& map_;
+  const QuaternionOrder order_;
+  const std::uint64_t file_bytes_, most_poses_;
+  const bool nan_is_missing_;
+  MessageReaders readers_;
+  std::map<const LogChannel*, Source> sources_;
+  std::uint64_t poses_ = 0, messages_ = 0;
+  std::size_t seen_ = 0;
+};
+
+}  // namespace prehend::exchange

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/import/pose_file.h. Tested by tests/program/import_test.cc
+#include "harness/exchange/import/pose_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace prehend::exchange {
+
+std::vector<PoseBody> BodiesOf(const ImportMap& map, DiagnosticList& errors) {
+  std::vector<PoseBody> bodies;
+  for (const Named<MappedEntity>& entity : map.entities) {
+    if (!entity.value.from) continue;
+    const std::string& name = entity.value.from->value;
+    if (std::ranges::find(bodies, name, &PoseBody::name) != bodies.end())
+      errors.Add(entity.value.from->where, fmt::format("'{}' is two entities", name));
+    else
+      bodies.push_back({.name = name, .samples = {}});
+  }
+  return bodies;
+}
+
+void RefuseAbsentBodies(const PoseFile& poses, const ImportMap& map, DiagnosticList& errors) {
+  for (const Named<MappedEntity>& entity : map.entities) {
+    if (!entity.value.from) continue;
+    const Located<std::string>& from = *entity.value.from;
+    const std::size_t count =
+        std::ranges::find(poses.bodies, from.value, &PoseBody::name)->samples.size();
+    if (count >= 2) continue;
+    errors.AddUnknownName(
+        from.where,
+        fmt::format("'{}' has {} poses in the file; at least 2 are needed", from.value, count),
+        from.value, poses.unused);
+  }
+}
+
+}  // namespace prehend::exchange

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Poses of bodies over time, as a file has them: its own unit, axes and names. Tested by
+// tests/program/import_test.cc
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/exchange/import/import_map.h"
+
+namespace prehend::exchange {
+
+inline constexpr std::size_t kMaxPoseFileBytes = std::size_t{1} << 30;
+inline constexpr double kUnitTolerance = 0.01;  ///< of the length of a quaternion
+
+struct PoseSample {
+  double t_s = 0;
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();            ///< in the file's unit and axes
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();  ///< in the file's axes
+  int line = 0;                                           ///< 0: the file has no lines
+};
+
+struct PoseBody {
+  std::string name;
+  std::vector<PoseSample> samples;  ///< times increase; where it is not tracked there is none
+};
+
+struct PoseFile {
+  std::string file;
+  std::string text;                 ///< of the file, for messages
+  std::vector<PoseBody> bodies;     ///< those of the map, in its order
+  std::vector<std::string> unused;  ///< names of bodies that the map does not mention
+  std::vector<std::string> notes;   ///< what a user should know, one line each
+  /// Of a skeleton: from its feet to its head, in the file's unit and axes.
+  std::optional<Eigen::Vector3d> stature;
+  std::optional<QuaternionOrder> quaternion_order;  ///< as they were read; none: there are none
+  bool has_orientations = true;                     ///< else only positions
+  bool counts_frames = false;  ///< its times, in a unit of time, are whole and grow by one each
+  std::size_t rows = 0;
+  double first_s = 0, last_s = 0;    ///< of all rows, also of those in which nothing is tracked
+  std::optional<double> began_at_s;  ///< the file's own time of second 0, since 1970
+};
+
+/// The bodies of the map, without poses. One that is two entities is an error.
+std::vector<PoseBody> BodiesOf(const ImportMap& map, DiagnosticList& errors);
+/// Bodies with less than two poses are errors.
+void RefuseAbsentBodies(const PoseFile& poses, const ImportMap& map, DiagnosticList& errors);
+
+/// Errors name the place, in the map or in the file of poses; at most a dozen.
+Result<PoseFile> ReadCsvPoses(const std::string& path, const MapFile& map);
+/// The joints of skeletons, each a body.
+Result<PoseFile> ReadBvhPoses(const std::string& path, const MapFile& map);
+/// Topics of poses, and coordinate frames of a tree of transforms, each a body.
+Result<PoseFile> ReadMcapPoses(const std::string& path, const MapFile& map);
+
+}  // namespace prehend::exchange

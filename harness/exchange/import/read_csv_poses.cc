@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: Apache-2.0
+// Poses as comma-separated values, one body per row or all of them. Tested by
+// tests/program/import_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "grammar/base/wording.h"
+#include "harness/base/base/csv_cells.h"
+#include "harness/base/base/text_file.h"
+#include "harness/exchange/import/pose_file.h"
+
+namespace prehend::exchange {
+namespace {
+
+using grammar::Diagnostics;
+using grammar::Place;
+
+constexpr std::size_t kMostComplaints = 12;
+constexpr std::size_t kMostHeaderBytes = 100'000;
+constexpr std::size_t kLeastSteps = 20;
+constexpr int kMostPreamble = 100;  ///< lines in which the names of the columns are looked for
+
+double SecondsPer(const ImportMap& map) {
+  switch (map.time_unit->value) {
+    case TimeUnit::kSecond:
+      return 1;
+    case TimeUnit::kMillisecond:
+      return 1e-3;
+    case TimeUnit::kMicrosecond:
+      return 1e-6;
+    case TimeUnit::kNanosecond:
+      return 1e-9;
+    case TimeUnit::kFrame:
+      break;
+  }
+  return 1 / map.rate_hz->value;
+}
+
+std::string WithBody(const std::string& column, const std::string& body) {
+  const std::size_t at = column.find("{}");
+  return at == std::string::npos ? column : std::string(column).replace(at, 2, body);
+}
+
+/// Where the values of a body stand in a row.
+struct Seats {
+  std::vector<std::size_t> position, quaternion;
+};
+
+class CsvPoseReader {
+ public:
+  CsvPoseReader(const std::string& path, std::string text, const MapFile& map)
+      : map_(map.map), map_errors_(map.document) {
+    poses.file = path;
+    poses.text = std::move(text);
+    constexpr std::array kSeparators = {',', ';', '\t'};
+    separator_ = kSeparators[static_cast<std::size_t>(map_.separator)];
+    poses.bodies = BodiesOf(map_, map_errors_);
+    for (std::size_t i = 0; i < poses.bodies.size(); ++i) index_.emplace(poses.bodies[i].name, i);
+    poses.has_orientations = !map_.columns.quaternion.empty();
+    if (poses.has_orientations) poses.quaternion_order = map_.quaternion_order->value;
+  }
+
+  void Read() {
+    const std::string_view text = poses.text;
+    for (std::size_t begin = 0; begin < text.size() && problems_.size() < kMostComplaints;) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size());
+      std::string_view line = text.substr(begin, end - begin);
+      if (line.ends_with('\r')) line.remove_suffix(1);
+      begin = end + 1;
+      if (++line_ < map_.header_line) continue;
+      if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+      if (line_ == map_.header_line) {
+        TakeHeader(CsvCellsOf(line, separator_));
+        if (!problems_.empty()) return;
+      } else if (line.find_first_not_of(" \t") != std::string_view::npos) {
+        TakeRow(CsvCellsOf(line, separator_));
+      }
+      if (!map_errors_.empty()) return;
+    }
+    if (line_ < map_.header_line)
+      Complain({1, 1}, fmt::format("{} lines; the header is on line {}", line_, map_.header_line));
+    if (!problems_.empty()) return;
+    for (PoseBody& body : poses.bodies)
+      for (PoseSample& sample : body.samples) sample.t_s -= poses.first_s;
+    poses.last_s -= poses.first_s;
+    poses.first_s = 0;
+    if (poses.rows < 2)
+      return Complain({line_, 1},
+                      grammar::CountOf(poses.rows, "row") + "; a recording has at least 2");
+    RefuseAbsentBodies(poses, map_, map_errors_);
+    DoubtTimes();
+  }
+
+  Diagnostics Problems() const {
+    Diagnostics all = map_errors_.Sorted();
+    all.insert(all.end(), problems_.begin(), problems_.end());
+    return all;
+  }
+
+  PoseFile poses;
+
+ private:
+  void Complain(Place place, std::string message, std::string hint = {}) {
+    problems_.push_back(
+        grammar::DiagnosticAt(poses.file, poses.text, place, std::move(message), std::move(hint)));
+  }
+
+  /// A header that cannot be one, whatever the map says.
+  bool IsNoHeader(const std::vector<CsvCell>& cells) {
+    const std::string_view text = cells.front().text;
+    const std::size_t other = text.find_first_of(",;\t");
+    if (cells.size() == 1 && other != std::string_view::npos) {
+      const char* const name = text[other] == ','   ? "comma"
+                               : text[other] == ';' ? "semicolon"
+                                                    : "tab";
+      Complain({line_, cells.front().column + static_cast<int>(other)},
+               fmt::format("the names of the columns are separated by {}s", name),
+               fmt::format("the map says how: separator: {}", name));
+      return true;
+    }
+    const bool has_name = std::ranges::any_of(cells, [](const CsvCell& cell) {
+      double number = 0;
+      const char* const end = cell.text.data() + cell.text.size();
+      return std::from_chars(cell.text.data(), end, number).ptr != end;
+    });
+    if (has_name || std::ranges::all_of(cells, [](const CsvCell& c) { return c.text.empty(); }))
+      return false;
+    Complain({line_, cells.front().column}, "expected the names of the columns, found numbers",
+             "the map says on which line the names are: header_line: 1");
+    return true;
+  }
+
+  /// How many of the columns that the map names a line has.
+  std::size_t NamesIn(const std::vector<CsvCell>& cells) const {
+    const Columns& columns = map_.columns;
+    std::vector<std::string> wanted;
+    for (const auto* one : {&columns.time, &columns.body}) {
+      if (*one) wanted.push_back((*one)->value);
+    }
+    for (const auto* list : {&columns.position, &columns.quaternion}) {
+      for (const Located<std::string>& column : *list) {
+        if (columns.body) wanted.push_back(column.value);
+        for (const PoseBody& body : poses.bodies) {
+          if (!columns.body) wanted.push_back(WithBody(column.value, body.name));
+        }
+      }
+    }
+    std::set<std::string_view> found;
+    for (const CsvCell& cell : cells) found.insert(cell.text);
+    return static_cast<std::size_t>(std::ranges::count_if(
+        wanted, [&](const std::string& name) { return found.contains(name); }));
+  }
+
+  /// Another line has the names.
+  bool IsElsewhere(const std::vector<CsvCell>& cells) {
+    if (NamesIn(cells) > 0) return false;
+    std::size_t most = 1;
+    Place place;
+    const std::string_view text = poses.text;
+    for (std::size_t begin = 0, line = 1; begin < text.size() && line <= kMostPreamble; ++line) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size());
+      const std::vector<CsvCell> other =
+          CsvCellsOf(text.substr(begin, std::min(end - begin, kMostHeaderBytes)), separator_);
+      begin = end + 1;
+      const std::size_t names = NamesIn(other);
+      if (names <= most) continue;
+      most = names;
+      place = {static_cast<int>(line), other.front().column};
+    }
+    if (most == 1) return false;
+    Complain(place,
+             fmt::format("the names of the columns are on line {}, and not on line {}", place.line,
+                         line_),
+             fmt::format("in the map: header_line: {}", place.line));
+    return true;
+  }
+
+  void TakeHeader(const std::vector<CsvCell>& cells) {
+    if (IsElsewhere(cells) || IsNoHeader(cells)) return;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const std::string name(cells[i].text);
+      names_.push_back(name);
+      if (!name.empty() && !seats_by_name_.try_emplace(name, i).second)
+        twice_.insert_or_assign(name, cells[i].column);
+    }
+    const Columns& columns = map_.columns;
+    if (columns.time) time_seat_ = SeatOf(*columns.time, columns.time->value);
+    if (columns.body) {
+      body_seat_ = SeatOf(*columns.body, columns.body->value);
+      shared_ = SeatsOf("");
+      return;
+    }
+    for (const Named<MappedEntity>& entity : map_.entities) {
+      if (!entity.value.from) continue;
+      const std::string& body = entity.value.from->value;
+      if (std::ranges::none_of(columns.position, [&](const Located<std::string>& column) {
+            return seats_by_name_.contains(WithBody(column.value, body));
+          })) {
+        map_errors_.AddUnknownName(
+            entity.value.from->where,
+            fmt::format("no body is called '{}': the file has no column '{}'", body,
+                        WithBody(columns.position.front().value, body)),
+            body, BodiesOfHeader());
+        continue;
+      }
+      wide_.push_back(SeatsOf(body));
+    }
+    for (const std::string& body : BodiesOfHeader()) {
+      if (!index_.contains(body)) poses.unused.push_back(body);
+    }
+  }
+
+  /// The names for which the pattern of x has a column.
+  std::vector<std::string> BodiesOfHeader() const {
+    const std::string& pattern = map_.columns.position.front().value;
+    const std::size_t at = pattern.find("{}");
+    const std::string before = pattern.substr(0, at), after = pattern.substr(at + 2);
+    std::vector<std::string> bodies;
+    for (const std::string& name : names_) {
+      if (name.size() > before.size() + after.size() && name.starts_with(before) &&
+          name.ends_with(after))
+        bodies.push_back(name.substr(before.size(), name.size() - before.size() - after.size()));
+    }
+    return bodies;
+  }
+
+  std::size_t SeatOf(const Located<std::string>& column, const std::string& name) {
+    if (const auto twice = twice_.find(name); twice != twice_.end())
+      Complain({line_, twice->second}, fmt::format("a second column is called '{}'", name));
+    const auto found = seats_by_name_.find(name);
+    if (found != seats_by_name_.end()) return found->second;
+    map_errors_.AddUnknownName(column.where, fmt::format("no column is called '{}'", name), name,
+                               names_);
+    return 0;
+  }
+
+  Seats SeatsOf(const std::string& body) {
+    Seats seats;
+    for (const Located<std::string>& column : map_.columns.position)
+      seats.position.push_back(SeatOf(column, WithBody(column.value, body)));
+    for (const Located<std::string>& column : map_.columns.quaternion)
+      seats.quaternion.push_back(SeatOf(column, WithBody(column.value, body)));
+    return seats;
+  }
+
+  void TakeRow(const std::vector<CsvCell>& cells) {
+    if (cells.size() != names_.size())
+      return Complain(
+          {line_, cells.back().column},
+          fmt::format("expected {} values as in the header, found {}{}", names_.size(),
+                      cells.size(), cells.size() < names_.size() ? ": is the file cut off?" : ""));
+    double t_s = static_cast<double>(poses.rows) / (map_.rate_hz ? map_.rate_hz->value : 1);
+    if (time_seat_) {
+      const auto time = Number(cells[*time_seat_]);
+      if (!time) return;
+      if (first_time_ == std::nullopt) first_time_ = *time;
+      t_s = (*time - *first_time_) * SecondsPer(map_);
+    }
+    const Place place{line_, time_seat_ ? cells[*time_seat_].column : 1};
+    // One body after the other is as good as one time after the other.
+    const std::string name(body_seat_ ? cells[*body_seat_].text : "");
+    const auto [before, is_first] = last_times_s_.try_emplace(name, t_s);
+    if (!is_first && (body_seat_ ? t_s < before->second : t_s <= before->second))
+      return Complain(place,
+                      fmt::format("the times{} must increase from row to row: {:.6g} s after the "
+                                  "first row comes after {:.6g} s",
+                                  body_seat_ ? " of '" + name + "'" : "", t_s, before->second));
+    if (!is_first && time_seat_) CountStep((t_s - before->second) / SecondsPer(map_));
+    before->second = t_s;
+    poses.first_s = std::min(poses.first_s, t_s);
+    poses.last_s = std::max(poses.last_s, t_s);
+    ++poses.rows;
+    if (!body_seat_) {
+      for (std::size_t i = 0; i < wide_.size(); ++i)
+        TakePose(cells, wide_[i], t_s, poses.bodies[i]);
+      return;
+    }
+    const auto body = index_.find(name);
+    if (body != index_.end()) return TakePose(cells, shared_, t_s, poses.bodies[body->second]);
+    if (std::ranges::find(poses.unused, name) == poses.unused.end() && poses.unused.size() < 1000)
+      poses.unused.push_back(name);
+  }
+
+  /// In the file's unit of time.
+  void CountStep(double step) {
+    const double whole = std::round(step);
+    if (whole == 0 && body_seat_) return;
+    ++steps_;
+    whole_steps_ += whole >= 1 && std::abs(step - whole) < 1e-6;
+    unit_steps_ += whole == 1;
+  }
+
+  /// A tracker that takes one pose each millisecond has times as frames have numbers.
+  void DoubtTimes() {
+    poses.counts_frames = map_.time_unit->value != TimeUnit::kFrame && steps_ >= kLeastSteps &&
+                          whole_steps_ == steps_ && 10 * unit_steps_ >= 9 * steps_;
+    if (poses.counts_frames && !map_.rate_hz && !map_.IsSure(Doubt::kTime))
+      poses.notes.push_back(fmt::format(
+          "the times of '{}' are whole numbers that grow by 1 each: they look like frame numbers; "
+          "in the map: time_unit: frame, and rate_hz; or, if they are times, sure: [time]",
+          map_.columns.time->value));
+  }
+
+  bool IsMissing(const CsvCell& cell) const {
+    return cell.text.empty() || std::ranges::find(map_.missing, cell.text) != map_.missing.end();
+  }
+
+  void TakePose(const std::vector<CsvCell>& cells, const Seats& seats, double t_s, PoseBody& body) {
+    std::vector<std::size_t> all = seats.position;
+    all.insert(all.end(), seats.quaternion.begin(), seats.quaternion.end());
+    const auto missing = [&](std::size_t seat) { return IsMissing(cells[seat]); };
+    if (std::ranges::all_of(all, missing)) return;
+    if (const auto one = std::ranges::find_if(all, missing); one != all.end())
+      return Complain({line_, cells[*one].column},
+                      fmt::format("'{}' has a pose without '{}'", body.name, names_[*one]),
+                      "where a body is not tracked, all of its cells are empty");
+    std::vector<double> values;
+    for (const std::size_t seat : all) {
+      const auto value = Number(cells[seat]);
+      if (!value) return;
+      values.push_back(*value);
+    }
+    PoseSample sample{.t_s = t_s, .p = {values[0], values[1], values[2]}, .q = {}, .line = line_};
+    sample.q.setIdentity();
+    if (map_.zero_is_missing && sample.p.isZero(0)) return;
+    const Place place{line_, cells[all.back()].column};
+    if (!body.samples.empty() && t_s <= body.samples.back().t_s)
+      return Complain(place, fmt::format("'{}' has two poses at {:.6g} s", body.name, t_s));
+    if (values.size() == 7) {
+      const bool w_first = map_.quaternion_order->value == QuaternionOrder::kWxyz;
+      const double* v = &values[3];
+      sample.q = w_first ? Eigen::Quaterniond(v[0], v[1], v[2], v[3])
+                         : Eigen::Quaterniond(v[3], v[0], v[1], v[2]);
+      if (std::abs(sample.q.norm() - 1) > kUnitTolerance)
+        return Complain({line_, cells[seats.quaternion.front()].column},
+                        fmt::format("'{}': expected a unit quaternion, found one of length {:.4g}",
+                                    body.name, sample.q.norm()),
+                        "are these the four columns of one body's orientation?");
+      sample.q.normalize();
+    }
+    body.samples.push_back(sample);
+  }
+
+  std::optional<double> Number(const CsvCell& cell) {
+    double value = 0;
+    const char *begin = cell.text.data(), *end = begin + cell.text.size();
+    const auto [rest, error] = std::from_chars(begin, end, value);
+    if (error == std::errc() && rest == end && std::isfinite(value)) return value;
+    std::string hint;
+    if (error == std::errc() && rest == end)
+      hint = fmt::format("if that means 'not tracked', the map says missing: [{}]", cell.text);
+    else if (cell.text.find(',') != std::string_view::npos)
+      hint = "decimals have a point";
+    Complain({line_, cell.column},
+             fmt::format("expected a number, found '{}'", ReadableText(cell.text)), hint);
+    return std::nullopt;
+  }
+
+  const ImportMap& map_;
+  DiagnosticList map_errors_;
+  Diagnostics problems_;
+  char separator_ = ',';
+  int line_ = 0;
+  std::vector<std::string> names_;
+  std::map<std::string, std::size_t> seats_by_name_;
+  std::map<std::string, int> twice_;          ///< names of several columns -> place of the last
+  std::map<std::string, std::size_t> index_;  ///< of bodies
+  std::optional<std::size_t> time_seat_, body_seat_;
+  std::optional<double> first_time_;
+  std::map<std::string, double> last_times_s_;  ///< by body; of a row with all bodies under ""
+  std::size_t steps_ = 0, whole_steps_ = 0, unit_steps_ = 0;  ///< of times
+  Seats shared_;
+  std::vector<Seats> wide_;
+};
+
+}  // namespace
+
+Result<PoseFile> ReadCsvPoses(const std::string& path, const MapFile& map) {
+  Result<std::string> text = ReadTextFile(path, kMaxPoseFileBytes);
+  if (!text) return tl::unexpected(std::move(text.error()));
+  CsvPoseReader reader(path, std::move(*text), map);
+  reader.Read();
+  if (Diagnostics problems = reader.Problems(); !problems.empty())
+    return tl::unexpected(std::move(problems));
+  return std::move(reader.poses);
+}
+
+}  // namespace prehend::exchange

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/import/rests.h.
+//
+// A thing rests where it gets less than a centimetre far in half a second. Then the lowest point of
+// its box must be near the top of another box that it is above. Half of the times are enough: a
+// hand may hold it still for a while.
+#include "harness/exchange/import/rests.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "grammar/base/tracking.h"
+#include "harness/exchange/import/doubts.h"
+
+namespace prehend::exchange {
+namespace {
+
+constexpr double kRest_s = 0.5;
+constexpr double kStill_m = 0.01;
+constexpr double kOnTop_m = 0.05;  ///< lie_about of grammar/library/contact_from_motion.grammar
+constexpr double kHigh_m = 1.6;
+constexpr double kLeast_s = 1;  ///< a shorter rest says nothing
+
+Eigen::AlignedBox3d BoxOf(const grammar::EntityInfo& entity, const grammar::EntitySample& look) {
+  const Eigen::Vector3d half = look.q_WB.toRotationMatrix().cwiseAbs() * entity.half_size_m;
+  return {look.p_WB_m - half, look.p_WB_m + half};
+}
+
+bool IsAbove(const Eigen::AlignedBox3d& upper, const Eigen::AlignedBox3d& lower) {
+  return (upper.min().head<2>().array() < lower.max().head<2>().array()).all() &&
+         (lower.min().head<2>().array() < upper.max().head<2>().array()).all();
+}
+
+/// Without "-0.0".
+double Tenths(double x) { return std::round(10 * x) / 10 + 0.0; }
+
+/// Where one thing rested, looked at once per kRest_s.
+struct Rests {
+  std::vector<double> bottoms_m;  ///< of all rests
+  std::size_t supported = 0;      ///< on how many of them something was near below
+  Eigen::AlignedBox2d place;
+};
+
+Rests RestsOf(const episode::Recording& episode, std::size_t thing) {
+  Rests rests;
+  const auto& entities = episode.header.entity_table.entities;
+  const auto step = static_cast<grammar::Tick>(
+      kRest_s * static_cast<double>(episode.header.entity_table.ticks_per_second));
+  const episode::EpisodeFrame* before = nullptr;
+  for (const episode::EpisodeFrame& frame : episode.frames) {
+    if (before != nullptr && frame.tick - before->tick < step) continue;
+    const episode::EpisodeFrame* const last = std::exchange(before, &frame);
+    const grammar::EntitySample& look = frame.entities[thing];
+    if (last == nullptr || !grammar::IsTracked(look) ||
+        !((look.p_WB_m - last->entities[thing].p_WB_m).norm() < kStill_m))
+      continue;
+    const Eigen::AlignedBox3d box = BoxOf(entities[thing], look);
+    rests.bottoms_m.push_back(box.min().z());
+    rests.place.extend(Eigen::AlignedBox2d(box.min().head<2>(), box.max().head<2>()));
+    for (std::size_t other = 0; other < entities.size(); ++other) {
+      if (other == thing || entities[other].classes.front() == "Hand" ||
+          !grammar::IsTracked(frame.entities[other]))
+        continue;
+      const Eigen::AlignedBox3d below = BoxOf(entities[other], frame.entities[other]);
+      const double above_m = box.min().z() - below.max().z();
+      // Or it is in a bowl, of which only the box is known.
+      const bool inside = below.contains(box.center());
+      if (!IsAbove(box, below) || (std::abs(above_m) > kOnTop_m && !inside)) continue;
+      ++rests.supported;
+      break;
+    }
+  }
+  return rests;
+}
+
+}  // namespace
+
+std::string RestOnNothing(const episode::Recording& episode, const std::set<std::size_t>& untrue) {
+  const auto& entities = episode.header.entity_table.entities;
+  std::vector<std::string> names;
+  std::vector<double> bottoms_m;
+  Eigen::AlignedBox2d place;
+  for (std::size_t i = 0; i < entities.size(); ++i) {
+    if (untrue.contains(i) || entities[i].classes.front() == "Hand" ||
+        std::ranges::find(entities[i].classes, "Movable") == entities[i].classes.end())
+      continue;
+    const Rests rests = RestsOf(episode, i);
+    if (static_cast<double>(rests.bottoms_m.size()) * kRest_s < kLeast_s ||
+        2 * rests.supported >= rests.bottoms_m.size())
+      continue;
+    names.push_back(fmt::format("'{}'", entities[i].name));
+    bottoms_m.push_back(Median(rests.bottoms_m));
+    place.extend(rests.place);
+  }
+  if (names.empty()) return "";
+  const double height_m = Median(bottoms_m);
+  const Eigen::Vector2d middle = place.center(), size = place.sizes().array() + 0.4;
+  return fmt::format(
+      "{} {} with the lowest point at {:.2f} m, and nothing in the map has its top within {:g} cm "
+      "of "
+      "that: no support, pick-up or put-down is recognised; what it stands on could be 'table: "
+      "{{at_m: [{:.1f}, {:.1f}, {:.2f}], fixed: true, class: Table, size_m: [{:.1f}, {:.1f}, "
+      "0.04]}}'{}",
+      fmt::join(names, ", "), names.size() == 1 ? "rests" : "rest", height_m, 100 * kOnTop_m,
+      Tenths(middle.x()), Tenths(middle.y()), height_m - 0.02, size.x(), size.y(),
+      height_m > kHigh_m ? "; that is higher than people work: is unit right?" : "");
+}
+
+}  // namespace prehend::exchange

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/knowledge/episode_graph.h. Tested by tests/program/knowledge_test.cc
+#include "harness/exchange/knowledge/episode_graph.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/episode/episodes/query_events.h"
+#include "harness/episode/episodes/schema.h"
+
+namespace prehend::exchange {
+namespace {
+
+using episode::KeptEntity;
+
+std::string Individual(const std::string& uuid) { return "log:" + uuid; }
+
+bool IsA(const KeptEntity& entity, const char* wanted) {
+  return std::ranges::find(entity.classes, wanted) != entity.classes.end();
+}
+
+/// Collects statements about one subject after another.
+class Graph {
+ public:
+  explicit Graph(const Vocabulary& vocabulary) : vocabulary_(vocabulary) {}
+
+  void Begin(std::string subject) { subject_ = std::move(subject); }
+  void Say(std::string predicate, Object object) {
+    triples_.push_back({subject_, std::move(predicate), std::move(object)});
+  }
+  void Is(std::string class_name) { Say("rdf:type", Named(std::move(class_name))); }
+
+  /// Declares a word that the terminology does not have, once.
+  void Declare(const std::string& name, const char* type, const char* relation, const char* base) {
+    if (vocabulary_.Has(name) || !declared_.insert(name).second) return;
+    declarations_.push_back({name, "rdf:type", Named(type)});
+    declarations_.push_back({name, relation, Named(base)});
+  }
+
+  std::vector<Triple> Taken() {
+    std::vector<Triple> all = std::move(declarations_);
+    all.insert(all.end(), triples_.begin(), triples_.end());
+    return all;
+  }
+
+ private:
+  const Vocabulary& vocabulary_;
+  std::string subject_;
+  std::vector<Triple> declarations_, triples_;
+  std::set<std::string> declared_;
+};
+
+/// Declares a class and its base classes, up to the first that is built in. What kind of thing it
+/// is, and whether it can be moved, is said of each thing: another scenario may call a region so.
+void DeclareClasses(const KeptEntity& entity, const Vocabulary& vocabulary, Graph& graph) {
+  for (std::size_t i = 0; i < entity.classes.size(); ++i) {
+    const std::string name = vocabulary.ClassOf(entity.classes[i]);
+    if (vocabulary.Has(name)) return;
+    const std::string above =
+        i + 1 < entity.classes.size() ? vocabulary.ClassOf(entity.classes[i + 1]) : "";
+    const bool is_own = !above.empty() && !vocabulary.Has(above);
+    graph.Declare(name, "owl:Class", "rdfs:subClassOf", is_own ? above.c_str() : "knowrob:Entity");
+  }
+}
+
+void AddEntity(const MapOfTask& map, std::size_t number, const std::string& map_name,
+               const Vocabulary& vocabulary, Graph& graph) {
+  const KeptEntity& entity = map.entities[number];
+  DeclareClasses(entity, vocabulary, graph);
+  graph.Begin(Individual(entity.uuid));
+  graph.Is("owl:NamedIndividual");
+  for (const std::string& name : entity.classes) graph.Is(vocabulary.ClassOf(name));
+  graph.Say("rdfs:label", Text(entity.name));
+  graph.Say("knowrob:inMap", Named(map_name));
+  if (entity.part_of >= 0 && entity.part_of < static_cast<int>(map.entities.size())) {
+    const auto whole = static_cast<std::size_t>(entity.part_of);
+    graph.Say("knowrob:partOf", Named(Individual(map.entities[whole].uuid)));
+  }
+  constexpr const char* kSizes[] = {"knowrob:depthOfObject", "knowrob:widthOfObject",
+                                    "knowrob:heightOfObject"};
+  for (std::size_t axis = 0; axis < entity.size_m.size(); ++axis)
+    if (entity.size_m[axis] > 0) graph.Say(kSizes[axis], Number(entity.size_m[axis]));
+  if (entity.mass_kg > 0) graph.Say("knowrob:massOfObject", Number(entity.mass_kg));
+  if (number >= map.poses.size()) return;
+  const physics::Pose& X_WE = map.poses[number];
+  graph.Say("knowrob:translation",
+            Text(fmt::format("{} {} {}", X_WE.p_m.x(), X_WE.p_m.y(), X_WE.p_m.z())));
+  graph.Say("knowrob:quaternion",
+            Text(fmt::format("{} {} {} {}", X_WE.q.x(), X_WE.q.y(), X_WE.q.z(), X_WE.q.w())));
+}
+
+/// Whether an event that the terminology does not have is an action: somebody performs it.
+bool IsPerformed(const grammar::NamedEvent& event, const Vocabulary& vocabulary) {
+  return std::ranges::any_of(event.roles, [&](const grammar::Role& role) {
+    return vocabulary.PropertyOf(role.name) == "knowrob:performedBy";
+  });
+}
+
+class EventWriter {
+ public:
+  EventWriter(const EpisodeOfTask& episode, const MapOfTask& map, const Vocabulary& vocabulary,
+              Graph& graph)
+      : episode_(episode), map_(map), vocabulary_(vocabulary), graph_(graph) {}
+
+  void Write(std::size_t index) {
+    const grammar::NamedEvent& event = episode_.timeline.events[index];
+    const EventTerm term = vocabulary_.TermOf(event.event);
+    const std::string base = !term.base.empty()                ? term.base
+                             : IsPerformed(event, vocabulary_) ? "soma:PhysicalAction"
+                                                               : "dul:Event";
+    graph_.Declare(term.name, "owl:Class", "rdfs:subClassOf", base.c_str());
+    graph_.Begin(NameOfEvent(episode_.row.uuid, index));
+    graph_.Is("owl:NamedIndividual");
+    graph_.Is(term.name);
+    graph_.Is(base);
+    graph_.Say("knowrob:startTime", Number(SecondsAt(event.interval.begin)));
+    graph_.Say("knowrob:endTime", Number(SecondsAt(event.interval.end)));
+    graph_.Say("prehend:beginTick", Integer(event.interval.begin));
+    graph_.Say("prehend:endTick", Integer(event.interval.end));
+    if (event.open_end) graph_.Say("prehend:openEnd", {"true", "xsd:boolean"});
+    graph_.Say("knowrob:inEpisode", Named(Individual(episode_.row.uuid)));
+    if (!term.relation.empty()) graph_.Say(term.relation, Named(term.concept_name));
+    for (const grammar::Role& role : event.roles) AddRole(role);
+    for (const grammar::NamedValue& value : event.values) {
+      const std::string name = vocabulary_.PropertyOf(value.name);
+      graph_.Declare(name, "owl:DatatypeProperty", "rdfs:subPropertyOf", "owl:topDataProperty");
+      graph_.Say(name, Number(value.value));
+    }
+    if (!episode_.composed.contains(event.event)) return;
+    for (const auto* part : episode::PartsOf(event, episode_.timeline, map_.entities)) {
+      const auto number = static_cast<std::size_t>(part - episode_.timeline.events.data());
+      graph_.Say("knowrob:subAction", Named(NameOfEvent(episode_.row.uuid, number)));
+    }
+  }
+
+ private:
+  double SecondsAt(grammar::Tick tick) const {
+    return static_cast<double>(tick) / static_cast<double>(episode_.timeline.ticks_per_second);
+  }
+
+  void AddRole(const grammar::Role& role) {
+    const auto entity = std::ranges::find(map_.entities, role.value, &KeptEntity::name);
+    if (entity != map_.entities.end()) {
+      const std::string name = vocabulary_.PropertyOf(role.name);
+      graph_.Declare(name, "owl:ObjectProperty", "rdfs:subPropertyOf", "dul:hasParticipant");
+      graph_.Say(name, Named(Individual(entity->uuid)));
+      return;
+    }
+    // The only role that is no entity is the style of a grasp.
+    const std::string style = vocabulary_.StyleOf(role.value);
+    graph_.Declare(style, "owl:NamedIndividual", "rdf:type", "knowrob:GraspStyle");
+    graph_.Say("knowrob:graspType", Named(style));
+  }
+
+  const EpisodeOfTask& episode_;
+  const MapOfTask& map_;
+  const Vocabulary& vocabulary_;
+  Graph& graph_;
+};
+
+}  // namespace
+
+std::string NameOfEvent(const std::string& episode_uuid, std::size_t index) {
+  return Individual(episode::UuidOf(fmt::format("{} event {}", episode_uuid, index)));
+}
+
+std::string NameOfMap(const std::string& task_uuid) {
+  return Individual(episode::UuidOf(task_uuid + " map"));
+}
+
+std::vector<Triple> MapTriples(const MapOfTask& map, const Vocabulary& vocabulary) {
+  Graph graph(vocabulary);
+  const std::string map_name = NameOfMap(map.task.uuid);
+  graph.Begin(Individual(map.task.uuid));
+  graph.Is("owl:NamedIndividual");
+  graph.Is("knowrob:Task");
+  graph.Say("rdfs:label", Text(map.scenario));
+  graph.Say("prehend:scenario", Text(map.scenario));
+  graph.Say("knowrob:taskDescription", Text(map.task.shows));
+  graph.Begin(map_name);
+  graph.Is("owl:NamedIndividual");
+  graph.Is("knowrob:SemanticEnvironmentMap");
+  graph.Say("rdfs:label", Text("map of " + map.scenario));
+  for (const episode::KeptTask::Asset& asset : map.task.assets)
+    graph.Say("prehend:asset", Text(asset.hash + " " + asset.path));
+  for (std::size_t i = 0; i < map.entities.size(); ++i)
+    AddEntity(map, i, map_name, vocabulary, graph);
+  return graph.Taken();
+}
+
+std::vector<Triple> EpisodeTriples(const EpisodeOfTask& episode, const MapOfTask& map,
+                                   const Vocabulary& vocabulary) {
+  Graph graph(vocabulary);
+  const episode::EpisodeRow& row = episode.row;
+  graph.Begin(Individual(row.uuid));
+  graph.Is("owl:NamedIndividual");
+  graph.Is("knowrob:Episode");
+  graph.Say("rdfs:label", Text(row.scenario));
+  graph.Say("knowrob:performedTask", Named(Individual(map.task.uuid)));
+  graph.Say("knowrob:performedInMap", Named(NameOfMap(map.task.uuid)));
+  graph.Say("knowrob:startTime", Number(0));
+  graph.Say("knowrob:endTime",
+            Number(static_cast<double>(row.ticks + 1) / static_cast<double>(row.ticks_per_second)));
+  graph.Say("prehend:ticksPerSecond", Integer(row.ticks_per_second));
+  graph.Say("prehend:recordedIn", Text(episode.file));
+  graph.Say("prehend:recordNumber", Integer(row.id));
+  graph.Say("prehend:scenario", Text(row.scenario));
+  graph.Say("prehend:grammar", Text(row.grammar));
+  graph.Say("prehend:stateHash", Text(row.state_hash));
+  for (const KeptEntity& entity : map.entities) {
+    if (IsA(entity, "Hand") || IsA(entity, "Person"))
+      graph.Say("dul:isSettingFor", Named(Individual(entity.uuid)));
+  }
+  EventWriter writer(episode, map, vocabulary, graph);
+  for (std::size_t i = 0; i < episode.timeline.events.size(); ++i) writer.Write(i);
+  return graph.Taken();
+}
+
+}  // namespace prehend::exchange

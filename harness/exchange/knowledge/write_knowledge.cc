@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/knowledge/write_knowledge.h. Tested by tests/program/knowledge_test.cc
+#include "harness/exchange/knowledge/write_knowledge.h"
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+
+#include "grammar/contents.h"
+#include "harness/base/base/atomic_file.h"
+#include "harness/base/process/run_tool.h"
+#include "harness/episode/episode/open_episode.h"
+#include "harness/exchange/knowledge/episode_graph.h"
+#include "harness/exchange/knowledge/neem.h"
+
+namespace prehend::exchange {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of the transforms of a NEEM.
+constexpr grammar::Tick kTransforms_per_s = 30;
+
+grammar::Diagnostics Problem(const std::string& file, const std::string& message) {
+  return {{.file = file, .place = {}, .message = message, .source_line = {}, .hint = {}}};
+}
+
+/// Milliseconds since 1970 at the begin of a day, "2026-11-23"; 0 if it is none.
+std::int64_t MillisecondsOf(const std::string& day) {
+  int year = 0;
+  unsigned month = 0, of_month = 0;
+  if (std::sscanf(day.c_str(), "%d-%u-%u", &year, &month, &of_month) != 3) return 0;
+  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(month),
+                                         std::chrono::day(of_month)};
+  if (!date.ok()) return 0;
+  return std::chrono::sys_days(date).time_since_epoch().count() * std::int64_t{86'400'000};
+}
+
+class KnowledgeWriter {
+ public:
+  KnowledgeWriter(const KnowledgeRequest& request, Vocabulary vocabulary)
+      : request_(request), vocabulary_(std::move(vocabulary)), opener_(request.root) {
+    std::string ignored;
+    hierarchy_.Add(ReadTurtle(vocabulary_.text(), ignored));
+  }
+
+  /// Returns what could not be read or written.
+  grammar::Diagnostics WriteTerminology() { return WriteText("prehend", vocabulary_.text()); }
+
+  grammar::Diagnostics Write(const episode::EpisodeName& name) {
+    Result<episode::Episode> opened = opener_.Open(name);
+    if (!opened) return opened.error();
+    file_ = opened->file();
+    const episode::EpisodeRow* row = opened->row();
+    EpisodeOfTask episode{
+        .row = *row, .file = fs::absolute(name.file).string(), .timeline = {}, .composed = {}};
+    auto timeline = opened->Recorded();
+    if (!timeline) return timeline.error();
+    episode.timeline = std::move(*timeline);
+    for (const grammar::EventSignature& event : grammar::EventSignatures(*opened->program()))
+      if (event.composed) episode.composed.insert(event.name);
+
+    episode::EpisodeFrames frames(*file_, *row, episode::LayoutOf(opened->loaded().scenario.scene));
+    auto map = MapOf(*row, frames);
+    if (!map) return map.error();
+    const std::vector<Triple> triples = EpisodeTriples(episode, **map, vocabulary_);
+    ++written_.episodes;
+    written_.events += episode.timeline.events.size();
+    grammar::Diagnostics bad = WriteTriples("episodes/" + row->uuid, triples);
+    if (bad.empty() && request_.neem) bad = WriteNeem(*row, **map, triples, frames);
+    return bad;
+  }
+
+  const KnowledgeWritten& written() const { return written_; }
+
+ private:
+  struct WrittenMap {
+    MapOfTask map;
+    std::vector<Triple> triples;
+  };
+
+  /// The map of the episode's task, which is written when it is first asked for.
+  Result<const MapOfTask*> MapOf(const episode::EpisodeRow& row, episode::EpisodeFrames& frames) {
+    auto task = file_->DescribeTaskOf(row);
+    if (!task) return tl::unexpected(task.error());
+    const std::string uuid = task->uuid;
+    if (const auto known = maps_.find(uuid); known != maps_.end()) return &known->second.map;
+    auto entities = file_->EntitiesOf(row);
+    if (!entities) return tl::unexpected(entities.error());
+    MapOfTask map{.task = std::move(*task),
+                  .scenario = row.scenario,
+                  .entities = std::move(*entities),
+                  .poses = {}};
+    if (const auto first = frames.At(0)) {
+      for (const physics::BodyState& body : first->bodies) map.poses.push_back(body.X_WB);
+      for (const physics::HandState& hand : first->hands) map.poses.push_back(hand.palm.X_WB);
+    }
+    std::vector<Triple> triples = MapTriples(map, vocabulary_);
+    hierarchy_.Add(triples);
+    ++written_.tasks;
+    const grammar::Diagnostics bad = WriteTriples("maps/" + uuid, triples);
+    if (!bad.empty()) return tl::unexpected(bad);
+    return &(maps_[uuid] = {std::move(map), std::move(triples)}).map;
+  }
+
+  grammar::Diagnostics WriteTriples(const std::string& name, const std::vector<Triple>& triples) {
+    written_.statements += triples.size();
+    return WriteText(name, ToTurtle(triples));
+  }
+
+  grammar::Diagnostics WriteText(const std::string& name, const std::string& turtle) {
+    const std::string file = request_.folder + "/" + name;
+    const std::string problem = WriteTextFile(file + ".ttl", turtle);
+    if (!problem.empty()) return Problem(file + ".ttl", problem);
+    if (!request_.owl) return {};
+    const ToolResult xml = RunTool({"rapper", "--quiet", "--input", "turtle", "--output",
+                                    "rdfxml-abbrev", "-", "http://prehend.local/"},
+                                   turtle);
+    if (!xml.Succeeded()) {
+      std::string why = xml.problem.empty() ? "rapper: " + xml.err : xml.problem;
+      if (why.ends_with("is not installed")) why += "; Debian's package raptor2-utils has it";
+      return Problem(file + ".owl", why);
+    }
+    const std::string unwritten = WriteTextFile(file + ".owl", xml.out);
+    return unwritten.empty() ? grammar::Diagnostics() : Problem(file + ".owl", unwritten);
+  }
+
+  grammar::Diagnostics WriteNeem(const episode::EpisodeRow& row, const MapOfTask& map,
+                                 const std::vector<Triple>& triples,
+                                 episode::EpisodeFrames& frames) {
+    std::vector<Triple> all = maps_.at(map.task.uuid).triples;
+    all.insert(all.end(), triples.begin(), triples.end());
+    hierarchy_.Add(triples);
+    std::vector<Transform> transforms;
+    const std::int64_t day = MillisecondsOf(row.recorded_on);
+    const std::int64_t ticks = std::max<std::int64_t>(row.ticks_per_second / kTransforms_per_s, 1);
+    const std::string damage = frames.Play(
+        [&](const physics::Snapshot& now) {
+          AddTransforms(map, now, day + 1000 * now.tick / row.ticks_per_second, transforms);
+        },
+        [&](std::int64_t tick) { return tick % ticks == 0; }, false);
+    if (!damage.empty()) return Problem(file_->path(), damage);
+    const std::string folder = request_.folder + "/neem/" + row.uuid + "/";
+    for (const auto& [name, bytes] : {std::pair{"triples", TriplesBson(all, hierarchy_)},
+                                      std::pair{"tf", TransformsBson(transforms)},
+                                      std::pair{"annotations", AnnotationsBson(all)}}) {
+      const std::string metadata =
+          std::string(
+              "{\"options\":{},\"indexes\":[{\"v\":2,\"key\":{\"_id\":1},\"name\":\"_id_\"}]"
+              ",\"collectionName\":\"") +
+          name + "\"}\n";
+      for (const auto& [ending, content] :
+           {std::pair{".bson", &bytes}, std::pair{".metadata.json", &metadata}}) {
+        const std::string problem = WriteTextFile(folder + name + ending, *content);
+        if (!problem.empty()) return Problem(folder + name + ending, problem);
+      }
+    }
+    return {};
+  }
+
+  /// Of what has moved since its last transform, or has none.
+  void AddTransforms(const MapOfTask& map, const physics::Snapshot& now, std::int64_t milliseconds,
+                     std::vector<Transform>& transforms) {
+    if (now.tick == 0) last_.clear();
+    std::size_t number = 0;
+    const auto add = [&](const physics::Pose& X_WE) {
+      if (number >= map.entities.size()) return;
+      const std::string& uuid = map.entities[number++].uuid;
+      const auto last = last_.find(uuid);
+      if (last != last_.end() && last->second.p_m == X_WE.p_m &&
+          last->second.q.coeffs() == X_WE.q.coeffs())
+        return;
+      last_[uuid] = X_WE;
+      transforms.push_back({milliseconds, FullName("log:" + uuid), X_WE});
+    };
+    for (const physics::BodyState& body : now.bodies) add(body.X_WB);
+    for (const physics::HandState& hand : now.hands) add(hand.palm.X_WB);
+  }
+
+  const KnowledgeRequest& request_;
+  Vocabulary vocabulary_;
+  Hierarchy hierarchy_;
+  episode::EpisodeOpener opener_;
+  const episode::EpisodeFile* file_ = nullptr;  ///< of the episode that is being written
+  std::map<std::string, WrittenMap> maps_;      ///< by the UUID of their task
+  std::map<std::string, physics::Pose> last_;
+  KnowledgeWritten written_;
+};
+
+}  // namespace
+
+Result<KnowledgeWritten> WriteKnowledge(const std::vector<episode::EpisodeName>& episodes,
+                                        const KnowledgeRequest& request) {
+  Result<Vocabulary> vocabulary = Vocabulary::Load(request.root);
+  if (!vocabulary) return tl::unexpected(vocabulary.error());
+  KnowledgeWriter writer(request, std::move(*vocabulary));
+  if (const grammar::Diagnostics bad = writer.WriteTerminology(); !bad.empty())
+    return tl::unexpected(bad);
+  for (const episode::EpisodeName& episode : episodes) {
+    if (const grammar::Diagnostics bad = writer.Write(episode); !bad.empty())
+      return tl::unexpected(bad);
+  }
+  return writer.written();
+}
+
+}  // namespace prehend::exchange

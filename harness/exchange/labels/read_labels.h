@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// What people marked in a recording, as annotation programs write it: comma-separated values, ELAN
+// (EAF), Praat (TextGrid), and our own goldens. Tested by
+// tests/harness/exchange/labels/labels_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "grammar/base/diagnostic.h"
+#include "grammar/base/timeline.h"
+#include "harness/base/base/result.h"
+
+namespace prehend::exchange {
+
+/// Errors of one file that are told.
+inline constexpr std::size_t kMostComplaints = 12;
+/// Labels that end before they begin, of which each is told.
+inline constexpr std::size_t kMostBackward = 20;
+
+struct Label {
+  double begin_s = 0, end_s = 0;
+  std::string text, tier;  ///< "" where the file has no tiers
+  grammar::Place place;
+  std::vector<grammar::Role> roles;  ///< of CSV: what the columns of roles hold
+};
+
+/// What a map says of the columns of comma-separated values. "": found by their usual names.
+struct CsvReading {
+  std::string begin, end, label, tier;
+  std::vector<grammar::Role> roles;  ///< a role, and the name of its column
+  double unit_s = 0;   ///< of the times; 0: as the names of the columns say, otherwise seconds
+  double rate_hz = 0;  ///< of the video, for times in frames; 0: not known
+  bool in_frames = false;
+};
+
+struct LabelFile {
+  std::string file;
+  std::string text;           ///< of the file as UTF-8, for messages
+  std::vector<Label> labels;  ///< without empty ones, in the order of the file
+  std::size_t backward = 0;   ///< labels that end before they begin, which were left out
+
+  grammar::Diagnostic At(grammar::Place place, std::string message, std::string hint = {}) const;
+};
+
+/// ".csv", ".eaf", ".TextGrid", ".timeline": a file of labels by its ending.
+bool IsLabelFile(const std::string& path);
+/// The endings above.
+const std::vector<std::string>& LabelEndings();
+
+/// What is done with labels that end before they begin.
+enum class Backward { kRefuse, kSkip };
+
+/// Errors have file, line and column; at most a dozen, and twenty labels that end before they
+/// begin. `csv`: of comma-separated values only.
+Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv = {},
+                             Backward backward = Backward::kRefuse);
+
+// The readers of one format each; `text` is that of the file. They fill `file.labels`.
+/// Times are numbers, or 1:02:03.5 and 02:03.5.
+grammar::Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how = {});
+/// EAF 2.7 to 3.0 (Max Planck Institute for Psycholinguistics): time slots in milliseconds,
+/// annotations that are aligned or refer to an aligned one. Slots without a time are spaced evenly
+/// between their neighbours, as ELAN shows them.
+grammar::Diagnostics ReadEafLabels(LabelFile& file);
+/// TextGrid, long and short: free-standing numbers, texts and flags (the Praat manual, "TextGrid
+/// file formats"). Labels of point tiers begin and end at their time.
+grammar::Diagnostics ReadTextGridLabels(LabelFile& file);
+grammar::Diagnostics ReadGoldenLabels(LabelFile& file);
+
+}  // namespace prehend::exchange

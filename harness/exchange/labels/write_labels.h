@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recognised events for annotation programs: comma-separated values, ELAN (EAF 3.0), Praat
+// (TextGrid). A label is the event as it is printed, "grasping(right_hand, cup)", which
+// ReadLabels() and LabelReading read again. Tested by tests/harness/exchange/labels/labels_test.cc
+#pragma once
+
+#include <string>
+
+#include "grammar/base/timeline.h"
+
+namespace prehend::exchange {
+
+/// A tier per event and hand; one more where events of a tier would overlap. Times of EAF are
+/// whole milliseconds. `end`: of the recording, in ticks; `date`: YYYY-MM-DD, which EAF asks for;
+/// `ending`: .csv, .eaf or .TextGrid.
+std::string LabelsText(const std::string& ending, const grammar::Timeline& timeline,
+                       grammar::Tick end, const std::string& date);
+
+}  // namespace prehend::exchange

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/messages/binary_poses.h. Tested by tests/program/import_messages_test.cc
+#include "harness/exchange/messages/binary_poses.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/base/base/text_file.h"
+#include "harness/exchange/messages/byte_reader.h"
+
+namespace prehend::exchange {
+namespace {
+
+using Many = DefinedField::Many;
+
+constexpr std::uint32_t kMostUnwanted = 200;  ///< poses of a message that nobody asked for
+constexpr std::int64_t kNanosecondsOfSecond = 1'000'000'000;
+
+/// What a part of a message says, and what counts for the poses in it.
+struct Facts {
+  std::optional<std::int64_t> stamp_ns;
+  std::optional<std::string_view> frame;
+  std::string_view name, other_name, child_frame, name_space;
+  std::string ids;
+  std::vector<std::string_view> names;
+  bool tracked = true;
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+  Eigen::Vector4d xyzw = Eigen::Vector4d(0, 0, 0, 1);
+};
+
+/// A list whose elements have no names of their own.
+struct Unnamed {
+  std::size_t begin = 0, end = 0;  ///< the poses in it
+  std::size_t count = 0;           ///< of elements
+};
+
+std::string ReadableBodyName(std::string_view name) {
+  return ReadableName(name.substr(0, kMostBodyNameBytes));
+}
+
+/// "" if it has none.
+std::string NameOf(const Facts& facts) {
+  for (const std::string_view name : {facts.name, facts.other_name, facts.child_frame}) {
+    if (!name.empty()) return ReadableBodyName(name);
+  }
+  if (facts.ids.empty() || facts.name_space.empty())
+    return facts.ids.empty() ? ReadableBodyName(facts.name_space) : facts.ids;
+  return ReadableBodyName(facts.name_space) + "/" + facts.ids;
+}
+
+class BinaryDecoder {
+ public:
+  BinaryDecoder(const PoseLayout& layout, bool ros1, std::string_view data,
+                const std::vector<bool>& wanted, std::vector<MessagePose>& poses)
+      : layout_(layout), ros1_(ros1), wanted_(wanted), poses_(poses), reader_{.bytes = data} {}
+
+  std::string Decode() {
+    if (!ros1_) TakeEncapsulation();
+    Facts facts;
+    if (Ok()) TakePart(0, facts);
+    if (problem_.empty() && !reader_.ok) return "it is cut off, or not of its type";
+    if (problem_.empty() && reader_.left() > 7)
+      return fmt::format("{} bytes too many for its type", reader_.left());
+    return problem_;
+  }
+
+ private:
+  bool Ok() const { return reader_.ok && problem_.empty(); }
+  void Fail(std::string why) {
+    if (Ok()) problem_ = std::move(why);
+  }
+
+  const DefinedType& TypeOf(std::size_t index) const { return layout_.definition.types[index]; }
+
+  /// Which byte is first, and how far numbers are aligned: RTPS 2.5, 10.2.
+  void TakeEncapsulation() {
+    const std::string_view head = reader_.Bytes(4);
+    if (!reader_.ok) return;
+    const auto kind = static_cast<unsigned char>(head[1]);
+    const bool plain = head[0] == 0 && (kind <= 1 || kind == 6 || kind == 7);
+    if (!plain)
+      return Fail(fmt::format("CDR of the kind {:02x}{:02x}; 0000, 0001, 0006 and 0007 are read",
+                              static_cast<unsigned char>(head[0]), kind));
+    second_version_ = kind > 1;
+    reader_ = {.bytes = reader_.bytes.substr(4),
+               .big_endian = kind % 2 == 0,
+               .most_alignment = std::size_t{kind <= 1 ? 8u : 4u}};
+  }
+
+  std::string_view TakeText() {
+    std::string_view text = reader_.Text();
+    if (!ros1_ && text.ends_with('\0')) text.remove_suffix(1);
+    return text;
+  }
+
+  double TakeReal(Basic basic) {
+    return basic == Basic::kFloat32 ? reader_.Number<float>() : reader_.Number<double>();
+  }
+
+  std::int64_t TakeTime() {
+    const auto seconds = reader_.Number<std::uint32_t>();
+    const auto nanoseconds = reader_.Number<std::uint32_t>();
+    return seconds * kNanosecondsOfSecond + nanoseconds;
+  }
+
+  std::string TakeInteger(Basic basic) {
+    switch (basic) {
+      case Basic::kInt8:
+        return std::to_string(reader_.Number<std::int8_t>());
+      case Basic::kUint8:
+        return std::to_string(reader_.Number<std::uint8_t>());
+      case Basic::kInt16:
+        return std::to_string(reader_.Number<std::int16_t>());
+      case Basic::kUint16:
+        return std::to_string(reader_.Number<std::uint16_t>());
+      case Basic::kInt32:
+        return std::to_string(reader_.Number<std::int32_t>());
+      case Basic::kUint32:
+        return std::to_string(reader_.Number<std::uint32_t>());
+      case Basic::kInt64:
+        return std::to_string(reader_.Number<std::int64_t>());
+      default:
+        return std::to_string(reader_.Number<std::uint64_t>());
+    }
+  }
+
+  /// How many elements a field has; 0 after an error.
+  std::uint32_t TakeCount(const DefinedField& field) {
+    const bool inner = field.basic == Basic::kMessage;
+    const bool with_size = inner || field.basic == Basic::kText || field.basic == Basic::kTime;
+    if (second_version_ && with_size && field.many != Many::kOne) reader_.Number<std::uint32_t>();
+    if (field.many != Many::kAny) return field.many == Many::kOne ? 1 : field.count;
+    const auto count = reader_.Number<std::uint32_t>();
+    std::uint64_t bytes = inner ? TypeOf(field.type).least_bytes : BytesOf(field.basic);
+    if (!ros1_) bytes = std::max<std::uint64_t>(bytes, 1);
+    if (count * bytes > reader_.left())
+      Fail(fmt::format("it is cut off, or not of its type: '{}' has {} elements, in {} bytes",
+                       field.name, count, reader_.left()));
+    return Ok() ? count : 0;
+  }
+
+  void Skip(const DefinedField& field) {
+    const std::uint32_t count = TakeCount(field);
+    if (!Ok()) return;
+    if (field.basic == Basic::kWideText)
+      return Fail(fmt::format("'{}' is a wstring, which is not read", field.name));
+    if (field.basic == Basic::kText) {
+      for (std::uint32_t i = 0; i < count && Ok(); ++i) reader_.Text();
+    } else if (field.basic != Basic::kMessage) {
+      SkipNumbers(field.basic, count);
+    } else if (const DefinedType& type = TypeOf(field.type); ros1_ && type.same_size) {
+      reader_.Bytes(type.least_bytes * count);
+    } else {
+      for (std::uint32_t i = 0; i < count && Ok(); ++i) SkipMessage(type);
+    }
+  }
+
+  void SkipNumbers(Basic basic, std::uint64_t count) {
+    if (count == 0) return;
+    const std::uint64_t bytes = BytesOf(basic);
+    // The first one aligns those that follow.
+    if (bytes == 2) reader_.Number<std::uint16_t>();
+    if (bytes == 4 || basic == Basic::kTime) reader_.Number<std::uint32_t>();
+    if (bytes == 8 && basic != Basic::kTime) reader_.Number<std::uint64_t>();
+    const std::uint64_t taken = bytes == 1 ? 0 : basic == Basic::kTime ? 4 : bytes;
+    reader_.Bytes(bytes * count - taken);
+  }
+
+  void SkipMessage(const DefinedType& type) {
+    if (type.fields.empty()) return SkipNothing();
+    for (const DefinedField& field : type.fields) {
+      if (Ok()) Skip(field);
+    }
+  }
+
+  /// In CDR, a message without fields has a byte.
+  void SkipNothing() {
+    if (!ros1_) reader_.Bytes(1);
+  }
+
+  /// Fields x, y, z and w, or an array in this order.
+  void TakeNumbers(const DefinedField& field, Facts& facts, bool orientation) {
+    if (field.basic != Basic::kMessage) {
+      if (TakeCount(field) == 0) return;
+      for (int i = 0; i < (orientation ? 4 : 3); ++i)
+        (orientation ? facts.xyzw[i] : facts.p[i]) = TakeReal(field.basic);
+      return;
+    }
+    const DefinedType& type = TypeOf(field.type);
+    const std::vector<Role>& roles = NumbersOf(field.type);
+    for (std::size_t i = 0; i < type.fields.size() && Ok(); ++i)
+      TakeField(type.fields[i], roles[i], facts);
+  }
+
+  const std::vector<Role>& NumbersOf(std::size_t type) {
+    for (const auto& [known, roles] : numbers_) {
+      if (known == type) return roles;
+    }
+    return numbers_.emplace_back(type, RolesOfNumbers(TypeOf(type))).second;
+  }
+
+  void TakeHeader(const DefinedField& field, Facts& facts) {
+    for (const DefinedField& inner : TypeOf(field.type).fields) {
+      if (!Ok()) return;
+      const bool one = inner.many == Many::kOne;
+      if (one && inner.basic == Basic::kTime && inner.name == "stamp")
+        facts.stamp_ns = TakeTime();
+      else if (one && inner.basic == Basic::kText && inner.name == "frame_id")
+        facts.frame = TakeText();
+      else
+        Skip(inner);
+    }
+  }
+
+  void TakeField(const DefinedField& field, Role role, Facts& facts) {
+    switch (role) {
+      case Role::kNothing:
+        return Skip(field);
+      case Role::kHeader:
+        return TakeHeader(field, facts);
+      case Role::kStamp:
+        facts.stamp_ns = TakeTime();
+        return;
+      case Role::kFrame:
+        facts.frame = TakeText();
+        return;
+      case Role::kName:
+        facts.name = TakeText();
+        return;
+      case Role::kOtherName: {
+        const std::string_view name = TakeText();
+        if (facts.other_name.empty()) facts.other_name = name;
+        return;
+      }
+      case Role::kChildFrame:
+        facts.child_frame = TakeText();
+        return;
+      case Role::kNamespace:
+        facts.name_space = TakeText();
+        return;
+      case Role::kId:
+        facts.ids += (facts.ids.empty() ? "" : "/") + TakeInteger(field.basic);
+        return;
+      case Role::kNames: {
+        const std::uint32_t count = TakeCount(field);
+        for (std::uint32_t i = 0; i < count && Ok(); ++i) facts.names.push_back(TakeText());
+        return;
+      }
+      case Role::kTracked:
+      case Role::kNotTracked:
+        if ((reader_.Number<std::uint8_t>() != 0) != (role == Role::kTracked))
+          facts.tracked = false;
+        return;
+      case Role::kPosition:
+      case Role::kOrientation:
+        return TakeNumbers(field, facts, role == Role::kOrientation);
+      case Role::kX:
+      case Role::kY:
+      case Role::kZ:
+        facts.p[static_cast<int>(role) - static_cast<int>(Role::kX)] = TakeReal(field.basic);
+        return;
+      default:
+        facts.xyzw[static_cast<int>(role) - static_cast<int>(Role::kQx)] = TakeReal(field.basic);
+    }
+  }
+
+  void TakePart(std::size_t index, Facts& facts) {
+    const PoseLayout::Part& part = layout_.parts[index];
+    const DefinedType& type = TypeOf(part.type);
+    const std::size_t begin = poses_.size();
+    std::vector<Unnamed> unnamed;
+    auto child = part.children.begin();
+    if (type.fields.empty()) SkipNothing();
+    for (std::size_t i = 0; i < type.fields.size() && Ok(); ++i) {
+      if (child == part.children.end() || child->field != i)
+        TakeField(type.fields[i], layout_.roles[part.roles][i], facts);
+      else
+        TakeParts(type.fields[i], (child++)->part, unnamed);
+    }
+    if (!Ok()) return;
+    if (part.pose >= 0) AddPose(static_cast<std::size_t>(part.pose), facts);
+    for (const Unnamed& list : unnamed) {
+      if (list.count == facts.names.size()) NameElements(list, facts.names);
+    }
+    for (std::size_t i = begin; i < poses_.size(); ++i) {
+      MessagePose& pose = poses_[i];
+      if (!pose.stamp_ns) pose.stamp_ns = facts.stamp_ns;
+      if (facts.frame && pose.frame.empty()) pose.frame = ReadableBodyName(*facts.frame);
+      if (pose.name.empty()) pose.name = ReadableBodyName(facts.child_frame);
+      pose.missing = pose.missing || !facts.tracked;
+    }
+  }
+
+  void TakeParts(const DefinedField& field, std::size_t part, std::vector<Unnamed>& unnamed) {
+    const std::uint32_t count = TakeCount(field);
+    Unnamed list{.begin = poses_.size(), .end = 0, .count = count};
+    bool has_names = false;
+    for (std::uint32_t i = 0; i < count && Ok(); ++i) {
+      const std::size_t begin = poses_.size();
+      Facts facts;
+      TakePart(part, facts);
+      if (field.many == Many::kOne || begin == poses_.size()) continue;
+      std::string key = NameOf(facts);
+      has_names = has_names || !key.empty();
+      if (key.empty()) key = std::to_string(i);
+      for (std::size_t k = begin; k < poses_.size(); ++k)
+        poses_[k].keys.insert(poses_[k].keys.begin(), key);
+    }
+    list.end = poses_.size();
+    if (field.many != Many::kOne && !has_names) unnamed.push_back(list);
+  }
+
+  /// By the texts in the list beside them.
+  void NameElements(const Unnamed& list, const std::vector<std::string_view>& names) {
+    for (std::size_t i = list.begin; i < list.end; ++i) {
+      std::string& key = poses_[i].keys.front();
+      const std::string_view name = names[std::stoul(key)];
+      if (!name.empty()) key = ReadableBodyName(name);
+    }
+  }
+
+  void AddPose(std::size_t field, const Facts& facts) {
+    if (!wanted_[field] && ++unwanted_ > kMostUnwanted) return;
+    if (wanted_[field] && ++wanted_count_ > kMostPosesOfMessage)
+      return Fail(fmt::format("more than {} poses", kMostPosesOfMessage));
+    MessagePose& pose = poses_.emplace_back();
+    pose.field = field;
+    pose.oriented = layout_.fields[field].oriented;
+    pose.p = facts.p;
+    pose.xyzw = facts.xyzw;
+  }
+
+  const PoseLayout& layout_;
+  const bool ros1_;
+  const std::vector<bool>& wanted_;
+  std::vector<MessagePose>& poses_;
+  ByteReader reader_;
+  bool second_version_ = false;  ///< of CDR
+  std::uint32_t unwanted_ = 0, wanted_count_ = 0;
+  std::vector<std::pair<std::size_t, std::vector<Role>>> numbers_;  ///< of types
+  std::string problem_;
+};
+
+}  // namespace
+
+std::string DecodeBinaryPoses(const PoseLayout& layout, bool ros1, std::string_view data,
+                              const std::vector<bool>& wanted, std::vector<MessagePose>& poses) {
+  return BinaryDecoder(layout, ros1, data, wanted, poses).Decode();
+}
+
+}  // namespace prehend::exchange

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/messages/message_definition.h. Tested by
+// tests/harness/exchange/messages/message_definition_test.cc
+#include "harness/exchange/messages/message_definition.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+
+#include "harness/base/base/text_file.h"
+#include "harness/exchange/messages/known_types.h"
+#include "harness/exchange/messages/log_file.h"
+
+namespace prehend::exchange {
+namespace {
+
+constexpr std::size_t kMostFields = 5'000;  ///< of a definition
+constexpr std::size_t kMostNested = 30;     ///< types, one in another
+constexpr std::string_view kBlanks = " \t\r";
+
+std::string_view Trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
+}
+
+bool IsWord(std::string_view text, std::string_view besides = "") {
+  const auto is_plain = [&](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           besides.find(c) != std::string_view::npos;
+  };
+  return !text.empty() && std::ranges::all_of(text, is_plain) && (text[0] < '0' || text[0] > '9');
+}
+
+const std::map<std::string_view, Basic>& BasicTypes() {
+  static const std::map<std::string_view, Basic> kTypes = {
+      {"bool", Basic::kBool},       {"byte", Basic::kUint8},
+      {"char", Basic::kUint8},      {"int8", Basic::kInt8},
+      {"uint8", Basic::kUint8},     {"int16", Basic::kInt16},
+      {"uint16", Basic::kUint16},   {"int32", Basic::kInt32},
+      {"uint32", Basic::kUint32},   {"int64", Basic::kInt64},
+      {"uint64", Basic::kUint64},   {"float32", Basic::kFloat32},
+      {"float64", Basic::kFloat64}, {"time", Basic::kTime},
+      {"duration", Basic::kTime},   {"builtin_interfaces/Time", Basic::kTime},
+      {"string", Basic::kText},     {"builtin_interfaces/Duration", Basic::kTime},
+      {"wstring", Basic::kWideText}};
+  return kTypes;
+}
+
+/// A line of the text.
+struct Line {
+  int number = 0;
+  std::string_view text;
+};
+
+class DefinitionReader {
+ public:
+  DefinitionReader(bool ros1, MessageDefinition& definition)
+      : ros1_(ros1), definition_(definition) {}
+
+  std::string Read(std::string_view type, std::string_view text) {
+    Split(PlainTypeName(type), text);
+    if (problem_.empty()) TypeOf(PlainTypeName(type), 0);
+    return problem_;
+  }
+
+ private:
+  void Fail(int line, std::string_view why) {
+    if (!problem_.empty()) return;
+    problem_ = line > 0 ? fmt::format("its definition, line {}: {}", line, why)
+                        : fmt::format("its definition: {}", why);
+  }
+
+  /// Into the lines of each type.
+  void Split(const std::string& type, std::string_view text) {
+    std::vector<Line>* section = &sections_[type];
+    bool after_separator = false;
+    std::size_t fields = 0;
+    for (int number = 1; !text.empty() && problem_.empty(); ++number) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      const std::string_view line = Trimmed(text.substr(0, std::min(end, text.find('#'))));
+      text.remove_prefix(std::min(end + 1, text.size()));
+      if (line.empty()) continue;
+      if (line.size() >= 3 && line.find_first_not_of('=') == std::string_view::npos) {
+        after_separator = true;
+      } else if (after_separator) {
+        if (!line.starts_with("MSG:"))
+          return Fail(number, fmt::format("expected 'MSG: ' and a type, found '{}'", Shown(line)));
+        section = &sections_[PlainTypeName(Trimmed(line.substr(4)))];
+        after_separator = false;
+        if (!section->empty()) section = &repeated_;
+      } else if (++fields > kMostFields) {
+        Fail(0, fmt::format("more than {} fields", kMostFields));
+      } else {
+        section->push_back({number, line});
+      }
+    }
+    if (after_separator) Fail(0, "it is cut off: it ends before the next type");
+  }
+
+  static std::string Shown(std::string_view text) { return ReadableName(text.substr(0, 60)); }
+
+  /// Which of the definition's types it is; reads it, and those in it.
+  std::size_t TypeOf(const std::string& name, int line) {
+    if (const auto known = indices_.find(name); known != indices_.end()) {
+      if (open_.contains(name)) Fail(line, fmt::format("'{}' is in itself", Shown(name)));
+      return known->second;
+    }
+    if (open_.size() >= kMostNested)
+      Fail(line, fmt::format("more than {} types, one in another", kMostNested));
+    if (!problem_.empty()) return 0;
+    std::vector<Line> lines;
+    const auto section = sections_.find(name);
+    const std::string_view known = TextOfKnownType(name, ros1_);
+    const bool has_text = section != sections_.end() && !section->second.empty();
+    if (!has_text && !known.empty()) {
+      for (std::size_t at = 0; at < known.size();) {
+        const std::size_t end = std::min(known.find('\n', at), known.size());
+        lines.push_back({line, known.substr(at, end - at)});
+        at = end + 1;
+      }
+    } else if (section == sections_.end()) {
+      Fail(line, fmt::format("no type '{}' is in it", Shown(name)));
+      return 0;
+    } else {
+      lines = section->second;
+    }
+    const std::size_t index = definition_.types.size();
+    indices_.emplace(name, index);
+    definition_.types.push_back({.name = name, .fields = {}});
+    open_.insert(name);
+    const std::string package = name.substr(0, name.find('/'));
+    DefinedType type{.name = name, .fields = {}};
+    for (const Line& one : lines) TakeField(one, package, type);
+    open_.erase(name);
+    definition_.types[index] = std::move(type);
+    return index;
+  }
+
+  void TakeField(const Line& line, const std::string& package, DefinedType& type) {
+    const std::size_t blank = line.text.find_first_of(kBlanks);
+    if (blank == std::string_view::npos)
+      return Fail(line.number,
+                  fmt::format("expected a type and a name, found '{}'", Shown(line.text)));
+    const std::string_view rest = Trimmed(line.text.substr(blank));
+    const std::string_view name = rest.substr(0, rest.find_first_of(" \t\r="));
+    if (!IsWord(name))
+      return Fail(line.number, fmt::format("expected a name, found '{}'", Shown(rest)));
+    if (Trimmed(rest.substr(name.size())).starts_with('=')) return;  // a constant
+    DefinedField field{.name = std::string(name)};
+    std::string_view base = line.text.substr(0, blank);
+    if (!TakeMany(base, field))
+      return Fail(line.number,
+                  fmt::format("expected a type, found '{}'", Shown(line.text.substr(0, blank))));
+    SetBase(base, package, line.number, field);
+    if (!problem_.empty()) return;
+    AddSize(field, type);
+    if (type.least_bytes > kMaxLogRecordBytes)
+      return Fail(line.number, fmt::format("a message of more than {} MiB; no more are read",
+                                           kMaxLogRecordBytes >> 20));
+    type.fields.push_back(std::move(field));
+  }
+
+  /// What is in brackets, which it takes away.
+  static bool TakeMany(std::string_view& base, DefinedField& field) {
+    const std::size_t bracket = base.find('[');
+    if (bracket == std::string_view::npos) return true;
+    if (base.back() != ']') return false;
+    std::string_view inside = base.substr(bracket + 1, base.size() - bracket - 2);
+    base = base.substr(0, bracket);
+    field.many = DefinedField::Many::kAny;
+    const bool at_most = inside.starts_with("<=");
+    if (at_most) inside.remove_prefix(2);
+    if (inside.empty()) return !at_most;
+    const auto [end, error] =
+        std::from_chars(inside.data(), inside.data() + inside.size(), field.count);
+    if (!at_most) field.many = DefinedField::Many::kFixed;
+    return error == std::errc() && end == inside.data() + inside.size();
+  }
+
+  void SetBase(std::string_view base, const std::string& package, int line, DefinedField& field) {
+    if (base.starts_with("string<=") || base.starts_with("wstring<="))
+      base = base.substr(0, base.find('<'));
+    std::string name = PlainTypeName(base);
+    if (const auto basic = BasicTypes().find(name); basic != BasicTypes().end()) {
+      field.basic = basic->second;
+      return;
+    }
+    if (!IsWord(name, "/"))
+      return Fail(line, fmt::format("expected a type, found '{}'", Shown(base)));
+    if (name == "Header") name = "std_msgs/Header";
+    if (name.find('/') == std::string::npos) name = package + "/" + name;
+    field.type = TypeOf(name, line);
+  }
+
+  void AddSize(const DefinedField& field, DefinedType& type) const {
+    std::uint64_t bytes = BytesOf(field.basic);
+    if (field.basic == Basic::kText || field.basic == Basic::kWideText) type.same_size = false;
+    if (field.basic == Basic::kMessage) {
+      const DefinedType& inner = definition_.types[field.type];
+      bytes = inner.least_bytes;
+      type.same_size = type.same_size && inner.same_size;
+    }
+    if (field.many == DefinedField::Many::kFixed) bytes *= field.count;
+    if (field.many == DefinedField::Many::kAny) {
+      bytes = 4;
+      type.same_size = false;
+    }
+    type.least_bytes += bytes;  // both are at most 2^58
+  }
+
+  const bool ros1_;
+  MessageDefinition& definition_;
+  std::map<std::string, std::vector<Line>> sections_;
+  std::vector<Line> repeated_;
+  std::map<std::string, std::size_t> indices_;
+  std::set<std::string> open_;  ///< types that are being read
+  std::string problem_;
+};
+
+}  // namespace
+
+std::uint64_t BytesOf(Basic basic) {
+  switch (basic) {
+    case Basic::kBool:
+    case Basic::kInt8:
+    case Basic::kUint8:
+      return 1;
+    case Basic::kInt16:
+    case Basic::kUint16:
+      return 2;
+    case Basic::kInt64:
+    case Basic::kUint64:
+    case Basic::kFloat64:
+    case Basic::kTime:
+      return 8;
+    default:
+      return 4;
+  }
+}
+
+std::string PlainTypeName(std::string_view name) {
+  std::string plain(name);
+  if (const std::size_t at = plain.find("/msg/"); at != std::string::npos) plain.erase(at, 4);
+  return plain;
+}
+
+std::string ReadDefinition(std::string_view type, std::string_view text, bool ros1,
+                           MessageDefinition& definition) {
+  return DefinitionReader(ros1, definition).Read(type, text);
+}
+
+}  // namespace prehend::exchange

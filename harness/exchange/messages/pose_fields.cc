@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/messages/pose_fields.h. Tested by
+// tests/harness/exchange/messages/pose_fields_test.cc
+#include "harness/exchange/messages/pose_fields.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <string_view>
+
+namespace prehend::exchange {
+namespace {
+
+using Many = DefinedField::Many;
+
+std::string LowerCase(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+bool IsOneOf(std::string_view name, std::initializer_list<std::string_view> names) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+bool IsReal(const DefinedField& field) {
+  return field.basic == Basic::kFloat32 || field.basic == Basic::kFloat64;
+}
+
+bool IsInteger(Basic basic) { return basic >= Basic::kInt8 && basic <= Basic::kUint64; }
+
+Role RoleOfNumber(const DefinedField& field) {
+  static const std::map<std::string, Role> kRoles = {
+      {"x", Role::kX},   {"y", Role::kY},   {"z", Role::kZ},  {"qx", Role::kQx},
+      {"qy", Role::kQy}, {"qz", Role::kQz}, {"qw", Role::kQw}};
+  const auto role = kRoles.find(LowerCase(field.name));
+  const bool is_number = IsReal(field) && field.many == Many::kOne;
+  return is_number && role != kRoles.end() ? role->second : Role::kNothing;
+}
+
+bool Has(const std::vector<Role>& roles, std::initializer_list<Role> wanted) {
+  return std::ranges::all_of(wanted,
+                             [&](Role role) { return std::ranges::count(roles, role) == 1; });
+}
+
+Role RoleOfFlag(std::string name) {
+  for (const std::string_view before : {"b_", "is_"}) {
+    if (name.starts_with(before)) name.erase(0, before.size());
+  }
+  if (IsOneOf(name, {"valid", "tracked", "track_valid", "tracking_valid", "pose_valid", "visible"}))
+    return Role::kTracked;
+  return IsOneOf(name, {"occluded", "lost"}) ? Role::kNotTracked : Role::kNothing;
+}
+
+Role RoleOfText(const std::string& name) {
+  if (name == "frame_id" || name == "parent_frame_id") return Role::kFrame;
+  if (name == "child_frame_id") return Role::kChildFrame;
+  if (name == "name") return Role::kName;
+  if (name == "ns") return Role::kNamespace;
+  return name.ends_with("_name") || IsOneOf(name, {"label", "id"}) ? Role::kOtherName
+                                                                   : Role::kNothing;
+}
+
+class LayoutMaker {
+ public:
+  explicit LayoutMaker(PoseLayout& layout) : layout_(layout), types_(layout.definition.types) {
+    has_within_.assign(types_.size(), -1);
+    for (const bool in_frame : {false, true}) {
+      for (const DefinedType& type : types_) layout_.roles.push_back(RolesOf(type, in_frame));
+    }
+  }
+
+  void Make() { AddPart(0, "", /*in_frame=*/false); }
+
+ private:
+  std::string_view ShortName(std::size_t type) const {
+    const std::string_view name = types_[type].name;
+    return name.substr(name.find('/') + 1);
+  }
+
+  bool IsPoint(std::size_t type) const {
+    const std::vector<Role> roles = RolesOfNumbers(types_[type]);
+    return Has(roles, {Role::kX, Role::kY, Role::kZ}) && !Has(roles, {Role::kQw});
+  }
+
+  bool IsQuaternion(const DefinedField& field) const {
+    if (field.basic != Basic::kMessage)
+      return IsReal(field) && field.many == Many::kFixed && field.count == 4 &&
+             IsOneOf(LowerCase(field.name), {"orientation", "rotation", "quaternion", "q"});
+    const DefinedType& type = types_[field.type];
+    return field.many == Many::kOne &&
+           Has(RolesOfNumbers(type), {Role::kQx, Role::kQy, Role::kQz, Role::kQw}) &&
+           type.fields.size() == 4;
+  }
+
+  static bool IsCalledPosition(const std::string& field) {
+    return IsOneOf(LowerCase(field), {"position", "translation", "pos", "point", "location"});
+  }
+
+  /// Of a pose, beside its orientation.
+  bool IsPosition(const DefinedField& field) const {
+    if (field.basic != Basic::kMessage)
+      return IsReal(field) && field.many == Many::kFixed && field.count == 3 &&
+             IsCalledPosition(field.name);
+    return field.many == Many::kOne && IsPoint(field.type) &&
+           (IsCalledPosition(field.name) || ShortName(field.type).starts_with("Point"));
+  }
+
+  /// `in_frame`: a header around it says what it is measured in, so that a frame of its own is its
+  /// name.
+  std::vector<Role> RolesOf(const DefinedType& type, bool in_frame) const {
+    std::vector<Role> roles(type.fields.size(), Role::kNothing);
+    for (std::size_t i = 0; i < roles.size(); ++i) {
+      const DefinedField& field = type.fields[i];
+      const std::string name = LowerCase(field.name);
+      if (field.basic == Basic::kText && field.many == Many::kAny &&
+          IsOneOf(name, {"name", "names", "frames", "labels"}))
+        roles[i] = Role::kNames;
+      if (field.many != Many::kOne) continue;
+      if (field.basic == Basic::kMessage && ShortName(field.type) == "Header")
+        roles[i] = Role::kHeader;
+      if (field.basic == Basic::kTime && IsOneOf(name, {"stamp", "timestamp", "time"}))
+        roles[i] = Role::kStamp;
+      if (field.basic == Basic::kText) roles[i] = RoleOfText(name);
+      if (field.basic == Basic::kBool) roles[i] = RoleOfFlag(name);
+      if (IsInteger(field.basic) &&
+          (name == "id" || name.ends_with("_id") || field.name.ends_with("ID")))
+        roles[i] = Role::kId;
+    }
+    const bool in_other = in_frame && std::ranges::count(roles, Role::kHeader) == 0;
+    if (in_other) std::ranges::replace(roles, Role::kFrame, Role::kOtherName);
+    AddPoseRoles(type, roles);
+    return roles;
+  }
+
+  /// Of the fields that make it a pose, if it is one.
+  void AddPoseRoles(const DefinedType& type, std::vector<Role>& roles) const {
+    const std::vector<Role> numbers = RolesOfNumbers(type);
+    std::vector<std::size_t> positions, orientations;
+    for (std::size_t i = 0; i < type.fields.size(); ++i) {
+      if (IsPosition(type.fields[i])) positions.push_back(i);
+      if (IsQuaternion(type.fields[i])) orientations.push_back(i);
+      if (numbers[i] != Role::kNothing) roles[i] = numbers[i];
+    }
+    const auto is_called = [&](std::size_t i) { return IsCalledPosition(type.fields[i].name); };
+    if (positions.size() > 1 && std::ranges::count_if(positions, is_called) == 1)
+      positions = {*std::ranges::find_if(positions, is_called)};
+    if (positions.size() != 1) return;
+    const bool by_itself = type.fields[positions[0]].basic != Basic::kMessage;
+    if (orientations.size() == 1) roles[orientations[0]] = Role::kOrientation;
+    if (orientations.size() == 1 || by_itself) roles[positions[0]] = Role::kPosition;
+  }
+
+  enum class Shape { kNone, kPosition, kPose };
+
+  /// What a message of this type is itself, as a field of this name.
+  Shape ShapeOf(std::size_t type, const std::vector<Role>& roles, const std::string& called) const {
+    if (Has(roles, {Role::kPosition}))
+      return Has(roles, {Role::kOrientation}) ? Shape::kPose : Shape::kPosition;
+    if (!Has(roles, {Role::kX, Role::kY, Role::kZ})) return Shape::kNone;
+    if (Has(roles, {Role::kQx, Role::kQy, Role::kQz, Role::kQw})) return Shape::kPose;
+    const bool is_point = IsCalledPosition(called) || ShortName(type).starts_with("Point");
+    return is_point && IsPoint(type) ? Shape::kPosition : Shape::kNone;
+  }
+
+  /// Whether poses may be within a field that tells nothing else.
+  static bool IsGoneInto(const DefinedField& field, Role role) {
+    return role == Role::kNothing && field.basic == Basic::kMessage;
+  }
+
+  bool HasPoses(const DefinedField& field) {
+    if (ShapeOf(field.type, layout_.roles[field.type], field.name) != Shape::kNone) return true;
+    int& within = has_within_[field.type];
+    if (within < 0) {
+      const DefinedType& type = types_[field.type];
+      const std::vector<Role>& roles = layout_.roles[field.type];
+      bool has = false;
+      for (std::size_t i = 0; i < roles.size() && !has; ++i)
+        has = IsGoneInto(type.fields[i], roles[i]) && HasPoses(type.fields[i]);
+      within = has ? 1 : 0;
+    }
+    return within == 1;
+  }
+
+  std::size_t AddPart(std::size_t type_index, const std::string& called, bool in_frame) {
+    const std::size_t index = layout_.parts.size();
+    const DefinedType& type = types_[type_index];
+    const std::size_t of_fields = type_index + (in_frame ? types_.size() : 0);
+    const std::vector<Role>& roles = layout_.roles[of_fields];
+    layout_.parts.push_back({.type = type_index, .roles = of_fields, .children = {}});
+    if (const Shape shape = ShapeOf(type_index, roles, called); shape != Shape::kNone) {
+      layout_.parts[index].pose = static_cast<int>(layout_.fields.size());
+      layout_.fields.push_back({.steps = steps_, .oriented = shape == Shape::kPose});
+    }
+    in_frame = in_frame || std::ranges::count(roles, Role::kHeader) > 0;
+    for (std::size_t i = 0; i < roles.size() && layout_.fields.size() < kMostPoseFields; ++i) {
+      const DefinedField& field = type.fields[i];
+      if (!IsGoneInto(field, roles[i]) || !HasPoses(field)) continue;
+      steps_.push_back({.field = field.name, .list = field.many != Many::kOne});
+      const std::size_t part = AddPart(field.type, field.name, in_frame);
+      steps_.pop_back();
+      layout_.parts[index].children.push_back({.field = i, .part = part});
+    }
+    return index;
+  }
+
+  PoseLayout& layout_;
+  const std::vector<DefinedType>& types_;
+  std::vector<int> has_within_;  ///< poses, of each type; -1: not known yet
+  std::vector<PoseField::Step> steps_;
+};
+
+}  // namespace
+
+std::size_t PoseField::Lists() const {
+  return static_cast<std::size_t>(std::ranges::count(steps, true, &Step::list));
+}
+
+std::vector<Role> RolesOfNumbers(const DefinedType& type) {
+  std::vector<Role> roles;
+  bool has_w = false;
+  for (const DefinedField& field : type.fields) {
+    roles.push_back(RoleOfNumber(field));
+    has_w = has_w || (LowerCase(field.name) == "w" && IsReal(field) && field.many == Many::kOne);
+  }
+  if (!has_w) return roles;
+  for (std::size_t i = 0; i < roles.size(); ++i) {  // a quaternion
+    if (roles[i] == Role::kX) roles[i] = Role::kQx;
+    if (roles[i] == Role::kY) roles[i] = Role::kQy;
+    if (roles[i] == Role::kZ) roles[i] = Role::kQz;
+    if (LowerCase(type.fields[i].name) == "w" && IsReal(type.fields[i])) roles[i] = Role::kQw;
+  }
+  return roles;
+}
+
+PoseLayout LayoutOf(MessageDefinition definition) {
+  PoseLayout layout{.definition = std::move(definition), .fields = {}, .parts = {}};
+  LayoutMaker(layout).Make();
+  return layout;
+}
+
+}  // namespace prehend::exchange

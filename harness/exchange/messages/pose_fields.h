@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where poses are in the messages of a type, and what is said about them there: their bodies'
+// names, frames, times, whether they are tracked. What the fields are called and what they hold
+// decides it (docs/motion-capture.md). Tested by
+// tests/harness/exchange/messages/pose_fields_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/exchange/messages/message_definition.h"
+
+namespace prehend::exchange {
+
+inline constexpr std::size_t kMostPoseFields = 100;  ///< of a type; of more, the first ones
+
+/// A place at which messages of a type have a pose, or a list has one in each element.
+struct PoseField {
+  struct Step {
+    std::string field;
+    bool list = false;
+    bool operator==(const Step&) const = default;
+  };
+  std::vector<Step> steps;  ///< none: the message is a pose
+  bool oriented = true;     ///< else it is a position only
+
+  std::size_t Lists() const;
+  bool operator==(const PoseField&) const = default;
+};
+
+/// What a field of a type tells.
+enum class Role : std::uint8_t {
+  kNothing,
+  kHeader,
+  kStamp,
+  kFrame,
+  kName,        ///< of the body
+  kOtherName,   ///< if there is no name: the first of these
+  kChildFrame,  ///< if there is none of them
+  kNamespace,   ///< with the id
+  kId,
+  kNames,  ///< of the elements of the lists beside it
+  kTracked,
+  kNotTracked,
+  kX,
+  kY,
+  kZ,
+  kQx,
+  kQy,
+  kQz,
+  kQw,
+  kPosition,
+  kOrientation,
+};
+
+/// Of messages of one type, the parts in which there are poses.
+struct PoseLayout {
+  struct Child {
+    std::size_t field = 0;  ///< of the type
+    std::size_t part = 0;   ///< what an element of it is
+  };
+  struct Part {
+    std::size_t type = 0;         ///< of the definition
+    std::size_t roles = 0;        ///< of its fields, in `roles`
+    std::vector<Child> children;  ///< in the order of their fields
+    int pose = -1;                ///< which of `fields` it is
+  };
+  MessageDefinition definition;
+  std::vector<std::vector<Role>> roles;  ///< of each type, and of each in a part with a header
+  std::vector<PoseField> fields;
+  std::vector<Part> parts;  ///< the first one is the message
+};
+
+PoseLayout LayoutOf(MessageDefinition definition);
+
+/// Of a message with numbers x, y, z (and w), such as a point: their roles.
+std::vector<Role> RolesOfNumbers(const DefinedType& type);
+
+}  // namespace prehend::exchange

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/measure/score/score_metrics_test.cc
+#include "harness/measure/score/overlap_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+
+#include "harness/measure/score/partition_metrics.h"
+
+namespace prehend::measure {
+namespace {
+
+using grammar::Interval;
+using grammar::Tick;
+
+double Ratio(double part, double whole, double of_nothing) {
+  return whole > 0 ? part / whole : of_nothing;
+}
+
+/// Intersection over hull; negative if they do not overlap.
+double Closeness(const Interval& a, const Interval& b) {
+  const Tick hull = std::max(a.end, b.end) - std::min(a.begin, b.begin);
+  return static_cast<double>(Overlap(a, b)) / static_cast<double>(hull);
+}
+
+/// Size of the largest matching of `left` with `right` (augmenting paths). partner[i] is the
+/// partner of left i, or -1.
+int LargestMatching(int left, int right, const std::function<bool(int, int)>& fits,
+                    std::vector<int>& partner) {
+  std::vector<int> taken_by(static_cast<std::size_t>(right), -1);
+  std::vector<bool> tried;
+  const std::function<bool(int)> place = [&](int i) {
+    for (int j = 0; j < right; ++j) {
+      if (tried[j] || !fits(i, j)) continue;
+      tried[j] = true;
+      if (taken_by[j] >= 0 && !place(taken_by[j])) continue;
+      taken_by[j] = i;
+      return true;
+    }
+    return false;
+  };
+  int size = 0;
+  for (int i = 0; i < left; ++i) {
+    tried.assign(static_cast<std::size_t>(right), false);
+    size += place(i);
+  }
+  partner.assign(static_cast<std::size_t>(left), -1);
+  for (int j = 0; j < right; ++j) {
+    if (taken_by[j] >= 0) partner[taken_by[j]] = j;
+  }
+  return size;
+}
+
+/// Area under the precision-recall curve, with precision made monotonic (VOC 2011).
+double AveragePrecision(const std::vector<bool>& correct, std::size_t truths) {
+  std::vector<double> recall = {0}, precision = {0};
+  double hits = 0;
+  for (std::size_t i = 0; i < correct.size(); ++i) {
+    hits += correct[i];
+    recall.push_back(hits / static_cast<double>(truths));
+    precision.push_back(hits / static_cast<double>(i + 1));
+  }
+  recall.push_back(1);
+  precision.push_back(0);
+  double area = 0;
+  for (std::size_t i = precision.size() - 1; i-- > 0;) {
+    precision[i] = std::max(precision[i], precision[i + 1]);
+    area += (recall[i + 1] - recall[i]) * precision[i + 1];
+  }
+  return area;
+}
+
+const std::string* LabelAt(const Segments& segments, Tick tick) {
+  for (const Segment& segment : segments) {
+    if (segment.interval.begin <= tick && tick < segment.interval.end) return &segment.label;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Hits& Hits::operator+=(const Hits& other) {
+  correct += other.correct;
+  extra += other.extra;
+  missed += other.missed;
+  return *this;
+}
+double Hits::Precision() const { return Ratio(correct, correct + extra, missed == 0 ? 1 : 0); }
+double Hits::Recall() const { return Ratio(correct, correct + missed, extra == 0 ? 1 : 0); }
+double Hits::F1() const { return Ratio(2 * correct, 2 * correct + extra + missed, 1); }
+
+Hits HitsByOverlap(const Segments& truth, const Segments& prediction, double least_overlap) {
+  Hits hits;
+  std::vector<bool> taken(truth.size(), false);
+  for (const Segment& predicted : prediction) {
+    std::size_t best = truth.size();
+    double best_overlap = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      if (truth[i].label != predicted.label) continue;
+      const double overlap = Closeness(truth[i].interval, predicted.interval);
+      if (best < truth.size() && overlap <= best_overlap) continue;
+      best = i;
+      best_overlap = overlap;
+    }
+    const bool correct = best < truth.size() && best_overlap >= least_overlap && !taken[best];
+    if (correct) taken[best] = true;
+    ++(correct ? hits.correct : hits.extra);
+  }
+  hits.missed = static_cast<int>(truth.size()) - hits.correct;
+  return hits;
+}
+
+double EditScore(const Segments& truth, const Segments& prediction) {
+  const std::size_t longer = std::max(truth.size(), prediction.size());
+  if (longer == 0) return 100;
+  std::vector<int> row(prediction.size() + 1);
+  for (std::size_t j = 0; j < row.size(); ++j) row[j] = static_cast<int>(j);
+  for (std::size_t i = 1; i <= truth.size(); ++i) {
+    int diagonal = row[0];
+    row[0] = static_cast<int>(i);
+    for (std::size_t j = 1; j < row.size(); ++j) {
+      const int substitute = diagonal + (truth[i - 1].label != prediction[j - 1].label);
+      diagonal = row[j];
+      row[j] = std::min({substitute, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return 100 * (1 - static_cast<double>(row.back()) / static_cast<double>(longer));
+}
+
+double MeanAveragePrecision(const Segments& truth, const Segments& prediction,
+                            double least_overlap) {
+  std::map<std::string, std::vector<Interval>> truths;
+  for (const Segment& segment : truth) truths[segment.label].push_back(segment.interval);
+  double sum = 0;
+  for (const auto& [label, wanted] : truths) {
+    std::vector<bool> taken(wanted.size(), false), correct;
+    for (const Segment& predicted : prediction) {
+      if (predicted.label != label) continue;
+      std::size_t best = wanted.size();
+      for (std::size_t i = 0; i < wanted.size(); ++i) {
+        if (taken[i] || Closeness(wanted[i], predicted.interval) < least_overlap) continue;
+        const bool closer =
+            best == wanted.size() ||
+            Closeness(wanted[i], predicted.interval) > Closeness(wanted[best], predicted.interval);
+        if (closer) best = i;
+      }
+      correct.push_back(best < wanted.size());
+      if (correct.back()) taken[best] = true;
+    }
+    sum += AveragePrecision(correct, wanted.size());
+  }
+  return Ratio(sum, static_cast<double>(truths.size()), prediction.empty() ? 1 : 0);
+}
+
+FrameCounts& FrameCounts::operator+=(const FrameCounts& other) {
+  equal += other.equal;
+  all += other.all;
+  correct += other.correct;
+  confused += other.confused;
+  missed += other.missed;
+  false_alarm += other.false_alarm;
+  return *this;
+}
+double FrameCounts::Accuracy() const {
+  return Ratio(static_cast<double>(equal), static_cast<double>(all), 1);
+}
+double FrameCounts::AccuracyInTruth() const {
+  return Ratio(static_cast<double>(correct), static_cast<double>(InTruth()), 1);
+}
+double FrameCounts::ErrorRate() const {
+  return Ratio(static_cast<double>(confused + missed + false_alarm), static_cast<double>(InTruth()),
+               false_alarm == 0 ? 0 : 1);
+}
+double FrameCounts::DetectionErrorRate() const {
+  return Ratio(static_cast<double>(missed + false_alarm), static_cast<double>(InTruth()),
+               false_alarm == 0 ? 0 : 1);
+}
+double FrameCounts::F1() const {
+  const auto wrong = static_cast<double>(2 * confused + missed + false_alarm);
+  return Ratio(2 * static_cast<double>(correct), 2 * static_cast<double>(correct) + wrong, 1);
+}
+
+FrameCounts CountFrames(const Episode& episode, Tick collar) {
+  std::set<Tick> cuts = {0, episode.ticks}, boundaries;
+  for (const Segments* side : {&episode.truth, &episode.prediction}) {
+    for (const Segment& segment : *side)
+      cuts.insert({segment.interval.begin, segment.interval.end});
+  }
+  for (const Segment& segment : episode.truth)
+    boundaries.insert({segment.interval.begin, segment.interval.end});
+  for (const Tick boundary : boundaries) cuts.insert({boundary - collar, boundary + collar});
+  FrameCounts counts;
+  for (auto cut = cuts.begin(); std::next(cut) != cuts.end(); ++cut) {
+    const Tick begin = *cut, length = *std::next(cut) - begin;
+    if (begin < 0 || begin >= episode.ticks) continue;
+    const auto near = boundaries.upper_bound(begin - collar);
+    if (collar > 0 && near != boundaries.end() && *near - collar <= begin) continue;
+    const std::string *truth = LabelAt(episode.truth, begin),
+                      *predicted = LabelAt(episode.prediction, begin);
+    const bool equal = truth && predicted ? *truth == *predicted : truth == predicted;
+    counts.all += length;
+    if (equal) counts.equal += length;
+    if (truth && predicted) (equal ? counts.correct : counts.confused) += length;
+    if (truth && !predicted) counts.missed += length;
+    if (!truth && predicted) counts.false_alarm += length;
+  }
+  return counts;
+}
+
+EventErrors& EventErrors::operator+=(const EventErrors& other) {
+  truths += other.truths;
+  predictions += other.predictions;
+  correct += other.correct;
+  substituted += other.substituted;
+  return *this;
+}
+double EventErrors::ErrorRate() const {
+  return Ratio(substituted + Deleted() + Inserted(), truths, predictions == 0 ? 0 : 1);
+}
+
+EventErrors MatchWithCollar(const Segments& truth, const Segments& prediction, double collar,
+                            double share) {
+  const auto near = [&](int i, int j) {
+    const Interval &a = truth[i].interval, &b = prediction[j].interval;
+    const double slack = std::max(collar, share * static_cast<double>(Length(a)));
+    return static_cast<double>(std::abs(a.begin - b.begin)) <= collar &&
+           static_cast<double>(std::abs(a.end - b.end)) <= slack;
+  };
+  const int truths = static_cast<int>(truth.size()),
+            predictions = static_cast<int>(prediction.size());
+  std::vector<int> partner;
+  EventErrors errors{.truths = truths, .predictions = predictions};
+  errors.correct = LargestMatching(
+      truths, predictions,
+      [&](int i, int j) { return truth[i].label == prediction[j].label && near(i, j); }, partner);
+  const std::set<int> matched(partner.begin(), partner.end());
+  std::vector<bool> replaced(truth.size(), false);
+  for (int j = 0; j < predictions; ++j) {
+    for (int i = 0; i < truths && !matched.contains(j); ++i) {
+      if (partner[i] >= 0 || replaced[i] || !near(i, j)) continue;
+      replaced[i] = true;
+      ++errors.substituted;
+      break;
+    }
+  }
+  return errors;
+}
+
+Hits BoundaryHits(const Episode& episode, double window) {
+  const std::vector<Tick> truth = InnerBoundaries(episode.truth, episode.ticks);
+  const std::vector<Tick> predicted = InnerBoundaries(episode.prediction, episode.ticks);
+  std::vector<int> partner;
+  const int hits = LargestMatching(
+      static_cast<int>(truth.size()), static_cast<int>(predicted.size()),
+      [&](int i, int j) {
+        return static_cast<double>(std::abs(truth[i] - predicted[j])) <= window;
+      },
+      partner);
+  return {hits, static_cast<int>(predicted.size()) - hits, static_cast<int>(truth.size()) - hits};
+}
+
+}  // namespace prehend::measure

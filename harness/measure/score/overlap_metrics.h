@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scores of whole segments and of frames, as the literature on temporal segmentation defines them.
+// All are of one episode; counts of several episodes may be added (pooled). Tested by
+// tests/harness/measure/score/score_metrics_test.cc against printouts of the reference programs.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "harness/measure/score/segments.h"
+
+namespace prehend::measure {
+
+struct Hits {
+  int correct = 0;  ///< true positives
+  int extra = 0;    ///< false positives
+  int missed = 0;   ///< false negatives
+
+  Hits& operator+=(const Hits& other);
+  /// 0..1; 1 if there is nothing.
+  double Precision() const;
+  double Recall() const;
+  double F1() const;
+};
+
+/// F1@k of Lea et al. 2017, as in ms-tcn: predictions in order of time; the truth of the same label
+/// that overlaps best counts if its intersection over union (of the hull) is at least
+/// `least_overlap` and it is still free.
+Hits HitsByOverlap(const Segments& truth, const Segments& prediction, double least_overlap);
+
+/// Segmental edit score, 0..100: 100 (1 - Levenshtein distance / longer length) of the sequences of
+/// labels. Both empty: 100.
+double EditScore(const Segments& truth, const Segments& prediction);
+
+/// Mean over the labels of the truth of the average precision at this temporal IoU (ActivityNet,
+/// VOC-2011 interpolation). Predictions come with falling confidence.
+double MeanAveragePrecision(const Segments& truth, const Segments& prediction,
+                            double least_overlap);
+
+/// Per frame: what the truth says and what is predicted. Segments must not overlap within a side.
+struct FrameCounts {
+  grammar::Tick equal = 0;  ///< background included
+  grammar::Tick all = 0;
+  grammar::Tick correct = 0;      ///< the same label, not background
+  grammar::Tick confused = 0;     ///< another label
+  grammar::Tick missed = 0;       ///< a label in the truth only
+  grammar::Tick false_alarm = 0;  ///< a label in the prediction only
+
+  FrameCounts& operator+=(const FrameCounts& other);
+  grammar::Tick InTruth() const { return correct + confused + missed; }
+  /// Mean over frames (MoF), 0..1, with background; and within the truth's segments.
+  double Accuracy() const;
+  double AccuracyInTruth() const;
+  /// Identification error rate; the same as the segment-based error rate on the tick grid.
+  double ErrorRate() const;
+  /// The same without labels: event or background (pyannote's detection error rate).
+  double DetectionErrorRate() const;
+  /// F1 of labelled frames.
+  double F1() const;
+};
+/// `collar`: frames nearer than this to a boundary of the truth do not count.
+FrameCounts CountFrames(const Episode& episode, grammar::Tick collar = 0);
+
+/// Event-based scores with a collar (Mesaros et al. 2016, sed_eval): label equal, begins at most
+/// `collar` apart, ends at most the larger of `collar` and `share` of the true length; the largest
+/// matching.
+struct EventErrors {
+  int truths = 0, predictions = 0, correct = 0, substituted = 0;
+
+  EventErrors& operator+=(const EventErrors& other);
+  Hits AsHits() const { return {correct, predictions - correct, truths - correct}; }
+  int Deleted() const { return truths - correct - substituted; }
+  int Inserted() const { return predictions - correct - substituted; }
+  double ErrorRate() const;
+};
+EventErrors MatchWithCollar(const Segments& truth, const Segments& prediction, double collar,
+                            double share);
+
+/// Boundaries of the partition (background included, both outer ends left out) hit within a window
+/// (<=): the largest matching. As mir_eval.segment.detection, trimmed.
+Hits BoundaryHits(const Episode& episode, double window);
+
+}  // namespace prehend::measure

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// How well a grammar recognises events: its timelines against true ones, per kind and in total.
+// Tested by tests/harness/measure/score/score_test.cc
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "grammar/base/timeline.h"
+#include "harness/measure/score/further_scores.h"
+#include "harness/measure/score/overlap_metrics.h"
+#include "harness/measure/score/ward.h"
+#include "harness/measure/score/witnesses.h"
+
+namespace prehend::measure {
+
+/// The true events of one episode, and those that a grammar recognised.
+struct EpisodeToScore {
+  std::string scenario;
+  grammar::Tick ticks = 0;
+  grammar::Timeline truth;
+  grammar::Timeline found;
+  std::map<std::string, int>
+      ignored;  ///< count of recognised events for which there is no ground truth
+  Testimony by_definitions, by_claims;
+};
+
+/// Signed offsets (found - true) of the boundaries of matched events, in seconds.
+struct BoundaryErrors {
+  std::vector<double> seconds;
+
+  /// Nearest-rank quantiles, 0 if there are none: of the signed offsets, and of the offsets sorted
+  /// by magnitude (with their sign).
+  double Median() const;
+  double QuantileByMagnitude(double share) const;
+};
+
+struct EventScore {
+  std::string event;  ///< "all" for the total
+  int truths = 0, found = 0;
+  Ward ward;
+  BoundaryErrors begin, end;
+  Hits overlap_10, overlap_25, overlap_50;
+  EventErrors within_collar;
+  FrameCounts frames;
+  double edit = 100;  ///< mean over the episodes that have such an event, true or found
+  FurtherScores further;
+  std::vector<double> latency_s;  ///< from an event's end to its decision
+
+  double LatencyQuantile(double share) const;
+};
+
+struct Score {
+  std::string grammar;
+  std::vector<EventScore> events;  ///< sorted by name
+  EventScore total;
+  int episodes = 0;
+  std::vector<std::string>
+      not_covered;  ///< events that are scored, but that no rule of the grammar prints
+  std::map<std::string, int> ignored;  ///< of all episodes
+  std::string ignored_because = "docs/events.md does not define them";
+};
+
+/// Labels are events with their roles. `collar_s` is for the collar-based scores.
+Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
+              double collar_s);
+
+/// A table for people: Ward's event errors, boundary errors, F1@{10,25,50}, edit, frames, F at the
+/// collar, latency. Below it, the events that the grammar does not cover, and those that are
+/// ignored.
+std::string ScoreTable(const Score& score, double collar_s);
+
+/// The tables of several grammars, and what their columns mean.
+std::string ScoresText(const std::vector<Score>& scores, double collar_s);
+
+/// The totals of several grammars beside each other, as a Markdown table.
+std::string SideBySide(const std::vector<Score>& scores, double collar_s);
+
+}  // namespace prehend::measure

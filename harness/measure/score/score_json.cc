@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/program/score_test.cc
+#include "harness/measure/score/score_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace prehend::measure {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json BoundaryJson(const BoundaryErrors& errors) {
+  return {{"median", errors.Median()},
+          {"p95", errors.QuantileByMagnitude(0.95)},
+          {"max", errors.QuantileByMagnitude(1)}};
+}
+
+Json FurtherJson(const EventScore& s) {
+  const FurtherScores& further = s.further;
+  return {{"map_50", further.map_50},
+          {"boundary_precision", further.boundary_hits.Precision()},
+          {"boundary_recall", further.boundary_hits.Recall()},
+          {"boundary_f1", further.boundary_hits.F1()},
+          {"boundary_deviation_s",
+           {{"from_truth", further.deviation_from_truth_s},
+            {"from_found", further.deviation_from_found_s}}},
+          {"pairwise_f1", further.pairwise_f1},
+          {"purity", further.purity},
+          {"coverage", further.coverage},
+          {"frame_f1", s.frames.F1()},
+          {"detection_error_rate", s.frames.DetectionErrorRate()},
+          {"intersection_f1", further.intersection_f1},
+          {"psds", further.psds}};
+}
+
+Json EventScoreJson(const EventScore& s) {
+  const WardEvents& ward = s.ward.events;
+  return {{"event", s.event},
+          {"true", s.truths},
+          {"found", s.found},
+          {"ward",
+           {{"correct", ward.correct},
+            {"deleted", ward.deleted},
+            {"fragmented", ward.fragmented},
+            {"merged", ward.merged},
+            {"fragmented_and_merged", ward.fragmented_and_merged},
+            {"inserted", ward.inserted}}},
+          {"begin_s", BoundaryJson(s.begin)},
+          {"end_s", BoundaryJson(s.end)},
+          {"f1_10", s.overlap_10.F1()},
+          {"f1_25", s.overlap_25.F1()},
+          {"f1_50", s.overlap_50.F1()},
+          {"edit", s.edit},
+          {"frame_accuracy", s.frames.Accuracy()},
+          {"collar_f", s.within_collar.AsHits().F1()},
+          {"collar_error_rate", s.within_collar.ErrorRate()},
+          {"latency_s",
+           {{"median", s.LatencyQuantile(0.5)},
+            {"p95", s.LatencyQuantile(0.95)},
+            {"max", s.LatencyQuantile(1)}}},
+          {"further", FurtherJson(s)}};
+}
+
+}  // namespace
+
+Json ScoresJson(const std::vector<Score>& scores, double collar_s) {
+  Json grammars = Json::array();
+  for (const Score& s : scores) {
+    Json events = Json::array();
+    for (const EventScore& event : s.events) events.push_back(EventScoreJson(event));
+    grammars.push_back({{"grammar", s.grammar},
+                        {"episodes", s.episodes},
+                        {"not_covered", s.not_covered},
+                        {"ignored", s.ignored},
+                        {"total", EventScoreJson(s.total)},
+                        {"events", std::move(events)}});
+  }
+  return {{"collar_s", collar_s}, {"grammars", std::move(grammars)}};
+}
+
+Json TestimonyJson(const Testimony& testimony) {
+  Json by_event = Json::object();
+  for (const auto& [event, count] : testimony.by_event)
+    by_event[event] = {{"of", count.of}, {"confirmed", count.confirmed}};
+  return {{"by_event", std::move(by_event)}, {"differences", testimony.differences}};
+}
+
+Json WitnessesJson(const std::vector<Score>& scores, const std::vector<Witness>& witnesses) {
+  Json rows = Json::array();
+  for (const Witness& witness : witnesses) {
+    Json columns = Json::array();
+    for (std::size_t g = 0; g < scores.size(); ++g) {
+      const Confirmed total = witness.of_grammars[g].Total();
+      Json column = {
+          {"grammar", scores[g].grammar}, {"of", total.of}, {"confirmed", total.confirmed}};
+      column.update(TestimonyJson(witness.of_grammars[g]));
+      columns.push_back(std::move(column));
+    }
+    rows.push_back(
+        {{"witness", witness.name}, {"proves", witness.proves}, {"grammars", std::move(columns)}});
+  }
+  return rows;
+}
+
+}  // namespace prehend::measure

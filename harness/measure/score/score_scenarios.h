@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Grammars against what physically happened in many scenarios, and what other witnesses say of
+// them. Tested by tests/program/score_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/measure/score/score_scenario.h"
+
+namespace prehend::measure {
+
+/// Grammars that are scored together.
+struct ScoredGrammars {
+  std::vector<std::string> names;
+  std::vector<std::vector<std::string>> not_covered;  ///< judged events that no rule prints
+};
+
+/// `events`: only these are judged; empty: all that the oracle defines.
+Result<ScoredGrammars> CompileToScore(const std::string& root,
+                                      const std::vector<std::string>& names,
+                                      const grammar::Overrides& settings,
+                                      const std::vector<std::string>& events);
+
+/// The names between the commas; empty ones stay, so that they can be reported.
+std::vector<std::string> EventsIn(const std::vector<std::string>& lists);
+
+/// Why these events cannot be judged, or "".
+std::string UnknownEvent(const std::vector<std::string>& events);
+
+struct NotScored {
+  std::string id, why;
+  bool is_bad_input = true;  ///< else it did not come to a good end
+};
+
+struct ScenarioScores {
+  std::vector<Score> of_grammars;  ///< none if no scenario could be scored
+  std::vector<Witness> witnesses;
+  std::vector<NotScored> not_scored;
+};
+
+/// One request per scenario, all with these grammars. `jobs`: processes at a time.
+ScenarioScores ScoreScenarios(const std::vector<ScoreRequest>& requests,
+                              const ScoredGrammars& grammars, double collar_s, int jobs);
+
+/// Tables for people, and what differs: all of it, or of much the beginning.
+std::string ScenarioScoresText(const ScenarioScores& scores, double collar_s, bool all_differences);
+
+}  // namespace prehend::measure

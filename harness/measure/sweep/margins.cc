@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/measure/sweep/margins.h. Tested by tests/program/sweep_test.cc
+#include "harness/measure/sweep/margins.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "grammar/base/quantity.h"
+#include "grammar/base/wording.h"
+#include "grammar/describe.h"
+#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
+#include "harness/truth/timeline/event_text.h"
+
+namespace prehend::measure {
+namespace {
+
+constexpr std::array kFactors = {0.125, 0.177, 0.25, 0.354, 0.5, 0.707, 0.841, 1.0,
+                                 1.19,  1.414, 2.0,  2.83,  4.0, 5.66,  8.0};
+
+/// The values that the grammar accepts; `own` becomes the index of the parameter's own one.
+Axis AxisOf(const grammar::ProgramParam& param, const SweepRequest& request,
+            const grammar::Overrides& fixed, std::size_t& own) {
+  Axis axis{.parameter = param.name, .unit = {}, .values = {}};
+  const std::string text = grammar::QuantityText(param.value);
+  if (const std::size_t blank = text.find(' '); blank != std::string::npos)
+    axis.unit = text.substr(blank + 1);
+  for (const double factor : kFactors) {
+    const double value = param.value.value * factor;
+    axis.values.push_back(factor == 1.0 ? value : std::stod(fmt::format("{:.3g}", value)));
+    grammar::Overrides overrides = fixed;
+    overrides[param.name] = axis.ValueText(axis.values.size() - 1);
+    const bool is_own = factor == 1.0;
+    if (is_own)
+      own = axis.values.size() - 1;
+    else if (!episode::LoadGrammar(request.root, request.grammar, overrides).program)
+      axis.values.pop_back();
+  }
+  return axis;
+}
+
+Margin MarginOf(const Axis& axis, const std::vector<SweepPoint>& points, std::size_t own,
+                double within) {
+  auto best = std::ranges::max_element(points, {}, &SweepPoint::f1);
+  if (points[own].f1 == best->f1) best = points.begin() + static_cast<std::ptrdiff_t>(own);
+  Margin margin{.parameter = axis.parameter,
+                .value = axis.ValueText(own),
+                .f1 = points[own].f1,
+                .from = {},
+                .to = {},
+                .best = best->f1,
+                .best_at = axis.ValueText(static_cast<std::size_t>(best - points.begin()))};
+  margin.has_effect = std::ranges::any_of(
+      points, [&](const SweepPoint& point) { return point.f1 != points[own].f1; });
+  const auto is_good = [&](std::size_t i) { return points[i].f1 >= best->f1 - within; };
+  if (!is_good(own)) return margin;
+  std::size_t from = own, to = own;
+  while (from > 0 && is_good(from - 1)) --from;
+  while (to + 1 < points.size() && is_good(to + 1)) ++to;
+  margin.from = axis.ValueText(from);
+  margin.to = axis.ValueText(to);
+  margin.open_below = from == 0;
+  margin.open_above = to + 1 == points.size();
+  margin.near_edge = (from == own && own > 0) || (to == own && own + 1 < points.size());
+  return margin;
+}
+
+/// A parameter with the values that are tried.
+struct TriedAxis {
+  Axis axis;
+  std::size_t own = 0;  ///< index of its own value
+};
+
+std::optional<grammar::Diagnostics> UnknownAmong(const std::vector<std::string>& names,
+                                                 const std::vector<grammar::ProgramParam>& params) {
+  std::vector<std::string> known;
+  for (const grammar::ProgramParam& param : params) known.push_back(param.name);
+  for (const std::string& name : names) {
+    if (std::ranges::count(known, name) > 0) continue;
+    const std::string near = grammar::NearestName(name, known);
+    return grammar::Diagnostics{
+        {.message = fmt::format("--over: the grammar has no parameter '{}'", name),
+         .hint = near.empty() ? "" : fmt::format("did you mean '{}'?", near)}};
+  }
+  return std::nullopt;
+}
+
+/// Narrow ranges first; of all, what is not in its range.
+double Width(const Margin& margin) {
+  if (margin.from.empty()) return 0;
+  const double from = std::stod(margin.from), to = std::stod(margin.to);
+  return 1 + (margin.open_below ? 8 : 0) + (margin.open_above ? 8 : 0) + to / from;
+}
+
+}  // namespace
+
+Result<Margins> FindMargins(const std::vector<episode::EpisodeName>& episodes, SweepRequest request,
+                            double within, const std::vector<std::string>& only,
+                            const std::function<void(const Margins&)>& so_far) {
+  const Result<grammar::Overrides> fixed = episode::ParameterSettings(request.settings);
+  if (!fixed) return tl::unexpected(fixed.error());
+  const grammar::CompileResult compiled =
+      episode::LoadGrammar(request.root, request.grammar, *fixed);
+  if (!compiled.program) return tl::unexpected(compiled.diagnostics);
+  const std::vector<grammar::ProgramParam> params = grammar::Describe(*compiled.program).params;
+  if (auto unknown = UnknownAmong(only, params)) return tl::unexpected(std::move(*unknown));
+  Margins all;
+  std::vector<TriedAxis> tried;
+  std::size_t settings = 0, before = 0;
+  for (const grammar::ProgramParam& param : params) {
+    if (!only.empty() && std::ranges::count(only, param.name) == 0) continue;
+    if (param.value.value == 0) {
+      all.without.push_back(param.name);
+      continue;
+    }
+    tried.emplace_back();
+    tried.back().axis = AxisOf(param, request, *fixed, tried.back().own);
+    settings += tried.back().axis.values.size();
+  }
+  // What is told is about all of them.
+  const auto progress = request.progress;
+  if (progress) {
+    request.progress = [&](std::size_t done, std::size_t) {
+      progress(before * episodes.size() + done, settings * episodes.size());
+    };
+  }
+  for (const TriedAxis& one : tried) {
+    request.axes = {one.axis};
+    Result<SweepResult> swept = Sweep(episodes, request);
+    if (!swept) return tl::unexpected(std::move(swept.error()));
+    all.margins.push_back(MarginOf(one.axis, swept->points, one.own, within));
+    std::ranges::stable_sort(all.margins, {}, Width);
+    all.sweep = std::move(*swept);
+    if (all.sweep.episodes == 0) break;
+    if (so_far) so_far(all);
+    before += one.axis.values.size();
+  }
+  return all;
+}
+
+std::string MarginsText(const Margins& margins, double within) {
+  std::vector<std::vector<std::string>> rows = {
+      {"parameter", "value", "F1", "stays from", "to", "best", "at", ""}};
+  std::vector<std::string> idle;
+  for (const Margin& margin : margins.margins) {
+    if (!margin.has_effect) {
+      idle.push_back(margin.parameter);
+      continue;
+    }
+    rows.push_back({margin.parameter, margin.value, fmt::format("{:.1f}", 100 * margin.f1),
+                    margin.from.empty() ? "-" : (margin.open_below ? "<= " : "") + margin.from,
+                    margin.to.empty() ? "-" : (margin.open_above ? ">= " : "") + margin.to,
+                    fmt::format("{:.1f}", 100 * margin.best), margin.best_at,
+                    margin.from.empty() ? "warning: not among the best"
+                    : margin.near_edge  ? "warning: at an edge"
+                                        : ""});
+  }
+  std::string text;
+  for (const std::string& line : truth::AlignColumns(rows)) text += line + "\n";
+  text += fmt::format(
+      "{} recording{}; each parameter from an eighth to eight times its value, the others as they "
+      "are;\na score stays if it is within {:g} percent of the best of its row\n{}\n",
+      margins.sweep.episodes, margins.sweep.episodes == 1 ? "" : "s", 100 * within,
+      margins.sweep.measure);
+  if (std::ranges::all_of(margins.margins, [](const Margin& margin) { return margin.best == 0; }))
+    return text + "every score is 0: no event is right with any value of any parameter\n";
+  if (!idle.empty())
+    text += fmt::format("without any effect on these recordings: {}\n", fmt::join(idle, ", "));
+  if (!margins.without.empty())
+    text += fmt::format("not tried, because they are 0: {}\n", fmt::join(margins.without, ", "));
+  return text;
+}
+
+std::string MarginsCsv(const Margins& margins) {
+  std::string text = "parameter,value,f1,from,to,open_below,open_above,best,best_at,near_edge\n";
+  for (const Margin& m : margins.margins)
+    text += fmt::format("{},{},{:.6g},{},{},{:d},{:d},{:.6g},{},{:d}\n", m.parameter, m.value, m.f1,
+                        m.from, m.to, m.open_below, m.open_above, m.best, m.best_at, m.near_edge);
+  return text;
+}
+
+}  // namespace prehend::measure

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// A grammar on recorded episodes, once for each setting of its parameters. Tested by
+// tests/program/sweep_test.cc
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "grammar/monitor.h"
+#include "harness/base/base/result.h"
+#include "harness/episode/run/episode_name.h"
+
+namespace prehend::measure {
+
+inline constexpr std::size_t kMostSettings = 10'000;
+
+/// "reach_radius=10cm..50cm:9": so many values, evenly from the first to the last.
+struct Axis {
+  std::string parameter, unit;
+  std::vector<double> values;
+
+  /// "15cm".
+  std::string ValueText(std::size_t i) const;
+};
+/// Nothing, and `problem`, if the text is not of that form.
+std::optional<Axis> ParseAxis(const std::string& text, std::string& problem);
+
+/// What the events are compared with.
+enum class Truth {
+  kGolden,    ///< the project's golden of the scenario, if it is one of the same grammar
+  kOracle,    ///< the physical oracle with the numbers of docs/events.md
+  kRecorded,  ///< what was recognised when the episode was recorded
+  kLabels     ///< files of labels (docs/labels.md); recordings as JSON Lines have no other truth
+};
+
+struct SweepRequest {
+  std::string root, grammar;
+  std::vector<std::string> settings;  ///< of parameters that stay as they are
+  std::vector<Axis> axes;
+  Truth truth = Truth::kGolden;
+  std::vector<std::string> label_files;  ///< one per episode, or one folder
+  std::string label_map;                 ///< "": labels are events
+  double collar_s = 0.05;
+  bool by_overlap = false;  ///< right is not what lies within the collar, but what has half of the
+                            ///< union with its label in common
+  bool skip_bad_labels = false;  ///< leave out those that end before they begin
+  int jobs = 1;
+  /// Called some times a second with how many settings have been measured, each on one episode, of
+  /// how many.
+  std::function<void(std::size_t done, std::size_t all)> progress = {};
+};
+
+/// Sets what the events are compared with: {"golden"}, {"oracle"}, {"recorded"}, or files of
+/// labels, or a folder of them; golden if nothing is given. Returns "" or what is wrong with that.
+std::string SetTruth(const std::vector<std::string>& given, SweepRequest& request);
+
+/// Adds axes, each a text that ParseAxis() takes. Returns "" or why they cannot be tried together.
+std::string SetAxes(const std::vector<std::string>& texts, SweepRequest& request);
+
+/// How one setting did, over all episodes.
+struct SweepPoint {
+  std::vector<std::size_t> at;                      ///< per axis, the index of its value
+  int correct = 0, extra = 0, missed = 0;           ///< events
+  double f1 = 1;                                    ///< of these; 1 if there is nothing
+  double begin_ms = 0, end_ms = 0, latency_ms = 0;  ///< medians of magnitudes; of the latency
+};
+
+struct SweepResult {
+  std::vector<SweepPoint> points;  ///< the last axis is the fastest
+  int episodes = 0;
+  std::string measure;                ///< "F1@50: .." for people
+  std::string label_warning;          ///< of labels that were left out, or ""
+  std::vector<std::string> left_out;  ///< "SCENARIO: why"
+  std::vector<std::string> unread;    ///< of these, what cannot be read
+
+  /// Something cannot be read, or labels do not fit.
+  bool IsRefused(const SweepRequest& request) const {
+    return !unread.empty() || (request.truth == Truth::kLabels && !left_out.empty());
+  }
+};
+
+/// What makes an event right, for people.
+std::string MeasureText(const SweepRequest& request);
+
+/// One point per setting, or why the grammar cannot be compiled with one.
+Result<SweepResult> Sweep(const std::vector<episode::EpisodeName>& episodes,
+                          const SweepRequest& request);
+
+}  // namespace prehend::measure

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/scenario/format/scenario_fields_test.cc
+#include <fmt/format.h>
+
+#include <functional>
+
+#include "harness/base/yaml/struct_format.h"
+#include "harness/scenario/format/limits.h"
+#include "harness/scenario/format/scenario_fields.h"
+#include "harness/scenario/format/scenario_formats.h"
+#include "harness/scenario/scenario/classes.h"
+#include "harness/scenario/scenario/colors.h"
+
+namespace prehend::scenario {
+namespace {
+
+constexpr std::size_t kMaxParts = 256;
+constexpr double kMaxResistance = 1e5;
+constexpr double kMaxSlide_m = 10;
+constexpr double kMaxTurn_deg = 170;  // at half a turn the two directions are the same
+
+/// A joint's range is [min, max] and contains 0, the position as placed.
+void CheckRange(const YamlNode&, const JointYaml& joint, DiagnosticList& errors) {
+  const Eigen::Vector2d& range = joint.range.value;
+  if (range[0] <= 0 && range[1] >= 0 && range[0] < range[1]) return;
+  errors.Add(
+      joint.range.where,
+      fmt::format(
+          "expected a range [min, max] that contains 0, the position as placed, found [{}, {}]",
+          range[0], range[1]));
+}
+
+StructFormat<JointYaml> JointRecord(const std::string& noun) {
+  using J = JointYaml;
+  return StructFormat<J>(noun).Required("to", &J::to, Identifier(),
+                                        "The entity that it is attached to.");
+}
+
+ValueFormat<Eigen::Vector3d> Axis() { return Vector<3>(-1, 1); }
+
+void CheckAxis(const YamlNode& node, const JointYaml& joint, DiagnosticList& errors) {
+  if (joint.axis.norm() > 1e-6) return;
+  errors.Add(node.Find("axis")->where, "axis: expected a direction other than [0, 0, 0]");
+}
+
+/// A rest position without a spring has no effect. A spring of stiffness 0 is allowed.
+std::function<void(const YamlNode&, const JointYaml&, DiagnosticList&)> SpringPullsTo(
+    const char* rest, const char* spring) {
+  return [rest, spring](const YamlNode& node, const JointYaml&, DiagnosticList& errors) {
+    const YamlNode* given = node.Find(rest);
+    if (!given || node.Find(spring)) return;
+    errors.Add(given->key_where, fmt::format("{}: there is no spring", rest),
+               fmt::format("add {}", spring));
+  };
+}
+
+ValueFormat<JointYaml> SliderFormat() {
+  using J = JointYaml;
+  return JointRecord("a slider")
+      .Required("axis", &J::axis, Axis(),
+                "The direction in which it opens, in the world, as placed.")
+      .Required("range_m", &J::range, Vector<2>(-kMaxSlide_m, kMaxSlide_m),
+                "Range of motion relative to where it is placed: [min, max].")
+      .Optional("friction_n", &J::friction, Number(0, kMaxResistance),
+                "Largest force that it holds against.")
+      .Optional("damping_n_s_per_m", &J::damping, Number(0, kMaxResistance),
+                "Damping: force per speed.")
+      .Optional("spring_n_per_m", &J::spring, Number(0, kMaxResistance),
+                "Force that pulls it to rest_m.")
+      .Optional("rest_m", &J::rest, Number(-kMaxSlide_m, kMaxSlide_m),
+                "Where its spring exerts no force.")
+      .Check(CheckAxis)
+      .Check(CheckRange)
+      .Check(SpringPullsTo("rest_m", "spring_n_per_m"))
+      .format();
+}
+
+ValueFormat<JointYaml> HingeFormat() {
+  using J = JointYaml;
+  return JointRecord("a hinge")
+      .Required("at_m", &J::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+                "A point of its axis, in the world, as placed.")
+      .Required("axis", &J::axis, Axis(),
+                "The direction of its axis; positive angles follow the right-hand rule.")
+      .Required("range_deg", &J::range, Vector<2>(-kMaxTurn_deg, kMaxTurn_deg),
+                "Range of rotation relative to where it is placed: [min, max].")
+      .Optional("friction_nm", &J::friction, Number(0, kMaxResistance),
+                "Largest torque that it holds against.")
+      .Optional("damping_nm_s_per_rad", &J::damping, Number(0, kMaxResistance),
+                "Damping: torque per angular speed.")
+      .Optional("spring_nm_per_rad", &J::spring, Number(0, kMaxResistance),
+                "Torque that turns it to rest_deg.")
+      .Optional("rest_deg", &J::rest, Number(-kMaxTurn_deg, kMaxTurn_deg),
+                "Where its spring exerts no force.")
+      .Check(CheckAxis)
+      .Check(CheckRange)
+      .Check(SpringPullsTo("rest_deg", "spring_nm_per_rad"))
+      .format();
+}
+
+ValueFormat<JointYaml> BallJointFormat() {
+  return JointRecord("a ball joint")
+      .Required("at_m", &JointYaml::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+                "The point about which it rotates, in the world, as placed.")
+      .format();
+}
+
+/// A word is looked up; its hint is the nearest word.
+ValueFormat<std::string> ColorFormat() {
+  return ValueFormat<std::string>(
+      []() -> Json {
+        return {
+            {"anyOf",
+             {{{"enum", ColorWords()}}, {{"type", "string"}, {"pattern", "^#[0-9A-Fa-f]{6}$"}}}}};
+      },
+      [](const YamlNode& node, DiagnosticList& errors, std::string& color) {
+        color = node.text;
+        if (node.kind == YamlNode::Kind::kNull) {
+          errors.Add(node.where, "color: expected a word or \"#RRGGBB\" in quotes, found nothing",
+                     "'#' begins a comment in YAML: a colour goes in quotes, color: \"#ff0000\"");
+          return false;
+        }
+        if (node.kind == YamlNode::Kind::kScalar && ColorOfText(color)) return true;
+        const std::string found = node.kind == YamlNode::Kind::kScalar ? color : "a list or a map";
+        errors.AddUnknownName(
+            node.where,
+            fmt::format("color: expected a word or \"#RRGGBB\" in quotes, found '{}'", found),
+            color, ColorWords());
+        return false;
+      });
+}
+
+void CheckClass(const EntityYaml& entity, DiagnosticList& errors) {
+  if (!IsScenarioBuiltinClass(entity.class_name.value)) return;
+  errors.Add(
+      entity.class_name.where,
+      "class: '" + entity.class_name.value + "' is a built-in class; entities get it automatically",
+      "name what the entity is, for example Cup");
+}
+
+/// An entity on a joint can move, and one that is fixed to another has the surface of that one.
+void CheckJoint(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
+  const std::string title = "entity '" + node.key + "'";
+  for (const char* key : {"fixed_to", "slider", "hinge", "ball_joint"}) {
+    const YamlNode* joint = node.Find(key);
+    if (joint && entity.fixed) {
+      errors.Add(joint->key_where, title + " is fixed: it cannot have a joint",
+                 "remove fixed or " + std::string(key));
+    }
+  }
+  if (!entity.fixed_to) return;
+  for (const char* key : {"friction", "rolling_friction", "restitution", "linear_damping_per_s",
+                          "angular_damping_per_s"}) {
+    const YamlNode* surface = node.Find(key);
+    if (surface) {
+      errors.Add(
+          surface->key_where,
+          std::string(key) + ": an entity that is fixed to another has the surface of that one",
+          "give it to '" + entity.fixed_to->value + "'");
+    }
+  }
+}
+
+/// Only grains are placed in a vessel. They are many, so the keys of a single body do not apply.
+void CheckGrains(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
+  const std::string title = "entity '" + node.key + "'";
+  if (entity.in && !entity.grains)
+    errors.Add(entity.in->where, "in: only grains can be put into a vessel",
+               "for a thing: 'on', with at_m: [x, y]");
+  if (!entity.grains) return;
+  if (!entity.in)
+    errors.Add(node.key_where, title + " is grains: it needs the key 'in'",
+               "the vessel that they fill");
+  for (const char* key : {"fixed", "part_of", "fixed_to", "slider", "hinge", "ball_joint", "on",
+                          "at_m", "rpy_deg", "yaw_deg"}) {
+    if (const YamlNode* given = node.Find(key))
+      errors.Add(
+          given->key_where,
+          std::string(key) + ": this key does not apply to grains; they lie loose in their vessel");
+  }
+}
+
+void CheckEntity(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors) {
+  CheckClass(entity, errors);
+  CheckJoint(node, entity, errors);
+  CheckGrains(node, entity, errors);
+  CheckAbstract(node, entity, errors);
+  const bool abstract = AbstractOf(entity) != physics::Abstract::kNot;
+  const std::string title = "entity '" + node.key + "'";
+  if (entity.fixed && entity.mass_kg) {
+    errors.Add(entity.mass_kg->where, title + " is fixed: it cannot have a mass",
+               "remove fixed or mass_kg");
+  }
+  if (!entity.fixed && !entity.mass_kg && !abstract) {
+    errors.Add(node.key_where, title + " can move: it needs the key 'mass_kg'", "or 'fixed: true'");
+  }
+  const std::size_t wanted = entity.on && !abstract ? 2 : 3;
+  if (!entity.in && !entity.grains && entity.at_m.value.size() != wanted) {
+    errors.Add(entity.at_m.where,
+               wanted == 2 ? "at_m: with 'on' expected [x, y], found 3 numbers"
+                           : "at_m: expected [x, y, z], the centre, found 2 numbers",
+               wanted == 2 ? "z follows from the top of the support"
+               : abstract  ? ""
+                           : "or [x, y] together with 'on: SUPPORT'");
+  }
+}
+
+}  // namespace
+
+ValueFormat<EntityYaml> EntityFormat() {
+  using E = EntityYaml;
+  return StructFormat<E>("entity")
+      .NamedByKey()
+      .Optional("class", &E::class_name,
+                Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'"),
+                "What it is; grammars select roles by class.")
+      .Optional("part_of", &E::part_of, Identifier(),
+                "The entity that it is a part of, as a handle is of a door.")
+      .Optional("color", &E::color, ColorFormat(),
+                "How pictures show it: a word like blue, or '#RRGGBB'.")
+      .Optional("box", &E::box, BoxFormat(), "Its shape: a box.")
+      .Optional("sphere", &E::sphere, SphereFormat(), "Its shape: a sphere.")
+      .Optional("cylinder", &E::cylinder, CylinderFormat(), "Its shape: a cylinder, axis along z.")
+      .Optional("capsule", &E::capsule, CapsuleFormat(),
+                "Its shape: a cylinder with half spheres at its ends, axis along z.")
+      .Optional("hull", &E::hull, HullFormat(), "Its shape: a solid of flat faces, by its corners.")
+      .Optional("tray", &E::tray, TrayFormat(), "Its shape: a flat box without a lid.")
+      .Optional("mug", &E::mug, MugFormat(), "Its shape: a round cup, perhaps with a handle.")
+      .Optional("bowl", &E::bowl, BowlFormat(), "Its shape: a round dish.")
+      .Optional("shelf", &E::shelf, ShelfFormat(),
+                "Its shape: boards between two sides, as a shelf or a cupboard.")
+      .Optional("parts", &E::parts, ListOf(PartFormat(), 1, kMaxParts),
+                "Its shape: several shapes, rigidly together.")
+      .Optional("grains", &E::grains, GrainsFormat(),
+                "Many loose balls in a vessel, seen as one entity.")
+      .Optional("region", &E::region, RegionFormat(), "Abstract: a region, a box or a ball.")
+      .Optional("gaze_target", &E::gaze_target, GazeTargetFormat(),
+                "Abstract: a point that eyes can look at.")
+      .Optional("camera", &E::camera, CameraFormat(), "Abstract: a viewpoint for pictures.")
+      .Optional("light", &E::light, LightFormat(), "Abstract: a light source for pictures.")
+      .Optional("fixed", &E::fixed, Flag(), "True: never moves and has no mass.")
+      .Optional("mass_kg", &E::mass_kg, Number(0.001, 1000),
+                "Mass; required unless fixed or abstract. Of grains: of all together.")
+      .Optional("friction", &E::friction, Number(0, 5),
+                "Coulomb friction; the values of two touching bodies are multiplied. Default 0.8.")
+      .Optional("rolling_friction", &E::rolling_friction, Number(0, 1),
+                "Slows rolling; default 0.006 for a sphere and for grains, 0 for the others.")
+      .Optional("restitution", &E::restitution, Number(0, 1),
+                "0: does not bounce. 1: bounces without loss.")
+      .Optional("linear_damping_per_s", &E::linear_damping_per_s, Number(0, 100),
+                "Rate at which its speed decays.")
+      .Optional("angular_damping_per_s", &E::angular_damping_per_s, Number(0, 100),
+                "Rate at which its turning decays.")
+      .Optional("on", &E::on, Identifier(), "The entity it stands on; then at_m is [x, y].")
+      .Optional("in", &E::in, Identifier(),
+                "Of grains: the vessel that they fill; instead of at_m.")
+      .Optional("fixed_to", &E::fixed_to, Identifier(),
+                "The entity that it is glued to: both move as one.")
+      .Optional("slider", &E::slider, SliderFormat(),
+                "It slides on another entity, as a drawer does.")
+      .Optional("hinge", &E::hinge, HingeFormat(), "It turns on another entity, as a door does.")
+      .Optional("ball_joint", &E::ball_joint, BallJointFormat(),
+                "It rotates freely about a point of another entity.")
+      .Optional("at_m", &E::at_m, ListOf(Number(-kMaxDistance_m, kMaxDistance_m), 2, 3),
+                "World coordinates of its centre: [x, y, z], or [x, y] with 'on'.")
+      .Optional("rpy_deg", &E::rpy_deg, Vector<3>(-360, 360),
+                "Roll, pitch and yaw in degrees: turns about the world's x, then y, then z axis.")
+      .Optional("yaw_deg", &E::yaw_deg, Number(-360, 360), "Turn about the vertical, degrees.")
+      .ExactlyOneOf({"box", "sphere", "cylinder", "capsule", "hull", "tray", "mug", "bowl", "shelf",
+                     "parts", "grains", "region", "gaze_target", "camera", "light"})
+      .ExactlyOneOf({"at_m", "in"})
+      .AtMostOneOf({"rpy_deg", "yaw_deg"})
+      .AtMostOneOf({"fixed_to", "slider", "hinge", "ball_joint"})
+      .Check(CheckEntity)
+      .format();
+}
+
+}  // namespace prehend::scenario

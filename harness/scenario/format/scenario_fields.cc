@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/scenario/format/scenario_fields_test.cc
+#include "harness/scenario/format/scenario_fields.h"
+
+#include <fmt/format.h>
+
+#include "harness/base/yaml/struct_format.h"
+#include "harness/base/yaml/yaml_scalar.h"
+#include "harness/scenario/format/limits.h"
+#include "harness/scenario/format/scenario_formats.h"
+
+namespace prehend::scenario {
+namespace {
+
+ValueFormat<WorldYaml> WorldFormat() {
+  using W = WorldYaml;
+  using physics::Engine;
+  return StructFormat<W>("the world")
+      .Optional("engine", &W::engine,
+                Choice<Engine>({{"bullet", Engine::kBullet},
+                                {"box2d", Engine::kBox2d},
+                                {"bullet_stock", Engine::kBulletStock}}),
+                "The physics engine. box2d is planar; bullet_stock is Bullet without this "
+                "project's changes, to compare.")
+      .Optional(
+          "planar", &W::planar, Flag(),
+          "Everything stays in the plane y = 0; always true with box2d, default false otherwise.")
+      .Optional("rate_hz", &W::rate_hz, Integer<int>(60, 4800),
+                "Ticks (updates of the physics) per second.")
+      .Optional("sensing_hz", &W::sensing_hz, Integer<int>(1, 4800),
+                "Frames per second that the grammar sees, at most rate_hz.")
+      .Optional("bearing_share", &W::bearing_share, Number(0, 0.5),
+                "A contact point with a smaller share of the load between two bodies is not "
+                "counted as support.")
+      .Optional("seed", &W::seed, Integer<std::uint64_t>(0, std::uint64_t{1} << 53),
+                "Seed of all randomness.")
+      .Check([](const YamlNode&, const W& world, DiagnosticList& errors) {
+        if (world.engine != Engine::kBox2d || !world.planar || world.planar->value) return;
+        errors.Add(world.planar->where, "planar: engine box2d is always planar",
+                   "planar: true, or engine: bullet");
+      })
+      .Check([](const YamlNode& node, const W& world, DiagnosticList& errors) {
+        if (world.sensing_hz <= world.rate_hz) return;
+        const std::string sensing = std::to_string(world.sensing_hz),
+                          rate = std::to_string(world.rate_hz);
+        if (const YamlNode* written = node.Find("sensing_hz")) {
+          errors.Add(written->where, "sensing_hz " + sensing + " is above rate_hz " + rate);
+        } else {
+          errors.Add(
+              node.Find("rate_hz")->where,
+              "rate_hz " + rate + " is below sensing_hz, which is " + sensing + " unless given",
+              "add sensing_hz: " + rate);
+        }
+      })
+      .format();
+}
+
+ValueFormat<SensorSettings> SensorsFormat() {
+  using S = SensorSettings;
+  return StructFormat<S>("the sensors")
+      .Optional("position_noise_m", &S::position_noise_m, Number(0, 0.1),
+                "Standard deviation of each coordinate of a sensed pose.")
+      .Optional("rotation_noise_deg", &S::rotation_noise_deg, Number(0, 45),
+                "Standard deviation of each component of a sensed pose's rotation vector.")
+      .Optional("contact_dropout_share", &S::contact_dropout_share, Number(0, 0.95),
+                "Share of the touches in each frame that are not sensed.")
+      .Optional("lost_frames_share", &S::lost_frames_share, Number(0, 0.95),
+                "Share of the frames that are lost.")
+      .Optional("seed", &S::seed, Integer<std::uint64_t>(0, std::uint64_t{1} << 53),
+                "Seed of the sensors' randomness.")
+      .format();
+}
+
+constexpr std::size_t kMaxClasses = 100;
+
+ValueFormat<std::string> ClassName() {
+  return Word("[A-Z][A-Za-z0-9]*", "a class name like 'MilkCarton'");
+}
+
+/// An event's boundary or a time; PictureYaml keeps both as text.
+ValueFormat<std::string> MomentFormat() {
+  const auto seconds = Number(0, kMaxDuration_s);
+  const auto boundary =
+      Word("[a-z][a-z0-9_]*\\.(begin|end)", "a time in seconds, or an event like 'reaching.begin'");
+  return ValueFormat<std::string>(
+      AnyOf({seconds.schema(), boundary.schema()}),
+      [=](const YamlNode& node, DiagnosticList& errors, std::string& moment) {
+        double time_s = 0;
+        const bool is_time = node.kind == YamlNode::Kind::kScalar && MeaningOf(node).number;
+        if (!is_time) return boundary.Read(node, errors, moment);
+        moment = node.text;
+        return seconds.Read(node, errors, time_s);
+      });
+}
+
+ValueFormat<PictureYaml> PictureFormat() {
+  return StructFormat<PictureYaml>("a picture")
+      .Required("at", &PictureYaml::at, MomentFormat(),
+                "When: an event's 'begin' or 'end', or seconds.")
+      .Optional("camera", &PictureYaml::camera, Identifier(),
+                "From where: front, left, right, top, three_quarter; hand, action or body, which "
+                "are nearer "
+                "to what they name; or an entity that is a camera.")
+      .format();
+}
+
+/// A name, a file beside the scenario, or several of them, which are joined with '+'.
+ValueFormat<std::string> GrammarsFormat() {
+  constexpr std::size_t kMaxGrammars = 16;
+  const auto one = Word("[a-z][a-z0-9_]*|\\./[A-Za-z0-9_./-]*[a-z][a-z0-9_]*\\.grammar",
+                        "a name like 'pick_and_place', or a file like './kitchen.grammar'", 255);
+  const auto several = ListOf(one, 1, kMaxGrammars);
+  const auto read = [one, several](const YamlNode& node, DiagnosticList& errors,
+                                   std::string& value) {
+    if (node.kind != YamlNode::Kind::kSequence) return one.Read(node, errors, value);
+    std::vector<std::string> names;
+    if (!several.Read(node, errors, names)) return false;
+    value = fmt::format("{}", fmt::join(names, "+"));
+    return true;
+  };
+  return ValueFormat<std::string>(AnyOf({one.schema(), several.schema()}), read)
+      .ShownAs(Identifier());
+}
+
+/// In the schema steps and stages are defined once, and a stage may also be a block that is
+/// repeated; see harness/scenario/read/repeat_blocks.h.
+void DefineScript(Json& schema) {
+  Json& items = schema["properties"]["script"]["items"];
+  Json stage = items;
+  Json& one_or_several = stage["additionalProperties"]["anyOf"];
+  const Json step = one_or_several[0];
+  one_or_several[0] = one_or_several[1]["items"] = {{"$ref", "#/$defs/step"}};
+  const Json block = {
+      {"type", "object"},
+      {"description", "The stages of 'steps', so often."},
+      {"additionalProperties", false},
+      {"required", {"repeat", "steps"}},
+      {"properties",
+       {{"repeat", {{"type", "integer"}, {"minimum", 1}, {"maximum", kMaxRepeats}}},
+        {"steps", {{"type", "array"}, {"minItems", 1}, {"items", {{"$ref", "#/$defs/stage"}}}}}}}};
+  items = {{"$ref", "#/$defs/stage"}};
+  schema["$defs"] = {{"step", step}, {"stage", {{"anyOf", {stage, block}}}}};
+}
+
+ValueFormat<ScenarioYaml> BuildScenarioFormat() {
+  using S = ScenarioYaml;
+  return StructFormat<S>("the scenario")
+      .Required("scenario", &S::name, Identifier(), "Its name: that of the file without '.yaml'.")
+      .Required("shows", &S::shows, Text(), "One sentence: what happens and what it proves.")
+      .Optional("expects", &S::expects, ListOf(WithPlace(Text(kMaxClaimLength)), 0, kMaxClaims),
+                "What must be recognised, as claims: 'no sliding', 'one grasping(hand, milk)'.")
+      .Optional("grammar", &S::grammar, GrammarsFormat(),
+                "The grammar that segments the episode, from grammar/library, or a file beside the "
+                "scenario; or a list of them.")
+      .Optional("tags", &S::tags, ListOf(Identifier(), 0, 32), "Words to select scenarios by.")
+      .Optional("world", &S::world, WorldFormat(), "Engine, rates and seed.")
+      .Optional("sensors", &S::sensors, SensorsFormat(),
+                "Errors of what the grammar sees; the physics has none.")
+      .Required("entities", &S::entities, MapOf(Identifier(), EntityFormat(), 1, kMaxEntities),
+                "The entities, by name.")
+      .Optional("classes", &S::classes, MapOf(ClassName(), WithPlace(ClassName()), 0, kMaxClasses),
+                "Classes and their base classes: {Cup: Container}.")
+      .Optional("actors", &S::actors, MapOf(Identifier(), ActorFormat(), 0, kMaxActors),
+                "The hands and persons, by name.")
+      .Optional(
+          "script", &S::script, ListOf(StageFormat(), 0, kMaxBeats),
+          "What the actors do: stages, one after another; in a stage one step per named actor, or "
+          "a list of steps.")
+      .Optional("settle_s", &S::settle_s, Number(0, 60), "Time simulated after the last stage.")
+      .Optional("vary", &S::vary, ListOf(VariationFormat(), 0, kMaxVariations),
+                "What differs from trial to trial of 'prehend run --trials'.")
+      .Optional("outcomes", &S::outcomes, MapOf(Identifier(), OutcomeFormat(), 0, kMaxOutcomes),
+                "How a trial can end, by name; the first is the desired one.")
+      .Optional("pictures", &S::pictures, ListOf(PictureFormat(), 0, kMaxPictures),
+                "Which pictures are drawn.")
+      .format();
+}
+
+}  // namespace
+
+const ValueFormat<ScenarioYaml>& ScenarioFormat() {
+  static const ValueFormat<ScenarioYaml> format = BuildScenarioFormat();
+  return format;
+}
+
+std::string ScenarioSchema() {
+  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                 {"title", "prehend scenario, version 1"},
+                 {"description",
+                  "Generated by 'prehend scenario schema'. The reader checks more: see "
+                  "docs/scenario-format.md."}};
+  schema.update(ScenarioFormat().schema().json());
+  DefineScript(schema);
+  return schema.dump(1) + "\n";
+}
+
+}  // namespace prehend::scenario

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of the scenario format, one function per kind of entry. Each file NAME_fields.cc
+// declares the keys of its part; harness/scenario/format/scenario_fields.cc puts them together.
+// Tested by tests/harness/scenario/format/scenario_fields_test.cc,
+// tests/harness/scenario/format/abstract_entities_test.cc,
+// tests/harness/scenario/read/sample_variations_test.cc and
+// tests/harness/episode/run/outcome_test.cc
+#pragma once
+
+#include <vector>
+
+#include "harness/base/yaml/diagnostic_list.h"
+#include "harness/base/yaml/value_format.h"
+#include "harness/scenario/format/scenario_yaml.h"
+#include "harness/scenario/scenario/variations.h"
+
+namespace prehend::scenario {
+
+// harness/scenario/format/entity_fields.cc: shape, material, joints.
+ValueFormat<EntityYaml> EntityFormat();
+
+// harness/scenario/format/shape_fields.cc
+ValueFormat<physics::Box> BoxFormat();
+ValueFormat<physics::Sphere> SphereFormat();
+ValueFormat<physics::Cylinder> CylinderFormat();
+ValueFormat<physics::Capsule> CapsuleFormat();
+ValueFormat<physics::Tray> TrayFormat();
+ValueFormat<physics::Mug> MugFormat();
+ValueFormat<physics::Bowl> BowlFormat();
+ValueFormat<physics::Shelf> ShelfFormat();
+ValueFormat<physics::Hull> HullFormat();
+ValueFormat<GrainsYaml> GrainsFormat();
+ValueFormat<PartYaml> PartFormat();
+
+// harness/scenario/format/abstract_fields.cc: entities with a position but no mass.
+ValueFormat<RegionYaml> RegionFormat();
+ValueFormat<GazeTargetYaml> GazeTargetFormat();
+ValueFormat<CameraYaml> CameraFormat();
+ValueFormat<LightYaml> LightFormat();
+
+/// Reports keys that apply only to physical bodies: mass, surface, joints, support.
+void CheckAbstract(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors);
+
+// harness/scenario/format/actor_fields.cc
+ValueFormat<ActorYaml> ActorFormat();
+ValueFormat<physics::Eyes> EyesFormat();
+
+// harness/scenario/format/step_fields.cc: each step is recognised by its action key.
+ValueFormat<StageYaml> StageFormat();
+
+// harness/scenario/format/trial_fields.cc
+ValueFormat<VariationYaml> VariationFormat();
+ValueFormat<std::vector<ConditionYaml>> OutcomeFormat();
+
+}  // namespace prehend::scenario

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/scenario/format/scenario_fields_test.cc
+#include <fmt/format.h>
+
+#include "harness/base/yaml/struct_format.h"
+#include "harness/scenario/format/scenario_formats.h"
+
+namespace prehend::scenario {
+namespace {
+
+constexpr double kMinSize_m =
+    0.001;  // below, the collision margins (1 mm) would be larger than the body
+constexpr double kMaxSize_m = 100;
+constexpr double kMaxPartOffset_m = 10;
+constexpr int kMaxBoards = 20;
+
+ValueFormat<double> Length() { return Number(kMinSize_m, kMaxSize_m); }
+ValueFormat<Eigen::Vector3d> Size() { return Vector<3>(kMinSize_m, kMaxSize_m); }
+
+/// Cylinders and capsules: the axis is along z.
+template <class Round>
+ValueFormat<Round> RoundFormat(const std::string& noun, const std::string& length_doc) {
+  return StructFormat<Round>(noun)
+      .Required("radius_m", &Round::radius_m, Length(), "Radius.")
+      .Required("length_m", &Round::length_m, Length(), length_doc)
+      .format();
+}
+
+/// Reports walls that leave no room inside. `narrow_m`: the smallest outer extent across.
+void CheckWall(const YamlNode& node, double wall_m, double narrow_m, DiagnosticList& errors) {
+  if (2 * wall_m < narrow_m) return;
+  const YamlNode* wall = node.Find("wall_m");
+  errors.Add(wall ? wall->where : node.where,
+             fmt::format("wall_m: walls of {} leave no room inside", wall_m),
+             "walls must be thinner than half of the narrowest side");
+}
+
+}  // namespace
+
+ValueFormat<physics::Box> BoxFormat() {
+  return StructFormat<physics::Box>("a box")
+      .Required("size_m", &physics::Box::size_m, Size(), "Full edge lengths [x, y, z].")
+      .format();
+}
+
+ValueFormat<physics::Sphere> SphereFormat() {
+  return StructFormat<physics::Sphere>("a sphere")
+      .Required("radius_m", &physics::Sphere::radius_m, Length(), "Radius.")
+      .format();
+}
+
+ValueFormat<physics::Cylinder> CylinderFormat() {
+  return RoundFormat<physics::Cylinder>("a cylinder", "Height, along z.");
+}
+
+ValueFormat<physics::Capsule> CapsuleFormat() {
+  return RoundFormat<physics::Capsule>("a capsule", "Along z, without the two half spheres.");
+}
+
+ValueFormat<physics::Hull> HullFormat() {
+  struct Points {
+    std::vector<Eigen::Vector3d> points_m;
+  };
+  const ValueFormat<Points> written =
+      StructFormat<Points>("a hull")
+          .Required("points_m", &Points::points_m,
+                    ListOf(Vector<3>(-kMaxPartOffset_m, kMaxPartOffset_m), physics::kMinHullPoints,
+                           physics::kMaxHullPoints),
+                    "Its corners [x, y, z] in its own coordinate frame, in any order.")
+          .format();
+  return ValueFormat<physics::Hull>(
+      written.schema(),
+      [written](const YamlNode& node, DiagnosticList& errors, physics::Hull& hull) {
+        Points points;
+        if (!written.Read(node, errors, points)) return false;
+        physics::MadeHull made = physics::MakeHull(points.points_m);
+        if (made.hull) {
+          hull = std::move(*made.hull);
+          return true;
+        }
+        const YamlNode& list = *node.Find("points_m");
+        const YamlNode& wrong =
+            made.point < 0 ? list : list.children[static_cast<std::size_t>(made.point)];
+        errors.Add(wrong.where, "points_m: " + made.problem, made.remedy);
+        return false;
+      });
+}
+
+ValueFormat<physics::Tray> TrayFormat() {
+  using T = physics::Tray;
+  return StructFormat<T>("a tray")
+      .Required("size_m", &T::size_m, Size(), "Outer edge lengths [x, y, z].")
+      .Optional("wall_m", &T::wall_m, Length(), "Thickness of floor and walls.")
+      .Check([](const YamlNode& node, const T& tray, DiagnosticList& errors) {
+        const Eigen::Vector3d& size = tray.size_m;
+        CheckWall(node, tray.wall_m, std::min({size.x(), size.y(), 2 * size.z()}), errors);
+      })
+      .format();
+}
+
+ValueFormat<physics::Mug> MugFormat() {
+  using M = physics::Mug;
+  return StructFormat<M>("a mug")
+      .Required("radius_m", &M::radius_m, Length(), "Outer radius, without the handle.")
+      .Required("height_m", &M::height_m, Length(), "Height.")
+      .Optional("wall_m", &M::wall_m, Length(), "Thickness of floor and wall.")
+      .Optional("handle_m", &M::handle_m, Number(0, kMaxSize_m),
+                "How far its handle extends to +x; 0: no handle.")
+      .Check([](const YamlNode& node, const M& mug, DiagnosticList& errors) {
+        CheckWall(node, mug.wall_m, 2 * std::min(mug.radius_m, mug.height_m), errors);
+        constexpr double kMinHandle_m = 0.011;  // its bar is 10 mm thick
+        if (mug.handle_m > 0 && mug.handle_m < kMinHandle_m) {
+          errors.Add(
+              node.Find("handle_m")->where,
+              fmt::format("handle_m: expected 0, or at least 0.011, found {}", mug.handle_m));
+        }
+      })
+      .format();
+}
+
+ValueFormat<physics::Bowl> BowlFormat() {
+  using B = physics::Bowl;
+  return StructFormat<B>("a bowl")
+      .Required("radius_m", &B::radius_m, Length(),
+                "Outer radius at the rim; the foot has half of it.")
+      .Required("height_m", &B::height_m, Length(), "Height.")
+      .Optional("wall_m", &B::wall_m, Length(), "Thickness of floor and wall.")
+      .Check([](const YamlNode& node, const B& bowl, DiagnosticList& errors) {
+        CheckWall(node, bowl.wall_m, std::min(bowl.radius_m, 2 * bowl.height_m), errors);
+      })
+      .format();
+}
+
+ValueFormat<physics::Shelf> ShelfFormat() {
+  using S = physics::Shelf;
+  return StructFormat<S>("a shelf")
+      .Required("size_m", &S::size_m, Size(), "Outer edge lengths [x, y, z]; it is open to -x.")
+      .Optional("boards", &S::boards, Integer<int>(2, kMaxBoards),
+                "How many, evenly spaced, including the lowest and the highest.")
+      .Optional("wall_m", &S::wall_m, Length(), "Thickness of boards, sides and back.")
+      .Optional("back", &S::back, Flag(), "False: open to +x, too.")
+      .Check([](const YamlNode& node, const S& shelf, DiagnosticList& errors) {
+        const Eigen::Vector3d& size = shelf.size_m;
+        CheckWall(node, shelf.wall_m,
+                  std::min({2 * size.x(), size.y(), 2 * size.z() / shelf.boards}), errors);
+      })
+      .format();
+}
+
+ValueFormat<GrainsYaml> GrainsFormat() {
+  using G = GrainsYaml;
+  constexpr int kMaxGrains = 500;
+  constexpr double kMinGrainRadius_m = 0.002, kMaxGrainRadius_m = 0.05;
+  return StructFormat<G>("grains")
+      .Required("count", &G::count, Integer<int>(1, kMaxGrains), "How many.")
+      .Required("radius_m", &G::radius_m, Number(kMinGrainRadius_m, kMaxGrainRadius_m),
+                "Radius of each.")
+      .format();
+}
+
+ValueFormat<PartYaml> PartFormat() {
+  using P = PartYaml;
+  return StructFormat<P>("a part")
+      .Optional("box", &P::box, BoxFormat(), "Its shape: a box.")
+      .Optional("sphere", &P::sphere, SphereFormat(), "Its shape: a sphere.")
+      .Optional("cylinder", &P::cylinder, CylinderFormat(), "Its shape: a cylinder, axis along z.")
+      .Optional("capsule", &P::capsule, CapsuleFormat(), "Its shape: a capsule, axis along z.")
+      .Optional("hull", &P::hull, HullFormat(), "Its shape: a solid of flat faces, by its corners.")
+      .Optional(
+          "at_m", &P::at_m, Vector<3>(-kMaxPartOffset_m, kMaxPartOffset_m),
+          "Its centre in the entity's own coordinate frame, whose origin is at the entity's at_m.")
+      .Optional("rpy_deg", &P::rpy_deg, Vector<3>(-360, 360),
+                "Roll, pitch and yaw in degrees: turns about the entity's x, then y, then z axis.")
+      .ExactlyOneOf({"box", "sphere", "cylinder", "capsule", "hull"})
+      .format();
+}
+
+}  // namespace prehend::scenario

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples the variations of a trial. A trial is the scenario with some fields set as by --set, so
+// every check of the file applies to it. Tested by
+// tests/harness/scenario/read/sample_variations_test.cc
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "harness/base/yaml/located_yaml.h"
+#include "harness/scenario/scenario/variations.h"
+
+namespace prehend::scenario {
+
+/// The settings ("entities.milk.mass_kg=0.31") of trial 1, 2, ...: the same for the same seed and
+/// trial, independent of other trials. The variations have passed ValidateVariations().
+std::vector<std::string> SampleTrial(const YamlDocument& document,
+                                     const std::vector<VariationYaml>& variations,
+                                     std::uint64_t seed, int trial);
+
+/// The sample for all fields of a variation: a number, or one of the texts to choose from.
+using Draw = std::variant<double, std::string>;
+
+/// The bounds of a variation's samples: minimum and maximum, or all texts to choose from.
+struct Bounds {
+  const char* key = "";  ///< that of the distribution: "uniform"
+  std::vector<Draw> draws;
+};
+Bounds BoundsOf(const VariationYaml& variation);
+
+/// The setting, as for --set, that a sample gives to one of the variation's fields.
+std::string SettingOf(const YamlDocument& document, const VariationYaml& variation,
+                      const std::string& field, const Draw& draw);
+
+/// The node at a path like "entities.milk.mass_kg"; null if there is none.
+const YamlNode* FindField(const YamlNode& root, const std::string& path);
+
+}  // namespace prehend::scenario

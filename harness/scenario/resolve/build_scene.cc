@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/scenario/read/read_scenario_test.cc
+#include "harness/scenario/resolve/build_scene.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "harness/scenario/resolve/build_abstract.h"
+#include "physics/scene/fill_vessel.h"
+#include "physics/scene/geometry.h"
+#include "physics/scene/landing.h"
+#include "physics/scene/random.h"
+
+namespace prehend::scenario {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kDefaultSphereRollingFriction =
+    0.006;  // a ball on a table stops within a metre (docs/physics.md)
+
+physics::PlacedShape ShapeOf(const PartYaml& part) {
+  const physics::Pose X_BS{part.at_m, physics::FromRollPitchYaw(part.rpy_deg)};
+  if (part.sphere) return {*part.sphere, X_BS};
+  if (part.cylinder) return {*part.cylinder, X_BS};
+  if (part.capsule) return {*part.capsule, X_BS};
+  if (part.hull) return {*part.hull, X_BS};
+  return {part.box.value_or(physics::Box{}), X_BS};
+}
+
+std::vector<physics::PlacedShape> ShapesOf(const EntityYaml& entity) {
+  if (entity.grains) return {};
+  if (entity.tray) return physics::ShapesOf(*entity.tray);
+  if (entity.mug) return physics::ShapesOf(*entity.mug);
+  if (entity.bowl) return physics::ShapesOf(*entity.bowl);
+  if (entity.shelf) return physics::ShapesOf(*entity.shelf);
+  if (entity.parts.empty()) {
+    return {ShapeOf(PartYaml{.box = entity.box,
+                             .sphere = entity.sphere,
+                             .cylinder = entity.cylinder,
+                             .capsule = entity.capsule,
+                             .hull = entity.hull})};
+  }
+  std::vector<physics::PlacedShape> shapes;
+  for (const PartYaml& part : entity.parts) shapes.push_back(ShapeOf(part));
+  return shapes;
+}
+
+/// Everything except the position.
+physics::Body MakeBody(const Named<EntityYaml>& named) {
+  const EntityYaml& entity = named.value;
+  physics::Body body;
+  body.name = named.name;
+  body.shapes = ShapesOf(entity);
+  body.fixed = entity.fixed;
+  body.mass_kg = entity.mass_kg ? entity.mass_kg->value : 0;
+  if (entity.friction) body.friction = entity.friction->value;
+  const bool rolls = entity.sphere || entity.grains;
+  body.rolling_friction =
+      entity.rolling_friction.value_or(rolls ? kDefaultSphereRollingFriction : 0);
+  if (entity.grains)
+    body.grains = physics::Grains{.radius_m = entity.grains->radius_m, .p_WG_m = {}};
+  body.restitution = entity.restitution;
+  body.linear_damping_per_s = entity.linear_damping_per_s;
+  body.angular_damping_per_s = entity.angular_damping_per_s;
+  if (entity.rpy_deg) body.X_WB.q = physics::FromRollPitchYaw(*entity.rpy_deg);
+  if (entity.yaw_deg) body.X_WB.q = physics::FromRollPitchYaw({0, 0, *entity.yaw_deg});
+  if (AbstractOf(entity) != physics::Abstract::kNot) MakeAbstract(entity, body);
+  return body;
+}
+
+/// Cosine of the tilt: 1 upright, -1 upside down.
+double Uprightness(const physics::Body& body) { return (body.X_WB.q * Vector3d::UnitZ()).z(); }
+constexpr double kUpright = 0.999;
+
+/// Places every body after the one it stands on.
+class Stacking {
+ public:
+  Stacking(const ScenarioYaml& entry, DiagnosticList& errors) : entry_(entry), errors_(errors) {
+    for (const auto& named : entry.entities) {
+      index_[named.name] = bodies.size();
+      names_.push_back(named.name);
+      bodies.push_back(MakeBody(named));
+    }
+    progress_.resize(bodies.size(), Progress::kWaiting);
+  }
+
+  /// Iterative, since a stack may be thousands high.
+  void Place(std::size_t i) {
+    std::vector<std::size_t> above;  // placed once their support is
+    std::optional<std::size_t> next = i;
+    while (next && progress_[*next] == Progress::kWaiting) {
+      progress_[*next] = Progress::kBegun;
+      above.push_back(*next);
+      next = SupportOf(*next);
+    }
+    if (next && progress_[*next] == Progress::kBegun) {
+      const EntityYaml& entity = entry_.entities[above.back()].value;
+      const auto& below = entity.in ? entity.in : entity.on;
+      errors_.Add(below->where, fmt::format("on: '{}' stands, directly or not, on itself",
+                                            entry_.entities[*next].name));
+    }
+    for (; !above.empty(); above.pop_back()) {
+      if (entry_.entities[above.back()].value.in)
+        PlaceInVessel(above.back());
+      else
+        PlaceOnSupport(above.back());
+      progress_[above.back()] = Progress::kDone;
+    }
+  }
+
+  std::vector<physics::Body> bodies;
+
+ private:
+  enum class Progress { kWaiting, kBegun, kDone };
+
+  std::optional<std::size_t> SupportOf(std::size_t i) {
+    const EntityYaml& entity = entry_.entities[i].value;
+    const auto& below = entity.in ? entity.in : entity.on;
+    if (!below) return std::nullopt;
+    const char* key = entity.in ? "in" : "on";
+    const auto found = index_.find(below->value);
+    if (found == index_.end()) {
+      errors_.AddUnknownName(below->where,
+                             fmt::format("{}: no entity is called '{}'", key, below->value),
+                             below->value, names_);
+      return std::nullopt;
+    }
+    if (const std::string what = WhyNoThing(bodies[found->second]); !what.empty()) {
+      errors_.Add(below->where, fmt::format("{}: '{}' is {}, which cannot support anything", key,
+                                            below->value, what));
+      return std::nullopt;
+    }
+    return found->second;
+  }
+
+  /// The index of a physical body that has been placed already.
+  const physics::Body* Placed(const std::optional<Located<std::string>>& name) const {
+    const auto found = name ? index_.find(name->value) : index_.end();
+    if (found == index_.end() || progress_[found->second] != Progress::kDone) return nullptr;
+    const physics::Body& body = bodies[found->second];
+    return physics::IsThing(body) ? &body : nullptr;
+  }
+
+  void PlaceInVessel(std::size_t i) {
+    const EntityYaml& entity = entry_.entities[i].value;
+    physics::Body& body = bodies[i];
+    const physics::Body* vessel = Placed(entity.in);
+    if (!vessel || !entity.grains) return;  // already reported
+    if (Uprightness(*vessel) < kUpright) {
+      return errors_.Add(entity.in->where, fmt::format("in: '{}' is not upright", vessel->name));
+    }
+    constexpr int kMaxGrains = 500;
+    grains_so_far_ += entity.grains->count;
+    if (grains_so_far_ > kMaxGrains) {
+      return errors_.Add(entity.in->where,
+                         fmt::format("more than {} grains in the scenario", kMaxGrains));
+    }
+    const std::uint64_t seed =
+        physics::Random(entry_.world.seed ^ physics::Random(i).Next()).Next();
+    const GrainsYaml& grains = *entity.grains;
+    for (const Vector3d& p_B_m :
+         physics::FillVessel(*vessel, grains.radius_m, grains.count, seed)) {
+      body.grains->p_WG_m.push_back(vessel->X_WB * p_B_m);
+      body.X_WB.p_m += body.grains->p_WG_m.back() / grains.count;
+    }
+    if (const std::size_t fit = body.grains->p_WG_m.size();
+        fit < static_cast<std::size_t>(grains.count)) {
+      errors_.Add(entity.in->where,
+                  fmt::format("in: {} of {} grains fit into '{}' below its rim", fit, grains.count,
+                              vessel->name),
+                  "use fewer or smaller grains, or a larger vessel; its hollow is centred on the "
+                  "vertical through its at_m");
+    }
+  }
+
+  void PlaceOnSupport(std::size_t i) {
+    const EntityYaml& entity = entry_.entities[i].value;
+    physics::Body& body = bodies[i];
+    const std::vector<double>& at = entity.at_m.value;
+    if (at.size() < 2) return;  // already reported
+    body.X_WB.p_m = {at[0], at[1], at.size() > 2 ? at[2] : 0};
+    const physics::Body* placed = Placed(entity.on);
+    if (!placed || body.shapes.empty()) return;  // unknown, cyclic, or reported already
+    const physics::Body& support = *placed;
+    const double lowest = physics::WorldBounds(body, {Vector3d::Zero(), body.X_WB.q}).min().z();
+    if (!physics::IsAbove(support, support.X_WB, {at[0], at[1]})) {
+      return errors_.Add(
+          entity.at_m.where,
+          fmt::format("at_m: the centre of '{}' is not above '{}'", body.name, support.name),
+          "at_m is in world coordinates, also with 'on'");
+    }
+    // It is let down from higher than the whole support.
+    body.X_WB.p_m.z() = physics::WorldBounds(support, support.X_WB).max().z() - lowest;
+    const std::optional<double> landing_m =
+        physics::LandingHeight(support, support.X_WB, body, body.X_WB);
+    if (!landing_m) {
+      return errors_.Add(
+          entity.at_m.where,
+          fmt::format("at_m: no part of '{}' is below '{}'", support.name, body.name),
+          "'on' lets it straight down until it touches; here it would fall through");
+    }
+    body.X_WB.p_m.z() = *landing_m - lowest;
+  }
+
+  const ScenarioYaml& entry_;
+  DiagnosticList& errors_;
+  std::map<std::string, std::size_t> index_;
+  std::vector<std::string> names_;
+  std::vector<Progress> progress_;
+  int grains_so_far_ = 0;
+};
+
+void Override(const PidOverride& given, physics::PidGains& gains) {
+  gains.proportional = given.proportional.value_or(gains.proportional);
+  gains.derivative = given.derivative.value_or(gains.derivative);
+  gains.integral = given.integral.value_or(gains.integral);
+  gains.limit = given.limit.value_or(gains.limit);
+}
+
+}  // namespace
+
+std::vector<physics::Body> PlaceBodies(const ScenarioYaml& entry, DiagnosticList& errors) {
+  Stacking stacking(entry, errors);
+  for (std::size_t i = 0; i < entry.entities.size(); ++i) stacking.Place(i);
+  return std::move(stacking.bodies);
+}
+
+constexpr int kMostRate_hz = 4800;  // of 'rate_hz', docs/scenario-format.md
+
+/// The least rate from this one on at which the hand is stable; "" if none is.
+std::string RateRemedy(const physics::HandModel& model, int rate_hz) {
+  while (rate_hz <= kMostRate_hz && !physics::CheckGains(model, rate_hz).empty()) ++rate_hz;
+  return rate_hz > kMostRate_hz
+             ? ""
+             : fmt::format("it is stable from 'world: {{rate_hz: {}}}' on", rate_hz);
+}
+
+physics::Hand PlaceHand(const Named<HandActorYaml>& actor, physics::HandModel model, int rate_hz,
+                        DiagnosticList& errors) {
+  if (actor.value.gains) {
+    Override(actor.value.gains->value.translation, model.translation);
+    Override(actor.value.gains->value.rotation, model.rotation);
+  }
+  if (const std::string unstable = physics::CheckGains(model, rate_hz); !unstable.empty()) {
+    errors.Add(actor.value.gains ? actor.value.gains->where : actor.value.hand.where,
+               fmt::format("actor '{}': {}", actor.name, unstable), RateRemedy(model, rate_hz));
+  }
+  physics::Hand hand{
+      .name = actor.name,
+      .model = std::move(model),
+      .X_WH = {actor.value.at_m.value, physics::FromRollPitchYaw(actor.value.rpy_deg)},
+      .tracking = {}};
+  if (const auto& tracking = actor.value.tracking) {
+    hand.tracking = tracking->value;
+    if (tracking->value.tracker_hz > rate_hz) {
+      errors.Add(tracking->where, fmt::format("tracker_hz {} is above rate_hz {}",
+                                              tracking->value.tracker_hz, rate_hz));
+    }
+  }
+  return hand;
+}
+
+}  // namespace prehend::scenario

@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/scenario/read/read_scenario_test.cc
+#include "harness/scenario/resolve/build_script.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include "harness/scenario/format/limits.h"
+#include "harness/scenario/format/scenario_fields.h"
+#include "harness/scenario/resolve/build_abstract.h"
+#include "harness/scenario/resolve/build_person_steps.h"
+#include "harness/scenario/resolve/step_order.h"
+#include "physics/motion/stage_clock.h"
+#include "physics/scene/geometry.h"
+#include "physics/scene/joint.h"
+
+namespace prehend::scenario {
+namespace {
+
+/// Hands look no farther for what they come near to (physics/hand/hand_clearance.h).
+constexpr double kMaxGap_m = 0.09;
+/// The words of relative_to.
+constexpr const char* kWorldFrame = "world";
+constexpr const char* kHandFrame = "hand";
+/// How far outside an entity a point to grasp may be, since written numbers are rounded.
+constexpr double kMaxOutside_m = 0.005;
+
+template <class T>
+std::vector<std::string> NamesOf(const std::vector<Named<T>>& entries) {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
+int IndexOf(const std::string& name, const std::vector<std::string>& names) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+physics::TimedPose TimedPoseOf(const PoseYaml& pose) {
+  physics::TimedPose timed;
+  timed.t_s = pose.t_s;
+  timed.X_WH = PoseOf(pose);
+  timed.trigger = pose.trigger;
+  return timed;
+}
+
+/// Builds a step from each kind of entry; the names in it must be those of the scenario.
+struct StepMaker {
+  const std::vector<std::string>& entities;
+  const physics::Scene& scene;
+  bool is_hand;                     ///< false: there is no such actor
+  const physics::HandModel* model;  ///< null when the hand is not known
+  const Named<StepYaml>& written;
+  DiagnosticList& errors;
+
+  physics::Step operator()(const ReachYaml& e) const {
+    CheckEntity("reach", e.reach);
+    const Where where =
+        e.style.where.place.line > 0 ? e.style.where : e.reach.where;  // the default has no place
+    if (const physics::GraspStyle* style = FindStyle(e.style.value, where))
+      CheckApproach(e, *style);
+    CheckPoint(e);
+    physics::ReachStep reach{e.reach.value, e.style.value, e.from, e.offset_m.value, {}};
+    if (e.point_m) reach.point_m = e.point_m->value;
+    return {physics::kNone, std::move(reach), e.over_s};
+  }
+  physics::Step operator()(const CloseYaml& e) const {
+    return {physics::kNone, physics::TriggerStep{e.close_to}, e.over_s};
+  }
+  physics::Step operator()(const OpenYaml& e) const {
+    return {physics::kNone, physics::TriggerStep{e.open_to}, e.over_s};
+  }
+  physics::Step operator()(const LiftYaml& e) const {
+    return {physics::kNone, physics::MoveStep{{0, 0, e.lift_by_m}}, e.over_s};
+  }
+  physics::Step operator()(const MoveYaml& e) const {
+    return {physics::kNone, physics::MoveStep{e.move_by_m.value}, e.over_s};
+  }
+  physics::Step operator()(const CarryYaml& e) const {
+    return {physics::kNone, physics::CarryStep{e.carry_to_m.value}, e.over_s};
+  }
+  physics::Step operator()(const PlaceYaml& e) const {
+    CheckEntity("place_on", e.place_on);
+    return {physics::kNone, physics::PlaceStep{e.place_on.value}, e.over_s};
+  }
+  physics::Step operator()(const RetreatYaml& e) const {
+    return {physics::kNone, physics::RetreatStep{e.retreat_by_m}, e.over_s};
+  }
+  physics::Step operator()(const FollowJointYaml& e) const {
+    CheckEntity("follow_joint", e.follow_joint);
+    CheckJoint(e.follow_joint);
+    return {physics::kNone, physics::FollowJointStep{e.follow_joint.value, e.to}, e.over_s};
+  }
+  physics::Step operator()(const WaitYaml& e) const {
+    return {physics::kNone, physics::WaitStep{}, e.wait_s};
+  }
+  physics::Step operator()(const PosesYaml& e) const {
+    physics::PosesStep step;
+    for (const PoseYaml& pose : e.poses) step.poses.push_back(TimedPoseOf(pose));
+    step.frames = FramesOf(e);
+    return Follow(std::move(step), e.style);
+  }
+  physics::Step operator()(const RecordingYaml& e) const {
+    return Follow(physics::PosesStep{e.poses}, e.style);
+  }
+  physics::Step operator()(const TurnHandYaml& e) const {
+    if (e.turn_by_deg.value.isZero())
+      errors.Add(e.turn_by_deg.where, "turn_by_deg: all three are 0, so nothing turns");
+    return {physics::kNone, physics::TurnHandStep{e.turn_by_deg.value * (M_PI / 180), e.own_axes},
+            e.over_s};
+  }
+  physics::Step operator()(const OrbitYaml& e) const {
+    CheckEntity("orbit", e.orbit.around);
+    return {physics::kNone,
+            physics::OrbitStep{e.orbit.around.value, e.orbit.by_deg * M_PI / 180, e.orbit.at_m},
+            e.over_s};
+  }
+  physics::Step operator()(const PressYaml& e) const {
+    CheckEntity("press_n", e.against);
+    if (e.along.value.norm() < 0.01)
+      errors.Add(e.along.where, "along: the direction has no length");
+    return {physics::kNone,
+            physics::PressStep{e.against.value, e.press_n, e.along.value.normalized()}, e.over_s};
+  }
+  template <class PersonYaml>
+  physics::Step operator()(const PersonYaml&) const {
+    if (is_hand)
+      errors.Add(written.name_where,
+                 fmt::format("'{}' is a hand; this step is for persons", written.name),
+                 "hands reach, close, move; persons look, walk, lean");
+    return {};
+  }
+
+  /// What ends the step before its time; most steps have no such key.
+  std::optional<physics::Until> UntilOf() const {
+    return std::visit(
+        [&](const auto& entry) -> std::optional<physics::Until> {
+          if constexpr (requires { entry.until; }) {
+            if (entry.until) return ParseUntil(*entry.until);
+          }
+          return {};
+        },
+        written.value);
+  }
+
+ private:
+  /// What each way-point is relative to; none if all are in the world.
+  std::vector<physics::PoseFrame> FramesOf(const PosesYaml& e) const {
+    std::vector<physics::PoseFrame> frames;
+    bool all_in_world = true;
+    if (e.relative_to.where.place.line > 0) FrameOf(e.relative_to);  // reports it once
+    for (const PoseYaml& pose : e.poses) {
+      frames.push_back(pose.relative_to ? FrameOf(*pose.relative_to) : NamedFrame(e.relative_to));
+      frames.back().world_axes = e.world_axes;
+      all_in_world &= !frames.back().own_hand && frames.back().name.empty();
+    }
+    if (all_in_world) frames.clear();
+    return frames;
+  }
+
+  static physics::PoseFrame NamedFrame(const Located<std::string>& name) {
+    if (name.value == kHandFrame) return {.own_hand = true};
+    return {.name = name.value == kWorldFrame ? "" : name.value};
+  }
+
+  /// Reports what has no coordinate frame.
+  physics::PoseFrame FrameOf(const Located<std::string>& name) const {
+    std::vector<std::string> known{kWorldFrame, kHandFrame};
+    known.insert(known.end(), entities.begin(), entities.end());
+    for (const physics::Hand& hand : scene.hands)
+      if (hand.name != written.name) known.push_back(hand.name);
+    if (std::ranges::count(known, name.value) > 1)
+      errors.Add(name.where,
+                 fmt::format("relative_to: '{}' is a word of its own here, and something is called "
+                             "so, too",
+                             name.value),
+                 "call that something else");
+    else if (name.value == written.name && name.value != kHandFrame)
+      errors.Add(name.where, fmt::format("relative_to: '{}' is this hand itself", name.value),
+                 "write 'relative_to: hand'");
+    else if (std::ranges::count(known, name.value) == 0)
+      errors.AddUnknownName(
+          name.where, fmt::format("relative_to: no entity or hand is called '{}'", name.value),
+          name.value, known);
+    return NamedFrame(name);
+  }
+
+  /// Of a text that its format has accepted: "gap(milk) < 5 mm, or go on".
+  physics::Until ParseUntil(const Located<std::string>& text) const {
+    const std::size_t open = text.value.find('('), close = text.value.find(')');
+    const Located<std::string> thing{text.value.substr(open + 1, close - open - 1), text.where};
+    CheckEntity("until", thing);
+    physics::Until until{
+        .thing = thing.value, .gap_m = {}, .or_go_on = text.value.ends_with("or go on")};
+    if (text.value.starts_with("touching")) return until;
+    const char* number = text.value.c_str() + close + 4;
+    char* unit = nullptr;
+    const double value = std::strtod(number, &unit);
+    const std::string_view rest(unit);
+    until.gap_m = value * (rest.starts_with(" mm") ? 0.001 : rest.starts_with(" cm") ? 0.01 : 1);
+    if (*until.gap_m > kMaxGap_m)
+      errors.Add(text.where, fmt::format("until: a gap of {:g} mm is too far, at most {:g} mm",
+                                         1000 * *until.gap_m, 1000 * kMaxGap_m));
+    return until;
+  }
+
+  /// Reports entities that do not exist or are not physical objects.
+  void CheckEntity(const char* key, const Located<std::string>& name) const {
+    const auto found = std::find(entities.begin(), entities.end(), name.value);
+    if (found != entities.end()) {
+      const auto index = static_cast<std::size_t>(found - entities.begin());
+      const std::string what = index < scene.bodies.size() ? WhyNoThing(scene.bodies[index]) : "";
+      if (!what.empty())
+        errors.Add(name.where,
+                   fmt::format("{}: '{}' is {}, not a physical object", key, name.value, what),
+                   what == "grains" ? "name the vessel that holds them" : "hands cannot touch it");
+      return;
+    }
+    errors.AddUnknownName(name.where, fmt::format("{}: no entity is called '{}'", key, name.value),
+                          name.value, entities);
+  }
+
+  /// A point to grasp must be on or in the entity.
+  void CheckPoint(const ReachYaml& e) const {
+    const auto found = std::find(entities.begin(), entities.end(), e.reach.value);
+    if (!e.point_m || found == entities.end()) return;
+    const auto index = static_cast<std::size_t>(found - entities.begin());
+    if (index >= scene.bodies.size() || scene.bodies[index].shapes.empty()) return;
+    const double away_m = physics::DistanceTo(scene.bodies[index], e.point_m->value);
+    if (away_m <= kMaxOutside_m) return;
+    errors.Add(e.point_m->where,
+               fmt::format("point_m: the point is {:.1f} mm outside '{}', more than {:g} mm",
+                           1000 * away_m, *found, 1000 * kMaxOutside_m),
+               "point_m is in the entity's own frame: [0, 0, 0] is where its at_m is");
+  }
+
+  void CheckJoint(const Located<std::string>& name) const {
+    const auto found = std::find(entities.begin(), entities.end(), name.value);
+    if (found == entities.end()) return;  // already reported
+    const int joint = physics::JointThatMoves(scene, physics::BodyIndex(found - entities.begin()));
+    if (joint >= 0 &&
+        scene.joints[static_cast<std::size_t>(joint)].kind != physics::JointKind::kBall)
+      return;
+    errors.Add(name.where, fmt::format("follow_joint: '{}' has no slider or hinge", name.value),
+               "give it one, or use 'move_by_m'");
+  }
+
+  physics::Step Follow(physics::PosesStep step, const Located<std::string>& style) const {
+    if (!style.value.empty()) FindStyle(style.value, style.where);
+    step.style = style.value;
+    const double over_s = step.poses.empty() ? 0 : step.poses.back().t_s;
+    return {physics::kNone, std::move(step), over_s};
+  }
+
+  /// Null after an error, and when the hand is unknown.
+  const physics::GraspStyle* FindStyle(const std::string& name, const Where& where) const {
+    if (!model || model->styles.empty()) return nullptr;
+    const int style = physics::FindStyle(*model, name);
+    if (style >= 0) return &model->styles[static_cast<std::size_t>(style)];
+    std::vector<std::string> known;
+    for (const auto& candidate : model->styles) known.push_back(candidate.name);
+    errors.AddUnknownName(
+        where, fmt::format("style: hand '{}' has no style '{}'", model->name, name), name, known);
+    return nullptr;
+  }
+
+  void CheckApproach(const ReachYaml& e, const physics::GraspStyle& chosen) const {
+    const bool above_missing = e.from == physics::Approach::kAbove && !chosen.above;
+    const bool side_missing = e.from == physics::Approach::kSide && !chosen.side;
+    if (above_missing || side_missing) {
+      errors.Add(e.reach.where, fmt::format("style '{}' does not grasp from {}", chosen.name,
+                                            above_missing ? "above" : "the side"));
+    }
+  }
+};
+
+/// Checks the limits of the whole script; the error is at the stage that exceeds them.
+void CheckLength(const ScenarioYaml& entry, const physics::Script& script, DiagnosticList& errors) {
+  double total_s = script.settle_s;
+  std::size_t poses = 0;
+  for (std::size_t i = 0; i < script.stages.size(); ++i) {
+    for (const Named<StepYaml>& step : entry.script[i]) {
+      if (const auto* given = std::get_if<PosesYaml>(&step.value)) poses += given->poses.size();
+    }
+    total_s += physics::DurationOf(script.stages[i]);
+    const Where where = entry.script[i].front().name_where;
+    if (total_s > kMaxDuration_s) {
+      return errors.Add(
+          where, fmt::format("the script is longer than {} s at this point", kMaxDuration_s));
+    }
+    if (poses > kMaxPoses)
+      return errors.Add(where, fmt::format("more than {} poses at this point", kMaxPoses));
+  }
+}
+
+/// What the earlier steps of a hand guarantee to the next one.
+struct HandSoFar {
+  std::string reached;  ///< the entity last reached for
+  bool closed = false;  ///< its grip has been commanded
+};
+
+/// Steps that move a held object need a hand that may hold one.
+void CheckHolding(const std::vector<StageYaml>& script, DiagnosticList& errors) {
+  std::map<std::string, HandSoFar> hands;
+  const auto check_holds = [&](const std::string& key, const Named<StepYaml>& step,
+                               const Where& where) {
+    const HandSoFar& hand = hands[step.name];
+    if (!hand.reached.empty() || hand.closed) return;
+    errors.Add(where, fmt::format("{}: {} cannot hold anything here", key, step.name),
+               "no step before this one reaches for something or closes the hand");
+  };
+  for (const StageYaml& stage : script) {
+    for (const Named<StepYaml>& step : stage) {
+      HandSoFar& hand = hands[step.name];
+      if (const auto* reach = std::get_if<ReachYaml>(&step.value))
+        hand.reached = reach->reach.value;
+      if (const auto* close = std::get_if<CloseYaml>(&step.value))
+        hand.closed |= close->close_to > 0;
+      if (const auto* poses = std::get_if<PosesYaml>(&step.value)) {
+        for (const PoseYaml& pose : poses->poses) hand.closed |= pose.trigger.value_or(0) > 0;
+      }
+      if (const auto* recording = std::get_if<RecordingYaml>(&step.value)) {
+        for (const physics::TimedPose& pose : recording->poses)
+          hand.closed |= pose.trigger.value_or(0) > 0;
+      }
+      if (const auto* carry = std::get_if<CarryYaml>(&step.value)) {
+        check_holds("carry_to_m", step, carry->where);
+      }
+      if (const auto* place = std::get_if<PlaceYaml>(&step.value)) {
+        check_holds("place_on", step, place->where);
+        if (place->place_on.value == hand.reached) {
+          errors.Add(place->place_on.where,
+                     fmt::format("place_on: {} holds '{}' and cannot place it on itself", step.name,
+                                 hand.reached));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+physics::Pose PoseOf(const PoseYaml& pose) {
+  physics::Pose X_WH{pose.at_m};
+  if (pose.rpy_deg) X_WH.q = physics::FromRollPitchYaw(*pose.rpy_deg);
+  if (const auto& q = pose.quat_wxyz)
+    X_WH.q = Eigen::Quaterniond((*q)[0], (*q)[1], (*q)[2], (*q)[3]).normalized();
+  return X_WH;
+}
+
+physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& scene,
+                            DiagnosticList& errors) {
+  const std::vector<std::string> entities = NamesOf(entry.entities), hands = NamesOf(entry.hands),
+                                 persons = NamesOf(entry.persons);
+  physics::Script script;
+  script.settle_s = entry.settle_s;
+  for (const StageYaml& beat_entry : entry.script) {
+    physics::ScriptStage& stage = script.stages.emplace_back();
+    for (const Named<StepYaml>& named : beat_entry) {
+      const int hand = IndexOf(named.name, hands), person = IndexOf(named.name, persons);
+      if (person >= 0) {
+        stage.person_steps.push_back(MakePersonStep(named, person, scene, errors));
+        continue;
+      }
+      if (hand < 0) {
+        errors.AddUnknownName(named.name_where, fmt::format("no actor is called '{}'", named.name),
+                              named.name, NamesOf(entry.actors));
+      }
+      const physics::HandIndex index(hand);
+      const bool known = index.IsBelow(scene.hands.size());
+      const physics::HandModel* model = known ? &scene.hand(index).model : nullptr;
+      const StepMaker maker{entities, scene, hand >= 0, model, named, errors};
+      physics::Step step = std::visit(maker, named.value);
+      step.until = maker.UntilOf();
+      step.delay_s = TimingOf(named.value).delay_s;
+      step.order = OrderOf(named.value);
+      step.hand = index;
+      step.written_at = errors.PlaceText(named.name_where);
+      stage.steps.push_back(std::move(step));
+    }
+  }
+  CheckHolding(entry.script, errors);
+  CheckStepOrder(entry.script, NamesOf(entry.actors), persons, script, errors);
+  CheckLength(entry, script, errors);
+  return script;
+}
+
+}  // namespace prehend::scenario

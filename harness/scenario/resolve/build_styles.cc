@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tested by tests/harness/scenario/read/read_hand_model_test.cc
+#include "harness/scenario/resolve/build_styles.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace prehend::scenario {
+namespace {
+
+bool HasJaw(const DigitYaml& digit) { return digit.jaw.has_value(); }
+bool HasPhalanges(const DigitYaml& digit) { return !HasJaw(digit); }
+std::size_t JointsOf(const DigitYaml& digit) { return HasJaw(digit) ? 1 : digit.phalanges.size(); }
+
+class StyleBuilder {
+ public:
+  StyleBuilder(const std::vector<Named<DigitYaml>>& digits, DiagnosticList& errors)
+      : digits_(digits), errors_(errors) {}
+
+  physics::GraspStyle BuildStyle(const Named<StyleYaml>& style);
+
+ private:
+  using Concerned = bool (*)(const DigitYaml&);
+  std::vector<std::vector<double>> JointNumbers(const Located<PerDigit>& numbers,
+                                                bool one_is_enough, Concerned concerned);
+  std::vector<std::vector<double>> FramesOf(const Named<StyleYaml>& style);
+  /// Reports joint targets outside the joint's limits.
+  void CheckRanges(const Located<PerDigit>& frame, const char* unit);
+  /// False after an error: the hand has no such digit.
+  bool CheckDigitNames(const Located<PerDigit>& numbers);
+
+  const std::vector<Named<DigitYaml>>& digits_;
+  DiagnosticList& errors_;
+};
+
+bool StyleBuilder::CheckDigitNames(const Located<PerDigit>& numbers) {
+  std::vector<std::string> names;
+  for (const auto& digit : digits_) names.push_back(digit.name);
+  bool good = true;
+  for (const auto& given : numbers.value) {
+    if (std::find(names.begin(), names.end(), given.name) != names.end()) continue;
+    good = false;
+    errors_.AddUnknownName(given.name_where, fmt::format("the hand has no digit '{}'", given.name),
+                           given.name, names);
+  }
+  return good;
+}
+
+/// One number per joint of every concerned digit; the others stay empty.
+std::vector<std::vector<double>> StyleBuilder::JointNumbers(const Located<PerDigit>& numbers,
+                                                            bool one_is_enough,
+                                                            Concerned concerned) {
+  const bool names_are_right = CheckDigitNames(numbers);
+  std::vector<std::vector<double>> all(digits_.size());
+  for (std::size_t i = 0; i < digits_.size(); ++i) {
+    const auto& digit = digits_[i];
+    const auto given =
+        std::find_if(numbers.value.begin(), numbers.value.end(),
+                     [&](const auto& candidate) { return candidate.name == digit.name; });
+    if (!concerned(digit.value)) {
+      if (given != numbers.value.end())
+        errors_.Add(
+            given->name_where,
+            fmt::format("{}: phalanges belong in frames_deg, jaws in frames_m", digit.name));
+      continue;
+    }
+    if (given == numbers.value.end()) {
+      if (names_are_right)
+        errors_.Add(numbers.where, fmt::format("digit '{}' is missing", digit.name));
+      continue;
+    }
+    const std::size_t joints = JointsOf(digit.value);
+    std::vector<double> values;
+    for (const Located<double>& number : given->value.value) values.push_back(number.value);
+    if (values.size() == 1 && one_is_enough) values.resize(joints, values.front());
+    if (values.size() != joints) {
+      errors_.Add(given->value.where,
+                  fmt::format("{}: expected {} {}, one for each joint, found {}", digit.name,
+                              joints, joints == 1 ? "number" : "numbers", values.size()));
+    }
+    values.resize(joints);
+    all[i] = std::move(values);
+  }
+  return all;
+}
+
+void StyleBuilder::CheckRanges(const Located<PerDigit>& frame, const char* unit) {
+  for (const auto& [name, name_where, targets] : frame.value) {
+    const auto digit = std::ranges::find(digits_, name, &Named<DigitYaml>::name);
+    if (digit == digits_.end() || targets.value.size() != JointsOf(digit->value)) continue;
+    for (std::size_t i = 0; i < targets.value.size(); ++i) {
+      const bool is_jaw = HasJaw(digit->value);
+      const LinkYaml& link =
+          is_jaw ? static_cast<const LinkYaml&>(*digit->value.jaw) : digit->value.phalanges[i];
+      const Eigen::Vector2d& range = link.range.value;
+      const double target = targets.value[i].value;
+      if (target >= range[0] && target <= range[1]) continue;
+      const std::string part = is_jaw ? name : name + "_" + digit->value.phalanges[i].name.value;
+      errors_.Add(targets.value[i].where,
+                  fmt::format("{}: expected {} to {} {}, the range of the joint of '{}', found {}",
+                              name, range[0], range[1], unit, part, target));
+    }
+  }
+}
+
+/// From open to closed, one number per link; empty after an error.
+std::vector<std::vector<double>> StyleBuilder::FramesOf(const Named<StyleYaml>& style) {
+  const auto& angles = style.value.frames_deg;
+  const auto& ways = style.value.frames_m;
+  const auto any = [&](Concerned of) {
+    return std::any_of(digits_.begin(), digits_.end(),
+                       [&](const auto& digit) { return of(digit.value); });
+  };
+  const auto missing = [&](const char* key) {
+    errors_.Add(style.name_where, fmt::format("style '{}' has no '{}'", style.name, key));
+  };
+  if (angles.empty() && any(HasPhalanges)) missing("frames_deg");
+  if (ways.empty() && any(HasJaw)) missing("frames_m");
+  if (!angles.empty() && !ways.empty() && angles.size() != ways.size()) {
+    errors_.Add(ways.front().where, fmt::format("frames_m: {} frames, but frames_deg has {}",
+                                                ways.size(), angles.size()));
+    return {};
+  }
+  std::vector<std::vector<double>> frames(std::max(angles.size(), ways.size()));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    std::vector<std::vector<double>> turned(digits_.size()), slid = turned;
+    if (!angles.empty()) {
+      turned = JointNumbers(angles[i], false, HasPhalanges);
+      CheckRanges(angles[i], "degrees");
+    }
+    if (!ways.empty()) {
+      slid = JointNumbers(ways[i], false, HasJaw);
+      CheckRanges(ways[i], "m");
+    }
+    for (std::size_t k = 0; k < turned.size(); ++k) {
+      for (const double angle : turned[k]) frames[i].push_back(angle * physics::kRadPerDeg);
+      frames[i].insert(frames[i].end(), slid[k].begin(), slid[k].end());
+    }
+  }
+  return frames;
+}
+
+physics::GraspStyle StyleBuilder::BuildStyle(const Named<StyleYaml>& style) {
+  physics::GraspStyle built{.name = style.name,
+                            .frames = FramesOf(style),
+                            .grip_axis = style.value.grip.axis,
+                            .post_m = style.value.grip.post_m,
+                            .opening_m = style.value.grip.opening_m,
+                            .above = style.value.above,
+                            .side = style.value.side};
+  const auto all = [](const DigitYaml&) { return true; };
+  for (const auto& effort : JointNumbers(style.value.effort, true, all))
+    built.effort.insert(built.effort.end(), effort.begin(), effort.end());
+  return built;
+}
+
+}  // namespace
+
+void AddStyles(const std::vector<Named<DigitYaml>>& digits,
+               const std::vector<Named<StyleYaml>>& styles, SameName rule, DiagnosticList& errors,
+               std::vector<physics::GraspStyle>& to) {
+  StyleBuilder builder(digits, errors);
+  for (const auto& style : styles) {
+    physics::GraspStyle built = builder.BuildStyle(style);
+    const auto same_name = std::ranges::find(to, style.name, &physics::GraspStyle::name);
+    if (same_name == to.end()) {
+      to.push_back(std::move(built));
+    } else if (rule == SameName::kTakesItsPlace) {
+      *same_name = std::move(built);
+    } else {
+      errors.Add(style.name_where, fmt::format("the hand already has a style '{}'", style.name),
+                 "one of its files defines it; only a scenario's `grasps` replace styles");
+    }
+  }
+}
+
+}  // namespace prehend::scenario

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/scenario/resolve/plausible_sizes.h. Tested by
+// tests/harness/scenario/resolve/plausible_sizes_test.cc
+#include "harness/scenario/resolve/plausible_sizes.h"
+
+#include <fmt/format.h>
+
+#include "physics/scene/geometry.h"
+
+namespace prehend::scenario {
+namespace {
+
+/// Osmium has 22.6, gold 19.3, styrofoam 0.02, the lightest packing foam 0.006.
+constexpr double kMaxDensity_kg_per_l = 25, kMinDensity_kg_per_l = 0.005;
+constexpr double kMaxLoose_m = 5, kMaxFixed_m = 60, kMin_m = 0.004;
+
+double Litres(const physics::Body& body) {
+  double volume_m3 = 0;
+  for (const physics::PlacedShape& part : body.shapes) volume_m3 += VolumeOf(part.shape);
+  return 1000 * volume_m3;
+}
+
+void JudgeMass(const Named<EntityYaml>& entity, const physics::Body& body, DiagnosticList& odd) {
+  const auto& mass_kg = entity.value.mass_kg;
+  const double volume_l = Litres(body);
+  if (!mass_kg || body.grains || volume_l <= 0) return;
+  const double density = mass_kg->value / volume_l;
+  if (density <= kMaxDensity_kg_per_l && density >= kMinDensity_kg_per_l) return;
+  odd.Add(
+      mass_kg->where,
+      fmt::format("mass_kg: {:.6g} kg are {} for '{}', whose shape has {:.3g} litres: {:.3g} kg "
+                  "per litre",
+                  mass_kg->value, density > 1 ? "much" : "little", entity.name, volume_l, density),
+      density > 1 ? "water has 1, lead 11; a mass is in kg, a size in metres"
+                  : "air has 0.001, foam 0.02; a mass is in kg, a size in metres");
+}
+
+void JudgeSize(const Named<EntityYaml>& entity, const physics::Body& body, DiagnosticList& odd) {
+  if (body.abstract != physics::Abstract::kNot || body.grains) return;
+  const double largest_m = 2 * BoundingBox(body).half_size_m.maxCoeff();
+  const double most_m = body.fixed ? kMaxFixed_m : kMaxLoose_m;
+  if (largest_m <= most_m && largest_m >= kMin_m) return;
+  odd.Add(entity.name_where,
+          largest_m > most_m
+              ? fmt::format("'{}' is {:.3g} m long{}", entity.name, largest_m,
+                            body.fixed ? "" : ", and it is not fixed")
+              : fmt::format("'{}' is {:.3g} mm large, and contacts are exact to 1 mm", entity.name,
+                            1000 * largest_m),
+          "sizes are in metres: 0.1 is 10 cm");
+}
+
+}  // namespace
+
+grammar::Diagnostics ImplausibleSizes(const ScenarioYaml& entry, const physics::Scene& scene,
+                                      const YamlDocument& document) {
+  DiagnosticList odd(document);
+  for (std::size_t i = 0; i < entry.entities.size(); ++i) {
+    JudgeMass(entry.entities[i], scene.bodies[i], odd);
+    JudgeSize(entry.entities[i], scene.bodies[i], odd);
+  }
+  grammar::Diagnostics warnings = odd.Sorted();
+  for (grammar::Diagnostic& warning : warnings) warning.is_warning = true;
+  return warnings;
+}
+
+}  // namespace prehend::scenario

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scenario that is read, checked and resolved: names are indices, entities are bodies, actors are
+// hands and persons. What the file says is ScenarioYaml (harness/scenario/format/scenario_yaml.h);
+// harness/scenario/read/read_scenario.h turns one into the other. Tested by
+// tests/harness/scenario/scenario/scenario_test.cc
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grammar/base/frame.h"
+#include "harness/base/base/default_grammar.h"
+#include "harness/base/base/located.h"
+#include "harness/scenario/scenario/variations.h"
+#include "harness/truth/claims/claim.h"
+#include "physics/motion/script.h"
+#include "physics/scene/scene.h"
+
+namespace prehend::scenario {
+
+/// How imperfect sensors see the scene. They change what grammars see, and nothing else. The
+/// default is without errors.
+struct SensorSettings {
+  double position_noise_m = 0;       ///< standard deviation of each coordinate of a pose
+  double rotation_noise_deg = 0;     ///< standard deviation of each component of a rotation vector
+  double contact_dropout_share = 0;  ///< of the touches in each frame that are not seen
+  double lost_frames_share = 0;      ///< of the frames
+  std::uint64_t seed = 1;
+
+  bool IsPerfect() const {
+    return position_noise_m == 0 && rotation_noise_deg == 0 && contact_dropout_share == 0 &&
+           lost_frames_share == 0;
+  }
+};
+
+/// When the grammar sees the scene, and which contacts count as support.
+struct SensingSettings {
+  int sensing_hz = 240;         ///< at most the world's rate
+  double bearing_share = 0.05;  ///< contact points with less of the load are not support
+  SensorSettings sensors = {};
+};
+
+/// A class and its base class: every Mug is a Cup.
+struct BaseClass {
+  std::string name;
+  std::string of;
+};
+
+struct PictureYaml {
+  Located<std::string> at;  ///< "reaching.begin", "putting_down.end", or a time: "1.25"; see
+                            ///< harness/episode/run/event_time.h
+  Located<std::string> camera{"three_quarter",
+                              {}};  ///< one of CameraWords(), or an entity that is a camera
+};
+/// Cameras that every scenario has. The same as render::CameraNames(), which exists only in builds
+/// with rendering.
+const std::vector<std::string>& CameraWords();
+
+/// A whole scenario.
+struct Scenario {
+  std::string name;
+  std::string file;   ///< where it was read from
+  std::string skill;  ///< the folder below scenarios/, or ""
+  std::string shows;
+  std::vector<truth::Claim> expects;
+  std::string grammar = kDefaultGrammar;
+  std::vector<std::string> tags;
+  physics::Scene scene;  ///< its world has the engine, the rate and the seed
+  SensingSettings sensing;
+  std::vector<std::string> body_classes;  ///< one per scene body
+  /// 0xRRGGBB of entities that say `color`, by name. Only pictures use them.
+  std::map<std::string, std::uint32_t> colors;
+  std::vector<BaseClass> base_classes;  ///< each class at most once
+  std::vector<int> body_part_of;        ///< one per scene body: a scene body, or grammar::kNoEntity
+  physics::Script script;
+  std::vector<VariationYaml> variations;
+  std::vector<Outcome> outcomes;
+  std::vector<PictureYaml> pictures;
+  grammar::Diagnostics warnings;  ///< about valid but suspicious input
+};
+
+/// Two frames of sensing, in ticks: a boundary is not known better than to the frame that shows it.
+/// Boundaries may differ by this much where a golden line has no tolerance of its own.
+grammar::Tick DefaultTolerance(const Scenario& scenario);
+
+/// The names that `camera:` accepts: CameraWords() and the entities that are cameras.
+std::vector<std::string> CamerasOf(const Scenario& scenario);
+
+/// An error message if there is no such camera.
+std::optional<std::string> WhyNoCamera(const Scenario& scenario, const std::string& camera);
+
+}  // namespace prehend::scenario

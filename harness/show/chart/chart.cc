@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/show/chart/chart.h. Tested by tests/harness/show/chart/chart_test.cc
+#include "harness/show/chart/chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace prehend::show {
+namespace {
+
+/// Okabe and Ito's palette without yellow, which is pale on white ("Color Universal Design", 2008).
+constexpr std::array<const char*, 6> kColors = {"#0072B2", "#D55E00", "#009E73",
+                                                "#CC79A7", "#56B4E9", "#000000"};
+constexpr std::array<const char*, 4> kDashes = {"none", "6 3", "2 3", "8 3 2 3"};
+constexpr double kFoot = 5.6;              ///< height of times and legend, in heights of the text
+constexpr double kPageFoot = 3.6;          ///< without legend
+constexpr std::size_t kMostPoints = 1500;  ///< of a curve; more cannot be seen
+
+std::string Number(double value) { return SvgNumber(value); }
+std::string ColorText(std::uint32_t color) { return fmt::format("#{:06X}", color); }
+
+/// Whether dark text can be read on it: its luminance (ITU-R BT.709).
+bool IsLight(std::uint32_t color) {
+  const double red = color >> 16 & 255, green = color >> 8 & 255, blue = color & 255;
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue > 140;
+}
+
+class Drawing {
+ public:
+  Drawing(const Chart& chart, const ChartFormat& format) : chart_(chart), format_(format) {
+    const double letter_px = 0.6 * format.text_px;
+    std::size_t longest = 0;
+    for (const Row& row : chart.rows) longest = std::max(longest, row.name.size());
+    left_ = 20 + std::clamp(letter_px * static_cast<double>(longest), 50.0, 0.5 * format.width_px);
+    right_ = format.width_px - 14;
+    for (const Row& row : chart.rows) headings_ += row.heading.empty() ? 0 : 1;
+  }
+
+  double Height() const {
+    const double panels = static_cast<double>(chart_.panels.size());
+    return Top() + RowPx() * static_cast<double>(chart_.rows.size()) + HeadingPx() * headings_ +
+           (GapPx() + PanelPx()) * panels + FootPx();
+  }
+  double Left() const { return left_; }
+  double PerSecond() const { return (right_ - left_) / (chart_.to_s - chart_.from_s); }
+
+  void AddTo(pugi::xml_node svg) {
+    svg_ = svg;
+    if (!chart_.title.empty())
+      Text("title", left_, 1.4 * format_.text_px, chart_.title, "start", "bold");
+    double y = Top();
+    DrawTimes(y, Height() - FootPx());
+    DrawMarks(Height() - FootPx());
+    for (const Row& row : chart_.rows) {
+      if (!row.heading.empty()) {
+        Text("group", 4, y + 1.2 * format_.text_px, row.heading, "start", "bold");
+        y += HeadingPx();
+      }
+      DrawRow(row, y, RowPx());
+      y += RowPx();
+    }
+    for (const Panel& panel : chart_.panels) {
+      y += GapPx();
+      DrawPanel(panel, y, PanelPx());
+      y += PanelPx();
+    }
+    DrawLegend(Height() - 0.8 * format_.text_px);
+  }
+
+ private:
+  double RowPx() const { return 1.9 * format_.text_px; }
+  double PanelPx() const { return format_.panel_texts * format_.text_px; }
+  double HeadingPx() const { return 1.7 * format_.text_px; }
+  bool InPage() const { return !format_.page_class.empty(); }
+  double FootPx() const { return (InPage() ? kPageFoot : kFoot) * format_.text_px; }
+  double GapPx() const { return 1.6 * format_.text_px; }
+  double Top() const {
+    return (chart_.title.empty() ? 8 : 2.4 * format_.text_px) +
+           (chart_.marks.empty() ? 0 : 1.3 * format_.text_px);
+  }
+
+  double X(double time_s) const {
+    const double share = (time_s - chart_.from_s) / (chart_.to_s - chart_.from_s);
+    return left_ + std::clamp(share, 0.0, 1.0) * (right_ - left_);
+  }
+
+  /// In a page by its class, else as it looks.
+  void Paint(pugi::xml_node node, const std::string& style,
+             std::initializer_list<std::pair<const char*, const char*>> look) const {
+    if (InPage() && !style.empty()) node.append_attribute("class").set_value(style.c_str());
+    for (const auto& [key, value] : look)
+      if (!InPage()) node.append_attribute(key).set_value(value);
+  }
+  void Text(const std::string& style, double x, double y, const std::string& text,
+            const char* anchor, const char* weight = "normal", const char* color = kInk) {
+    Paint(AddElement(svg_, "text", {{"x", Number(x)}, {"y", Number(y)}, {"text-anchor", anchor}},
+                     text),
+          style, {{"font-weight", weight}, {"fill", color}});
+  }
+  void Line(const std::string& style, double x1, double y1, double x2, double y2, const char* color,
+            const char* width = "1", const char* dash = nullptr) {
+    const pugi::xml_node line = AddElement(
+        svg_, "line",
+        {{"x1", Number(x1)}, {"y1", Number(y1)}, {"x2", Number(x2)}, {"y2", Number(y2)}});
+    Paint(line, style, {{"stroke", color}, {"stroke-width", width}});
+    if (dash) Paint(line, "", {{"stroke-dasharray", dash}});
+  }
+
+  void DrawRow(const Row& row, double y, double height) {
+    Text(row.style, left_ - 8, y + 0.5 * height + 0.35 * format_.text_px, row.name, "end");
+    for (const Bar& bar : row.bars) {
+      if (bar.end_s <= chart_.from_s || bar.begin_s >= chart_.to_s) continue;
+      DrawBar(bar, y, height);
+    }
+    for (const Hatch& hatch : row.hatches) DrawHatch(hatch, y, height);
+  }
+
+  void DrawBar(const Bar& bar, double y, double height) {
+    const double x = X(bar.begin_s), width = std::max(1.5, X(bar.end_s) - x);
+    const bool whole = bar.part == Bar::Part::kWhole;
+    const double tall = whole ? height - 4 : 0.5 * height - 3;
+    pugi::xml_node node =
+        AddElement(svg_, "rect",
+                   {{"x", Number(x)},
+                    {"y", Number(bar.part == Bar::Part::kLower ? y + 0.5 * height + 1 : y + 2)},
+                    {"width", Number(width)},
+                    {"height", Number(tall)},
+                    {"fill", ColorText(bar.color)}});
+    Paint(node, bar.style, {{"stroke", bar.frame.empty() ? "#FFFFFF" : bar.frame.c_str()}});
+    if (InPage()) {
+      node.append_attribute("data-begin").set_value(Number(bar.begin_s).c_str());
+      node.append_attribute("data-end").set_value(Number(bar.end_s).c_str());
+      AddElement(node, "title", {}, bar.tip);
+    }
+    if (!bar.frame.empty()) Paint(node, "", {{"stroke-width", "2"}});
+    if (0.62 * format_.text_px * static_cast<double>(bar.text.size()) < width - 6)
+      Text("", x + width / 2, y + 0.5 * height + 0.35 * format_.text_px, bar.text, "middle",
+           "normal", IsLight(bar.color) ? "#000000" : "#FFFFFF");
+    else if (!bar.kind.empty())
+      unnamed_[bar.kind] = bar.color;
+  }
+
+  /// Slanted lines in a frame: readable in print and on any colour.
+  void DrawHatch(const Hatch& hatch, double y, double height) {
+    if (hatch.end_s <= chart_.from_s || hatch.begin_s >= chart_.to_s) return;
+    const double step_px = 5, x = X(hatch.begin_s), top = y + 2, tall = height - 4,
+                 width = std::max(3.0, X(hatch.end_s) - x);
+    std::string path =
+        fmt::format("M{:.2f},{:.2f}h{:.2f}v{:.2f}h{:.2f}z", x, top, width, tall, -width);
+    // Each line leaves the frame where it meets its right or upper side.
+    for (double from = x - tall + step_px; from < x + width; from += step_px) {
+      const double first = std::max(from, x), last = std::min(from + tall, x + width);
+      path += fmt::format("M{:.2f},{:.2f}L{:.2f},{:.2f}", first, top + tall - (first - from), last,
+                          top + tall - (last - from));
+    }
+    Paint(AddElement(svg_, "path", {{"d", path}}), "hatch",
+          {{"fill", "none"}, {"stroke", kInk}, {"stroke-width", "1"}});
+  }
+
+  /// A dashed line behind everything, with its letter above. Letters at one place are one text.
+  void DrawMarks(double bottom) {
+    const double top = Top();
+    double right_end = 0;
+    for (const Mark& mark : chart_.marks) {
+      if (mark.time_s < chart_.from_s || mark.time_s > chart_.to_s) continue;
+      const double x = X(mark.time_s);
+      Line(mark.style, x, top - 2, x, bottom, kInk, "1", "4 3");
+      if (mark.letter.empty()) continue;
+      const double letter_px = 0.75 * format_.text_px * static_cast<double>(mark.letter.size());
+      const double letter_x =
+          std::min(std::max(x, right_end + letter_px / 2), format_.width_px - letter_px / 2);
+      Text("axis", letter_x, top - 0.35 * format_.text_px, mark.letter, "middle", "bold");
+      right_end = letter_x + letter_px / 2 + 1;
+    }
+  }
+
+  void DrawPanel(const Panel& panel, double top, double height) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const Curve& curve : panel.curves) {
+      for (const auto& [time_s, value] : curve.points) {
+        if (time_s < chart_.from_s || time_s > chart_.to_s || !std::isfinite(value)) continue;
+        least = std::min(least, value);
+        most = std::max(most, value);
+      }
+    }
+    if (!(least <= most)) least = 0, most = 1;
+    if (most - least < 1e-9) most = least + 1;
+    const double room = 0.06 * (most - least);
+    least -= room;
+    most += room;
+    const auto y_of = [&](double value) {
+      return top + height - (value - least) / (most - least) * height;
+    };
+    for (const double tick : RoundTicks(least, most, 4)) {
+      Line("grid", left_, y_of(tick), right_, y_of(tick), "#DDDDDD");
+      Text("axis", left_ - 8, y_of(tick) + 0.35 * format_.text_px, Number(tick), "end");
+    }
+    Line("base", left_, top, left_, top + height, kInk);
+    double legend = right_;
+    for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+      const Curve& curve = panel.curves[i];
+      const char* color = kColors[i % kColors.size()];
+      const char* dash = kDashes[i % kDashes.size()];
+      DrawCurve(curve, y_of, color, dash);
+      const double name_px = 0.6 * format_.text_px * static_cast<double>(curve.name.size());
+      legend -= name_px + 34;
+      if (panel.curves.size() > 1 || !curve.name.empty()) {
+        const double y = top - 0.4 * format_.text_px;
+        Line(curve.style, legend, y, legend + 22, y, color, "2", dash);
+        Text("axis", legend + 26, top - 0.1 * format_.text_px, curve.name, "start");
+      }
+    }
+    Text("axis", left_, top - 0.1 * format_.text_px, panel.name, "start", "bold");
+  }
+
+  template <typename YOf>
+  void DrawCurve(const Curve& curve, const YOf& y_of, const char* color, const char* dash) {
+    const std::size_t step = curve.points.size() / kMostPoints + 1;
+    std::string points;
+    for (std::size_t i = 0; i < curve.points.size(); i += step) {
+      const auto& [time_s, value] = curve.points[i];
+      if (!std::isfinite(value)) DrawLine(points, curve.style, color, dash);
+      if (time_s < chart_.from_s || time_s > chart_.to_s || !std::isfinite(value)) continue;
+      points += fmt::format("{:.2f},{:.2f} ", X(time_s), y_of(value));
+    }
+    DrawLine(points, curve.style, color, dash);
+  }
+
+  /// Through these points, which are empty afterwards.
+  void DrawLine(std::string& points, const std::string& style, const char* color,
+                const char* dash) {
+    if (points.empty()) return;
+    points.pop_back();
+    Paint(
+        AddElement(svg_, "polyline", {{"points", points}}), style,
+        {{"fill", "none"}, {"stroke", color}, {"stroke-width", "1.6"}, {"stroke-dasharray", dash}});
+    points.clear();
+  }
+
+  /// What the colours mean whose bars are too short for their texts.
+  void DrawLegend(double y) {
+    double x = left_;
+    for (const auto& [kind, color] : unnamed_) {
+      AddElement(svg_, "rect",
+                 {{"x", Number(x)},
+                  {"y", Number(y - 0.8 * format_.text_px)},
+                  {"width", Number(format_.text_px)},
+                  {"height", Number(0.9 * format_.text_px)},
+                  {"fill", ColorText(color)}});
+      Text("", x + 1.4 * format_.text_px, y, kind, "start");
+      x += 3 * format_.text_px + 0.62 * format_.text_px * static_cast<double>(kind.size());
+    }
+  }
+
+  void DrawTimes(double top, double bottom) {
+    Line("base", left_, bottom, right_, bottom, kInk);
+    std::vector<AxisTick> ticks = chart_.ticks;
+    if (ticks.empty())
+      for (const double tick : RoundTicks(chart_.from_s, chart_.to_s, 10))
+        ticks.emplace_back(tick, Number(tick));
+    for (const auto& [at, text] : ticks) {
+      Line("grid", X(at), top, X(at), bottom, "#EEEEEE");
+      if (!InPage()) Line("", X(at), bottom, X(at), bottom + 4, kInk);
+      Text("axis", X(at), bottom + 4 + 1.1 * format_.text_px, text, "middle");
+    }
+    Text("name", (left_ + right_) / 2, bottom + 8 + 2.3 * format_.text_px, chart_.axis, "middle");
+  }
+
+  const Chart& chart_;
+  const ChartFormat& format_;
+  double left_ = 0, right_ = 0, headings_ = 0;
+  pugi::xml_node svg_;
+  std::map<std::string, std::uint32_t> unnamed_;
+};
+
+}  // namespace
+
+std::vector<double> RoundTicks(double from, double to, int most) {
+  const double raw = (to - from) / most, power = std::pow(10.0, std::floor(std::log10(raw)));
+  double step = 10 * power;
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= raw * (1 - 1e-9)) {
+      step = factor * power;
+      break;
+    }
+  }
+  std::vector<double> ticks;
+  for (auto i = static_cast<long>(std::ceil(from / step - 1e-9));
+       static_cast<double>(i) * step <= to + 1e-9 * step; ++i)
+    ticks.push_back(static_cast<double>(i) * step);
+  return ticks;
+}
+
+std::string SvgNumber(double value) { return fmt::format("{:.6g}", value); }
+
+pugi::xml_node AddDrawing(pugi::xml_document& document, const ChartFormat& format,
+                          double height_px) {
+  const pugi::xml_node svg =
+      AddElement(document, "svg",
+                 {{"xmlns", "http://www.w3.org/2000/svg"},
+                  {"xmlns:xlink", "http://www.w3.org/1999/xlink"},
+                  {"width", SvgNumber(format.width_px)},
+                  {"height", SvgNumber(height_px)},
+                  {"viewBox", "0 0 " + SvgNumber(format.width_px) + " " + SvgNumber(height_px)},
+                  {"font-family", "DejaVu Sans, Arial, sans-serif"},
+                  {"font-size", SvgNumber(format.text_px)}});
+  if (!format.transparent)
+    AddElement(svg, "rect", {{"width", "100%"}, {"height", "100%"}, {"fill", "#FFFFFF"}});
+  return svg;
+}
+
+double AddChart(pugi::xml_node svg, const Chart& chart, const ChartFormat& format, double top_px) {
+  Drawing drawing(chart, format);
+  drawing.AddTo(AddElement(svg, "g", {{"transform", "translate(0 " + SvgNumber(top_px) + ")"}}));
+  return drawing.Height();
+}
+
+std::string ChartForPage(const Chart& chart, const ChartFormat& format, const std::string& label) {
+  pugi::xml_document document;
+  Drawing drawing(chart, format);
+  drawing.AddTo(AddElement(
+      document, "svg",
+      {{"class", format.page_class},
+       {"viewBox", "0 0 " + SvgNumber(format.width_px) + " " + SvgNumber(drawing.Height())},
+       {"role", "img"},
+       {"aria-label", label},
+       {"data-left", SvgNumber(drawing.Left())},
+       {"data-end", SvgNumber(chart.to_s)},
+       {"data-per-second", SvgNumber(drawing.PerSecond())}}));
+  return ToText(document, Layout::kAsItIs);
+}
+
+std::string ChartSvg(const Chart& chart, const ChartFormat& format) {
+  pugi::xml_document document;
+  Drawing drawing(chart, format);
+  drawing.AddTo(AddDrawing(document, format, drawing.Height()));
+  return ToText(document, Layout::kIndented);
+}
+
+}  // namespace prehend::show

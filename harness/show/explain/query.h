@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What somebody asks to have explained, as typed: "reaching@1.24s", "sliding right_hand milk
+// @2.0s", "supported_by(milk, table) @ 900 ms", "sliding object=milk". Tested by
+// tests/harness/show/explain/explain_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "grammar/program/program.h"
+#include "harness/base/base/result.h"
+
+namespace prehend::show {
+
+struct Ask {
+  grammar::RuleId rule;
+  grammar::Binding entities = grammar::kUnbound;  ///< kNone: whoever
+  std::optional<double> time_s;
+};
+
+/// Complains about names, classes and times with the place in the text, which is called `option`.
+/// Roles come in the order of the rule's head or as role=entity; `any`, or none at all, leaves them
+/// open.
+Result<Ask> ParseAsk(const std::string& option, const std::string& text,
+                     const grammar::Program& program, const grammar::EntityTable& entity_table);
+
+}  // namespace prehend::show

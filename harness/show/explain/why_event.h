@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why an interval has its boundaries, counts, and was decided when it was: from the form of its
+// rule and the clauses that turned, into the rules that those refer to. Tested by
+// tests/harness/show/explain/explain_test.cc
+#pragma once
+
+#include "harness/show/explain/clauses.h"
+
+namespace prehend::show {
+
+inline constexpr int kMaxDepth = 8;  ///< rules behind rules
+
+class EventReasons {
+ public:
+  explicit EventReasons(grammar::ReplayMonitor& past) : past_(past), clauses_(past) {}
+
+  /// Everything about one interval of a binding. `brief`: only what turned, for one line per event.
+  WhyEvent Explain(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,
+                   bool brief = false);
+
+  Reasons Begin(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,
+                int depth = 0);
+  Reasons End(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,
+              int depth = 0);
+
+  /// Of an interval that looks back along an approach: the turn or the pause before which it cannot
+  /// begin; nothing if it is cut by something else.
+  Reasons CutOfWalk(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome);
+
+ private:
+  Reasons BeginOfWalk(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,
+                      int depth);
+  Reasons BeginOrEndOfRest(grammar::InstanceId instance, grammar::FrameNumber frame, bool begins,
+                           int depth);
+  Reasons BeginOrEndOfAny(grammar::InstanceId instance, grammar::FrameNumber frame, bool end,
+                          int depth);
+  Reasons Parts(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome, int depth);
+  std::string TurnText(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome);
+  std::string PauseText(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome);
+  bool ChooseParts(grammar::InstanceId instance, const grammar::CandidateOutcome& whole,
+                   std::vector<const grammar::CandidateOutcome*>& chosen);
+  Reasons Counted(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome);
+  Reasons Waited(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome, int depth);
+  Reasons WaitedFor(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,
+                    int depth);
+  double LooksBack_s(grammar::InstanceId instance);
+  Reasons Change(grammar::NodeId node, const Moment& at, bool truth, int depth);
+  Clauses::Follow FollowFrom(int depth);
+  const grammar::Node& NodeAt(grammar::NodeId node) const { return past_.program().nodes[node]; }
+  std::string Seconds(double seconds) const;
+
+  grammar::ReplayMonitor& past_;
+  Clauses clauses_;
+  bool brief_ = false;
+};
+
+}  // namespace prehend::show

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why an interval that was expected is none: the run that nearly was one and what it lacked, or
+// else the first clause that failed where the condition came closest, into the rules that it refers
+// to. Tested by tests/harness/show/explain/why_missing_test.cc
+#pragma once
+
+#include <functional>
+#include <map>
+
+#include "harness/show/explain/why_event.h"
+
+namespace prehend::show {
+
+class MissingReasons {
+ public:
+  explicit MissingReasons(grammar::ReplayMonitor& past)
+      : past_(past), clauses_(past), events_(past) {}
+
+  /// Of the bindings the one that came closest. `at`: where it should have been; otherwise
+  /// anywhere.
+  WhyMissing Explain(const std::vector<grammar::InstanceId>& instances,
+                     std::optional<grammar::FrameNumber> at);
+
+ private:
+  /// The frames to look at, and the one that it is about.
+  struct Window {
+    grammar::FrameNumber first = 0;
+    grammar::FrameNumber last = 0;
+    std::optional<grammar::FrameNumber> at = std::nullopt;
+  };
+  struct Blame {
+    Reasons reasons;
+    double closeness = 0;  ///< of runs 1 to 2, of conditions less
+  };
+  Window Whole() { return {0, past_.frames() - 1}; }
+  Window Around(grammar::FrameNumber frame);
+  /// Likewise, for what stands behind something else: not beyond the moment that was asked for.
+  Window Within(const Window& window, grammar::FrameNumber frame);
+
+  Blame OfInstance(grammar::InstanceId instance, const Window& window, int depth);
+  /// What became of the runs of a binding, and every `until` that nothing led to. The monitor notes
+  /// none of these while something that every run needs is false.
+  const grammar::CandidateLog& RunsOf(grammar::InstanceId instance);
+  const grammar::CandidateOutcome* NearestRun(grammar::InstanceId instance, const Window& window);
+  double RunCloseness(const grammar::CandidateOutcome& outcome);
+  /// "to touching(hand, cup) ends", "without touching(hand, cup) begins"
+  std::string Awaited(grammar::InstanceId instance);
+  std::string HowLate(const grammar::CandidateOutcome& outcome);
+  /// What became of a run, and why.
+  struct Fate {
+    std::string how;
+    Reasons because;
+  };
+  Fate OfLength(const grammar::CandidateOutcome& outcome);
+  Fate Unconfirmed(const grammar::CandidateOutcome& outcome, int depth);
+  Fate WithoutEnd(const grammar::CandidateOutcome& outcome, grammar::FrameNumber look_until);
+  Fate NothingBefore(const grammar::CandidateOutcome& outcome);
+  Fate FateOf(const grammar::CandidateOutcome& outcome, int depth, grammar::FrameNumber look_until);
+  /// The clauses of a condition, each after this word.
+  void AddClauses(const char* word, grammar::NodeId node, const Moment& at, Reasons& reasons);
+  std::string Lasted(const grammar::CandidateOutcome& outcome);
+  /// `look_until`: what came later than that could not have helped.
+  Blame OfRun(const grammar::CandidateOutcome& outcome, int depth,
+              grammar::FrameNumber look_until = grammar::kNever);
+  /// Clauses, and how far they are from being as they have to be, as a share of a limit; infinite
+  /// where nothing was measured.
+  struct Weighed {
+    Reasons reasons;
+    double missed = 0;
+  };
+  static Weighed Weigh(Reason reason);
+  /// The clauses of a node. What stands in its way is first: of alternatives the one that missed by
+  /// least, of what is needed together the one that missed by most.
+  Weighed Weigh(grammar::NodeId node, const Moment& at, bool truth,
+                const std::function<Weighed(const Clauses::Clause&)>& tell);
+  Reasons Requirement(const grammar::CandidateOutcome& outcome, int depth);
+  Reasons EndThatNeverCame(const grammar::CandidateOutcome& outcome,
+                           grammar::FrameNumber look_until);
+  Blame OfForm(grammar::InstanceId instance, const Window& window, int depth);
+  Blame OfWhile(grammar::InstanceId instance, const Window& window, int depth);
+  Blame OfFromTo(grammar::InstanceId instance, const Window& window, int depth);
+  Blame OfUntil(grammar::InstanceId instance, const Window& window, int depth);
+  std::optional<Blame> OfLaterEnd(grammar::InstanceId instance, grammar::FrameNumber at, int depth);
+  Blame OfRest(grammar::InstanceId instance, const Window& window, int depth);
+  Blame OfAny(grammar::InstanceId instance, const Window& window, int depth);
+  Blame OfCompose(grammar::InstanceId instance, const Window& window, int depth);
+  Blame OfFact(grammar::InstanceId instance, const Window& window);
+
+  /// The clauses of a condition where they came closest to holding, the first failed one followed.
+  Blame OfClauses(grammar::NodeId node, Moment at, const Window& window, int depth);
+  /// What a condition holds by that should not: references of its clauses, of `any` the bindings.
+  Reasons WhyItHolds(grammar::InstanceId instance, grammar::FrameNumber frame);
+  void Follow(Reason& reason, grammar::InstanceId target, grammar::FrameNumber frame,
+              const Window& window, int depth);
+  Reason ClosestApproach(grammar::InstanceId instance, const Window& window);
+  grammar::FrameNumber Closest(grammar::NodeId node, Moment at, const Window& window);
+  /// The moment never came.
+  Blame OfMoment(grammar::NodeId node, grammar::InstanceId instance, const Window& window,
+                 int depth);
+  Reason Intervals(grammar::InstanceId instance, std::string how);
+
+  grammar::ReplayMonitor& past_;
+  Clauses clauses_;
+  EventReasons events_;
+  std::map<grammar::InstanceId, grammar::CandidateLog> runs_until_;  ///< RunsOf() `until .. since`
+};
+
+}  // namespace prehend::show

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/show/figures/figures.h. Tested by tests/harness/show/figures/figures_test.cc
+#include "harness/show/figures/figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "harness/show/figures/moments.h"
+#include "harness/truth/timeline/event_text.h"
+#include "physics/scene/geometry.h"
+
+namespace prehend::show {
+namespace {
+
+using grammar::DrawnAs;
+using grammar::NamedEvent;
+
+constexpr double kForceWindow_s = 0.05;  ///< forces are means over so long
+constexpr double kMoves_m = 0.01;        ///< what rises or sinks less has no curve
+
+/// The roles but that of the hand: "milk".
+std::string OthersOf(const episode::RunResult& run, const NamedEvent& event) {
+  const truth::EventDrawing& drawing = run.drawings.Of(event.event);
+  std::string others;
+  for (std::size_t i = 0; i < event.roles.size(); ++i) {
+    if (i == drawing.hand || truth::IsAttribute(event.roles[i])) continue;
+    others += (others.empty() ? "" : ", ") + event.roles[i].value;
+  }
+  return others;
+}
+
+Bar BarOf(const episode::RunResult& run, const NamedEvent& event, std::string text) {
+  return {.begin_s = SecondsOf(run, event.interval.begin),
+          .end_s = SecondsOf(run, event.interval.end),
+          .text = std::move(text),
+          .color = run.drawings.Of(event.event).color,
+          .kind = event.event};
+}
+
+/// The phases of each hand, in the order of the hands.
+std::vector<Row> PhaseRows(const scenario::Scenario& scenario, const episode::RunResult& run,
+                           const Window& window) {
+  std::vector<Row> rows;
+  for (const physics::Hand& hand : scenario.scene.hands) {
+    Row row{.name = hand.name, .bars = {}};
+    for (const NamedEvent& event : run.timeline.events) {
+      if (run.drawings.Of(event.event).as == DrawnAs::kPhase && HandOf(run, event) == hand.name &&
+          window.Shows(scenario, event))
+        row.bars.push_back(BarOf(run, event, event.event));
+    }
+    if (!row.bars.empty()) rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace
+
+Chart PhasesChart(const scenario::Scenario& scenario, const episode::RunResult& run,
+                  const Window& window) {
+  Chart chart{.title = scenario.name + ", " + scenario.grammar,
+              .from_s = window.from_s,
+              .to_s = window.to_s,
+              .rows = PhaseRows(scenario, run, window),
+              .panels = {}};
+  std::vector<Row> others;
+  for (const NamedEvent& event : run.timeline.events) {
+    const truth::EventDrawing& drawing = run.drawings.Of(event.event);
+    if (drawing.as == DrawnAs::kPhase || drawing.as == DrawnAs::kNothing) continue;
+    if (!window.Shows(scenario, event)) continue;
+    const bool of_hand = drawing.as == DrawnAs::kGrasp;
+    const std::string name = of_hand ? HandOf(run, event) + ": " + event.event : event.event;
+    auto row = std::ranges::find(others, name, &Row::name);
+    // Events of one row that overlap need rows of their own.
+    int copy = 1;
+    while (row != others.end() &&
+           row->bars.back().end_s > SecondsOf(run, event.interval.begin) + 1e-9) {
+      row = std::ranges::find(others, fmt::format("{} {}", name, ++copy), &Row::name);
+    }
+    if (row == others.end()) {
+      others.push_back({copy == 1 ? name : fmt::format("{} {}", name, copy), {}});
+      row = others.end() - 1;
+    }
+    row->bars.push_back(BarOf(run, event, of_hand ? OthersOf(run, event) : event.Label()));
+    if (!of_hand) {
+      std::string& text = row->bars.back().text;  // "contact(milk, table)" -> "milk, table"
+      const std::size_t open = text.find('(');
+      if (open != std::string::npos) text = text.substr(open + 1, text.size() - open - 2);
+    }
+  }
+  std::ranges::stable_sort(others, {}, &Row::name);
+  chart.rows.insert(chart.rows.end(), others.begin(), others.end());
+  return chart;
+}
+
+Chart SideBySide(Chart chart, const std::string& here, const Chart& other,
+                 const std::string& there) {
+  std::vector<Row> rows;
+  std::vector<bool> taken(other.rows.size(), false);
+  const auto add = [&](const Row& row, const std::string& whose) {
+    rows.push_back({fmt::format("{} ({})", row.name, whose), row.bars, row.hatches});
+  };
+  for (const Row& row : chart.rows) {
+    add(row, here);
+    for (std::size_t i = 0; i < other.rows.size(); ++i) {
+      if (other.rows[i].name != row.name) continue;
+      add(other.rows[i], there);
+      taken[i] = true;
+    }
+  }
+  for (std::size_t i = 0; i < other.rows.size(); ++i) {
+    if (!taken[i]) add(other.rows[i], there);
+  }
+  chart.rows = std::move(rows);
+  return chart;
+}
+
+Chart SeriesChart(const scenario::Scenario& scenario, const episode::RunResult& run,
+                  const Window& window) {
+  Chart chart{.title = scenario.name + ", " + scenario.grammar,
+              .from_s = window.from_s,
+              .to_s = window.to_s,
+              .rows = PhaseRows(scenario, run, window),
+              .panels = {}};
+  const physics::Scene& scene = scenario.scene;
+  Panel heights{"height, m", {}}, triggers{"trigger", {}}, forces{"force of touch, N", {}};
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const physics::Body& body = scene.bodies[i];
+    if (body.fixed || body.kinematic || body.grains) continue;
+    Curve curve{body.name, {}};
+    double least = 1e9, most = -1e9;
+    for (const physics::Snapshot& snapshot : run.recording) {
+      const double height_m = snapshot.bodies[i].X_WB.p_m.z();
+      curve.points.emplace_back(SecondsOf(run, snapshot.tick), height_m);
+      least = std::min(least, height_m);
+      most = std::max(most, height_m);
+    }
+    if (most - least >= kMoves_m) heights.curves.push_back(std::move(curve));
+  }
+  const double rate_hz = scene.world.rate_hz, share = 1 / (kForceWindow_s * rate_hz);
+  for (std::size_t h = 0; h < scene.hands.size(); ++h) {
+    Curve trigger{scene.hands[h].name, {}}, force{scene.hands[h].name, {}};
+    double mean_n = 0;
+    for (const physics::Snapshot& snapshot : run.recording) {
+      const double time_s = SecondsOf(run, snapshot.tick);
+      trigger.points.emplace_back(time_s, snapshot.hands[h].trigger);
+      double impulse_n_s = 0;
+      for (const auto& part : snapshot.AllContacts()) {
+        for (const physics::ContactPoint& point : part) {
+          const physics::HandIndex index(h);
+          if (point.a.hand == index || point.b.hand == index)
+            impulse_n_s += point.normal_impulse_n_s;
+        }
+      }
+      mean_n += std::min(share, 1.0) * (impulse_n_s * rate_hz - mean_n);
+      force.points.emplace_back(time_s, mean_n);
+    }
+    triggers.curves.push_back(std::move(trigger));
+    forces.curves.push_back(std::move(force));
+  }
+  for (Panel* panel : {&heights, &triggers, &forces})
+    if (!panel->curves.empty()) chart.panels.push_back(std::move(*panel));
+  return chart;
+}
+
+std::optional<Chart> GazeChart(const scenario::Scenario& scenario, const episode::RunResult& run,
+                               const Window& window) {
+  const physics::Scene& scene = scenario.scene;
+  if (scene.persons.empty()) return std::nullopt;
+  Chart chart{.title = scenario.name + ", " + scenario.grammar,
+              .from_s = window.from_s,
+              .to_s = window.to_s,
+              .rows = PhaseRows(scenario, run, window),
+              .panels = {}};
+  for (const NamedEvent& event : run.timeline.events) {
+    if (run.drawings.Of(event.event).as != DrawnAs::kGrasp) continue;
+    const std::string name = HandOf(run, event) + ": " + event.event;
+    auto row = std::ranges::find(chart.rows, name, &Row::name);
+    if (row == chart.rows.end()) row = chart.rows.insert(chart.rows.end(), {name, {}});
+    row->bars.push_back(BarOf(run, event, OthersOf(run, event)));
+  }
+  // Rows in the order of the names; what a person looks at.
+  std::map<std::string, Row> rows;
+  for (const Look& look : Looks(scenario, run, window)) {
+    const std::string name = look.person + " sees " + look.seen;
+    Row& row = rows.try_emplace(name, Row{name, {}}).first->second;
+    row.bars.push_back({.begin_s = look.begin_s,
+                        .end_s = look.end_s,
+                        .text = fmt::format("{:.2f} s", look.Dwell_s()),
+                        .color = 0x0072B2});
+  }
+  for (auto& [name, row] : rows) chart.rows.push_back(std::move(row));
+  Panel distances{"distance to what is seen, m", {}};
+  for (std::size_t p = 0; p < scene.persons.size(); ++p) {
+    Curve distance{scene.persons[p].name, {}};
+    for (const physics::Snapshot& snapshot : run.recording) {
+      const physics::GazeState& gaze = snapshot.gazes[p];
+      const bool sees = gaze.body != physics::kNone || gaze.hand != physics::kNone;
+      distance.points.emplace_back(
+          SecondsOf(run, snapshot.tick),
+          sees ? gaze.distance_m : std::numeric_limits<double>::quiet_NaN());
+    }
+    distances.curves.push_back(std::move(distance));
+  }
+  chart.panels.push_back(std::move(distances));
+  return chart;
+}
+
+}  // namespace prehend::show

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/show/figures/moments.h. Tested by tests/harness/show/figures/moments_test.cc
+#include "harness/show/figures/moments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+
+#include "harness/episode/run/event_time.h"
+#include "harness/truth/timeline/event_text.h"
+#include "physics/scene/geometry.h"
+
+namespace prehend::show {
+namespace {
+
+using grammar::DrawnAs;
+using grammar::NamedEvent;
+
+constexpr double kAtOnce_s = 0.15;
+
+struct Phase {
+  double begin_s = 0, end_s = 0;
+  std::string name;
+  std::vector<std::string> involved;
+};
+
+/// What hands do, if it begins in the window.
+std::vector<Phase> PhasesIn(const episode::RunResult& run, const Window& window) {
+  std::vector<Phase> phases;
+  for (const NamedEvent& event : run.timeline.events) {
+    Phase phase{.begin_s = SecondsOf(run, event.interval.begin),
+                .end_s = SecondsOf(run, event.interval.end),
+                .name = event.event,
+                .involved = {}};
+    const bool is_phase = run.drawings.Of(event.event).as == DrawnAs::kPhase;
+    if (!is_phase || phase.begin_s < window.from_s || phase.begin_s > window.to_s) continue;
+    for (const grammar::Role& role : event.roles) phase.involved.push_back(role.value);
+    phases.push_back(std::move(phase));
+  }
+  return phases;
+}
+
+}  // namespace
+
+std::vector<KeyMoment> KeyMoments(const episode::RunResult& run, const Window& window,
+                                  std::size_t most) {
+  std::vector<Phase> phases = PhasesIn(run, window);
+  std::map<double, KeyMoment> moments;
+  const auto add = [&](double time_s, const std::string& caption, const Phase* phase) {
+    if (moments.size() >= most || time_s > window.to_s) return;
+    moments.try_emplace(
+        time_s, KeyMoment{.time_s = time_s,
+                          .caption = caption,
+                          .involved = phase ? phase->involved : std::vector<std::string>()});
+  };
+  const Phase* last =
+      phases.empty() ? nullptr : &*std::ranges::max_element(phases, {}, &Phase::end_s);
+  // The begin of an episode in which something happens at once shows nothing of its own.
+  const bool at_once = !phases.empty() && phases.front().begin_s - window.from_s < kAtOnce_s,
+             at_last = last && std::abs(window.to_s - last->end_s) < kAtOnce_s;
+  if (!at_once) add(window.from_s, "begin", phases.empty() ? nullptr : &phases.front());
+  if (!at_last) add(window.to_s, "end", last);
+  for (const Phase& phase : phases) add(phase.begin_s, phase.name + " begins", &phase);
+  if (last) add(last->end_s, last->name + " ends", last);
+  std::ranges::sort(phases, std::greater<>(),
+                    [](const Phase& phase) { return phase.end_s - phase.begin_s; });
+  for (const Phase& phase : phases) add((phase.begin_s + phase.end_s) / 2, phase.name, &phase);
+  std::vector<KeyMoment> found;
+  for (auto& [time_s, moment] : moments) found.push_back(std::move(moment));
+  return found;
+}
+
+std::vector<double> SpreadMoments(const episode::RunResult& run, const Window& window,
+                                  std::size_t count) {
+  double from_s = window.from_s, to_s = window.to_s;
+  const std::vector<Phase> phases = PhasesIn(run, window);
+  if (!phases.empty()) {
+    from_s = std::max(from_s, std::ranges::min_element(phases, {}, &Phase::begin_s)->begin_s);
+    to_s = std::min(to_s, std::ranges::max_element(phases, {}, &Phase::end_s)->end_s);
+  }
+  std::vector<double> times_s;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    times_s.push_back(from_s + share * (to_s - from_s));
+  }
+  return times_s;
+}
+
+std::vector<KeyMoment> SpreadScenes(const episode::RunResult& run, const Window& window,
+                                    std::size_t count) {
+  std::vector<KeyMoment> moments;
+  for (const double time_s : SpreadMoments(run, window, count))
+    moments.push_back({.time_s = time_s, .caption = ""});
+  return moments;
+}
+
+std::vector<KeyMoment> EventMoments(const episode::RunResult& run, const Window& window,
+                                    std::size_t count) {
+  std::vector<KeyMoment> moments;
+  for (std::size_t most = count; moments.size() < count && most <= count + 2; ++most) {
+    moments = KeyMoments(run, window, most);
+    std::erase_if(moments, [](const KeyMoment& moment) {
+      return moment.caption == "begin" || moment.caption == "end";
+    });
+  }
+  return moments;
+}
+
+tl::expected<std::vector<KeyMoment>, std::string> NamedMoments(
+    const std::vector<std::string>& names, const grammar::Program& program,
+    const episode::RunResult& run) {
+  std::vector<KeyMoment> moments;
+  for (const std::string& name : names) {
+    if (const auto problem = episode::WhyNoEventTime(name, program))
+      return tl::unexpected(problem->message + "; " + problem->hint);
+    const episode::FoundTime found = episode::FindEventTime(name, run);
+    if (!found.missed.empty()) return tl::unexpected(found.missed);
+    moments.push_back({.time_s = SecondsOf(run, found.tick), .caption = name});
+  }
+  return moments;
+}
+
+std::vector<Look> Looks(const scenario::Scenario& scenario, const episode::RunResult& run,
+                        const Window& window) {
+  const physics::Scene& scene = scenario.scene;
+  std::vector<Look> looks;
+  for (std::size_t p = 0; p < scene.persons.size(); ++p) {
+    bool goes_on = false;
+    std::vector<double> distances_m;
+    const auto finish = [&] {
+      if (goes_on) looks.back().distance_m = distances_m[distances_m.size() / 2];
+      goes_on = false;
+    };
+    for (const physics::Snapshot& snapshot : run.recording) {
+      const double time_s = SecondsOf(run, snapshot.tick);
+      if (time_s < window.from_s || time_s > window.to_s) continue;
+      const physics::GazeState& gaze = snapshot.gazes[p];
+      const std::string seen = gaze.body != physics::kNone   ? scene.body(gaze.body).name
+                               : gaze.hand != physics::kNone ? scene.hand(gaze.hand).name
+                                                             : std::string();
+      if (goes_on && looks.back().seen != seen) finish();
+      if (seen.empty()) continue;
+      if (!goes_on) {
+        looks.push_back({.begin_s = time_s, .person = scene.persons[p].name, .seen = seen});
+        distances_m.clear();
+        goes_on = true;
+      }
+      looks.back().end_s = time_s;
+      distances_m.push_back(gaze.distance_m);
+    }
+    finish();
+  }
+  std::ranges::stable_sort(looks, {}, &Look::begin_s);
+  return looks;
+}
+
+std::optional<HeldMoment> LongestGrasp(const scenario::Scenario& scenario,
+                                       const episode::RunResult& run) {
+  const NamedEvent* longest = nullptr;
+  for (const NamedEvent& event : run.timeline.events) {
+    if (run.drawings.Of(event.event).as != DrawnAs::kGrasp ||
+        truth::RoleValue(event, "style").empty())
+      continue;
+    if (!longest ||
+        event.interval.end - event.interval.begin > longest->interval.end - longest->interval.begin)
+      longest = &event;
+  }
+  if (!longest) return std::nullopt;
+  const grammar::Tick middle = (longest->interval.begin + longest->interval.end) / 2;
+  HeldMoment moment{.time_s = SecondsOf(run, middle),
+                    .style = truth::RoleValue(*longest, "style"),
+                    .sensor_sets = {}};
+  const physics::Scene& scene = scenario.scene;
+  const auto hand = std::ranges::find(scene.hands, HandOf(run, *longest), &physics::Hand::name);
+  const auto snapshot = std::ranges::find_if(
+      run.recording, [&](const physics::Snapshot& one) { return one.tick >= middle; });
+  if (hand == scene.hands.end() || snapshot == run.recording.end()) return moment;
+  // Only of what is held: a finger may touch the table, too.
+  const std::size_t role = run.drawings.Of(longest->event).first;
+  const physics::BodyIndex held = role < longest->roles.size()
+                                      ? physics::FindBody(scene, longest->roles[role].value)
+                                      : physics::kNone;
+  std::set<int> sets;
+  const physics::HandIndex index(hand - scene.hands.begin());
+  for (const physics::ContactPoint& point : snapshot->contacts) {
+    for (const physics::ContactSide& side : {point.a, point.b}) {
+      const bool touches_held = point.a.body == held || point.b.body == held;
+      if (side.hand != index || !touches_held) continue;
+      sets.insert(side.link == physics::kNone ? hand->model.palm_sensor_set
+                                              : hand->model.link(side.link).sensor_set);
+    }
+  }
+  for (const int set : sets) {
+    if (set >= 0 && set < static_cast<int>(hand->model.sensor_sets.size()))
+      moment.sensor_sets.push_back(hand->model.sensor_sets[static_cast<std::size_t>(set)]);
+  }
+  return moment;
+}
+
+}  // namespace prehend::show

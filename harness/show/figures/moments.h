@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which moments of an episode a figure shows. Tested by tests/harness/show/figures/moments_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "harness/show/figures/window.h"
+
+namespace prehend::show {
+
+/// Moments that tell the story: the begins of what hands do, the end of the last of it, and in
+/// between the middle of what takes longest; at most `most`, in the order of time.
+struct KeyMoment {
+  double time_s = 0;
+  std::string caption;                ///< "reaching begins"
+  std::vector<std::string> involved;  ///< the hand and the things that it is about
+};
+std::vector<KeyMoment> KeyMoments(const episode::RunResult& run, const Window& window,
+                                  std::size_t most);
+
+/// The middle of so many equal parts of what hands do in the window; of all of it if they do
+/// nothing.
+std::vector<double> SpreadMoments(const episode::RunResult& run, const Window& window,
+                                  std::size_t count);
+/// The same without captions.
+std::vector<KeyMoment> SpreadScenes(const episode::RunResult& run, const Window& window,
+                                    std::size_t count);
+
+/// Key moments but begin and end of the episode, which a chart shows anyway.
+std::vector<KeyMoment> EventMoments(const episode::RunResult& run, const Window& window,
+                                    std::size_t count);
+
+/// Those that are named, as for FindEventTime(), or why there is no such moment.
+tl::expected<std::vector<KeyMoment>, std::string> NamedMoments(
+    const std::vector<std::string>& names, const grammar::Program& program,
+    const episode::RunResult& run);
+
+/// A person sees something for a while.
+struct Look {
+  double begin_s = 0, end_s = 0, distance_m = 0;  ///< the distance in the middle
+  std::string person, seen;
+
+  double Dwell_s() const { return end_s - begin_s; }
+  double Middle_s() const { return (begin_s + end_s) / 2; }
+};
+/// All looks of all persons in the window, in the order of their begins.
+std::vector<Look> Looks(const scenario::Scenario& scenario, const episode::RunResult& run,
+                        const Window& window);
+
+/// A hand holds something in some style: when, and with which sensors.
+struct HeldMoment {
+  double time_s = 0;
+  std::string style;
+  std::vector<std::string> sensor_sets;  ///< that touch what is held, in the hand's order
+};
+/// The middle of the longest grasp that has a style.
+std::optional<HeldMoment> LongestGrasp(const scenario::Scenario& scenario,
+                                       const episode::RunResult& run);
+
+}  // namespace prehend::show

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/show/figures/scene_tiles.h. Tested by tests/harness/show/figures/scene_tiles_test.cc
+#include "harness/show/figures/scene_tiles.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <map>
+
+#include "harness/scenario/scenario/own_camera.h"
+
+namespace prehend::show {
+namespace {
+
+constexpr int kMostColumns = 5, kGraspColumns = 4;
+constexpr double kScenePixels = 2.5;  ///< of a scene for each pixel of the drawing
+constexpr double kTextScale = 2;      ///< of labels, as scenes are shown small
+
+/// Okabe and Ito's palette ("Color Universal Design", 2008), for sets of sensors.
+constexpr std::array<std::uint32_t, 7> kSetColors = {0x56B4E9, 0xE69F00, 0x009E73, 0xCC79A7,
+                                                     0xF0E442, 0xD55E00, 0x0072B2};
+
+int ColumnsFor(std::size_t tiles, int most) {
+  const int count = std::max(1, static_cast<int>(tiles));
+  const int rows = (count + most - 1) / most;
+  return (count + rows - 1) / rows;
+}
+
+/// Hands and small things; a text for each would hide what is small.
+SceneFormat Bare(SceneFormat format) {
+  format.picture.ghosts = format.picture.paths = format.picture.labels = false;
+  return format;
+}
+
+}  // namespace
+
+std::string AddScene(const scenario::Scenario& scenario, const episode::RunResult& run,
+                     double time_s, const std::string& caption, const SceneFormat& format,
+                     ScenePainter& painter, TileRow& row) {
+  PictureFormat picture = format.picture;
+  const double width_px = kScenePixels * TileWidth(format.chart, row.columns);
+  picture.width_px = static_cast<int>(width_px);
+  picture.height_px = static_cast<int>(row.height_share * width_px);
+  picture.title = picture.strip = false;
+  picture.text_scale *= kTextScale;
+  scenario::PictureYaml entry;
+  entry.at.value = fmt::format("{:.6f}", time_s);
+  entry.camera.value = format.camera;
+  const DrawnScene drawn = painter.Draw(scenario, run, entry, picture);
+  row.tiles.push_back({.png = drawn.png, .caption = caption});
+  return drawn.png;
+}
+
+std::string WideView(const scenario::Scenario& scenario, const episode::RunResult& run,
+                     double time_s, const SceneFormat& format) {
+  constexpr double kNearer = 0.75;
+  PictureFormat picture = format.picture;
+  picture.width_px = 1000;
+  picture.height_px = static_cast<int>(1000 * kWideScene);
+  picture.strip = false;
+  scenario::PictureYaml entry;
+  entry.at.value = fmt::format("{:.6f}", time_s);
+  entry.camera.value = format.camera;
+  const std::string camera = ScenePainter::CameraOf(scenario, run, entry, picture);
+  const auto view = scenario::ParseOwnCamera(camera);
+  if (!view || format.camera != "action") return camera;
+  return fmt::format("{}:{:.3f}", camera.substr(0, camera.rfind(':')), kNearer * view->view_deg);
+}
+
+Sheet KeyFrameSheet(const scenario::Scenario& scenario, const episode::RunResult& run,
+                    const std::vector<KeyMoment>& moments, const SceneFormat& format,
+                    ScenePainter& painter) {
+  TileRow row{.tiles = {}, .columns = ColumnsFor(moments.size(), kMostColumns)};
+  SceneFormat bare = Bare(format);
+  bare.picture.regions = true;
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    bare.picture.framed = moments[i].involved;
+    const std::string caption =
+        fmt::format("({}) {}\n{:.2f} s", LetterOf(i), moments[i].caption, moments[i].time_s);
+    AddScene(scenario, run, moments[i].time_s, caption, bare, painter, row);
+  }
+  return {.title = scenario.name + ", " + scenario.grammar, .rows = {std::move(row)}};
+}
+
+Sheet WithScenes(Chart chart, const scenario::Scenario& scenario, const episode::RunResult& run,
+                 const std::vector<KeyMoment>& moments, const SceneFormat& format,
+                 ScenePainter& painter) {
+  Sheet sheet;
+  TileRow row{
+      .tiles = {}, .columns = ColumnsFor(moments.size(), kMostColumns), .height_share = kWideScene};
+  SceneFormat wide = format;
+  if (format.camera != "hand" && !moments.empty()) wide.camera = WideView(scenario, run, 0, format);
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    const double time_s = moments[i].time_s;
+    chart.marks.push_back({.time_s = time_s, .letter = LetterOf(i)});
+    AddScene(scenario, run, time_s,
+             fmt::format("({}) {}{:.2f} s", LetterOf(i),
+                         moments[i].caption.empty() ? "" : moments[i].caption + "\n", time_s),
+             wide, painter, row);
+  }
+  sheet.title = std::exchange(chart.title, {});
+  if (!row.tiles.empty()) sheet.rows.push_back(std::move(row));
+  sheet.chart = std::move(chart);
+  return sheet;
+}
+
+std::vector<KeyMoment> LongestLooks(const scenario::Scenario& scenario,
+                                    const episode::RunResult& run, const Window& window,
+                                    std::size_t most) {
+  std::vector<Look> looks = Looks(scenario, run, window);
+  std::ranges::stable_sort(looks, std::greater<>(), &Look::Dwell_s);
+  looks.resize(std::min(most, looks.size()));
+  std::ranges::stable_sort(looks, {}, &Look::begin_s);
+  std::vector<KeyMoment> moments;
+  for (const Look& look : looks) {
+    moments.push_back({.time_s = look.Middle_s(),
+                       .caption = fmt::format("{} sees {} for {:.2f} s, {:.2f} m away", look.person,
+                                              look.seen, look.Dwell_s(), look.distance_m),
+                       .involved = {look.person, look.seen}});
+  }
+  return moments;
+}
+
+Sheet GraspSheet(const std::vector<HeldScene>& scenes, const SceneFormat& format,
+                 ScenePainter& painter) {
+  Sheet sheet;
+  TileRow row{.tiles = {}, .columns = ColumnsFor(scenes.size(), kGraspColumns)};
+  SceneFormat bare = Bare(format);
+  // Only sets that touch something somewhere have a colour, in the order in which they appear.
+  for (const HeldScene& scene : scenes) {
+    for (const std::string& set : scene.held.sensor_sets) {
+      auto& colors = bare.picture.sensor_colors;
+      if (colors.count(set) > 0) continue;
+      const std::uint32_t color = kSetColors[colors.size() % kSetColors.size()];
+      colors[set] = color;
+      sheet.legend.emplace_back(set, color);
+    }
+  }
+  const auto all = bare.picture.sensor_colors;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const HeldScene& scene = scenes[i];
+    bare.picture.sensor_colors.clear();
+    for (const std::string& set : scene.held.sensor_sets)
+      bare.picture.sensor_colors[set] = all.at(set);
+    const std::string caption = fmt::format("({}) {}\n{}", LetterOf(i), scene.held.style,
+                                            fmt::join(scene.held.sensor_sets, ", "));
+    AddScene(*scene.scenario, *scene.run, scene.held.time_s, caption, bare, painter, row);
+  }
+  sheet.rows.push_back(std::move(row));
+  if (!sheet.legend.empty()) sheet.note = "Sensors that touch what is held:";
+  return sheet;
+}
+
+}  // namespace prehend::show

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Composes a render::Picture of a recorded run at one moment: camera, colours, paths, ghosts,
+// markers, and the rows of the strip. Tested by tests/harness/show/pictures/compose_picture_test.cc
+#pragma once
+
+#include "harness/show/pictures/pictures.h"
+#include "render/picture.h"
+
+namespace prehend::show {
+
+/// The recording must not be empty. The scenario must outlive the picture.
+render::Picture ComposePicture(const scenario::Scenario& scenario, const episode::RunResult& run,
+                               const scenario::PictureYaml& entry,
+                               const PictureFormat& format = {});
+
+}  // namespace prehend::show

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of a recorded run: what the scenario asks for, composed from the recording and its
+// timeline. Built with the render room (harness/show/pictures/pictures_with_render.cc) or without
+// it (harness/show/pictures/pictures_without_render.cc). Tested by tests/program/acceptance_test.cc
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/episode/run/run_scenario.h"
+#include "harness/scenario/scenario/scenario.h"
+
+namespace prehend::show {
+
+/// What tells a picture from its golden.
+struct PictureDifference {
+  std::vector<std::string> told;  ///< "thing `cup` is missing, ..", most telling first; empty: same
+  bool same_size = false;         ///< both could be read and have the same size
+};
+
+struct WrittenPicture {
+  std::string file;     ///< path as written
+  std::string caption;  ///< "reaching.begin, 0.412 s"
+  std::string missed;   ///< empty, or why the end is shown instead of the moment that was asked for
+  std::string golden = "";            ///< path of the golden that it was compared with; empty: none
+  PictureDifference difference = {};  ///< from it
+};
+
+/// How pictures are drawn, whatever they show.
+struct PictureFormat {
+  int width_px = 1280, height_px = 720;
+  double text_scale = 1;
+  bool print = false;                  ///< on white paper
+  bool transparent = false;            ///< without paper
+  std::optional<double> from_s, to_s;  ///< the strip, paths and ghosts of this part of the episode
+  std::string only;                    ///< this hand's paths, ghosts and rows; empty: all
+  std::string of;  ///< the path of this entity, and events with it in a role; empty: all events
+  std::vector<std::string> marked;  ///< things that get a bubble around them
+  std::vector<std::string> framed;  ///< the camera shows these things, too, wherever they are
+  /// All cameras but `hand`: what happens between these times. Empty: in the whole episode.
+  std::optional<double> framed_from_s, framed_to_s;
+  /// 0xRRGGBB of the parts of hands with sensors of the set of this name; others look like skin.
+  std::map<std::string, std::uint32_t> sensor_colors = {};
+  bool path_so_far = false;  ///< paths end at the moment, as in a film
+  bool regions = false;      ///< of interest of the phases at the moment, and candidates
+  bool title = true, labels = true, strip = true, ghosts = true, paths = true, gaze = true;
+};
+
+struct PictureResult {
+  std::vector<WrittenPicture> pictures;
+  std::string error;  ///< empty, or why (some) pictures could not be drawn
+};
+
+/// Whether this build can draw at all.
+bool CanDrawPictures();
+
+/// Loads what drawing needs. To be called before processes are forked that draw.
+void PrepareToDraw();
+
+/// Draws the scenario's pictures from a run made with RunOptions::record, as
+/// DIRECTORY/NAME[-2..].png. The directory must exist.
+PictureResult DrawPictures(const scenario::Scenario& scenario, const episode::RunResult& run,
+                           const std::string& directory, const PictureFormat& format = {});
+
+/// The format of the suite's pictures, and so of golden ones: a smaller one shows a boundary that
+/// is off by 20 ms in too few pixels.
+inline const PictureFormat kGoldenFormat = {.width_px = 960, .height_px = 540};
+
+/// What a picture shows, thing by thing, is kept beside it: NAME.png, NAME.things.
+inline std::string ThingsFile(const std::string& picture_file) {
+  return std::filesystem::path(picture_file).replace_extension(".things").string();
+}
+
+/// The golden of a picture with this file name, or "" if there is none.
+using GoldenOf = std::function<std::string(const std::string& file_name)>;
+
+/// DrawPictures() in the golden format; each picture that has a golden is compared with it.
+PictureResult DrawAndCompare(const scenario::Scenario& scenario, const episode::RunResult& run,
+                             const std::string& directory, const GoldenOf& golden_of);
+
+/// DrawPictures() in the golden format, with a THINGS file beside each: what a golden consists of.
+PictureResult DrawGoldens(const scenario::Scenario& scenario, const episode::RunResult& run,
+                          const std::string& directory);
+
+/// One picture into one file.
+PictureResult DrawPicture(const scenario::Scenario& scenario, const episode::RunResult& run,
+                          const scenario::PictureYaml& entry, const std::string& file,
+                          const PictureFormat& format = {});
+
+/// Several pictures in one file, row by row with so many columns. Each has a letter and its moment
+/// in its title.
+PictureResult DrawSheet(const scenario::Scenario& scenario, const episode::RunResult& run,
+                        const std::vector<scenario::PictureYaml>& entries, int columns,
+                        const std::string& file, const PictureFormat& format = {});
+
+/// A picture of a sheet, with a title of its own.
+struct SheetEntry {
+  const scenario::Scenario* scenario = nullptr;
+  const episode::RunResult* run = nullptr;
+  scenario::PictureYaml picture;
+  std::string title;
+};
+
+/// The same of several runs.
+PictureResult DrawSheet(const std::vector<SheetEntry>& entries, int columns,
+                        const std::string& file, const PictureFormat& format = {});
+
+/// Writes the golden in pale grey with every pixel that differs in red; both must have one size.
+/// False when it cannot.
+bool WritePictureDifference(const std::string& golden_file, const std::string& drawn_file,
+                            const std::string& file);
+
+}  // namespace prehend::show

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws and compares pictures, with render/. Tested by tests/program/acceptance_test.cc
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+
+#include "harness/base/base/atomic_file.h"
+#include "harness/base/base/text_file.h"
+#include "harness/episode/run/event_time.h"
+#include "harness/show/pictures/compose_picture.h"
+#include "harness/show/pictures/draw_image.h"
+#include "harness/show/pictures/pictures.h"
+#include "render/inventory.h"
+
+namespace prehend::show {
+
+namespace {
+
+constexpr render::PngKind kSmall = render::PngKind::kSmall;
+
+double SecondsOf(const render::Picture& picture, const episode::RunResult& run) {
+  return static_cast<double>(picture.snapshot.tick) /
+         static_cast<double>(run.timeline.ticks_per_second);
+}
+
+/// What a list of pictures says of one, also if it has no title.
+std::string CaptionOf(const render::Picture& picture, const episode::RunResult& run) {
+  return picture.title.empty() ? fmt::format("{:.3f} s", SecondsOf(picture, run)) : picture.title;
+}
+
+/// Puts an image into a larger one, which it does not leave.
+void Paste(const render::Image& image, int left, int top, render::Image& onto) {
+  for (int y = 0; y < image.height_px; ++y) {
+    const auto from = image.rgb.begin() + 3ll * y * image.width_px;
+    std::copy(from, from + 3ll * image.width_px,
+              onto.rgb.begin() + 3ll * (1ll * (top + y) * onto.width_px + left));
+  }
+}
+
+/// What is done with a drawn picture; returns an error text or "".
+using Keep = std::function<std::string(const render::Picture&, WrittenPicture& as)>;
+
+/// Composes one entry and hands it on; returns an error text or "".
+std::string DrawOne(const render::Painter& painter, const scenario::Scenario& scenario,
+                    const episode::RunResult& run, const scenario::PictureYaml& entry,
+                    const PictureFormat& format, const std::string& file, const Keep& keep,
+                    std::vector<WrittenPicture>& written) {
+  if (!painter.error().empty()) return painter.error();
+  if (run.recording.empty()) return "the run recorded nothing to draw";
+  const render::Picture picture = ComposePicture(scenario, run, entry, format);
+  WrittenPicture drawn{file, CaptionOf(picture, run),
+                       episode::FindEventTime(entry.at.value, run).missed};
+  const std::string error = keep(picture, drawn);
+  if (error.empty()) written.push_back(std::move(drawn));
+  return error;
+}
+
+std::string WriteImage(const render::Painter& painter, const render::Image& image,
+                       const std::string& file, render::PngKind kind = render::PngKind::kExact) {
+  if (image.rgb.empty()) return painter.error();
+  return render::WritePng(image, file, kind) ? "" : "cannot write " + file;
+}
+
+PictureResult DrawEach(const render::Painter& painter, const scenario::Scenario& scenario,
+                       const episode::RunResult& run, const std::string& directory,
+                       const PictureFormat& format, const Keep& keep) {
+  PictureResult result;
+  for (std::size_t i = 0; i < scenario.pictures.size(); ++i) {
+    const std::string suffix = i == 0 ? "" : fmt::format("-{}", i + 1);
+    const std::string file = fmt::format("{}/{}{}.png", directory, scenario.name, suffix);
+    const std::string error =
+        DrawOne(painter, scenario, run, scenario.pictures[i], format, file, keep, result.pictures);
+    if (!error.empty() && result.error.empty()) result.error = error;
+  }
+  return result;
+}
+
+/// Against a golden and, if it was kept, its inventory.
+PictureDifference CompareWith(const std::string& golden_file, const render::ListedPicture& drawn) {
+  const std::string things_file = ThingsFile(golden_file);
+  std::optional<render::Inventory> golden;
+  std::error_code ignored;
+  if (std::filesystem::exists(things_file, ignored)) {
+    const auto text = ReadTextFile(things_file);
+    if (text) golden = render::ReadInventory(*text);
+    if (!golden) return {.told = {things_file + " cannot be read"}};
+  }
+  const auto read = [&] { return render::ReadPng(golden_file); };
+  if (golden) {
+    return {.told = render::TellApart(*golden, read, drawn),
+            .same_size = golden->width_px == drawn.image.width_px &&
+                         golden->height_px == drawn.image.height_px};
+  }
+  const render::Image image = read();
+  if (image.rgb.empty()) return {.told = {golden_file + " cannot be read"}};
+  const std::string text = render::PixelsText(image, drawn.image);
+  PictureDifference difference{.told = {},
+                               .same_size = render::CompareImages(image, drawn.image).same_size};
+  if (!text.empty()) difference.told.push_back(text);
+  return difference;
+}
+
+}  // namespace
+
+bool CanDrawPictures() { return true; }
+
+void PrepareToDraw() { render::Painter::LoadLibrary(); }
+
+PictureResult DrawPictures(const scenario::Scenario& scenario, const episode::RunResult& run,
+                           const std::string& directory, const PictureFormat& format) {
+  if (scenario.pictures.empty()) return {};
+  render::Painter painter;
+  return DrawEach(painter, scenario, run, directory, format,
+                  [&](const render::Picture& picture, const WrittenPicture& as) {
+                    return WriteImage(painter, DrawImage(painter, picture, format), as.file);
+                  });
+}
+
+PictureResult DrawAndCompare(const scenario::Scenario& scenario, const episode::RunResult& run,
+                             const std::string& directory, const GoldenOf& golden_of) {
+  if (scenario.pictures.empty()) return {};
+  render::Painter painter;
+  return DrawEach(painter, scenario, run, directory, kGoldenFormat,
+                  [&](const render::Picture& picture, WrittenPicture& as) {
+                    as.golden = golden_of(std::filesystem::path(as.file).filename().string());
+                    if (as.golden.empty())
+                      return WriteImage(painter, painter.Draw(picture), as.file, kSmall);
+                    const render::ListedPicture drawn = painter.DrawListed(picture);
+                    if (!drawn.image.rgb.empty()) as.difference = CompareWith(as.golden, drawn);
+                    return WriteImage(painter, drawn.image, as.file, kSmall);
+                  });
+}
+
+PictureResult DrawGoldens(const scenario::Scenario& scenario, const episode::RunResult& run,
+                          const std::string& directory) {
+  if (scenario.pictures.empty()) return {};
+  render::Painter painter;
+  return DrawEach(painter, scenario, run, directory, kGoldenFormat,
+                  [&](const render::Picture& picture, const WrittenPicture& as) {
+                    const render::ListedPicture drawn = painter.DrawListed(picture);
+                    std::string error = WriteImage(painter, drawn.image, as.file, kSmall);
+                    if (error.empty())
+                      error = WriteTextFile(ThingsFile(as.file),
+                                            render::InventoryText(drawn.inventory));
+                    return error;
+                  });
+}
+
+PictureResult DrawPicture(const scenario::Scenario& scenario, const episode::RunResult& run,
+                          const scenario::PictureYaml& entry, const std::string& file,
+                          const PictureFormat& format) {
+  PictureResult result;
+  render::Painter painter;
+  result.error = DrawOne(
+      painter, scenario, run, entry, format, file,
+      [&](const render::Picture& picture, const WrittenPicture& as) {
+        return WriteImage(painter, DrawImage(painter, picture, format), as.file);
+      },
+      result.pictures);
+  return result;
+}
+
+PictureResult DrawSheet(const scenario::Scenario& scenario, const episode::RunResult& run,
+                        const std::vector<scenario::PictureYaml>& entries, int columns,
+                        const std::string& file, const PictureFormat& format) {
+  std::vector<SheetEntry> sheet;
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    sheet.push_back({&scenario, &run, entries[i], {}});
+  return DrawSheet(sheet, columns, file, format);
+}
+
+PictureResult DrawSheet(const std::vector<SheetEntry>& entries, int columns,
+                        const std::string& file, const PictureFormat& format) {
+  PictureResult result;
+  render::Painter painter;
+  result.error = painter.error();
+  if (std::ranges::any_of(entries,
+                          [](const SheetEntry& entry) { return entry.run->recording.empty(); }))
+    result.error = "the run recorded nothing to draw";
+  if (!result.error.empty()) return result;
+  const int rows = (static_cast<int>(entries.size()) + columns - 1) / columns;
+  render::Image sheet{columns * format.width_px, rows * format.height_px, {}};
+  sheet.rgb.assign(3ull * sheet.width_px * sheet.height_px, 255);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const auto& [scenario, run, entry, title] = entries[i];
+    render::Picture picture = ComposePicture(*scenario, *run, entry, format);
+    if (format.title) {
+      const char letter = static_cast<char>('a' + i % 26);
+      const auto at = episode::ParseEventTime(entry.at.value);
+      const std::string event = at && at->time_s ? "" : entry.at.value + "  ·  ";
+      picture.title =
+          title.empty() ? fmt::format("{}  ·  {}{:.3f} s", letter, event, SecondsOf(picture, *run))
+                        : fmt::format("{}  ·  {}", letter, title);
+    }
+    const render::Image image = painter.Draw(picture);
+    if (image.rgb.empty()) {
+      result.error = painter.error();
+      return result;
+    }
+    Paste(image, static_cast<int>(i) % columns * format.width_px,
+          static_cast<int>(i) / columns * format.height_px, sheet);
+    result.pictures.push_back(
+        {file, CaptionOf(picture, *run), episode::FindEventTime(entry.at.value, *run).missed});
+  }
+  if (!render::WritePng(sheet, file)) result.error = "cannot write " + file;
+  return result;
+}
+
+bool WritePictureDifference(const std::string& golden_file, const std::string& drawn_file,
+                            const std::string& file) {
+  const render::Image golden = render::ReadPng(golden_file), drawn = render::ReadPng(drawn_file);
+  if (golden.rgb.empty() || !render::CompareImages(golden, drawn).same_size) return false;
+  return render::WritePng(PaleWithRed(golden, drawn), file);
+}
+
+}  // namespace prehend::show

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a picture shows of a scene besides what happens: colours, legs of furniture, where persons
+// look, and which persons stand in the way of the view. Tested by
+// tests/harness/show/pictures/scenery_test.cc
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/scenario/scenario/scenario.h"
+#include "render/picture.h"
+
+namespace prehend::show {
+
+/// 0xRRGGBB.
+render::Color ColorOf(std::uint32_t rgb);
+
+/// Cameras and lights are not in the picture.
+bool IsSeen(const physics::Body& body);
+
+/// One per scene body: what `color` says, else a colour word in the name, else the class, else one
+/// of a palette by index.
+std::vector<render::Color> BodyColors(const scenario::Scenario& scenario);
+
+/// Per scene hand the colours of its palm and links by the sets of their sensors; empty without
+/// any.
+std::vector<std::vector<render::Color>> SensorColors(
+    const physics::Scene& scene, const std::map<std::string, std::uint32_t>& color_of_set);
+
+/// What fixed things stand on that nothing carries: legs, or near to the floor at z = 0 a plinth.
+std::vector<render::Prop> LegsOf(const scenario::Scenario& scenario,
+                                 const std::vector<render::Color>& colors,
+                                 const physics::Snapshot& now);
+
+/// A ray from the eyes of each person to what she sees.
+std::vector<render::GazeRay> GazesOf(const physics::Scene& scene, const physics::Snapshot& now);
+
+/// One per scene body: less than 1 for the parts of a person that hide a hand, what is touched, or
+/// what moves from the eye of the camera.
+std::vector<float> BodyAlphas(const physics::Scene& scene, const physics::Snapshot& now,
+                              const Eigen::Vector3f& eye_m);
+
+/// Direction from the middle of the things to the first light; nullopt without a light.
+std::optional<Eigen::Vector3f> ToLight(const physics::Scene& scene);
+
+}  // namespace prehend::show

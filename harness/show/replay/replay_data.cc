@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/show/replay/replay_data.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "harness/base/base/base64.h"
+#include "harness/show/pictures/scenery.h"
+#include "harness/show/replay/pose_track.h"
+
+namespace prehend::show {
+namespace {
+
+using Eigen::Vector3d;
+using nlohmann::json;
+using physics::Pose;
+using physics::Snapshot;
+
+// Whole numbers, and differences of them, are short as text.
+constexpr double kUnits_per_m = 10'000;   ///< positions: 0.1 mm
+constexpr double kUnits_per_one = 5'000;  ///< components of quaternions
+constexpr double kCoarseUnits_per_m = 1'000;
+constexpr int kSamples_hz = 30;  ///< contacts and gaze
+constexpr int kGrainSamples_hz = 10;
+constexpr std::size_t kMostGrains = 300;  ///< of one body; more are not told apart
+
+std::int64_t Rounded(double value) {
+  return std::isfinite(value) ? std::llround(std::clamp(value, -1e12, 1e12)) : 0;
+}
+
+/// Appends whole numbers as differences to those of the row before.
+class Differences {
+ public:
+  explicit Differences(std::size_t width) : last_(width, 0) {}
+  void Add(std::size_t column, double value) {
+    const std::int64_t now = Rounded(value);
+    list.push_back(now - last_[column]);
+    last_[column] = now;
+  }
+  json list = json::array();
+
+ private:
+  std::vector<std::int64_t> last_;
+};
+
+json Numbers(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+json PoseJson(const Pose& pose) {
+  return {{"p", Numbers(pose.p_m)}, {"q", {pose.q.w(), pose.q.x(), pose.q.y(), pose.q.z()}}};
+}
+
+json TrackJson(const std::vector<Pose>& poses, const std::vector<std::int64_t>& ticks) {
+  Differences at(1), p(3), q(4);
+  Eigen::Quaterniond last = Eigen::Quaterniond::Identity();
+  for (const std::size_t key : KeysOf(poses, ticks)) {
+    Eigen::Quaterniond turned = poses[key].q;
+    if (turned.dot(last) < 0) turned.coeffs() *= -1;  // the same rotation, nearer as numbers
+    last = turned;
+    at.Add(0, static_cast<double>(ticks[key]));
+    for (int i = 0; i < 3; ++i) p.Add(i, poses[key].p_m[i] * kUnits_per_m);
+    q.Add(0, turned.w() * kUnits_per_one);
+    for (int i = 0; i < 3; ++i) q.Add(i + 1, turned.vec()[i] * kUnits_per_one);
+  }
+  return {{"t", at.list}, {"p", p.list}, {"q", q.list}};
+}
+
+struct ShapeJson {
+  json operator()(const physics::Box& box) const {
+    return {{"kind", "box"}, {"size", Numbers(box.size_m)}};
+  }
+  json operator()(const physics::Sphere& ball) const {
+    return {{"kind", "sphere"}, {"radius", ball.radius_m}};
+  }
+  json operator()(const physics::Cylinder& cylinder) const {
+    return {{"kind", "cylinder"}, {"radius", cylinder.radius_m}, {"length", cylinder.length_m}};
+  }
+  json operator()(const physics::Capsule& capsule) const {
+    return {{"kind", "capsule"}, {"radius", capsule.radius_m}, {"length", capsule.length_m}};
+  }
+  json operator()(const physics::Hull& hull) const {
+    json corners = json::array(), triangles = json::array();
+    for (const Vector3d& corner : hull.corners_m) corners.push_back(Numbers(corner));
+    for (const physics::Hull::Face& face : hull.faces)
+      for (std::size_t i = 2; i < face.corners.size(); ++i)
+        triangles.push_back({face.corners[0], face.corners[i - 1], face.corners[i]});
+    return {{"kind", "hull"}, {"corners", corners}, {"triangles", triangles}};
+  }
+};
+
+std::string KindOf(const physics::Body& body) {
+  if (body.abstract == physics::Abstract::kRegion) return "region";
+  if (body.abstract == physics::Abstract::kGazeTarget) return "gaze_target";
+  if (body.kinematic) return "person";
+  return body.fixed ? "fixed" : "thing";
+}
+
+std::string ColorText(const render::Color& color) {
+  const auto part = [](float share) {
+    return static_cast<int>(std::lround(255 * std::clamp(share, 0.0f, 1.0f)));
+  };
+  return fmt::format("#{:02x}{:02x}{:02x}", part(color.x()), part(color.y()), part(color.z()));
+}
+
+/// The frames of a run, and those at which what changes with every frame is sampled.
+class Frames {
+ public:
+  explicit Frames(const episode::RunResult& run) : run_(run) {
+    for (const Snapshot& frame : run.recording) ticks.push_back(frame.tick);
+  }
+
+  template <typename PoseAt>
+  json Track(PoseAt&& pose_at) const {
+    std::vector<Pose> poses;
+    poses.reserve(run_.recording.size());
+    for (const Snapshot& frame : run_.recording) poses.push_back(pose_at(frame));
+    return TrackJson(poses, ticks);
+  }
+
+  template <typename Look>
+  void Sample(int hz, Look&& look) const {
+    for (std::size_t i = 0; i < ticks.size(); i += Every(hz)) look(run_.recording[i]);
+  }
+
+  std::size_t Every(int hz) const {
+    return std::max<std::size_t>(1, static_cast<std::size_t>(run_.timeline.ticks_per_second) / hz);
+  }
+  /// From which tick on there is a sample, and after how many ticks the next.
+  json Sampled(int hz, json list) const {
+    return {{"begin", ticks.front()}, {"every", Every(hz)}, {"samples", std::move(list)}};
+  }
+
+  std::vector<std::int64_t> ticks;
+
+ private:
+  const episode::RunResult& run_;
+};
+
+json GrainsJson(const physics::Scene& scene, std::size_t body, const Frames& frames) {
+  json samples = json::array();
+  const std::size_t count =
+      std::min(scene.bodies[body].grains->p_WG_m.size(), std::size_t{kMostGrains});
+  Differences places(3 * count);
+  frames.Sample(kGrainSamples_hz, [&](const Snapshot& frame) {
+    const auto grains = physics::GrainsOf(scene, physics::BodyIndex(body), frame);
+    for (std::size_t g = 0; g < std::min(count, grains.size()); ++g)
+      for (int i = 0; i < 3; ++i) places.Add(3 * g + i, grains[g][i] * kCoarseUnits_per_m);
+  });
+  return {{"radius", scene.bodies[body].grains->radius_m},
+          {"count", count},
+          {"places", frames.Sampled(kGrainSamples_hz, places.list)}};
+}
+
+json BodiesJson(const scenario::Scenario& scenario, const Frames& frames) {
+  const std::vector<render::Color> colors = BodyColors(scenario);
+  json bodies = json::array();
+  for (std::size_t i = 0; i < scenario.scene.bodies.size(); ++i) {
+    const physics::Body& body = scenario.scene.bodies[i];
+    if (!IsSeen(body)) continue;
+    json shapes = json::array();
+    for (const physics::PlacedShape& placed : body.shapes) {
+      json shape = std::visit(ShapeJson{}, placed.shape);
+      shape["X"] = PoseJson(placed.X_BS);
+      shapes.push_back(std::move(shape));
+    }
+    json entry = {
+        {"name", body.name},
+        {"kind", KindOf(body)},
+        {"color", ColorText(colors[i])},
+        {"shapes", shapes},
+        {"track", frames.Track([i](const Snapshot& frame) { return frame.bodies[i].X_WB; })}};
+    if (body.grains) entry["grains"] = GrainsJson(scenario.scene, i, frames);
+    bodies.push_back(std::move(entry));
+  }
+  return bodies;
+}
+
+/// What a hand is doing when: {"from", "to" (ticks), "name", "color"}.
+json PhasesJson(const episode::RunResult& run, const std::string& hand) {
+  json phases = json::array();
+  for (const grammar::NamedEvent& event : run.timeline.events) {
+    const truth::EventDrawing& drawing = run.drawings.Of(event.event);
+    if (drawing.as != grammar::DrawnAs::kPhase || drawing.hand >= event.roles.size()) continue;
+    if (event.roles[drawing.hand].value != hand) continue;
+    phases.push_back({{"from", event.interval.begin},
+                      {"to", event.interval.end},
+                      {"name", event.event},
+                      {"color", fmt::format("#{:06x}", drawing.color)}});
+  }
+  return phases;
+}
+
+json HandsJson(const physics::Scene& scene, const episode::RunResult& run, const Frames& frames) {
+  json hands = json::array();
+  for (std::size_t h = 0; h < scene.hands.size(); ++h) {
+    const physics::HandModel& model = scene.hands[h].model;
+    json links = json::array();
+    for (std::size_t l = 0; l < model.links.size(); ++l) {
+      const physics::HandLink& link = model.links[l];
+      links.push_back(
+          {{"size", Numbers({link.length_m, 2 * link.half_width_m, 2 * link.half_thickness_m})},
+           {"track", frames.Track([h, l](const Snapshot& frame) {
+              const physics::HandState& hand = frame.hands[h];
+              return hand.palm.X_WB.inverse() * hand.X_WL[l];
+            })}});
+    }
+    hands.push_back(
+        {{"name", scene.hands[h].name},
+         {"palm", Numbers(model.palm_size_m)},
+         {"links", links},
+         {"phases", PhasesJson(run, scene.hands[h].name)},
+         {"track", frames.Track([h](const Snapshot& frame) { return frame.hands[h].palm.X_WB; })}});
+  }
+  return hands;
+}
+
+/// Of each sample a list of x, y, z in millimetres.
+json ContactsJson(const Frames& frames) {
+  json samples = json::array();
+  frames.Sample(kSamples_hz, [&](const Snapshot& frame) {
+    json points = json::array();
+    for (const physics::ContactPoint& contact : frame.contacts)
+      for (int i = 0; i < 3; ++i) points.push_back(Rounded(contact.p_W_m[i] * kCoarseUnits_per_m));
+    samples.push_back(std::move(points));
+  });
+  return frames.Sampled(kSamples_hz, std::move(samples));
+}
+
+/// For each person and sample: x, y, z of the eyes and of what she sees, in millimetres.
+json GazesJson(const physics::Scene& scene, const Frames& frames) {
+  json gazes = json::array();
+  for (std::size_t person = 0; person < scene.persons.size(); ++person) {
+    Differences rays(6);
+    frames.Sample(kSamples_hz, [&](const Snapshot& frame) {
+      const std::vector<render::GazeRay> all = GazesOf(scene, frame);
+      const render::GazeRay ray = person < all.size() ? all[person] : render::GazeRay{};
+      for (int i = 0; i < 3; ++i) rays.Add(i, ray.from_m[i] * kCoarseUnits_per_m);
+      for (int i = 0; i < 3; ++i) rays.Add(3 + i, ray.to_m[i] * kCoarseUnits_per_m);
+    });
+    gazes.push_back(
+        {{"name", scene.persons[person].name}, {"rays", frames.Sampled(kSamples_hz, rays.list)}});
+  }
+  return gazes;
+}
+
+json LegsJson(const scenario::Scenario& scenario, const Snapshot& first) {
+  json legs = json::array();
+  for (const render::Prop& leg : LegsOf(scenario, BodyColors(scenario), first))
+    legs.push_back({{"size", Numbers(2 * leg.half_size_m.cast<double>())},
+                    {"p", Numbers(leg.center_m.cast<double>())},
+                    {"color", ColorText(leg.color)}});
+  return legs;
+}
+
+}  // namespace
+
+json ReplayJson(const scenario::Scenario& scenario, const episode::RunResult& run) {
+  const Frames frames(run);
+  return {{"ticks_per_second", run.timeline.ticks_per_second},
+          {"end", frames.ticks.back()},
+          {"bodies", BodiesJson(scenario, frames)},
+          {"legs", LegsJson(scenario, run.recording.front())},
+          {"hands", HandsJson(scenario.scene, run, frames)},
+          {"contacts", ContactsJson(frames)},
+          {"gazes", GazesJson(scenario.scene, frames)}};
+}
+
+std::string ReplayData(const scenario::Scenario& scenario, const episode::RunResult& run) {
+  if (run.recording.empty()) return "";
+  const std::string text =
+      ReplayJson(scenario, run).dump(-1, ' ', false, json::error_handler_t::replace);
+  uLongf size = compressBound(text.size());
+  std::string bytes(size, '\0');
+  const int result =
+      compress2(reinterpret_cast<Bytef*>(bytes.data()), &size,
+                reinterpret_cast<const Bytef*>(text.data()), text.size(), Z_BEST_COMPRESSION);
+  if (result != Z_OK) throw std::runtime_error("zlib: no memory");
+  bytes.resize(size);
+  return Base64(bytes);
+}
+
+}  // namespace prehend::show

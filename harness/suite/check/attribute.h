@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why each single difference from the golden is there. Each changed parameter is undone by itself,
+// and the recorded motion is segmented once more: what then agrees with the golden was its effect.
+// What differs even with all old parameters is attributed to what else changed. So two causes in
+// one scenario are told apart. Tested by tests/harness/suite/check/attribute_test.cc
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/suite/check/settings.h"
+#include "harness/truth/golden/compare.h"
+
+namespace prehend::suite {
+
+/// A difference of a scenario, and what it is attributed to.
+struct Attribution {
+  std::string event;     ///< its name
+  std::string what;      ///< "begins later", "missing", "object: milk -> cup"
+  double shift_ms = 0;   ///< of the boundary that moved most, recognised - expected; else 0
+  std::string because;   ///< "`reach_radius` 30 cm -> 20 cm in x.grammar"; "" is unknown
+  std::string question;  ///< to `prehend explain`
+};
+
+/// What is known about a run that differs.
+struct Suspects {
+  std::vector<SettingChange> changes;      ///< of values since the last pass
+  std::vector<std::string> other_changes;  ///< changed files without a changed value, the program
+  bool motion_differs = false;             ///< it moves differently from the last pass
+};
+
+/// The comparison of the same recorded motion, with these parameters ("reach_radius=30 cm") set
+/// back. Nothing if that cannot be done.
+using CompareWith =
+    std::function<std::optional<truth::Comparison>(const std::vector<std::string>& settings)>;
+
+/// One for each of comparison.Differing(), in its order. Undoes at most 8 parameters.
+std::vector<Attribution> AttributeDifferences(const truth::Comparison& comparison,
+                                              const Suspects& suspects,
+                                              const CompareWith& compare_with);
+
+}  // namespace prehend::suite

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/suite/check/blame.h. Tested by tests/harness/suite/check/blame_test.cc
+#include "harness/suite/check/blame.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "harness/base/base/build_text.h"
+#include "harness/base/base/content_hash.h"
+#include "harness/episode/run/segment.h"
+
+namespace prehend::suite {
+namespace {
+
+/// A program that differs: by its source, or by who compiled it, and how.
+std::string ProgramText(const LastPass& last_pass, const DifferingRun& now) {
+  if (last_pass.build.empty() || last_pass.build == now.build) return "the program";
+  return fmt::format("the program (now {}; then {})", now.build, last_pass.build);
+}
+
+/// "scenarios/slide/NAME.yaml" and the like, "the program", and the options of the command line. A
+/// grammar that the command line chose did not change, nor did the one that it replaces.
+std::vector<std::string> WhatChanged(const LastPass& last_pass, const DifferingRun& now,
+                                     const std::string& root) {
+  std::vector<std::string> changed;
+  const auto add = [&](const std::string& path) { changed.push_back(RelativeTo(root, path)); };
+  const auto add_unless_replaced = [&](const std::string& path) {
+    if (!now.other_grammar || !path.ends_with(".grammar")) add(path);
+  };
+  for (const auto& [path, hash] : now.inputs) {
+    const auto before = last_pass.verdict.inputs.find(path);
+    if (before == last_pass.verdict.inputs.end()) {
+      // A file that was looked for in vain did not change anything.
+      if (hash != kNoFile) add_unless_replaced(path);
+    } else if (before->second != hash) {
+      add(path);
+    }
+  }
+  for (const auto& [path, hash] : last_pass.verdict.inputs) {
+    if (!now.inputs.contains(path)) add_unless_replaced(path);
+  }
+  if (last_pass.program != now.program) changed.push_back(ProgramText(last_pass, now));
+  changed.insert(changed.end(), now.options.begin(), now.options.end());
+  return changed;
+}
+
+std::string PhysicsText(const Divergence& divergence, const DifferingRun& now) {
+  const std::string when =
+      fmt::format("{:.4f} s (tick {})", static_cast<double>(divergence.tick) / now.ticks_per_second,
+                  divergence.tick);
+  if (divergence.entity.empty())
+    return "physics. Only one of this run and the last passing run reaches " + when;
+  return fmt::format("physics. `{}` moves differently from the last passing run, first at {}",
+                     divergence.entity, when);
+}
+
+/// What differs between the two runs, without a full stop.
+std::string FirstCause(const StateTrace& before, const DifferingRun& now) {
+  if (before.entities != now.trace.entities)
+    return "physics. The entities are not those of the last passing run";
+  if (const auto divergence = FirstDivergence(before, now.trace))
+    return PhysicsText(*divergence, now);
+  if (!SameTicks(before, now.trace))
+    return "sensing. Frames are at other ticks than in the last passing run; where both have one, "
+           "everything moves the same";
+  return "the grammar or the golden. Everything moves as in the last passing run";
+}
+
+/// The same motion, with some parameters as they were.
+std::optional<truth::Comparison> CompareWithSettings(const CheckRequest& request,
+                                                     const CheckedRun& checked,
+                                                     const truth::Golden& golden,
+                                                     const std::vector<std::string>& settings) {
+  episode::RunRequest changed = request.Run();
+  for (const std::string& setting : settings) {
+    const std::string name = setting.substr(0, setting.find('=') + 1);
+    std::erase_if(changed.settings, [&](const auto& other) { return other.starts_with(name); });
+    changed.settings.push_back(setting);
+  }
+  const Result<episode::LoadedRun> loaded = episode::LoadRun(changed, request.root);
+  if (!loaded) return std::nullopt;
+  const scenario::Scenario& scenario = checked.loaded.scenario;
+  return truth::Compare(golden,
+                        episode::Resegment(scenario, checked.result.recording, loaded->program,
+                                           checked.result.ticks + 1),
+                        scenario::DefaultTolerance(scenario));
+}
+
+}  // namespace
+
+std::string CauseText(const std::optional<LastPass>& last_pass,
+                      const std::optional<StateTrace>& its_trace, const DifferingRun& now,
+                      const std::string& root) {
+  if (!last_pass || !its_trace)
+    return fmt::format("cause: unknown. This scenario has not passed here yet. This program: {}.\n",
+                       now.build);
+  const std::vector<std::string> changed = WhatChanged(*last_pass, now, root);
+  return fmt::format(
+      "cause: {}. Changed since: {}\n", FirstCause(*its_trace, now),
+      changed.empty() ? "no known file" : fmt::format("{}", fmt::join(changed, ", ")));
+}
+
+std::optional<Suspects> SuspectsOf(const std::optional<LastPass>& last_pass,
+                                   const std::optional<StateTrace>& its_trace,
+                                   const DifferingRun& now, const std::string& root) {
+  if (!last_pass || !its_trace) return std::nullopt;
+  Suspects suspects{.changes = ChangesBetween(last_pass->verdict.settings, now.settings),
+                    .other_changes = WhatChanged(*last_pass, now, root),
+                    .motion_differs = its_trace->entities != now.trace.entities ||
+                                      FirstDivergence(*its_trace, now.trace).has_value()};
+  // What is known more exactly.
+  std::erase_if(suspects.other_changes, [&](const std::string& changed) {
+    return std::ranges::any_of(suspects.changes, [&](const SettingChange& change) {
+      return change.file == changed || changed.starts_with("--set " + change.name + "=") ||
+             changed.starts_with("--set '" + change.name + "=");
+    });
+  });
+  return suspects;
+}
+
+std::string ChangesText(const std::vector<SettingChange>& changes) {
+  constexpr std::size_t kMost = 10;
+  std::string text;
+  for (std::size_t i = 0; i < changes.size() && i < kMost; ++i)
+    text += fmt::format("changed: {} in {}\n", ChangeText(changes[i]), changes[i].file);
+  if (changes.size() > kMost) text += fmt::format("changed: {} more\n", changes.size() - kMost);
+  return text;
+}
+
+void AddBlame(const CheckRequest& request, const CheckedRun& checked, const truth::Golden& golden,
+              const truth::Comparison& comparison, ScenarioVerdict& verdict) {
+  const LastPasses records(request.root);
+  const episode::RunResult& run = checked.result;
+  const auto last_pass = records.Read(request.id);
+  const auto trace = ReadTrace(records.TracePath(request.id));
+  const DifferingRun now{.program = request.program,
+                         .build = BuildText(),
+                         .inputs = verdict.inputs,
+                         .settings = verdict.settings,
+                         .options = OptionsOf(request.changes),
+                         .other_grammar = !request.changes.grammar.empty(),
+                         .trace = TraceOf(checked.loaded.scenario.scene, run.recording),
+                         .ticks_per_second = static_cast<double>(run.timeline.ticks_per_second)};
+  verdict.cause = CauseText(last_pass, trace, now, request.root);
+  const auto suspects = SuspectsOf(last_pass, trace, now, request.root);
+  if (suspects) verdict.cause += ChangesText(suspects->changes);
+  const bool can_undo = request.IsPlayed() && !run.recording.empty();
+  verdict.attributions = AttributeDifferences(
+      comparison, suspects.value_or(Suspects{}),
+      [&](const std::vector<std::string>& settings) -> std::optional<truth::Comparison> {
+        if (!can_undo) return std::nullopt;
+        return CompareWithSettings(request, checked, golden, settings);
+      });
+}
+
+}  // namespace prehend::suite

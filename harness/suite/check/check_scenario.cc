@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/suite/check/check_scenario.h. Judges are functions of values
+// (harness/suite/check/judges.h); files are written in Store() only. Tested by
+// tests/harness/suite/check/check_scenario_test.cc
+#include "harness/suite/check/check_scenario.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "harness/base/base/shell_quote.h"
+#include "harness/episode/episode/open_episode.h"
+#include "harness/episode/episodes/record_episode.h"
+#include "harness/episode/run/run_text.h"
+#include "harness/show/replay/replay_data.h"
+#include "harness/suite/check/draw_disputed.h"
+#include "harness/suite/check/judges.h"
+#include "harness/suite/check/last_pass.h"
+#include "harness/suite/check/state_trace.h"
+#include "harness/suite/judge/accept_golden.h"
+#include "harness/truth/golden/golden_files.h"
+
+namespace prehend::suite {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The goldens that decide the verdict of a scenario, whether they exist or not: one that appears
+/// changes the verdict. Of pictures those that it asks for and one more, which would be too many.
+std::vector<std::string> FilesOfGolden(const CheckRequest& request,
+                                       const scenario::Scenario* scenario) {
+  if (!request.in_project) return {};
+  const truth::GoldenFiles goldens(request.root);
+  std::vector<std::string> files = {goldens.GoldenPath(request.id).string()};
+  for (const truth::KeptPicture& picture : goldens.PicturesOf(request.id)) {
+    files.push_back(picture.path.string());
+    files.push_back(show::ThingsFile(picture.path.string()));
+  }
+  for (std::size_t i = 1; scenario && i <= scenario->pictures.size() + 1; ++i) {
+    const std::string file = scenario->name + (i == 1 ? "" : "-" + std::to_string(i)) + ".png";
+    const std::string picture = goldens.PicturePath(request.id, file).string();
+    files.push_back(picture);
+    files.push_back(show::ThingsFile(picture));
+  }
+  return files;
+}
+
+/// With what decides it, as it is before it is judged. `scenario` is null if it cannot be read.
+ScenarioVerdict BlankVerdict(const CheckRequest& request, const scenario::Scenario* scenario,
+                             std::vector<std::string> files) {
+  if (request.episode.origin == episode::Origin::kRecording)
+    files = {request.episode.file, GoldenOfRecording(request, scenario)};
+  else
+    std::ranges::move(FilesOfGolden(request, scenario), std::back_inserter(files));
+  return {.scenario = request.id,
+          .shows = {},
+          .explain = ExplainCommand(request),
+          .command = RepeatCommand(request),
+          .inputs = HashFiles(files)};
+}
+
+CheckedEpisode ToBeChecked(const CheckRequest& request, episode::LoadedRun loaded,
+                           const std::vector<std::string>& files) {
+  ScenarioVerdict verdict = BlankVerdict(request, &loaded.scenario, files);
+  CheckedRun run{.id = request.id,
+                 .in_project = request.in_project,
+                 .loaded = std::move(loaded),
+                 .result = {},
+                 .explain = verdict.explain};
+  return {.request = request, .run = std::move(run), .verdict = std::move(verdict)};
+}
+
+/// Simulates and records it. Reports how far it has come while it is going on.
+void Play(const std::vector<std::string>& files, CheckedEpisode& checked) {
+  const CheckRequest& request = checked.request;
+  const episode::LoadedRun& loaded = checked.run.loaded;
+  std::optional<episode::EpisodeRecorder> recorder;
+  if (!request.record_file.empty())
+    recorder.emplace(episode::RecordRequest{request.record_file, request.root, request.Run(), files,
+                                            request.today, request.program},
+                     loaded.scenario);
+  episode::ScenarioRun playing(loaded.scenario, loaded.program, {.record = true});
+  while (playing.Step()) {
+    if (request.last_tick) request.last_tick->store(playing.snapshot().tick);
+    if (recorder) recorder->Add(playing.snapshot());
+  }
+  checked.run.result = playing.Finish();
+  if (!recorder) return;
+  recorder->Finish(checked.run.result);
+  checked.verdict.not_recorded = recorder->problem();
+}
+
+/// The only place of a check that writes below build/, pictures of the report aside. What cannot be
+/// written is reported by the command that needs it, or costs only the cause of a difference.
+void Store(const CheckedEpisode& checked) {
+  const CheckRequest& request = checked.request;
+  if (request.leave_nothing_behind) return;
+  const truth::GoldenFiles files(request.root);
+  if (checked.golden && checked.golden->Holds()) files.RemovePending(request.id);
+  if (checked.golden && !checked.golden->Holds()) (void)files.WritePending(checked.golden->pending);
+  (void)files.WriteEngineDifference(request.id, checked.engine_difference);
+  StorePictures(request.id, checked.pictures, request.root);
+  if (checked.verdict.verdict == Verdict::kPassed)
+    (void)WriteTrace(LastPasses(request.root).TracePath(request.id),
+                     TraceOf(checked.run.loaded.scenario.scene, checked.run.result.recording));
+}
+
+/// The first finding decides; one that is wrong comes before a golden that does not exist yet.
+void Conclude(const Findings& findings, ScenarioVerdict& verdict) {
+  verdict.verdict = Verdict::kPassed;
+  for (const Finding& finding : findings) verdict.details += finding.details;
+  if (findings.empty()) return;
+  const auto wrong = std::ranges::find_if(
+      findings, [](const Finding& finding) { return finding.exit_code != ExitCode::kPending; });
+  const Finding& first = wrong == findings.end() ? findings.front() : *wrong;
+  verdict.verdict = wrong == findings.end() ? Verdict::kPending : Verdict::kFailed;
+  verdict.exit_code = first.exit_code;
+  verdict.reason = first.reason;
+}
+
+ScenarioVerdict Unreadable(const CheckRequest& request, ScenarioVerdict verdict,
+                           const grammar::Diagnostics& why) {
+  Conclude({{ExitCode::kBadInput, "cannot be read", Format(why)}}, verdict);
+  if (request.IsPlayed()) verdict.command = CommandAbout("validate", request.id, request.changes);
+  return verdict;
+}
+
+/// Of the file that a recording was imported from; `otherwise` if it is gone.
+std::string ReviewCommandOf(const fs::path& recording, const std::string& otherwise) {
+  std::error_code error;
+  if (!fs::exists(recording, error)) return otherwise;
+  const fs::path from_here = fs::proximate(recording, error);
+  const bool is_below = !from_here.empty() && *from_here.begin() != "..";
+  return CommandText({"review", (is_below ? from_here : recording).string()});
+}
+
+/// What to do about a verdict: repeat it, or review what is pending, or look at a run that failed.
+std::string NextCommand(const CheckedEpisode& checked) {
+  const CheckRequest& request = checked.request;
+  const std::string again = RepeatCommand(request);
+  const bool is_pending = checked.verdict.verdict == Verdict::kPending;
+  if (checked.recording && is_pending) {
+    // `review` and `accept` take the recording itself, beside which its golden lies.
+    if (request.episode.number)
+      return ReviewCommandOf(fs::path(request.root) / checked.run.loaded.scenario.file, again);
+    return request.changes.settings.empty() ? CommandAbout("review", request.id, request.changes)
+                                            : again;
+  }
+  if (!checked.IsComplete() && request.IsPlayed())
+    return CommandAbout("run", request.id, request.changes);
+  const bool can_review = request.in_project && request.IsAsItsFileSays();
+  return is_pending && can_review ? CommandAbout("review", request.id) : again;
+}
+
+/// What the report shows of an episode that differs, or of all.
+void AddPictures(CheckedEpisode& checked) {
+  const CheckRequest& request = checked.request;
+  ScenarioVerdict& verdict = checked.verdict;
+  const scenario::Scenario& scenario = checked.run.loaded.scenario;
+  const bool has_frames = !checked.recording || request.episode.number;
+  const bool wants_replay =
+      request.replays == Replays::kAll ||
+      (request.replays == Replays::kFailures && verdict.verdict != Verdict::kPassed);
+  if (has_frames && wants_replay) verdict.replay = show::ReplayData(scenario, checked.run.result);
+  if (checked.recording || !verdict.DiffersFromGolden()) return;
+  if (request.pictures && show::CanDrawPictures())
+    verdict.disputed =
+        DrawDisputed(scenario, checked.run.result, *verdict.comparison, request.report_folder);
+  if (request.explain)
+    verdict.explained =
+        Explain(scenario, checked.run.result, checked.run.loaded.program, *verdict.comparison);
+}
+
+ScenarioVerdict VerdictOn(CheckedEpisode checked) {
+  const CheckRequest& request = checked.request;
+  const episode::RunResult& run = checked.run.result;
+  ScenarioVerdict& verdict = checked.verdict;
+  if (!checked.recording) {
+    verdict.settings = SettingsOf(checked.run.loaded, request.Run(), verdict.inputs, request.root);
+    verdict.shows = checked.run.loaded.scenario.shows;
+    verdict.notes = episode::NoteLines(checked.run.loaded.scenario, run);
+    verdict.state_hash = episode::HashText(run.state_hash);
+    verdict.ticks = run.ticks;
+  }
+  Findings findings;
+  for (const Judge judge : JudgesOf(checked)) Append(findings, judge(checked));
+  Conclude(findings, verdict);
+  verdict.details += truth::TextOfUndecided(verdict.claims);
+  if (!checked.recording && checked.IsComplete()) {
+    Store(checked);
+    verdict.picture_differences = PictureDifferencesText(
+        checked.pictures, request.IsAsItsFileSays() ? AcceptPicturesCommand(request.id) : "");
+  }
+  verdict.command = NextCommand(checked);
+  AddPictures(checked);
+  return std::move(verdict);
+}
+
+}  // namespace
+
+ScenarioVerdict CheckScenario(const CheckRequest& request) {
+  std::vector<std::string> files;
+  Result<episode::Episode> episode =
+      episode::OpenEpisode(request.episode, request.changes, request.root, &files);
+  if (!episode) return Unreadable(request, BlankVerdict(request, nullptr, files), episode.error());
+  if (request.IsPlayed()) {
+    CheckedEpisode checked = ToBeChecked(request, std::move(episode->loaded()), files);
+    Play(files, checked);
+    return VerdictOn(std::move(checked));
+  }
+  CheckedEpisode checked = ToBeChecked(request, episode->loaded(), files);
+  if (episode->recording()) {
+    auto segmented = episode->SegmentRecorded();
+    if (!segmented) return Unreadable(request, std::move(checked.verdict), segmented.error());
+    checked.recording = std::move(*segmented);
+    if (episode->row()) checked.verdict.state_hash = episode->row()->state_hash;
+  }
+  if (!episode->recording() || (request.episode.number && request.replays != Replays::kNone)) {
+    Result<episode::RunResult> run = episode->Run(/*frames=*/true);
+    if (!run) return Unreadable(request, std::move(checked.verdict), run.error());
+    checked.run.result = std::move(*run);
+  }
+  return VerdictOn(std::move(checked));
+}
+
+ScenarioVerdict JudgeRun(const CheckRequest& request, episode::LoadedRun loaded,
+                         episode::RunResult run, const std::vector<std::string>& files) {
+  CheckedEpisode checked = ToBeChecked(request, std::move(loaded), files);
+  checked.run.result = std::move(run);
+  return VerdictOn(std::move(checked));
+}
+
+}  // namespace prehend::suite

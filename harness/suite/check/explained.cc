@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/suite/check/explained.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/sensing.h"
+#include "harness/show/explain/explain.h"
+#include "harness/show/explain/replay.h"
+#include "harness/truth/timeline/event_text.h"
+
+namespace prehend::suite {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExplainedEvent, event, begin, end, began, ended)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DecidingSignal, clause, how, unit, tick, golden_tick, ticks,
+                                   values, limits)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExplainedDifference, what, text, signals)
+
+void to_json(nlohmann::json& packed, const Explained& explained) {
+  packed = {{"events", explained.events}, {"differences", explained.differences}};
+}
+
+void from_json(const nlohmann::json& packed, Explained& explained) {
+  packed.at("events").get_to(explained.events);
+  packed.at("differences").get_to(explained.differences);
+}
+
+namespace {
+
+/// `golden_tick` as of a signal.
+void AddSignals(const show::Reasons& reasons, grammar::Tick golden_tick,
+                std::vector<DecidingSignal>& signals) {
+  for (const show::Reason& reason : reasons) {
+    if (signals.size() >= kMostSignals) return;
+    if (reason.reading && reason.tick && reason.reading->course.size() > 1) {
+      DecidingSignal signal{.clause = reason.what,
+                            .how = reason.how,
+                            .unit = reason.reading->unit,
+                            .tick = *reason.tick,
+                            .golden_tick = golden_tick,
+                            .ticks = {},
+                            .values = {},
+                            .limits = {}};
+      for (const show::Reading::Sample& sample : reason.reading->course) {
+        signal.ticks.push_back(sample.tick);
+        signal.values.push_back(sample.value);
+        signal.limits.push_back(sample.limit);
+      }
+      signals.push_back(std::move(signal));
+    }
+    AddSignals(reason.because, golden_tick, signals);
+  }
+}
+
+/// The same question that DifferenceText() prints.
+ExplainedDifference ExplainDifference(const truth::Pairing& pairing, grammar::ReplayMonitor& past) {
+  const grammar::Tick per_second = past.entity_table().ticks_per_second;
+  const grammar::NamedEvent& event = pairing.actual ? *pairing.actual : *pairing.expected;
+  ExplainedDifference difference{
+      .what = fmt::format("{} {}", Name(pairing.agreement), pairing.event().Label()),
+      .text = {},
+      .signals = {}};
+  std::string question = event.event;
+  for (const grammar::Role& role : event.roles)
+    if (!truth::IsAttribute(role)) question += " " + role.value;
+  question += " @" + truth::SecondsText(event.interval.begin, per_second) + "s";
+  const Result<show::Ask> ask =
+      show::ParseAsk("event", question, past.program(), past.entity_table());
+  if (!ask) return difference;
+  const std::vector<show::WhyEvent> there = show::ExplainEvents(past, *ask);
+  if (there.empty()) {
+    const show::WhyMissing why = show::ExplainMissing(past, *ask);
+    difference.text = show::Text(why, per_second);
+    AddSignals(why.reasons, -1, difference.signals);
+  }
+  const bool has_both = pairing.expected && pairing.actual;
+  const auto golden_tick = [&](grammar::Tick offset, grammar::Tick tick) {
+    return std::abs(offset) > pairing.tolerance ? tick : -1;
+  };
+  const grammar::Tick begin = has_both ? golden_tick(pairing.begin_offset,
+                                                     pairing.expected->interval.begin)
+                                       : -1,
+                      end = has_both
+                                ? golden_tick(pairing.end_offset, pairing.expected->interval.end)
+                                : -1;
+  for (const show::WhyEvent& why : there) {
+    difference.text += show::Text(why, per_second);
+    AddSignals(why.began, begin, difference.signals);
+    AddSignals(why.ended, end, difference.signals);
+  }
+  return difference;
+}
+
+}  // namespace
+
+Explained Explain(const scenario::Scenario& scenario, const episode::RunResult& run,
+                  std::shared_ptr<const grammar::Program> program,
+                  const truth::Comparison& comparison) {
+  Explained explained;
+  const show::Watched watched =
+      show::Watch(program, episode::MakeEntityTable(scenario),
+                  [&](const std::function<void(const grammar::Frame&)>& look) {
+                    episode::Sensing sensing(scenario.scene, scenario.sensing);
+                    for (const physics::Snapshot& snapshot : run.recording)
+                      if (sensing.Due(snapshot.tick)) look(sensing.Sense(snapshot));
+                    return episode::Episode::End{run.ticks + 1, ""};
+                  });
+  if (!watched.problem.empty()) return explained;
+  grammar::ReplayMonitor& past = *watched.past;
+  for (const show::WhyEvent& why : show::ExplainAll(past))
+    explained.events.push_back({why.event, why.interval.begin, why.interval.end,
+                                show::InOneLine(why.began), show::InOneLine(why.ended)});
+  for (const truth::Pairing* pairing : comparison.Differing()) {
+    if (explained.differences.size() >= kMostExplained) break;
+    explained.differences.push_back(ExplainDifference(*pairing, past));
+  }
+  return explained;
+}
+
+}  // namespace prehend::suite

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/suite/check/run_suite.h. Tested by tests/program/runner_test.cc
+#include "harness/suite/check/run_suite.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "harness/base/base/build_text.h"
+#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/text_file.h"
+#include "harness/base/process/progress_counters.h"
+#include "harness/base/process/wire.h"
+#include "harness/show/pictures/pictures.h"
+#include "harness/suite/check/check_scenario.h"
+#include "harness/suite/check/last_pass.h"
+
+namespace prehend::suite {
+namespace {
+
+/// One run of one scenario.
+struct Turn {
+  std::size_t scenario = 0;  ///< index into the selection
+  int repetition = 0;
+};
+
+class Suite {
+ public:
+  explicit Suite(const SuiteRequest& request)
+      : request_(request),
+        scenarios_(request.selection.scenarios),
+        records_(request.root),
+        program_(ProgramHash()),
+        costs_(records_.ReadCosts()),
+        runs_(scenarios_.size()) {}
+
+  std::vector<ScenarioVerdict> Run(const SuiteProgress& progress, Interrupt* interrupt) {
+    const std::vector<Turn> turns = Turns();
+    ProgressCounters last_ticks(turns.size());
+    if (request_.pictures) show::PrepareToDraw();
+    std::vector<WorkerJob> jobs;
+    for (std::size_t i = 0; i < turns.size(); ++i) jobs.push_back(Job(turns[i], last_ticks[i]));
+    std::size_t done = 0;
+    const auto keep = [&](std::size_t job, const WorkerResult& result) {
+      const std::size_t scenario = turns[job].scenario;
+      runs_[scenario].push_back(VerdictOf(scenario, result, last_ticks[job]));
+      if (progress) progress(++done, jobs.size(), Id(scenario));
+    };
+    RunInWorkers(jobs, request_.limits, keep, interrupt);
+    return Verdicts();
+  }
+
+ private:
+  std::string Id(std::size_t scenario) const { return episode::IdOf(scenarios_[scenario]); }
+
+  /// Only these have goldens, and are remembered from one check to the next.
+  bool InProject(std::size_t scenario) const { return scenarios_[scenario].in_project; }
+
+  bool IsRemembered(std::size_t scenario) const {
+    return InProject(scenario) && !scenarios_[scenario].episode;
+  }
+
+  bool Changed() const {
+    return !request_.changes.grammar.empty() || !request_.changes.settings.empty();
+  }
+
+  /// The last pass, when nothing that it depended on changed since.
+  std::optional<ScenarioVerdict> Unchanged(std::size_t scenario) const {
+    if (!IsRemembered(scenario)) return std::nullopt;
+    const auto record = records_.Read(Id(scenario));
+    const bool holds = record && record->passed && record->program == program_ &&
+                       record->pictures >= request_.pictures && ChangedInputs(*record).empty();
+    if (!holds) return std::nullopt;
+    ScenarioVerdict verdict = record->verdict;
+    verdict.verdict = Verdict::kUnchanged;
+    verdict.seconds = 0;
+    return verdict;
+  }
+
+  /// The runs in their order: slowest first. A scenario that was never timed counts as slow.
+  std::vector<Turn> Turns() {
+    std::vector<Turn> turns;
+    for (std::size_t i = 0; i < scenarios_.size(); ++i) {
+      if (request_.only_changed) {
+        if (auto unchanged = Unchanged(i)) {
+          runs_[i].push_back(std::move(*unchanged));
+          continue;
+        }
+      }
+      for (int k = 0; k < request_.repeat; ++k) turns.push_back({i, k});
+    }
+    if (request_.shuffle_seed) {
+      std::mt19937_64 random(*request_.shuffle_seed);
+      std::shuffle(turns.begin(), turns.end(), random);
+      return turns;
+    }
+    const auto cost = [&](const Turn& turn) {
+      const auto known = costs_.find(Id(turn.scenario));
+      return known == costs_.end() ? std::numeric_limits<double>::infinity() : known->second;
+    };
+    std::stable_sort(turns.begin(), turns.end(),
+                     [&](const Turn& a, const Turn& b) { return cost(a) > cost(b); });
+    return turns;
+  }
+
+  CheckRequest RequestOf(const Turn& turn) const {
+    return {
+        .episode = NameOf(scenarios_[turn.scenario]),
+        .changes = request_.changes,
+        .id = Id(turn.scenario),
+        .root = request_.root,
+        .report_folder = request_.report_folder,
+        .replays = turn.repetition == 0 ? request_.replays : Replays::kNone,
+        .explain = turn.repetition == 0,
+        .pictures = request_.pictures && turn.repetition == 0,
+        .leave_nothing_behind = Changed() || turn.repetition > 0 || !IsRemembered(turn.scenario),
+        .in_project = InProject(turn.scenario),
+        .record_file = turn.repetition == 0 ? request_.record_file : "",
+        .today = request_.today,
+        .program = program_};
+  }
+
+  WorkerJob Job(const Turn& turn, ProgressCounters::Tick& last_tick) const {
+    CheckRequest check = RequestOf(turn);
+    check.last_tick = &last_tick;
+    return [check] { return ToWire(Packed(CheckScenario(check))); };
+  }
+
+  ScenarioVerdict VerdictOf(std::size_t scenario, const WorkerResult& result,
+                            std::int64_t last_tick) const {
+    ScenarioVerdict verdict;
+    if (result.finished) {
+      verdict = UnpackedVerdict(FromWire<nlohmann::json>(result.output));
+    } else {
+      verdict.scenario = Id(scenario);
+      verdict.exit_code = ExitCode::kFailure;
+      verdict.reason = fmt::format("its process ended: {}, {}", ReadableText(result.reason),
+                                   last_tick == ProgressCounters::kNone
+                                       ? std::string("before the first tick")
+                                       : fmt::format("last tick {}", last_tick));
+      if (!result.stderr_tail.empty())
+        verdict.details = "its standard error:\n" + ReadableText(result.stderr_tail);
+      verdict.ticks = std::max<std::int64_t>(0, last_tick);
+      verdict.command = RepeatCommand(RequestOf({scenario})) + HowText();
+    }
+    verdict.seconds = result.seconds;
+    verdict.peak_memory_kib = result.peak_memory_kib;
+    return verdict;
+  }
+
+  /// The options that a worker's time and memory depend on.
+  std::string HowText() const {
+    return fmt::format("{} --time-limit-s {:g} --memory-limit-mb {}",
+                       request_.pictures ? "" : " --no-pictures", request_.limits.time_limit_s,
+                       request_.limits.memory_limit_bytes / kMegabyte);
+  }
+
+  std::vector<ScenarioVerdict> Verdicts() {
+    std::vector<ScenarioVerdict> verdicts;
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+      if (runs_[i].empty()) continue;  // interrupted before it ended
+      verdicts.push_back(MergeRepeats(runs_[i]));
+      if (verdicts.back().verdict == Verdict::kFlaky)
+        verdicts.back().command += fmt::format(" --repeat {}", request_.repeat);
+      const ScenarioVerdict& merged = verdicts.back();
+      if (merged.verdict == Verdict::kUnchanged || Changed() || !IsRemembered(i)) continue;
+      costs_[merged.scenario] = merged.seconds;
+      // Without its record the next check takes longer; if build/ cannot be written, the report,
+      // which is in it, too, is an error.
+      if (merged.verdict == Verdict::kPassed) {
+        ScenarioVerdict kept = merged;
+        kept.replay.clear();  // large, and quickly made again
+        (void)records_.Write({.program = program_,
+                              .build = BuildText(),
+                              .pictures = request_.pictures,
+                              .verdict = std::move(kept)});
+      }
+    }
+    (void)records_.WriteCosts(costs_);
+    for (const UnreferencedGolden& orphan : request_.selection.orphans) {
+      verdicts.push_back(OrphanVerdict(orphan));
+    }
+    return verdicts;
+  }
+
+  static ScenarioVerdict OrphanVerdict(const UnreferencedGolden& orphan) {
+    ScenarioVerdict verdict{.scenario = orphan.scenario, .shows = {}, .verdict = Verdict::kFailed};
+    verdict.exit_code = ExitCode::kDiffers;
+    verdict.reason = "a golden without scenario";
+    verdict.details = Text(orphan);
+    verdict.command = CommandText({"check"});
+    return verdict;
+  }
+
+  const SuiteRequest& request_;
+  const std::vector<episode::ScenarioFile>& scenarios_;
+  const LastPasses records_;
+  const std::string program_;
+  LastPasses::Costs costs_;
+  std::vector<std::vector<ScenarioVerdict>> runs_;  ///< per scenario, in the order they ended
+};
+
+}  // namespace
+
+std::vector<ScenarioVerdict> RunSuite(const SuiteRequest& request, const SuiteProgress& progress,
+                                      Interrupt* interrupt) {
+  return Suite(request).Run(progress, interrupt);
+}
+
+}  // namespace prehend::suite

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/suite/check/settings.h. Tested by tests/harness/suite/check/settings_test.cc
+#include "harness/suite/check/settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "grammar/describe.h"
+#include "harness/base/base/text_file.h"
+#include "harness/base/yaml/located_yaml.h"
+
+namespace prehend::suite {
+namespace {
+
+constexpr std::size_t kMostValues = 5000;
+constexpr std::size_t kLongestValue = 60;
+
+using Values = std::map<std::string, std::string>;
+
+/// "[0, 0, 0.74]" of a list of scalars; "" of anything else.
+std::string ListText(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::kSequence) return "";
+  std::vector<std::string> texts;
+  for (const YamlNode& child : node.children) {
+    if (child.kind != YamlNode::Kind::kScalar) return "";
+    texts.push_back(child.text);
+  }
+  const std::string text = fmt::format("[{}]", fmt::join(texts, ", "));
+  return text.size() <= kLongestValue ? text : "";
+}
+
+void AddValues(const YamlNode& node, const std::string& path, Values& values) {
+  if (values.size() >= kMostValues) return;
+  const std::string list = ListText(node);
+  if (node.children.empty() || !list.empty()) {
+    values[path] = list.empty() ? node.text : list;
+    return;
+  }
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    const YamlNode& child = node.children[i];
+    const std::string step = node.kind == YamlNode::Kind::kSequence ? std::to_string(i) : child.key;
+    AddValues(child, path.empty() ? step : path + "." + step, values);
+  }
+}
+
+/// What stands after the '=' of a declaration in these lines, or "".
+std::string AsWritten(const std::string& text, const grammar::ProgramParam& param) {
+  std::size_t begin = 0;
+  for (int line = 1; line < param.place.line && begin != std::string::npos; ++line) {
+    begin = text.find('\n', begin);
+    if (begin != std::string::npos) ++begin;
+  }
+  if (begin == std::string::npos) return "";
+  const std::string line = text.substr(begin, text.find('\n', begin) - begin);
+  const std::size_t equals = line.find('=');
+  if (equals == std::string::npos || line.find(param.name) > equals) return "";
+  const std::string rest = line.substr(equals + 1, line.find('#') - equals - 1);
+  const std::size_t first = rest.find_first_not_of(" \t\r");
+  if (first == std::string::npos) return "";
+  return rest.substr(first, rest.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// As people wrote it: "30 cm", which is 0.3 m.
+std::string ParameterText(const grammar::ProgramParam& param, const episode::RunRequest& request,
+                          std::map<std::string, std::string>& texts) {
+  for (const std::string& setting : request.settings) {
+    if (setting.starts_with(param.name + "=")) return setting.substr(param.name.size() + 1);
+  }
+  const auto [text, is_new] = texts.try_emplace(param.file);
+  if (is_new) text->second = ReadTextFile(param.file).value_or("");
+  const std::string written = AsWritten(text->second, param);
+  return written.empty() ? grammar::QuantityText(param.value) : written;
+}
+
+/// A long text is of no use in a line.
+std::string Shortened(const std::string& value) {
+  return value.size() <= kLongestValue ? value : value.substr(0, kLongestValue) + "..";
+}
+
+}  // namespace
+
+std::string RelativeTo(const std::string& root, const std::string& path) {
+  const auto relative = std::filesystem::path(path).lexically_relative(root).generic_string();
+  return relative.empty() || relative.starts_with("..") ? path : relative;
+}
+
+Settings SettingsOf(const episode::LoadedRun& loaded, const episode::RunRequest& request,
+                    const FileHashes& inputs, const std::string& root) {
+  Settings settings;
+  std::map<std::string, std::string> texts;
+  for (const grammar::ProgramParam& param : grammar::Describe(*loaded.program).params)
+    settings[RelativeTo(root, param.file)][param.name] = ParameterText(param, request, texts);
+  for (const auto& [path, hash] : inputs) {
+    if (!path.ends_with(".yaml") || hash == kNoFile) continue;
+    if (path == loaded.scenario.file)
+      AddValues(loaded.document.root, "", settings[RelativeTo(root, path)]);
+    else if (const auto document = ReadYamlFile(path))
+      AddValues(document->root, "", settings[RelativeTo(root, path)]);
+  }
+  for (const std::string& setting : request.settings) {
+    const std::size_t equals = setting.find('=');
+    const std::string name = setting.substr(0, equals);
+    if (equals != std::string::npos && episode::IsFieldOfScenario(name))
+      settings[RelativeTo(root, request.scenario_file)][name] = setting.substr(equals + 1);
+  }
+  return settings;
+}
+
+std::vector<SettingChange> ChangesBetween(const Settings& before, const Settings& now) {
+  std::vector<SettingChange> changes;
+  for (const auto& [file, values] : now) {
+    const auto old = before.find(file);
+    if (old == before.end()) continue;
+    std::set<std::string> names;
+    for (const auto& [name, value] : values) names.insert(name);
+    for (const auto& [name, value] : old->second) names.insert(name);
+    const auto value_in = [](const Values& all, const std::string& name) {
+      const auto found = all.find(name);
+      return found == all.end() ? std::string() : found->second;
+    };
+    for (const std::string& name : names) {
+      SettingChange change{.file = file,
+                           .name = name,
+                           .before = value_in(old->second, name),
+                           .after = value_in(values, name),
+                           .is_parameter = file.ends_with(".grammar")};
+      if (change.before != change.after) changes.push_back(std::move(change));
+    }
+  }
+  return changes;
+}
+
+std::string ChangeText(const SettingChange& change) {
+  const std::string before = Shortened(change.before), after = Shortened(change.after);
+  if (before.empty()) return fmt::format("`{}` added: {}", change.name, after);
+  if (after.empty()) return fmt::format("`{}` removed: {}", change.name, before);
+  return fmt::format("`{}` {} -> {}", change.name, before, after);
+}
+
+}  // namespace prehend::suite

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the files of a run say, value by value, and which values are others than they were: "in
+// slide/x.yaml `entities.milk.mass_kg` 0.4 -> 8". Tested by
+// tests/harness/suite/check/settings_test.cc
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "harness/base/base/content_hash.h"
+#include "harness/episode/run/load_run.h"
+
+namespace prehend::suite {
+
+/// File -> name -> value. A name is that of a parameter ("reach_radius" -> "30 cm"), or the path of
+/// a field ("entities.milk.mass_kg" -> "0.4"); short lists are one value ("[0, 0, 0.74]").
+using Settings = std::map<std::string, std::map<std::string, std::string>>;
+
+/// Of the parameters of the grammar and of all YAML files among `inputs`, with the changes of the
+/// command line. At most 5,000 values of each file. Files are relative to `root`.
+Settings SettingsOf(const episode::LoadedRun& loaded, const episode::RunRequest& request,
+                    const FileHashes& inputs, const std::string& root);
+
+struct SettingChange {
+  std::string file, name, before, after;  ///< without a value: ""
+  bool is_parameter = false;              ///< of the grammar
+  friend bool operator==(const SettingChange&, const SettingChange&) = default;
+};
+
+/// Of files that both have, sorted by file and name.
+std::vector<SettingChange> ChangesBetween(const Settings& before, const Settings& now);
+
+/// "`reach_radius` 30 cm -> 20 cm"; "`entities.milk.color` added: red".
+std::string ChangeText(const SettingChange& change);
+
+/// A path as people know it: relative to the project if it is in there.
+std::string RelativeTo(const std::string& root, const std::string& path);
+
+}  // namespace prehend::suite

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/suite/judge/judge_pictures.h. Tested by
+// tests/harness/suite/judge/judge_pictures_test.cc
+#include "harness/suite/judge/judge_pictures.h"
+
+#include <fmt/format.h>
+
+#include "harness/suite/judge/unreferenced_goldens.h"
+#include "harness/truth/golden/golden_files.h"
+
+namespace prehend::suite {
+
+namespace fs = std::filesystem;
+
+show::GoldenOf GoldensOf(const std::string& id, const std::string& root) {
+  return [files = truth::GoldenFiles(root), id](const std::string& name) {
+    const fs::path golden = files.PicturePath(id, name);
+    std::error_code ignored;
+    return fs::exists(golden, ignored) ? golden.string() : "";
+  };
+}
+
+std::vector<PictureComparison> ComparisonsOf(const std::string& id,
+                                             const std::vector<show::WrittenPicture>& drawn,
+                                             const std::string& root, bool shown) {
+  const truth::GoldenFiles files(root);
+  std::vector<PictureComparison> compared;
+  for (const show::WrittenPicture& picture : drawn) {
+    if (picture.golden.empty()) continue;
+    const bool can_be_shown =
+        shown && picture.difference.same_size && !picture.difference.told.empty();
+    const std::string name = fs::path(picture.file).filename().string();
+    compared.push_back({.golden = picture.golden,
+                        .drawn = picture.file,
+                        .told = picture.difference.told,
+                        .shown_in = can_be_shown ? files.DifferencePath(id, name) : fs::path()});
+  }
+  return compared;
+}
+
+std::string PictureDifferencesText(const std::vector<PictureComparison>& compared,
+                                   const std::string& accept) {
+  std::string text;
+  for (const PictureComparison& picture : compared) {
+    if (picture.told.empty()) continue;
+    text += fmt::format("picture {}:\n", picture.drawn.string());
+    for (const std::string& told : picture.told) text += "  " + told + "\n";
+    text += fmt::format("  expected {}\n", picture.golden.string());
+    if (!picture.shown_in.empty())
+      text += fmt::format("  difference {}\n", picture.shown_in.string());
+    if (!accept.empty()) text += fmt::format("  accept it with: {}\n", accept);
+  }
+  return text;
+}
+
+Findings JudgeUnrequestedPictures(const std::string& id, std::size_t requested,
+                                  const std::string& root, const std::string& accept) {
+  Findings findings;
+  for (const fs::path& picture : UnrequestedPictures(id, requested, root)) {
+    findings.push_back(
+        {.exit_code = ExitCode::kDiffers,
+         .reason = "a golden picture that the scenario does not ask for",
+         .details = UnrequestedText(picture, requested) + "\n  remove it, or: " + accept + "\n"});
+  }
+  return findings;
+}
+
+void StorePictures(const std::string& id, const std::vector<PictureComparison>& compared,
+                   const std::string& root) {
+  const truth::GoldenFiles files(root);
+  for (const PictureComparison& picture : compared) {
+    const std::string name = picture.drawn.filename().string();
+    files.RemovePendingPicture(id, name);
+    if (picture.told.empty()) continue;
+    const fs::path pending = files.PendingPicturePath(id, name);
+    std::error_code ignored;  // `accept` draws the picture again, and reports what it cannot write
+    fs::create_directories(pending.parent_path(), ignored);
+    fs::copy_file(picture.drawn, pending, ignored);
+    if (!picture.shown_in.empty())
+      show::WritePictureDifference(picture.golden.string(), picture.drawn.string(),
+                                   picture.shown_in.string());
+  }
+}
+
+}  // namespace prehend::suite

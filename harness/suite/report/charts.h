@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The charts of the report page: a comparison with its golden, and the signals that decided. Tested
+// by tests/harness/suite/report/charts_test.cc
+#pragma once
+
+#include <string>
+
+#include "harness/suite/check/explained.h"
+#include "harness/truth/golden/compare.h"
+#include "harness/truth/timeline/event_drawings.h"
+
+namespace prehend::suite {
+
+/// One row per event and roles, with the interval of the golden above the recognised one, as an
+/// <svg> element. `end` is the episode's end in the comparison's ticks. Without a golden nothing
+/// differs.
+std::string TimelineSvg(const truth::Comparison& comparison, grammar::Tick end,
+                        const truth::EventDrawings& drawings, bool has_golden = true);
+
+/// A signal over time: its value, its limit, and when the one crossed the other, as an <svg>
+/// element. The signal has at least one sample.
+std::string SignalSvg(const DecidingSignal& signal, grammar::Tick ticks_per_second);
+
+}  // namespace prehend::suite

@@ -1,0 +1,456 @@
+// SPDX-License-Identifier: Apache-2.0
+// The 3D replay of the report page. Defines window.prehendReplay = {mount(place, data, moved)}: fills the element `place`
+// with a player of `data` (harness/show/replay/replay_data.h) and calls moved(seconds) whenever its time changes. The player
+// that it returns is described in docs/report-page.md. Throws if there is no WebGL.
+import {
+  AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, Color, CylinderGeometry, DirectionalLight,
+  DoubleSide, EdgesGeometry, FrontSide, GridHelper, Group, HemisphereLight, InstancedMesh, LineBasicMaterial, LineSegments, Matrix4,
+  Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, Quaternion, Scene, SphereGeometry, Vector3,
+  WebGLRenderer, Box3
+} from 'three';
+import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+import {Line2} from 'three/addons/lines/Line2.js';
+import {LineGeometry} from 'three/addons/lines/LineGeometry.js';
+import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
+
+const UNITS_PER_M = 10000, COARSE_PER_M = 1000, SKIN = '#e0ac86';
+const VIEWS = ['fitted', 'front', 'side', 'top', 'hand', 'eyes'];
+const LAYERS = [
+  ['regions', 'regions of interest'], ['contacts', 'contacts'], ['paths', 'paths'], ['gaze', 'gaze'], ['body', 'body'],
+  ['names', 'names']];
+
+function sums(differences, width) {
+  const values = Float64Array.from(differences);
+  for (let i = width; i < values.length; ++i) values[i] += values[i - width];
+  return values;
+}
+
+/// Poses over time: before its first key the first, after its last the last.
+class Track {
+  constructor(packed) {
+    this.t = sums(packed.t, 1);
+    this.p = sums(packed.p, 3).map((v) => v / UNITS_PER_M);
+    this.q = sums(packed.q, 4);
+    this.moves = this.t.length > 1;
+    this.a = new Quaternion();
+    this.b = new Quaternion();
+  }
+  turned(i, into) {
+    return into.set(this.q[4 * i + 1], this.q[4 * i + 2], this.q[4 * i + 3], this.q[4 * i]).normalize();
+  }
+  set(tick, object) {
+    const n = this.t.length;
+    let low = 0, high = n - 1;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (this.t[middle] <= tick) low = middle; else high = middle;
+    }
+    const span = this.t[high] - this.t[low];
+    const share = span > 0 ? Math.min(1, Math.max(0, (tick - this.t[low]) / span)) : 0;
+    const mix = (k) => this.p[3 * low + k] + share * (this.p[3 * high + k] - this.p[3 * low + k]);
+    object.position.set(mix(0), mix(1), mix(2));
+    object.quaternion.copy(this.turned(low, this.a)).slerp(this.turned(high, this.b), share);
+  }
+}
+
+function geometryOf(shape) {
+  if (shape.kind === 'box') return new BoxGeometry(...shape.size);
+  if (shape.kind === 'sphere') return new SphereGeometry(shape.radius, 24, 16);
+  if (shape.kind === 'cylinder')
+    return new CylinderGeometry(shape.radius, shape.radius, shape.length, 32).rotateX(Math.PI / 2);
+  if (shape.kind === 'capsule') return new CapsuleGeometry(shape.radius, shape.length, 8, 24).rotateX(Math.PI / 2);
+  const corners = [];
+  for (const triangle of shape.triangles) for (const i of triangle) corners.push(...shape.corners[i]);
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array(corners), 3));
+  geometry.computeVertexNormals();
+  return geometry;
+}
+
+function solid(geometry, color, opacity) {
+  const group = new Group();
+  const clear = opacity < 1;
+  group.add(new Mesh(geometry, new MeshLambertMaterial(
+    {color, transparent: clear, opacity, depthWrite: !clear, side: clear ? DoubleSide : FrontSide})));
+  const edges = new LineBasicMaterial({color: new Color(color).multiplyScalar(0.55), transparent: clear, opacity});
+  group.add(new LineSegments(new EdgesGeometry(geometry, 40), edges));
+  return group;
+}
+
+class World {
+  constructor(data) {
+    this.data = data;
+    this.scene = new Scene();
+    this.layers = {regions: [], contacts: [], paths: [], gaze: [], body: [], names: []};
+    this.placed = [];  // [object, track]
+    this.objects = {};
+    this.named = [];
+    this.scene.add(new HemisphereLight(0xffffff, 0x8d8d8d, 1.6), new AmbientLight(0xffffff, 0.4));
+    const sun = new DirectionalLight(0xffffff, 1.6);
+    sun.position.set(-1, -2, 3);
+    this.scene.add(sun);
+    data.bodies.forEach((body) => this.addBody(body));
+    data.legs.forEach((leg) => {
+      const mesh = solid(new BoxGeometry(...leg.size), leg.color, 1);
+      mesh.position.set(...leg.p);
+      this.scene.add(mesh);
+    });
+    data.hands.forEach((hand) => this.addHand(hand));
+    data.gazes.forEach((gaze) => this.addGaze(gaze));
+    this.addContacts();
+    this.box = this.bounds();
+    this.addGround();
+    this.addPaths();
+  }
+
+  place(object, packed, name) {
+    const track = new Track(packed);
+    this.placed.push([object, track]);
+    if (name) this.objects[name] = object;
+    return track;
+  }
+
+  addBody(body) {
+    const group = new Group();
+    const isRegion = body.kind === 'region';
+    const opacity = isRegion ? 0.25 : body.kind === 'gaze_target' ? 0.5 : 1;
+    for (const shape of body.shapes) {
+      const part = solid(geometryOf(shape), body.color, opacity);
+      part.position.set(...shape.X.p);
+      part.quaternion.set(shape.X.q[1], shape.X.q[2], shape.X.q[3], shape.X.q[0]);
+      group.add(part);
+    }
+    if (body.grains) this.addGrains(body);
+    const track = this.place(group, body.track, body.name);
+    this.scene.add(group);
+    if (isRegion || body.kind === 'gaze_target') this.layers.regions.push(group);
+    if (body.kind === 'person') this.layers.body.push(group);
+    else if (body.kind !== 'fixed') this.named.push([body.name, group]);
+    if (body.kind === 'thing' && track.moves) group.userData.path = track;
+  }
+
+  addGrains(body) {
+    const grains = new InstancedMesh(
+      new SphereGeometry(body.grains.radius, 8, 6), new MeshLambertMaterial({color: body.color}), body.grains.count);
+    grains.frustumCulled = false;
+    const places = sums(body.grains.places.samples, 3 * body.grains.count);
+    this.scene.add(grains);
+    (this.grains = this.grains || []).push({grains, places, of: body.grains});
+  }
+
+  addHand(hand) {
+    const group = new Group();
+    group.add(solid(new BoxGeometry(...hand.palm), SKIN, 1));
+    hand.links.forEach((link) => {
+      const part = solid(new BoxGeometry(...link.size), SKIN, 1);
+      this.place(part, link.track);
+      group.add(part);
+    });
+    group.userData.path = this.place(group, hand.track, hand.name);
+    group.userData.phases = hand.phases;
+    this.scene.add(group);
+    this.named.push([hand.name, group]);
+  }
+
+  addGaze(gaze) {
+    const line = new Line2(new LineGeometry().setPositions([0, 0, 0, 0, 0, 1]), new LineMaterial({color: 0xd6249f, linewidth: 2}));
+    line.frustumCulled = false;
+    const hit = new Mesh(new SphereGeometry(0.015, 16, 12), new MeshBasicMaterial({color: 0xd6249f}));
+    this.scene.add(line, hit);
+    this.layers.gaze.push(line, hit);
+    (this.gazes = this.gazes || []).push({line, hit, values: sums(gaze.rays.samples, 6), rays: gaze.rays});
+  }
+
+  addContacts() {
+    const most = Math.max(1, ...this.data.contacts.samples.map((points) => points.length / 3));
+    this.points = new InstancedMesh(
+      new SphereGeometry(0.005, 12, 8), new MeshBasicMaterial({color: 0xffc400, depthTest: false, transparent: true}), most);
+    this.points.frustumCulled = false;
+    this.points.renderOrder = 2;
+    this.scene.add(this.points);
+    this.layers.contacts.push(this.points);
+  }
+
+  /// Of what moves, and of what stands near it.
+  bounds() {
+    const box = new Box3(), point = new Vector3();
+    this.scene.traverse((object) => {
+      const track = object.userData.path;
+      if (!track) return;
+      for (let i = 0; i < track.t.length; ++i) box.expandByPoint(point.fromArray(track.p, 3 * i));
+    });
+    if (box.isEmpty()) {
+      this.seek(0);
+      box.setFromObject(this.scene);
+    }
+    return box.expandByScalar(0.15);
+  }
+
+  addGround() {
+    const lowest = this.data.bodies.reduce((z, body) => Math.min(z, body.track.p[2] / UNITS_PER_M), 0);
+    const grid = new GridHelper(4, 20, 0x888888, 0x888888);
+    grid.rotation.x = Math.PI / 2;
+    const middle = this.box.getCenter(new Vector3());
+    grid.position.set(middle.x, middle.y, Math.min(0, lowest) - 0.002);
+    grid.material.transparent = true;
+    grid.material.opacity = 0.25;
+    this.scene.add(grid);
+  }
+
+  addPaths() {
+    const probe = new Group();
+    const paths = [];
+    this.scene.traverse((object) => { if (object.userData.path) paths.push(object); });
+    for (const object of paths) {
+      const points = [], colors = [], color = new Color();
+      const step = this.data.ticks_per_second / 60;
+      for (let tick = 0; tick <= this.data.end; tick += step) {
+        object.userData.path.set(tick, probe);
+        points.push(probe.position.x, probe.position.y, probe.position.z);
+        const phase = (object.userData.phases || []).find((each) => each.from <= tick && tick < each.to);
+        color.set(phase ? phase.color : '#8a8f96');
+        colors.push(color.r, color.g, color.b);
+      }
+      if (points.length < 6) continue;
+      const line = new Line2(new LineGeometry().setPositions(points).setColors(colors),
+        new LineMaterial({vertexColors: true, linewidth: object.userData.phases ? 3 : 1.5}));
+      this.scene.add(line);
+      this.layers.paths.push(line);
+    }
+  }
+
+  seek(tick) {
+    for (const [object, track] of this.placed) track.set(tick, object);
+    const at = (sampled, width) => {
+      const count = width ? sampled.samples.length / width : sampled.samples.length;
+      return Math.min(count - 1, Math.max(0, Math.round((tick - sampled.begin) / sampled.every)));
+    };
+    const move = new Matrix4();
+    if (this.points) {
+      const points = this.data.contacts.samples[at(this.data.contacts)] || [];
+      for (let i = 0; i < points.length; i += 3)
+        this.points.setMatrixAt(i / 3, move.makeTranslation(
+          points[i] / COARSE_PER_M, points[i + 1] / COARSE_PER_M, points[i + 2] / COARSE_PER_M));
+      this.points.count = points.length / 3;
+      this.points.instanceMatrix.needsUpdate = true;
+    }
+    for (const {grains, places, of} of this.grains || []) {
+      const from = 3 * of.count * at(of.places, 3 * of.count);
+      for (let i = 0; i < of.count; ++i)
+        grains.setMatrixAt(i, move.makeTranslation(places[from + 3 * i] / COARSE_PER_M,
+          places[from + 3 * i + 1] / COARSE_PER_M, places[from + 3 * i + 2] / COARSE_PER_M));
+      grains.instanceMatrix.needsUpdate = true;
+    }
+    for (const {line, hit, values, rays} of this.gazes || []) {
+      const from = 6 * at(rays, 6);
+      const ray = Array.from(values.slice(from, from + 6), (v) => v / COARSE_PER_M);
+      line.geometry.setPositions(ray);
+      hit.position.set(ray[3], ray[4], ray[5]);
+    }
+  }
+}
+
+function element(parent, tag, attributes, text) {
+  const made = document.createElement(tag);
+  for (const name in attributes) made.setAttribute(name, attributes[name]);
+  if (text) made.textContent = text;
+  parent.appendChild(made);
+  return made;
+}
+
+class Player {
+  constructor(place, data, moved) {
+    this.place = place;
+    this.moved = moved;
+    this.rate = data.ticks_per_second;
+    this.end_s = data.end / this.rate;
+    this.time = 0;
+    this.world = new World(data);
+    this.stage = element(place, 'div', {class: 'stage'});
+    this.canvas = element(this.stage, 'canvas', {
+      tabindex: '0', role: 'img',
+      'aria-label': '3D replay; arrows turn the view, + and - zoom, space plays, comma and full stop step'});
+    this.renderer = new WebGLRenderer({canvas: this.canvas, antialias: true, alpha: true, preserveDrawingBuffer: true});
+    this.camera = new PerspectiveCamera(35, 1.6, 0.01, 50);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.addEventListener('change', () => this.draw());
+    this.addLabels();
+    this.addBar();
+    this.addKeys();
+    this.watcher = new ResizeObserver(() => this.resize());
+    this.watcher.observe(this.stage);
+    this.world.seek(0);
+    this.resize();
+    this.view('fitted');
+    this.seek(0);
+  }
+
+  addLabels() {
+    this.labels = this.world.named.map(([name, object]) => {
+      const label = element(this.stage, 'span', {class: 'label', 'aria-hidden': 'true'}, name);
+      return {label, object};
+    });
+  }
+
+  addBar() {
+    const bar = element(this.place, 'div', {class: 'bar', role: 'group', 'aria-label': 'replay'});
+    this.button = element(bar, 'button', {type: 'button', class: 'play'}, 'play');
+    this.button.addEventListener('click', () => (this.timer ? this.pause() : this.play()));
+    this.scrubber = element(bar, 'input', {
+      type: 'range', min: '0', max: String(this.end_s), step: String(1 / this.rate), value: '0',
+      'aria-label': 'time of the replay, in seconds'});
+    this.scrubber.addEventListener('input', () => { this.pause(); this.seek(Number(this.scrubber.value)); });
+    this.clock = element(bar, 'span', {class: 'clock'});
+    this.speed = element(bar, 'select', {'aria-label': 'speed'});
+    for (const speed of [0.1, 0.25, 0.5, 1, 2, 4])
+      element(this.speed, 'option', {value: speed, ...(speed === 1 ? {selected: ''} : {})}, speed + 'x');
+    this.views = element(bar, 'select', {'aria-label': 'camera'});
+    for (const view of VIEWS) {
+      if (view === 'eyes' && !this.world.gazes) continue;
+      if (view === 'hand' && this.world.data.hands.length === 0) continue;
+      element(this.views, 'option', {value: view}, view);
+    }
+    this.views.addEventListener('change', () => this.view(this.views.value));
+    const layers = element(this.place, 'div', {class: 'bar', role: 'group', 'aria-label': 'what is shown'});
+    for (const [layer, title] of LAYERS) {
+      if (layer !== 'names' && this.world.layers[layer].length === 0) continue;
+      const label = element(layers, 'label');
+      const box = element(label, 'input', {type: 'checkbox', checked: ''});
+      label.append(' ' + title);
+      box.addEventListener('change', () => this.show(layer, box.checked));
+    }
+  }
+
+  addKeys() {
+    this.canvas.addEventListener('keydown', (event) => {
+      const turn = {ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1]}[event.key];
+      const away = this.camera.position.clone().sub(this.controls.target);
+      if (turn) {
+        away.applyAxisAngle(this.camera.up, turn[0]);
+        const across = new Vector3().crossVectors(this.camera.up, away).normalize();
+        away.applyAxisAngle(across, turn[1]);
+      } else if (event.key === '+' || event.key === '-') {
+        away.multiplyScalar(event.key === '+' ? 0.9 : 1.1);
+      } else if (event.key === ' ') {
+        if (this.timer) this.pause(); else this.play();
+      } else if (event.key === ',' || event.key === '.') {
+        this.pause();
+        this.seek(this.time + (event.key === '.' ? 1 : -1) / 30);
+      } else {
+        return;
+      }
+      event.preventDefault();
+      event.stopPropagation();
+      this.camera.position.copy(this.controls.target).add(away);
+      this.controls.update();
+      this.draw();
+    });
+  }
+
+  resize() {
+    const width = this.stage.clientWidth || 640;
+    const height = Math.round(Math.min(width * 0.6, 520));
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  /// Puts the camera: one of the names in VIEWS.
+  view(name) {
+    const box = this.world.box;
+    const target = box.getCenter(new Vector3());
+    let away = {front: [-1, 0, 0.25], side: [0, -1, 0.2], top: [0, -0.01, 1]}[name] || [-0.4, -1, 0.6];
+    let distance = box.getSize(new Vector3()).length() / 2 / Math.tan(17.5 * Math.PI / 180) * 0.72;
+    this.camera.near = 0.01;
+    if (name === 'hand') {
+      this.world.objects[this.world.data.hands[0].name].getWorldPosition(target);
+      distance = 0.55;
+    }
+    const eyes = name === 'eyes' && this.world.gazes && this.world.gazes[0].line.geometry;
+    if (eyes) {
+      const ray = this.world.gazes[0];
+      target.copy(ray.hit.position);
+      const from = eyes.attributes.instanceStart;
+      away = [from.getX(0) - target.x, from.getY(0) - target.y, from.getZ(0) - target.z];
+      distance = Math.max(0.3, new Vector3(...away).length());
+      this.camera.near = 0.15;  // her own head is not in the way
+    }
+    this.controls.target.copy(target);
+    this.camera.position.copy(target).add(new Vector3(...away).normalize().multiplyScalar(distance));
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.views.value = name;
+    this.draw();
+  }
+
+  /// Shows or hides a layer: regions, contacts, paths, gaze, body, names.
+  show(layer, shown) {
+    for (const object of this.world.layers[layer]) object.visible = shown;
+    if (layer === 'names') this.stage.classList.toggle('nameless', !shown);
+    this.draw();
+  }
+
+  /// Everything as it is at this time, in seconds.
+  seek(seconds) {
+    this.time = Math.min(this.end_s, Math.max(0, seconds));
+    this.world.seek(this.time * this.rate);
+    this.scrubber.value = String(this.time);
+    this.clock.textContent = this.time.toFixed(3) + ' of ' + this.end_s.toFixed(1) + ' s';
+    this.draw();
+    this.moved(this.time);
+  }
+
+  play() {
+    if (this.time >= this.end_s) this.seek(0);
+    let last = performance.now();
+    const step = (now) => {
+      this.seek(this.time + (now - last) / 1000 * Number(this.speed.value));
+      last = now;
+      if (this.time >= this.end_s) this.pause(); else if (this.timer) this.timer = requestAnimationFrame(step);
+    };
+    this.timer = requestAnimationFrame(step);
+    this.button.textContent = 'pause';
+  }
+
+  pause() {
+    if (this.timer) cancelAnimationFrame(this.timer);
+    this.timer = 0;
+    this.button.textContent = 'play';
+  }
+
+  draw() {
+    if (this.gone || !this.labels) return;
+    this.renderer.render(this.world.scene, this.camera);
+    const width = this.stage.clientWidth, height = this.canvas.clientHeight, at = new Vector3();
+    for (const {label, object} of this.labels) {
+      object.getWorldPosition(at).project(this.camera);
+      const isIn = Math.abs(at.x) < 1 && Math.abs(at.y) < 1 && at.z < 1 && object.visible;
+      label.style.visibility = isIn ? '' : 'hidden';
+      label.style.transform = `translate(${(at.x + 1) / 2 * width}px, ${(1 - at.y) / 2 * height}px) translate(-50%, -170%)`;
+    }
+  }
+
+  /// Where a body or hand is drawn: {p: [x, y, z] in metres, q: [w, x, y, z]}, or null.
+  poseOf(name) {
+    const object = this.world.objects[name];
+    if (!object) return null;
+    this.world.scene.updateMatrixWorld();
+    const p = object.getWorldPosition(new Vector3()), q = object.getWorldQuaternion(new Quaternion());
+    return {p: p.toArray(), q: [q.w, q.x, q.y, q.z]};
+  }
+
+  remove() {
+    this.pause();
+    this.gone = true;
+    this.watcher.disconnect();
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.place.replaceChildren();
+  }
+}
+
+window.prehendReplay = {mount: (place, data, moved) => new Player(place, data, moved)};

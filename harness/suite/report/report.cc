@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/suite/report/report.h. Tested by tests/harness/suite/report/report_test.cc
+#include "harness/suite/report/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string>
+#include <string_view>
+#include <tuple>
+
+#include "harness/base/base/base64.h"
+#include "harness/base/base/markup.h"
+#include "harness/suite/check/causes.h"
+#include "harness/suite/report/charts.h"
+#include "harness/suite/report/explanations.h"
+#include "harness/suite/report/page_texts.h"
+
+namespace prehend::suite {
+namespace {
+
+// Where style and scripts go: HTML does not unescape what is in them.
+constexpr std::string_view kStylePlace = "@style@", kScriptPlace = "@script@";
+
+constexpr std::size_t kMostEffects = 6;  // of a cause
+
+constexpr const char* kNewLine = "\n";  // between blocks, where a browser shows none
+
+void AddSummary(pugi::xml_node body, const Tally& tally) {
+  const pugi::xml_node line = AddElement(body, "p", {{"class", "verdict"}});
+  const auto add = [&](int count, const char* verdict, const std::string& style) {
+    AddElement(line, "span", {{"class", style}}, fmt::format("{} {}", count, verdict));
+  };
+  add(tally.passed, "passed", "passed");
+  AddText(line, ", ");
+  add(tally.failed, "failed", tally.failed > 0 ? "failed" : "soft");
+  if (tally.pending > 0) {
+    AddText(line, ", ");
+    add(tally.pending, "pending", "pending");
+  }
+  if (tally.unchanged > 0) {
+    AddText(line, ", ");
+    add(tally.unchanged, "unchanged", "unchanged");
+  }
+}
+
+/// One column of the table of all scenarios.
+struct Column {
+  const char* title;
+  bool is_number;
+  void (*fill)(pugi::xml_node cell, const ScenarioVerdict& verdict);
+};
+
+void FillVerdict(pugi::xml_node cell, const ScenarioVerdict& verdict) {
+  const std::string name(Name(verdict.verdict));
+  AddElement(cell, "span", {{"class", "verdict " + name}}, name);
+}
+
+void FillScenario(pugi::xml_node cell, const ScenarioVerdict& verdict) {
+  AddElement(cell, "a", {{"href", "#" + verdict.scenario}}, verdict.scenario);
+  AddElement(cell, "br");
+  AddElement(cell, "span", {{"class", "soft"}}, verdict.shows);
+}
+
+/// What the pictures of a disputed moment show.
+std::string DisputeText(const DisputedMoment& moment) {
+  constexpr const char* kPaths = "; the paths show what hands do by the golden, and by this run";
+  if (!moment.in_run)
+    return "Where " + moment.what + " should begin, which was not recognised" + kPaths;
+  if (!moment.in_golden)
+    return "Where " + moment.what + " begins, which is not in the golden" + kPaths;
+  return "The scene at the disputed " + moment.what +
+         ": when it should be, when it was recognised, and what moved in between";
+}
+
+void FillReason(pugi::xml_node cell, const ScenarioVerdict& verdict) {
+  AddText(cell, verdict.reason.empty() ? MarginText(verdict) : verdict.reason);
+}
+
+void FillTime(pugi::xml_node cell, const ScenarioVerdict& verdict) {
+  AddText(cell, fmt::format("{:.2f} s", verdict.seconds));
+}
+
+/// From left to right.
+constexpr Column kColumns[] = {{"verdict", false, FillVerdict},
+                               {"scenario", false, FillScenario},
+                               {"result", false, FillReason},
+                               {"time", true, FillTime}};
+
+pugi::xml_node AddCell(pugi::xml_node row, const char* kind, const Column& column) {
+  return column.is_number ? AddElement(row, kind, {{"class", "number"}}) : AddElement(row, kind);
+}
+
+void AddTable(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {
+  const pugi::xml_node table = AddElement(body, "table");
+  const pugi::xml_node head = AddElement(table, "tr");
+  for (const Column& column : kColumns) AddText(AddCell(head, "th", column), column.title);
+  AddText(table, kNewLine);
+  for (const ScenarioVerdict& verdict : verdicts) {
+    const pugi::xml_node row = AddElement(table, "tr", {{"data-of", verdict.scenario}});
+    for (const Column& column : kColumns) column.fill(AddCell(row, "td", column), verdict);
+    AddText(table, kNewLine);
+  }
+}
+
+/// Puts pictures into the page as long as there is room.
+class PictureBox {
+ public:
+  explicit PictureBox(std::string folder) : folder_(std::move(folder)) {}
+
+  void Add(pugi::xml_node section, const ReportedPicture& picture) {
+    const auto path = std::filesystem::path(folder_) / picture.file;
+    std::ifstream file(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    const std::string text = Base64(bytes);
+    if (bytes.empty() || used_ + text.size() > kMostPictureBytes) {
+      AddElement(section, "p", {{"class", "soft"}},
+                 "picture, not in this page: " + picture.file + " (" + picture.caption + ")");
+      return;
+    }
+    used_ += text.size();
+    const pugi::xml_node figure = AddElement(section, "figure");
+    AddElement(
+        figure, "img",
+        {{"loading", "lazy"}, {"src", "data:image/png;base64," + text}, {"alt", picture.caption}});
+    AddElement(figure, "figcaption", {}, picture.caption);
+  }
+
+ private:
+  std::string folder_;
+  std::size_t used_ = 0;
+};
+
+/// Puts replays into the page as long as there is room.
+class ReplayBox {
+ public:
+  void Add(pugi::xml_node section, const std::string& data) {
+    if (data.empty() || ReplayBundle().empty()) return;
+    if (used_ + data.size() > kMostReplayBytes) {
+      AddElement(section, "p", {{"class", "soft"}},
+                 "The 3D replay is not in this page, which would grow too large: check this "
+                 "scenario alone.");
+      return;
+    }
+    used_ += data.size();
+    AddElement(section, "div", {{"class", "replay"}}, "");
+    AddElement(section, "script", {{"type", "text/plain"}, {"class", "replay-data"}}, data);
+  }
+  bool any() const { return used_ > 0; }
+
+ private:
+  std::size_t used_ = 0;
+};
+
+void AddCommand(pugi::xml_node parent, const std::string& command) {
+  AddElement(parent, "pre", {{"tabindex", "0"}}, command);
+}
+
+/// What stands between backticks as code.
+void AddSentence(pugi::xml_node parent, std::string_view text) {
+  for (bool code = false; !text.empty(); code = !code) {
+    std::size_t end = text.find('`');
+    // A backtick without partner is one.
+    if (!code && end != std::string_view::npos && text.find('`', end + 1) == std::string_view::npos)
+      end = std::string_view::npos;
+    const std::string_view part = text.substr(0, end);
+    if (code)
+      AddElement(parent, "code", {}, part);
+    else
+      AddText(parent, part);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+}
+
+/// With an arrow that reads as one.
+std::string WithArrows(std::string text) {
+  constexpr std::string_view kArrow = " -> ";
+  for (std::size_t at = text.find(kArrow); at != std::string::npos; at = text.find(kArrow, at + 1))
+    text.replace(at, kArrow.size(), " \u2192 ");
+  return text;
+}
+
+/// The causes of one scenario's differences as sentences.
+void AddReasons(pugi::xml_node section, const ScenarioVerdict& verdict) {
+  for (const Cause& cause : CausesOf({verdict})) {
+    if (cause.because.empty()) continue;
+    std::string effects;
+    for (const Effect& effect : cause.effects)
+      effects += (effects.empty() ? "" : "; ") + EffectText(effect);
+    const pugi::xml_node sentence = AddElement(section, "p", {{"class", "because"}});
+    AddText(sentence, "Because of ");
+    AddSentence(AddElement(sentence, "strong"), WithArrows(cause.because));
+    AddText(sentence, ": " + effects + ".");
+  }
+}
+
+bool IsGood(const ScenarioVerdict& verdict) {
+  return verdict.verdict == Verdict::kPassed || verdict.verdict == Verdict::kUnchanged;
+}
+
+/// `open`: nothing has to be clicked to read it.
+void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, bool open,
+                PictureBox& pictures, ReplayBox& replays) {
+  const std::string name(Name(verdict.verdict));
+  const pugi::xml_node section = AddElement(
+      body, "section", {{"id", verdict.scenario}, {"class", "scenario"}, {"data-verdict", name}});
+  pugi::xml_node fold = AddElement(section, "details");
+  if (open) fold.append_attribute("open").set_value("open");
+  const pugi::xml_node summary = AddElement(fold, "summary");
+  const pugi::xml_node title = AddElement(summary, "h2");
+  AddElement(title, "span", {{"class", name}}, name);
+  AddText(title, " " + verdict.scenario);
+  AddElement(fold, "div", {{"class", "soft"}}, verdict.shows);
+  if (!verdict.reason.empty()) AddElement(fold, "p", {{"class", name}}, verdict.reason);
+  for (const std::string& note : verdict.notes)
+    AddElement(fold, "p", {{"class", "soft note"}}, note);
+  AddReasons(fold, verdict);
+  if (verdict.comparison) {
+    const pugi::xml_node scroll = AddElement(fold, "div",
+                                             {{"class", "scroll"},
+                                              {"tabindex", "0"},
+                                              {"role", "group"},
+                                              {"aria-label", "timeline of " + verdict.scenario}});
+    AddMarkup(scroll, TimelineSvg(*verdict.comparison, verdict.ticks + 1, verdict.drawings,
+                                  verdict.has_golden));
+    AddElement(fold, "output", {}, "");
+  }
+  if (verdict.comparison)
+    AddExplanations(fold, verdict.explained, verdict.comparison->ticks_per_second);
+  for (const DisputedMoment& moment : verdict.disputed) {
+    const pugi::xml_node pair = AddElement(fold, "div", {{"class", "disputed"}});
+    AddElement(pair, "p", {}, DisputeText(moment));
+    pictures.Add(pair, moment.expected);
+    pictures.Add(pair, moment.recognised);
+  }
+  replays.Add(fold, verdict.replay);
+  if (!verdict.details.empty()) {
+    // Where it is explained above, it does not have to be read first.
+    pugi::xml_node details = AddElement(fold, "details");
+    if (verdict.explained.differences.empty()) details.append_attribute("open").set_value("open");
+    AddElement(details, "summary", {}, "Everything that was found, as text");
+    AddElement(details, "pre", {{"tabindex", "0"}}, verdict.details);
+  }
+  const std::string margin = MarginText(verdict);
+  if (!margin.empty()) AddElement(fold, "div", {{"class", "soft"}}, margin);
+  for (const ReportedPicture& picture : verdict.pictures) pictures.Add(fold, picture);
+  AddCommand(fold, verdict.command);
+  AddText(body, kNewLine);
+}
+
+void AddHead(pugi::xml_node html, const std::string& title) {
+  const pugi::xml_node head = AddElement(html, "head");
+  AddElement(head, "meta", {{"charset", "utf-8"}});
+  AddElement(head, "meta",
+             {{"name", "viewport"}, {"content", "width=device-width, initial-scale=1"}});
+  AddElement(head, "title", {}, "prehend: " + title);
+  AddElement(head, "style", {}, kStylePlace);
+}
+
+void AddCauses(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {
+  const std::vector<Cause> causes = CausesOf(verdicts);
+  const std::vector<Brittle> brittle = BrittlePasses(verdicts);
+  if (!causes.empty()) {
+    AddElement(body, "h2", {},
+               causes.size() == 1 ? "1 cause" : fmt::format("{} causes", causes.size()));
+    AddElement(body, "p", {{"class", "soft"}},
+               "What has changed since these scenarios last passed, from what to what, and what it "
+               "does to the events.");
+    const pugi::xml_node list = AddElement(body, "ol", {{"class", "causes"}});
+    for (const Cause& cause : causes) {
+      const pugi::xml_node item = AddElement(list, "li");
+      AddSentence(AddElement(item, "strong"), WithArrows(cause.Title()));
+      AddText(item, cause.scenarios.size() == 1
+                        ? ": "
+                        : fmt::format(": {} scenarios, for example ", cause.scenarios.size()));
+      AddElement(item, "a", {{"href", "#" + cause.scenarios.front()}}, cause.scenarios.front());
+      for (std::size_t i = 0; i < std::min(kMostEffects, cause.effects.size()); ++i)
+        AddElement(item, "div", {}, EffectText(cause.effects[i]));
+      if (cause.effects.size() > kMostEffects)
+        AddElement(item, "div", {},
+                   fmt::format("and {} more", cause.effects.size() - kMostEffects));
+      AddElement(item, "code", {}, cause.effects.front().command);
+    }
+  }
+  if (brittle.empty()) return;
+  const pugi::xml_node fold = AddElement(body, "details");
+  AddElement(fold, "summary", {}, "Passed at the limit of a tolerance");
+  AddElement(fold, "pre", {{"tabindex", "0"}}, BrittleText(brittle));
+}
+
+void AddTools(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {
+  const pugi::xml_node tools = AddElement(body, "div", {{"id", "tools"}, {"hidden", "hidden"}});
+  AddElement(tools, "input",
+             {{"id", "search"},
+              {"type", "search"},
+              {"placeholder", "search (/), next (n), previous (p)"},
+              {"aria-label", "search scenarios"}});
+  for (const Verdict each : {Verdict::kFailed, Verdict::kFlaky, Verdict::kPending, Verdict::kPassed,
+                             Verdict::kUnchanged}) {
+    const std::string name(Name(each));
+    if (std::ranges::none_of(verdicts, [&](const auto& of) { return of.verdict == each; }))
+      continue;
+    AddElement(
+        tools, "button",
+        {{"class", "chip"}, {"type", "button"}, {"data-verdict", name}, {"aria-pressed", "false"}},
+        name);
+  }
+  AddElement(tools, "span", {{"id", "shown"}, {"role", "status"}, {"class", "soft"}}, "");
+}
+
+void AddHeader(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts,
+               const ReportHeader& header) {
+  const pugi::xml_node made = AddElement(body, "p", {{"class", "soft"}});
+  AddText(made, header.date + ", by ");
+  AddElement(made, "code", {}, header.command);
+  if (!header.commit.empty()) AddText(made, ", of commit " + header.commit);
+  if (!header.machine.empty()) AddText(made, ", on " + header.machine);
+  Settings parameters;
+  for (const ScenarioVerdict& verdict : verdicts) {
+    for (const auto& [file, values] : verdict.settings) {
+      if (file.ends_with(".grammar")) parameters[file] = values;
+    }
+  }
+  const pugi::xml_node fold = AddElement(body, "details");
+  AddElement(fold, "summary", {}, "Grammars with their parameters, slowest scenarios");
+  for (const auto& [file, values] : parameters) {
+    std::string text = file + "\n";
+    for (const auto& [name, value] : values) text += "  " + name + " = " + value + "\n";
+    AddElement(fold, "pre", {{"tabindex", "0"}}, text);
+  }
+  std::vector<const ScenarioVerdict*> slowest;
+  for (const ScenarioVerdict& verdict : verdicts) slowest.push_back(&verdict);
+  std::ranges::stable_sort(slowest, std::greater{}, &ScenarioVerdict::seconds);
+  slowest.resize(std::min<std::size_t>(5, slowest.size()));
+  for (const ScenarioVerdict* verdict : slowest)
+    AddElement(fold, "div", {}, fmt::format("{:.2f} s  {}", verdict->seconds, verdict->scenario));
+}
+
+/// Episodes of the same scenario are numbered, as links go by names.
+std::vector<ScenarioVerdict> WithOwnNames(std::vector<ScenarioVerdict> verdicts) {
+  std::map<std::string, int> seen;
+  for (ScenarioVerdict& verdict : verdicts) {
+    const int number = ++seen[verdict.scenario];
+    if (number > 1) verdict.scenario += fmt::format(" ({})", number);
+  }
+  return verdicts;
+}
+
+/// In the element whose only text is `place`.
+void Put(std::string& page, std::string_view place, std::string_view text) {
+  const std::size_t at = page.find(fmt::format(">{}</", place));
+  if (at != std::string::npos) page.replace(at + 1, place.size(), text);
+}
+
+/// What needs a person first; in one kind, as they were.
+std::vector<ScenarioVerdict> WorstFirst(std::vector<ScenarioVerdict> verdicts) {
+  const auto rank = [](const ScenarioVerdict& verdict) {
+    switch (verdict.verdict) {
+      case Verdict::kFailed:
+        return 0;
+      case Verdict::kFlaky:
+        return 1;
+      case Verdict::kPending:
+        return 2;
+      default:
+        return 3;
+    }
+  };
+  std::ranges::stable_sort(verdicts, {}, rank);
+  return verdicts;
+}
+
+}  // namespace
+
+std::string ReportHtml(const std::vector<ScenarioVerdict>& unsorted, const ReportHeader& header) {
+  const std::vector<ScenarioVerdict> verdicts = WithOwnNames(WorstFirst(unsorted));
+  pugi::xml_document document;
+  document.append_child(pugi::node_doctype).set_value("html");
+  const pugi::xml_node html = AddElement(document, "html", {{"lang", "en"}});
+  AddHead(html, header.title);
+  const pugi::xml_node body = AddElement(AddElement(html, "body"), "main");
+  AddElement(body, "h1", {}, header.title);
+  AddSummary(body, Count(verdicts));
+  AddHeader(body, verdicts, header);
+  AddCauses(body, verdicts);
+  AddTools(body, verdicts);
+  AddTable(body, verdicts);
+  AddText(body, kNewLine);
+  AddElement(body, "p", {{"class", "soft"}},
+             "In every row of a timeline, the golden is above (pale) and the recognised event "
+             "below; where they differ it is hatched. A click moves the cursor; so do the arrows, "
+             "and b and B to the next and the last boundary.");
+  if (!WhyNoReplay().empty())
+    AddElement(body, "p", {{"class", "soft"}},
+               fmt::format("3D replay was left out: {}.", WhyNoReplay()));
+  PictureBox pictures(header.folder);
+  ReplayBox replays;
+  for (const ScenarioVerdict& verdict : verdicts) {
+    const bool open = !IsGood(verdict) || verdicts.size() == 1;
+    AddSection(body, verdict, open, pictures, replays);
+  }
+  if (replays.any())
+    AddElement(body, "script", {{"type", "text/plain"}, {"id", "replay-bundle"}}, ReplayBundle());
+  AddElement(body, "script", {}, kScriptPlace);
+  std::string text = ToText(document, Layout::kAsItIs) + "\n";
+  Put(text, kStylePlace, PageStyle());
+  Put(text, kScriptPlace, PageScript());
+  return text;
+}
+
+}  // namespace prehend::suite

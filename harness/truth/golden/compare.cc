@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+// Names what became of each event, once the matcher has paired those of equal label. Tested by
+// tests/harness/truth/golden/compare_test.cc
+#include "harness/truth/golden/compare.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <tuple>
+
+#include "harness/truth/timeline/event_text.h"
+#include "harness/truth/timeline/match_events.h"
+
+namespace prehend::truth {
+namespace {
+
+using grammar::Interval;
+using grammar::NamedEvent;
+using grammar::Tick;
+
+/// Events this far apart in time may still be the same one, shifted.
+constexpr double kMaxGapBetweenPartners_s = 0.25;
+/// Two events that differ in a role are one changed event when they share this much of their common
+/// span.
+constexpr double kMinSharedSpan = 0.5;
+
+Tick Overlap(Interval a, Interval b) { return std::min(a.end, b.end) - std::max(a.begin, b.begin); }
+
+Tick Distance(Interval a, Interval b) {
+  return std::abs(a.begin - b.begin) + std::abs(a.end - b.end);
+}
+
+bool AtTheSameTime(Interval a, Interval b) {
+  const Tick span = std::max(a.end, b.end) - std::min(a.begin, b.begin);
+  return static_cast<double>(Overlap(a, b)) >= kMinSharedSpan * static_cast<double>(span);
+}
+
+/// "object: milk -> cup" for every role, attribute or ending that differs.
+std::vector<std::string> Changes(const NamedEvent& expected, const NamedEvent& actual) {
+  std::vector<std::string> changes;
+  const auto add = [&](const std::string& name, const std::string& was, const std::string& is) {
+    if (was != is)
+      changes.push_back(name + ": " + (was.empty() ? "none" : was) + " -> " +
+                        (is.empty() ? "none" : is));
+  };
+  for (const auto& role : expected.roles) add(role.name, role.value, RoleValue(actual, role.name));
+  for (const auto& role : actual.roles) {
+    if (RoleValue(expected, role.name).empty()) add(role.name, "", role.value);
+  }
+  if (expected.event != actual.event) add("event", expected.event, actual.event);
+  for (const auto& value : expected.values) {
+    const auto same_name = [&](const grammar::NamedValue& other) {
+      return other.name == value.name;
+    };
+    const auto found = std::ranges::find_if(actual.values, same_name);
+    if (found == actual.values.end()) {
+      add(value.name, ValueText(value), "");
+    } else if (found->unit != value.unit || !ValuesAgree(value.value, found->value)) {
+      add(value.name, ValueText(value), ValueText(*found));
+    }
+  }
+  const auto ending = [](const NamedEvent& event) {
+    return event.open_end ? "of the episode" : "of its own";
+  };
+  add("end", ending(expected), ending(actual));
+  return changes;
+}
+
+bool SameRoles(const NamedEvent& a, const NamedEvent& b) {
+  const auto roles = [](const NamedEvent& event) {
+    std::vector<grammar::Role> kept = event.roles;
+    std::erase_if(kept, [](const auto& role) { return IsAttribute(role); });
+    std::ranges::sort(kept);
+    return kept;
+  };
+  return roles(a) == roles(b);
+}
+
+/// How unlike two events of the same time are: the number of roles that differ, attributes aside;
+/// more than any such number if it is another event of the same roles; nothing if they have nothing
+/// in common.
+std::optional<int> Unlikeness(const NamedEvent& expected, const NamedEvent& actual) {
+  constexpr int kOtherEvent = 1000;
+  if (expected.event != actual.event)
+    return SameRoles(expected, actual) ? std::optional(kOtherEvent) : std::nullopt;
+  int different = 0;
+  bool some_equal = false;
+  for (const auto& role : expected.roles) {
+    if (IsAttribute(role)) continue;
+    const bool equal = RoleValue(actual, role.name) == role.value;
+    if (equal) some_equal = true;
+    if (!equal) ++different;
+  }
+  return some_equal ? std::optional(different) : std::nullopt;
+}
+
+std::vector<Margin> MarginsOf(const std::vector<Pairing>& pairings) {
+  std::vector<Margin> margins;
+  for (const Pairing& pairing : pairings) {
+    if (pairing.agreement != LineVerdict::kMatched) continue;
+    const std::string label = pairing.event().Label();
+    margins.push_back({label, false, pairing.begin_offset, pairing.tolerance});
+    margins.push_back({label, true, pairing.end_offset, pairing.tolerance});
+  }
+  return margins;
+}
+
+class Pairer {
+ public:
+  Pairer(const Golden& golden, const grammar::Timeline& actual, Tick default_tolerance)
+      : golden_(golden),
+        actual_(actual.events),
+        expected_taken_(golden.events.size()),
+        actual_taken_(actual.events.size()),
+        default_tolerance_(default_tolerance),
+        ticks_per_second_(actual.ticks_per_second) {
+    for (const GoldenEvent& line : golden.events) {
+      NamedEvent& event = expected_.emplace_back(line.event);
+      event.interval = {Converted(event.interval.begin), Converted(event.interval.end)};
+    }
+  }
+
+  Comparison Pair() {
+    PairEqualLabels();
+    PairAcrossLabels();
+    for (std::size_t i = 0; i < expected_.size(); ++i) {
+      if (!expected_taken_[i]) AddOnlyExpected(LineVerdict::kMissing, i);
+    }
+    for (std::size_t j = 0; j < actual_.size(); ++j) {
+      if (!actual_taken_[j]) AddOnlyActual(LineVerdict::kExtra, j);
+    }
+    std::stable_sort(
+        comparison_.pairings.begin(), comparison_.pairings.end(),
+        [](const Pairing& a, const Pairing& b) { return ComesBefore(a.event(), b.event()); });
+    comparison_.ticks_per_second = ticks_per_second_;
+    comparison_.relations = ChangedRelations(comparison_.pairings);
+    comparison_.margins = MarginsOf(comparison_.pairings);
+    return std::move(comparison_);
+  }
+
+ private:
+  /// A tick of the golden in those of the actual timeline.
+  Tick Converted(Tick tick) const {
+    return TickAt(static_cast<double>(tick) / static_cast<double>(golden_.ticks_per_second),
+                  ticks_per_second_);
+  }
+
+  void PairEqualLabels() {
+    const MatchPolicy policy{.max_gap = TickAt(kMaxGapBetweenPartners_s, ticks_per_second_)};
+    for (const LabelMatches& label : MatchEvents(expected_, actual_, policy)) {
+      const std::size_t first_pair = comparison_.pairings.size();
+      for (const auto& [i, j] : label.pairs) AddPair(i, j);
+      const std::size_t end_of_pairs = comparison_.pairings.size();
+      for (const std::size_t j : label.only_actual) AddFragment(j, first_pair, end_of_pairs);
+      for (const std::size_t i : label.only_expected) AddMerged(i, first_pair, end_of_pairs);
+    }
+  }
+
+  /// A recognised event that overlaps the expected one of a pair of its label is a piece of it.
+  void AddFragment(std::size_t j, std::size_t first_pair, std::size_t end_of_pairs) {
+    const Interval interval = actual_[j].interval;
+    for (std::size_t pair = first_pair; pair < end_of_pairs; ++pair) {
+      if (Overlap(comparison_.pairings[pair].expected->interval, interval) <= 0) continue;
+      AddOnlyActual(LineVerdict::kFragmented, j);
+      return AddPiece(comparison_.pairings[pair], LineVerdict::kFragmented,
+                      comparison_.pairings[pair].actual->interval, interval);
+    }
+  }
+
+  /// An expected event that overlaps the recognised one of a pair of its label is merged into it.
+  void AddMerged(std::size_t i, std::size_t first_pair, std::size_t end_of_pairs) {
+    const Interval interval = expected_[i].interval;
+    for (std::size_t pair = first_pair; pair < end_of_pairs; ++pair) {
+      if (Overlap(comparison_.pairings[pair].actual->interval, interval) <= 0) continue;
+      AddOnlyExpected(LineVerdict::kMerged, i);
+      return AddPiece(comparison_.pairings[pair], LineVerdict::kMerged,
+                      comparison_.pairings[pair].expected->interval, interval);
+    }
+  }
+
+  static void AddPiece(Pairing& pairing, LineVerdict agreement, Interval own, Interval piece) {
+    if (pairing.pieces.empty()) pairing.pieces.push_back(own);
+    pairing.pieces.push_back(piece);
+    std::ranges::sort(pairing.pieces, {}, &Interval::begin);
+    pairing.agreement = agreement;
+  }
+
+  /// What is left over, nearest first: fewest roles changed, then closest in time.
+  void PairAcrossLabels() {
+    std::vector<std::tuple<int, Tick, std::size_t, std::size_t>> candidates;
+    for (std::size_t i = 0; i < expected_.size(); ++i) {
+      for (std::size_t j = 0; j < actual_.size(); ++j) {
+        if (expected_taken_[i] || actual_taken_[j]) continue;
+        const Interval a = expected_[i].interval, b = actual_[j].interval;
+        const std::optional<int> unlike = Unlikeness(expected_[i], actual_[j]);
+        if (unlike && AtTheSameTime(a, b)) candidates.emplace_back(*unlike, Distance(a, b), i, j);
+      }
+    }
+    std::sort(candidates.begin(), candidates.end());
+    for (const auto& [unlike, distance, i, j] : candidates) {
+      if (!expected_taken_[i] && !actual_taken_[j]) AddPair(i, j);
+    }
+  }
+
+  void AddPair(std::size_t i, std::size_t j) {
+    const NamedEvent &expected = expected_[i], &actual = actual_[j];
+    Pairing pairing{.agreement = LineVerdict::kMatched,
+                    .expected = expected,
+                    .actual = actual,
+                    .golden_line = i,
+                    .begin_offset = actual.interval.begin - expected.interval.begin,
+                    .end_offset = actual.interval.end - expected.interval.end,
+                    .tolerance = ToleranceOf(golden_.events[i]),
+                    .changes = Changes(expected, actual),
+                    .pieces = {}};
+    const Tick off = std::max(std::abs(pairing.begin_offset), std::abs(pairing.end_offset));
+    if (expected.event != actual.event) {
+      pairing.agreement = LineVerdict::kRelabelled;
+    } else if (!pairing.changes.empty()) {
+      pairing.agreement = LineVerdict::kChanged;
+    } else if (off > pairing.tolerance) {
+      pairing.agreement = LineVerdict::kShifted;
+    }
+    expected_taken_[i] = actual_taken_[j] = true;
+    comparison_.pairings.push_back(std::move(pairing));
+  }
+
+  Tick ToleranceOf(const GoldenEvent& line) const {
+    return line.tolerance_ms ? *line.tolerance_ms * ticks_per_second_ / 1000 : default_tolerance_;
+  }
+
+  void AddOnlyExpected(LineVerdict agreement, std::size_t i) {
+    expected_taken_[i] = true;
+    comparison_.pairings.push_back(
+        {.agreement = agreement, .expected = expected_[i], .actual = {}, .golden_line = i});
+  }
+
+  void AddOnlyActual(LineVerdict agreement, std::size_t j) {
+    actual_taken_[j] = true;
+    comparison_.pairings.push_back({.agreement = agreement, .expected = {}, .actual = actual_[j]});
+  }
+
+  const Golden& golden_;
+  std::vector<NamedEvent> expected_;  ///< of the golden, in the ticks of the actual timeline
+  const std::vector<NamedEvent>& actual_;
+  std::vector<bool> expected_taken_, actual_taken_;
+  Tick default_tolerance_;
+  Tick ticks_per_second_;
+  Comparison comparison_;
+};
+
+}  // namespace
+
+bool Pairing::IsFurtherPiece() const {
+  return pieces.empty() &&
+         (agreement == LineVerdict::kFragmented || agreement == LineVerdict::kMerged);
+}
+
+Tick Pairing::DivergenceTick() const {
+  if (!expected || !actual) return event().interval.begin;
+  const Interval was = expected->interval, is = actual->interval;
+  if (agreement == LineVerdict::kFragmented || agreement == LineVerdict::kMerged)
+    return pieces.front().end;
+  const bool only_the_end = expected->Label() == actual->Label() &&
+                            std::abs(begin_offset) <= tolerance && std::abs(end_offset) > tolerance;
+  return only_the_end ? std::min(was.end, is.end) : std::min(was.begin, is.begin);
+}
+
+const Margin* Comparison::Smallest() const {
+  const Margin* smallest = nullptr;
+  for (const Margin& margin : margins) {
+    if (margin.offset != 0 && (!smallest || margin.Left() < smallest->Left())) smallest = &margin;
+  }
+  return smallest;
+}
+
+std::vector<const Pairing*> Comparison::Differing() const {
+  std::vector<const Pairing*> differing;
+  for (const Pairing& pairing : pairings) {
+    if (pairing.agreement != LineVerdict::kMatched && !pairing.IsFurtherPiece())
+      differing.push_back(&pairing);
+  }
+  std::ranges::stable_sort(differing, {}, &Pairing::DivergenceTick);
+  return differing;
+}
+
+const Pairing* Comparison::FirstDivergence() const {
+  const std::vector<const Pairing*> differing = Differing();
+  return differing.empty() ? nullptr : differing.front();
+}
+
+bool ValuesAgree(double expected, double actual) {
+  constexpr double kRelative = 0.05, kAbsolute = 0.001;
+  return std::abs(actual - expected) <= std::max(kRelative * std::abs(expected), kAbsolute);
+}
+
+bool Comparison::Agrees() const {
+  return Count(LineVerdict::kMatched) == static_cast<int>(pairings.size());
+}
+
+int Comparison::Count(LineVerdict agreement) const {
+  return static_cast<int>(
+      std::count_if(pairings.begin(), pairings.end(),
+                    [&](const Pairing& pairing) { return pairing.agreement == agreement; }));
+}
+
+Comparison Compare(const Golden& expected, const grammar::Timeline& actual,
+                   Tick default_tolerance) {
+  return Pairer(expected, actual, default_tolerance).Pair();
+}
+
+}  // namespace prehend::truth

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// A comparison in words. Tested by tests/harness/truth/golden/compare_test.cc
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/base/base/shell_quote.h"
+#include "harness/truth/golden/compare.h"
+#include "harness/truth/timeline/event_text.h"
+
+namespace prehend::truth {
+namespace {
+
+using grammar::Tick;
+
+/// "begin +50.0 ms, end -2.1 ms (tolerance 8.3 ms)"
+std::string OffsetText(const Pairing& pairing, Tick ticks_per_second) {
+  return fmt::format("begin {:+.1f} ms, end {:+.1f} ms (tolerance {:.1f} ms)",
+                     MillisecondsOf(pairing.begin_offset, ticks_per_second),
+                     MillisecondsOf(pairing.end_offset, ticks_per_second),
+                     MillisecondsOf(pairing.tolerance, ticks_per_second));
+}
+
+/// "3 pieces: 1.0000..1.2000 s, .."
+std::string PiecesText(const std::vector<grammar::Interval>& pieces, Tick ticks_per_second) {
+  std::vector<std::string> texts;
+  for (const grammar::Interval& piece : pieces)
+    texts.push_back(IntervalText(piece, ticks_per_second));
+  return fmt::format("{} pieces: {}", pieces.size(), fmt::join(texts, ", "));
+}
+
+std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::string_view command,
+                        std::string_view facts) {
+  const auto side = [&](const std::optional<grammar::NamedEvent>& event) {
+    const bool is_actual = &event == &pairing.actual;
+    const bool in_pieces =
+        !pairing.pieces.empty() && is_actual == (pairing.agreement == LineVerdict::kFragmented);
+    if (in_pieces) return PiecesText(pairing.pieces, ticks_per_second);
+    return event ? IntervalText(event->interval, ticks_per_second) : std::string("nothing");
+  };
+  std::string text = fmt::format("{} {}\n", Name(pairing.agreement), pairing.event().Label());
+  text +=
+      fmt::format("  expected {}, recognised {}\n", side(pairing.expected), side(pairing.actual));
+  if (pairing.expected && pairing.actual && pairing.pieces.empty())
+    text += fmt::format("  {}\n", OffsetText(pairing, ticks_per_second));
+  if (!pairing.changes.empty()) text += fmt::format("  {}\n", fmt::join(pairing.changes, ", "));
+  text += facts;
+  if (!command.empty())
+    text += fmt::format("  why: {} {}\n", command, QuestionAbout(pairing, ticks_per_second));
+  return text;
+}
+
+}  // namespace
+
+std::string_view Name(LineVerdict agreement) {
+  switch (agreement) {
+    case LineVerdict::kMatched:
+      return "matched";
+    case LineVerdict::kShifted:
+      return "shifted";
+    case LineVerdict::kChanged:
+      return "changed";
+    case LineVerdict::kRelabelled:
+      return "relabelled";
+    case LineVerdict::kFragmented:
+      return "fragmented";
+    case LineVerdict::kMerged:
+      return "merged";
+    case LineVerdict::kMissing:
+      return "missing";
+    case LineVerdict::kExtra:
+      return "extra";
+  }
+  return "";
+}
+
+// Asks why an event is as it is, or why it is missing; of a fragmented event about the first
+// fragment, which ends where the event broke.
+std::string QuestionAbout(const Pairing& pairing, Tick ticks_per_second) {
+  const grammar::NamedEvent& event = pairing.actual ? *pairing.actual : *pairing.expected;
+  const bool in_pieces = pairing.agreement == LineVerdict::kFragmented && !pairing.pieces.empty();
+  const Tick begin = in_pieces ? pairing.pieces.front().begin : event.interval.begin;
+  std::string question = event.event;
+  for (const grammar::Role& role : event.roles) {
+    if (!IsAttribute(role)) question += " " + role.value;
+  }
+  question += " @" + SecondsText(begin, ticks_per_second) + "s";
+  return (pairing.actual ? "--event " : "--expected ") + ShellQuoted(question);
+}
+
+std::string DifferenceText(const Comparison& comparison, std::string_view command,
+                           std::string_view facts) {
+  const std::vector<const Pairing*> differing = comparison.Differing();
+  std::string text;
+  for (const Pairing* pairing : differing) {
+    text += PairingText(*pairing, comparison.ticks_per_second, command,
+                        pairing == differing.front() ? facts : std::string_view());
+  }
+  for (const RelationChange& change : comparison.relations) {
+    text += fmt::format("relation {} {} {}: now {}\n", change.first, change.expected, change.second,
+                        change.actual);
+  }
+  return text;
+}
+
+std::string MarginText(const Comparison& comparison) {
+  if (comparison.margins.empty()) return "";
+  const Margin* smallest = comparison.Smallest();
+  if (!smallest) return "margin: all boundaries match exactly";
+  const auto ms = [&](Tick ticks) { return MillisecondsOf(ticks, comparison.ticks_per_second); };
+  if (smallest->Left() == 0)
+    return fmt::format("passed at the limit: {} {} {:.1f} ms off (tolerance {:.1f} ms)",
+                       smallest->label, smallest->at_end ? "ends" : "begins",
+                       ms(std::abs(smallest->offset)), ms(smallest->tolerance));
+  return fmt::format("margin: {:.1f} of {:.1f} ms left at {}", ms(smallest->Left()),
+                     ms(smallest->tolerance), smallest->Boundary());
+}
+
+}  // namespace prehend::truth

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/truth/golden/golden_files.h. Tested by
+// tests/harness/truth/golden/golden_files_test.cc
+#include "harness/truth/golden/golden_files.h"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+#include <tuple>
+
+#include "harness/base/base/text_file.h"
+
+namespace prehend::truth {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kExtension = ".timeline";
+constexpr const char* kDifference = ".difference.png";
+
+/// Ids of all timelines below a folder, sorted.
+std::vector<std::string> IdsBelow(const fs::path& folder) {
+  std::vector<std::string> scenarios;
+  std::error_code ignored;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored)) {
+    if (entry.path().extension() != kExtension) continue;
+    scenarios.push_back(
+        ReadableName(entry.path().lexically_relative(folder).replace_extension().generic_string()));
+  }
+  std::sort(scenarios.begin(), scenarios.end());
+  return scenarios;
+}
+
+/// Its number: "cup" and "cup-2" are 1 and 2; 0 when it is no name of a picture ("cup-two",
+/// "cup.difference").
+int PictureNumber(const std::string& stem, std::string& name) {
+  const std::size_t dash = stem.find('-');
+  name = stem.substr(0, dash);
+  if (stem.find('.') != std::string::npos) return 0;
+  if (dash == std::string::npos) return 1;
+  int number = 0;
+  const char* const end = stem.data() + stem.size();
+  const auto [rest, error] = std::from_chars(stem.data() + dash + 1, end, number);
+  return error == std::errc() && rest == end && number > 1 ? number : 0;
+}
+
+/// Of one folder; ids are relative to `above`.
+std::vector<KeptPicture> PicturesIn(const fs::path& folder, const fs::path& above) {
+  std::vector<KeptPicture> pictures;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().extension() != ".png") continue;
+    std::string name;
+    const int number = PictureNumber(entry.path().stem().string(), name);
+    if (number == 0) continue;
+    const std::string id = (folder / name).lexically_relative(above).generic_string();
+    pictures.push_back({ReadableName(id), number, entry.path()});
+  }
+  std::ranges::sort(pictures, {}, [](const KeptPicture& picture) {
+    return std::tuple(picture.scenario, picture.number, picture.path);
+  });
+  return pictures;
+}
+
+std::vector<KeptPicture> PicturesBelow(const fs::path& above) {
+  std::vector<KeptPicture> pictures = PicturesIn(above, above);
+  std::error_code ignored;
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::directory_iterator(above, ignored)) {
+    if (entry.is_directory(ignored)) folders.push_back(entry.path());
+  }
+  std::ranges::sort(folders);
+  for (const fs::path& folder : folders)
+    std::ranges::move(PicturesIn(folder, above), std::back_inserter(pictures));
+  return pictures;
+}
+
+}  // namespace
+
+grammar::Place ScenarioLine(std::string_view text) {
+  constexpr std::string_view kKey = "# scenario: ";
+  const std::size_t found = std::min(text.find(kKey), text.size());
+  const auto line = static_cast<int>(std::ranges::count(text.substr(0, found), '\n')) + 1;
+  return {line, static_cast<int>(kKey.size()) + 1};
+}
+
+grammar::Diagnostics OfAnotherScenario(std::string_view file, std::string_view text,
+                                       const Golden& golden, const std::string& scenario) {
+  if (golden.scenario == scenario) return {};
+  const std::string message =
+      "this golden says it is of '" + golden.scenario + "', not of '" + scenario + "'";
+  return {grammar::DiagnosticAt(file, text, ScenarioLine(text), message,
+                                "if it was moved here with its scenario, write that name")};
+}
+
+Result<std::optional<Golden>> ReadGoldenFile(const fs::path& path, const std::string& scenario) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return std::nullopt;
+  Result<std::string> text = ReadTextFile(path.string());
+  if (!text) return tl::unexpected(std::move(text.error()));
+  Result<Golden> golden = ReadGolden(path.string(), *text);
+  if (!golden) return tl::unexpected(std::move(golden.error()));
+  grammar::Diagnostics other = OfAnotherScenario(path.string(), *text, *golden, scenario);
+  if (!other.empty()) return tl::unexpected(std::move(other));
+  return std::move(*golden);
+}
+
+std::string WriteGoldenFile(const fs::path& path, const Golden& golden) {
+  const std::string text = WriteGolden(golden);
+  grammar::Diagnostics wrong = CheckText(path.string(), text);
+  if (!wrong.empty())
+    return "the golden would not be readable, and was not written:\n" + Format(wrong);
+  const Result<Golden> read = ReadGolden(path.string(), text);
+  if (!read)
+    return "the golden would not be readable, and was not written:\n" + Format(read.error());
+  if (!(*read == golden))
+    return "the golden would read back otherwise, and was not written; use plain words in reasons";
+  return WriteTextFile(path, text);
+}
+
+fs::path GoldenFiles::GoldenPath(const std::string& scenario) const {
+  return root_ / "golden" / (scenario + kExtension);
+}
+
+fs::path GoldenFiles::PendingPath(const std::string& scenario) const {
+  return root_ / "build" / "pending" / (scenario + kExtension);
+}
+
+Result<std::optional<Golden>> GoldenFiles::ReadGoldenOf(const std::string& scenario) const {
+  return ReadGoldenFile(GoldenPath(scenario), scenario);
+}
+
+Result<std::optional<Golden>> GoldenFiles::ReadPendingOf(const std::string& scenario) const {
+  return ReadGoldenFile(PendingPath(scenario), scenario);
+}
+
+std::string GoldenFiles::WritePending(const Golden& golden) const {
+  return WriteTextFile(PendingPath(golden.scenario), WriteGolden(golden));
+}
+
+std::string GoldenFiles::WriteGoldenFile(const Golden& golden) const {
+  return truth::WriteGoldenFile(GoldenPath(golden.scenario), golden);
+}
+
+std::string GoldenFiles::WriteAccepted(const Golden& golden) const {
+  std::string problem = WriteGoldenFile(golden);
+  if (problem.empty()) RemovePending(golden.scenario);
+  return problem;
+}
+
+void GoldenFiles::RemovePending(const std::string& scenario) const {
+  std::error_code ignored;
+  fs::remove(PendingPath(scenario), ignored);
+}
+
+fs::path GoldenFiles::EngineDifferencePath(const std::string& scenario) const {
+  return PendingPath(scenario).replace_extension(".engines");
+}
+
+std::string GoldenFiles::ReadEngineDifference(const std::string& scenario) const {
+  return ReadTextFile(EngineDifferencePath(scenario).string()).value_or("");
+}
+
+std::string GoldenFiles::WriteEngineDifference(const std::string& scenario,
+                                               const std::string& text) const {
+  const fs::path file = EngineDifferencePath(scenario);
+  if (!text.empty()) return WriteTextFile(file, text);
+  std::error_code ignored;
+  fs::remove(file, ignored);
+  return "";
+}
+
+std::vector<KeptPicture> GoldenFiles::PicturesOf(const std::string& scenario) const {
+  std::vector<KeptPicture> pictures =
+      PicturesIn(GoldenPath(scenario).parent_path(), root_ / "golden");
+  std::erase_if(pictures, [&](const KeptPicture& picture) { return picture.scenario != scenario; });
+  return pictures;
+}
+
+std::vector<KeptPicture> GoldenFiles::Pictures() const { return PicturesBelow(root_ / "golden"); }
+
+std::vector<KeptPicture> GoldenFiles::PendingPictures() const {
+  return PicturesBelow(root_ / "build" / "pending");
+}
+
+fs::path GoldenFiles::DifferencePath(const std::string& scenario, const std::string& file) const {
+  return PendingPicturePath(scenario, file).replace_extension(kDifference);
+}
+
+void GoldenFiles::RemovePendingPicture(const std::string& scenario, const std::string& file) const {
+  std::error_code ignored;
+  fs::remove(PendingPicturePath(scenario, file), ignored);
+  fs::remove(DifferencePath(scenario, file), ignored);
+}
+
+std::vector<std::string> GoldenFiles::List() const { return IdsBelow(root_ / "golden"); }
+
+std::vector<std::string> GoldenFiles::ListPending() const {
+  return IdsBelow(root_ / "build" / "pending");
+}
+
+}  // namespace prehend::truth

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/truth/oracle/carry.h"
+
+#include <optional>
+
+#include "harness/truth/oracle/approach.h"
+
+namespace prehend::truth {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// An upright cylinder around the place where something happened to an object.
+struct Region {
+  Vector3d anchor;
+  double radius_m = 0;
+  double height_m = 0;
+
+  bool Contains(const Vector3d& p) const {
+    return IsAboveOrBelow(p) && std::abs(p.z() - anchor.z()) <= height_m;
+  }
+  bool IsAboveOrBelow(const Vector3d& p) const { return (p - anchor).head<2>().norm() <= radius_m; }
+};
+
+class Carrier {
+ public:
+  Carrier(const Evidence& evidence, const OracleSettings& settings, const Grasp& grasp,
+          const std::map<int, Spans>& supports)
+      : evidence_(evidence),
+        recording_(evidence.recording),
+        settings_(settings),
+        grasp_(grasp),
+        supports_(supports) {}
+
+  Carrying Find() {
+    Spans supported;
+    for (const auto& [support, spans] : supports_) supported = Union(supported, spans);
+    for (const Span& span : supported) FindSlides(Common(span, grasp_.span));
+    for (const Span& span : Rest(supported, grasp_.span))
+      DivideUnsupported(span, SupportLoss(supported, span.begin), Covers(supported, span.end));
+    return found_;
+  }
+
+ private:
+  const Vector3d& place(int frame) const { return recording_.place(grasp_.body, frame); }
+
+  /// How the object bears on one of its supports, by frame.
+  const std::vector<Bearing>& On(int support) const {
+    return evidence_.bearings.at({grasp_.body, support});
+  }
+
+  /// Whether the object moves along something that supports it. Its velocity must say so and it
+  /// must get somewhere: a squeezed object trembles faster than it slides. Where it gets is asked
+  /// of the frames before and after, supported or not.
+  bool Slides(int frame) const {
+    int before = frame, after = frame;
+    while (before > 0 && recording_.Seconds(before, frame) < settings_.slide_window_s / 2) --before;
+    while (after + 1 < recording_.size() &&
+           recording_.Seconds(frame, after) < settings_.slide_window_s / 2)
+      ++after;
+    for (const auto& [support, spans] : supports_) {
+      if (!Covers(spans, frame)) continue;
+      if (On(support)[frame].along_m_per_s > settings_.slide_speed_m_per_s &&
+          WayAlong(support, before, after) >
+              settings_.slide_speed_m_per_s * recording_.Seconds(before, after))
+        return true;
+    }
+    return false;
+  }
+
+  /// How far the object got along a support between two frames, where the two touch.
+  double WayAlong(int support, int from, int to) const {
+    return (On(support)[to].along_m - On(support)[from].along_m).norm();
+  }
+
+  /// How far the object got along what supported it at the span's begin, from where it was then.
+  double Displacement(Span span) const {
+    double farthest = 0;
+    for (const auto& [support, spans] : supports_) {
+      if (!Covers(spans, span.begin)) continue;
+      for (int frame = span.begin; frame < span.end; ++frame)
+        farthest = std::max(farthest, WayAlong(support, span.begin, frame));
+    }
+    return farthest;
+  }
+
+  Spans BridgedFor(double gap_s, const Spans& spans) const {
+    return Bridged(spans, recording_.ticks, recording_.Ticks(gap_s));
+  }
+
+  /// `held`: it is grasped and supported.
+  void FindSlides(Span held) {
+    std::vector<bool> moving(recording_.size());
+    for (int frame = held.begin; frame < held.end; ++frame) moving[frame] = Slides(frame);
+    Spans motions = BridgedFor(settings_.slide_moment_s, WhereTrue(moving));
+    // The jerk of a grip or of a lift that begins is none.
+    std::erase_if(motions, [&](const Span& motion) {
+      return recording_.Lasts_s(motion) < settings_.slide_moment_s;
+    });
+    for (const Span& slide : BridgedFor(settings_.slide_pause_s, motions))
+      if (Displacement(slide) >= settings_.slide_displacement_m) found_.slides.push_back(slide);
+  }
+
+  /// The frame in which it lost the support that this hand took it from; no value: it was caught,
+  /// or taken over in the air.
+  std::optional<int> SupportLoss(const Spans& supported, int unsupported_since) const {
+    std::optional<int> loss;
+    for (const Span& span : supported)
+      if (span.end <= unsupported_since) loss = span.end;
+    if (!loss || *loss == unsupported_since) return loss;
+    // A hand that closes may lift what it only touches yet: if it did not get far, that is part of
+    // it.
+    const Region region = PickUpRegion(*loss);
+    bool near = *loss >= grasp_.touched_since;
+    for (int frame = *loss; near && frame < unsupported_since; ++frame)
+      near = region.Contains(place(frame));
+    return near ? loss : std::nullopt;
+  }
+
+  Region PickUpRegion(int loss) const {
+    return {place(loss), settings_.pick_up_radius_m, settings_.pick_up_height_m};
+  }
+
+  double Highest(Span span) const {
+    double highest = place(span.begin).z();
+    for (int frame = span.begin; frame < span.end; ++frame)
+      highest = std::max(highest, place(frame).z());
+    return highest;
+  }
+
+  /// In the air, as long as it does not leave the region around the place of the loss.
+  Span NearLoss(Span unsupported, int loss) const {
+    const Region region = PickUpRegion(loss);
+    int end = unsupported.begin;
+    while (end < unsupported.end && region.Contains(place(end))) ++end;
+    return Span{unsupported.begin, end};
+  }
+
+  /// High enough, and above where it was lost. The frame after the pick-up tells, too: what leaves
+  /// the region upwards was that high.
+  bool Rises(Span pick_up, int loss) const {
+    const double floor_m = place(loss).z() + settings_.pick_up_rise_m;
+    bool rises = false;
+    for (int frame = loss; frame < std::min(pick_up.end + 1, recording_.size()); ++frame)
+      rises =
+          rises || (place(frame).z() >= floor_m && PickUpRegion(loss).IsAboveOrBelow(place(frame)));
+    return rises;
+  }
+
+  /// From the begin of the last uninterrupted approach from above to the landing.
+  std::optional<Span> PutDown(Span unsupported) const {
+    const int landing = unsupported.end;
+    const Region region{place(landing), settings_.put_down_radius_m, settings_.put_down_height_m};
+    int near = landing;
+    while (near > unsupported.begin && region.Contains(place(near - 1)) &&
+           recording_.Seconds(near - 1, landing) <= settings_.put_down_look_back_s)
+      --near;
+    std::vector<DistanceAt> path;
+    for (int frame = near; frame < landing; ++frame)
+      path.push_back({recording_.Seconds(near, frame), (place(frame) - region.anchor).norm()});
+    const int begin = near + LandingApproachBegin(path, settings_);
+    // How high it was before it last moved away does not make this approach one from above.
+    if (Highest({begin, landing}) - region.anchor.z() < settings_.put_down_drop_m)
+      return std::nullopt;
+    return Span{begin, landing};
+  }
+
+  /// `loss`: where it lost the support that it was taken from, if it was taken from one. `lands`:
+  /// it is supported after, be it in the very frame in which it is let go. Otherwise it was
+  /// dropped, or held to the end.
+  void DivideUnsupported(Span unsupported, std::optional<int> loss, bool lands) {
+    Span transport = unsupported;
+    if (const auto put_down = lands ? PutDown(unsupported) : std::nullopt) {
+      found_.put_downs.push_back(*put_down);
+      transport.end = put_down->begin;
+    }
+    const Span pick_up = loss ? Common(NearLoss(unsupported, *loss), transport) : Span{};
+    if (!pick_up.empty() && Rises(pick_up, *loss)) {
+      found_.pick_ups.push_back(pick_up);
+      transport.begin = pick_up.end;
+    }
+    if (!transport.empty()) found_.transports.push_back(transport);
+  }
+
+  const Evidence& evidence_;
+  const Recording& recording_;
+  const OracleSettings& settings_;
+  const Grasp& grasp_;
+  const std::map<int, Spans>& supports_;
+  Carrying found_;
+};
+
+}  // namespace
+
+Carrying FindCarrying(const Evidence& evidence, const OracleSettings& settings, const Grasp& grasp,
+                      const std::map<int, Spans>& supports) {
+  if (!physics::MovesFreely(evidence.recording.scene, physics::BodyIndex(grasp.body))) return {};
+  return Carrier(evidence, settings, grasp, supports).Find();
+}
+
+}  // namespace prehend::truth

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the recording shows before any number of the definitions is applied: who touches whom, with
+// which force, moving how; how far hands are from things. It is computed once per recording and
+// serves every choice of numbers. Tested by tests/harness/truth/oracle/oracle_test.cc
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <vector>
+
+#include "harness/truth/oracle/recording.h"
+
+namespace prehend::truth {
+
+/// How one body bears on another in one frame.
+struct Bearing {
+  bool touching = false;
+  double up = -1;    ///< upward component of the direction of the force on the object
+  double share = 0;  ///< upward force over the object's weight; infinite without known forces
+  /// Of the object relative to the support, vertical: the slower of its middle and of the point
+  /// where it is borne.
+  double vertical_m_per_s = std::numeric_limits<double>::infinity();
+  /// Of the object's material relative to the support's, where they touch, along their common
+  /// tangent plane.
+  double along_m_per_s = 0;
+  /// Sum of that motion since the first frame, as seen from the support.
+  Eigen::Vector3d along_m = Eigen::Vector3d::Zero();
+};
+
+class Evidence {
+ public:
+  explicit Evidence(const Recording& recording);
+
+  /// Entities a < b that ever touch, and in which frames.
+  std::map<Pair, std::vector<bool>> touching;
+  /// Of (hand index, body): how many sensor sets touch, by frame.
+  std::map<Pair, std::vector<std::uint8_t>> sensor_sets;
+  /// Of (object, support), the object movable, the support a thing: by frame.
+  std::map<Pair, std::vector<Bearing>> bearings;
+
+  const Recording& recording;
+
+  /// Between the surfaces of a hand (palm and links) and a body, metres; 0 when they touch.
+  double Distance_m(int hand, int body, int frame) const;
+  /// How fast palm and fingers moved since the frame before: the fastest of them, m/s.
+  double Motion_m_per_s(int hand, int frame) const;
+  /// How far palm or a finger is in one frame from where it is in another: the farthest, metres.
+  double Apart_m(int hand, int frame, int other) const;
+  /// How far palm or a finger gets from where it is, within `window_s` / 2 before or after, in
+  /// frames before `end`: the farthest of them, metres.
+  double Excursion_m(int hand, int frame, double window_s, int end) const;
+
+ private:
+  struct Stretch {
+    int hand = 0;
+    double window_s = 0;
+    int end = 0;
+    friend auto operator<=>(const Stretch&, const Stretch&) = default;
+  };
+  mutable std::map<Pair, std::vector<double>> distances_;
+  mutable std::map<int, std::vector<double>> motions_;
+  mutable std::map<Stretch, std::vector<double>> excursions_;
+};
+
+/// Whether the body's true shape reaches into the hand's region of interest: the sphere ahead of
+/// the palm that touches its centre.
+bool InReachRegion(const Recording& recording, int hand, int body, int frame, double radius_m);
+
+}  // namespace prehend::truth

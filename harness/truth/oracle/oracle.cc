@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/truth/oracle/oracle.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "harness/truth/oracle/approach.h"
+#include "harness/truth/oracle/bands.h"
+#include "harness/truth/oracle/carry.h"
+#include "harness/truth/oracle/recording.h"
+#include "harness/truth/oracle/touches.h"
+
+namespace prehend::truth {
+
+namespace {
+
+class TimelineBuilder {
+ public:
+  TimelineBuilder(const Evidence& evidence, const OracleSettings& settings, grammar::Tick end)
+      : evidence_(evidence),
+        recording_(evidence.recording),
+        settings_(settings),
+        end_(end),
+        touches_(FindTouches(evidence, settings)) {
+    timeline_.ticks_per_second = recording_.scene.world.rate_hz;
+  }
+
+  grammar::Timeline Build() {
+    AddContacts();
+    for (const auto& [pair, spans] : touches_.supports)
+      for (const Span& span : spans)
+        Add("supported_by",
+            {{"object", recording_.name(pair.first)}, {"support", recording_.name(pair.second)}},
+            span);
+    for (const Grasp& grasp : touches_.grasps) AddGrasp(grasp);
+    grammar::Sort(timeline_);
+    return std::move(timeline_);
+  }
+
+ private:
+  grammar::Tick TickOf(int frame) const {
+    return frame < recording_.size() ? recording_.ticks[frame] : end_;
+  }
+
+  void Add(const char* event, std::vector<grammar::Role> roles, Span span) {
+    const grammar::Interval interval{TickOf(span.begin), TickOf(span.end)};
+    if (interval.begin >= interval.end) return;  // it began with the last frame
+    timeline_.events.push_back(
+        {event, std::move(roles), interval, interval.end, span.end == recording_.size()});
+  }
+
+  void AddContacts() {
+    for (const auto& [pair, spans] : touches_.contacts) {
+      const auto [a, b] = std::minmax(recording_.name(pair.first), recording_.name(pair.second));
+      for (const Span& span : spans) Add("contact", {{"a", a}, {"b", b}}, span);
+    }
+  }
+
+  std::vector<grammar::Role> RolesOf(const Grasp& grasp) const {
+    return {{"hand", recording_.scene.hands[grasp.hand].name},
+            {"object", recording_.name(grasp.body)}};
+  }
+
+  void AddGrasp(const Grasp& grasp) {
+    std::vector<grammar::Role> roles = RolesOf(grasp);
+    const physics::HandModel& model = recording_.scene.hands[grasp.hand].model;
+    const int style = recording_.hand(grasp.hand, grasp.span.begin).style;
+    if (style >= 0 && style < static_cast<int>(model.styles.size()))
+      roles.push_back({"style", model.styles[style].name});
+    Add("grasping", std::move(roles), grasp.span);
+
+    const Span reach = AddReach(grasp);
+    const Carrying carrying = AddCarrying(grasp);
+    if (!reach.empty() && !carrying.put_downs.empty())
+      Add("pick_and_place", RolesOf(grasp), {reach.begin, carrying.put_downs.front().end});
+  }
+
+  /// Only the first grasp of a contact was reached for; for a second one the hand was already
+  /// there.
+  Span AddReach(const Grasp& grasp) {
+    const Spans& contacts =
+        touches_.contacts.at({grasp.body, recording_.body_count() + grasp.hand});
+    Span contact, contact_before;
+    for (const Span& span : contacts) {
+      if (span.end <= grasp.span.begin) contact_before = span;
+      if (span.Contains(grasp.span.begin)) contact = span;
+    }
+    int earliest = contact_before.end;
+    for (const Grasp& other : touches_.grasps) {
+      if (other.hand != grasp.hand) continue;
+      if (other.body == grasp.body &&
+          Span{contact.begin, grasp.span.begin}.Contains(other.span.begin))
+        return {};
+      // A grasp drops every candidate that is not touched yet; what comes after it may be a reach.
+      if (other.span.begin < contact.begin) earliest = std::max(earliest, other.span.begin + 1);
+    }
+    Add("fixation", RolesOf(grasp), {contact.begin, grasp.span.begin});
+    const int begin =
+        ReachBegin(evidence_, settings_, grasp.hand, grasp.body, earliest, contact.begin);
+    if (recording_.Seconds(begin, contact.begin) < settings_.reach_minimum_s) return {};
+    Add("reaching", RolesOf(grasp), {begin, contact.begin});
+    return {begin, contact.begin};
+  }
+
+  Carrying AddCarrying(const Grasp& grasp) {
+    std::map<int, Spans> supports;
+    for (const auto& [pair, spans] : touches_.supports)
+      if (pair.first == grasp.body) supports[pair.second] = spans;
+    Carrying carrying = FindCarrying(evidence_, settings_, grasp, supports);
+    for (const Span& span : carrying.slides) Add("sliding", RolesOf(grasp), span);
+    for (const Span& span : carrying.pick_ups) Add("picking_up", RolesOf(grasp), span);
+    for (const Span& span : carrying.transports) Add("transporting", RolesOf(grasp), span);
+    for (const Span& span : carrying.put_downs) Add("putting_down", RolesOf(grasp), span);
+    return carrying;
+  }
+
+  const Evidence& evidence_;
+  const Recording& recording_;
+  const OracleSettings& settings_;
+  grammar::Tick end_;
+  Touches touches_;
+  grammar::Timeline timeline_;
+};
+
+}  // namespace
+
+std::span<const std::string_view> OracleEvents() {
+  static constexpr std::array<std::string_view, 10> kDefined = {
+      "contact", "supported_by", "grasping",     "reaching",     "fixation",
+      "sliding", "picking_up",   "transporting", "putting_down", "pick_and_place"};
+  return kDefined;
+}
+
+bool OracleDefines(std::string_view event) {
+  return std::ranges::find(OracleEvents(), event) != OracleEvents().end();
+}
+
+grammar::Timeline TrueTimeline(const physics::Scene& scene,
+                               std::span<const physics::Snapshot> recording, grammar::Tick end,
+                               const OracleSettings& settings) {
+  const Recording frames = MakeRecording(scene, recording);
+  return TimelineBuilder(Evidence(frames), settings, end).Build();
+}
+
+std::vector<grammar::Timeline> PossibleTimelines(const physics::Scene& scene,
+                                                 std::span<const physics::Snapshot> recording,
+                                                 grammar::Tick end) {
+  const Recording frames = MakeRecording(scene, recording);
+  const Evidence evidence(frames);
+  std::vector<grammar::Timeline> timelines;
+  for (const OracleSettings& choice : DefinitionChoices())
+    timelines.push_back(TimelineBuilder(evidence, choice, end).Build());
+  return timelines;
+}
+
+}  // namespace prehend::truth

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// One choice of the numbers in the definitions. The page of definitions, docs/events.md, gives each
+// a band (harness/truth/oracle/bands.h). Tested by tests/harness/truth/oracle/oracle_test.cc
+#pragma once
+
+namespace prehend::truth {
+
+/// A cylinder is a region around an anchor: so far sideways, so far up and down.
+struct OracleSettings {
+  double contact_bridge_s = 0.100;  ///< a gap in contact or support that is bridged
+  double grasp_bridge_s = 0.060;    ///< a loss of grip on the object that is bridged
+
+  double support_up = 0.5;              ///< upward component of the direction of the bearing force
+  double support_share = 0.02;          ///< of the object's weight that is borne, at least
+  double support_speed_m_per_s = 0.02;  ///< vertical, of the object's middle or of its load
+  double support_minimum_s = 0.02;      ///< a blow is over sooner
+  double commanded_trigger = 0.3;       ///< from here on the grip is commanded, 0..1
+  int grasp_sensor_sets = 2;            ///< of one hand on the object
+
+  double idle_speed_m_per_s = 0.01;    ///< slower is standing still,
+  double idle_excursion_m = 0.0025;    ///< and so is getting no farther than this
+  double idle_window_s = 0.5;          ///< within half of this before or after
+  double onset_speed_m_per_s = 0.001;  ///< a movement begins slowly; slower is not moving yet
+  double turn_pause_s = 0.1;           ///< standing still for longer before returning is a pause
+
+  double reach_radius_m = 0.30;      ///< ball that lies ahead of the palm and touches its centre
+  double reach_dead_band_m = 0.025;  ///< moving away by less is not moving away
+  double reach_idle_s = 0.5;         ///< standing still for longer ends a reach
+  double reach_minimum_s = 0.1;
+
+  double slide_speed_m_per_s = 0.01;  ///< along the support, where the two touch
+  double slide_window_s = 0.1;        ///< it has to be faster than that on average over this, too
+  double slide_moment_s = 0.05;       ///< it has to move for that long; a dip is no longer
+  double slide_pause_s = 0.150;       ///< a pause in the motion that is bridged
+  double slide_displacement_m = 0.02;
+
+  double pick_up_rise_m = 0.03;
+  double pick_up_radius_m = 0.09, pick_up_height_m = 0.12;
+
+  double put_down_drop_m = 0.02;  ///< from the highest place of the approach to the landing place
+  double put_down_radius_m = 0.09, put_down_height_m = 0.08;
+  double put_down_look_back_s = 3.3;
+  double put_down_dead_band_m = 0.005;  ///< moving away by less is not moving away
+  double put_down_window_s = 0.1;       ///< distances are medians over it
+};
+
+}  // namespace prehend::truth

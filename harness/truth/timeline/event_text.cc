@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/truth/timeline/event_text.h. Tested by tests/harness/truth/golden/golden_test.cc
+#include "harness/truth/timeline/event_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace prehend::truth {
+
+using grammar::NamedEvent;
+using grammar::Role;
+using grammar::Tick;
+
+std::string SecondsText(Tick tick, Tick ticks_per_second) {
+  // Half a unit of the last decimal must stay below half a tick: 10^decimals > ticks_per_second.
+  const int decimals = std::max<int>(4, static_cast<int>(std::to_string(ticks_per_second).size()));
+  return fmt::format("{:.{}f}", static_cast<double>(tick) / static_cast<double>(ticks_per_second),
+                     decimals);
+}
+
+Tick TickAt(double seconds, Tick ticks_per_second) {
+  return std::llround(seconds * static_cast<double>(ticks_per_second));
+}
+
+std::string IntervalText(grammar::Interval interval, Tick ticks_per_second) {
+  return fmt::format("{}..{} s", SecondsText(interval.begin, ticks_per_second),
+                     SecondsText(interval.end, ticks_per_second));
+}
+
+double MillisecondsOf(Tick ticks, Tick ticks_per_second) {
+  return 1000.0 * static_cast<double>(ticks) / static_cast<double>(ticks_per_second);
+}
+
+std::string ValueText(const grammar::NamedValue& value) {
+  return fmt::format("{:.4g}{}{}", value.value, value.unit.empty() ? "" : " ", value.unit);
+}
+
+bool IsAttribute(const Role& role) { return role.name == "style"; }
+
+std::string RoleText(const NamedEvent& event, std::size_t column) {
+  if (column >= event.roles.size()) return "";
+  return event.roles[column].name + "=" + event.roles[column].value;
+}
+
+const std::string& RoleValue(const NamedEvent& event, std::string_view role) {
+  static const std::string kNone;
+  const auto found = std::find_if(event.roles.begin(), event.roles.end(),
+                                  [&](const Role& candidate) { return candidate.name == role; });
+  return found == event.roles.end() ? kNone : found->value;
+}
+
+std::vector<std::string> AlignColumns(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      widths[column] = std::max(widths[column], row[column].size());
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      line += fmt::format("{:<{}}  ", row[column], widths[column]);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::vector<std::string> EventCells(const NamedEvent& event, Tick ticks_per_second,
+                                    std::size_t role_columns) {
+  std::vector<std::string> cells = {event.event,
+                                    SecondsText(event.interval.begin, ticks_per_second),
+                                    SecondsText(event.interval.end, ticks_per_second)};
+  for (std::size_t column = 0; column < role_columns; ++column) {
+    cells.push_back(RoleText(event, column));
+  }
+  cells.push_back(event.open_end ? "open_end" : "");
+  return cells;
+}
+
+}  // namespace prehend::truth

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// How events are written for people: seconds, intervals, roles. Goldens, tables, differences and
+// reports share it. Tested by tests/harness/truth/golden/golden_test.cc
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "grammar/base/timeline.h"
+
+namespace prehend::truth {
+
+/// Seconds with at least 4 decimals, and as many as it takes for TickAt() to find the same tick
+/// again.
+std::string SecondsText(grammar::Tick tick, grammar::Tick ticks_per_second);
+
+/// The tick nearest to a time.
+grammar::Tick TickAt(double seconds, grammar::Tick ticks_per_second);
+
+/// "1.2000..1.8125 s"
+std::string IntervalText(grammar::Interval interval, grammar::Tick ticks_per_second);
+
+/// In milliseconds.
+double MillisecondsOf(grammar::Tick ticks, grammar::Tick ticks_per_second);
+
+/// "12.5 N", "0.3"
+std::string ValueText(const grammar::NamedValue& value);
+
+/// True for what qualifies an event (the grasp's style) instead of saying who takes part.
+bool IsAttribute(const grammar::Role& role);
+
+/// "hand=right_hand", or "" when the event has no such column.
+std::string RoleText(const grammar::NamedEvent& event, std::size_t column);
+
+/// The value of a role or attribute, or "".
+const std::string& RoleValue(const grammar::NamedEvent& event, std::string_view role);
+
+/// Rows of cells as lines with aligned columns, two blanks apart, no trailing blanks.
+std::vector<std::string> AlignColumns(const std::vector<std::vector<std::string>>& rows);
+
+/// Event, begin, end, roles, and "open_end" as cells of a table row.
+std::vector<std::string> EventCells(const grammar::NamedEvent& event,
+                                    grammar::Tick ticks_per_second, std::size_t role_columns);
+
+}  // namespace prehend::truth

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/base/base/csv_cells.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace prehend::inline base {
+namespace {
+
+std::vector<std::string> Texts(std::string_view line, char separator = ',') {
+  std::vector<std::string> texts;
+  for (const CsvCell& cell : CsvCellsOf(line, separator)) texts.emplace_back(cell.text);
+  return texts;
+}
+
+TEST(CsvCells, AreCutAtSeparatorsOutsideOfQuotes) {
+  using V = std::vector<std::string>;
+  EXPECT_EQ(Texts("a, b ,c"), (V{"a", "b", "c"}));
+  EXPECT_EQ(Texts("\"a, b\",c"), (V{"a, b", "c"}));
+  EXPECT_EQ(Texts("a;b", ';'), (V{"a", "b"}));
+  EXPECT_EQ(Texts(""), (V{""}));
+  EXPECT_EQ(Texts("a,"), (V{"a", ""}));
+  EXPECT_EQ(Texts("\"open, end"), (V{"open", "end"}));
+}
+
+TEST(CsvCells, KnowTheirPlace) {
+  const auto cells = CsvCellsOf("ab, \"c\"", ',');
+  EXPECT_EQ(cells[1].column, 6);
+}
+
+TEST(CsvCells, AFaultOfQuotesIsNamed) {
+  EXPECT_EQ(CsvCellsOf("a,\"b,c", ',')[1].fault, "its quote is not closed");
+  EXPECT_EQ(CsvCellsOf("a,\"b\" x,c", ',')[1].fault, "there is more after its closing quote");
+  EXPECT_EQ(CsvCellsOf("\"b \"\"c\"\", d\" ,e", ',')[0].fault, "");
+  EXPECT_EQ(CsvCellsOf("\"b \"\"c\"\", d\" ,e", ',').size(), 2u);
+}
+
+}  // namespace
+}  // namespace prehend::inline base

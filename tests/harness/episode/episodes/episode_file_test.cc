@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/episode/episodes/episode_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "harness/episode/episodes/load_episode.h"
+#include "harness/episode/episodes/record_episode.h"
+#include "harness/episode/episodes/schema.h"
+#include "harness/episode/run/run_text.h"
+
+namespace prehend::episode {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kRoot = PREHEND_SOURCE_DIR;
+const std::string kScenario = kRoot + "/scenarios/reach/idling_beside_the_object_is_no_reach.yaml";
+
+fs::path Fresh(const std::string& name) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("prehend_" + name + "_" + std::to_string(getpid()));
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  return folder;
+}
+
+std::string Slurped(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  return bytes.str();
+}
+
+void Spill(const fs::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+}
+
+struct Played {
+  LoadedRun loaded;
+  RunResult result;
+  std::string problem;
+};
+
+/// Plays a short scenario and records it; without `finish` as if the program had been killed.
+Played Record(const std::string& file, bool finish = true) {
+  std::vector<std::string> files;
+  const RunRequest request{.scenario_file = kScenario, .grammar = "", .settings = {}};
+  Played played{.loaded = *LoadRun(request, kRoot, &files), .result = {}, .problem = {}};
+  EpisodeRecorder recorder({file, kRoot, request, files, "2026-01-02", "0123"},
+                           played.loaded.scenario);
+  ScenarioRun playing(played.loaded.scenario, played.loaded.program, {.record = true});
+  while (playing.Step()) recorder.Add(playing.snapshot());
+  played.result = playing.Finish();
+  if (finish) recorder.Finish(played.result);
+  played.problem = recorder.problem();
+  return played;
+}
+
+std::string MessageOf(const Result<EpisodeFile>& opened) {
+  return opened ? "" : opened.error().front().message;
+}
+
+TEST(EpisodeFileOfMany, GivesBackWhatWasPlayed) {
+  const std::string file = (Fresh("whole") / "a.episodes").string();
+  const Played first = Record(file), second = Record(file);
+  ASSERT_EQ(first.problem + second.problem, "");
+  const auto opened = EpisodeFile::Open(file);
+  ASSERT_TRUE(opened) << MessageOf(opened);
+  ASSERT_EQ(opened->episodes().size(), 2u);
+  EXPECT_NE(opened->episodes()[0].uuid, opened->episodes()[1].uuid);
+  const EpisodeRow& row = opened->episodes()[1];
+  EXPECT_EQ(row.scenario, "reach/idling_beside_the_object_is_no_reach");
+  EXPECT_EQ(row.status, "completed");
+  EXPECT_EQ(row.recorded_on, "2026-01-02");
+  EXPECT_EQ(row.state_hash, HashText(first.result.state_hash));
+
+  EpisodeLoader loader(kRoot);
+  const auto loaded = loader.Load(*opened, row);
+  ASSERT_TRUE(loaded) << grammar::Format(loaded.error());
+  const auto again = Replay(*opened, row, *loaded);
+  ASSERT_TRUE(again) << grammar::Format(again.error());
+  EXPECT_EQ(RunTable(*again), RunTable(first.result));
+  EXPECT_EQ(again->state_hash, first.result.state_hash);
+  ASSERT_EQ(again->recording.size(), first.result.recording.size());
+  const auto recorded = opened->TimelineOf(row);
+  ASSERT_TRUE(recorded);
+  RunResult kept = *again;
+  kept.timeline = *recorded;
+  EXPECT_EQ(RunTable(kept), RunTable(first.result));
+}
+
+TEST(EpisodeFileOfMany, AnyFrameAndAnyTrackIsFound) {
+  const std::string file = (Fresh("at") / "a.episodes").string();
+  const Played played = Record(file);
+  const auto opened = EpisodeFile::Open(file);
+  ASSERT_TRUE(opened);
+  EpisodeFrames frames(*opened, opened->episodes()[0], LayoutOf(played.loaded.scenario.scene));
+  for (std::size_t i = 0; i < played.result.recording.size(); i += 97) {
+    const physics::Snapshot& truth = played.result.recording[i];
+    const auto found = frames.At(truth.tick);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->tick, truth.tick);
+    for (std::size_t b = 0; b < truth.bodies.size(); ++b)
+      EXPECT_EQ(found->bodies[b].X_WB.p_m, truth.bodies[b].X_WB.p_m);
+    EXPECT_EQ(found->hands[0].X_WL.back().p_m, truth.hands[0].X_WL.back().p_m);
+    EXPECT_EQ(found->contacts.size(), truth.contacts.size());
+  }
+  EXPECT_FALSE(frames.At(0)) << "the first frame is after the first tick";
+  EXPECT_EQ(frames.At(1'000'000)->tick, played.result.ticks);
+  const auto track = frames.TrackOf(1);
+  ASSERT_TRUE(track);
+  ASSERT_EQ(track->size(), played.result.recording.size());
+  for (std::size_t i = 0; i < track->size(); ++i)
+    EXPECT_EQ((*track)[i].body.X_WB.p_m, played.result.recording[i].bodies[1].X_WB.p_m);
+}
+
+TEST(EpisodeFileOfMany, AnEpisodeThatIsNotFinishedSaysSoAndIsReadUpToItsLastChunk) {
+  const std::string file = (Fresh("cut") / "a.episodes").string();
+  const Played played = Record(file, false);
+  const auto opened = EpisodeFile::Open(file);
+  ASSERT_TRUE(opened);
+  const EpisodeRow& row = opened->episodes()[0];
+  EXPECT_EQ(row.status, "recording");
+  EXPECT_GT(row.ticks, 100);
+  EXPECT_LT(row.ticks, played.result.ticks);
+  EpisodeLoader loader(kRoot);
+  const auto loaded = loader.Load(*opened, row);
+  ASSERT_TRUE(loaded);
+  const auto again = Replay(*opened, row, *loaded);
+  ASSERT_TRUE(again) << grammar::Format(again.error());
+  EXPECT_EQ(again->status.kind, physics::RunStatus::Kind::kFailed);
+  EXPECT_NE(StatusText(*again).find("its recording was cut off here"), std::string::npos);
+  EXPECT_EQ(again->recording.back().tick, row.ticks);
+}
+
+TEST(EpisodeFileOfMany, ForeignAndDamagedFilesAreRefusedWithTheirCause) {
+  const fs::path folder = Fresh("bad");
+  EXPECT_EQ(MessageOf(EpisodeFile::Open((folder / "none").string())), "no such file");
+  EXPECT_EQ(MessageOf(EpisodeFile::Open(folder.string())), "is not a regular file");
+  Spill(folder / "empty", "");
+  EXPECT_EQ(MessageOf(EpisodeFile::Open((folder / "empty").string())), "the file is empty");
+  Spill(folder / "text", "name: x\n");
+  EXPECT_EQ(MessageOf(EpisodeFile::Open((folder / "text").string())),
+            "is no episode file: it does not begin as an SQLite database");
+  Spill(folder / "lines", "{\"recording\": 1}\n");
+  EXPECT_EQ(MessageOf(EpisodeFile::Open((folder / "lines").string())),
+            "is a recording in JSON Lines, not an episode file");
+  {
+    const Database other((folder / "other").string(), Database::Mode::kWrite);
+    other.Execute("CREATE TABLE cat(name TEXT)");
+  }
+  EXPECT_EQ(MessageOf(EpisodeFile::Open((folder / "other").string())),
+            "is an SQLite database of another program, not an episode file");
+
+  const fs::path good = folder / "a.episodes";
+  ASSERT_EQ(Record(good.string()).problem, "");
+  const std::string bytes = Slurped(good);
+  Spill(folder / "cut", bytes.substr(0, bytes.size() - 5000));
+  EXPECT_EQ(MessageOf(EpisodeFile::Open((folder / "cut").string())),
+            "is cut off: it has " + std::to_string(bytes.size() - 5000) + " of " +
+                std::to_string(bytes.size()) + " bytes");
+  Spill(folder / "short", bytes.substr(0, 50));
+  EXPECT_EQ(MessageOf(EpisodeFile::Open((folder / "short").string())),
+            "is cut off: an episode file has at least 100 bytes");
+  OpenToWrite(good.string()).Execute("PRAGMA user_version=9");
+  EXPECT_EQ(MessageOf(EpisodeFile::Open(good.string())),
+            "has version 9 of the format; this program reads version 3, a newer one is "
+            "needed");
+}
+
+TEST(EpisodeFileOfMany, MissingTablesAndColumnsAreNamed) {
+  const fs::path folder = Fresh("missing");
+  const fs::path good = folder / "a.episodes", bad = folder / "b.episodes";
+  ASSERT_EQ(Record(good.string()).problem, "");
+  const auto said = [&](const char* change) {
+    fs::copy_file(good, bad, fs::copy_options::overwrite_existing);
+    Database(bad.string(), Database::Mode::kWrite).Execute(change);
+    return MessageOf(EpisodeFile::Open(bad.string()));
+  };
+  EXPECT_EQ(said("ALTER TABLE part RENAME TO parx"), "is damaged: it has no table 'part'");
+  EXPECT_EQ(said("ALTER TABLE note RENAME COLUMN text TO texx"),
+            "is damaged: its table 'note' has no column 'text'");
+  EXPECT_TRUE([&] {
+    said("CREATE TABLE remark(text TEXT); ALTER TABLE note ADD COLUMN author TEXT");
+    return EpisodeFile::Open(bad.string()).has_value();
+  }()) << "what others added is left alone";
+}
+
+TEST(EpisodeFileOfMany, EveryDamagedByteIsReportedOrHarmless) {
+  const fs::path folder = Fresh("flipped");
+  const fs::path good = folder / "a.episodes";
+  const Played played = Record(good.string());
+  const std::string bytes = Slurped(good);
+  int refused = 0;
+  for (std::size_t place = 4096; place < bytes.size(); place += bytes.size() / 40) {
+    std::string bad = bytes;
+    for (std::size_t i = 0; i < 16 && place + i < bad.size(); ++i) bad[place + i] ^= 0x55;
+    Spill(folder / "b.episodes", bad);
+    const auto opened = EpisodeFile::Open((folder / "b.episodes").string());
+    if (!opened || opened->episodes().empty()) {
+      ++refused;
+      continue;
+    }
+    EpisodeLoader loader(kRoot);
+    const auto loaded = loader.Load(*opened, opened->episodes()[0]);
+    const auto again = loaded ? Replay(*opened, opened->episodes()[0], *loaded)
+                              : Result<RunResult>(tl::unexpected(loaded.error()));
+    if (!again) {
+      ++refused;
+      EXPECT_NE(again.error().front().message, "");
+      continue;
+    }
+    EXPECT_EQ(again->state_hash, played.result.state_hash) << "changed frames are not passed on";
+  }
+  EXPECT_GT(refused, 20);
+}
+
+TEST(EpisodeFileOfMany, WhatCannotBeWrittenIsReported) {
+  const fs::path folder = Fresh("foreign");
+  Spill(folder / "a.episodes", "name: x\n");
+  const std::string in_a_file = (folder / "a.episodes" / "b.episodes").string();
+  EXPECT_TRUE(Record(in_a_file).problem.starts_with(in_a_file + ": ")) << Record(in_a_file).problem;
+  EXPECT_EQ(Record((folder / "a.episodes").string()).problem,
+            (folder / "a.episodes").string() +
+                ": is no episode file: it does not begin as an SQLite database");
+  EXPECT_EQ(Slurped(folder / "a.episodes"), "name: x\n");
+}
+
+}  // namespace
+}  // namespace prehend::episode

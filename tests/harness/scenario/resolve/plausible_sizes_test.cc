@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Masses and sizes that look like a mistaken unit are warned of, with numbers.
+#include "harness/scenario/resolve/plausible_sizes.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/harness/scenario_fixture.h"
+
+namespace prehend::scenario {
+namespace {
+
+std::string Warned(const std::string& from, const std::string& to) {
+  const auto read = ReadScenarioText("probe.yaml", ProbeWith(from, to), {}, ProbeLibrary());
+  EXPECT_TRUE(read) << Format(ErrorsOf(read));
+  if (!read) return "";
+  for (const grammar::Diagnostic& warning : read->warnings) EXPECT_TRUE(warning.is_warning);
+  return Brief(read->warnings);
+}
+
+TEST(PlausibleSizes, AMassIsComparedWithTheShape) {
+  EXPECT_EQ(Warned("mass_kg: 0.4", "mass_kg: 0.5"), "");
+  EXPECT_EQ(Warned("mass_kg: 0.4", "mass_kg: 500"),
+            "7:54: mass_kg: 500 kg are much for 'milk', whose shape has 0.98 litres: 510 kg per "
+            "litre | water has 1, lead 11; a mass is in kg, a size in metres\n");
+  EXPECT_EQ(Warned("mass_kg: 0.4", "mass_kg: 0.001"),
+            "7:54: mass_kg: 0.001 kg are little for 'milk', whose shape has 0.98 litres: 0.00102 "
+            "kg per litre | air has 0.001, foam 0.02; a mass is in kg, a size in metres\n");
+}
+
+TEST(PlausibleSizes, ASizeIsThatOfSomethingThatAHandDealsWith) {
+  EXPECT_EQ(Warned("size_m: [0.07, 0.07, 0.20]}, mass_kg: 0.4",
+                   "size_m: [40, 0.07, 0.20]}, mass_kg: 300"),
+            "7:3: 'milk' is 40 m long, and it is not fixed | sizes are in metres: 0.1 is 10 cm\n");
+  EXPECT_EQ(Warned("size_m: [1.2, 0.8, 0.04]", "size_m: [80, 0.8, 0.04]"),
+            "6:3: 'table' is 80 m long | sizes are in metres: 0.1 is 10 cm\n");
+  EXPECT_EQ(Warned("size_m: [1.2, 0.8, 0.04]", "size_m: [20, 0.8, 0.04]"), "");
+}
+
+}  // namespace
+}  // namespace prehend::scenario

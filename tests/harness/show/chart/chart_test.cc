@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/show/chart/chart.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <pugixml.hpp>
+
+namespace prehend::show {
+namespace {
+
+TEST(Chart, TicksAreRound) {
+  using V = std::vector<double>;
+  EXPECT_EQ(RoundTicks(0, 5, 5), (V{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(RoundTicks(0, 1, 2), (V{0, 0.5, 1}));
+  EXPECT_EQ(RoundTicks(-3, 12, 4), (V{0, 5, 10}));
+  EXPECT_EQ(RoundTicks(100, 1000, 3), (V{500, 1000}));
+}
+
+Chart Example() {
+  return {.title = "a < b",
+          .from_s = 1,
+          .to_s = 3,
+          .rows = {{"hand", {{0, 1.5, "before", 0x112233}, {4, 5, "after", 0x445566}}}},
+          .panels = {{"height, m", {{"cup", {{0, 9}, {1, 0}, {2, 1}, {4, 9}}}}}}};
+}
+
+TEST(Chart, ShowsWhatLiesInItsTime) {
+  pugi::xml_document svg;
+  ASSERT_TRUE(svg.load_string(ChartSvg(Example()).c_str()));
+  const auto with = [&](const char* name, const char* key, const char* value) {
+    return svg.child("svg").find_child([&](pugi::xml_node node) {
+      return std::strcmp(node.name(), name) == 0 &&
+             std::strcmp(node.attribute(key).value(), value) == 0;
+    });
+  };
+  EXPECT_TRUE(with("rect", "fill", "#112233")) << "cut at the begin";
+  EXPECT_FALSE(with("rect", "fill", "#445566"));
+  EXPECT_TRUE(with("rect", "fill", "#FFFFFF")) << "the ground";
+  const std::string points = with("polyline", "fill", "none").attribute("points").value();
+  EXPECT_EQ(std::count(points.begin(), points.end(), ','), 2) << points;
+}
+
+TEST(Chart, MayHaveNoGround) {
+  EXPECT_EQ(ChartSvg(Example(), {.transparent = true}).find("\"100%\""), std::string::npos);
+  EXPECT_NE(ChartSvg(Example()).find("\"100%\""), std::string::npos);
+  EXPECT_NE(ChartSvg(Example()).find("a &lt; b"), std::string::npos);
+}
+
+TEST(Chart, NamesTheColoursOfShortBarsAndInterruptsCurves) {
+  Chart chart{.to_s = 10, .rows = {{"hand", {{1, 1.01, "fixation", 0x112233, "fixation"}}}}};
+  EXPECT_NE(ChartSvg(chart).find(">fixation<"), std::string::npos);
+  chart.panels = {{"height, m", {{"", {{0, 1}, {1, 1}, {2, NAN}, {3, 1}, {4, 2}}}}}};
+  const std::string svg = ChartSvg(chart);
+  EXPECT_NE(svg.find("<polyline"), svg.rfind("<polyline"));
+}
+
+TEST(Chart, OfNothingIsEmptyButValid) {
+  pugi::xml_document svg;
+  EXPECT_TRUE(svg.load_string(ChartSvg({.panels = {{"nothing", {{"", {}}}}}}).c_str()));
+}
+
+}  // namespace
+}  // namespace prehend::show

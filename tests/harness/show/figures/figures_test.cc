@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/show/figures/figures.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/harness/show/figures/played.h"
+
+namespace prehend::show {
+namespace {
+
+TEST(Figures, PhasesHaveARowPerHandAndEvent) {
+  const auto& [loaded, run] = Of("pick_and_place/milk_carton_wrap");
+  const Chart chart = PhasesChart(loaded.scenario, run, WholeOf(run));
+  std::vector<std::string> names;
+  for (const Row& row : chart.rows) {
+    names.push_back(row.name);
+    for (std::size_t i = 1; i < row.bars.size(); ++i)
+      EXPECT_LE(row.bars[i - 1].end_s, row.bars[i].begin_s + 1e-9) << row.name;
+  }
+  EXPECT_EQ(names.front(), "right_hand");
+  EXPECT_EQ(std::ranges::count(names, "right_hand: grasping"), 1);
+  const Chart both = SideBySide(chart, "mine", chart, "yours");
+  ASSERT_EQ(both.rows.size(), 2 * chart.rows.size());
+  EXPECT_EQ(both.rows[0].name, "right_hand (mine)");
+  EXPECT_EQ(both.rows[1].name, "right_hand (yours)");
+}
+
+TEST(Figures, SeriesShowWhatMovesAndWhoPresses) {
+  const auto& [loaded, run] = Of("bimanual/two_hands_carry_a_plate_of_a_kilogram");
+  const Chart chart = SeriesChart(loaded.scenario, run, WholeOf(run));
+  ASSERT_EQ(chart.panels.size(), 3u);
+  EXPECT_EQ(chart.panels[0].curves.size(), 2u) << "plate and cake, not the stand";
+  ASSERT_EQ(chart.panels[2].curves.size(), 2u);
+  const Curve& force = chart.panels[2].curves[0];
+  EXPECT_EQ(force.points.size(), run.recording.size());
+  EXPECT_LT(force.points.front().second, 1e-9);
+  EXPECT_GT(force.points.back().second, 10) << "a kilogram between two hands, newtons";
+}
+
+TEST(Figures, GazeIsWhatPersonsSee) {
+  const auto& [loaded, run] = Of("gaze/eyes_lead_the_hand");
+  const auto chart = GazeChart(loaded.scenario, run, WholeOf(run));
+  ASSERT_TRUE(chart);
+  EXPECT_TRUE(std::ranges::any_of(chart->rows,
+                                  [](const Row& row) { return row.name == "anna sees milk"; }));
+  const auto& [alone, its_run] = Of("pick_and_place/milk_carton_wrap");
+  EXPECT_FALSE(GazeChart(alone.scenario, its_run, WholeOf(its_run)));
+}
+
+TEST(Figures, AWindowLeavesOtherHandsAndThingsOut) {
+  const auto& [loaded, run] = Of("bimanual/two_hands_carry_a_plate_of_a_kilogram");
+  Window window = WholeOf(run);
+  const std::size_t all = PhasesChart(loaded.scenario, run, window).rows.size();
+  window.hand = "left_hand";
+  const Chart chart = PhasesChart(loaded.scenario, run, window);
+  EXPECT_LT(chart.rows.size(), all);
+  EXPECT_TRUE(std::ranges::none_of(
+      chart.rows, [](const Row& row) { return row.name.starts_with("right_hand"); }));
+  window = WholeOf(run);
+  window.entity = "nothing";
+  EXPECT_TRUE(PhasesChart(loaded.scenario, run, window).rows.empty());
+}
+
+}  // namespace
+}  // namespace prehend::show

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/show/pictures/compose_picture.h"
+
+#include <gtest/gtest.h>
+
+#include "grammar/compile/compile.h"
+
+namespace prehend::show {
+namespace {
+
+/// A hand that takes a cup from a tray, and the grammar that draws it.
+class Stage {
+ public:
+  Stage() {
+    const auto add = [&](const char* name, double mass_kg) {
+      scenario.scene.bodies.push_back({.name = name,
+                                       .shapes = {{physics::Box{}, {}}},
+                                       .fixed = mass_kg == 0,
+                                       .mass_kg = mass_kg});
+      scenario.body_classes.push_back("Thing");
+    };
+    add("tray", 0);
+    add("cup", 0.2);
+    scenario.name = "stage";
+    scenario.scene.hands.push_back({.name = "left", .model = {}, .X_WH = {}});
+    const auto compiled = grammar::Compile(
+        {"g",
+         "grammar g\n"
+         "event moves_to(h: Hand, x: Thing) while touching(x, h) drawn as phase \"#010203\"\n"
+         "event holds(h: Hand, x: Thing) while touching(x, h) drawn as grasp\n"
+         "event stands_on(x: Thing, y: Thing) while touching(x, y) drawn as support\n"
+         "event falls(x: Thing) while height(x) < 1 m\n"
+         "event hidden(x: Thing) while height(x) < 2 m drawn without row\n"},
+        nullptr);
+    EXPECT_TRUE(compiled.program);
+    run.drawings = truth::EventDrawings(*compiled.program);
+    run.ticks = 480;
+    run.timeline.ticks_per_second = 480;
+    for (grammar::Tick tick = 0; tick <= 480; tick += 48) {
+      physics::Snapshot& snapshot = run.recording.emplace_back();
+      snapshot.tick = tick;
+      snapshot.bodies.resize(scenario.scene.bodies.size());
+      snapshot.hands.resize(1);
+      snapshot.hands[0].palm.X_WB.p_m.x() = static_cast<double>(tick) / 480;
+    }
+    Add("moves_to", {{"h", "left"}, {"x", "cup"}}, 48, 240);
+    Add("holds", {{"h", "left"}, {"x", "cup"}}, 240, 480);
+    Add("stands_on", {{"x", "cup"}, {"y", "tray"}}, 0, 240);
+    Add("falls", {{"x", "cup"}}, 96, 144);
+    Add("hidden", {{"x", "cup"}}, 96, 144);
+  }
+
+  void Add(const char* event, std::vector<grammar::Role> roles, grammar::Tick begin,
+           grammar::Tick end) {
+    run.timeline.events.push_back(
+        {.event = event, .roles = std::move(roles), .interval = {begin, end}});
+  }
+
+  render::Picture At(const char* moment) const {
+    return ComposePicture(scenario, run, {.at = {moment, {}}});
+  }
+
+  scenario::Scenario scenario;
+  episode::RunResult run;
+};
+
+TEST(ComposePictureTest, TheStripHasARowForEachKindOfDrawing) {
+  const render::TimelineStrip strip = Stage().At("0.5").strip;
+  EXPECT_EQ(strip.end_s, 1);
+  EXPECT_EQ(strip.playhead_s, 0.5);
+  std::vector<std::pair<std::string, std::string>> rows;  // with the name of the first bar
+  for (const render::StripRow& row : strip.rows) {
+    ASSERT_EQ(row.segments.size(), 1u) << row.label;
+    rows.emplace_back(row.label, row.segments[0].label);
+  }
+  EXPECT_EQ(rows,
+            (std::vector<std::pair<std::string, std::string>>{
+                {"phase", "moves to"}, {"grasp", "cup"}, {"falls", "cup"}, {"cup on", "tray"}}));
+  EXPECT_EQ(strip.rows[0].segments[0].begin_s, 0.1);
+  EXPECT_EQ(strip.rows[0].segments[0].end_s, 0.5);
+}
+
+TEST(ComposePictureTest, RowsBeyondTheSixthAreLeftOut) {
+  Stage stage;
+  for (const char* event : {"one", "two", "three", "four", "five"})
+    stage.Add(event, {{"x", "cup"}}, 0, 48);
+  const auto rows = stage.At("0.5").strip.rows;
+  ASSERT_EQ(rows.size(), 6u);
+  EXPECT_EQ(rows.back().label, "three");
+  EXPECT_EQ(stage.At("0.5").strip.rows_left_out, 3) << "four, five and cup on";
+}
+
+TEST(ComposePictureTest, OfManySupportsThoseOfWhatAHandHoldsAreShown) {
+  Stage stage;
+  for (const char* name : {"a", "b", "c", "d", "e", "held"}) {
+    stage.scenario.scene.bodies.push_back(
+        {.name = name, .shapes = {{physics::Box{}, {}}}, .mass_kg = 0.2});
+    stage.scenario.body_classes.push_back("Thing");
+    for (physics::Snapshot& snapshot : stage.run.recording) snapshot.bodies.emplace_back();
+    stage.Add("stands_on", {{"x", name}, {"y", "tray"}}, 0, 480);
+  }
+  stage.Add("holds", {{"h", "left"}, {"x", "held"}}, 300, 400);
+  const render::TimelineStrip strip = stage.At("0.7").strip;
+  const auto labels = [&] {
+    std::vector<std::string> all;
+    for (const render::StripRow& row : strip.rows) all.push_back(row.label);
+    return all;
+  }();
+  ASSERT_EQ(labels.size(), 6u);
+  EXPECT_EQ(labels[3], "cup on");
+  EXPECT_EQ(labels[4], "held on");
+  EXPECT_EQ(labels[5], "a on");
+}
+
+TEST(ComposePictureTest, ThePathIsCutWherePhasesChange) {
+  const auto path = Stage().At("0.5").path;
+  ASSERT_EQ(path.size(), 3u);
+  EXPECT_EQ(path[0].label, "");
+  EXPECT_EQ(path[1].label, "moves_to");
+  EXPECT_EQ(path[2].label, "");
+  EXPECT_EQ(path[1].points_m.front(), path[0].points_m.back());
+}
+
+TEST(ComposePictureTest, AGhostStandsWhereAPhaseBeganUnlessItIsNow) {
+  const auto ghosts = Stage().At("0.5").ghosts;
+  ASSERT_EQ(ghosts.size(), 1u);
+  EXPECT_EQ(ghosts[0].snapshot.tick, 48);
+  EXPECT_TRUE(Stage().At("0.1").ghosts.empty());
+}
+
+TEST(ComposePictureTest, SupportsOfTheMomentAreMarked) {
+  ASSERT_EQ(Stage().At("0.1").markers.size(), 1u);
+  EXPECT_EQ(Stage().At("0.1").markers[0].kind, render::MarkerKind::kSupport);
+  EXPECT_TRUE(Stage().At("0.9").markers.empty());
+}
+
+TEST(ComposePictureTest, TheTitleSaysWhichMomentItIs) {
+  EXPECT_EQ(Stage().At("0.5").title, "stage  ·  0.500 s  ·  pick_and_place");
+  EXPECT_EQ(Stage().At("moves_to.begin").title,
+            "stage  ·  moves_to.begin  ·  0.100 s  ·  pick_and_place");
+}
+
+TEST(ComposePictureTest, AWindowHoldsItsPathsGhostsAndRows) {
+  const Stage stage;
+  const auto window = [&](double from_s, double to_s) {
+    return ComposePicture(stage.scenario, stage.run, {.at = {"0.6", {}}},
+                          {.from_s = from_s, .to_s = to_s});
+  };
+  const render::Picture late = window(0.55, 1);
+  EXPECT_EQ(late.strip.begin_s, 0.55);
+  EXPECT_EQ(late.strip.end_s, 1);
+  ASSERT_EQ(late.strip.rows.size(), 1u);
+  EXPECT_EQ(late.strip.rows[0].label, "grasp");
+  EXPECT_TRUE(late.ghosts.empty());
+  ASSERT_EQ(late.path.size(), 1u);
+  EXPECT_NEAR(late.path[0].points_m.front().x(), 0.6, 1e-6);
+  EXPECT_EQ(window(0, 0.3).ghosts.size(), 1u);
+}
+
+TEST(ComposePictureTest, OneHandOrOneThingIsToldApart) {
+  Stage stage;
+  stage.Add("moves_to", {{"h", "left"}, {"x", "tray"}}, 240, 480);
+  const auto rows = [&](const PictureFormat& format) {
+    return ComposePicture(stage.scenario, stage.run, {.at = {"0.5", {}}}, format).strip.rows;
+  };
+  EXPECT_EQ(rows({})[0].segments.size(), 2u);
+  EXPECT_EQ(rows({.of = "cup"})[0].segments.size(), 1u);
+  EXPECT_EQ(rows({.of = "tray"})[0].segments.size(), 1u);
+  const render::Picture other =
+      ComposePicture(stage.scenario, stage.run, {.at = {"0.5", {}}}, {.only = "right"});
+  EXPECT_TRUE(other.path.empty());
+  EXPECT_TRUE(other.ghosts.empty());
+}
+
+TEST(ComposePictureTest, PartsAreLeftOutWhenAsked) {
+  const Stage stage;
+  const render::Picture bare = ComposePicture(
+      stage.scenario, stage.run, {.at = {"0.5", {}}},
+      {.title = false, .labels = false, .strip = false, .ghosts = false, .paths = false});
+  EXPECT_EQ(bare.title, "");
+  EXPECT_TRUE(bare.body_labels.empty() && bare.strip.rows.empty() && bare.ghosts.empty() &&
+              bare.path.empty());
+}
+
+TEST(ComposePictureTest, PicturesOfOneScenarioHaveOneCamera) {
+  Stage stage;
+  for (physics::Snapshot& snapshot : stage.run.recording)
+    snapshot.bodies[1].X_WB.p_m.z() = static_cast<double>(snapshot.tick) / 480;
+  const render::Camera early = stage.At("0.1").camera, late = stage.At("0.9").camera;
+  EXPECT_EQ(early.eye_m, late.eye_m);
+  EXPECT_EQ(early.look_at_m, late.look_at_m);
+  const auto hand = [&](const char* at) {
+    return ComposePicture(stage.scenario, stage.run, {.at = {at, {}}, .camera = {"hand", {}}})
+        .camera;
+  };
+  EXPECT_NE(hand("0.1").eye_m, hand("0.9").eye_m) << "it follows the hand";
+}
+
+}  // namespace
+}  // namespace prehend::show

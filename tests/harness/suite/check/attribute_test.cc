@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// A difference belongs to the change without which it is not there.
+#include "harness/suite/check/attribute.h"
+
+#include <gtest/gtest.h>
+
+namespace prehend::suite {
+namespace {
+
+grammar::NamedEvent Event(const std::string& name, grammar::Tick begin, grammar::Tick end) {
+  return {.event = name, .roles = {{"hand", "h"}, {"object", "cup"}}, .interval = {begin, end}};
+}
+
+truth::Comparison ComparedWith(const std::vector<grammar::NamedEvent>& recognised) {
+  truth::Golden golden{.scenario = "s/x", .grammar = "g", .ticks_per_second = 100};
+  for (const auto& event :
+       {Event("reaching", 0, 100), Event("sliding", 100, 200), Event("grasping", 200, 300)})
+    golden.events.push_back({.event = event, .tolerance_ms = {}, .because = {}, .comments = {}});
+  return truth::Compare(golden, {.ticks_per_second = 100, .events = recognised}, 2);
+}
+
+const grammar::NamedEvent kLateReach = Event("reaching", 20, 100);
+const grammar::NamedEvent kReach = Event("reaching", 0, 100);
+const grammar::NamedEvent kSlide = Event("sliding", 100, 200);
+const grammar::NamedEvent kEarlyGrasp = Event("grasping", 190, 290);
+
+const Suspects kThreeChanges = {.changes = {{"a.grammar", "reach_radius", "30 cm", "20 cm", true},
+                                            {"a.grammar", "slide_distance", "2 cm", "5 cm", true},
+                                            {"x.yaml", "cup.mass_kg", "0.4", "8", false}},
+                                .other_changes = {},
+                                .motion_differs = true};
+
+/// The late reach and the lost slide follow from the two parameters, the grasp from neither.
+std::optional<truth::Comparison> Undone(const std::vector<std::string>& settings) {
+  std::vector<grammar::NamedEvent> recognised = {kEarlyGrasp};
+  const auto has = [&](const char* setting) {
+    return std::find(settings.begin(), settings.end(), setting) != settings.end();
+  };
+  recognised.push_back(has("reach_radius=30 cm") ? kReach : kLateReach);
+  if (has("slide_distance=2 cm")) recognised.push_back(kSlide);
+  return ComparedWith(recognised);
+}
+
+std::vector<std::string> Texts(const std::vector<Attribution>& attributions) {
+  std::vector<std::string> texts;
+  for (const Attribution& each : attributions)
+    texts.push_back(each.event + " " + each.what + ": " + each.because);
+  std::sort(texts.begin(), texts.end());
+  return texts;
+}
+
+TEST(Attribution, ToldApartInOneScenario) {
+  EXPECT_EQ(Texts(AttributeDifferences(*Undone({}), kThreeChanges, Undone)),
+            (std::vector<std::string>{
+                "grasping begins and ends earlier: `cup.mass_kg` 0.4 -> 8 in x.yaml",
+                "reaching begins later: `reach_radius` 30 cm -> 20 cm in a.grammar",
+                "sliding missing: `slide_distance` 2 cm -> 5 cm in a.grammar"}));
+}
+
+TEST(Attribution, TwoParametersTogether) {
+  const auto both_needed = [](const std::vector<std::string>& settings) {
+    return std::optional(settings.size() == 2
+                             ? ComparedWith({kReach, kSlide, Event("grasping", 200, 300)})
+                             : ComparedWith({kLateReach, kSlide, Event("grasping", 200, 300)}));
+  };
+  EXPECT_EQ(Texts(AttributeDifferences(*both_needed({}), kThreeChanges, both_needed)),
+            (std::vector<std::string>{"reaching begins later: `reach_radius` 30 cm -> 20 cm, "
+                                      "`slide_distance` 2 cm -> 5 cm in a.grammar"}));
+}
+
+TEST(Attribution, WithoutAChangedValueTheFileIsNamed) {
+  const auto nothing = [](const std::vector<std::string>&) {
+    return std::optional<truth::Comparison>();
+  };
+  const Suspects file = {.changes = {}, .other_changes = {"a.grammar"}, .motion_differs = false};
+  for (const Attribution& each : AttributeDifferences(*Undone({}), file, nothing))
+    EXPECT_EQ(each.because, "a.grammar");
+  for (const Attribution& each : AttributeDifferences(*Undone({}), Suspects{}, nothing))
+    EXPECT_EQ(each.because, "");
+}
+
+}  // namespace
+}  // namespace prehend::suite

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which scenarios patterns, filters and shards select, and what is said when there are none.
+#include "harness/suite/check/select_scenarios.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "harness/base/base/atomic_file.h"
+
+namespace prehend::suite {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SelectScenariosTest : public testing::Test {
+ protected:
+  SelectScenariosTest() {
+    fs::create_directories(root_);
+    for (const char* library : {"grammar", "physics"})
+      fs::create_directory_symlink(fs::path(PREHEND_SOURCE_DIR) / library, root_ / library);
+    Write("slide/cup_slides", "smoke");
+    Write("slide/mug_slides", "quick");
+    Write("reach/cup_is_reached", "smoke");
+  }
+  ~SelectScenariosTest() override { fs::remove_all(root_); }
+
+  void Write(const std::string& id, const std::string& tag) const {
+    const std::string name = fs::path(id).filename().string();
+    EXPECT_EQ(WriteTextFile(root_ / "scenarios" / (id + ".yaml"),
+                            "scenario: " + name + "\nshows: a table\ntags: [" + tag +
+                                "]\nentities:\n  table: {class: Table, fixed: true, box: {size_m: "
+                                "[1, 1, 0.04]}, at_m: [0, 0, 0.7]}\nsettle_s: 0.1\n"),
+              "");
+  }
+
+  /// Ids, or the problem.
+  std::vector<std::string> Selected(const std::vector<std::string>& patterns,
+                                    const std::vector<std::string>& filters = {}) const {
+    const auto selection = SelectScenarios(patterns, filters, root_.string());
+    if (!selection) return {selection.error().why};
+    std::vector<std::string> ids;
+    for (const episode::ScenarioFile& file : selection->scenarios)
+      ids.push_back(episode::IdOf(file));
+    return ids;
+  }
+
+  using Ids = std::vector<std::string>;
+  const fs::path root_ =
+      fs::path(testing::TempDir()) / ("select_scenarios_" + std::to_string(getpid()));
+};
+
+TEST_F(SelectScenariosTest, NothingMeansAll) {
+  EXPECT_EQ(Selected({}), Ids({"reach/cup_is_reached", "slide/cup_slides", "slide/mug_slides"}));
+}
+
+TEST_F(SelectScenariosTest, PatternsMatchNamesAndIdsEachScenarioOnce) {
+  EXPECT_EQ(Selected({"cup*"}), Ids({"reach/cup_is_reached", "slide/cup_slides"}));
+  EXPECT_EQ(Selected({"slide/*", "mug_slides"}), Ids({"slide/cup_slides", "slide/mug_slides"}));
+}
+
+TEST_F(SelectScenariosTest, EveryFilterMustHold) {
+  EXPECT_EQ(Selected({}, {"tag:smoke"}), Ids({"reach/cup_is_reached", "slide/cup_slides"}));
+  EXPECT_EQ(Selected({}, {"tag:smoke", "!reach/*"}), Ids({"slide/cup_slides"}));
+  EXPECT_EQ(Selected({"slide/*"}, {"!tag:smoke"}), Ids({"slide/mug_slides"}));
+}
+
+TEST_F(SelectScenariosTest, AFileOutsideTheProjectIsSelectedByItsPath) {
+  const fs::path elsewhere = root_ / "elsewhere.yaml";
+  fs::copy_file(root_ / "scenarios/slide/cup_slides.yaml", elsewhere);
+  EXPECT_EQ(Selected({elsewhere.string()}), Ids({elsewhere.string()}));
+}
+
+TEST_F(SelectScenariosTest, WhatMatchesNothingIsAProblemWithTheNearestName) {
+  EXPECT_EQ(Selected({"cup_slide"}),
+            Ids({"no scenario matches 'cup_slide'; did you mean 'cup_slides'? ('prehend list' "
+                 "shows all)"}));
+  EXPECT_EQ(Selected({"slide"}), Ids({"no scenario matches 'slide'; did you mean 'slide/*'? "
+                                      "('prehend list' shows all)"}));
+  EXPECT_EQ(Selected({}, {"tag:smok"}),
+            Ids({"--filter: no scenario has the tag 'smok'; did you mean 'smoke'? ('prehend list' "
+                 "shows all)"}));
+  EXPECT_EQ(Selected({}, {"grasp/*"}),
+            Ids({"--filter: no scenario matches 'grasp/*' ('prehend list' shows all)"}));
+  EXPECT_EQ(Selected({}, {"!*"}), Ids({"no scenario is selected ('prehend list' shows all)"}));
+}
+
+TEST(Shard, IsReadStrictly) {
+  const auto shard = ParseShard("2/3");
+  ASSERT_TRUE(shard);
+  EXPECT_EQ(shard->number, 2);
+  EXPECT_EQ(shard->count, 3);
+  for (const char* bad : {"", "1", "1/", "/2", "0/2", "3/2", "1/0", "-1/2", "1/2/3", "a/b", "1 /2",
+                          "1/99999999999", "1/100000"}) {
+    EXPECT_FALSE(ParseShard(bad)) << bad;
+  }
+}
+
+TEST(Shard, EveryScenarioIsInExactlyOne) {
+  std::vector<std::string> kept;
+  for (int number = 1; number <= 3; ++number) {
+    ScenarioSelection selection;
+    for (const char* name : {"a", "b", "c", "d"}) selection.scenarios.push_back({"s", name, name});
+    selection.orphans = {{"s/gone", {}}};
+    KeepShard({number, 3}, selection);
+    EXPECT_EQ(selection.orphans.size(), number == 1 ? 1u : 0u);
+    for (const episode::ScenarioFile& file : selection.scenarios) kept.push_back(file.name);
+  }
+  EXPECT_EQ(kept, (std::vector<std::string>{"a", "d", "b", "c"}));
+}
+
+}  // namespace
+}  // namespace prehend::suite
