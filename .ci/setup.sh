@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Shared by ./run, ./test and .ci/run: installs what is missing, builds a preset. Everything it prints goes to stderr, so
-# that the standard output of ./run is the program's alone. Each phase is announced with the time that it takes.
+# that the standard output of ./run is the program's alone. Each phase is announced, and how long it took.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
@@ -9,6 +9,14 @@ declare -A first_build_s=([release]=500 [test]=1500 [asan-ubsan]=500)
 suite_s=100
 
 say() { printf '%s\n' "$*" >&2; }
+
+# phase [NAME]: says how long the phase before took, and announces the next one.
+phase_name=""
+phase() {
+  [ -z "$phase_name" ] || say "$(printf -- '-- %s: %d min %02d s' "$phase_name" $(((SECONDS - phase_began) / 60)) $(((SECONDS - phase_began) % 60)))"
+  phase_name=${1:-} phase_began=$SECONDS
+  [ -z "$phase_name" ] || say "== $phase_name"
+}
 
 # minutes CPU_SECONDS: how long that takes on this machine, in words.
 minutes() {
@@ -43,7 +51,17 @@ install_missing() {
     { tail -n 20 "$log" >&2; say "error: installing packages failed; the whole log is in build/install.log"; exit 3; }
 }
 
-# build_preset PRESET TARGET...: configures once, then builds what changed. The first build shows its progress on a terminal.
+# tenths: of the lines of ninja, says each tenth of the work.
+tenths() {
+  local line done next=0
+  while IFS= read -r line; do
+    [[ $line =~ ^\[\ *([0-9]+)%\] ]] || continue
+    done=${BASH_REMATCH[1]}
+    if [ "$done" -ge "$next" ]; then say "$done %"; next=$((done - done % 10 + 10)); fi
+  done
+}
+
+# build_preset PRESET TARGET...: configures once, then builds what changed. The first build shows its progress.
 build_preset() {
   local preset=$1; shift
   local folder="$root/build/$preset" log="$root/build/$preset.log" quiet=(--quiet)
@@ -59,7 +77,8 @@ build_preset() {
   if [ -t 2 ]; then
     ninja -C "$folder" "${quiet[@]}" "$@" >&2 || { say "error: the build failed"; exit 3; }
   else
-    ninja -C "$folder" "$@" >"$log" 2>&1 ||
+    # Without a terminal: a line for each tenth of the work.
+    NINJA_STATUS='[%p] ' ninja -C "$folder" "$@" 2>&1 | tee "$log" | tenths ||
       { grep -E 'error|FAILED|warning' "$log" | head -n 40 >&2; tail -n 20 "$log" >&2; say "error: the build failed; the whole log is in build/$preset.log"; exit 3; }
   fi
   touch "$folder/built"

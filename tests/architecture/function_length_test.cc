@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A function is read in one piece: at most kMostLinesOfFunction, a command less, tables more. What is laid
-// out by clang-format ends with a '}' alone in its line, below the first character of its head.
+// A function is read in one piece: at most kMostLinesOfFunction, a command less, tables more. What
+// is laid out by clang-format ends with a '}' alone in its line, below the first character of its
+// head.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +18,7 @@ namespace {
 constexpr int kMostLinesOfFunction = 80;
 /// Of a command, since what computes lies in other rooms.
 constexpr int kMostLinesOfCommands = 60;
-constexpr const char* kCommands = "harness/cli/cli/";
+constexpr const char* kCommands = "harness/cli/";
 
 /// Functions that return a table, a row after another; so does one that returns a Command.
 constexpr const char* kTables[] = {"grammar/compile/builtins.cc"};

@@ -20,10 +20,8 @@ namespace fs = std::filesystem;
 constexpr long kMostLines = 95'600;
 constexpr long kMostLinesPerRoom = 3500;
 /// Rooms that were larger when the ceiling came. They may only shrink.
-const std::map<std::string, long> kLargeRooms = {{"grammar/compile", 4487},
-                                                 {"grammar/engine", 5848},
-                                                 {"harness/cli/cli", 5690},
-                                                 {"render", 3690}};
+const std::map<std::string, long> kLargeRooms = {
+    {"grammar/compile", 4487}, {"grammar/engine", 5848}, {"render", 3690}};
 
 /// Of the product, by folder; what npm installs is not ours.
 std::map<std::string, long> LinesByRoom() {

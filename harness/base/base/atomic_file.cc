@@ -10,7 +10,7 @@
 #include <cstring>
 #include <iostream>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 namespace fs = std::filesystem;
@@ -115,4 +115,4 @@ std::string WriteTextFile(const fs::path& path, std::string_view text) {
   return file.Commit();
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

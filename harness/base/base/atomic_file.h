@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// Replaces only regular files, and follows a link to one. It is not synchronised to the disk: it
 /// is safe from a crash of the program, not from a power cut.
@@ -65,4 +65,4 @@ std::string WhyNotWritable(const std::filesystem::path& path);
 /// file is as it was.
 std::string WriteTextFile(const std::filesystem::path& path, std::string_view text);
 
-}  // namespace prehend::inline base
+}  // namespace prehend

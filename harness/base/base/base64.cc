@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/base/base/base64.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 std::string Base64(std::string_view bytes) {
   static constexpr std::string_view kDigits =
@@ -18,4 +18,4 @@ std::string Base64(std::string_view bytes) {
   return text;
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

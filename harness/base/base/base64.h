@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// RFC 4648, with padding.
 std::string Base64(std::string_view bytes);
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -2,8 +2,8 @@
 // See harness/base/base/build_text.h. harness/CMakeLists.txt knows the compiler.
 #include "harness/base/base/build_text.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 std::string BuildText() { return PREHEND_BUILD; }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -5,9 +5,9 @@
 
 #include <string>
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// Compiler, processor and flags: "GNU 12.2.0, x86_64, -O2". Another build may round differently.
 std::string BuildText();
 
-}  // namespace prehend::inline base
+}  // namespace prehend

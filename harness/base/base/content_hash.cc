@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 /// For dl_iterate_phdr: adds "path size seconds" of one library. Its bytes would take too long.
@@ -57,4 +57,4 @@ std::string ProgramHash() {
   return ContentHash(FileHash("/proc/self/exe") + libraries);
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

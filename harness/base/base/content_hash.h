@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// XXH3 of 64 bits as 16 hexadecimal digits. Protects against mistakes, not against attackers.
 std::string ContentHash(std::string_view bytes);
@@ -29,4 +29,4 @@ FileHashes HashFiles(const std::vector<std::string>& paths);
 /// The hash of the running program: of its bytes, and of size and date of each shared library.
 std::string ProgramHash();
 
-}  // namespace prehend::inline base
+}  // namespace prehend

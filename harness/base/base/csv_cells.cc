@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace prehend::inline base {
+namespace prehend {
 
 namespace {
 
@@ -42,4 +42,4 @@ std::vector<CsvCell> CsvCellsOf(std::string_view line, char separator) {
   return cells;
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

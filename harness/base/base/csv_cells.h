@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace prehend::inline base {
+namespace prehend {
 
 struct CsvCell {
   std::string_view text;        ///< without blanks and quotes around it
@@ -17,4 +17,4 @@ struct CsvCell {
 /// A cell may stand in quotes, and then hold separators; two quotes are one that does not end it.
 std::vector<CsvCell> CsvCellsOf(std::string_view line, char separator);
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -3,8 +3,8 @@
 // Tested by tests/harness/scenario/read/read_scenario_test.cc
 #pragma once
 
-namespace prehend::inline base {
+namespace prehend {
 
 inline constexpr const char* kDefaultGrammar = "pick_and_place";
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -3,7 +3,7 @@
 // tests/program/command_line_test.cc
 #pragma once
 
-namespace prehend::inline base {
+namespace prehend {
 
 enum class ExitCode {
   kAgrees = 0,
@@ -14,4 +14,4 @@ enum class ExitCode {
   kPending = 5,   ///< goldens wait for acceptance
 };
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -4,7 +4,7 @@
 
 #include "grammar/base/diagnostic.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// A place in one of a document's sources.
 struct Where {
@@ -19,4 +19,4 @@ struct Located {
   Where where;
 };
 
-}  // namespace prehend::inline base
+}  // namespace prehend

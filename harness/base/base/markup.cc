@@ -6,7 +6,7 @@
 
 #include "harness/base/base/text_file.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 pugi::xml_node AddElement(pugi::xml_node parent, const char* name, Attributes attributes) {
   pugi::xml_node element = parent.append_child(name);
@@ -39,4 +39,4 @@ std::string ToText(const pugi::xml_document& document, Layout layout) {
   return std::move(text).str();
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-namespace prehend::inline base {
+namespace prehend {
 
 using Attributes = std::initializer_list<std::pair<const char*, std::string>>;
 
@@ -32,4 +32,4 @@ enum class Layout {
 };
 std::string ToText(const pugi::xml_document& document, Layout layout);
 
-}  // namespace prehend::inline base
+}  // namespace prehend

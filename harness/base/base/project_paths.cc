@@ -9,7 +9,7 @@
 
 #include "harness/base/base/text_file.h"
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 namespace fs = std::filesystem;
@@ -141,4 +141,4 @@ std::string HandPath(const std::string& root, const std::string& name) {
   return PathIn(HandFolders(root), name + kHandEnding);
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

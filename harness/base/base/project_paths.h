@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace prehend::inline base {
+namespace prehend {
 
 inline constexpr const char* kGrammarEnding = ".grammar";
 inline constexpr const char* kHandEnding = ".hand.yaml";
@@ -56,4 +56,4 @@ std::string InProjectOrShipped(const std::string& root, const std::string& path)
 std::string GrammarPath(const std::string& root, const std::string& name);
 std::string HandPath(const std::string& root, const std::string& name);
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -9,7 +9,7 @@
 
 #include "grammar/base/diagnostic.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// `if (!result) return tl::unexpected(result.error());` passes the diagnostics on.
 template <class T>
@@ -21,4 +21,4 @@ grammar::Diagnostics ErrorsOf(const Result<T>& result) {
   return result ? grammar::Diagnostics{} : result.error();
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

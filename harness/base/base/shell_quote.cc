@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-namespace prehend::inline base {
+namespace prehend {
 
 std::string ShellQuoted(std::string_view word) {
   constexpr std::string_view kUnquoted =
@@ -26,4 +26,4 @@ std::string CommandText(const std::vector<std::string>& words) {
   return text;
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

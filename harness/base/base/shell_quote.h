@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// A word that can be pasted into a POSIX shell: in single quotes if it needs them.
 std::string ShellQuoted(std::string_view word);
@@ -19,4 +19,4 @@ std::string ProgramName();
 /// A command of this program: {"run", "a b"} is "prehend run 'a b'".
 std::string CommandText(const std::vector<std::string>& words);
 
-}  // namespace prehend::inline base
+}  // namespace prehend

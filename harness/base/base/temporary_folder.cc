@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <system_error>
 
-namespace prehend::inline base {
+namespace prehend {
 
 namespace fs = std::filesystem;
 
@@ -26,4 +26,4 @@ TemporaryFolder::~TemporaryFolder() {
   if (!path_.empty()) fs::remove_all(path_, error);
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

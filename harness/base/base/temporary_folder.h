@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-namespace prehend::inline base {
+namespace prehend {
 
 class TemporaryFolder {
  public:
@@ -25,4 +25,4 @@ class TemporaryFolder {
   std::string problem_;
 };
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 using grammar::Diagnostic;
@@ -208,4 +208,4 @@ Result<std::string> ReadTextFile(const std::string& path, std::uintmax_t most_by
   return text;
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -9,7 +9,7 @@
 
 #include "harness/base/base/result.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// Enough for 10,000 entities on a line each; a larger file is a mistake and would only cost time.
 inline constexpr std::uintmax_t kMaxTextFileBytes = 4u << 20;
@@ -38,4 +38,4 @@ std::string ReadableName(std::string_view bytes);
 /// character U+009B"; "" if there is none.
 std::string StrangeIn(std::string_view value);
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace prehend::inline base {
+namespace prehend {
 
 std::string Wrapped(std::string_view text, std::size_t width, std::size_t indent) {
   std::string wrapped;
@@ -31,4 +31,4 @@ std::string Wrapped(std::string_view text, std::size_t width, std::size_t indent
   return wrapped;
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// No line is longer than `width`, unless a word is. Lines of the text stay lines; those that are
 /// begun here begin with `indent` blanks.
 std::string Wrapped(std::string_view text, std::size_t width, std::size_t indent = 0);
 
-}  // namespace prehend::inline base
+}  // namespace prehend

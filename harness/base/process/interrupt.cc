@@ -7,7 +7,7 @@
 
 #include <cstring>
 
-namespace prehend::inline base {
+namespace prehend {
 
 Interrupt::Interrupt() {
   sigset_t signals;
@@ -53,4 +53,4 @@ void Interrupt::EndProcess() const {
   if (signal_ != 0) raise(signal_);
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -6,7 +6,7 @@
 #include <csignal>
 #include <string>
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// While it lives, the first SIGINT, SIGTERM or SIGHUP does not end this process, but makes fd()
 /// readable. A second one ends it at once. Signals that were ignored before stay ignored (nohup).
@@ -40,4 +40,4 @@ class Interrupt {
   int signal_ = 0;
 };
 
-}  // namespace prehend::inline base
+}  // namespace prehend

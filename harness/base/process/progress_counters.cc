@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <new>
 
-namespace prehend::inline base {
+namespace prehend {
 
 ProgressCounters::ProgressCounters(std::size_t count) : count_(std::max<std::size_t>(1, count)) {
   static_assert(Tick::is_always_lock_free);  // otherwise it would not work between processes
@@ -21,4 +21,4 @@ ProgressCounters::ProgressCounters(std::size_t count) : count_(std::max<std::siz
 
 ProgressCounters::~ProgressCounters() { munmap(ticks_, count_ * sizeof(Tick)); }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

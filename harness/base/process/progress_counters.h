@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace prehend::inline base {
+namespace prehend {
 
 class ProgressCounters {
  public:
@@ -28,4 +28,4 @@ class ProgressCounters {
   Tick* ticks_;
 };
 
-}  // namespace prehend::inline base
+}  // namespace prehend

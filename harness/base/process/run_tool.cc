@@ -19,7 +19,7 @@
 
 extern char** environ;
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -135,4 +135,4 @@ ToolResult RunTool(const std::vector<std::string>& words, const std::string& inp
   return result;
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

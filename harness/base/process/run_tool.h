@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace prehend::inline base {
+namespace prehend {
 
 struct ToolLimits {
   double time_s = 60;
@@ -29,4 +29,4 @@ struct ToolResult {
 ToolResult RunTool(const std::vector<std::string>& words, const std::string& input,
                    const ToolLimits& limits = {});
 
-}  // namespace prehend::inline base
+}  // namespace prehend

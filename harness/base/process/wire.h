@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// As CBOR, since JSON has no infinite numbers and refuses bytes that are no UTF-8.
 template <typename T>
@@ -23,4 +23,4 @@ T FromWire(const std::string& bytes) {
   return nlohmann::json::from_cbor(bytes).get<T>();
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -24,7 +24,7 @@
 #include <stdexcept>
 #include <system_error>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -381,4 +381,4 @@ std::vector<WorkerResult> RunInWorkers(
   return Pool(jobs, limits, interrupt, meanwhile).Run(done);
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

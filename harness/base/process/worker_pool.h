@@ -11,7 +11,7 @@
 
 #include "harness/base/process/interrupt.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 inline constexpr std::uint64_t kMegabyte = 1'000'000;
 
@@ -59,4 +59,4 @@ struct LimitedEnd {
 /// matter. It dies with this process.
 LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& limits);
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace prehend::inline base {
+namespace prehend {
 
 void DiagnosticList::Add(Where where, std::string message, std::string hint) {
   if (found_.size() >= grammar::kMostDiagnostics) return;
@@ -49,4 +49,4 @@ grammar::Diagnostics DiagnosticList::Sorted() const {
   return diagnostics;
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -9,7 +9,7 @@
 
 #include "harness/base/yaml/located_yaml.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// Keeps the first grammar::kMostDiagnostics that are added.
 class DiagnosticList {
@@ -34,4 +34,4 @@ class DiagnosticList {
   std::vector<std::pair<Where, grammar::Diagnostic>> found_;
 };
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -4,7 +4,7 @@
 
 #include "harness/base/yaml/diagnostic_list.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 grammar::Diagnostic ErrorAt(const YamlDocument& document, Where where) {
   DiagnosticList one(document);
@@ -12,4 +12,4 @@ grammar::Diagnostic ErrorAt(const YamlDocument& document, Where where) {
   return one.Sorted().front();
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

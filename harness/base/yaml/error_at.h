@@ -4,9 +4,9 @@
 
 #include "harness/base/yaml/located_yaml.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// An error at this place that says nothing yet.
 grammar::Diagnostic ErrorAt(const YamlDocument& document, Where where);
 
-}  // namespace prehend::inline base
+}  // namespace prehend

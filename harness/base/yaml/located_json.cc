@@ -11,7 +11,7 @@
 
 #include "harness/base/base/text_file.h"
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 using grammar::DiagnosticAt;
@@ -209,4 +209,4 @@ Result<YamlDocument> ParseJson(const std::string& file, std::string text) {
   return YamlDocument{{{file, std::move(text)}}, std::move(tree.root)};
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

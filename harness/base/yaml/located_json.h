@@ -9,10 +9,10 @@
 
 #include "harness/base/yaml/located_yaml.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// Parses `text`, one JSON value, after CheckText(). Of a number, `text` of its node is as it is
 /// spelled. On failure: diagnostics with places in `file`; line 1 is the first line of `text`.
 Result<YamlDocument> ParseJson(const std::string& file, std::string text);
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -21,7 +21,7 @@
 
 #include "harness/base/base/text_file.h"
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 using grammar::Diagnostic;
@@ -387,4 +387,4 @@ Result<YamlDocument> ReadYamlFile(const std::string& path) {
   return ParseYaml(path, std::move(*text));
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -13,7 +13,7 @@
 #include "harness/base/base/located.h"
 #include "harness/base/base/result.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 inline constexpr int kMaxYamlDepth = 64;
 
@@ -63,4 +63,4 @@ grammar::Diagnostics ApplyOverride(const std::string& assignment,
 bool IsWholeNumber(const std::string& path, const nlohmann::ordered_json& schema,
                    const YamlDocument& document);
 
-}  // namespace prehend::inline base
+}  // namespace prehend

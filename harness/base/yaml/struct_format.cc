@@ -10,7 +10,7 @@
 
 #include "harness/base/yaml/yaml_scalar.h"
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 /// The key without its unit: "mass_kg" -> "mass". Units are the last words of a key.
@@ -281,4 +281,4 @@ ErasedFormat ErasedByKey(const std::string& noun,
               }};
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

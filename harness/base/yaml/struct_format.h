@@ -20,7 +20,7 @@
 
 #include "harness/base/yaml/value_format.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// Reads a value with `read` and stores it in the member. False after an error.
 using MemberReader = bool (*)(const ErasedFormat::Read& read, const YamlNode& node,
@@ -215,4 +215,4 @@ ValueFormat<V> AsAlternative(const ValueFormat<A>& format) {
                          }});
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -14,7 +14,7 @@
 
 #include "harness/base/yaml/yaml_scalar.h"
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 std::string LabelOf(const YamlNode& node) { return node.key.empty() ? "" : node.key + ": "; }
@@ -448,4 +448,4 @@ ErasedFormat ErasedMap(const ValueFormat<std::string>& name, const ErasedFormat&
               }};
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -31,7 +31,7 @@
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/base/yaml/located_yaml.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 using Json = nlohmann::ordered_json;
 
@@ -253,4 +253,4 @@ ValueFormat<std::vector<Named<T>>> MapOf(const ValueFormat<std::string>& name,
                  }}));
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

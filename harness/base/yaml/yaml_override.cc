@@ -10,7 +10,7 @@
 #include "harness/base/base/project_paths.h"
 #include "harness/base/yaml/located_yaml.h"
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 using grammar::Diagnostics;
@@ -156,4 +156,4 @@ bool IsWholeNumber(const std::string& path, const SchemaJson& schema,
   return known && known->value("type", "") == "integer";
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -8,7 +8,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
@@ -181,4 +181,4 @@ std::string LookAlikeRemedy(std::string_view text) {
   return "";
 }
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -10,7 +10,7 @@
 
 #include "harness/base/yaml/located_yaml.h"
 
-namespace prehend::inline base {
+namespace prehend {
 
 /// The largest magnitude that `vary:` and `--set` may write.
 inline constexpr double kMaxNumber = 1e6;
@@ -37,4 +37,4 @@ std::string Describe(const YamlNode& node);
 /// A hint about characters that resemble ASCII ones, as word processors insert them; or "".
 std::string LookAlikeRemedy(std::string_view text);
 
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/cli/command/parse_arguments.h"
+#include "harness/cli/command/command.h"
+#include "harness/cli/command/program_description.h"
 
 namespace prehend::cli {
 

@@ -12,7 +12,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 namespace fs = std::filesystem;
@@ -190,4 +190,4 @@ TEST_F(AtomicFileTest, WhatCannotBeWrittenIsKnownBefore) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 // The examples of RFC 4648, section 10.
@@ -17,4 +17,4 @@ TEST(Base64, IsThatOfTheStandard) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 TEST(ContentHash, IsXxh3) {
@@ -31,4 +31,4 @@ TEST(ContentHash, OfTheProgramStays) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 std::vector<std::string> Texts(std::string_view line, char separator = ',') {
@@ -37,4 +37,4 @@ TEST(CsvCells, AFaultOfQuotesIsNamed) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 TEST(Markup, WhatMeansSomethingIsEscaped) {
@@ -49,4 +49,4 @@ TEST(Markup, IndentedForReaders) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 TEST(ShellQuoted, QuotesOnlyWhatNeedsIt) {
@@ -18,4 +18,4 @@ TEST(ShellQuoted, QuotesOnlyWhatNeedsIt) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 namespace fs = std::filesystem;
@@ -38,4 +38,4 @@ TEST(TemporaryFolder, SaysWhyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

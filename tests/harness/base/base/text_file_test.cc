@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 class TextFile : public testing::Test {
@@ -136,4 +136,4 @@ TEST_F(TextFile, SaysWhatIsStrangeInAValue) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 TEST(WrapText, NoLineIsLongerThanItsWidthUnlessAWordIs) {
@@ -21,4 +21,4 @@ TEST(WrapText, LinesStayLines) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 TEST(RunTool, TextGoesThroughAnotherProgram) {
@@ -28,4 +28,4 @@ TEST(RunTool, WhatDoesNotEndByItselfSaysWhy) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

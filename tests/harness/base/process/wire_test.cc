@@ -8,7 +8,7 @@
 
 #include "harness/truth/timeline/timeline_wire.h"
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 TEST(Wire, ATimelineArrivesWithAllItsFields) {
@@ -41,4 +41,4 @@ TEST(Wire, AnotherTypeIsAnError) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

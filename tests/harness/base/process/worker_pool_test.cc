@@ -14,7 +14,7 @@
 
 #include "harness/base/process/progress_counters.h"
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 std::string Good() { return "good"; }
@@ -195,4 +195,4 @@ TEST(WorkerPool, MemoryHasALimit) { GTEST_SKIP() << "no limit under the address 
 #endif
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

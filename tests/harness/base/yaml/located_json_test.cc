@@ -7,7 +7,7 @@
 
 #include "tests/harness/scenario_fixture.h"
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 using Kind = YamlNode::Kind;
@@ -78,4 +78,4 @@ TEST(LocatedJson, WhatIsNoJsonIsRefusedAtItsPlace) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

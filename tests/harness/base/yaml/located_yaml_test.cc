@@ -7,7 +7,7 @@
 
 #include "tests/harness/scenario_fixture.h"
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 using Kind = YamlNode::Kind;
@@ -209,4 +209,4 @@ TEST(Override, ComplainsAboutPathsThatLeadNowhere) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

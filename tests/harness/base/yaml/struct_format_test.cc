@@ -6,7 +6,7 @@
 
 #include "tests/harness/scenario_fixture.h"
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 enum class Material { kWood, kSteel };
@@ -148,4 +148,4 @@ TEST(FieldTable, TheSchemaSaysTheSame) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

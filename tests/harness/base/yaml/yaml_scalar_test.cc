@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace prehend::inline base {
+namespace prehend {
 namespace {
 
 ScalarMeaning Plain(const std::string& text) {
@@ -86,4 +86,4 @@ TEST(YamlScalar, DescriptionsAreCutBetweenCharacters) {
 }
 
 }  // namespace
-}  // namespace prehend::inline base
+}  // namespace prehend

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/cli/cli/accept_pictures.h. Tested by tests/program/golden_workflow_test.cc
-#include "harness/cli/cli/accept_pictures.h"
+// See harness/cli/daily/accept_pictures.h. Tested by tests/program/golden_workflow_test.cc
+#include "harness/cli/daily/accept_pictures.h"
 
 #include <algorithm>
 #include <filesystem>
