@@ -191,8 +191,8 @@ Command SweepCommand() {
       .summary = "Try a grammar's parameters on recorded episodes",
       .examples =
           {"grammar sweep suite.episodes --over reach_radius=10cm..50cm:9 -o sweep.csv",
-           "grammar sweep suite.episodes --over reach_radius=10cm..50cm:9 --truth oracle --picture "
-           "sweep.png",
+           "grammar sweep suite.episodes --over lift_rise=2cm..8cm:7 --truth golden --picture "
+           "map.png",
            "grammar sweep *.episodes --over reach_radius=10cm..50cm:9 --over lift_rise=2cm..8cm:7"},
       .options = SweepOptions(
           {{.name = "--over",
