@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "grammar/engine/instances.h"
+#include "grammar/state/instances.h"
 
 namespace prehend::grammar {
 namespace {

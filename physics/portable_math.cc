@@ -9,7 +9,7 @@
 // Mathematical Functions", IEEE TPDS 31(6), 2020. Errors are at most 1 ulp (hypot: 0.5 ulp). In
 // single precision they are the rounded results in double precision. Tested by
 // tests/physics/portable_math_test.cc
-#include "physics/scene/portable_math.h"
+#include "physics/base/portable_math.h"
 
 #include <sleef.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "render/canvas.h"
+#include "render/image/canvas.h"
 
 namespace prehend::render {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One picture as a value: what to draw, from which camera, with which labels and timeline. It knows
-// neither grammar nor simulation. Colours are sRGB, 0..1.
+// neither grammar nor simulation.
 // Tested by tests/render/painter_test.cc
 #pragma once
 
@@ -12,10 +12,9 @@
 
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
+#include "render/image/image.h"
 
 namespace prehend::render {
-
-using Color = Eigen::Vector3f;
 
 /// A stretch of a hand's path in one phase. A stretch that begins near the end of the previous one
 /// is joined to it.
@@ -92,8 +91,6 @@ enum class Theme {
   kPrint   ///< white paper
 };
 
-inline constexpr int kMaxPictureSide_px = 8192;
-
 struct Picture {
   int width_px = 1280, height_px = 720;
   const physics::Scene* scene = nullptr;  ///< outlives the call
@@ -116,12 +113,6 @@ struct Picture {
   Eigen::Vector3f to_light = {0.38f, -0.42f, 0.82f};  ///< direction of the distant light
   TimelineStrip strip;
   std::string title;
-};
-
-struct Image {
-  int width_px = 0, height_px = 0;
-  std::vector<std::uint8_t> rgb = {};    ///< rows from top, 3 bytes a pixel
-  std::vector<std::uint8_t> alpha = {};  ///< a byte a pixel, 255 is opaque; empty: all opaque
 };
 
 /// The object that is visible at each pixel, exact and without anti-aliasing, for comparing
@@ -165,45 +156,6 @@ class Painter {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-enum class PngKind {
-  kExact,
-  kSmall  ///< colours rounded to multiples of 4, which nobody sees: half as many bytes
-};
-
-/// The bytes of a PNG file; none of an image that is empty.
-std::string EncodePng(const Image& image, PngKind kind = PngKind::kExact);
-/// False if the file could not be written.
-bool WritePng(const Image& image, const std::string& path, PngKind kind = PngKind::kExact);
-/// An empty image if the file is missing, damaged or larger than a picture may be.
-Image ReadPng(const std::string& path);
-/// The same of the bytes of a file.
-Image DecodePng(const std::string& bytes);
-/// A hash of size and pixels, in the manner of FNV-1a but of eight bytes at a time.
-std::uint64_t PixelHash(const Image& image);
-
-// Whether two images show the same. Differences are counted, not averaged: a mean hides a small
-// fault in a large picture.
-
-/// A pixel differs if some colour is farther apart than this, of 255. Processors with and without
-/// fused multiply-add stay below it.
-inline constexpr int kMaxColorDifference = 16;
-/// More differing pixels than this are a difference.
-inline constexpr std::size_t kMaxDifferingPixels = 20;
-
-struct ImageDifference {
-  bool same_size = false;
-  std::size_t pixels = 0;                        ///< how many differ
-  int left = 0, top = 0, right = 0, bottom = 0;  ///< the box around them, right and bottom excluded
-
-  bool AreEqual() const { return same_size && pixels <= kMaxDifferingPixels; }
-};
-
-/// Images of different sizes are not compared further.
-ImageDifference CompareImages(const Image& golden, const Image& drawn);
-
-/// Whether the pixel whose red is byte `i` differs in two images of one size.
-bool PixelDiffers(const Image& golden, const Image& drawn, std::size_t i);
 
 /// A camera that frames the box [low, high] from a named side; CameraNames() lists the names. An
 /// unknown name gives "front".

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "render/canvas.h"
+#include "render/image/canvas.h"
+#include "render/picture.h"
 
 namespace prehend::render {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Allen's thirteen relations between two intervals, here half-open intervals of ticks: of any two
 // non-empty ones exactly one holds. After J. F. Allen, "Maintaining knowledge about temporal
-// intervals", CACM 26 (1983). Tested by tests/grammar/compile/allen_network_test.cc
+// intervals", CACM 26 (1983). Tested by tests/grammar/analysis/allen_network_test.cc
 #pragma once
 
 #include <array>

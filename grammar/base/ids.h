@@ -109,7 +109,7 @@ class IdsOf {
 // Things with numbers, each defined where its numbers come from.
 struct Node;          // grammar/program/program.h
 struct Rule;          // grammar/program/program.h
-struct RuleInstance;  // grammar/engine/instances.h
+struct RuleInstance;  // grammar/state/instances.h
 using NodeId = Id<Node>;
 using RuleId = Id<Rule>;
 using InstanceId = Id<RuleInstance>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a point lies to a region of the language. Tested by tests/grammar/engine/signals_test.cc
+// How a point lies to a region of the language. Tested by tests/grammar/values/signals_test.cc
 #pragma once
 
 namespace prehend::grammar {

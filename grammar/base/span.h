@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames by number, and intervals with the frames of their boundaries.
-// Tested by tests/grammar/engine/history_test.cc
+// Tested by tests/grammar/state/history_test.cc
 #pragma once
 
 #include <cstdint>

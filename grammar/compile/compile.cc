@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-#include "grammar/compile/analyze_dependencies.h"
+#include "grammar/analysis/analyze_dependencies.h"
 #include "grammar/compile/lower.h"
 #include "grammar/compile/lower_definition.h"
 #include "grammar/compile/lower_law.h"

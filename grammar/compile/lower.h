@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
+#include "grammar/analysis/builtins.h"
+#include "grammar/analysis/classes.h"
+#include "grammar/analysis/value_ranges.h"
 #include "grammar/base/source.h"
-#include "grammar/compile/builtins.h"
-#include "grammar/compile/classes.h"
-#include "grammar/compile/value_ranges.h"
 #include "grammar/language/ast.h"
 #include "grammar/program/program.h"
 

@@ -7,9 +7,9 @@
 #include <set>
 #include <utility>
 
+#include "grammar/analysis/value_ranges.h"
 #include "grammar/base/wording.h"
 #include "grammar/compile/lower.h"
-#include "grammar/compile/value_ranges.h"
 
 namespace prehend::grammar {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "grammar/compile/contradictions.h"
+#include "grammar/analysis/contradictions.h"
 #include "grammar/compile/lower.h"
 
 namespace prehend::grammar {

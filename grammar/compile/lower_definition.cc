@@ -8,9 +8,9 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "grammar/analysis/allen_network.h"
+#include "grammar/analysis/contradictions.h"
 #include "grammar/base/wording.h"
-#include "grammar/compile/allen_network.h"
-#include "grammar/compile/contradictions.h"
 
 namespace prehend::grammar {
 namespace {

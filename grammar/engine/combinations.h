@@ -15,8 +15,8 @@
 #include <optional>
 
 #include "grammar/base/span.h"
-#include "grammar/engine/instances.h"
 #include "grammar/program/program.h"
+#include "grammar/state/instances.h"
 
 namespace prehend::grammar {
 

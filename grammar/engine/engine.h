@@ -12,7 +12,7 @@
 // nothing but a change can decide otherwise: what it asks about wakes it. What time alone changes
 // is either an alarm (the end of a gap, the shortest duration) or, where a value moves by itself
 // (Evaluator::depends_on_time), keeps the instance awake. So a frame costs as much as changes in
-// it. Data structures: grammar/engine/instances.h (state per binding), grammar/engine/history.h
+// it. Data structures: grammar/state/instances.h (state per binding), grammar/state/history.h
 // (the frames that some instance may still ask for). Tested by tests/grammar/monitor_test.cc and
 // the corpus in tests/grammar/corpus/
 #pragma once
@@ -26,13 +26,13 @@
 #include "grammar/base/candidate_log.h"
 #include "grammar/base/event.h"
 #include "grammar/engine/alarms.h"
-#include "grammar/engine/backward_walk.h"
-#include "grammar/engine/evaluate.h"
-#include "grammar/engine/history.h"
-#include "grammar/engine/idle_queue.h"
-#include "grammar/engine/instances.h"
-#include "grammar/engine/remembered_past.h"
-#include "grammar/engine/rule_ticks.h"
+#include "grammar/state/history.h"
+#include "grammar/state/idle_queue.h"
+#include "grammar/state/instances.h"
+#include "grammar/state/remembered_past.h"
+#include "grammar/state/rule_ticks.h"
+#include "grammar/values/backward_walk.h"
+#include "grammar/values/evaluate.h"
 
 namespace prehend::grammar {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "grammar/base/frame.h"
-#include "grammar/engine/history.h"
+#include "grammar/state/history.h"
 
 namespace prehend::grammar {
 

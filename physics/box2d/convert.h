@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-#include "physics/scene/pose.h"
+#include "physics/base/pose.h"
 
 namespace prehend::physics {
 

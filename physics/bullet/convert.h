@@ -5,7 +5,7 @@
 
 #include <LinearMath/btTransform.h>
 
-#include "physics/scene/pose.h"
+#include "physics/base/pose.h"
 
 namespace prehend::physics {
 

@@ -11,9 +11,9 @@
 #include <variant>
 #include <vector>
 
+#include "physics/base/pose.h"
 #include "physics/motion/posture.h"
 #include "physics/motion/trajectory.h"
-#include "physics/scene/pose.h"
 #include "physics/scene/scene.h"
 
 namespace prehend::physics {

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <deque>
 
+#include "physics/base/random.h"
 #include "physics/motion/trajectory.h"
-#include "physics/scene/random.h"
 #include "physics/scene/scene.h"
 
 namespace prehend::physics {

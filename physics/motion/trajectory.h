@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "physics/scene/pose.h"
+#include "physics/base/pose.h"
 
 namespace prehend::physics {
 

@@ -9,8 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "physics/base/random.h"
 #include "physics/scene/geometry.h"
-#include "physics/scene/random.h"
 
 namespace prehend::physics {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "physics/scene/ids.h"
-#include "physics/scene/pose.h"
+#include "physics/base/ids.h"
+#include "physics/base/pose.h"
 
 namespace prehend::physics {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "physics/scene/pose.h"
+#include "physics/base/pose.h"
 
 namespace prehend::physics {
 

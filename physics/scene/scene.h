@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
+#include "physics/base/pose.h"
 #include "physics/scene/hand_model.h"
 #include "physics/scene/hull.h"
-#include "physics/scene/pose.h"
 
 namespace prehend::physics {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "physics/scene/check.h"
+#include "physics/base/check.h"
 
 namespace prehend::render {
 namespace {

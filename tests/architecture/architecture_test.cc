@@ -30,7 +30,7 @@ const std::vector<std::string> kRooms = {"grammar", "physics", "render",
 const std::map<std::string, std::vector<std::string>> kArrows = {
     {"grammar", {}},
     {"physics", {}},
-    {"render", {"physics/scene/"}},
+    {"render", {"physics/base/", "physics/scene/"}},
     {"harness", {"grammar/", "physics/", "render/"}},
     {"tests", {"grammar/", "physics/", "render/", "harness/", "tests/", "bench/"}},
     {"bench", {"grammar/", "physics/", "render/", "harness/"}},

@@ -128,7 +128,7 @@ std::vector<std::string> DeadReferences(const std::string& file, const std::stri
   return found;
 }
 
-/// A file, a folder, a unit named without its ending ("grammar/engine/ring_buffer"), or a pattern
+/// A file, a folder, a unit named without its ending ("grammar/state/ring_buffer"), or a pattern
 /// with a "*" that fits one.
 bool IsInTree(const std::string& path, const std::set<std::string>& tree) {
   if (path.find('*') == path.npos) {
@@ -177,14 +177,14 @@ TEST(Comments, WhatTheyPointAtExists) {
 using Sentences = std::vector<std::string>;
 
 Sentences Dead(const std::string& file, const std::string& text) {
-  const std::set<std::string> tree = {"grammar/engine/ring_buffer.h", "grammar/",
-                                      "tests/grammar/engine/ring_buffer_test.cc", "docs/speed.md",
+  const std::set<std::string> tree = {"grammar/state/ring_buffer.h", "grammar/",
+                                      "tests/grammar/state/ring_buffer_test.cc", "docs/speed.md",
                                       "scenarios/slide/there.yaml"};
   return DeadReferences(file, text, [&](const auto& path) { return IsInTree(path, tree); });
 }
 
 TEST(Comments, ADeadPathIsFoundInEveryKindOfFile) {
-  EXPECT_EQ(Dead("grammar/a.h", "int a;\n// See grammar/engine/ring_buffer.h, grammar/gone.h.\n"),
+  EXPECT_EQ(Dead("grammar/a.h", "int a;\n// See grammar/state/ring_buffer.h, grammar/gone.h.\n"),
             Sentences{"grammar/a.h:2: grammar/gone.h does not exist"});
   EXPECT_EQ(Dead("grammar/a.cc", "int a;  ///< (as in grammar/gone)\n"),
             Sentences{"grammar/a.cc:1: grammar/gone does not exist"});
@@ -198,7 +198,7 @@ TEST(Comments, ADeadPathIsFoundInEveryKindOfFile) {
 
 TEST(Comments, FoldersUnitsAndPatternsExist) {
   EXPECT_EQ(Dead("grammar/a.h",
-                 "// grammar/engine/ring_buffer, grammar/, grammar/engine/r*.h, "
+                 "// grammar/state/ring_buffer, grammar/, grammar/state/r*.h, "
                  "tests/*/*/ring_buffer_test.cc\n"),
             Sentences{});
   EXPECT_EQ(Dead("grammar/a.h", "// grammar/b*.h\n"),
@@ -221,10 +221,10 @@ TEST(Comments, SourcesAreNamedFromTheRoot) {
 }
 
 TEST(Comments, TestedByNamesATest) {
-  EXPECT_EQ(Dead("grammar/a.h", "// Tested by tests/grammar/engine/ring_buffer_test.cc\n"),
+  EXPECT_EQ(Dead("grammar/a.h", "// Tested by tests/grammar/state/ring_buffer_test.cc\n"),
             Sentences{});
   EXPECT_EQ(
-      Dead("grammar/a.h", "// It is. Tested by\n// tests/grammar/engine/ring_buffer_test.cc\n"),
+      Dead("grammar/a.h", "// It is. Tested by\n// tests/grammar/state/ring_buffer_test.cc\n"),
       Sentences{});
   EXPECT_EQ(Dead("grammar/a.h", "// Tested by hand\n"),
             Sentences{"grammar/a.h:1: Tested by which test?"});

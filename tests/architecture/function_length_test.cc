@@ -21,7 +21,7 @@ constexpr int kMostLinesOfCommands = 60;
 constexpr const char* kCommands = "harness/cli/";
 
 /// Functions that return a table, a row after another; so does one that returns a Command.
-constexpr const char* kTables[] = {"grammar/compile/builtins.cc"};
+constexpr const char* kTables[] = {"grammar/analysis/builtins.cc"};
 constexpr const char* kTableOfOptions = "Command ";
 
 struct Block {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "physics/scene/portable_math.h"
+#include "physics/base/portable_math.h"
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <numbers>
 
-#include "physics/scene/portable_math.h"
+#include "physics/base/portable_math.h"
 
 namespace prehend::episode {
 namespace {

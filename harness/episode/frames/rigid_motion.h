@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "physics/base/pose.h"
 #include "physics/scene/hand_model.h"
-#include "physics/scene/pose.h"
 
 namespace prehend::episode {
 

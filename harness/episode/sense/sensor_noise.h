@@ -11,7 +11,7 @@
 
 #include "grammar/base/frame.h"
 #include "harness/scenario/scenario/scenario.h"
-#include "physics/scene/random.h"
+#include "physics/base/random.h"
 
 namespace prehend::episode {
 

@@ -11,7 +11,7 @@
 
 #include "harness/episode/episodes/episode_file.h"
 #include "harness/exchange/knowledge/vocabulary.h"
-#include "physics/scene/pose.h"
+#include "physics/base/pose.h"
 
 namespace prehend::exchange {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "harness/exchange/knowledge/triples.h"
-#include "physics/scene/pose.h"
+#include "physics/base/pose.h"
 
 namespace prehend::exchange {
 

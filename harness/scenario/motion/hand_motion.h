@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "harness/base/base/result.h"
-#include "physics/scene/pose.h"
+#include "physics/base/pose.h"
 
 namespace prehend::scenario {
 

@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "harness/base/base/text_file.h"
-#include "physics/scene/pose.h"
+#include "physics/base/pose.h"
 
 namespace prehend::scenario {
 namespace {

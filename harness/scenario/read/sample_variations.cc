@@ -8,7 +8,7 @@
 
 #include "harness/base/yaml/yaml_scalar.h"
 #include "harness/scenario/format/scenario_fields.h"
-#include "physics/scene/random.h"
+#include "physics/base/random.h"
 
 namespace prehend::scenario {
 namespace {

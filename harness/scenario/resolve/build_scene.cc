@@ -8,10 +8,10 @@
 #include <map>
 
 #include "harness/scenario/resolve/build_abstract.h"
+#include "physics/base/random.h"
 #include "physics/scene/fill_vessel.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/landing.h"
-#include "physics/scene/random.h"
 
 namespace prehend::scenario {
 namespace {

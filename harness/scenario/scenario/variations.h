@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "harness/base/base/located.h"
-#include "physics/scene/ids.h"
+#include "physics/base/ids.h"
 
 namespace prehend::scenario {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "physics/scene/pose.h"
+#include "physics/base/pose.h"
 
 namespace prehend::show {
 

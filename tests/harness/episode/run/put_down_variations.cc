@@ -14,8 +14,8 @@
 #include "harness/episode/run/run_scenario.h"
 #include "harness/episode/run/validate_claims.h"
 #include "harness/truth/claims/judge_claims.h"
+#include "physics/base/random.h"
 #include "physics/scene/geometry.h"
-#include "physics/scene/random.h"
 
 namespace prehend::episode {
 namespace {

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bounds of one value are intersected; an alternative is tried on a copy of what is known.
+#include "grammar/analysis/contradictions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "grammar/analysis/classes.h"
+
+namespace prehend::grammar {
+
+Op Mirrored(Op op) {
+  switch (op) {
+    case Op::kLess:
+      return Op::kGreater;
+    case Op::kLessEqual:
+      return Op::kGreaterEqual;
+    case Op::kGreater:
+      return Op::kLess;
+    case Op::kGreaterEqual:
+      return Op::kLessEqual;
+    default:
+      return op;
+  }
+}
+
+namespace {
+
+Op Negated(Op op) {
+  switch (op) {
+    case Op::kLess:
+      return Op::kGreaterEqual;
+    case Op::kLessEqual:
+      return Op::kGreater;
+    case Op::kGreater:
+      return Op::kLessEqual;
+    case Op::kGreaterEqual:
+      return Op::kLess;
+    case Op::kEqual:
+      return Op::kNotEqual;
+    default:
+      return Op::kEqual;
+  }
+}
+
+}  // namespace
+
+bool Bounds::Add(NodeId index, bool negated) {
+  const Node& node = program_.nodes[index];
+  switch (node.op) {
+    case Op::kNot:
+      return Add(node.args[0], !negated);
+    case Op::kAnd:
+    case Op::kOr:
+      if ((node.op == Op::kAnd) != negated)
+        return Add(node.args[0], negated) && Add(node.args[1], negated);
+      alternatives_.push_back({index, negated});
+      return true;
+    case Op::kLess:
+    case Op::kLessEqual:
+    case Op::kGreater:
+    case Op::kGreaterEqual:
+    case Op::kEqual:
+    case Op::kNotEqual:
+      return AddComparison(negated ? Negated(node.op) : node.op, node);
+    // What begins is true from now on. What ends is false, but an event may end where its next
+    // interval begins.
+    case Op::kBegins:
+      return (negated || Add(node.args[0])) && AddAtom(index, negated);
+    case Op::kEnds: {
+      const bool says_more = !negated && !MayFollowAtOnce(node.args[0]);
+      return (!says_more || Add(node.args[0], true)) && AddAtom(index, negated);
+    }
+    case Op::kIsA:
+      return AddClass(node, negated);
+    default:
+      return AddAtom(index, negated);
+  }
+}
+
+// Of `or` nothing is known.
+bool Bounds::AddBefore(NodeId moment) {
+  const Node& node = program_.nodes[moment];
+  if (node.op == Op::kAnd) return AddBefore(node.args[0]) && AddBefore(node.args[1]);
+  if (node.op == Op::kEnds) return Add(node.args[0]);
+  return node.op != Op::kBegins || MayFollowAtOnce(node.args[0]) || Add(node.args[0], true);
+}
+
+// Whether an interval may begin where the one before it ends: of a truth value, none does.
+bool Bounds::MayFollowAtOnce(NodeId index) const {
+  const Node& node = program_.nodes[index];
+  if (node.op != Op::kHolds) return false;
+  const Form form = program_.rules[rule_.references[node.slot].rule].form();
+  return form != Form::kTouching && form != Form::kAny && form != Form::kWhile;
+}
+
+bool Bounds::AddClass(const Node& is, bool negated) {
+  const ClassClaim claim{is.roles[0], program_.class_names[is.slot], negated};
+  const auto fits = [&](const ClassClaim& other) {
+    if (other.role != claim.role) return true;
+    if (!other.negated && !claim.negated) return ClassesMeet(other.name, claim.name);
+    if (other.negated && claim.negated) return true;
+    const auto& [is_one, is_none] =
+        other.negated ? std::pair(claim.name, other.name) : std::pair(other.name, claim.name);
+    return !ClassImplies(is_one, is_none);
+  };
+  const ClassClaim of_role{claim.role, rule_.roles[claim.role].class_name};
+  if (!fits(of_role) || !std::ranges::all_of(classes_, fits)) return false;
+  classes_.push_back(claim);
+  return true;
+}
+
+bool Bounds::AddAtom(NodeId index, bool negated) {
+  return Narrow(Signature(program_, rule_, index), {.low = 0, .high = 1}, Op::kEqual,
+                negated ? 0 : 1);
+}
+
+bool Bounds::AddComparison(Op op, const Node& comparison) {
+  const NodeId left = comparison.args[0];
+  const NodeId right = comparison.args[1];
+  const Range of_left = RangeOf(program_, rule_, left);
+  const Range of_right = RangeOf(program_, rule_, right);
+  if (Judge(op, of_left, of_right) == Verdict::kNever) return false;
+  if (of_right.IsPoint())
+    return Narrow(Signature(program_, rule_, left), of_left, op, of_right.low);
+  if (of_left.IsPoint())
+    return Narrow(Signature(program_, rule_, right), of_right, Mirrored(op), of_left.low);
+  // Of two that are measured, what is known is their difference.
+  const std::string a = Signature(program_, rule_, left);
+  const std::string b = Signature(program_, rule_, right);
+  return a < b ? Narrow(a + "-" + b, {}, op, 0) : Narrow(b + "-" + a, {}, Mirrored(op), 0);
+}
+
+bool Bounds::Narrow(const std::string& value, const Range& range, Op op, double number) {
+  Limit& limit = limits_.try_emplace(value, Limit{.range = range}).first->second;
+  if (range.whole) {  // more than 1 is 2 at least
+    if (op == Op::kGreater || op == Op::kGreaterEqual)
+      number = op == Op::kGreater ? std::floor(number) + 1 : std::ceil(number);
+    if (op == Op::kLess || op == Op::kLessEqual)
+      number = op == Op::kLess ? std::ceil(number) - 1 : std::floor(number);
+    if (op == Op::kGreater) op = Op::kGreaterEqual;
+    if (op == Op::kLess) op = Op::kLessEqual;
+  }
+  const bool from_below = op == Op::kGreater || op == Op::kGreaterEqual || op == Op::kEqual;
+  const bool from_above = op == Op::kLess || op == Op::kLessEqual || op == Op::kEqual;
+  if (from_below &&
+      (number > limit.range.low || (number == limit.range.low && op == Op::kGreater))) {
+    limit.range.low = number;
+    limit.low_open = op == Op::kGreater;
+  }
+  if (from_above &&
+      (number < limit.range.high || (number == limit.range.high && op == Op::kLess))) {
+    limit.range.high = number;
+    limit.high_open = op == Op::kLess;
+  }
+  if (limit.range.IsPoint()) return !limit.low_open && !limit.high_open;
+  return limit.range.low < limit.range.high;
+}
+
+bool Bounds::SomeAlternativeFits() const {
+  int budget = 256;
+  return SomeFits(0, budget);
+}
+
+bool Bounds::SomeFits(std::size_t next, int& budget) const {
+  if (next == alternatives_.size() || --budget < 0) return true;
+  const Alternative& chosen = alternatives_[next];
+  for (const NodeId arg :
+       {program_.nodes[chosen.node].args[0], program_.nodes[chosen.node].args[1]}) {
+    Bounds so_far = *this;
+    if (so_far.Add(arg, chosen.negated) && so_far.SomeFits(next + 1, budget)) return true;
+  }
+  return false;
+}
+
+}  // namespace prehend::grammar

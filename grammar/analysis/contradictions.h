@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds contradictions between the parts of an `and`: `speed(x) > 5 cm/s and speed(x) < 3 cm/s` is
+// never true, so it is reported as an error. Starts from the range of each value. Two values count
+// as the same if they are written alike, so some contradictions are missed. Tested by
+// tests/grammar/compile/compile_test.cc
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "grammar/analysis/value_ranges.h"
+
+namespace prehend::grammar {
+
+/// The comparison `a op b` as `b op a`.
+Op Mirrored(Op op);
+
+class Bounds {
+ public:
+  Bounds(const Program& program, const Rule& rule) : program_(program), rule_(rule) {}
+
+  /// Adds what must be so for this truth value to be true. False: it contradicts what was added
+  /// before.
+  bool Add(NodeId node, bool negated = false);
+  /// Adds what must have been so one frame before a moment: false what begins, true what ends.
+  bool AddBefore(NodeId moment);
+  /// False: whichever of the alternatives (of an `or`) one takes, it contradicts the rest. Gives up
+  /// where there are very many.
+  bool SomeAlternativeFits() const;
+
+ private:
+  struct Limit {
+    Range range;
+    bool low_open = false;
+    bool high_open = false;
+  };
+  struct Alternative {
+    NodeId node;
+    bool negated = false;
+  };
+  bool AddAtom(NodeId node, bool negated);
+  bool AddClass(const Node& is, bool negated);
+  bool MayFollowAtOnce(NodeId node) const;
+  bool AddComparison(Op op, const Node& comparison);
+  bool Narrow(const std::string& value, const Range& range, Op op, double number);
+  bool SomeFits(std::size_t next, int& budget) const;
+
+  const Program& program_;
+  const Rule& rule_;
+  struct ClassClaim {
+    int role = kNone;
+    std::string name;
+    bool negated = false;
+  };
+  std::map<std::string, Limit> limits_;
+  std::vector<ClassClaim> classes_;
+  std::vector<Alternative> alternatives_;
+};
+
+}  // namespace prehend::grammar

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shapes are drawn by their signed distance: anti-aliasing spans half a pixel on either side of the
+// edge.
+// Tested by tests/render/image/canvas_test.cc
+#include "render/image/canvas.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/base/check.h"
+
+namespace prehend::render {
+
+using Eigen::Vector2f;
+
+bool Rect::Overlaps(const Rect& other) const {
+  return x < other.right() && other.x < right() && y < other.bottom() && other.y < bottom();
+}
+
+Color Hex(unsigned rgb) {
+  return Color(static_cast<float>(rgb >> 16 & 255), static_cast<float>(rgb >> 8 & 255),
+               static_cast<float>(rgb & 255)) /
+         255;
+}
+
+Color TextColorOn(const Color& background) {
+  // Contrast as WCAG 2 defines it. One of white and black always has at least 4.58.
+  constexpr float kWanted = 4.5f;
+  const auto linear = [](float c) {
+    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+  };
+  const auto luminance = [&](const Color& c) {
+    return Color(linear(c.x()), linear(c.y()), linear(c.z())).dot(Color(0.2126f, 0.7152f, 0.0722f));
+  };
+  const float ground = luminance(background) + 0.05f;
+  if (1.05f / ground >= kWanted) return Hex(0xFFFFFF);
+  const Color ink = Hex(0x1B1F24);
+  return ground / (luminance(ink) + 0.05f) >= kWanted ? ink : Hex(0x000000);
+}
+
+Canvas::Span Canvas::Clip(float low, float high, int limit) {
+  const auto bound = static_cast<float>(limit);
+  // With this order of arguments NaN gives an empty span.
+  const float begin = std::max(0.0f, std::min(bound, std::floor(low)));
+  const float end = std::max(0.0f, std::min(bound, std::ceil(high)));
+  return {static_cast<int>(begin), static_cast<int>(end)};
+}
+
+void Canvas::Blend(int x, int y, const Color& color, float alpha) {
+  if (x < 0 || y < 0 || x >= image_.width_px || y >= image_.height_px) return;
+  PREHEND_DCHECK(image_.rgb.size() ==
+                 3 * static_cast<std::size_t>(image_.width_px) * image_.height_px);
+  std::uint8_t* pixel = &image_.rgb[(static_cast<std::size_t>(y) * image_.width_px + x) * 3];
+  for (int k = 0; k < 3; ++k) {
+    const float before = pixel[k];
+    const float after = std::clamp(before + (color[k] * 255 - before) * alpha, 0.0f, 255.0f);
+    pixel[k] = static_cast<std::uint8_t>(after + 0.5f);
+  }
+}
+
+void Canvas::FillRounded(const Rect& rect, float radius, const Color& color, float alpha) {
+  if (!(rect.width > 0) || !(rect.height > 0)) return;
+  const float r = std::min({radius, rect.width / 2, rect.height / 2});
+  const Span rows = Clip(rect.y - 1, rect.bottom() + 1, image_.height_px);
+  const Span columns = Clip(rect.x - 1, rect.right() + 1, image_.width_px);
+  for (int j = rows.begin; j < rows.end; ++j) {
+    for (int i = columns.begin; i < columns.end; ++i) {
+      const float px = static_cast<float>(i) + 0.5f, py = static_cast<float>(j) + 0.5f;
+      const float dx = std::max(rect.x + r - px, px - (rect.right() - r));
+      const float dy = std::max(rect.y + r - py, py - (rect.bottom() - r));
+      const float outside = Vector2f(std::max(dx, 0.0f), std::max(dy, 0.0f)).norm() +
+                            std::min(std::max(dx, dy), 0.0f) - r;
+      const float coverage = std::clamp(0.5f - outside, 0.0f, 1.0f);
+      if (coverage > 0) Blend(i, j, color, alpha * coverage);
+    }
+  }
+}
+
+void Canvas::DrawLine(Vector2f from, Vector2f to, float width, const Color& color, float alpha) {
+  const Vector2f along = to - from;
+  const float squared_length = along.squaredNorm();
+  if (!std::isfinite(squared_length) || squared_length < 1e-6f) return;
+  const Vector2f low = from.cwiseMin(to).array() - width - 1,
+                 high = from.cwiseMax(to).array() + width + 1;
+  const Span rows = Clip(low.y(), high.y(), image_.height_px),
+             columns = Clip(low.x(), high.x(), image_.width_px);
+  for (int j = rows.begin; j < rows.end; ++j) {
+    for (int i = columns.begin; i < columns.end; ++i) {
+      const Vector2f q =
+          Vector2f(static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f) - from;
+      const float share = std::clamp(q.dot(along) / squared_length, 0.0f, 1.0f);
+      const float coverage =
+          std::clamp(0.5f - ((q - share * along).norm() - width / 2), 0.0f, 1.0f);
+      if (coverage > 0) Blend(i, j, color, alpha * coverage);
+    }
+  }
+}
+
+void Canvas::DrawText(float left, float top, const std::string& text, float size_px,
+                      const Color& color) {
+  const int baseline = static_cast<int>(std::lround(top + font_.Ascent(size_px)));
+  float pen = left;
+  for (const char32_t character : CodePoints(text)) {
+    const int x = static_cast<int>(std::floor(pen));
+    const Glyph glyph = font_.Draw(character, size_px, pen - std::floor(pen));
+    for (int j = 0; j < glyph.height_px; ++j) {
+      for (int i = 0; i < glyph.width_px; ++i) {
+        const std::uint8_t coverage =
+            glyph.coverage[static_cast<std::size_t>(j) * glyph.width_px + i];
+        if (coverage > 0) {
+          Blend(x + glyph.left_px + i, baseline + glyph.top_px + j, color,
+                static_cast<float>(coverage) / 255);
+        }
+      }
+    }
+    pen += font_.Advance(character, size_px);
+  }
+}
+
+}  // namespace prehend::render

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Anti-aliased drawing on an image: rounded rectangles, lines, text. Coordinates are pixels, y
+// down. Drawing is clipped to the image. Labels need no more than this, so there is no dependency
+// on cairo. Tested by tests/render/image/canvas_test.cc
+#pragma once
+
+#include <string>
+
+#include "render/image/font.h"
+#include "render/image/image.h"
+
+namespace prehend::render {
+
+struct Rect {
+  float x = 0, y = 0, width = 0, height = 0;
+
+  float right() const { return x + width; }
+  float bottom() const { return y + height; }
+  bool Overlaps(const Rect& other) const;
+  Rect Grown(float margin) const {
+    return {x - margin, y - margin, width + 2 * margin, height + 2 * margin};
+  }
+};
+
+/// Converts 0xRRGGBB to a colour.
+Color Hex(unsigned rgb);
+/// White, a dark grey or black: the first with a contrast of 4.5 to the colour.
+Color TextColorOn(const Color& background);
+
+class Canvas {
+ public:
+  /// Draws on *image with this font; both must outlive the canvas.
+  Canvas(const Font& font, Image* image) : font_(font), image_(*image) {}
+
+  const Font& font() const { return font_; }
+  void FillRounded(const Rect& rect, float radius, const Color& color, float alpha = 1);
+  void DrawLine(Eigen::Vector2f from, Eigen::Vector2f to, float width, const Color& color,
+                float alpha = 1);
+  /// `top` is the y of the line's top; the baseline is rounded to a whole pixel.
+  void DrawText(float left, float top, const std::string& text, float size_px, const Color& color);
+
+ private:
+  struct Span {
+    int begin, end;
+  };
+  static Span Clip(float low, float high, int limit);
+  void Blend(int x, int y, const Color& color, float alpha);
+
+  const Font& font_;
+  Image& image_;
+};
+
+}  // namespace prehend::render
