@@ -333,7 +333,6 @@ void CheckSizes(const Picture& picture, std::size_t bodies, std::size_t hands) {
   PREHEND_CHECK(picture.snapshot.bodies.size() <= bodies);
   PREHEND_CHECK(picture.snapshot.hands.size() <= hands);
   PREHEND_CHECK(picture.body_colors.size() <= bodies && picture.body_alphas.size() <= bodies);
-  PREHEND_CHECK(picture.body_labels.size() <= bodies && picture.hand_labels.size() <= hands);
   PREHEND_CHECK(picture.hand_colors.size() <= hands);
 }
 

@@ -24,7 +24,7 @@ TEST(Readme, ShowsAFailedTestAsItIsPrinted) {
     fs::copy(fs::path(PREHEND_SOURCE_DIR) / library, root / library, fs::copy_options::recursive);
   }
   const std::string id = "slide/four_centimetres_are_a_slide";
-  for (const std::string& file : {"scenarios/" + id + ".yaml", "golden/" + id + ".timeline"})
+  for (const auto& file : {"scenarios/" + id + ".yaml", "golden/" + id + ".timeline"})
     WriteFile(root / file, ReadFile(fs::path(PREHEND_SOURCE_DIR) / file));
   const std::vector<std::string> environment = {"PREHEND_HOME=" + root.string(),
                                                 "PREHEND_COMMAND=./run"};

@@ -55,7 +55,7 @@ TEST_F(PrepareRunTest, EveryFileThatWasUsedIsNamed) {
 
 TEST_F(PrepareRunTest, AScenarioIsReadOnce) {
   Write("scenarios/rest/carton_stands.yaml",
-        std::string(suite::kCartonStands) + "expects: [one supported_by(carton, table)]\n" +
+        std::string(suite::kCartonStands) + "expects: [\"one supported_by(carton, table)\"]\n" +
             "vary: [{fields: [entities.carton.mass_kg], times: [0.8, 1.2]}]\n");
   const CountReads reads(Request().scenario_file);
   const auto loaded = Prepared({"settle_s=0.25"});
