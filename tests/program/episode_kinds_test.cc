@@ -79,7 +79,7 @@ const Row kRows[] = {
      {0, 0, 2, 2},
      "was not simulated, so the bodies"},
     {{"accept", kEpisode, "--reviewed", "0123456789abcdef", "--reason", "seen"},
-     {1, 2, 1, 2},
+     {0, 2, 1, 2},
      "has no golden: that of "},
 };
 

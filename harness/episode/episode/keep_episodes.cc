@@ -50,7 +50,7 @@ Result<EpisodeName> EpisodeKeeper::Keep(const EpisodeName& episode) {
   std::error_code error;
   fs::create_directories(folder_, error);
   fs::remove(file, error);
-  sources_[file] = episode.file;
+  sources_[file] = episode.origin == Origin::kScenario ? episode.scenario : episode.file;
   grammar::Diagnostics problems =
       episode.origin == Origin::kRecording
           ? Import({file, root_, episode.file, "", today_, ProgramHash()})

@@ -22,7 +22,7 @@ class EpisodeKeeper {
   /// The same episode in a file.
   Result<EpisodeName> Keep(const EpisodeName& episode);
   Result<std::vector<EpisodeName>> KeepAll(std::vector<EpisodeName> episodes);
-  /// Of a file that was made here, what it was made from; any other is as it is.
+  /// Of a file that was made here, the scenario or recording in it; any other is as it is.
   std::string SourceOf(const std::string& file) const;
 
  private:

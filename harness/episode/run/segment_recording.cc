@@ -23,17 +23,6 @@ grammar::Tick MedianStep(const std::vector<EpisodeFrame>& frames) {
 
 }  // namespace
 
-Result<SegmentedRecording> SegmentRecording(const RunRequest& request, const std::string& root) {
-  Result<Recording> episode = ReadRecording(request.scenario_file);
-  if (!episode) return tl::unexpected(std::move(episode.error()));
-  const Result<grammar::Overrides> parameters = ParameterSettings(request.settings);
-  if (!parameters) return tl::unexpected(parameters.error());
-  grammar::CompileResult compiled =
-      LoadGrammarOf(episode->header, request.grammar, root, *parameters);
-  if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
-  return SegmentRecording(*episode, std::move(compiled.program), request.scenario_file);
-}
-
 Result<SegmentedRecording> SegmentRecording(Recording& recording,
                                             std::shared_ptr<const grammar::Program> program,
                                             const std::string& file) {

@@ -23,10 +23,7 @@ struct SegmentedRecording {
   MissingFacts missing;           ///< what the grammar asks for and the recording does not have
 };
 
-/// `request.scenario_file` is the recording; its settings are parameters of the grammar.
-Result<SegmentedRecording> SegmentRecording(const RunRequest& request, const std::string& root);
-
-/// The same of a recording that has been read, and a grammar. `file` is for messages.
+/// `file` is for messages.
 Result<SegmentedRecording> SegmentRecording(Recording& recording,
                                             std::shared_ptr<const grammar::Program> program,
                                             const std::string& file);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "harness/episode/episode/open_episode.h"
 #include "harness/suite/judge/accept_golden.h"
 #include "harness/truth/golden/golden_files.h"
 
@@ -38,7 +39,11 @@ std::string GoldenBeside(const std::string& recording) {
 
 Result<JudgedRecording> JudgeRecording(const episode::RunRequest& request,
                                        const std::string& root) {
-  Result<episode::SegmentedRecording> segmented = episode::SegmentRecording(request, root);
+  Result<episode::Episode> recording =
+      episode::OpenEpisode({.file = request.scenario_file, .origin = episode::Origin::kRecording},
+                           {request.grammar, request.settings}, root);
+  if (!recording) return tl::unexpected(std::move(recording.error()));
+  Result<episode::SegmentedRecording> segmented = recording->SegmentRecorded();
   if (!segmented) return tl::unexpected(std::move(segmented.error()));
   return JudgeSegmented(std::move(*segmented), GoldenBeside(request.scenario_file));
 }
