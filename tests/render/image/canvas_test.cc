@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "render/picture.h"
+
 namespace prehend::render {
 namespace {
 
