@@ -538,9 +538,8 @@ TEST(Import, WhatARecordingDoesNotHaveIsSaid) {
   ASSERT_EQ(Prehend({"import", lines, "-o", takes}).exit_code, 0);
   const Said score = Prehend({"score", takes});
   EXPECT_EQ(score.exit_code, 2);
-  EXPECT_NE(
-      score.err.find("a_cup_is_carried was not simulated, so its physical truth is not known"),
-      std::string::npos)
+  EXPECT_NE(score.err.find("takes.episodes was not simulated, so its physical truth is not known"),
+            std::string::npos)
       << score.err;
   EXPECT_EQ(
       Prehend({"import", lines, "-o", (folder / "b.jsonl").string()}).err,

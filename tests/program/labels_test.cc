@@ -145,8 +145,8 @@ TEST_F(Labelled, EpisodesAndScenariosOfASuiteTakeLabelsToo) {
       << swept.out;
   const Said of_lines =
       Prehend({"grammar", "sweep", Take("a.jsonl"), "--over", "reach_radius=1cm..3cm:2"});
-  EXPECT_EQ(of_lines.exit_code, 2);
-  EXPECT_TRUE(Has(of_lines.err, "its events are known only from labels")) << of_lines.err;
+  EXPECT_EQ(of_lines.exit_code, 4);
+  EXPECT_TRUE(Has(of_lines.err, "score it against labels by people: --truth")) << of_lines.err;
 }
 
 TEST_F(Labelled, MarginsNameWhatIsAtAnEdge) {

@@ -209,16 +209,15 @@ TEST_F(RenderScenes, FilmsAreWhatTheirNamesSay) {
   EXPECT_EQ(ReadFile(Path("a.mp4")).substr(4, 4), "ftyp");
 }
 
-TEST_F(Render, APictureIsAPngAndRecordingsBecomeEpisodesFirst) {
+TEST_F(Render, APictureIsAPngAndARecordingIsRead) {
   Refused({"--at", "1", "-o", Path("x.jpg")},
           "--output: found '" + Path("x.jpg") + "', wanted a file NAME.png");
   WriteFile(Path("a.jsonl"), "{}\n");
   const Said said = Prehend({"render", Path("a.jsonl"), "--at", "1"});
   EXPECT_EQ(said.exit_code, 2);
-  EXPECT_TRUE(Has(
-      said.err, "make an episode of it: 'prehend import " + Path("a.jsonl") + " -o NAME.episodes'"))
+  EXPECT_TRUE(Has(said.err, "a.jsonl:1:1: error: the first line needs the key 'recording'"))
       << said.err;
-  EXPECT_FALSE(Has(Prehend({"render", "--help"}).out, "or a recording"));
+  EXPECT_TRUE(Has(Prehend({"render", "--help"}).out, "or a recording"));
 }
 
 TEST_F(Render, MissingFoldersAreMade) {

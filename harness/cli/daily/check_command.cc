@@ -293,6 +293,19 @@ suite::SuiteProgress ProgressOn(const CommandContext& context) {
   };
 }
 
+/// Why options that are about playing contradict a selection with recordings, or "".
+std::string WhyNotPlayed(const suite::ScenarioSelection& selection, const ParsedOptions& options) {
+  const auto played =
+      std::ranges::find_if(selection.scenarios, [](const episode::ScenarioFile& file) {
+        return episode::EpisodeKindOf(file.path) != episode::EpisodeKind::kScenario;
+      });
+  for (const char* of_play : {"--record", "--repeat"}) {
+    if (played != selection.scenarios.end() && options.Has(of_play))
+      return fmt::format("{} plays scenarios; {} is a recording", of_play, played->path);
+  }
+  return "";
+}
+
 ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--changed") && (options.Has("--grammar") || options.Has("--set"))) {
     return Complain(context, ExitCode::kBadInput,
@@ -306,15 +319,8 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   auto selection =
       suite::SelectScenarios(options.All("names"), options.All("--filter"), context.root);
   if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
-  const auto played =
-      std::ranges::find_if(selection->scenarios, [](const episode::ScenarioFile& file) {
-        return episode::EpisodeKindOf(file.path) != episode::EpisodeKind::kScenario;
-      });
-  for (const char* of_play : {"--record", "--repeat"}) {
-    if (played != selection->scenarios.end() && options.Has(of_play))
-      return Complain(context, ExitCode::kBadInput,
-                      fmt::format("{} plays scenarios; {} is a recording", of_play, played->path));
-  }
+  const std::string cannot = WhyNotPlayed(*selection, options);
+  if (!cannot.empty()) return Complain(context, ExitCode::kBadInput, cannot);
   if (options.Has("--shard")) {
     suite::KeepShard(*suite::ParseShard(options.Text("--shard")), *selection);
     if (selection->scenarios.empty() && selection->orphans.empty())

@@ -384,14 +384,14 @@ Command RenderCommand() {
   return {
       .name = "render",
       .summary = "Draw a scenario's pictures, one of your own, a comparison, a film",
-      .examples = {"render milk_carton_wrap", "render milk_carton_wrap -o milk.png",
-                   "render suite.episodes --episode slide/hop_divides_a_slide -o hop.png",
-                   "render milk_carton_wrap --at transporting.begin --camera left -o left.png",
-                   "render milk_carton_wrap --at reaching.begin,putting_down.end --sheet 2 --theme "
-                   "print -o sheet.png",
-                   "render milk_carton_wrap --strip -o strip.pdf",
-                   "render milk_carton_wrap --against original_2020 -o two_grammars.png",
-                   "render milk_carton_wrap --film milk.webp --speed 0.5"},
+      .examples =
+          {"render milk_carton_wrap", "render milk_carton_wrap -o milk.png",
+           "render suite.episodes --episode slide/hop_divides_a_slide -o hop.png",
+           "render milk_carton_wrap --at transporting.begin --camera left -o left.png",
+           "render milk_carton_wrap --at reaching.begin,putting_down.end --sheet 2 -o sheet.png",
+           "render milk_carton_wrap --strip -o strip.pdf",
+           "render milk_carton_wrap --against original_2020 -o two_grammars.png",
+           "render milk_carton_wrap --film milk.webp --speed 0.5"},
       .options = Joined(
           Joined({EpisodeArgument(),
                   EpisodeOption(),

@@ -122,7 +122,7 @@ TEST(DocumentedCommands, CanBeTyped) {
       EXPECT_EQ(WhyWrong(documented), "") << documented.where << ": " << documented.text;
     }
   }
-  EXPECT_GE(whole, 150u);
+  EXPECT_GE(whole, 120u);
   EXPECT_GE(parts, 50u);
 }
 
