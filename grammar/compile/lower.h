@@ -133,7 +133,7 @@ class Lowering {
       const ast::Expr* expr = nullptr;  ///< the argument, and where it was written
       const GrammarText* source = nullptr;
       const Scope* scope = nullptr;
-      Typed stand_in = {};  ///< without an argument
+      Typed placeholder = {};  ///< without an argument
     };
     std::string_view define;
     const Scope* outer = nullptr;
@@ -215,7 +215,7 @@ class Lowering {
   bool part_ = false;          ///< a part of a composition is lowered
   bool attribute_ = false;     ///< signals are taken where the interval begins
   bool full_ = false;          ///< the grammar has too many expressions
-  bool checking_ = false;      ///< numbers of parameters are stand-ins
+  bool checking_ = false;      ///< numbers of parameters are placeholders
   bool from_outside_ = false;  ///< a parameter that was set from outside has been met
   bool handed_in_ = false;     ///< likewise, or a number that a definition was called with
   bool vacuous_ = false;       ///< a clause of the rule is never or always true

@@ -251,7 +251,7 @@ Lowering::Typed Lowering::LowerBody(const DefineSource& source, const Scope& sco
 
 // Where a body names a parameter, the argument is read again in the place that it comes from.
 Lowering::Typed Lowering::LowerValue(const Scope::Value& value) {
-  if (value.expr == nullptr) return value.stand_in;
+  if (value.expr == nullptr) return value.placeholder;
   const GrammarText* const inner_source = std::exchange(source_, value.source);
   const Scope* const inner_scope = std::exchange(scope_, value.scope);
   Typed typed = Lower(*value.expr);
@@ -269,12 +269,12 @@ void Lowering::Check(const DefineSource& source) {
   for (std::size_t i = 0; i < source.define->parameters.size(); ++i) {
     const ast::Role& parameter = source.define->parameters[i];
     if (parameter.class_name == "number") {
-      const Typed stand_in = NumberNode(1, source.define->dimensions[i], parameter.place);
-      scope.values[parameter.name] = {.stand_in = stand_in};
+      const Typed placeholder = NumberNode(1, source.define->dimensions[i], parameter.place);
+      scope.values[parameter.name] = {.placeholder = placeholder};
     } else if (parameter.class_name == "position") {
       const NodeId node = Add({.op = Op::kPosition, .roles = {0, kNone}});
       scope.values[parameter.name] = {
-          .stand_in = {.node = node, .type = Type::kPosition, .dimension = kMetres}};
+          .placeholder = {.node = node, .type = Type::kPosition, .dimension = kMetres}};
     } else {
       scope.roles[parameter.name] = role++;
     }

@@ -27,7 +27,7 @@ tl::expected<episode::Episode, ExitCode> OpenEpisodeOrComplain(const std::string
 struct PlayedRun {
   episode::LoadedRun loaded;
   episode::RunResult run;
-  bool simulated = true;  ///< otherwise the frames are those of a stand-in, not to be sensed
+  bool simulated = true;  ///< otherwise its scene is a placeholder: its frames are not to be sensed
 };
 tl::expected<PlayedRun, ExitCode> PlayOrComplain(episode::Episode episode,
                                                  const CommandContext& context);

@@ -2,8 +2,8 @@
 // See harness/episode/episode/episode.h. Tested by tests/program/episode_kinds_test.cc
 #include "harness/episode/episode/episode.h"
 
+#include "harness/episode/episodes/placeholder_scene.h"
 #include "harness/episode/episodes/recordings.h"
-#include "harness/episode/episodes/stand_in.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/segment.h"
 #include "harness/episode/sense/entity_table.h"
@@ -52,7 +52,7 @@ Result<RunResult> Episode::Run(bool frames) {
   run.drawings = truth::EventDrawings(*loaded_.program);
   run.state_hash = HashOfFrames(*recording_);
   for (std::size_t i = 0; frames && i < recording_->frames.size(); ++i)
-    run.recording.push_back(StandInAt(recording_->header, recording_->frames[i]));
+    run.recording.push_back(PlaceholderSnapshotAt(recording_->header, recording_->frames[i]));
   return run;
 }
 

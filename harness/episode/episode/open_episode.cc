@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "grammar/contents.h"
+#include "harness/episode/episodes/placeholder_scene.h"
 #include "harness/episode/episodes/recordings.h"
-#include "harness/episode/episodes/stand_in.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/load_run.h"
 
@@ -20,7 +20,7 @@ Result<Episode> EpisodeOpener::OpenLines(const EpisodeName& name, const GrammarC
   const EpisodeHeader& header = recording->header;
   grammar::CompileResult compiled = LoadGrammarOf(header, choice.grammar, root_, *parameters);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
-  LoadedRun loaded{.scenario = StandInFor(header), .program = std::move(compiled.program)};
+  LoadedRun loaded{.scenario = PlaceholderFor(header), .program = std::move(compiled.program)};
   loaded.scenario.file = name.file;
   loaded.scenario.grammar = GrammarName(*loaded.program);
   loaded.warnings = Warnings(*loaded.program, header.entity_table);

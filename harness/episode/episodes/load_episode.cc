@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "grammar/contents.h"
+#include "harness/episode/episodes/placeholder_scene.h"
 #include "harness/episode/episodes/recordings.h"
-#include "harness/episode/episodes/stand_in.h"
 #include "harness/episode/episodes/write_rows.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/project_library.h"
@@ -80,7 +80,7 @@ Result<LoadedRun> EpisodeLoader::LoadRecording(const EpisodeFile& file, const Ep
   const std::string own = asked.empty() ? header->grammar : asked;
   grammar::CompileResult compiled = Compile(is_own, is_own ? own : choice.grammar, *overrides);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
-  LoadedRun loaded{.scenario = StandInFor(*header), .program = std::move(compiled.program)};
+  LoadedRun loaded{.scenario = PlaceholderFor(*header), .program = std::move(compiled.program)};
   loaded.scenario.file = task.run.scenario_file;
   loaded.scenario.grammar = GrammarName(*loaded.program);
   if (!is_own || !choice.settings.empty())

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "harness/episode/episode/open_episode.h"
-#include "harness/episode/episodes/stand_in.h"
+#include "harness/episode/episodes/placeholder_scene.h"
 
 namespace prehend::episode {
 namespace {
@@ -97,7 +97,7 @@ TEST(Recordings, WithoutAnEndAreUnfinished) {
 
 TEST(Recordings, HaveASceneThatStandsInForThem) {
   Imported made;
-  const scenario::Scenario scenario = StandInFor(made.recording.header);
+  const scenario::Scenario scenario = PlaceholderFor(made.recording.header);
   ASSERT_EQ(scenario.scene.bodies.size(), 2);
   ASSERT_EQ(scenario.scene.hands.size(), 1);
   EXPECT_EQ(scenario.scene.bodies[0].name, "table");
@@ -107,13 +107,15 @@ TEST(Recordings, HaveASceneThatStandsInForThem) {
   EXPECT_EQ(scenario.body_part_of, (std::vector<int>{-1, 0}));
   EXPECT_TRUE(scenario.scene.hands[0].model.links.empty()) << "fingers are not known";
 
-  const physics::Snapshot first = StandInAt(made.recording.header, made.recording.frames[0]);
+  const physics::Snapshot first =
+      PlaceholderSnapshotAt(made.recording.header, made.recording.frames[0]);
   EXPECT_EQ(first.bodies[1].X_WB.p_m.z(), 0.77);
   EXPECT_EQ(first.hands[0].palm.X_WB.p_m.x(), 0.2);
   EXPECT_EQ(first.hands[0].trigger, 0.25);
   ASSERT_EQ(first.contacts.size(), 1);
   EXPECT_NEAR(first.contacts[0].normal_impulse_n_s, 0.05, 1e-12);
-  EXPECT_TRUE(StandInAt(made.recording.header, made.recording.frames[1]).contacts.empty())
+  EXPECT_TRUE(
+      PlaceholderSnapshotAt(made.recording.header, made.recording.frames[1]).contacts.empty())
       << "where these touches are is not known";
 }
 

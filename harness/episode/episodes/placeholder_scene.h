@@ -11,9 +11,9 @@
 namespace prehend::episode {
 
 /// Bodies and hands in the order of the recording's entities, hands apart.
-scenario::Scenario StandInFor(const EpisodeHeader& header);
+scenario::Scenario PlaceholderFor(const EpisodeHeader& header);
 
 /// The world of that scene in a frame.
-physics::Snapshot StandInAt(const EpisodeHeader& header, const EpisodeFrame& frame);
+physics::Snapshot PlaceholderSnapshotAt(const EpisodeHeader& header, const EpisodeFrame& frame);
 
 }  // namespace prehend::episode

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/episodes/stand_in.h. Tested by
+// See harness/episode/episodes/placeholder_scene.h. Tested by
 // tests/harness/episode/episodes/recordings_test.cc
-#include "harness/episode/episodes/stand_in.h"
+#include "harness/episode/episodes/placeholder_scene.h"
 
 #include <algorithm>
 
@@ -81,15 +81,16 @@ physics::Hand HandOf(const grammar::EntityInfo& entity, const std::vector<std::s
 }
 
 /// Where an entity of the recording is in the scene.
-struct StandIn {
+struct Placeholder {
   int body = -1, hand = -1;
 };
 
-std::vector<StandIn> StandInsOf(const grammar::EntityTable& table) {
-  std::vector<StandIn> all;
+std::vector<Placeholder> PlaceholdersOf(const grammar::EntityTable& table) {
+  std::vector<Placeholder> all;
   int bodies = 0, hands = 0;
   for (const grammar::EntityInfo& entity : table.entities)
-    all.push_back(IsHandEntity(entity) ? StandIn{.hand = hands++} : StandIn{.body = bodies++});
+    all.push_back(IsHandEntity(entity) ? Placeholder{.hand = hands++}
+                                       : Placeholder{.body = bodies++});
   return all;
 }
 
@@ -102,9 +103,9 @@ physics::BodyState StateOf(const grammar::EntitySample& look) {
 
 }  // namespace
 
-scenario::Scenario StandInFor(const EpisodeHeader& header) {
+scenario::Scenario PlaceholderFor(const EpisodeHeader& header) {
   const grammar::EntityTable& table = header.entity_table;
-  const std::vector<StandIn> places = StandInsOf(table);
+  const std::vector<Placeholder> places = PlaceholdersOf(table);
   scenario::Scenario scenario;
   scenario.name = header.episode;
   scenario.grammar = header.grammar;
@@ -135,9 +136,9 @@ scenario::Scenario StandInFor(const EpisodeHeader& header) {
   return scenario;
 }
 
-physics::Snapshot StandInAt(const EpisodeHeader& header, const EpisodeFrame& frame) {
+physics::Snapshot PlaceholderSnapshotAt(const EpisodeHeader& header, const EpisodeFrame& frame) {
   const grammar::EntityTable& table = header.entity_table;
-  const std::vector<StandIn> places = StandInsOf(table);
+  const std::vector<Placeholder> places = PlaceholdersOf(table);
   physics::Snapshot snapshot;
   snapshot.tick = frame.tick;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -156,7 +157,7 @@ physics::Snapshot StandInAt(const EpisodeHeader& header, const EpisodeFrame& fra
     snapshot.hands[i].style = frame.hands[i].style;
   }
   const auto side = [&](int entity) -> physics::ContactSide {
-    const StandIn& place = places[static_cast<std::size_t>(entity)];
+    const Placeholder& place = places[static_cast<std::size_t>(entity)];
     return {.body = physics::BodyIndex(place.body), .hand = physics::HandIndex(place.hand)};
   };
   for (const grammar::Touch& touch : frame.touches) {
