@@ -119,11 +119,11 @@ class Lowering {
     bool instant = false;
     bool bad = false;
     Verdict verdict = Verdict::kPossible;  ///< of a truth value
-    std::vector<int> because = {};         ///< the doubts that decide it
+    std::vector<int> because = {};         ///< the vacuous parts that decide it
   };
   /// A condition that is never or always true: a mistake, if its whole clause is and nobody else
   /// gave it its numbers.
-  struct Doubtful {
+  struct VacuousPart {
     Diagnostic diagnostic;
     bool is_handed_in = false;
   };
@@ -165,7 +165,7 @@ class Lowering {
   std::optional<Diagnostic> Contradiction(const ast::Expr& chain,
                                           const std::vector<Typed>& parts) const;
   Typed Decided(Verdict verdict, std::vector<int> because);
-  void Doubt(Place place, std::string message, std::string hint, bool is_handed_in);
+  void NoteVacuous(Place place, std::string message, std::string hint, bool is_handed_in);
   NodeId Settled(const Typed& clause);
   void Warn(Diagnostic warning);
   Typed LowerEdge(const ast::Expr& expr);
@@ -219,7 +219,7 @@ class Lowering {
   bool from_outside_ = false;  ///< a parameter that was set from outside has been met
   bool handed_in_ = false;     ///< likewise, or a number that a definition was called with
   bool vacuous_ = false;       ///< a clause of the rule is never or always true
-  std::vector<Doubtful> doubts_;
+  std::vector<VacuousPart> vacuous_parts_;
   const Scope* scope_ = nullptr;
   std::vector<bool> role_used_;
 };

@@ -301,10 +301,11 @@ Lowering::Typed Lowering::LowerIs(const Expr& expr) {
   }
   NoteClass(symbols_.program, expr.args[1].text, source_->file, expr.args[1].place);
   if (scope_ == nullptr && !checking_ && ClassImplies(class_name, expr.args[1].text)) {
-    Doubt(expr.place,
-          "this is always true: " + Quoted(expr.args[0].text) + " is " + WithArticle(class_name),
-          "leave it out", false);
-    return Decided(Verdict::kAlways, {static_cast<int>(doubts_.size()) - 1});
+    NoteVacuous(
+        expr.place,
+        "this is always true: " + Quoted(expr.args[0].text) + " is " + WithArticle(class_name),
+        "leave it out", false);
+    return Decided(Verdict::kAlways, {static_cast<int>(vacuous_parts_.size()) - 1});
   }
   symbols_.program.class_names.push_back(expr.args[1].text);
   const int slot = static_cast<int>(symbols_.program.class_names.size()) - 1;

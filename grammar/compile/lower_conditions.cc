@@ -14,7 +14,7 @@ namespace {
 
 using ast::Expr;
 
-constexpr std::size_t kMostDoubts = 200;  // that are reported, of one clause and as warnings
+constexpr std::size_t kMostVacuous = 200;  // that are reported, of one clause and as warnings
 
 // The names that stand in it, each once.
 void CollectNames(const Expr& expr, std::vector<std::string>& names) {
@@ -42,18 +42,18 @@ Lowering::Typed Lowering::LowerComparison(Op op, const Typed& left, const Typed&
   const std::string message = std::string("this is ") + (never ? "never" : "always") + " true: ";
   const std::string sides = WhatSidesCanBe(expr, left, right);
   if (same) {
-    Doubt(expr.place, message + "both sides are the same", "compare it with something else",
-          is_handed_in);
+    NoteVacuous(expr.place, message + "both sides are the same", "compare it with something else",
+                is_handed_in);
   } else if (sides.empty()) {
-    Doubt(expr.place, message + "it compares two numbers",
-          WithParams(expr, "compare one of them with a signal"), is_handed_in);
+    NoteVacuous(expr.place, message + "it compares two numbers",
+                WithParams(expr, "compare one of them with a signal"), is_handed_in);
   } else {
-    Doubt(expr.place, message + sides,
-          WithParams(expr, never ? "choose a bound that can be reached"
-                                 : "leave it out, or choose a bound that can be missed"),
-          is_handed_in);
+    NoteVacuous(expr.place, message + sides,
+                WithParams(expr, never ? "choose a bound that can be reached"
+                                       : "leave it out, or choose a bound that can be missed"),
+                is_handed_in);
   }
-  return Decided(verdict, {static_cast<int>(doubts_.size()) - 1});
+  return Decided(verdict, {static_cast<int>(vacuous_parts_.size()) - 1});
 }
 
 // What is so whatever happens.
@@ -75,10 +75,11 @@ Lowering::Typed Lowering::LowerNot(const Expr& expr) {
           .because = arg.because};
 }
 
-void Lowering::Doubt(Place place, std::string message, std::string hint, bool is_handed_in) {
-  if (doubts_.size() >= kMostDoubts && is_handed_in) return;
-  if (doubts_.size() >= kMostDoubts) doubts_.pop_back();  // an error is reported in any case
-  doubts_.push_back(
+void Lowering::NoteVacuous(Place place, std::string message, std::string hint, bool is_handed_in) {
+  if (vacuous_parts_.size() >= kMostVacuous && is_handed_in) return;
+  if (vacuous_parts_.size() >= kMostVacuous)
+    vacuous_parts_.pop_back();  // an error is reported in any case
+  vacuous_parts_.push_back(
       {DiagnosticAt(source_->file, source_->text, place, std::move(message), std::move(hint)),
        is_handed_in});
 }
@@ -86,17 +87,17 @@ void Lowering::Doubt(Place place, std::string message, std::string hint, bool is
 // A whole clause that is decided is an error, unless its numbers were set from outside.
 NodeId Lowering::Settled(const Typed& clause) {
   bool sound = !clause.bad;
-  for (std::size_t i = 0; !clause.bad && i < doubts_.size(); ++i) {
+  for (std::size_t i = 0; !clause.bad && i < vacuous_parts_.size(); ++i) {
     const bool decides = clause.verdict != Verdict::kPossible &&
                          std::ranges::count(clause.because, static_cast<int>(i)) > 0;
-    if (decides && !doubts_[i].is_handed_in) {
-      diagnostics_.push_back(std::move(doubts_[i].diagnostic));
+    if (decides && !vacuous_parts_[i].is_handed_in) {
+      diagnostics_.push_back(std::move(vacuous_parts_[i].diagnostic));
       sound = false;
     } else {
-      Warn(std::move(doubts_[i].diagnostic));
+      Warn(std::move(vacuous_parts_[i].diagnostic));
     }
   }
-  doubts_.clear();
+  vacuous_parts_.clear();
   vacuous_ |= clause.verdict != Verdict::kPossible;
   return sound ? clause.node : kNone;
 }
@@ -108,7 +109,7 @@ void Lowering::Warn(Diagnostic warning) {
     return other.place.line == warning.place.line && other.place.column == warning.place.column &&
            other.file == warning.file && other.hint == warning.hint;
   };
-  if (symbols_.warnings.size() < kMostDoubts && std::ranges::none_of(symbols_.warnings, same))
+  if (symbols_.warnings.size() < kMostVacuous && std::ranges::none_of(symbols_.warnings, same))
     symbols_.warnings.push_back(std::move(warning));
 }
 

@@ -132,21 +132,21 @@ void ScriptPlayer::NoteTheGrip(std::size_t hand, const Snapshot& now) {
   std::string note = NoteAboutGrip(scene_, now, HandIndex(hand), state.object);
   if (note.empty()) return;
   notes_.push_back({now.tick, HandIndex(hand), std::move(note)});
-  hands_[hand].doubt = Doubt{now.tick, state.object};
+  hands_[hand].grip_note = GripNote{now.tick, state.object};
 }
 
 void ScriptPlayer::WithdrawNotes(const Snapshot& now) {
   for (std::size_t h = 0; h < hands_.size(); ++h) {
-    std::optional<Doubt>& doubt = hands_[h].doubt;
-    if (!doubt) continue;
+    std::optional<GripNote>& grip_note = hands_[h].grip_note;
+    if (!grip_note) continue;
     const HandIndex hand = HandIndex(h);
-    if (hands_[h].object != doubt->object || TargetOf(hands_[h]).trigger < kClosed) {
-      doubt.reset();
-    } else if (IsHeldBySides(scene_, now, hand, doubt->object)) {
+    if (hands_[h].object != grip_note->object || TargetOf(hands_[h]).trigger < kClosed) {
+      grip_note.reset();
+    } else if (IsHeldBySides(scene_, now, hand, grip_note->object)) {
       std::erase_if(notes_, [&](const ScriptNote& note) {
-        return note.tick == doubt->tick && note.hand == hand;
+        return note.tick == grip_note->tick && note.hand == hand;
       });
-      doubt.reset();
+      grip_note.reset();
     }
   }
 }

@@ -92,7 +92,7 @@ class ScriptPlayer {
     double depth_m = 0;    ///< how far the target has gone
   };
   /// A note says that the hand has closed without holding `object`.
-  struct Doubt {
+  struct GripNote {
     std::int64_t tick = 0;  ///< of the note
     BodyIndex object = {};
   };
@@ -114,7 +114,7 @@ class ScriptPlayer {
     std::int64_t late_ticks = 0;  ///< by which it lasts longer than planned
     std::string written_at = {};  ///< the present step
     bool closes = false;          ///< with the present step the trigger rises
-    std::optional<Doubt> doubt = std::nullopt;
+    std::optional<GripNote> grip_note = std::nullopt;
   };
   class Resolver;
 

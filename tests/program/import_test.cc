@@ -295,11 +295,11 @@ TEST(Import, WhatTheMapIsSureOfIsNoError) {
 
 /// The page's map is the shipped one, and its transport is that of the simulated run, within a
 /// frame.
-TEST(Import, ADoubtIsCalledAsThePageAndTheMapCallIt) {
+TEST(Import, AWarningIsCalledAsThePageAndTheMapCallIt) {
   const auto folder = FreshFolder("import");
-  for (const char* doubt : {"unit", "axes", "quaternion_order", "time", "place", "zero"}) {
-    const Said said = ImportCsv(folder, Csv(), std::string(kMap) + "sure: [" + doubt + "]\n");
-    EXPECT_EQ(said.exit_code, 0) << doubt << said.err;
+  for (const char* warning : {"unit", "axes", "quaternion_order", "time", "place", "zero"}) {
+    const Said said = ImportCsv(folder, Csv(), std::string(kMap) + "sure: [" + warning + "]\n");
+    EXPECT_EQ(said.exit_code, 0) << warning << said.err;
   }
 }
 

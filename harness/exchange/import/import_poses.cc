@@ -13,7 +13,7 @@
 #include "grammar/base/tracking.h"
 #include "grammar/base/wording.h"
 #include "harness/base/yaml/error_at.h"
-#include "harness/exchange/import/doubts.h"
+#include "harness/exchange/import/import_warnings.h"
 #include "harness/exchange/import/lengths.h"
 #include "harness/exchange/import/rest_plane.h"
 #include "harness/exchange/import/rests.h"
@@ -169,10 +169,10 @@ class Importer {
 
   void WarnOfRests() {
     NotUpright turned;
-    if (const auto range = RangeTooSmall(file_, map_); range && !map_.IsSure(Doubt::kUnit))
+    if (const auto range = RangeTooSmall(file_, map_); range && !map_.IsSure(ImportWarning::kUnit))
       return Warn(
           fmt::format("{}: {}; or, if it is right, sure: [unit]", range->text, range->remedy));
-    if (!map_.IsSure(Doubt::kUpright)) turned = FindNotUpright(imported_.episode, map_);
+    if (!map_.IsSure(ImportWarning::kUpright)) turned = FindNotUpright(imported_.episode, map_);
     for (std::string& text : turned.warnings) Warn(std::move(text));
     TooLarge large = ThingsTooLarge(map_);
     for (std::string& text : large.warnings) Warn(std::move(text));
@@ -467,8 +467,8 @@ Result<Imported> ImportPoses(const std::string& poses_path, const std::string& m
   constexpr std::array kReaders = {ReadCsvPoses, ReadBvhPoses, ReadMcapPoses};
   const Result<PoseFile> poses = kReaders[static_cast<std::size_t>(*format)](poses_path, *map);
   if (!poses) return tl::unexpected(poses.error());
-  if (grammar::Diagnostics doubts = FindDoubts(*poses, *map); !doubts.empty())
-    return tl::unexpected(std::move(doubts));
+  if (grammar::Diagnostics warnings = FindImportWarnings(*poses, *map); !warnings.empty())
+    return tl::unexpected(std::move(warnings));
   return Importer(*poses, *map).Import();
 }
 

@@ -33,7 +33,7 @@ struct Imported {
   std::vector<std::string> warnings;  ///< one line each
 };
 
-/// Reads, doubts and converts. Nothing comes of a file with errors.
+/// Reads, checks and converts. Nothing comes of a file with errors.
 Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path);
 
 }  // namespace prehend::exchange

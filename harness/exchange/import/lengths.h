@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lengths that people do not work with: hands that hardly move, things larger than a person. Tested
-// by tests/program/import_doubts_test.cc
+// by tests/program/import_warnings_test.cc
 #pragma once
 
 #include <optional>

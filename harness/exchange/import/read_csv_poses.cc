@@ -94,7 +94,7 @@ class CsvPoseReader {
       return Complain({line_, 1},
                       grammar::CountOf(poses.rows, "row") + "; a recording has at least 2");
     RefuseAbsentBodies(poses, map_, map_errors_);
-    DoubtTimes();
+    CheckTimes();
   }
 
   Diagnostics Problems() const {
@@ -297,10 +297,10 @@ class CsvPoseReader {
   }
 
   /// A tracker that takes one pose each millisecond has times as frames have numbers.
-  void DoubtTimes() {
+  void CheckTimes() {
     poses.counts_frames = map_.time_unit->value != TimeUnit::kFrame && steps_ >= kLeastSteps &&
                           whole_steps_ == steps_ && 10 * unit_steps_ >= 9 * steps_;
-    if (poses.counts_frames && !map_.rate_hz && !map_.IsSure(Doubt::kTime))
+    if (poses.counts_frames && !map_.rate_hz && !map_.IsSure(ImportWarning::kTime))
       poses.notes.push_back(fmt::format(
           "the times of '{}' are whole numbers that grow by 1 each: they look like frame numbers; "
           "in the map: time_unit: frame, and rate_hz; or, if they are times, sure: [time]",

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "grammar/base/tracking.h"
-#include "harness/exchange/import/doubts.h"
+#include "harness/exchange/import/import_warnings.h"
 
 namespace prehend::exchange {
 namespace {

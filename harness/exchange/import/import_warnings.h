@@ -7,9 +7,9 @@
 
 namespace prehend::exchange {
 
-/// Errors at the keys of the map that look wrong, with the numbers that were seen; none of a doubt
+/// Errors at the keys of the map that look wrong, with the numbers that were seen; none of a kind
 /// that the map is sure about.
-grammar::Diagnostics FindDoubts(const PoseFile& poses, const MapFile& map);
+grammar::Diagnostics FindImportWarnings(const PoseFile& poses, const MapFile& map);
 
 /// The middle one, of an even number the upper; 0 of none.
 double Median(std::vector<double> values);

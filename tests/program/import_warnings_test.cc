@@ -42,8 +42,8 @@ std::string SwingingMap(const char* rate_hz, const std::string& hand = "hand: tr
          hand + "size_m: [0.09, 0.08, 0.03]}\n";
 }
 
-TEST(ImportDoubts, ASmoothPathDoesNotTremble) {
-  const auto folder = FreshFolder("import_doubts");
+TEST(ImportWarnings, ASmoothPathDoesNotTremble) {
+  const auto folder = FreshFolder("import_warnings");
   for (const char* rate_hz : {"15", "25", "30", "120"}) {
     const Said said =
         ImportCsv(folder, SwingingCsv(std::stod(rate_hz)), SwingingMap(rate_hz), {"--check"});
@@ -51,8 +51,8 @@ TEST(ImportDoubts, ASmoothPathDoesNotTremble) {
   }
 }
 
-TEST(ImportDoubts, NoiseOnASmoothPathTremblesAndItsRemedyHelps) {
-  const auto folder = FreshFolder("import_doubts");
+TEST(ImportWarnings, NoiseOnASmoothPathTremblesAndItsRemedyHelps) {
+  const auto folder = FreshFolder("import_warnings");
   const std::string csv = SwingingCsv(30, 0.008);
   const Said rough = ImportCsv(folder, csv, SwingingMap("30"), {"--check"});
   EXPECT_NE(rough.err.find("'hand' trembles by"), std::string::npos) << rough.err;
@@ -75,8 +75,8 @@ std::string ErrorsOf(const Said& said) {
   return errors;
 }
 
-TEST(ImportDoubts, NamesOfColumnsOnAnotherLineAreFoundThere) {
-  const auto folder = FreshFolder("import_doubts");
+TEST(ImportWarnings, NamesOfColumnsOnAnotherLineAreFoundThere) {
+  const auto folder = FreshFolder("import_warnings");
   const std::string csv = "Tracker 3,take 1\nrate,30\n" + SwingingCsv(30);
   const Said first = ImportCsv(folder, csv, SwingingMap("30"));
   EXPECT_EQ(ErrorsOf(first),
@@ -90,8 +90,8 @@ TEST(ImportDoubts, NamesOfColumnsOnAnotherLineAreFoundThere) {
   EXPECT_EQ(ImportCsv(folder, csv, SwingingMap("30") + "header_line: 3\n").exit_code, 0);
 }
 
-TEST(ImportDoubts, ALossSaysWhatWouldDo) {
-  const auto folder = FreshFolder("import_doubts");
+TEST(ImportWarnings, ALossSaysWhatWouldDo) {
+  const auto folder = FreshFolder("import_warnings");
   std::string csv = SwingingCsv(30);
   std::size_t at = 0;
   for (int line = 0; line < 40; ++line) at = csv.find('\n', at) + 1;
@@ -109,8 +109,8 @@ TEST(ImportDoubts, ALossSaysWhatWouldDo) {
     EXPECT_EQ(ImportCsv(folder, csv, SwingingMap("30") + remedy).exit_code, 0) << remedy;
 }
 
-TEST(ImportDoubts, OrientationsThatAMapForgetsAreOneError) {
-  const auto folder = FreshFolder("import_doubts");
+TEST(ImportWarnings, OrientationsThatAMapForgetsAreOneError) {
+  const auto folder = FreshFolder("import_warnings");
   std::string map = SwingingMap("30");
   map = Replaced(map, "0.1]}", "0.1], upright_at_s: 0}");
   map = Replaced(map, "0.03]}", "0.03], upright_at_s: 0}");
@@ -125,8 +125,8 @@ TEST(ImportDoubts, OrientationsThatAMapForgetsAreOneError) {
 }
 
 /// The hand swings 0.6 m far.
-TEST(ImportDoubts, HandsThatStayWithinAHandsWidthMakeTheUnitDoubtful) {
-  const auto folder = FreshFolder("import_doubts");
+TEST(ImportWarnings, HandsThatStayWithinAHandsWidthMakeTheUnitUnlikely) {
+  const auto folder = FreshFolder("import_warnings");
   const std::string range =
       "all hands together stay within 0.06 m, and all that is tracked within 0.066 m; in m it "
       "would be 0.6 m";
@@ -148,8 +148,8 @@ TEST(ImportDoubts, HandsThatStayWithinAHandsWidthMakeTheUnitDoubtful) {
   EXPECT_EQ(right.err.find("unit"), std::string::npos) << right.err;
 }
 
-TEST(ImportDoubts, AUnitInWhichTheTableIsReachedIsNamed) {
-  const auto folder = FreshFolder("import_doubts");
+TEST(ImportWarnings, AUnitInWhichTheTableIsReachedIsNamed) {
+  const auto folder = FreshFolder("import_warnings");
   const std::string table =
       "  table: {at_m: [0, 0, 0.68], fixed: true, class: Table, size_m: [1, 1, 0.04]}\n";
   const Said said = ImportCsv(folder, SwingingCsv(30),
@@ -159,8 +159,8 @@ TEST(ImportDoubts, AUnitInWhichTheTableIsReachedIsNamed) {
             "it\n  hint: unit: m; or, if it is right, sure: [unit]\n");
 }
 
-TEST(ImportDoubts, SizesThatNoHandMovesAreNamed) {
-  const auto folder = FreshFolder("import_doubts");
+TEST(ImportWarnings, SizesThatNoHandMovesAreNamed) {
+  const auto folder = FreshFolder("import_warnings");
   const Said said =
       ImportCsv(folder, SwingingCsv(30),
                 Replaced(SwingingMap("30"), "[0.07, 0.07, 0.1]", "[7, 7, 10]"), {"--check"});
@@ -171,8 +171,8 @@ TEST(ImportDoubts, SizesThatNoHandMovesAreNamed) {
   EXPECT_EQ(said.err.find("'table: "), std::string::npos) << said.err;
 }
 
-TEST(ImportDoubts, TimesThatCountFramesAreNamed) {
-  const auto folder = FreshFolder("import_doubts");
+TEST(ImportWarnings, TimesThatCountFramesAreNamed) {
+  const auto folder = FreshFolder("import_warnings");
   std::string csv;
   int frame = -1;
   std::istringstream lines(SwingingCsv(30));
@@ -183,12 +183,12 @@ TEST(ImportDoubts, TimesThatCountFramesAreNamed) {
                              "rate_hz: 30\n", rate),
                     "{position", "{time: frame, position");
   };
-  const std::string doubt =
+  const std::string warning =
       "warning: the times of 'frame' are whole numbers that grow by 1 each: they look like frame "
       "numbers; in the map: time_unit: frame, and rate_hz; or, if they are times, sure: [time]\n";
   const Said said = ImportCsv(folder, csv, map("ms", ""), {"--check"});
   EXPECT_EQ(said.exit_code, 0);
-  EXPECT_NE(said.err.find(doubt), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find(warning), std::string::npos) << said.err;
   const Said sure = ImportCsv(folder, csv, map("ms", "sure: [time]\n"), {"--check"});
   EXPECT_EQ(sure.err.find("frame numbers"), std::string::npos) << sure.err;
   const Said frames = ImportCsv(folder, csv, map("frame", "rate_hz: 30\n"), {"--check"});
@@ -204,8 +204,8 @@ TEST(ImportDoubts, TimesThatCountFramesAreNamed) {
             "right, sure: [time]\n");
 }
 
-TEST(ImportDoubts, AMapWithoutHandsIsWarnedOf) {
-  const auto folder = FreshFolder("import_doubts");
+TEST(ImportWarnings, AMapWithoutHandsIsWarnedOf) {
+  const auto folder = FreshFolder("import_warnings");
   const Said said = ImportCsv(folder, SwingingCsv(30), SwingingMap("30", ""), {"--check"});
   EXPECT_NE(said.err.find("warning: no entity is a Hand, so what hands do is never recognised: "),
             std::string::npos)
@@ -213,8 +213,8 @@ TEST(ImportDoubts, AMapWithoutHandsIsWarnedOf) {
   EXPECT_NE(said.err.find("grasping"), std::string::npos) << said.err;
 }
 
-TEST(ImportDoubts, AGrammarThatDoesNotExistIsWrongWhereItIsNamed) {
-  const auto folder = FreshFolder("import_doubts");
+TEST(ImportWarnings, AGrammarThatDoesNotExistIsWrongWhereItIsNamed) {
+  const auto folder = FreshFolder("import_warnings");
   const Said said = ImportCsv(folder, SwingingCsv(30), "grammar: contat\n" + SwingingMap("30"));
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_NE(said.err.find("map.yaml:1:10: error: grammar: no grammar is called 'contat'"),
@@ -239,8 +239,8 @@ TEST(ImportDoubts, AGrammarThatDoesNotExistIsWrongWhereItIsNamed) {
   }
 }
 
-TEST(ImportDoubts, BracesWithoutQuotesAreExplained) {
-  const auto folder = FreshFolder("import_doubts");
+TEST(ImportWarnings, BracesWithoutQuotesAreExplained) {
+  const auto folder = FreshFolder("import_warnings");
   const Said said =
       ImportCsv(folder, SwingingCsv(30),
                 Replaced(SwingingMap("30"), "['{}_x', '{}_y', '{}_z']", "[{}_x, {}_y, {}_z]"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/doubts.h. Tested by tests/program/import_test.cc
-#include "harness/exchange/import/doubts.h"
+// See harness/exchange/import/import_warnings.h. Tested by tests/program/import_test.cc
+#include "harness/exchange/import/import_warnings.h"
 
 #include <fmt/format.h>
 
@@ -26,29 +26,30 @@ constexpr double kLeastHands_m = 0.15, kMostHands_m = 5;  ///< where hands go
 
 constexpr const char* kAxes = "xyz";
 
-class DoubtFinder {
+class ImportWarningFinder {
  public:
-  DoubtFinder(const PoseFile& poses, const MapFile& map)
+  ImportWarningFinder(const PoseFile& poses, const MapFile& map)
       : poses_(poses), map_(map.map), errors_(map.document), scale_(map.map.MetresPerUnit()) {}
 
   grammar::Diagnostics Find() {
-    if (Asks(Doubt::kZero) && !map_.zero_is_missing) Zeros();
-    if (Asks(Doubt::kTime)) Times();
-    if (Asks(Doubt::kUnit)) Unit();
+    if (Asks(ImportWarning::kZero) && !map_.zero_is_missing) Zeros();
+    if (Asks(ImportWarning::kTime)) Times();
+    if (Asks(ImportWarning::kUnit)) Unit();
     // With a wrong unit, lengths mean nothing.
-    if (errors_.empty() && Asks(Doubt::kAxes)) Up();
-    if (errors_.empty() && Asks(Doubt::kPlace)) Near();
-    if (Asks(Doubt::kQuaternionOrder) && poses_.quaternion_order) Order();
+    if (errors_.empty() && Asks(ImportWarning::kAxes)) Up();
+    if (errors_.empty() && Asks(ImportWarning::kPlace)) Near();
+    if (Asks(ImportWarning::kQuaternionOrder) && poses_.quaternion_order) Order();
     return errors_.Sorted();
   }
 
  private:
-  bool Asks(Doubt doubt) const { return !map_.IsSure(doubt); }
+  bool Asks(ImportWarning warning) const { return !map_.IsSure(warning); }
 
-  void Add(const Where& where, Doubt doubt, const std::string& message, const std::string& remedy) {
+  void Add(const Where& where, ImportWarning warning, const std::string& message,
+           const std::string& remedy) {
     errors_.Add(where, message,
                 fmt::format("{}; or, if it is right, sure: [{}]", remedy,
-                            kDoubtNames[static_cast<std::size_t>(doubt)]));
+                            kWarningNames[static_cast<std::size_t>(warning)]));
   }
 
   void Zeros() {
@@ -58,7 +59,7 @@ class DoubtFinder {
       const auto zeros = std::ranges::count_if(
           body.samples, [](const PoseSample& sample) { return sample.p.isZero(0); });
       if (zeros == 0 || static_cast<std::size_t>(zeros) == body.samples.size()) continue;
-      Add(entity.value.from->where, Doubt::kZero,
+      Add(entity.value.from->where, ImportWarning::kZero,
           fmt::format("'{}' is at exactly 0, 0, 0 in {} of {} poses; many trackers write that for "
                       "'not tracked'",
                       body.name, zeros, body.samples.size()),
@@ -72,13 +73,13 @@ class DoubtFinder {
     const double step_s = *std::ranges::min_element(steps);
     const double rate_hz = 1 / step_s;
     if (map_.rate_hz && std::abs(rate_hz / map_.rate_hz->value - 1) > 0.05) {
-      Add(map_.rate_hz->where, Doubt::kTime,
+      Add(map_.rate_hz->where, ImportWarning::kTime,
           fmt::format("rate_hz: {:g}, but poses are {:.4g} s apart: {:.4g} Hz", map_.rate_hz->value,
                       step_s, rate_hz),
           poses_.counts_frames ? "the times look like frame numbers: time_unit: frame"
                                : "correct rate_hz or time_unit");
     } else if (rate_hz < kLeastRate_hz || rate_hz > kMostRate_hz) {
-      Add(TimeWhere(), Doubt::kTime,
+      Add(TimeWhere(), ImportWarning::kTime,
           fmt::format("poses are {:.4g} s apart: {:.4g} Hz{}", step_s, rate_hz,
                       poses_.counts_frames       ? ""
                       : Plausible(rate_hz * 1e3) ? "; the times look like milliseconds"
@@ -108,7 +109,7 @@ class DoubtFinder {
     if (poses_.stature) {
       const double height_m = poses_.stature->norm() * scale_;
       if (height_m < kLeastStature_m || height_m > kMostStature_m)
-        Add(map_.UnitWhere(), Doubt::kUnit,
+        Add(map_.UnitWhere(), ImportWarning::kUnit,
             fmt::format("from feet to head the skeleton is {:.3g} m ({:.4g} in the file)", height_m,
                         poses_.stature->norm()),
             fmt::format("correct unit, or metres_per_unit: {:.3g}, if it is 1.6 m",
@@ -125,14 +126,14 @@ class DoubtFinder {
     }
     const double median_m = Median(std::move(distances)), span_m = extent.diagonal().norm();
     if (median_m > kFarFromOrigin_m) {
-      Add(map_.UnitWhere(), Doubt::kUnit,
+      Add(map_.UnitWhere(), ImportWarning::kUnit,
           fmt::format("the poses are {:.4g} m from the origin (median){}", median_m,
                       scale_ != 1      ? ""
                       : median_m > 150 ? "; they look like millimetres"
                                        : "; they look like centimetres or millimetres"),
           "correct unit");
     } else if (span_m < kNothingMoves_m) {
-      Add(map_.UnitWhere(), Doubt::kUnit,
+      Add(map_.UnitWhere(), ImportWarning::kUnit,
           fmt::format("all poses are within {:.3g} mm{}", span_m * 1e3,
                       scale_ == 1 ? ""
                                   : fmt::format("; as metres they would be within {:.3g} m",
@@ -185,7 +186,7 @@ class DoubtFinder {
       poses_.stature->maxCoeff(&tallest);
       const double along_up = poses_.stature->dot(up);
       if (tallest != nearest && along_up < 0.7 * poses_.stature->norm())
-        Add(map_.UpWhere(), Doubt::kAxes,
+        Add(map_.UpWhere(), ImportWarning::kAxes,
             fmt::format("the head is {:.2f} m from the feet along {}, and {:.2f} m along {}: {} "
                         "looks up",
                         (*poses_.stature)[tallest] * scale_, kAxes[tallest], along_up * scale_,
@@ -198,7 +199,7 @@ class DoubtFinder {
     for (const int axis : {1, 2, 0}) {
       const Lifts other = LiftsAlong(Eigen::Vector3d::Unit(axis));
       if (axis == nearest || other.lifted < other.moving) continue;
-      Add(map_.UpWhere(), Doubt::kAxes,
+      Add(map_.UpWhere(), ImportWarning::kAxes,
           fmt::format("nothing is lifted along {}, but '{}' rises {:.2f} m along {} and comes "
                       "down again: {} looks up",
                       stated_up, other.example, other.highest_m, kAxes[axis], kAxes[axis]),
@@ -237,14 +238,15 @@ class DoubtFinder {
     const std::string text =
         fmt::format("nothing tracked comes nearer to '{}' than {:.2f} m ('{}')",
                     nearest.standing->name, nearest.distance_m, nearest.comes->name);
-    if (Asks(Doubt::kUnit)) {
+    if (Asks(ImportWarning::kUnit)) {
       if (const auto range = RangeTooSmall(poses_, map_))
-        return Add(map_.UnitWhere(), Doubt::kUnit, range->text + "; " + text, range->remedy);
+        return Add(map_.UnitWhere(), ImportWarning::kUnit, range->text + "; " + text,
+                   range->remedy);
       if (const std::string unit = UnitThatComesNear(); !unit.empty())
-        return Add(map_.UnitWhere(), Doubt::kUnit,
+        return Add(map_.UnitWhere(), ImportWarning::kUnit,
                    fmt::format("{}; in {} it would come to it", text, unit), "unit: " + unit);
     }
-    Add(nearest.standing->name_where, Doubt::kPlace, text,
+    Add(nearest.standing->name_where, ImportWarning::kPlace, text,
         "correct its at_m (z up, metres, after the change of axes), or unit, or axes");
   }
 
@@ -279,7 +281,7 @@ class DoubtFinder {
     const double w = Median(std::move(as_read)), other_w = Median(std::move(other));
     if (w > 0.5 || other_w < 0.85) return;
     Add(map_.quaternion_order ? map_.quaternion_order->where : FirstBodyWhere(),
-        Doubt::kQuaternionOrder,
+        ImportWarning::kQuaternionOrder,
         fmt::format("the {} of four numbers, as w, is {:.2f} (median, without its sign), the {} is "
                     "{:.2f}: this looks like {}",
                     w_first ? "first" : "last", w, w_first ? "last" : "first", other_w,
@@ -299,8 +301,8 @@ class DoubtFinder {
 
 }  // namespace
 
-grammar::Diagnostics FindDoubts(const PoseFile& poses, const MapFile& map) {
-  return DoubtFinder(poses, map).Find();
+grammar::Diagnostics FindImportWarnings(const PoseFile& poses, const MapFile& map) {
+  return ImportWarningFinder(poses, map).Find();
 }
 
 double Median(std::vector<double> values) {
