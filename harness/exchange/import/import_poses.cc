@@ -16,8 +16,8 @@
 #include "harness/exchange/import/import_warnings.h"
 #include "harness/exchange/import/lengths.h"
 #include "harness/exchange/import/rest_plane.h"
-#include "harness/exchange/import/rests.h"
-#include "harness/exchange/import/standing.h"
+#include "harness/exchange/import/rest_poses.h"
+#include "harness/exchange/import/rest_support.h"
 
 namespace prehend::exchange {
 namespace {
@@ -156,7 +156,7 @@ class Importer {
       return tl::unexpected(grammar::Diagnostics{
           {.file = file_.file, .place = {}, .message = problem, .source_line = {}, .hint = {}}});
     AddFrames();
-    WarnOfRests();
+    WarnOfRestPoses();
     WarnOfNoOrientations();
     for (const std::string& body : file_.unused)
       Warn(fmt::format("the file has '{}', which the map does not mention", body));
@@ -167,7 +167,7 @@ class Importer {
  private:
   void Warn(std::string text) { imported_.warnings.push_back(std::move(text)); }
 
-  void WarnOfRests() {
+  void WarnOfRestPoses() {
     NotUpright turned;
     if (const auto range = RangeTooSmall(file_, map_); range && !map_.IsSure(ImportWarning::kUnit))
       return Warn(
@@ -179,7 +179,7 @@ class Importer {
     turned.things.merge(large.things);
     if (std::string text = RestOnNothing(imported_.episode, turned.things); !text.empty())
       Warn(std::move(text));
-    if (std::string text = TiltOfRests(imported_.episode, map_.WorldTurn(), turned.things);
+    if (std::string text = TiltOfRestPlane(imported_.episode, map_.WorldTurn(), turned.things);
         !text.empty())
       Warn(std::move(text));
   }

@@ -210,14 +210,14 @@ class ImportWarningFinder {
 
   struct Approach {
     double distance_m = std::numeric_limits<double>::infinity();
-    const Named<MappedEntity>* standing = nullptr;
+    const Named<MappedEntity>* place = nullptr;
     const PoseBody* comes = nullptr;
   };
   /// How near what is tracked comes to what the map places.
   Approach Nearest(double metres_per_unit) const {
     Approach nearest;
-    for (const Named<MappedEntity>& standing : map_.entities) {
-      const MappedEntity& e = standing.value;
+    for (const Named<MappedEntity>& place : map_.entities) {
+      const MappedEntity& e = place.value;
       if (!e.at_m) continue;
       const Eigen::Quaterniond q(e.quat_wxyz[0], e.quat_wxyz[1], e.quat_wxyz[2], e.quat_wxyz[3]);
       for (const PoseBody& body : poses_.bodies) {
@@ -225,7 +225,7 @@ class ImportWarningFinder {
           const Eigen::Vector3d p_B =
               q.conjugate() * (Upright(sample.p * metres_per_unit) - *e.at_m);
           const double distance_m = (p_B.cwiseAbs() - e.size_m / 2).cwiseMax(0).norm();
-          if (distance_m < nearest.distance_m) nearest = {distance_m, &standing, &body};
+          if (distance_m < nearest.distance_m) nearest = {distance_m, &place, &body};
         }
       }
     }
@@ -234,10 +234,10 @@ class ImportWarningFinder {
 
   void Near() {
     const Approach nearest = Nearest(scale_);
-    if (!nearest.standing || nearest.distance_m <= kNear_m) return;
+    if (!nearest.place || nearest.distance_m <= kNear_m) return;
     const std::string text =
         fmt::format("nothing tracked comes nearer to '{}' than {:.2f} m ('{}')",
-                    nearest.standing->name, nearest.distance_m, nearest.comes->name);
+                    nearest.place->name, nearest.distance_m, nearest.comes->name);
     if (Asks(ImportWarning::kUnit)) {
       if (const auto range = RangeTooSmall(poses_, map_))
         return Add(map_.UnitWhere(), ImportWarning::kUnit, range->text + "; " + text,
@@ -246,7 +246,7 @@ class ImportWarningFinder {
         return Add(map_.UnitWhere(), ImportWarning::kUnit,
                    fmt::format("{}; in {} it would come to it", text, unit), "unit: " + unit);
     }
-    Add(nearest.standing->name_where, ImportWarning::kPlace, text,
+    Add(nearest.place->name_where, ImportWarning::kPlace, text,
         "correct its at_m (z up, metres, after the change of axes), or unit, or axes");
   }
 

@@ -32,7 +32,7 @@ constexpr double kMostShare = 0.6;  ///< of all places at least so many must lie
 constexpr std::size_t kLeastPlaces = 5, kLeastThings = 3, kMostPlaces = 300;
 constexpr int kRounds = 8;
 
-struct RestPlace {
+struct RestPoint {
   Eigen::Vector3d p_m;
   double half_height_m = 0;
   std::size_t thing = 0;
@@ -46,13 +46,13 @@ struct RestPlane {
 };
 
 /// Of all entities at once: `places` of things, `hands` wherever they are.
-struct SeenRests {
-  std::vector<RestPlace> places;
+struct SeenRestPoses {
+  std::vector<RestPoint> places;
   std::vector<Eigen::Vector3d> hands;
 };
 
-SeenRests RestsIn(const episode::Recording& episode, const std::set<std::size_t>& untrue) {
-  SeenRests seen;
+SeenRestPoses RestPosesIn(const episode::Recording& episode, const std::set<std::size_t>& untrue) {
+  SeenRestPoses seen;
   const auto& entities = episode.header.entity_table.entities;
   const auto step = static_cast<grammar::Tick>(
       kLook_s * static_cast<double>(episode.header.entity_table.ticks_per_second));
@@ -69,7 +69,7 @@ SeenRests RestsIn(const episode::Recording& episode, const std::set<std::size_t>
           std::ranges::find(entities[i].classes, "Movable") == entities[i].classes.end() ||
           (look.p_WB_m - old.p_WB_m).norm() >= kSame_m || seen.places.size() >= kMostPlaces)
         continue;
-      const bool is_known = std::ranges::any_of(seen.places, [&](const RestPlace& place) {
+      const bool is_known = std::ranges::any_of(seen.places, [&](const RestPoint& place) {
         return place.thing == i && (place.p_m - look.p_WB_m).norm() < kApart_m;
       });
       if (!is_known) seen.places.push_back({look.p_WB_m, entities[i].half_size_m.z(), i});
@@ -79,11 +79,11 @@ SeenRests RestsIn(const episode::Recording& episode, const std::set<std::size_t>
 }
 
 /// Of the bottoms of things that stand as `up` says; hands are above it.
-RestPlane FitPlane(const SeenRests& seen, const Eigen::Vector3d& up) {
+RestPlane FitPlane(const SeenRestPoses& seen, const Eigen::Vector3d& up) {
   RestPlane plane;
   const auto count = static_cast<double>(seen.places.size());
   std::vector<Eigen::Vector3d> bottoms;
-  for (const RestPlace& place : seen.places)
+  for (const RestPoint& place : seen.places)
     bottoms.emplace_back(place.p_m - place.half_height_m * up);
   for (const Eigen::Vector3d& bottom : bottoms) plane.middle += bottom / count;
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -101,7 +101,7 @@ RestPlane FitPlane(const SeenRests& seen, const Eigen::Vector3d& up) {
   return plane;
 }
 
-RestPlane FitPlaneUpright(const SeenRests& seen, Eigen::Vector3d up) {
+RestPlane FitPlaneUpright(const SeenRestPoses& seen, Eigen::Vector3d up) {
   RestPlane plane;
   for (int round = 0; round < kRounds; ++round) {
     plane = FitPlane(seen, up);
@@ -110,25 +110,25 @@ RestPlane FitPlaneUpright(const SeenRests& seen, Eigen::Vector3d up) {
   return plane;
 }
 
-double OffPlane(const RestPlane& plane, const RestPlace& place) {
+double OffPlane(const RestPlane& plane, const RestPoint& place) {
   return std::abs(plane.normal.dot(place.p_m - plane.middle) - place.half_height_m);
 }
 
 }  // namespace
 
-std::string TiltOfRests(const episode::Recording& episode, const Eigen::Quaterniond& turn,
-                        const std::set<std::size_t>& untrue) {
-  SeenRests seen = RestsIn(episode, untrue);
+std::string TiltOfRestPlane(const episode::Recording& episode, const Eigen::Quaterniond& turn,
+                            const std::set<std::size_t>& untrue) {
+  SeenRestPoses seen = RestPosesIn(episode, untrue);
   const std::size_t all = seen.places.size();
   RestPlane plane;
   while (true) {
     std::set<std::size_t> things;
-    for (const RestPlace& place : seen.places) things.insert(place.thing);
+    for (const RestPoint& place : seen.places) things.insert(place.thing);
     if (seen.places.size() < kLeastPlaces || things.size() < kLeastThings ||
         static_cast<double>(seen.places.size()) < kMostShare * static_cast<double>(all))
       return "";
     plane = FitPlaneUpright(seen, plane.normal);
-    const auto off = [&](const RestPlace& place) { return OffPlane(plane, place); };
+    const auto off = [&](const RestPoint& place) { return OffPlane(plane, place); };
     const auto worst = std::ranges::max_element(seen.places, {}, off);
     if (off(*worst) > kOff_m) {
       seen.places.erase(worst);

@@ -14,7 +14,7 @@ namespace prehend::exchange {
 /// Says by how much the plane is tilted on which most things rest, how well it is known, and what
 /// the map could say; "" where that is less than 5 degrees, or too few places tell. `turn`: from
 /// the file's axes to the recording's. Not of `untrue`, whose heights mean nothing.
-std::string TiltOfRests(const episode::Recording& episode, const Eigen::Quaterniond& turn,
-                        const std::set<std::size_t>& untrue);
+std::string TiltOfRestPlane(const episode::Recording& episode, const Eigen::Quaterniond& turn,
+                            const std::set<std::size_t>& untrue);
 
 }  // namespace prehend::exchange

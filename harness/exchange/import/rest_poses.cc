@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/standing.h.
+// See harness/exchange/import/rest_poses.h.
 //
 // A thing rests where it gets less than a centimetre far in half a second, hardly turns, is as low
 // as it ever rests, and no hand is at it. If it never rests upright, it is not turned as the map
@@ -8,7 +8,7 @@
 //
 // Several things that are turned the same way rest on a frame that is not upright: of that,
 // harness/exchange/import/rest_plane.h says something.
-#include "harness/exchange/import/standing.h"
+#include "harness/exchange/import/rest_poses.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -38,7 +38,7 @@ double DegreesBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 /// One thing at rest.
-struct Rest {
+struct RestPose {
   std::size_t thing = 0;
   double at_s = 0;  ///< the first time
   double degrees = 0;
@@ -52,29 +52,29 @@ struct Rest {
   }
 };
 
-class StandingFinder {
+class RestPoseFinder {
  public:
-  StandingFinder(const episode::Recording& episode, const ImportMap& map)
+  RestPoseFinder(const episode::Recording& episode, const ImportMap& map)
       : episode_(episode), map_(map), entities_(episode.header.entity_table.entities) {}
 
   NotUpright Find() {
-    std::vector<Rest> rests;
+    std::vector<RestPose> rests;
     for (std::size_t i = 0; i < entities_.size(); ++i) {
       const MappedEntity& e = map_.entities[i].value;
       if (!e.from || e.hand || e.fixed) continue;
-      if (auto rest = RestOf(i)) rests.push_back(*rest);
+      if (auto rest = RestPoseOf(i)) rests.push_back(*rest);
     }
     bool axes_are_any = false;
-    for (const Rest& rest : rests) {
+    for (const RestPose& rest : rests) {
       if (rest.degrees <= kUpright_deg) continue;
-      const bool alike = std::ranges::any_of(rests, [&](const Rest& other) {
+      const bool alike = std::ranges::any_of(rests, [&](const RestPose& other) {
         return &other != &rest && DegreesBetween(other.Axis(), rest.Axis()) < kAlike_deg;
       });
       if (rest.LiesOrIsUpsideDown() ? !StandsRather(rest) : alike) continue;
       found_.things.insert(rest.thing);
       axes_are_any = axes_are_any || !SaysAxes(map_.entities[rest.thing].value);
     }
-    for (const Rest& rest : rests) {
+    for (const RestPose& rest : rests) {
       // What seems to lie has any axes, too, where the others have.
       if (axes_are_any && rest.degrees > kUpright_deg && !SaysAxes(map_.entities[rest.thing].value))
         found_.things.insert(rest.thing);
@@ -107,7 +107,7 @@ class StandingFinder {
   }
 
   /// The least turned of its rests, with the time of the first.
-  std::optional<Rest> RestOf(std::size_t thing) const {
+  std::optional<RestPose> RestPoseOf(std::size_t thing) const {
     std::vector<const episode::EpisodeFrame*> still;
     double lowest_m = std::numeric_limits<double>::infinity();
     bool turns = false;
@@ -125,13 +125,13 @@ class StandingFinder {
       lowest_m = std::min(lowest_m, Markers_m(*last, thing).z());
       still.push_back(last);
     }
-    std::optional<Rest> rest;
+    std::optional<RestPose> rest;
     for (const episode::EpisodeFrame* frame : still) {
       const grammar::EntitySample& look = frame->entities[thing];
       if (Markers_m(*frame, thing).z() > lowest_m + kLow_m || IsAtHand(*frame, thing)) continue;
       const double degrees =
           DegreesBetween(look.q_WB * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ());
-      if (!rest) rest = Rest{.thing = thing, .at_s = SecondsAt(*frame), .degrees = 360};
+      if (!rest) rest = RestPose{.thing = thing, .at_s = SecondsAt(*frame), .degrees = 360};
       ++rest->looks;
       if (degrees >= rest->degrees) continue;
       rest->degrees = degrees;
@@ -159,16 +159,16 @@ class StandingFinder {
   }
 
   /// It would stand on something of the map, but as it lies it does not touch that.
-  bool StandsRather(const Rest& rest) const {
+  bool StandsRather(const RestPose& rest) const {
     const Eigen::Vector3d& offset_m = map_.entities[rest.thing].value.offset_m;
     const Eigen::Vector3d& half_m = entities_[rest.thing].half_size_m;
-    const Eigen::Vector3d standing_m = rest.markers_m + offset_m;
-    return OffTops_m(standing_m, half_m) < kTouches_m &&
+    const Eigen::Vector3d upright_m = rest.markers_m + offset_m;
+    return OffTops_m(upright_m, half_m) < kTouches_m &&
            OffTops_m(rest.markers_m + rest.q * offset_m,
                      rest.q.toRotationMatrix().cwiseAbs() * half_m) > kIsOff_m;
   }
 
-  void Warn(const Rest& rest, bool alone) {
+  void Warn(const RestPose& rest, bool alone) {
     const Named<MappedEntity>& entity = map_.entities[rest.thing];
     const double at_s = std::round(100 * rest.at_s) / 100;
     std::string text = fmt::format(
@@ -211,7 +211,7 @@ class StandingFinder {
 }  // namespace
 
 NotUpright FindNotUpright(const episode::Recording& episode, const ImportMap& map) {
-  return StandingFinder(episode, map).Find();
+  return RestPoseFinder(episode, map).Find();
 }
 
 }  // namespace prehend::exchange

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Things that rest turned otherwise than upright: trackers give bodies any axes, and the map does
-// not say when they stand. Tested by tests/program/import_standing_test.cc
+// not say when they stand. Tested by tests/program/import_rest_poses_test.cc
 #pragma once
 
 #include <set>

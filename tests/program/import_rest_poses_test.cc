@@ -52,7 +52,7 @@ entities:
          "}\n  hand: {from: Glove, hand: true, size_m: [0, 0, 0]" + hand + "}\n";
 }
 
-class ImportStanding : public testing::Test {
+class ImportRestPoses : public testing::Test {
  protected:
   std::string Warnings(const Degrees& cup, double jar_degrees, const std::string& map) const {
     const Said said = ImportCsv(folder_, Csv(cup, jar_degrees), map, {"--check"});
@@ -62,10 +62,10 @@ class ImportStanding : public testing::Test {
   static Degrees Always(double degrees) {
     return [degrees](double) { return degrees; };
   }
-  const std::filesystem::path folder_ = FreshFolder("import_standing");
+  const std::filesystem::path folder_ = FreshFolder("import_rest_poses");
 };
 
-TEST_F(ImportStanding, AxesThatTheTrackerGaveAreNamedWithTheTimeThatMendsThem) {
+TEST_F(ImportRestPoses, AxesThatTheTrackerGaveAreNamedWithTheTimeThatMendsThem) {
   EXPECT_EQ(Warnings(Always(0), 0, Map()), "");
   EXPECT_EQ(Warnings(Always(40), 0, Map()),
             "warning: 'cup' rests with its z axis 40 degrees away from upright: trackers give "
@@ -75,7 +75,7 @@ TEST_F(ImportStanding, AxesThatTheTrackerGaveAreNamedWithTheTimeThatMendsThem) {
   EXPECT_EQ(Warnings(Always(40), 0, Map() + "sure: [upright]\n"), "");
 }
 
-TEST_F(ImportStanding, ATimeAtWhichItWasTippedIsNotWhenItIsUpright) {
+TEST_F(ImportRestPoses, ATimeAtWhichItWasTippedIsNotWhenItIsUpright) {
   const Degrees pours = [](double t) {
     return Along({{2.2, 0}, {2.3, 60}, {2.7, 60}, {2.8, 0}}, t);
   };
@@ -86,7 +86,7 @@ TEST_F(ImportStanding, ATimeAtWhichItWasTippedIsNotWhenItIsUpright) {
             "s, in the map: cup: {.., upright_at_s: 0}\n");
 }
 
-TEST_F(ImportStanding, WhatLiesOrIsUpsideDownMayDoSo) {
+TEST_F(ImportRestPoses, WhatLiesOrIsUpsideDownMayDoSo) {
   for (const double degrees : {80.0, 90.0, 100.0, 170.0, 180.0})
     EXPECT_EQ(Warnings(Always(degrees), 0, Map()), "") << degrees;
   // But not if it would stand where, lying, it would be beside the table's top.
@@ -97,7 +97,7 @@ TEST_F(ImportStanding, WhatLiesOrIsUpsideDownMayDoSo) {
             std::string::npos);
 }
 
-TEST_F(ImportStanding, WhatSeemsToLieHasAnyAxesAsTheOthersHave) {
+TEST_F(ImportRestPoses, WhatSeemsToLieHasAnyAxesAsTheOthersHave) {
   const std::string said =
       Warnings(Always(90), 50, Map("", "", ", offset_m: [0.05, 0, 0], ahead: [1, 0, 0]"));
   EXPECT_NE(said.find("'cup' rests with its z axis 90 degrees away"), std::string::npos) << said;
@@ -110,7 +110,7 @@ TEST_F(ImportStanding, WhatSeemsToLieHasAnyAxesAsTheOthersHave) {
   EXPECT_EQ(said.find("'table: {"), std::string::npos) << said;
 }
 
-TEST_F(ImportStanding, ThingsThatAreTurnedTheSameWayAreNotWrongEach) {
+TEST_F(ImportRestPoses, ThingsThatAreTurnedTheSameWayAreNotWrongEach) {
   EXPECT_EQ(Warnings(Always(25), 25, Map()).find("upright"), std::string::npos);
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/rests.h.
+// See harness/exchange/import/rest_support.h.
 //
 // A thing rests where it gets less than a centimetre far in half a second. Then the lowest point of
 // its box must be near the top of another box that it is above. Half of the times are enough: a
 // hand may hold it still for a while.
-#include "harness/exchange/import/rests.h"
+#include "harness/exchange/import/rest_support.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -40,14 +40,14 @@ bool IsAbove(const Eigen::AlignedBox3d& upper, const Eigen::AlignedBox3d& lower)
 double Tenths(double x) { return std::round(10 * x) / 10 + 0.0; }
 
 /// Where one thing rested, looked at once per kRest_s.
-struct Rests {
+struct RestPoses {
   std::vector<double> bottoms_m;  ///< of all rests
   std::size_t supported = 0;      ///< on how many of them something was near below
   Eigen::AlignedBox2d place;
 };
 
-Rests RestsOf(const episode::Recording& episode, std::size_t thing) {
-  Rests rests;
+RestPoses RestPosesOf(const episode::Recording& episode, std::size_t thing) {
+  RestPoses rests;
   const auto& entities = episode.header.entity_table.entities;
   const auto step = static_cast<grammar::Tick>(
       kRest_s * static_cast<double>(episode.header.entity_table.ticks_per_second));
@@ -89,7 +89,7 @@ std::string RestOnNothing(const episode::Recording& episode, const std::set<std:
     if (untrue.contains(i) || entities[i].classes.front() == "Hand" ||
         std::ranges::find(entities[i].classes, "Movable") == entities[i].classes.end())
       continue;
-    const Rests rests = RestsOf(episode, i);
+    const RestPoses rests = RestPosesOf(episode, i);
     if (static_cast<double>(rests.bottoms_m.size()) * kRest_s < kLeast_s ||
         2 * rests.supported >= rests.bottoms_m.size())
       continue;
