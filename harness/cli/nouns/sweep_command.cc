@@ -12,7 +12,7 @@
 #include "harness/exchange/labels/label_files.h"
 #include "harness/exchange/labels/read_labels.h"
 #include "harness/measure/sweep/margins.h"
-#include "harness/measure/sweep/plateau.h"
+#include "harness/measure/sweep/robust_settings.h"
 #include "harness/measure/sweep/sweep.h"
 #include "harness/measure/sweep/sweep_progress.h"
 #include "harness/show/pictures/svg_file.h"
@@ -142,9 +142,9 @@ ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
     problem = show::WriteDrawing(
         options.Text("--picture"),
         measure::HeatMapSvg(request->axes, result->points,
-                            measure::FindPlateau(request->axes, result->points, within)));
+                            measure::FindRobustSettings(request->axes, result->points, within)));
   if (!options.Has("--output")) context.out << csv;
-  context.out << measure::PlateauText(request->axes, *result, within);
+  context.out << measure::RobustSettingsText(request->axes, *result, within);
   return problem.empty() ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, problem);
 }
 
@@ -201,7 +201,7 @@ Command SweepCommand() {
             .placeholder = "NAME=FROM..TO:COUNT",
             .rule = {.range = {}, .problem = AxisProblem},
             .repeatable = true},
-           WithinOption("the plateau: settings whose F1 is within so many percent of the best; "
+           WithinOption("the robust settings: their F1 is within so many percent of the best; "
                         "default: 0.5"),
            OutputOption("the CSV file; default: print it"),
            {.name = "--picture",

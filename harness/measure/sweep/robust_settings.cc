@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/measure/sweep/plateau.h. Tested by tests/harness/measure/sweep/plateau_test.cc
-#include "harness/measure/sweep/plateau.h"
+// See harness/measure/sweep/robust_settings.h. Tested by
+// tests/harness/measure/sweep/robust_settings_test.cc
+#include "harness/measure/sweep/robust_settings.h"
 
 #include <fmt/format.h>
 
@@ -71,29 +72,29 @@ std::uint32_t ColorOf(double share) {  // from dark blue over green to yellow
 
 }  // namespace
 
-Plateau FindPlateau(const std::vector<Axis>& axes, const std::vector<SweepPoint>& points,
-                    double within) {
-  Plateau plateau;
-  for (const SweepPoint& point : points) plateau.best = std::max(plateau.best, point.f1);
-  if (plateau.best == 0) return plateau;
+RobustSettings FindRobustSettings(const std::vector<Axis>& axes,
+                                  const std::vector<SweepPoint>& points, double within) {
+  RobustSettings robust;
+  for (const SweepPoint& point : points) robust.best = std::max(robust.best, point.f1);
+  if (robust.best == 0) return robust;
   std::vector<bool> good;
-  for (const SweepPoint& point : points) good.push_back(point.f1 >= plateau.best - within);
+  for (const SweepPoint& point : points) good.push_back(point.f1 >= robust.best - within);
   const std::vector<std::size_t> steps = StepsToWorse(axes, good);
   bool chosen = false;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!good[i]) continue;
     const auto rank = [&](std::size_t p) { return std::pair(steps[p], points[p].f1); };
-    if (!chosen || rank(i) > rank(plateau.chosen)) plateau.chosen = i;
+    if (!chosen || rank(i) > rank(robust.chosen)) robust.chosen = i;
     chosen = true;
   }
-  plateau.steps = steps[plateau.chosen];
-  std::vector<std::size_t> open = {plateau.chosen};
+  robust.steps = steps[robust.chosen];
+  std::vector<std::size_t> open = {robust.chosen};
   std::vector<bool> seen(points.size(), false);
-  seen[plateau.chosen] = true;
+  seen[robust.chosen] = true;
   while (!open.empty()) {
     const std::size_t point = open.back();
     open.pop_back();
-    plateau.members.push_back(point);
+    robust.members.push_back(point);
     bool ignored = false;
     for (const std::size_t n : Neighbours(axes, point, ignored)) {
       if (!good[n] || seen[n]) continue;
@@ -101,8 +102,8 @@ Plateau FindPlateau(const std::vector<Axis>& axes, const std::vector<SweepPoint>
       open.push_back(n);
     }
   }
-  std::ranges::sort(plateau.members);
-  return plateau;
+  std::ranges::sort(robust.members);
+  return robust;
 }
 
 std::string CsvText(const std::vector<Axis>& axes, const std::vector<SweepPoint>& points) {
@@ -117,25 +118,26 @@ std::string CsvText(const std::vector<Axis>& axes, const std::vector<SweepPoint>
   return text;
 }
 
-std::string PlateauText(const std::vector<Axis>& axes, const SweepResult& result, double within) {
-  const Plateau plateau = FindPlateau(axes, result.points, within);
-  const SweepPoint& chosen = result.points[plateau.chosen];
+std::string RobustSettingsText(const std::vector<Axis>& axes, const SweepResult& result,
+                               double within) {
+  const RobustSettings robust = FindRobustSettings(axes, result.points, within);
+  const SweepPoint& chosen = result.points[robust.chosen];
   const std::string measure = result.measure.empty() ? "" : result.measure + "\n";
   const std::string tried =
       fmt::format("{} on {}", grammar::CountOf(result.points.size(), "setting"),
                   grammar::CountOf(result.episodes, "episode"));
-  if (plateau.members.empty())
+  if (robust.members.empty())
     return fmt::format(
         "{}; every one scores 0: no event is right with any of them, so none is the best\n{}",
         tried, measure);
   std::string text =
-      fmt::format("{}; the best F1 is {:.2f} %\n{}", tried, 100 * plateau.best, measure);
+      fmt::format("{}; the best F1 is {:.2f} %\n{}", tried, 100 * robust.best, measure);
   text += fmt::format("within {:g} % of it, around the setting named last: {}\n", 100 * within,
-                      grammar::CountOf(plateau.members.size(), "setting"));
+                      grammar::CountOf(robust.members.size(), "setting"));
   std::string warnings;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     std::size_t least = chosen.at[i], most = chosen.at[i];
-    for (const std::size_t member : plateau.members) {
+    for (const std::size_t member : robust.members) {
       least = std::min(least, result.points[member].at[i]);
       most = std::max(most, result.points[member].at[i]);
     }
@@ -148,8 +150,8 @@ std::string PlateauText(const std::vector<Axis>& axes, const SweepResult& result
         fmt::format("warning: {} is best at the edge of what was tried, {}; try values beyond it\n",
                     axes[i].parameter, axes[i].ValueText(chosen.at[i]));
   }
-  text += fmt::format("farthest from its edge, {} step{}:", plateau.steps,
-                      plateau.steps == 1 ? "" : "s");
+  text +=
+      fmt::format("farthest from its edge, {} step{}:", robust.steps, robust.steps == 1 ? "" : "s");
   for (std::size_t i = 0; i < axes.size(); ++i)
     text += fmt::format(" {} = {}", axes[i].parameter, axes[i].ValueText(chosen.at[i]));
   return text +
@@ -159,7 +161,7 @@ std::string PlateauText(const std::vector<Axis>& axes, const SweepResult& result
 }
 
 std::string HeatMapSvg(const std::vector<Axis>& axes, const std::vector<SweepPoint>& points,
-                       const Plateau& plateau) {
+                       const RobustSettings& robust) {
   // The last axis to the right, the one before it downwards.
   const Axis& across = axes.back();
   const Axis* down = axes.size() > 1 ? &axes[axes.size() - 2] : nullptr;
@@ -169,14 +171,14 @@ std::string HeatMapSvg(const std::vector<Axis>& axes, const std::vector<SweepPoi
     least = std::min(least, point.f1);
     most = std::max(most, point.f1);
   }
-  show::Chart chart{
-      .title = down ? "F1 in %, " + down->parameter + " downwards" : "F1 in %",
-      .to_s = static_cast<double>(columns),
-      .rows = std::vector<show::Row>(rows),
-      .panels = {},
-      .axis = across.parameter + (plateau.members.empty()
-                                      ? "; every setting scores 0"
-                                      : "; framed: the plateau; red: farthest from its edge")};
+  show::Chart chart{.title = down ? "F1 in %, " + down->parameter + " downwards" : "F1 in %",
+                    .to_s = static_cast<double>(columns),
+                    .rows = std::vector<show::Row>(rows),
+                    .panels = {},
+                    .axis = across.parameter +
+                            (robust.members.empty()
+                                 ? "; every setting scores 0"
+                                 : "; framed: the robust settings; red: farthest from its edge")};
   for (std::size_t column = 0; column < columns; ++column)
     chart.ticks.emplace_back(static_cast<double>(column) + 0.5, across.ValueText(column));
   for (std::size_t row = 0; down && row < rows; ++row) chart.rows[row].name = down->ValueText(row);
@@ -184,20 +186,20 @@ std::string HeatMapSvg(const std::vector<Axis>& axes, const std::vector<SweepPoi
     const SweepPoint& point = points[i];
     bool is_shown = true;
     for (std::size_t k = 0; k + 2 < axes.size(); ++k)
-      is_shown &= point.at[k] == points[plateau.chosen].at[k];
+      is_shown &= point.at[k] == points[robust.chosen].at[k];
     if (!is_shown) continue;
     const double x = static_cast<double>(point.at.back());
-    const bool member = std::ranges::binary_search(plateau.members, i);
+    const bool member = std::ranges::binary_search(robust.members, i);
     std::vector<show::Bar>& bars = chart.rows[down ? point.at[axes.size() - 2] : 0].bars;
     // The chosen one is drawn last, so that its frame is seen as a whole.
-    bars.insert(i == plateau.chosen ? bars.end() : bars.begin(),
+    bars.insert(i == robust.chosen ? bars.end() : bars.begin(),
                 {.begin_s = x,
                  .end_s = x + 1,
                  .text = fmt::format("{:.1f}", 100 * point.f1),
                  .color = ColorOf(most > least ? (point.f1 - least) / (most - least) : 1),
-                 .frame = !member               ? ""
-                          : i == plateau.chosen ? "#d00"
-                                                : "#000"});
+                 .frame = !member              ? ""
+                          : i == robust.chosen ? "#d00"
+                                               : "#000"});
   }
   const double texts_px = 7.2 * static_cast<double>(chart.axis.size());
   return show::ChartSvg(chart,

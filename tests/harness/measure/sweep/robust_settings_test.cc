@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/measure/sweep/plateau.h"
+#include "harness/measure/sweep/robust_settings.h"
 
 #include <gtest/gtest.h>
 
@@ -50,40 +50,40 @@ TEST(SweepAxis, SaysWhatIsWrong) {
     EXPECT_NE(ProblemOf(bad).find("wanted NAME=FROM..TO:COUNT"), std::string::npos) << bad;
 }
 
-TEST(SweepPlateau, NobodyPicksAnEdge) {
+TEST(SweepRobustSettings, NobodyPicksAnEdge) {
   const std::vector<Axis> axes = {AxisOf("x=0..6:7")};
-  // The best is a lonely peak; the plateau around 4 is nearly as good.
+  // The best is a lonely peak; the settings around 4 are nearly as good.
   const auto points = Points(axes, {0.5, 0.90, 0.5, 0.899, 0.898, 0.899, 0.4});
-  const Plateau plateau = FindPlateau(axes, points, 0.005);
-  EXPECT_EQ(plateau.best, 0.90);
-  EXPECT_EQ(plateau.chosen, 4u);
-  EXPECT_EQ(plateau.steps, 2u);
-  EXPECT_EQ(plateau.members, (std::vector<std::size_t>{3, 4, 5}));
-  EXPECT_EQ(FindPlateau(axes, points, 0).chosen, 1u);
+  const RobustSettings robust = FindRobustSettings(axes, points, 0.005);
+  EXPECT_EQ(robust.best, 0.90);
+  EXPECT_EQ(robust.chosen, 4u);
+  EXPECT_EQ(robust.steps, 2u);
+  EXPECT_EQ(robust.members, (std::vector<std::size_t>{3, 4, 5}));
+  EXPECT_EQ(FindRobustSettings(axes, points, 0).chosen, 1u);
 }
 
-TEST(SweepPlateau, OfTwoParametersHangsTogether) {
+TEST(SweepRobustSettings, OfTwoParametersHangsTogether) {
   const std::vector<Axis> axes = {AxisOf("x=0..4:5"), AxisOf("y=0..4:5")};
   const auto points = Points(axes, {0, 0, 0, 0, 0,  //
                                     0, 1, 1, 1, 0,  //
                                     0, 1, 1, 1, 0,  //
                                     0, 1, 1, 1, 0,  //
                                     1, 0, 0, 0, 1});
-  const Plateau plateau = FindPlateau(axes, points, 0.01);
-  EXPECT_EQ(plateau.chosen, 12u);
-  EXPECT_EQ(plateau.members.size(), 9u);
+  const RobustSettings robust = FindRobustSettings(axes, points, 0.01);
+  EXPECT_EQ(robust.chosen, 12u);
+  EXPECT_EQ(robust.members.size(), 9u);
   SweepResult result{
       .points = points, .episodes = 3, .measure = {}, .label_warning = {}, .left_out = {}};
-  const std::string text = PlateauText(axes, result, 0.01);
+  const std::string text = RobustSettingsText(axes, result, 0.01);
   EXPECT_NE(text.find("x: 1 to 3"), std::string::npos) << text;
   EXPECT_NE(text.find("farthest from its edge, 2 steps: x = 2 y = 2"), std::string::npos) << text;
   EXPECT_TRUE(CsvText(axes, points).starts_with("x,y,f1,correct,extra,missed,"));
-  const std::string svg = HeatMapSvg(axes, points, plateau);
+  const std::string svg = HeatMapSvg(axes, points, robust);
   EXPECT_NE(svg.find("stroke=\"#d00\""), std::string::npos);
   EXPECT_EQ(std::count(svg.begin(), svg.end(), '\n') > 50, true);
 }
 
-TEST(SweepPlateau, AtAnEdgeIsAWarning) {
+TEST(SweepRobustSettings, AtAnEdgeIsAWarning) {
   const std::vector<Axis> axes = {AxisOf("x=0..4:5"), AxisOf("y=1cm..3cm:3")};
   const auto points = Points(axes, {0, 0, 0,  //
                                     0, 0, 0,  //
@@ -92,7 +92,7 @@ TEST(SweepPlateau, AtAnEdgeIsAWarning) {
                                     1, 1, 1});
   const SweepResult result{
       .points = points, .episodes = 3, .measure = {}, .label_warning = {}, .left_out = {}};
-  const std::string text = PlateauText(axes, result, 0.01);
+  const std::string text = RobustSettingsText(axes, result, 0.01);
   EXPECT_NE(text.find("\nwarning: x is best at the edge of what was tried, 4; try values beyond "
                       "it\n"),
             std::string::npos)
@@ -103,18 +103,18 @@ TEST(SweepPlateau, AtAnEdgeIsAWarning) {
                         .measure = {},
                         .label_warning = {},
                         .left_out = {}};
-  const std::string inside = PlateauText({axes[0]}, one, 0.01);
+  const std::string inside = RobustSettingsText({axes[0]}, one, 0.01);
   EXPECT_NE(inside.find("named last: 1 setting\n"), std::string::npos) << inside;
   EXPECT_EQ(inside.find("warning"), std::string::npos) << inside;
 }
 
-TEST(SweepPlateau, WhereEverySettingScoresZeroNoneIsTheBest) {
+TEST(SweepRobustSettings, WhereEverySettingScoresZeroNoneIsTheBest) {
   const std::vector<Axis> axes = {AxisOf("x=0..2:3")};
   const auto points = Points(axes, {0, 0, 0});
-  EXPECT_TRUE(FindPlateau(axes, points, 0.005).members.empty());
+  EXPECT_TRUE(FindRobustSettings(axes, points, 0.005).members.empty());
   const SweepResult result{
       .points = points, .episodes = 1, .measure = {}, .label_warning = {}, .left_out = {}};
-  const std::string text = PlateauText(axes, result, 0.005);
+  const std::string text = RobustSettingsText(axes, result, 0.005);
   EXPECT_NE(text.find("every one scores 0"), std::string::npos) << text;
   EXPECT_EQ(text.find("farthest"), std::string::npos) << text;
 }
