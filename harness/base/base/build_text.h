@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How this program was compiled. Tested by tests/harness/suite/check/blame_test.cc and
+// How this program was compiled. Tested by tests/harness/suite/check/attribute_run_test.cc and
 // tests/program/golden_workflow_test.cc
 #pragma once
 

@@ -117,7 +117,7 @@ physics::HandModel FindHand(const std::string& file, const HandActorYaml& actor,
   if (model) return std::move(*model);
   // The error names the file that is wrong. Diagnostics without a place mean that it could not be
   // opened.
-  const auto blame = [&](const char* key, const Located<std::string>& named, bool is_open) {
+  const auto attribute = [&](const char* key, const Located<std::string>& named, bool is_open) {
     errors.Add(named.where, fmt::format("{}: '{}' cannot be used, see below", key, named.value),
                is_open ? "" : "the path is relative to the scenario's folder");
   };
@@ -125,9 +125,9 @@ physics::HandModel FindHand(const std::string& file, const HandActorYaml& actor,
   for (const grammar::Diagnostic& found : model.error()) bad[found.file] = found.place.line > 0;
   for (std::size_t i = 0; i < grasps.size(); ++i) {
     const auto file_of_grasps = bad.extract(grasps[i]);
-    if (file_of_grasps) blame("grasps", actor.grasps[i], file_of_grasps.mapped());
+    if (file_of_grasps) attribute("grasps", actor.grasps[i], file_of_grasps.mapped());
   }
-  if (!bad.empty()) blame("hand", hand, !is_file || bad.begin()->second);
+  if (!bad.empty()) attribute("hand", hand, !is_file || bad.begin()->second);
   in_hand_files.insert(in_hand_files.end(), model.error().begin(), model.error().end());
   return {};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/explain/why_missing.h. Runs that were given up, and the choice of what to blame.
-// Tested by tests/harness/show/explain/why_missing_test.cc
+// See harness/show/explain/why_missing.h. Runs that were given up, and the choice of what an event
+// is missing for. Tested by tests/harness/show/explain/why_missing_test.cc
 #include "harness/show/explain/why_missing.h"
 
 #include <fmt/format.h>
@@ -61,16 +61,16 @@ MissingReasons::Window MissingReasons::Within(const Window& window, FrameNumber 
 WhyMissing MissingReasons::Explain(const std::vector<InstanceId>& instances,
                                    std::optional<FrameNumber> at) {
   const Window window = at ? Around(*at) : Whole();
-  std::optional<Blame> worst;
-  InstanceId blamed = instances.front();
+  std::optional<Cause> worst;
+  InstanceId nearest = instances.front();
   for (const InstanceId instance : instances) {
-    Blame blame = OfInstance(instance, window, 0);
-    if (worst && blame.closeness <= worst->closeness) continue;
-    worst = std::move(blame);
-    blamed = instance;
+    Cause cause = OfInstance(instance, window, 0);
+    if (worst && cause.closeness <= worst->closeness) continue;
+    worst = std::move(cause);
+    nearest = instance;
   }
-  const Rule& rule = past_.RuleOf(blamed);
-  WhyMissing why{.event = Label(past_, blamed),
+  const Rule& rule = past_.RuleOf(nearest);
+  WhyMissing why{.event = Label(past_, nearest),
                  .where = Source(rule.file, rule.place),
                  .expected_at = {},
                  .because = {},
@@ -85,7 +85,7 @@ WhyMissing MissingReasons::Explain(const std::vector<InstanceId>& instances,
     if (failure->tick && failure->reading)
       why.because += ", at " + At(*failure->tick, past_.entity_table().ticks_per_second);
   }
-  for (const CandidateOutcome& outcome : past_.OutcomesOf(blamed)) {
+  for (const CandidateOutcome& outcome : past_.OutcomesOf(nearest)) {
     if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
     why.nearest.push_back({.event = why.event,
                            .where = why.where,
@@ -100,7 +100,7 @@ WhyMissing MissingReasons::Explain(const std::vector<InstanceId>& instances,
   return why;
 }
 
-MissingReasons::Blame MissingReasons::OfInstance(InstanceId instance, const Window& window,
+MissingReasons::Cause MissingReasons::OfInstance(InstanceId instance, const Window& window,
                                                  int depth) {
   if (instance == kNone || depth >= kMaxDepth) return {};
   if (const CandidateOutcome* run = NearestRun(instance, window))
@@ -387,7 +387,7 @@ MissingReasons::Fate MissingReasons::FateOf(const CandidateOutcome& outcome, int
   }
 }
 
-MissingReasons::Blame MissingReasons::OfRun(const CandidateOutcome& outcome, int depth,
+MissingReasons::Cause MissingReasons::OfRun(const CandidateOutcome& outcome, int depth,
                                             FrameNumber look_until) {
   using enum CandidateOutcome::Kind;
   const Rule& rule = past_.RuleOf(outcome.instance);

@@ -28,7 +28,7 @@ class MissingReasons {
     grammar::FrameNumber last = 0;
     std::optional<grammar::FrameNumber> at = std::nullopt;
   };
-  struct Blame {
+  struct Cause {
     Reasons reasons;
     double closeness = 0;  ///< of runs 1 to 2, of conditions less
   };
@@ -37,7 +37,7 @@ class MissingReasons {
   /// Likewise, for what stands behind something else: not beyond the moment that was asked for.
   Window Within(const Window& window, grammar::FrameNumber frame);
 
-  Blame OfInstance(grammar::InstanceId instance, const Window& window, int depth);
+  Cause OfInstance(grammar::InstanceId instance, const Window& window, int depth);
   /// What became of the runs of a binding, and every `until` that nothing led to. The monitor notes
   /// none of these while something that every run needs is false.
   const grammar::CandidateLog& RunsOf(grammar::InstanceId instance);
@@ -60,7 +60,7 @@ class MissingReasons {
   void AddClauses(const char* word, grammar::NodeId node, const Moment& at, Reasons& reasons);
   std::string Lasted(const grammar::CandidateOutcome& outcome);
   /// `look_until`: what came later than that could not have helped.
-  Blame OfRun(const grammar::CandidateOutcome& outcome, int depth,
+  Cause OfRun(const grammar::CandidateOutcome& outcome, int depth,
               grammar::FrameNumber look_until = grammar::kNever);
   /// Clauses, and how far they are from being as they have to be, as a share of a limit; infinite
   /// where nothing was measured.
@@ -76,18 +76,18 @@ class MissingReasons {
   Reasons Requirement(const grammar::CandidateOutcome& outcome, int depth);
   Reasons EndThatNeverCame(const grammar::CandidateOutcome& outcome,
                            grammar::FrameNumber look_until);
-  Blame OfForm(grammar::InstanceId instance, const Window& window, int depth);
-  Blame OfWhile(grammar::InstanceId instance, const Window& window, int depth);
-  Blame OfFromTo(grammar::InstanceId instance, const Window& window, int depth);
-  Blame OfUntil(grammar::InstanceId instance, const Window& window, int depth);
-  std::optional<Blame> OfLaterEnd(grammar::InstanceId instance, grammar::FrameNumber at, int depth);
-  Blame OfRest(grammar::InstanceId instance, const Window& window, int depth);
-  Blame OfAny(grammar::InstanceId instance, const Window& window, int depth);
-  Blame OfCompose(grammar::InstanceId instance, const Window& window, int depth);
-  Blame OfFact(grammar::InstanceId instance, const Window& window);
+  Cause OfForm(grammar::InstanceId instance, const Window& window, int depth);
+  Cause OfWhile(grammar::InstanceId instance, const Window& window, int depth);
+  Cause OfFromTo(grammar::InstanceId instance, const Window& window, int depth);
+  Cause OfUntil(grammar::InstanceId instance, const Window& window, int depth);
+  std::optional<Cause> OfLaterEnd(grammar::InstanceId instance, grammar::FrameNumber at, int depth);
+  Cause OfRest(grammar::InstanceId instance, const Window& window, int depth);
+  Cause OfAny(grammar::InstanceId instance, const Window& window, int depth);
+  Cause OfCompose(grammar::InstanceId instance, const Window& window, int depth);
+  Cause OfFact(grammar::InstanceId instance, const Window& window);
 
   /// The clauses of a condition where they came closest to holding, the first failed one followed.
-  Blame OfClauses(grammar::NodeId node, Moment at, const Window& window, int depth);
+  Cause OfClauses(grammar::NodeId node, Moment at, const Window& window, int depth);
   /// What a condition holds by that should not: references of its clauses, of `any` the bindings.
   Reasons WhyItHolds(grammar::InstanceId instance, grammar::FrameNumber frame);
   void Follow(Reason& reason, grammar::InstanceId target, grammar::FrameNumber frame,
@@ -95,7 +95,7 @@ class MissingReasons {
   Reason ClosestApproach(grammar::InstanceId instance, const Window& window);
   grammar::FrameNumber Closest(grammar::NodeId node, Moment at, const Window& window);
   /// The moment never came.
-  Blame OfMoment(grammar::NodeId node, grammar::InstanceId instance, const Window& window,
+  Cause OfMoment(grammar::NodeId node, grammar::InstanceId instance, const Window& window,
                  int depth);
   Reason Intervals(grammar::InstanceId instance, std::string how);
 

@@ -57,7 +57,7 @@ Reason MissingReasons::Intervals(InstanceId instance, std::string how) {
   return {.mark = Mark::kNote, .what = Label(past_, instance), .how = count == 0 ? "never" : how};
 }
 
-MissingReasons::Blame MissingReasons::OfForm(InstanceId instance, const Window& window, int depth) {
+MissingReasons::Cause MissingReasons::OfForm(InstanceId instance, const Window& window, int depth) {
   switch (past_.RuleOf(instance).form()) {
     case Form::kTouching:
       return OfFact(instance, window);
@@ -77,7 +77,7 @@ MissingReasons::Blame MissingReasons::OfForm(InstanceId instance, const Window& 
   return {};
 }
 
-MissingReasons::Blame MissingReasons::OfFact(InstanceId instance, const Window& window) {
+MissingReasons::Cause MissingReasons::OfFact(InstanceId instance, const Window& window) {
   const bool at = window.at.has_value();
   Reason reason =
       Failed(Label(past_, instance),
@@ -91,7 +91,7 @@ FrameNumber MissingReasons::Closest(grammar::NodeId node, Moment at, const Windo
   FrameNumber first = window.first;
   FrameNumber last = window.last;
   if (window.at) {
-    // Of the stretch around the moment in which it does not hold.
+    // Of the interval around the moment in which it does not hold.
     const auto fails = [&](FrameNumber frame) {
       at.frame = frame;
       return !past_.Truth(node, at);
@@ -118,10 +118,10 @@ FrameNumber MissingReasons::Closest(grammar::NodeId node, Moment at, const Windo
   return closest;
 }
 
-MissingReasons::Blame MissingReasons::OfClauses(grammar::NodeId node, Moment at,
+MissingReasons::Cause MissingReasons::OfClauses(grammar::NodeId node, Moment at,
                                                 const Window& window, int depth) {
   at.frame = Closest(node, at, window);
-  Blame blame{.reasons = {}, .closeness = clauses_.Nearness(node, at, true)};
+  Cause cause{.reasons = {}, .closeness = clauses_.Nearness(node, at, true)};
   bool followed = false;
   for (const Clauses::Clause& clause : clauses_.Split(node, at, true)) {
     Reason reason = clauses_.Told(clause, at);
@@ -136,9 +136,9 @@ MissingReasons::Blame MissingReasons::OfClauses(grammar::NodeId node, Moment at,
     if (follow && n.op == Op::kHolds && clause.truth) {
       Follow(reason, past_.Referred(at.instance, n.slot), at.frame, window, depth);
     }
-    blame.reasons.push_back(std::move(reason));
+    cause.reasons.push_back(std::move(reason));
   }
-  return blame;
+  return cause;
 }
 
 Reasons MissingReasons::WhyItHolds(InstanceId instance, FrameNumber frame) {
@@ -172,7 +172,7 @@ Reasons MissingReasons::WhyItHolds(InstanceId instance, FrameNumber frame) {
   return reasons;
 }
 
-// Into the rule that is to blame. What never held is looked for everywhere, if no moment was asked
+// Into the rule that decides. What never held is looked for everywhere, if no moment was asked
 // for.
 void MissingReasons::Follow(Reason& reason, InstanceId target, FrameNumber frame,
                             const Window& window, int depth) {
@@ -191,11 +191,11 @@ void MissingReasons::Follow(Reason& reason, InstanceId target, FrameNumber frame
   reason.because = std::move(behind);
 }
 
-MissingReasons::Blame MissingReasons::OfWhile(InstanceId instance, const Window& window,
+MissingReasons::Cause MissingReasons::OfWhile(InstanceId instance, const Window& window,
                                               int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const grammar::NodeId condition = rule.As<grammar::WhileRule>().condition;
-  Blame inner = OfClauses(condition, {.instance = instance}, window, depth);
+  Cause inner = OfClauses(condition, {.instance = instance}, window, depth);
   const FrameNumber closest = Closest(condition, {.instance = instance}, window);
   Reason reason = Failed(Label(past_, instance), "came closest at " + clauses_.Time(closest),
                          std::move(inner.reasons));
@@ -204,39 +204,39 @@ MissingReasons::Blame MissingReasons::OfWhile(InstanceId instance, const Window&
   return {{std::move(reason)}, inner.closeness};
 }
 
-MissingReasons::Blame MissingReasons::OfMoment(grammar::NodeId node, InstanceId instance,
+MissingReasons::Cause MissingReasons::OfMoment(grammar::NodeId node, InstanceId instance,
                                                const Window& window, int depth) {
   // Some of it happened, but not all at once.
   const Moment at{.instance = instance, .frame = Closest(node, {.instance = instance}, window)};
   if (past_.program().nodes[node].op == Op::kAnd && clauses_.Nearness(node, at, true) >= 0.5) {
     return OfClauses(node, {.instance = instance}, window, depth);
   }
-  Blame best;
+  Cause best;
   for (const Clauses::Clause& clause : clauses_.Split(node, at, true)) {
     const grammar::Node& n = past_.program().nodes[clause.node];
     if (!clause.truth || (n.op != Op::kBegins && n.op != Op::kEnds)) continue;
     const grammar::Node& arg = past_.program().nodes[n.args[0]];
-    Blame blame;
+    Cause cause;
     if (arg.op == Op::kHolds) {
       const InstanceId target = past_.Referred(instance, arg.slot);
       if (target == kNone) continue;
       const bool ever = past_.LastBegun(target, past_.frames()) != nullptr;
       const CandidateOutcome* last = past_.LastBegun(target, window.last);
       const bool here = last != nullptr && last->span.end.frame >= window.first;
-      if (!here) blame = OfInstance(target, window, depth + 1);
+      if (!here) cause = OfInstance(target, window, depth + 1);
       if (ever) {
-        blame.reasons.insert(blame.reasons.begin(), Intervals(target, "is there at"));
-        blame.closeness = 0.95;
+        cause.reasons.insert(cause.reasons.begin(), Intervals(target, "is there at"));
+        cause.closeness = 0.95;
       }
     } else {
-      blame = OfClauses(n.args[0], {.instance = instance}, window, depth);
+      cause = OfClauses(n.args[0], {.instance = instance}, window, depth);
     }
-    if (best.reasons.empty() || blame.closeness > best.closeness) best = std::move(blame);
+    if (best.reasons.empty() || cause.closeness > best.closeness) best = std::move(cause);
   }
   return best;
 }
 
-MissingReasons::Blame MissingReasons::OfFromTo(InstanceId instance, const Window& window,
+MissingReasons::Cause MissingReasons::OfFromTo(InstanceId instance, const Window& window,
                                                int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const auto& [opens, closes, during, or_drop, absence, within_s] = rule.As<grammar::FromToRule>();
@@ -250,12 +250,12 @@ MissingReasons::Blame MissingReasons::OfFromTo(InstanceId instance, const Window
   Reason reason = Failed(Label(past_, instance), "", {});
   reason.where = Source(rule.file, rule.place);
   if (from < 0) {
-    Blame blame = OfMoment(opens, instance, window, depth);
+    Cause cause = OfMoment(opens, instance, window, depth);
     reason.how = "nothing began it";
     reason.because = {Failed("from " + ClauseText(past_, instance, opens),
                              "did not become true by " + clauses_.Time(until),
-                             std::move(blame.reasons))};
-    return {{std::move(reason)}, 0.5 * blame.closeness};
+                             std::move(cause.reasons))};
+    return {{std::move(reason)}, 0.5 * cause.closeness};
   }
   for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
     if (outcome.span.begin.frame != from) continue;
@@ -303,7 +303,7 @@ Reason MissingReasons::ClosestApproach(InstanceId instance, const Window& window
 
 // Whatever ended later begins too late; whatever came to nothing later, did so; unless it looks
 // back less far than that.
-std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(InstanceId instance, FrameNumber at,
+std::optional<MissingReasons::Cause> MissingReasons::OfLaterEnd(InstanceId instance, FrameNumber at,
                                                                 int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const double back_s = rule.As<UntilSinceRule>().back_s;
@@ -322,21 +322,21 @@ std::optional<MissingReasons::Blame> MissingReasons::OfLaterEnd(InstanceId insta
       reason.how = "the next end is at " + clauses_.Time(outcome.span.end.frame) +
                    ", and the rule reaches at most " + back + " back";
     }
-    return Blame{{std::move(reason)}, 0.9};
+    return Cause{{std::move(reason)}, 0.9};
   }
   return std::nullopt;
 }
 
-MissingReasons::Blame MissingReasons::OfUntil(InstanceId instance, const Window& window,
+MissingReasons::Cause MissingReasons::OfUntil(InstanceId instance, const Window& window,
                                               int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const UntilSinceRule& part = rule.As<UntilSinceRule>();
   if (window.at) {
-    if (std::optional<Blame> later = OfLaterEnd(instance, *window.at, depth))
+    if (std::optional<Cause> later = OfLaterEnd(instance, *window.at, depth))
       return *std::move(later);
   }
   const Window rest = window.at ? Window{*window.at, past_.frames() - 1} : window;
-  Blame blame = OfMoment(part.until, instance, rest, depth);
+  Cause cause = OfMoment(part.until, instance, rest, depth);
   const bool whole = rest.first == 0 && rest.last >= past_.frames() - 1;
   const std::string when = whole ? "never became true"
                            : window.at
@@ -346,12 +346,12 @@ MissingReasons::Blame MissingReasons::OfUntil(InstanceId instance, const Window&
   Reason reason = Failed(Label(past_, instance), "nothing ended it");
   reason.where = Source(rule.file, rule.place);
   reason.because = {
-      Failed("until " + ClauseText(past_, instance, part.until), when, std::move(blame.reasons))};
+      Failed("until " + ClauseText(past_, instance, part.until), when, std::move(cause.reasons))};
   if (part.approach) reason.because.push_back(ClosestApproach(instance, window));
-  return {{std::move(reason)}, 0.5 * blame.closeness};
+  return {{std::move(reason)}, 0.5 * cause.closeness};
 }
 
-MissingReasons::Blame MissingReasons::OfRest(InstanceId instance, const Window& window, int depth) {
+MissingReasons::Cause MissingReasons::OfRest(InstanceId instance, const Window& window, int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const auto& rest = rule.As<grammar::RestOfRule>();
   const InstanceId whole = past_.Referred(instance, rest.whole);
@@ -392,21 +392,21 @@ MissingReasons::Blame MissingReasons::OfRest(InstanceId instance, const Window& 
   return {{std::move(reason)}, 0.7};
 }
 
-MissingReasons::Blame MissingReasons::OfAny(InstanceId instance, const Window& window, int depth) {
-  Blame best{{Failed(Label(past_, instance), "nothing that fits was there")}, -1};
+MissingReasons::Cause MissingReasons::OfAny(InstanceId instance, const Window& window, int depth) {
+  Cause best{{Failed(Label(past_, instance), "nothing that fits was there")}, -1};
   const grammar::Reference& reference = past_.RuleOf(instance).references[0];
   grammar::Binding wanted = grammar::kUnbound;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (reference.roles[i] != kNone) wanted[i] = past_.EntitiesOf(instance)[reference.roles[i]];
   }
   for (const InstanceId candidate : BindingsThatFit(past_, reference.rule, wanted)) {
-    Blame blame = OfInstance(candidate, window, depth + 1);
-    if (blame.closeness > best.closeness) best = std::move(blame);
+    Cause cause = OfInstance(candidate, window, depth + 1);
+    if (cause.closeness > best.closeness) best = std::move(cause);
   }
   return best;
 }
 
-MissingReasons::Blame MissingReasons::OfCompose(InstanceId instance, const Window& window,
+MissingReasons::Cause MissingReasons::OfCompose(InstanceId instance, const Window& window,
                                                 int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const auto& composition = rule.As<grammar::ComposeRule>();

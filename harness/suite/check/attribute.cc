@@ -77,28 +77,28 @@ std::string ListOf(const std::vector<const SettingChange*>& changes) {
 }
 
 /// What no parameter explains.
-std::string OtherCause(const Suspects& suspects) {
+std::string OtherCause(const PossibleCauses& possible) {
   std::vector<const SettingChange*> fields;
-  for (const SettingChange& change : suspects.changes) {
+  for (const SettingChange& change : possible.changes) {
     if (!change.is_parameter) fields.push_back(&change);
   }
-  if (suspects.motion_differs && !fields.empty()) return ListOf(fields);
-  return suspects.other_changes.empty()
+  if (possible.motion_differs && !fields.empty()) return ListOf(fields);
+  return possible.other_changes.empty()
              ? ListOf(fields)
-             : fmt::format("{}", fmt::join(suspects.other_changes, ", "));
+             : fmt::format("{}", fmt::join(possible.other_changes, ", "));
 }
 
 }  // namespace
 
 std::vector<Attribution> AttributeDifferences(const truth::Comparison& comparison,
-                                              const Suspects& suspects,
+                                              const PossibleCauses& possible,
                                               const CompareWith& compare_with) {
   const std::vector<const truth::Pairing*> differing = comparison.Differing();
   std::vector<Attribution> attributions;
   for (const truth::Pairing* pairing : differing)
     attributions.push_back(Described(*pairing, comparison.ticks_per_second));
   std::vector<const SettingChange*> parameters;
-  for (const SettingChange& change : suspects.changes) {
+  for (const SettingChange& change : possible.changes) {
     if (change.is_parameter && !change.before.empty() && !change.after.empty() &&
         parameters.size() < kMostParameters)
       parameters.push_back(&change);
@@ -117,7 +117,7 @@ std::vector<Attribution> AttributeDifferences(const truth::Comparison& compariso
   const auto is_open = [](const Attribution& attribution) { return attribution.because.empty(); };
   if (parameters.size() > 1 && std::ranges::any_of(attributions, is_open)) undo(parameters);
   for (Attribution& attribution : attributions) {
-    if (is_open(attribution)) attribution.because = OtherCause(suspects);
+    if (is_open(attribution)) attribution.because = OtherCause(possible);
   }
   return attributions;
 }

@@ -25,7 +25,7 @@ struct Attribution {
 };
 
 /// What is known about a run that differs.
-struct Suspects {
+struct PossibleCauses {
   std::vector<SettingChange> changes;      ///< of values since the last pass
   std::vector<std::string> other_changes;  ///< changed files without a changed value, the program
   bool motion_differs = false;             ///< it moves differently from the last pass
@@ -38,7 +38,7 @@ using CompareWith =
 
 /// One for each of comparison.Differing(), in its order. Undoes at most 8 parameters.
 std::vector<Attribution> AttributeDifferences(const truth::Comparison& comparison,
-                                              const Suspects& suspects,
+                                              const PossibleCauses& possible,
                                               const CompareWith& compare_with);
 
 }  // namespace prehend::suite

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "harness/episode/run/run_text.h"
-#include "harness/suite/check/blame.h"
+#include "harness/suite/check/attribute_run.h"
 #include "harness/suite/judge/accept_golden.h"
 #include "harness/suite/judge/compare_engines.h"
 #include "harness/suite/judge/judge_claims.h"
@@ -67,7 +67,7 @@ Findings GoldenAndTruth(CheckedEpisode& checked) {
   checked.golden = CompareWithGolden(golden, checked.run);
   ScenarioVerdict& verdict = checked.verdict;
   if (checked.golden->Differs())
-    AddBlame(request, checked.run, *golden, checked.golden->comparison, verdict);
+    AttributeRun(request, checked.run, *golden, checked.golden->comparison, verdict);
   verdict.has_golden = checked.golden->has_golden;
   verdict.comparison = checked.golden->comparison;
   verdict.drawings = checked.run.result.drawings;

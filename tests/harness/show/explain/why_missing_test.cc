@@ -123,7 +123,7 @@ struct Choice {
 };
 
 // The hand touches the cup, which is 0.2 m high and does not move.
-TEST(ExplainMissing, AChoiceThatIsFulfilledIsNotBlamed) {
+TEST(ExplainMissing, AChoiceThatIsFulfilledIsNoReason) {
   const Choice choices[] = {
       {"while (touching(h, c) or speed(c) > 1 m/s) and height(c) > 1 m",
        "height(c) > 1 m: is 200 mm"},

@@ -24,11 +24,12 @@ const grammar::NamedEvent kReach = Event("reaching", 0, 100);
 const grammar::NamedEvent kSlide = Event("sliding", 100, 200);
 const grammar::NamedEvent kEarlyGrasp = Event("grasping", 190, 290);
 
-const Suspects kThreeChanges = {.changes = {{"a.grammar", "reach_radius", "30 cm", "20 cm", true},
-                                            {"a.grammar", "slide_distance", "2 cm", "5 cm", true},
-                                            {"x.yaml", "cup.mass_kg", "0.4", "8", false}},
-                                .other_changes = {},
-                                .motion_differs = true};
+const PossibleCauses kThreeChanges = {
+    .changes = {{"a.grammar", "reach_radius", "30 cm", "20 cm", true},
+                {"a.grammar", "slide_distance", "2 cm", "5 cm", true},
+                {"x.yaml", "cup.mass_kg", "0.4", "8", false}},
+    .other_changes = {},
+    .motion_differs = true};
 
 /// The late reach and the lost slide follow from the two parameters, the grasp from neither.
 std::optional<truth::Comparison> Undone(const std::vector<std::string>& settings) {
@@ -72,10 +73,11 @@ TEST(Attribution, WithoutAChangedValueTheFileIsNamed) {
   const auto nothing = [](const std::vector<std::string>&) {
     return std::optional<truth::Comparison>();
   };
-  const Suspects file = {.changes = {}, .other_changes = {"a.grammar"}, .motion_differs = false};
+  const PossibleCauses file = {
+      .changes = {}, .other_changes = {"a.grammar"}, .motion_differs = false};
   for (const Attribution& each : AttributeDifferences(*Undone({}), file, nothing))
     EXPECT_EQ(each.because, "a.grammar");
-  for (const Attribution& each : AttributeDifferences(*Undone({}), Suspects{}, nothing))
+  for (const Attribution& each : AttributeDifferences(*Undone({}), PossibleCauses{}, nothing))
     EXPECT_EQ(each.because, "");
 }
 

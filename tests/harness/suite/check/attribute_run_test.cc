@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cause names the entity that moved differently, or says that none did, and the files that
 // changed.
-#include "harness/suite/check/blame.h"
+#include "harness/suite/check/attribute_run.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/check/blame.h. Tested by tests/harness/suite/check/blame_test.cc
-#include "harness/suite/check/blame.h"
+// See harness/suite/check/attribute_run.h. Tested by
+// tests/harness/suite/check/attribute_run_test.cc
+#include "harness/suite/check/attribute_run.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -102,22 +103,22 @@ std::string CauseText(const std::optional<LastPass>& last_pass,
       changed.empty() ? "no known file" : fmt::format("{}", fmt::join(changed, ", ")));
 }
 
-std::optional<Suspects> SuspectsOf(const std::optional<LastPass>& last_pass,
-                                   const std::optional<StateTrace>& its_trace,
-                                   const DifferingRun& now, const std::string& root) {
+std::optional<PossibleCauses> PossibleCausesOf(const std::optional<LastPass>& last_pass,
+                                               const std::optional<StateTrace>& its_trace,
+                                               const DifferingRun& now, const std::string& root) {
   if (!last_pass || !its_trace) return std::nullopt;
-  Suspects suspects{.changes = ChangesBetween(last_pass->verdict.settings, now.settings),
-                    .other_changes = WhatChanged(*last_pass, now, root),
-                    .motion_differs = its_trace->entities != now.trace.entities ||
-                                      FirstDivergence(*its_trace, now.trace).has_value()};
+  PossibleCauses possible{.changes = ChangesBetween(last_pass->verdict.settings, now.settings),
+                          .other_changes = WhatChanged(*last_pass, now, root),
+                          .motion_differs = its_trace->entities != now.trace.entities ||
+                                            FirstDivergence(*its_trace, now.trace).has_value()};
   // What is known more exactly.
-  std::erase_if(suspects.other_changes, [&](const std::string& changed) {
-    return std::ranges::any_of(suspects.changes, [&](const SettingChange& change) {
+  std::erase_if(possible.other_changes, [&](const std::string& changed) {
+    return std::ranges::any_of(possible.changes, [&](const SettingChange& change) {
       return change.file == changed || changed.starts_with("--set " + change.name + "=") ||
              changed.starts_with("--set '" + change.name + "=");
     });
   });
-  return suspects;
+  return possible;
 }
 
 std::string ChangesText(const std::vector<SettingChange>& changes) {
@@ -129,8 +130,9 @@ std::string ChangesText(const std::vector<SettingChange>& changes) {
   return text;
 }
 
-void AddBlame(const CheckRequest& request, const CheckedRun& checked, const truth::Golden& golden,
-              const truth::Comparison& comparison, ScenarioVerdict& verdict) {
+void AttributeRun(const CheckRequest& request, const CheckedRun& checked,
+                  const truth::Golden& golden, const truth::Comparison& comparison,
+                  ScenarioVerdict& verdict) {
   const LastPasses records(request.root);
   const episode::RunResult& run = checked.result;
   const auto last_pass = records.Read(request.id);
@@ -144,11 +146,11 @@ void AddBlame(const CheckRequest& request, const CheckedRun& checked, const trut
                          .trace = TraceOf(checked.loaded.scenario.scene, run.recording),
                          .ticks_per_second = static_cast<double>(run.timeline.ticks_per_second)};
   verdict.cause = CauseText(last_pass, trace, now, request.root);
-  const auto suspects = SuspectsOf(last_pass, trace, now, request.root);
-  if (suspects) verdict.cause += ChangesText(suspects->changes);
+  const auto possible = PossibleCausesOf(last_pass, trace, now, request.root);
+  if (possible) verdict.cause += ChangesText(possible->changes);
   const bool can_undo = request.IsPlayed() && !run.recording.empty();
   verdict.attributions = AttributeDifferences(
-      comparison, suspects.value_or(Suspects{}),
+      comparison, possible.value_or(PossibleCauses{}),
       [&](const std::vector<std::string>& settings) -> std::optional<truth::Comparison> {
         if (!can_undo) return std::nullopt;
         return CompareWithSettings(request, checked, golden, settings);

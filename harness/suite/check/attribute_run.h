@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Attributes a difference: did the physics diverge from the last passing run, did sensing, or did
-// the grammar? Tested by tests/harness/suite/check/blame_test.cc
+// the grammar? Tested by tests/harness/suite/check/attribute_run_test.cc
 #pragma once
 
 #include <optional>
@@ -36,16 +36,17 @@ std::string CauseText(const std::optional<LastPass>& last_pass,
                       const std::string& root);
 
 /// What may have caused the differences of a run. Nothing without a run that passed.
-std::optional<Suspects> SuspectsOf(const std::optional<LastPass>& last_pass,
-                                   const std::optional<StateTrace>& its_trace,
-                                   const DifferingRun& now, const std::string& root);
+std::optional<PossibleCauses> PossibleCausesOf(const std::optional<LastPass>& last_pass,
+                                               const std::optional<StateTrace>& its_trace,
+                                               const DifferingRun& now, const std::string& root);
 
 /// "changed: `reach_radius` 30 cm -> 20 cm in x.grammar", a line for each of at most ten.
 std::string ChangesText(const std::vector<SettingChange>& changes);
 
 /// Attributes how a run differs from its golden, as a whole and each difference. Fills `cause` and
 /// `attributions` of a verdict that has its inputs and settings.
-void AddBlame(const CheckRequest& request, const CheckedRun& checked, const truth::Golden& golden,
-              const truth::Comparison& comparison, ScenarioVerdict& verdict);
+void AttributeRun(const CheckRequest& request, const CheckedRun& checked,
+                  const truth::Golden& golden, const truth::Comparison& comparison,
+                  ScenarioVerdict& verdict);
 
 }  // namespace prehend::suite
