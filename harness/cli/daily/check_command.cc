@@ -211,7 +211,7 @@ void PrintText(const std::vector<suite::ScenarioVerdict>& verdicts, const TextOp
   const suite::Tally tally = suite::Count(verdicts);
   const std::string smallest = suite::SmallestMarginText(verdicts);
   if (!smallest.empty()) context.out << smallest << "\n";
-  context.out << suite::BrittleText(suite::BrittlePasses(verdicts))
+  context.out << suite::NearLimitText(suite::NearLimitPasses(verdicts))
               << suite::CausesText(suite::CausesOf(verdicts));
   if (brief)
     context.out << fmt::format("{} failures: details are in the report, or printed by --verbose\n",
@@ -249,7 +249,7 @@ nlohmann::ordered_json SummaryJson(const std::vector<suite::ScenarioVerdict>& ve
           {"report", page},
           {"scenarios", scenarios},
           {"causes", suite::CausesJson(suite::CausesOf(verdicts))},
-          {"brittle", suite::BrittleJson(suite::BrittlePasses(verdicts))}};
+          {"brittle", suite::NearLimitJson(suite::NearLimitPasses(verdicts))}};
 }
 
 /// "" if every episode that should be recorded was.

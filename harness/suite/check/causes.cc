@@ -17,7 +17,7 @@ namespace prehend::suite {
 namespace {
 
 constexpr std::size_t kMostEffects = 6;
-constexpr std::size_t kMostBrittle = 10;
+constexpr std::size_t kMostNearLimit = 10;
 
 using Json = nlohmann::ordered_json;
 
@@ -124,8 +124,8 @@ std::string CausesText(const std::vector<Cause>& causes) {
   return text;
 }
 
-std::vector<Brittle> BrittlePasses(const std::vector<ScenarioVerdict>& verdicts) {
-  std::vector<std::pair<double, Brittle>> found;  // with what is left of the tolerance, as a share
+std::vector<NearLimitPass> NearLimitPasses(const std::vector<ScenarioVerdict>& verdicts) {
+  std::vector<std::pair<double, NearLimitPass>> found;  // with the share of tolerance left
   for (const ScenarioVerdict& verdict : verdicts) {
     const bool good = verdict.verdict == Verdict::kPassed || verdict.verdict == Verdict::kUnchanged;
     if (!good || !verdict.has_golden || !verdict.comparison) continue;
@@ -134,27 +134,28 @@ std::vector<Brittle> BrittlePasses(const std::vector<ScenarioVerdict>& verdicts)
     const grammar::Tick rate = verdict.comparison->ticks_per_second;
     const double share = static_cast<double>(smallest->Left()) /
                          static_cast<double>(std::max<grammar::Tick>(1, smallest->tolerance));
-    found.emplace_back(share,
-                       Brittle{.scenario = verdict.scenario,
-                               .boundary = smallest->Boundary(),
-                               .offset_ms = truth::MillisecondsOf(smallest->offset, rate),
-                               .tolerance_ms = truth::MillisecondsOf(smallest->tolerance, rate)});
+    found.emplace_back(
+        share, NearLimitPass{.scenario = verdict.scenario,
+                             .boundary = smallest->Boundary(),
+                             .offset_ms = truth::MillisecondsOf(smallest->offset, rate),
+                             .tolerance_ms = truth::MillisecondsOf(smallest->tolerance, rate)});
   }
   std::ranges::stable_sort(found, {}, [](const auto& entry) { return entry.first; });
-  std::vector<Brittle> brittle;
-  for (auto& [share, entry] : found) brittle.push_back(std::move(entry));
-  return brittle;
+  std::vector<NearLimitPass> near_limit;
+  for (auto& [share, entry] : found) near_limit.push_back(std::move(entry));
+  return near_limit;
 }
 
-std::string BrittleText(const std::vector<Brittle>& brittle) {
-  if (brittle.empty()) return "";
+std::string NearLimitText(const std::vector<NearLimitPass>& near_limit) {
+  if (near_limit.empty()) return "";
   std::string text = fmt::format("warning: {} passed at the limit of a tolerance:\n",
-                                 Counted(brittle.size(), "scenario"));
-  for (std::size_t i = 0; i < brittle.size() && i < kMostBrittle; ++i)
-    text += fmt::format("  {}  {} is {:+.1f} ms off (tolerance {:.1f} ms)\n", brittle[i].scenario,
-                        brittle[i].boundary, brittle[i].offset_ms, brittle[i].tolerance_ms);
-  if (brittle.size() > kMostBrittle)
-    text += fmt::format("  and {} more\n", brittle.size() - kMostBrittle);
+                                 Counted(near_limit.size(), "scenario"));
+  for (std::size_t i = 0; i < near_limit.size() && i < kMostNearLimit; ++i)
+    text +=
+        fmt::format("  {}  {} is {:+.1f} ms off (tolerance {:.1f} ms)\n", near_limit[i].scenario,
+                    near_limit[i].boundary, near_limit[i].offset_ms, near_limit[i].tolerance_ms);
+  if (near_limit.size() > kMostNearLimit)
+    text += fmt::format("  and {} more\n", near_limit.size() - kMostNearLimit);
   return text;
 }
 
@@ -178,9 +179,9 @@ Json CausesJson(const std::vector<Cause>& causes) {
   return list;
 }
 
-Json BrittleJson(const std::vector<Brittle>& brittle) {
+Json NearLimitJson(const std::vector<NearLimitPass>& near_limit) {
   Json list = Json::array();
-  for (const Brittle& entry : brittle)
+  for (const NearLimitPass& entry : near_limit)
     list.push_back({{"scenario", entry.scenario},
                     {"boundary", entry.boundary},
                     {"offset_ms", entry.offset_ms},

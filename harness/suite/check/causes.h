@@ -41,17 +41,17 @@ std::vector<Cause> CausesOf(const std::vector<ScenarioVerdict>& verdicts);
 std::string CausesText(const std::vector<Cause>& causes);
 
 /// A scenario that passed although a boundary is at the limit of its tolerance.
-struct Brittle {
+struct NearLimitPass {
   std::string scenario, boundary;
   double offset_ms = 0, tolerance_ms = 0;
 };
-/// With at most a tenth of a tolerance left; the most brittle first, one line per scenario.
-std::vector<Brittle> BrittlePasses(const std::vector<ScenarioVerdict>& verdicts);
+/// With at most a tenth of a tolerance left; the nearest to its limit first, one line per scenario.
+std::vector<NearLimitPass> NearLimitPasses(const std::vector<ScenarioVerdict>& verdicts);
 /// "warning: 2 scenarios passed at the limit of a tolerance:" and a line for each, or "".
-std::string BrittleText(const std::vector<Brittle>& brittle);
+std::string NearLimitText(const std::vector<NearLimitPass>& near_limit);
 
 /// Keys in docs/regression-suite.md.
 nlohmann::ordered_json CausesJson(const std::vector<Cause>& causes);
-nlohmann::ordered_json BrittleJson(const std::vector<Brittle>& brittle);
+nlohmann::ordered_json NearLimitJson(const std::vector<NearLimitPass>& near_limit);
 
 }  // namespace prehend::suite

@@ -263,7 +263,7 @@ void AddHead(pugi::xml_node html, const std::string& title) {
 
 void AddCauses(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {
   const std::vector<Cause> causes = CausesOf(verdicts);
-  const std::vector<Brittle> brittle = BrittlePasses(verdicts);
+  const std::vector<NearLimitPass> near_limit = NearLimitPasses(verdicts);
   if (!causes.empty()) {
     AddElement(body, "h2", {},
                causes.size() == 1 ? "1 cause" : fmt::format("{} causes", causes.size()));
@@ -286,10 +286,10 @@ void AddCauses(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts
       AddElement(item, "code", {}, cause.effects.front().command);
     }
   }
-  if (brittle.empty()) return;
+  if (near_limit.empty()) return;
   const pugi::xml_node fold = AddElement(body, "details");
   AddElement(fold, "summary", {}, "Passed at the limit of a tolerance");
-  AddElement(fold, "pre", {{"tabindex", "0"}}, BrittleText(brittle));
+  AddElement(fold, "pre", {{"tabindex", "0"}}, NearLimitText(near_limit));
 }
 
 void AddTools(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {

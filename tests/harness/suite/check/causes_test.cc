@@ -64,8 +64,8 @@ TEST(Causes, APassAtTheLimitIsAWarning) {
     verdict.has_golden = true;
     return verdict;
   };
-  EXPECT_EQ(BrittleText(BrittlePasses({passed("s/exact", 100), passed("s/near", 101)})), "");
-  EXPECT_EQ(BrittleText(BrittlePasses({passed("s/exact", 100), passed("s/limit", 102)})),
+  EXPECT_EQ(NearLimitText(NearLimitPasses({passed("s/exact", 100), passed("s/near", 101)})), "");
+  EXPECT_EQ(NearLimitText(NearLimitPasses({passed("s/exact", 100), passed("s/limit", 102)})),
             "warning: 1 scenario passed at the limit of a tolerance:\n"
             "  s/limit  begin of sliding(h, cup) is +20.0 ms off (tolerance 20.0 ms)\n");
 }
