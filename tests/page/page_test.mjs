@@ -131,9 +131,9 @@ test('a click on a boundary says which condition turned there', async () => {
   await close();
 });
 
-test('the disputed moment is shown as golden, recognised, difference, and with a slider', async (context) => {
+test('the moment that differs is shown as golden, recognised, difference, and with a slider', async (context) => {
   const {page, seen, close} = await opened({hash: '#' + FAILS});
-  const all = page.locator('section[id="' + FAILS + '"] .disputed'), pair = all.first();
+  const all = page.locator('section[id="' + FAILS + '"] .drawn-difference'), pair = all.first();
   if (await all.count() === 0) return context.skip('this build draws no pictures');
   assert.match(await pair.locator('p').textContent(), /begin of (reaching|pick_and_place)\(right_hand, milk\)/);
   const captions = await pair.locator('figcaption').allTextContents();

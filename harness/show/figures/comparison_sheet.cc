@@ -23,7 +23,7 @@ constexpr std::size_t kAgreedMoments = 4;
 constexpr double kAround_s = 0.15;  ///< what happens so long before and after is in the view
 
 /// A boundary that is at two times, or an event that only one side has.
-struct Dispute {
+struct BoundaryDifference {
   std::string boundary;  ///< "begin of reaching(right_hand, milk)", "reaching(right_hand, milk)"
   std::string how;       ///< "120.8 ms later", "0.41 to 1.05 s"
   std::vector<std::string> involved;  ///< hands and things of the event
@@ -34,7 +34,7 @@ struct Dispute {
   double Begin_s() const {
     return HaveBoth() ? std::min(first_s, second_s) : first_has ? first_s : second_s;
   }
-  bool IsAtTheTimesOf(const Dispute& other) const {
+  bool IsAtTheTimesOf(const BoundaryDifference& other) const {
     return HaveBoth() && other.HaveBoth() && first_s == other.first_s && second_s == other.second_s;
   }
 };
@@ -45,23 +45,24 @@ class Differ {
          const scenario::Scenario& scenario)
       : comparison_(comparison), window_(window), scenario_(scenario) {}
 
-  /// In the order of time. Boundaries that are at one time for both sides are one dispute.
-  std::vector<Dispute> Disputes() const {
-    std::vector<Dispute> disputes;
+  /// In the order of time. Boundaries that are at one time for both sides are one difference.
+  std::vector<BoundaryDifference> Differences() const {
+    std::vector<BoundaryDifference> differences;
     for (const truth::Pairing* pairing : comparison_.Differing()) {
       if (!window_.Shows(scenario_, pairing->event())) continue;
-      for (Dispute& dispute : DisputesOf(*pairing)) {
-        if (dispute.Begin_s() < window_.from_s || dispute.Begin_s() > window_.to_s) continue;
-        const auto twin = std::ranges::find_if(
-            disputes, [&](const Dispute& other) { return dispute.IsAtTheTimesOf(other); });
-        if (twin == disputes.end())
-          disputes.push_back(std::move(dispute));
+      for (BoundaryDifference& difference : BoundaryDifferencesOf(*pairing)) {
+        if (difference.Begin_s() < window_.from_s || difference.Begin_s() > window_.to_s) continue;
+        const auto twin = std::ranges::find_if(differences, [&](const BoundaryDifference& other) {
+          return difference.IsAtTheTimesOf(other);
+        });
+        if (twin == differences.end())
+          differences.push_back(std::move(difference));
         else
-          twin->boundary += ", " + dispute.boundary;
+          twin->boundary += ", " + difference.boundary;
       }
     }
-    std::ranges::stable_sort(disputes, {}, &Dispute::Begin_s);
-    return disputes;
+    std::ranges::stable_sort(differences, {}, &BoundaryDifference::Begin_s);
+    return differences;
   }
 
   /// Marks in the charts of both sides where they differ.
@@ -117,7 +118,7 @@ class Differ {
     return names;
   }
 
-  std::vector<Dispute> DisputesOf(const truth::Pairing& pairing) const {
+  std::vector<BoundaryDifference> BoundaryDifferencesOf(const truth::Pairing& pairing) const {
     const std::string label = pairing.event().Label();
     if (!pairing.expected || !pairing.actual) {
       const bool has = pairing.expected.has_value();
@@ -130,11 +131,11 @@ class Differ {
                .first_has = has,
                .second_has = !has}};
     }
-    std::vector<Dispute> disputes;
+    std::vector<BoundaryDifference> differences;
     const auto add = [&](const char* boundary, Tick offset, Tick first, Tick second) {
       if (!IsOut(pairing, offset)) return;
       const double off_ms = truth::MillisecondsOf(offset, comparison_.ticks_per_second);
-      disputes.push_back(
+      differences.push_back(
           {.boundary = fmt::format("{} of {}", boundary, label),
            .how = fmt::format("{:.1f} ms {}", std::abs(off_ms), off_ms > 0 ? "later" : "earlier"),
            .involved = Involved(pairing),
@@ -144,15 +145,15 @@ class Differ {
     add("begin", pairing.begin_offset, pairing.expected->interval.begin,
         pairing.actual->interval.begin);
     add("end", pairing.end_offset, pairing.expected->interval.end, pairing.actual->interval.end);
-    if (disputes.empty()) {
+    if (differences.empty()) {
       const double begin_s = Seconds(pairing.actual->interval.begin);
-      disputes.push_back({.boundary = label,
-                          .how = std::string(truth::Name(pairing.agreement)),
-                          .involved = Involved(pairing),
-                          .first_s = begin_s,
-                          .second_s = begin_s});
+      differences.push_back({.boundary = label,
+                             .how = std::string(truth::Name(pairing.agreement)),
+                             .involved = Involved(pairing),
+                             .first_s = begin_s,
+                             .second_s = begin_s});
     }
-    return disputes;
+    return differences;
   }
 
   const truth::Comparison& comparison_;
@@ -271,7 +272,8 @@ Sheet ComparisonSheet(const scenario::Scenario& scenario, const Side& first, con
   Sheet sheet{.chart_first = true};
   Chart chart = WithoutTwins(ComparisonChart(scenario, first, second, comparison, window),
                              first.name, second.name);
-  const std::vector<Dispute> disputes = Differ(comparison, window, scenario).Disputes();
+  const std::vector<BoundaryDifference> differences =
+      Differ(comparison, window, scenario).Differences();
   SceneRows scenes(scenario, first, second, format, painter);
   std::size_t number = 0;
   const auto mark = [&](double time_s) {
@@ -280,28 +282,28 @@ Sheet ComparisonSheet(const scenario::Scenario& scenario, const Side& first, con
   };
   TileRow only{
       .heading = "Only one side has:", .tiles = {}, .columns = 3, .height_share = kWideScene};
-  for (const Dispute& dispute : disputes) {
-    if (number == kMostDisputes) break;
-    const std::string letter = mark(dispute.Begin_s());
-    if (dispute.HaveBoth()) {
+  for (const BoundaryDifference& difference : differences) {
+    if (number == kMostDifferences) break;
+    const std::string letter = mark(difference.Begin_s());
+    if (difference.HaveBoth()) {
       sheet.rows.push_back(
-          scenes.BothAt(fmt::format("{}{}: {}", letter, dispute.boundary, dispute.how),
-                        dispute.first_s, dispute.second_s, dispute.involved));
+          scenes.BothAt(fmt::format("{}{}: {}", letter, difference.boundary, difference.how),
+                        difference.first_s, difference.second_s, difference.involved));
       continue;
     }
-    const Side& has = dispute.first_has ? first : second;
+    const Side& has = difference.first_has ? first : second;
     scenes.AddOnlyOf(
-        fmt::format("{}{}\nonly in {}: {}", letter, dispute.boundary, has.name, dispute.how), has,
-        dispute.first_s, dispute.involved, only);
+        fmt::format("{}{}\nonly in {}: {}", letter, difference.boundary, has.name, difference.how),
+        has, difference.first_s, difference.involved, only);
   }
   if (!only.tiles.empty()) sheet.rows.push_back(std::move(only));
-  if (disputes.size() > kMostDisputes)
+  if (differences.size() > kMostDifferences)
     sheet.note = fmt::format(
         "{} more differences have no scenes here; --from, --to, --hand and "
         "--of choose a part",
-        disputes.size() - kMostDisputes);
-  if (disputes.empty()) sheet.note = AgreementText(comparison);
-  if (disputes.empty() && first.scenes != second.scenes) {
+        differences.size() - kMostDifferences);
+  if (differences.empty()) sheet.note = AgreementText(comparison);
+  if (differences.empty() && first.scenes != second.scenes) {
     for (const KeyMoment& moment : KeyMoments(*second.events, window, kAgreedMoments))
       sheet.rows.push_back(scenes.BothAt(mark(moment.time_s) + moment.caption, moment.time_s,
                                          moment.time_s, moment.involved));

@@ -15,7 +15,7 @@
 namespace prehend::show {
 
 /// More boundaries than these have no scenes; a note says how many.
-inline constexpr std::size_t kMostDisputes = 8;
+inline constexpr std::size_t kMostDifferences = 8;
 
 struct Side {
   std::string name;                            ///< "golden", "my_rules", "box2d"

@@ -13,7 +13,7 @@
 #include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/show/replay/replay_data.h"
-#include "harness/suite/check/draw_disputed.h"
+#include "harness/suite/check/draw_differences.h"
 #include "harness/suite/check/judges.h"
 #include "harness/suite/check/last_pass.h"
 #include "harness/suite/check/state_trace.h"
@@ -164,8 +164,8 @@ void AddPictures(CheckedEpisode& checked) {
   if (has_frames && wants_replay) verdict.replay = show::ReplayData(scenario, checked.run.result);
   if (checked.recording || !verdict.DiffersFromGolden()) return;
   if (request.pictures && show::CanDrawPictures())
-    verdict.disputed =
-        DrawDisputed(scenario, checked.run.result, *verdict.comparison, request.report_folder);
+    verdict.drawn_differences =
+        DrawDifferences(scenario, checked.run.result, *verdict.comparison, request.report_folder);
   if (request.explain)
     verdict.explained =
         Explain(scenario, checked.run.result, checked.run.loaded.program, *verdict.comparison);

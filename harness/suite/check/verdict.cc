@@ -107,7 +107,7 @@ ScenarioVerdict MergeRepeats(const std::vector<ScenarioVerdict>& runs) {
     if (!run.picture_differences.empty()) merged.picture_differences = run.picture_differences;
     if (!run.pictures.empty()) merged.pictures = run.pictures;
     if (!run.replay.empty()) merged.replay = run.replay;
-    if (!run.disputed.empty()) merged.disputed = run.disputed;
+    if (!run.drawn_differences.empty()) merged.drawn_differences = run.drawn_differences;
     if (!run.explained.events.empty()) merged.explained = run.explained;
     if (!run.not_recorded.empty()) merged.not_recorded = run.not_recorded;
   }

@@ -39,14 +39,14 @@ struct ReportedPicture {
 
 /// The scene when the golden says that an event begins or ends, and when it was recognised; or
 /// where an event begins that only one of them has.
-struct DisputedMoment {
+struct DrawnDifference {
   std::string what;  ///< "begin of reaching(right_hand, milk)", or only the event
   ReportedPicture expected = {}, recognised = {};
   bool in_golden = true, in_run = true;  ///< who has the event
 };
 
 /// Of one scenario.
-inline constexpr std::size_t kMostDisputed = 3;
+inline constexpr std::size_t kMostDrawnDifferences = 3;
 
 struct ScenarioVerdict {
   std::string scenario;  ///< skill/name
@@ -72,8 +72,8 @@ struct ScenarioVerdict {
   std::int64_t peak_memory_kib = 0;  ///< of its worker
   FileHashes inputs;  ///< every file that decides what the verdict is, as it was before the run
   std::vector<ReportedPicture> pictures;
-  std::vector<DisputedMoment> disputed;  ///< the first kMostDisputed, if pictures are drawn
-  Explained explained;                   ///< of what has a golden and did not pass
+  std::vector<DrawnDifference> drawn_differences;  ///< at most kMostDrawnDifferences
+  Explained explained;                             ///< of what has a golden and did not pass
   std::string replay;  ///< ReplayData() (harness/show/replay/replay_data.h), or empty
   std::string
       not_recorded;  ///< empty, or why the episode is not in its file; no part of the verdict

@@ -46,13 +46,13 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, claim, place, says, found, time
 namespace prehend::suite {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportedPicture, file, caption)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DisputedMoment, what, expected, recognised, in_golden, in_run)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DrawnDifference, what, expected, recognised, in_golden, in_run)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attribution, event, what, shift_ms, because, question)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, shows, verdict, exit_code, reason,
                                    details, notes, claims, comparison, has_golden, drawings,
                                    explain, cause, attributions, settings, command, state_hash,
                                    ticks, seconds, peak_memory_kib, inputs, pictures, not_recorded,
-                                   picture_differences, disputed, explained, replay)
+                                   picture_differences, drawn_differences, explained, replay)
 
 namespace {
 

@@ -66,14 +66,14 @@ void FillScenario(pugi::xml_node cell, const ScenarioVerdict& verdict) {
   AddElement(cell, "span", {{"class", "soft"}}, verdict.shows);
 }
 
-/// What the pictures of a disputed moment show.
-std::string DisputeText(const DisputedMoment& moment) {
+/// What the pictures of a moment that differs show.
+std::string DrawnDifferenceText(const DrawnDifference& moment) {
   constexpr const char* kPaths = "; the paths show what hands do by the golden, and by this run";
   if (!moment.in_run)
     return "Where " + moment.what + " should begin, which was not recognised" + kPaths;
   if (!moment.in_golden)
     return "Where " + moment.what + " begins, which is not in the golden" + kPaths;
-  return "The scene at the disputed " + moment.what +
+  return "The scene at the differing " + moment.what +
          ": when it should be, when it was recognised, and what moved in between";
 }
 
@@ -231,9 +231,9 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, bool open,
   }
   if (verdict.comparison)
     AddExplanations(fold, verdict.explained, verdict.comparison->ticks_per_second);
-  for (const DisputedMoment& moment : verdict.disputed) {
-    const pugi::xml_node pair = AddElement(fold, "div", {{"class", "disputed"}});
-    AddElement(pair, "p", {}, DisputeText(moment));
+  for (const DrawnDifference& moment : verdict.drawn_differences) {
+    const pugi::xml_node pair = AddElement(fold, "div", {{"class", "drawn-difference"}});
+    AddElement(pair, "p", {}, DrawnDifferenceText(moment));
     pictures.Add(pair, moment.expected);
     pictures.Add(pair, moment.recognised);
   }

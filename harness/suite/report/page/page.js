@@ -216,7 +216,7 @@
     return forward ? Math.min(...beyond) : Math.max(...beyond);
   }
 
-  // Pictures at a disputed moment: the difference of both, and one over the other with a slider.
+  // Pictures at a moment that differs: the difference of both, and one over the other with a slider.
   function tile(pair, caption, ...images) {
     const figure = document.createElement('figure'), stack = document.createElement('div'), text = document.createElement('figcaption');
     stack.className = 'stack';
@@ -231,7 +231,7 @@
     pair.appendChild(figure);
     return figure;
   }
-  document.querySelectorAll('.disputed').forEach((pair) => {
+  document.querySelectorAll('.drawn-difference').forEach((pair) => {
     const images = pair.querySelectorAll('img');
     if (images.length !== 2) return;
     tile(pair, 'difference', ...images).classList.add('blend');

@@ -50,7 +50,7 @@ TEST(ComparisonSheet, HatchesWhereTwoSidesDiffer) {
   EXPECT_TRUE(RowOf(chart, "supported_by (golden)")->hatches.empty());
 }
 
-TEST(ComparisonSheet, ShowsTheScenesOfEachDispute) {
+TEST(ComparisonSheet, ShowsTheScenesOfEachDifference) {
   const auto& [loaded, run] = Of("pick_and_place/milk_carton_wrap");
   const auto [golden, comparison] = GoldenLike(run, [](auto& events) {
     EventOf(events, "transporting").interval.end -= 48;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/check/draw_disputed.h"
+#include "harness/suite/check/draw_differences.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A hand that moves past a cup for a second.
-class DrawDisputedTest : public ::testing::Test {
+class DrawDifferencesTest : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!show::CanDrawPictures()) GTEST_SKIP() << "this build draws no pictures";
@@ -42,16 +42,16 @@ class DrawDisputedTest : public ::testing::Test {
       snapshot.hands.resize(1);
       snapshot.hands[0].palm.X_WB.p_m = {0.2, static_cast<double>(tick) / 960, 0.1};
     }
-    folder_ = fs::path(PREHEND_BINARY_DIR) / "draw_disputed_test";
+    folder_ = fs::path(PREHEND_BINARY_DIR) / "draw_differences_test";
     fs::remove_all(folder_);
   }
   static grammar::NamedEvent Near(grammar::Tick begin, grammar::Tick end) {
     return {.event = "near", .roles = {{"h", "left"}, {"x", "cup"}}, .interval = {begin, end}};
   }
-  std::vector<DisputedMoment> Draw(truth::Pairing pairing) const {
+  std::vector<DrawnDifference> Draw(truth::Pairing pairing) const {
     truth::Comparison comparison;
     comparison.pairings.push_back(std::move(pairing));
-    return DrawDisputed(scenario_, run_, comparison, folder_.string());
+    return DrawDifferences(scenario_, run_, comparison, folder_.string());
   }
   std::string Bytes(const ReportedPicture& picture) const {
     std::ifstream file(folder_ / picture.file, std::ios::binary);
@@ -63,7 +63,7 @@ class DrawDisputedTest : public ::testing::Test {
   fs::path folder_;
 };
 
-TEST_F(DrawDisputedTest, ABoundaryIsShownAtBothTimes) {
+TEST_F(DrawDifferencesTest, ABoundaryIsShownAtBothTimes) {
   const auto moments = Draw({.agreement = truth::LineVerdict::kShifted,
                              .expected = Near(96, 240),
                              .actual = Near(192, 240),
@@ -76,7 +76,7 @@ TEST_F(DrawDisputedTest, ABoundaryIsShownAtBothTimes) {
   EXPECT_TRUE(moments[0].in_golden && moments[0].in_run);
 }
 
-TEST_F(DrawDisputedTest, AnEventThatOnlyOneSideHasIsShownWhereItBegins) {
+TEST_F(DrawDifferencesTest, AnEventThatOnlyOneSideHasIsShownWhereItBegins) {
   const auto missing = Draw({.agreement = truth::LineVerdict::kMissing, .expected = Near(96, 240)});
   ASSERT_EQ(missing.size(), 1u);
   EXPECT_EQ(missing[0].what, "near(left, cup)");

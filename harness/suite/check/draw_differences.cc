@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/check/draw_disputed.h"
+#include "harness/suite/check/draw_differences.h"
 
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ constexpr double kMostShown_s = 2;
 constexpr double kSnapshots_per_s = 60;
 
 /// A boundary at two times, or the begin of an event that only one side has.
-struct Dispute {
+struct BoundaryDifference {
   std::string what;
   Tick expected = 0, recognised = 0;
   Tick end = 0;                       ///< of an event that only one side has
@@ -38,42 +38,42 @@ struct Dispute {
   bool IsOneSided() const { return !in_golden || !in_run; }
 };
 
-std::optional<Dispute> DisputeOf(const truth::Pairing& pairing) {
-  Dispute dispute;
-  for (const grammar::Role& role : pairing.event().roles) dispute.involved.push_back(role.value);
+std::optional<BoundaryDifference> BoundaryDifferenceOf(const truth::Pairing& pairing) {
+  BoundaryDifference difference;
+  for (const grammar::Role& role : pairing.event().roles) difference.involved.push_back(role.value);
   const std::string label = pairing.event().Label();
   if (!pairing.expected || !pairing.actual) {
-    dispute.what = label;
-    dispute.expected = dispute.recognised = pairing.event().interval.begin;
-    dispute.end = pairing.event().interval.end;
-    dispute.in_golden = pairing.expected.has_value();
-    dispute.in_run = pairing.actual.has_value();
-    return dispute;
+    difference.what = label;
+    difference.expected = difference.recognised = pairing.event().interval.begin;
+    difference.end = pairing.event().interval.end;
+    difference.in_golden = pairing.expected.has_value();
+    difference.in_run = pairing.actual.has_value();
+    return difference;
   }
   const bool at_begin = std::abs(pairing.begin_offset) > pairing.tolerance;
   if (!at_begin && std::abs(pairing.end_offset) <= pairing.tolerance) return std::nullopt;
   const auto boundary = [&](const grammar::NamedEvent& event) {
     return at_begin ? event.interval.begin : event.interval.end;
   };
-  dispute.what = (at_begin ? "begin of " : "end of ") + label;
-  dispute.expected = boundary(*pairing.expected);
-  dispute.recognised = boundary(*pairing.actual);
-  return dispute;
+  difference.what = (at_begin ? "begin of " : "end of ") + label;
+  difference.expected = boundary(*pairing.expected);
+  difference.recognised = boundary(*pairing.actual);
+  return difference;
 }
 
 /// The first ones; several events may share a boundary.
-std::vector<Dispute> DisputesOf(const truth::Comparison& comparison) {
-  std::vector<Dispute> disputes;
+std::vector<BoundaryDifference> BoundaryDifferencesOf(const truth::Comparison& comparison) {
+  std::vector<BoundaryDifference> differences;
   std::set<std::tuple<Tick, Tick, bool>> seen;
   for (const truth::Pairing* pairing : comparison.Differing()) {
-    if (disputes.size() == kMostDisputed) break;
-    std::optional<Dispute> dispute = DisputeOf(*pairing);
-    if (!dispute) continue;
-    const auto [first, last] = std::minmax(dispute->expected, dispute->recognised);
-    if (seen.emplace(first, last, dispute->IsOneSided()).second)
-      disputes.push_back(std::move(*dispute));
+    if (differences.size() == kMostDrawnDifferences) break;
+    std::optional<BoundaryDifference> difference = BoundaryDifferenceOf(*pairing);
+    if (!difference) continue;
+    const auto [first, last] = std::minmax(difference->expected, difference->recognised);
+    if (seen.emplace(first, last, difference->IsOneSided()).second)
+      differences.push_back(std::move(*difference));
   }
-  return disputes;
+  return differences;
 }
 
 /// The run with fewer snapshots; that at `kept` is among them.
@@ -99,21 +99,22 @@ std::vector<grammar::NamedEvent> GoldenEvents(const truth::Comparison& compariso
   return events;
 }
 
-class DisputePainter {
+class DifferencePainter {
  public:
-  DisputePainter(const scenario::Scenario& scenario, const episode::RunResult& run,
-                 const truth::Comparison& comparison, fs::path report_folder)
+  DifferencePainter(const scenario::Scenario& scenario, const episode::RunResult& run,
+                    const truth::Comparison& comparison, fs::path report_folder)
       : scenario_(scenario),
         run_(run),
         comparison_(comparison),
         report_folder_(std::move(report_folder)) {}
 
   /// nullopt if it cannot be drawn.
-  std::optional<DisputedMoment> Draw(const Dispute& dispute, std::size_t number) const {
-    const auto [first, last] = std::minmax(dispute.expected, dispute.recognised);
+  std::optional<DrawnDifference> Draw(const BoundaryDifference& difference,
+                                      std::size_t number) const {
+    const auto [first, last] = std::minmax(difference.expected, difference.recognised);
     show::PictureFormat format{.width_px = 480,
                                .height_px = 270,
-                               .framed = dispute.involved,
+                               .framed = difference.involved,
                                .framed_from_s = Seconds(first) - kAround_s,
                                .framed_to_s = Seconds(last) + kAround_s,
                                .title = false,
@@ -121,18 +122,18 @@ class DisputePainter {
                                .strip = false,
                                .ghosts = false,
                                .paths = false};
-    if (dispute.IsOneSided()) {
+    if (difference.IsOneSided()) {
       format.paths = true;
-      const double end_s = std::min(Seconds(dispute.end), Seconds(first) + kMostShown_s);
+      const double end_s = std::min(Seconds(difference.end), Seconds(first) + kMostShown_s);
       format.framed_to_s = end_s + kAround_s;
       format.from_s = std::max(0.0, Seconds(first) - kPathsAround_s);
       format.to_s = end_s + kPathsAround_s;
     }
     // Both in one view, and so from the same snapshots.
     std::optional<episode::RunResult> told;
-    if (dispute.IsOneSided()) told = Thinned(run_, first);
-    DisputedMoment moment{
-        .what = dispute.what, .in_golden = dispute.in_golden, .in_run = dispute.in_run};
+    if (difference.IsOneSided()) told = Thinned(run_, first);
+    DrawnDifference moment{
+        .what = difference.what, .in_golden = difference.in_golden, .in_run = difference.in_run};
     bool is_drawn = true;
     const auto draw = [&](const episode::RunResult& run, const char* side, Tick tick, bool has) {
       scenario::PictureYaml entry;
@@ -147,9 +148,11 @@ class DisputePainter {
           file, fmt::format("{}: {:.4f} s{}", side, Seconds(tick), has ? "" : ", no such event")};
     };
     if (told) told->timeline.events = GoldenEvents(comparison_);
-    moment.expected = draw(told ? *told : run_, "golden", dispute.expected, dispute.in_golden);
+    moment.expected =
+        draw(told ? *told : run_, "golden", difference.expected, difference.in_golden);
     if (told) told->timeline.events = run_.timeline.events;
-    moment.recognised = draw(told ? *told : run_, "recognised", dispute.recognised, dispute.in_run);
+    moment.recognised =
+        draw(told ? *told : run_, "recognised", difference.recognised, difference.in_run);
     return is_drawn ? std::optional(std::move(moment)) : std::nullopt;
   }
 
@@ -166,16 +169,16 @@ class DisputePainter {
 
 }  // namespace
 
-std::vector<DisputedMoment> DrawDisputed(const scenario::Scenario& scenario,
-                                         const episode::RunResult& run,
-                                         const truth::Comparison& comparison,
-                                         const std::string& report_folder) {
+std::vector<DrawnDifference> DrawDifferences(const scenario::Scenario& scenario,
+                                             const episode::RunResult& run,
+                                             const truth::Comparison& comparison,
+                                             const std::string& report_folder) {
   std::error_code error;
   fs::create_directories(fs::path(report_folder) / "pictures" / scenario.skill, error);
-  const DisputePainter painter(scenario, run, comparison, report_folder);
-  std::vector<DisputedMoment> moments;
-  for (const Dispute& dispute : DisputesOf(comparison)) {
-    std::optional<DisputedMoment> moment = painter.Draw(dispute, moments.size() + 1);
+  const DifferencePainter painter(scenario, run, comparison, report_folder);
+  std::vector<DrawnDifference> moments;
+  for (const BoundaryDifference& difference : BoundaryDifferencesOf(comparison)) {
+    std::optional<DrawnDifference> moment = painter.Draw(difference, moments.size() + 1);
     if (!moment) return {};
     moments.push_back(std::move(*moment));
   }
