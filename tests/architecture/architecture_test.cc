@@ -141,7 +141,7 @@ TEST(Architecture, MedianFileIsShort) {
   EXPECT_LE(lengths[lengths.size() / 2], 200);
 }
 
-// A witness of its own: it never sees what it judges.
+// An evaluator of its own: it never sees what it judges.
 TEST(Architecture, ClosedFormsSeeNeitherGrammarNorOracle) {
   for (const SourceFile& file : SourceFiles({"tests/witnesses/closed_form"})) {
     for (const Include& include : IncludesOf(file.text))

@@ -11,7 +11,7 @@
 namespace prehend::architecture {
 namespace {
 
-/// The commit that made the oracle a witness of its own; the rule holds from here on.
+/// The commit that made the oracle an evaluator of its own; the rule holds from here on.
 constexpr const char* kSince = "625670f";
 
 struct Commit {

@@ -45,7 +45,7 @@ const Arrows& ProjectArrows() {
       {"harness/base/base", {"grammar/base"}},
       {"harness/base/process", {}},
       {"harness/truth/timeline", {"grammar", "grammar/base"}},
-      // A witness of its own: it never sees what it judges.
+      // An evaluator of its own: it never sees what it judges.
       {"harness/truth/oracle", {"grammar/base", "physics/scene"}},
       {"harness/truth/claims",
        {"grammar", "grammar/base", "harness/base/base", "harness/truth/timeline"}},

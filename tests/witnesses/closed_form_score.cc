@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of each witness; a grammar of other definitions has hundreds.
+/// Of each evaluator; a grammar of other definitions has hundreds.
 constexpr std::size_t kMaxWrongLines = 25;
 
 std::string NameOf(const JudgedEvent& event) {
@@ -80,7 +80,7 @@ std::string WrongText(const ClosedFormScore& score) {
   }
   if (wrong.size() > kMaxWrongLines)
     text += fmt::format("  and {} more; --json has all\n", wrong.size() - kMaxWrongLines);
-  return text.empty() ? "" : "\nwrong in " + score.witness + "\n" + text;
+  return text.empty() ? "" : "\nwrong in " + score.evaluator + "\n" + text;
 }
 
 Json BoundaryJson(const JudgedBoundary& boundary) {
@@ -94,8 +94,8 @@ Json BoundaryJson(const JudgedBoundary& boundary) {
 
 }  // namespace
 
-ClosedFormWitness GrammarWitness(const std::string& name,
-                                 std::shared_ptr<const grammar::Program> program) {
+ClosedFormEvaluator EvaluatedGrammar(const std::string& name,
+                                     std::shared_ptr<const grammar::Program> program) {
   return {name, [program](const ClosedFormRecording& recording) {
             grammar::Timeline found =
                 episode::Resegment(recording.scenario, recording.frames, program, recording.end);
@@ -105,7 +105,7 @@ ClosedFormWitness GrammarWitness(const std::string& name,
           }};
 }
 
-ClosedFormWitness OracleWitness(const truth::OracleSettings& settings) {
+ClosedFormEvaluator EvaluatedOracle(const truth::OracleSettings& settings) {
   return {"oracle", [settings](const ClosedFormRecording& recording) {
             return truth::TrueTimeline(recording.scenario.scene, recording.frames, recording.end,
                                        settings);
@@ -128,17 +128,17 @@ int ClosedFormScore::Right(const std::string& event) const {
 }
 
 Result<std::vector<ClosedFormScore>> ScoreOnClosedForms(
-    const std::vector<std::string>& files, const std::vector<ClosedFormWitness>& witnesses) {
+    const std::vector<std::string>& files, const std::vector<ClosedFormEvaluator>& evaluators) {
   std::vector<ClosedFormScore> scores;
-  for (const ClosedFormWitness& witness : witnesses) scores.push_back({witness.name, {}});
+  for (const ClosedFormEvaluator& evaluator : evaluators) scores.push_back({evaluator.name, {}});
   for (const std::string& file : files) {
     const Result<ClosedForm> form = ReadClosedForm(file);
     if (!form) return tl::unexpected(form.error());
     for (const ClosedFormRecording& recording : form->recordings)
-      for (std::size_t i = 0; i < witnesses.size(); ++i)
+      for (std::size_t i = 0; i < evaluators.size(); ++i)
         scores[i].rows.push_back(
             {form->name, recording.sampling,
-             ClosedFormAgreement(form->truth, recording, witnesses[i].recognise(recording))});
+             ClosedFormAgreement(form->truth, recording, evaluators[i].recognise(recording))});
   }
   return scores;
 }
@@ -148,7 +148,7 @@ std::string ClosedFormText(const std::vector<ClosedFormScore>& scores) {
   std::vector<std::string> names = {""};
   for (const std::string_view name : truth::OracleEvents()) names.emplace_back(name);
   std::string text = fmt::format("{:<16}", "boundaries");
-  for (const ClosedFormScore& score : scores) text += fmt::format("  {:>22}", score.witness);
+  for (const ClosedFormScore& score : scores) text += fmt::format("  {:>22}", score.evaluator);
   text += "\n";
   for (const std::string& name : names) {
     text += fmt::format("{:<16}", name.empty() ? "all" : name);
@@ -175,7 +175,7 @@ Json ClosedFormJson(const std::vector<ClosedFormScore>& scores) {
                            {"event", event.label},
                            {"begin", BoundaryJson(event.begin)},
                            {"end", BoundaryJson(event.end)}});
-    all.push_back({{"name", score.witness},
+    all.push_back({{"name", score.evaluator},
                    {"recordings", score.rows.size()},
                    {"boundaries", score.Boundaries()},
                    {"right", score.Right()},
@@ -184,34 +184,34 @@ Json ClosedFormJson(const std::vector<ClosedFormScore>& scores) {
   return {{"closed_forms", std::move(all)}};
 }
 
-measure::Testimony ByClosedForms(const ClosedFormScore& score) {
-  measure::Testimony testimony;
+measure::Evaluation ByClosedForms(const ClosedFormScore& score) {
+  measure::Evaluation evaluation;
   for (const ClosedFormRow& row : score.rows)
     for (const JudgedEvent& event : row.events)
-      testimony.by_event[NameOf(event)] +=
+      evaluation.by_event[NameOf(event)] +=
           {.of = 2, .confirmed = event.begin.right + event.end.right};
-  return testimony;
+  return evaluation;
 }
 
-std::string WitnessTableWith(const nlohmann::json& score,
-                             const std::vector<ClosedFormScore>& closed_forms) {
+std::string EvaluatorTableWith(const nlohmann::json& score,
+                               const std::vector<ClosedFormScore>& closed_forms) {
   std::vector<std::string> grammars;
-  std::vector<measure::Witness> witnesses;
+  std::vector<measure::Evaluator> evaluators;
   for (const auto& row : score.at("witnesses")) {
-    measure::Witness& witness = witnesses.emplace_back(row.at("witness"), row.at("proves"));
+    measure::Evaluator& evaluator = evaluators.emplace_back(row.at("witness"), row.at("proves"));
     grammars.clear();
     for (const auto& column : row.at("grammars")) {
       grammars.push_back(column.at("grammar"));
-      witness.of_grammars.emplace_back().by_event["all"] = {.of = column.at("of"),
-                                                            .confirmed = column.at("confirmed")};
+      evaluator.of_grammars.emplace_back().by_event["all"] = {.of = column.at("of"),
+                                                              .confirmed = column.at("confirmed")};
     }
   }
-  measure::Witness& paper =
-      witnesses.emplace_back("closed forms", "boundaries known on paper are found to the frame");
+  measure::Evaluator& paper =
+      evaluators.emplace_back("closed forms", "boundaries known on paper are found to the frame");
   for (const std::string& grammar : grammars)
     paper.of_grammars.push_back(
-        ByClosedForms(*std::ranges::find(closed_forms, grammar, &ClosedFormScore::witness)));
-  return measure::WitnessTable(grammars, witnesses);
+        ByClosedForms(*std::ranges::find(closed_forms, grammar, &ClosedFormScore::evaluator)));
+  return measure::EvaluatorTable(grammars, evaluators);
 }
 
 }  // namespace prehend::witnesses

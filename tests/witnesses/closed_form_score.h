@@ -12,7 +12,7 @@
 #include "grammar/base/timeline.h"
 #include "grammar/monitor.h"
 #include "harness/base/base/result.h"
-#include "harness/measure/score/witnesses.h"
+#include "harness/measure/score/evaluators.h"
 #include "harness/truth/oracle/settings.h"
 #include "tests/witnesses/closed_form/agreement.h"
 #include "tests/witnesses/closed_form/closed_form.h"
@@ -20,14 +20,14 @@
 namespace prehend::witnesses {
 
 /// Who finds events in a recording.
-struct ClosedFormWitness {
+struct ClosedFormEvaluator {
   std::string name;
   std::function<grammar::Timeline(const ClosedFormRecording&)> recognise;
 };
 /// Only events that docs/events.md defines count.
-ClosedFormWitness GrammarWitness(const std::string& name,
-                                 std::shared_ptr<const grammar::Program> program);
-ClosedFormWitness OracleWitness(const truth::OracleSettings& settings = {});
+ClosedFormEvaluator EvaluatedGrammar(const std::string& name,
+                                     std::shared_ptr<const grammar::Program> program);
+ClosedFormEvaluator EvaluatedOracle(const truth::OracleSettings& settings = {});
 
 /// The events of one story, in one sampling.
 struct ClosedFormRow {
@@ -36,7 +36,7 @@ struct ClosedFormRow {
 };
 
 struct ClosedFormScore {
-  std::string witness;
+  std::string evaluator;
   std::vector<ClosedFormRow> rows;
 
   /// Of all events, or of those of one name.
@@ -44,20 +44,20 @@ struct ClosedFormScore {
   int Right(const std::string& event = "") const;
 };
 
-/// One score per witness. Every file is read once.
+/// One score per evaluator. Every file is read once.
 Result<std::vector<ClosedFormScore>> ScoreOnClosedForms(
-    const std::vector<std::string>& files, const std::vector<ClosedFormWitness>& witnesses);
+    const std::vector<std::string>& files, const std::vector<ClosedFormEvaluator>& evaluators);
 
-/// A table of the scores, and of each witness what it has wrong: one line per story and event.
+/// A table of the scores, and of each evaluator what it has wrong: one line per story and event.
 std::string ClosedFormText(const std::vector<ClosedFormScore>& scores);
 nlohmann::ordered_json ClosedFormJson(const std::vector<ClosedFormScore>& scores);
 
 /// Boundaries that are right, of those that are known on paper or were recognised.
-measure::Testimony ByClosedForms(const ClosedFormScore& score);
+measure::Evaluation ByClosedForms(const ClosedFormScore& score);
 
-/// README's table: what `prehend score --json` says of each witness, and one more, the closed
+/// README's table: what `prehend score --json` says of each evaluator, and one more, the closed
 /// forms.
-std::string WitnessTableWith(const nlohmann::json& score,
-                             const std::vector<ClosedFormScore>& closed_forms);
+std::string EvaluatorTableWith(const nlohmann::json& score,
+                               const std::vector<ClosedFormScore>& closed_forms);
 
 }  // namespace prehend::witnesses

@@ -36,8 +36,8 @@ Result<std::vector<ClosedFormScore>> ScoreOf(const std::string& text) {
   std::ofstream(folder / "stands.yaml") << text;
   return ScoreOnClosedForms(
       ClosedFormFiles(folder),
-      {GrammarWitness("contact", episode::LoadGrammar(PREHEND_SOURCE_DIR, "contact", {}).program),
-       OracleWitness()});
+      {EvaluatedGrammar("contact", episode::LoadGrammar(PREHEND_SOURCE_DIR, "contact", {}).program),
+       EvaluatedOracle()});
 }
 
 TEST(ClosedFormScore, GrammarsAndOracleAreScored) {
@@ -65,7 +65,7 @@ TEST(ClosedFormScore, WhatCannotBeReadIsAnError) {
 }
 
 ClosedFormScore Mine() {
-  ClosedFormScore score{.witness = "mine", .rows = {}};
+  ClosedFormScore score{.evaluator = "mine", .rows = {}};
   JudgedEvent event{.label = "reaching(hand, cup)"};
   event.begin.right = true;
   score.rows.push_back({"story", "240 Hz", {event}});
@@ -73,17 +73,17 @@ ClosedFormScore Mine() {
 }
 
 TEST(ByClosedForms, CountsBoundaries) {
-  const measure::Testimony testimony = ByClosedForms(Mine());
-  EXPECT_EQ(testimony.by_event.at("reaching").of, 2);
-  EXPECT_EQ(testimony.by_event.at("reaching").confirmed, 1);
+  const measure::Evaluation evaluation = ByClosedForms(Mine());
+  EXPECT_EQ(evaluation.by_event.at("reaching").of, 2);
+  EXPECT_EQ(evaluation.by_event.at("reaching").confirmed, 1);
 }
 
-TEST(WitnessTable, HasARowOfClosedFormsBelowThoseOfScore) {
+TEST(EvaluatorTable, HasARowOfClosedFormsBelowThoseOfScore) {
   const auto score = nlohmann::json::parse(
       R"({"witnesses": [{"witness": "claims", "proves": "what was said",
           "grammars": [{"grammar": "mine", "of": 8, "confirmed": 7}]}]})");
-  EXPECT_EQ(WitnessTableWith(score, {Mine()}),
-            "| witness | mine | what it proves |\n"
+  EXPECT_EQ(EvaluatorTableWith(score, {Mine()}),
+            "| evaluator | mine | what it proves |\n"
             "|---|---|---|\n"
             "| claims | 7 of 8 (87.5 %) | what was said |\n"
             "| closed forms | 1 of 2 (50.0 %) | boundaries known on paper are found to the frame "

@@ -19,13 +19,13 @@ namespace {
 constexpr const char* kRoot = PREHEND_SOURCE_DIR;
 constexpr const char* kStories = PREHEND_SOURCE_DIR "/tests/witnesses/stories";
 
-ClosedFormWitness Grammar(const grammar::Overrides& overrides = {}) {
-  return GrammarWitness("pick_and_place",
-                        episode::LoadGrammar(kRoot, "pick_and_place", overrides).program);
+ClosedFormEvaluator Grammar(const grammar::Overrides& overrides = {}) {
+  return EvaluatedGrammar("pick_and_place",
+                          episode::LoadGrammar(kRoot, "pick_and_place", overrides).program);
 }
 
-std::vector<ClosedFormScore> Scores(const std::vector<ClosedFormWitness>& witnesses) {
-  const auto scores = ScoreOnClosedForms(ClosedFormFiles(kStories), witnesses);
+std::vector<ClosedFormScore> Scores(const std::vector<ClosedFormEvaluator>& evaluators) {
+  const auto scores = ScoreOnClosedForms(ClosedFormFiles(kStories), evaluators);
   EXPECT_TRUE(scores.has_value()) << grammar::Format(scores.error());
   return scores.value_or(std::vector<ClosedFormScore>{});
 }
@@ -58,15 +58,15 @@ std::string Joined(const std::set<std::string>& lines) {
 constexpr double kLeastShare = 0.98;
 
 TEST(ClosedForms, AreFoundByGrammarAndOracle) {
-  const std::vector<ClosedFormScore> scores = Scores({Grammar(), OracleWitness()});
+  const std::vector<ClosedFormScore> scores = Scores({Grammar(), EvaluatedOracle()});
   EXPECT_EQ(Joined(WrongIn(scores[0])), Joined(kWrongInGrammar)) << ClosedFormText(scores);
   EXPECT_EQ(Joined(WrongIn(scores[1])), Joined(kWrongInOracle)) << ClosedFormText(scores);
   for (const ClosedFormScore& score : scores)
-    EXPECT_GE(score.Right(), kLeastShare * score.Boundaries()) << score.witness;
+    EXPECT_GE(score.Right(), kLeastShare * score.Boundaries()) << score.evaluator;
 }
 
 TEST(ClosedForms, AreAtLeastFortyStoriesAtAllRates) {
-  const std::vector<ClosedFormScore> scores = Scores({OracleWitness()});
+  const std::vector<ClosedFormScore> scores = Scores({EvaluatedOracle()});
   std::map<std::string, std::set<std::string>> stories;
   for (const ClosedFormRow& row : scores[0].rows) stories[row.sampling].insert(row.form);
   for (const char* sampling :
@@ -128,13 +128,13 @@ TEST_P(NumberOfBoth, IsFoundOut) {
   truth::OracleSettings settings;
   mutant.oracle(settings);
   const std::vector<ClosedFormScore> scores =
-      Scores({Grammar(mutant.grammar), OracleWitness(settings)});
+      Scores({Grammar(mutant.grammar), EvaluatedOracle(settings)});
   for (const ClosedFormScore& score : scores) {
     std::set<std::string> found_out = WrongIn(score);
     for (const std::string& line : kWrongInOracle) found_out.erase(line);
     for (const std::string& line : kWrongInGrammar) found_out.erase(line);
-    EXPECT_FALSE(found_out.empty()) << score.witness << " with " << mutant.name;
-    RecordProperty(score.witness, Joined(found_out));
+    EXPECT_FALSE(found_out.empty()) << score.evaluator << " with " << mutant.name;
+    RecordProperty(score.evaluator, Joined(found_out));
   }
 }
 

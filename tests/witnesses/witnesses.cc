@@ -22,7 +22,7 @@ constexpr const char* kUsage = R"(usage: witnesses closed-forms [--json] [GRAMMA
        witnesses table [PREHEND]
        witnesses elsewhere SCENARIO TRANSFORM..
 closed-forms: grammars (default: pick_and_place and original_2020) and the oracle, on recordings
-whose events are known on paper. table: README's table of witnesses; plays the whole library with
+whose events are known on paper. table: README's table of evaluators; plays the whole library with
 the program PREHEND (default: that of this build). elsewhere: whether a scenario tells the same
 story after each transform, as JSON; tests/witnesses/elsewhere/same_elsewhere does it with the library.
 )";
@@ -34,14 +34,14 @@ int Complain(const grammar::Diagnostics& diagnostics) {
 
 Result<std::vector<ClosedFormScore>> Scores(std::vector<std::string> grammars) {
   if (grammars.empty()) grammars = {"pick_and_place", "original_2020"};
-  std::vector<ClosedFormWitness> witnesses;
+  std::vector<ClosedFormEvaluator> evaluators;
   for (const std::string& name : grammars) {
     const grammar::CompileResult compiled = episode::LoadGrammar(kRoot, name, {});
     if (!compiled.program) return tl::unexpected(compiled.diagnostics);
-    witnesses.push_back(GrammarWitness(name, compiled.program));
+    evaluators.push_back(EvaluatedGrammar(name, compiled.program));
   }
-  witnesses.push_back(OracleWitness());
-  return ScoreOnClosedForms(ClosedFormFiles(kStories), witnesses);
+  evaluators.push_back(EvaluatedOracle());
+  return ScoreOnClosedForms(ClosedFormFiles(kStories), evaluators);
 }
 
 int RunClosedForms(std::vector<std::string> arguments) {
@@ -62,7 +62,7 @@ int RunTable(const std::string& program) {
     std::cerr << program << " score --json failed\n";
     return 3;
   }
-  std::cout << WitnessTableWith(score, *scores);
+  std::cout << EvaluatorTableWith(score, *scores);
   return 0;
 }
 

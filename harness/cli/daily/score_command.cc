@@ -78,7 +78,7 @@ ExitCode RunScenarios(const measure::ScoredGrammars& grammars,
   if (scores.of_grammars.empty()) return worst;  // no table of nothing
   if (options.Has("--json")) {
     nlohmann::ordered_json json = measure::ScoresJson(scores.of_grammars, collar_s);
-    json["witnesses"] = measure::WitnessesJson(scores.of_grammars, scores.witnesses);
+    json["witnesses"] = measure::EvaluatorsJson(scores.of_grammars, scores.evaluators);
     context.out << json.dump(2) << "\n";
   } else {
     context.out << measure::ScenarioScoresText(scores, collar_s, options.Has("--verbose"));
@@ -136,7 +136,7 @@ Command ScoreCommand() {
                 .placeholder = "NAME,..",
                 .repeatable = true},
                {.name = "--verbose",
-                .help = "list every event that differs from what a witness says, or "
+                .help = "list every event that differs from what an evaluator says, or "
                         "from the labels"},
                JsonOption()},
               TruthOptions(

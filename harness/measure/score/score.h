@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "grammar/base/timeline.h"
+#include "harness/measure/score/evaluators.h"
 #include "harness/measure/score/further_scores.h"
 #include "harness/measure/score/overlap_metrics.h"
 #include "harness/measure/score/ward.h"
-#include "harness/measure/score/witnesses.h"
 
 namespace prehend::measure {
 
@@ -23,7 +23,7 @@ struct EpisodeToScore {
   grammar::Timeline found;
   std::map<std::string, int>
       ignored;  ///< count of recognised events for which there is no ground truth
-  Testimony by_definitions, by_claims;
+  Evaluation by_definitions, by_claims;
 };
 
 /// Signed offsets (found - true) of the boundaries of matched events, in seconds.

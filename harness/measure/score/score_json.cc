@@ -78,26 +78,27 @@ Json ScoresJson(const std::vector<Score>& scores, double collar_s) {
   return {{"collar_s", collar_s}, {"grammars", std::move(grammars)}};
 }
 
-Json TestimonyJson(const Testimony& testimony) {
+Json EvaluationJson(const Evaluation& evaluation) {
   Json by_event = Json::object();
-  for (const auto& [event, count] : testimony.by_event)
+  for (const auto& [event, count] : evaluation.by_event)
     by_event[event] = {{"of", count.of}, {"confirmed", count.confirmed}};
-  return {{"by_event", std::move(by_event)}, {"differences", testimony.differences}};
+  return {{"by_event", std::move(by_event)}, {"differences", evaluation.differences}};
 }
 
-Json WitnessesJson(const std::vector<Score>& scores, const std::vector<Witness>& witnesses) {
+Json EvaluatorsJson(const std::vector<Score>& scores, const std::vector<Evaluator>& evaluators) {
   Json rows = Json::array();
-  for (const Witness& witness : witnesses) {
+  for (const Evaluator& evaluator : evaluators) {
     Json columns = Json::array();
     for (std::size_t g = 0; g < scores.size(); ++g) {
-      const Confirmed total = witness.of_grammars[g].Total();
+      const Confirmed total = evaluator.of_grammars[g].Total();
       Json column = {
           {"grammar", scores[g].grammar}, {"of", total.of}, {"confirmed", total.confirmed}};
-      column.update(TestimonyJson(witness.of_grammars[g]));
+      column.update(EvaluationJson(evaluator.of_grammars[g]));
       columns.push_back(std::move(column));
     }
-    rows.push_back(
-        {{"witness", witness.name}, {"proves", witness.proves}, {"grammars", std::move(columns)}});
+    rows.push_back({{"witness", evaluator.name},
+                    {"proves", evaluator.proves},
+                    {"grammars", std::move(columns)}});
   }
   return rows;
 }

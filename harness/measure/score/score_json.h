@@ -15,10 +15,10 @@ namespace prehend::measure {
 nlohmann::ordered_json ScoresJson(const std::vector<Score>& scores, double collar_s);
 
 /// {"by_event": {EVENT: {"of", "confirmed"}}, "differences": ["..", ..]}
-nlohmann::ordered_json TestimonyJson(const Testimony& testimony);
+nlohmann::ordered_json EvaluationJson(const Evaluation& evaluation);
 
 /// [{"witness", "proves", "grammars": [{"grammar", "of", "confirmed", "by_event", "differences"}]}]
-nlohmann::ordered_json WitnessesJson(const std::vector<Score>& scores,
-                                     const std::vector<Witness>& witnesses);
+nlohmann::ordered_json EvaluatorsJson(const std::vector<Score>& scores,
+                                      const std::vector<Evaluator>& evaluators);
 
 }  // namespace prehend::measure

@@ -24,7 +24,7 @@ struct ScenarioOnWire {
 };
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Confirmed, of, confirmed)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Testimony, by_event, differences)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evaluation, by_event, differences)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EpisodeToScore, scenario, ticks, truth, found, ignored,
                                    by_definitions, by_claims)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioOnWire, episodes, problem, is_bad_input)
@@ -73,12 +73,12 @@ std::vector<std::vector<EpisodeToScore>> PlayAll(const std::vector<ScoreRequest>
 }
 
 /// What the definitions and the claims say of the episodes.
-std::vector<Witness> WitnessesOf(const std::vector<std::vector<EpisodeToScore>>& by_grammar) {
-  Witness definitions{"definitions", "events lie within the bands of docs/events.md", {}};
-  Witness claims{"claims", "a run shows what its author said before it was played", {}};
+std::vector<Evaluator> EvaluatorsOf(const std::vector<std::vector<EpisodeToScore>>& by_grammar) {
+  Evaluator definitions{"definitions", "events lie within the bands of docs/events.md", {}};
+  Evaluator claims{"claims", "a run shows what its author said before it was played", {}};
   for (const std::vector<EpisodeToScore>& episodes : by_grammar) {
-    Testimony &defined = definitions.of_grammars.emplace_back(),
-              &claimed = claims.of_grammars.emplace_back();
+    Evaluation &defined = definitions.of_grammars.emplace_back(),
+               &claimed = claims.of_grammars.emplace_back();
     for (const EpisodeToScore& episode : episodes) {
       defined += episode.by_definitions;
       claimed += episode.by_claims;
@@ -89,14 +89,14 @@ std::vector<Witness> WitnessesOf(const std::vector<std::vector<EpisodeToScore>>&
 
 /// What differs, by grammar; of many differences the first ones.
 std::string DifferencesText(const std::vector<std::string>& grammars,
-                            const std::vector<Witness>& witnesses, bool all) {
+                            const std::vector<Evaluator>& evaluators, bool all) {
   constexpr std::size_t kMaxShown = 10;
   std::string text;
-  for (const Witness& witness : witnesses) {
+  for (const Evaluator& evaluator : evaluators) {
     for (std::size_t g = 0; g < grammars.size(); ++g) {
-      const std::vector<std::string>& lines = witness.of_grammars[g].differences;
+      const std::vector<std::string>& lines = evaluator.of_grammars[g].differences;
       const std::size_t shown = all ? lines.size() : std::min(lines.size(), kMaxShown);
-      if (shown > 0) text += fmt::format("{}, outside the {}:\n", grammars[g], witness.name);
+      if (shown > 0) text += fmt::format("{}, outside the {}:\n", grammars[g], evaluator.name);
       for (std::size_t i = 0; i < shown; ++i) text += "  " + lines[i] + "\n";
       if (shown < lines.size())
         text += fmt::format("  and {} more; --verbose lists all\n", lines.size() - shown);
@@ -154,7 +154,7 @@ ScenarioScores ScoreScenarios(const std::vector<ScoreRequest>& requests,
     scores.of_grammars.push_back(ScoreOf(grammars.names[g], by_grammar[g], collar_s));
     scores.of_grammars.back().not_covered = grammars.not_covered[g];
   }
-  scores.witnesses = WitnessesOf(by_grammar);
+  scores.evaluators = EvaluatorsOf(by_grammar);
   return scores;
 }
 
@@ -162,8 +162,9 @@ std::string ScenarioScoresText(const ScenarioScores& scores, double collar_s,
                                bool all_differences) {
   std::vector<std::string> names;
   for (const Score& score : scores.of_grammars) names.push_back(score.grammar);
-  return ScoresText(scores.of_grammars, collar_s) + "\n" + WitnessTable(names, scores.witnesses) +
-         "\n" + DifferencesText(names, scores.witnesses, all_differences);
+  return ScoresText(scores.of_grammars, collar_s) + "\n" +
+         EvaluatorTable(names, scores.evaluators) + "\n" +
+         DifferencesText(names, scores.evaluators, all_differences);
 }
 
 }  // namespace prehend::measure

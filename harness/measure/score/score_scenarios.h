@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grammars against what physically happened in many scenarios, and what other witnesses say of
+// Grammars against what physically happened in many scenarios, and what other evaluators say of
 // them. Tested by tests/program/score_test.cc
 #pragma once
 
@@ -35,7 +35,7 @@ struct NotScored {
 
 struct ScenarioScores {
   std::vector<Score> of_grammars;  ///< none if no scenario could be scored
-  std::vector<Witness> witnesses;
+  std::vector<Evaluator> evaluators;
   std::vector<NotScored> not_scored;
 };
 

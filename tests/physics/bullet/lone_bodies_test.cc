@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The witness is RigidRows without lone bodies: the same random rows, solved by both, end with the
-// same bits, however many bodies there are and however many contacts each has.
+// The reference is RigidRows without lone bodies: the same random rows, solved by both, end with
+// the same bits, however many bodies there are and however many contacts each has.
 #include "physics/bullet/core/lone_bodies.h"
 
 #include <btBulletDynamicsCommon.h>

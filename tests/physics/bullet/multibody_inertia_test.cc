@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bullet's own method, which goes through the links for each impulse, is the witness.
+// Bullet's own method, which goes through the links for each impulse, is the reference.
 #include "physics/bullet/core/multibody_inertia.h"
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>

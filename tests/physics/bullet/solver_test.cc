@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bullet's own solver is the witness. The same scene without friction, solved by both, stays the
+// Bullet's own solver is the reference. The same scene without friction, solved by both, stays the
 // same: rigid bodies to the last bit, hands, whose inertia is computed in another way, to rounding.
 // Friction differs: tests/physics/bullet/friction_circle_test.cc
 #include "physics/bullet/core/solver.h"

@@ -163,7 +163,7 @@ std::shared_ptr<const grammar::Program> Mutate(const Mutant& mutant) {
   return compiled.program;
 }
 
-struct Witness {
+struct Evaluator {
   std::string id;
   PlayedScenario played;
   truth::Golden golden;
@@ -173,34 +173,34 @@ struct Witness {
   }
 };
 
-std::vector<Witness> Witnesses() {
-  std::vector<Witness> witnesses;
+std::vector<Evaluator> Evaluators() {
+  std::vector<Evaluator> evaluators;
   for (const char* id : kScenarios) {
     const auto golden = truth::GoldenFiles(PREHEND_SOURCE_DIR).ReadGoldenOf(id);
     const bool is_there = golden && *golden;
     EXPECT_TRUE(is_there) << id << " has no golden";
-    if (is_there) witnesses.push_back({id, Play(id), **golden});
+    if (is_there) evaluators.push_back({id, Play(id), **golden});
   }
-  return witnesses;
+  return evaluators;
 }
 
 TEST(Mutants, AreKilledByTheSuite) {
-  const std::vector<Witness> witnesses = Witnesses();
-  for (const Witness& witness : witnesses)
-    EXPECT_TRUE(witness.Agrees(witness.played.run.timeline))
-        << witness.id << ": the grammar itself has to agree";
+  const std::vector<Evaluator> evaluators = Evaluators();
+  for (const Evaluator& evaluator : evaluators)
+    EXPECT_TRUE(evaluator.Agrees(evaluator.played.run.timeline))
+        << evaluator.id << ": the grammar itself has to agree";
   std::size_t killed = 0;
   for (const Mutant& mutant : kMutants) {
     const auto program = Mutate(mutant);
     if (!program) continue;
-    const auto killer = std::ranges::find_if(witnesses, [&](const Witness& witness) {
-      return !witness.Agrees(witness.played.WatchedBy(program));
+    const auto killer = std::ranges::find_if(evaluators, [&](const Evaluator& evaluator) {
+      return !evaluator.Agrees(evaluator.played.WatchedBy(program));
     });
-    EXPECT_EQ(killer == witnesses.end(), !mutant.survives.empty()) << mutant.name;
-    killed += killer != witnesses.end();
+    EXPECT_EQ(killer == evaluators.end(), !mutant.survives.empty()) << mutant.name;
+    killed += killer != evaluators.end();
     std::cout << mutant.name << ": "
-              << (killer == witnesses.end() ? "survives, " + mutant.survives
-                                            : "killed by " + killer->id)
+              << (killer == evaluators.end() ? "survives, " + mutant.survives
+                                             : "killed by " + killer->id)
               << "\n";
   }
   std::cout << killed << " of " << kMutants.size() << " mutants killed\n";

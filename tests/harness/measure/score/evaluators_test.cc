@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/measure/score/witnesses.h"
+#include "harness/measure/score/evaluators.h"
 
 #include <gtest/gtest.h>
 
@@ -22,11 +22,11 @@ TEST(ByDefinitions, CountsWhatLiesInTheBandsAndNamesTheRest) {
       Of({{"grasping", {432, 960}}, {"sliding", {480, 960}}, {"lifting", {1000, 1100}}})};
   const Timeline found =
       Of({{"grasping", {450, 960}}, {"sliding", {480, 1200}}, {"waving", {1440, 1920}}});
-  const Testimony testimony = ByDefinitions("slide/x", possible, found, 4);
-  EXPECT_EQ(testimony.Total().of, 4);
-  EXPECT_EQ(testimony.Total().confirmed, 1);
-  EXPECT_EQ(testimony.by_event.at("grasping").confirmed, 1);
-  EXPECT_EQ(testimony.differences,
+  const Evaluation evaluation = ByDefinitions("slide/x", possible, found, 4);
+  EXPECT_EQ(evaluation.Total().of, 4);
+  EXPECT_EQ(evaluation.Total().confirmed, 1);
+  EXPECT_EQ(evaluation.by_event.at("grasping").confirmed, 1);
+  EXPECT_EQ(evaluation.differences,
             (std::vector<std::string>{
                 "slide/x  lifting(h)  not recognised, by the definitions 2.0833..2.2917 s",
                 "slide/x  sliding(h)  recognised 1.0000..2.5000 s, by the definitions "
@@ -42,19 +42,19 @@ TEST(ByClaims, LeavesOutWhatAGrammarCannotDecide) {
        .place = "x.yaml:6",
        .says = truth::kContradicted,
        .found = "found 3"}};
-  const Testimony testimony = ByClaims("slide/x", verdicts);
-  EXPECT_EQ(testimony.Total().of, 2);
-  EXPECT_EQ(testimony.Total().confirmed, 1);
-  EXPECT_EQ(testimony.differences,
+  const Evaluation evaluation = ByClaims("slide/x", verdicts);
+  EXPECT_EQ(evaluation.Total().of, 2);
+  EXPECT_EQ(evaluation.Total().confirmed, 1);
+  EXPECT_EQ(evaluation.differences,
             (std::vector<std::string>{"slide/x  expects: '2 grasping' (x.yaml:6): found 3"}));
 }
 
-TEST(WitnessTable, HasARowPerWitness) {
-  Testimony most;
+TEST(EvaluatorTable, HasARowPerEvaluator) {
+  Evaluation most;
   most.by_event["sliding"] = {.of = 8, .confirmed = 7};
   EXPECT_EQ(
-      WitnessTable({"mine", "theirs"}, {{"definitions", "it follows from the page", {most, {}}}}),
-      "| witness | mine | theirs | what it proves |\n"
+      EvaluatorTable({"mine", "theirs"}, {{"definitions", "it follows from the page", {most, {}}}}),
+      "| evaluator | mine | theirs | what it proves |\n"
       "|---|---|---|---|\n"
       "| definitions | 7 of 8 (87.5 %) | - | it follows from the page |\n");
 }
