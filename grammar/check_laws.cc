@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each call of a law becomes its stretches: the intervals of the events that fit it, with who plays
-// the law's roles in them. A form then compares stretches whose players agree.
+// Each call of a law becomes the intervals of the events that fit it, with who plays
+// the law's roles in them. A form then compares intervals whose players agree.
 #include "grammar/check_laws.h"
 
 #include <algorithm>
@@ -15,16 +15,16 @@ namespace {
 /// Who plays the law's roles, kNoEntity where a call leaves the role open.
 using Players = std::array<int, kMaxRoles>;
 
-struct Stretch {
+struct CallInterval {
   Interval interval;
   Players players;
 };
-using Stretches = std::vector<Stretch>;
+using CallIntervals = std::vector<CallInterval>;
 
 /// What is said of one call, and where it is so.
 struct Occurrences {
   const LawCall* call = nullptr;
-  Stretches stretches;
+  CallIntervals where;
 };
 
 constexpr Players kOpen = {kNoEntity, kNoEntity, kNoEntity, kNoEntity};
@@ -108,33 +108,33 @@ class Checker {
 
   std::vector<Occurrences> All(const std::vector<LawCall>& calls) const {
     std::vector<Occurrences> all;
-    for (const LawCall& call : calls) all.push_back({&call, StretchesOf(call)});
+    for (const LawCall& call : calls) all.push_back({&call, CallsIn(call)});
     return all;
   }
 
-  Stretches StretchesOf(const LawCall& call) const {
+  CallIntervals CallsIn(const LawCall& call) const {
     const Rule& rule = program_.rules[call.rule];
     const auto found = happened_.find(rule.name);
     if (found == happened_.end()) return {};
-    Stretches stretches;
+    CallIntervals where;
     for (const Happened& event : found->second) {
-      AddIfItFits(call, event, stretches);
+      AddIfItFits(call, event, where);
       if (!rule.symmetric) continue;
       Happened turned = event;
       std::swap(turned.roles[0], turned.roles[1]);
-      AddIfItFits(call, turned, stretches);
+      AddIfItFits(call, turned, where);
     }
-    return call.has_any ? Merged(stretches) : stretches;
+    return call.has_any ? Merged(where) : where;
   }
 
-  void AddIfItFits(const LawCall& call, const Happened& event, Stretches& stretches) const {
+  void AddIfItFits(const LawCall& call, const Happened& event, CallIntervals& where) const {
     Players players = kOpen;
     for (std::size_t i = 0; i < call.players.size(); ++i) {
       const LawCall::Player& player = call.players[i];
       if (!IsA(event.roles[i], player.class_name)) return;
       if (player.role >= 0) players[static_cast<std::size_t>(player.role)] = event.roles[i];
     }
-    stretches.push_back({event.interval, players});
+    where.push_back({event.interval, players});
   }
 
   bool IsA(int entity, const std::string& class_name) const {
@@ -145,10 +145,10 @@ class Checker {
   }
 
   /// `any` makes one interval of those that overlap or follow at once.
-  static Stretches Merged(const Stretches& stretches) {
+  static CallIntervals Merged(const CallIntervals& where) {
     std::map<Players, std::vector<Interval>> intervals;
-    for (const Stretch& stretch : stretches) intervals[stretch.players].push_back(stretch.interval);
-    Stretches merged;
+    for (const CallInterval& one : where) intervals[one.players].push_back(one.interval);
+    CallIntervals merged;
     for (auto& [players, all] : intervals) {
       for (const Interval& interval : Union(std::move(all))) merged.push_back({interval, players});
     }
@@ -157,10 +157,10 @@ class Checker {
 
   void CheckCovered(const Occurrences& subject) {
     const std::vector<Occurrences> others = All(law_->others);
-    for (const Stretch& whole : subject.stretches) {
+    for (const CallInterval& whole : subject.where) {
       std::vector<Interval> parts;
       for (const Occurrences& other : others) {
-        for (const Stretch& part : other.stretches) {
+        for (const CallInterval& part : other.where) {
           if (Agree(whole.players, part.players)) parts.push_back(part.interval);
         }
       }
@@ -175,19 +175,18 @@ class Checker {
 
   void CheckRelated(const Occurrences& subject) {
     const std::vector<Occurrences> others = All(law_->others);
-    for (const Stretch& stretch : subject.stretches) {
+    for (const CallInterval& one : subject.where) {
       const bool related = std::any_of(others.begin(), others.end(), [&](const Occurrences& other) {
-        return std::any_of(other.stretches.begin(), other.stretches.end(), [&](const Stretch& to) {
-          return Agree(stretch.players, to.players) &&
-                 (law_->relations & Bit(Relate(stretch.interval, to.interval))) != 0;
+        return std::any_of(other.where.begin(), other.where.end(), [&](const CallInterval& to) {
+          return Agree(one.players, to.players) &&
+                 (law_->relations & Bit(Relate(one.interval, to.interval))) != 0;
         });
       });
       if (related) continue;
-      std::string what = Text(*subject.call, stretch.players) + " " + law_->relation_text;
+      std::string what = Text(*subject.call, one.players) + " " + law_->relation_text;
       for (const Occurrences& other : others)
-        what +=
-            (&other == &others.front() ? " no " : " and no ") + Text(*other.call, stretch.players);
-      violations_.push_back({law_, stretch.interval, std::move(what)});
+        what += (&other == &others.front() ? " no " : " and no ") + Text(*other.call, one.players);
+      violations_.push_back({law_, one.interval, std::move(what)});
     }
   }
 
@@ -199,8 +198,8 @@ class Checker {
 
   // The later one is said to overlap the earlier one, whichever the law names first.
   void CheckApart(const Occurrences& a, const Occurrences& b) {
-    for (const Stretch& one : a.stretches) {
-      for (const Stretch& other : b.stretches) {
+    for (const CallInterval& one : a.where) {
+      for (const CallInterval& other : b.where) {
         if (!Overlap(one.interval, other.interval) || !Agree(one.players, other.players) ||
             !Distinct(one.players, other.players))
           continue;

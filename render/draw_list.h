@@ -67,7 +67,7 @@ struct DrawList {
 DrawList MakeDrawList(const Picture& picture);
 
 /// Adds tubes, beads and arrows of a path. `scale` widens them for distant cameras.
-void AddPath(const std::vector<PathStretch>& path, float scale, DrawList* list);
+void AddPath(const std::vector<PathInterval>& path, float scale, DrawList* list);
 
 /// One per scene body: whether it is a part of a person, which AddPersons() draws.
 std::vector<bool> DrawnAsMannequin(const physics::Scene& scene);

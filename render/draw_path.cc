@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path of a hand: a tube for every stretch, beads at fixed time steps (dense beads mean a slow
-// hand) and an arrow in the middle. Stretches without a label (idle hands) are thin, without beads
+// The path of a hand: a tube for every interval, beads at fixed time steps (dense beads mean a slow
+// hand) and an arrow in the middle. Intervals without a label (idle hands) are thin, without beads
 // and arrow.
 // Tested by tests/render/draw_list_test.cc
 #include <algorithm>
@@ -21,12 +21,12 @@ constexpr float kBeadRadius_m = 0.0125f;
 constexpr float kArrowRadius_m = 0.022f;
 constexpr float kArrowLength_m = 0.050f;
 constexpr double kBeadEvery_s = 0.2;
-constexpr float kJoinGap_m = 0.05f;  // consecutive stretches are at most one sample apart
+constexpr float kJoinGap_m = 0.05f;  // consecutive intervals are at most one sample apart
 constexpr int kTubeSegments = 12;
 
-std::vector<Vector3f> FinitePoints(const PathStretch& stretch) {
+std::vector<Vector3f> FinitePoints(const PathInterval& interval) {
   std::vector<Vector3f> points;
-  for (const Vector3f& p : stretch.points_m) {
+  for (const Vector3f& p : interval.points_m) {
     if (p.allFinite()) points.push_back(p);
   }
   return points;
@@ -65,13 +65,13 @@ void AddTube(const std::vector<Vector3f>& points, float radius, Item item, DrawL
   AddItem(item, &list->paths, list);
 }
 
-void AddBeads(const PathStretch& stretch, const std::vector<Vector3f>& points, float radius,
+void AddBeads(const PathInterval& interval, const std::vector<Vector3f>& points, float radius,
               Item item, DrawList* list) {
-  item.primitive = stretch.square_beads ? Primitive::kBox : Primitive::kBall;
-  item.rounding_m = stretch.square_beads ? 0.15f * radius : radius;
-  if (stretch.square_beads) item.half_size_m.setConstant(0.85f * radius);
+  item.primitive = interval.square_beads ? Primitive::kBox : Primitive::kBall;
+  item.rounding_m = interval.square_beads ? 0.15f * radius : radius;
+  if (interval.square_beads) item.half_size_m.setConstant(0.85f * radius);
   const double per_bead =
-      std::isfinite(stretch.points_per_s) ? stretch.points_per_s * kBeadEvery_s : 0;
+      std::isfinite(interval.points_per_s) ? interval.points_per_s * kBeadEvery_s : 0;
   const auto step = static_cast<std::size_t>(std::clamp(std::round(per_bead), 1.0, 1e6));
   Vector3f last = Vector3f::Constant(1e9f);
   for (std::size_t i = 0; i < points.size(); i += step) {
@@ -82,7 +82,7 @@ void AddBeads(const PathStretch& stretch, const std::vector<Vector3f>& points, f
   }
 }
 
-// The arrow points along the chord of its own length around the middle of the stretch.
+// The arrow points along the chord of its own length around the middle of the interval.
 void AddArrow(const std::vector<Vector3f>& points, float scale, Item item, DrawList* list) {
   const float arrow_length = kArrowLength_m * scale;
   const float length = Length(points);
@@ -105,17 +105,17 @@ void AddArrow(const std::vector<Vector3f>& points, float scale, Item item, DrawL
 
 }  // namespace
 
-void AddPath(const std::vector<PathStretch>& path, float scale, DrawList* list) {
+void AddPath(const std::vector<PathInterval>& path, float scale, DrawList* list) {
   Vector3f end_before = Vector3f::Constant(1e9f);
   for (std::size_t i = 0; i < path.size(); ++i) {
-    const PathStretch& stretch = path[i];
-    const std::vector<Vector3f> points = FinitePoints(stretch);
-    list->objects.push_back({"path:" + std::to_string(i) + ":" + stretch.label, {}});
+    const PathInterval& interval = path[i];
+    const std::vector<Vector3f> points = FinitePoints(interval);
+    list->objects.push_back({"path:" + std::to_string(i) + ":" + interval.label, {}});
     if (points.empty()) continue;
     list->objects.back().note =
         PlaceText(points.front()) + " to " + PlaceText(points.back()) + " m";
 
-    const bool idle = stretch.label.empty();
+    const bool idle = interval.label.empty();
     const float radius = (idle ? kIdleRadius_m : kTubeRadius_m) * scale;
     std::vector<Vector3f> joined = points;
     if ((points.front() - end_before).norm() < kJoinGap_m)
@@ -123,12 +123,12 @@ void AddPath(const std::vector<PathStretch>& path, float scale, DrawList* list) 
     const std::vector<Vector3f> thinned = Thinned(joined, 0.4f * radius);
     end_before = points.back();
 
-    const Item item{.color = stretch.color,
+    const Item item{.color = interval.color,
                     .gloss = 0.35f,
                     .object = static_cast<int>(list->objects.size()) - 1};
     AddTube(thinned, radius, item, list);
     if (idle) continue;
-    AddBeads(stretch, points, kBeadRadius_m * scale, item, list);
+    AddBeads(interval, points, kBeadRadius_m * scale, item, list);
     AddArrow(thinned, scale, item, list);
   }
 }

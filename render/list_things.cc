@@ -31,7 +31,7 @@ std::string TimesText(const StripSegment& segment) {
   return text;
 }
 
-/// The numbers of stretches, ghosts and marks are left out: one more would rename all that follow.
+/// The numbers of intervals, ghosts and marks are left out: one more would rename all that follow.
 std::string WithoutNumber(const std::string& name) {
   const std::size_t first = name.find(':');
   const std::string kind = name.substr(0, first);

@@ -16,9 +16,9 @@
 
 namespace prehend::render {
 
-/// A stretch of a hand's path in one phase. A stretch that begins near the end of the previous one
-/// is joined to it.
-struct PathStretch {
+/// An interval of a hand's path in one phase. An interval that begins near the end of the previous
+/// one is joined to it.
+struct PathInterval {
   std::string label;  ///< empty: the hand is idle, and the path thin
   Color color = {0.54f, 0.56f, 0.60f};
   std::vector<Eigen::Vector3f> points_m;
@@ -101,7 +101,7 @@ struct Picture {
   std::vector<std::string> hand_labels;  ///< one per scene hand, empty: none
   /// Per scene hand the colours of palm and links, in this order; missing ones: skin.
   std::vector<std::vector<Color>> hand_colors;
-  std::vector<PathStretch> path;
+  std::vector<PathInterval> path;
   std::vector<Ghost> ghosts;
   std::vector<Marker> markers;
   std::vector<Prop> props;

@@ -46,7 +46,7 @@ std::vector<Vector3f> Curve(const Vector3f& a, const Vector3f& b, const Vector3f
   return points;
 }
 
-std::vector<PathStretch> DemoPath() {
+std::vector<PathInterval> DemoPath() {
   const Vector3f start(0.60f, -0.58f, 1.0f), touch(0.20f, 0.02f, 0.90f), held(0.19f, 0.03f, 0.88f),
       lifted(0.19f, 0.03f, 1.03f), above(-0.33f, 0.02f, 1.06f), landed(-0.38f, -0.02f, 0.90f),
       rest(-0.56f, 0.0f, 0.90f);
@@ -170,7 +170,7 @@ physics::Scene DemoScene() {
 Picture DemoPicture(const physics::Scene& scene) {
   Picture picture{.scene = &scene};
   picture.path = DemoPath();
-  const auto point = [&](int stretch, int i) { return picture.path[stretch].points_m[i]; };
+  const auto point = [&](int interval, int i) { return picture.path[interval].points_m[i]; };
   picture.snapshot = At(scene, point(1, 14), 0.62, false);
   picture.ghosts = {{.hand = physics::HandIndex(0),
                      .snapshot = At(scene, point(0, 0), 0.15, false),

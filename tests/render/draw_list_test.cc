@@ -133,9 +133,9 @@ TEST(DrawListTest, AHandWithAPersonsArmHasNoOtherForearm) {
 }
 
 TEST(DrawListTest, ASecondHandsPathHasSquareBeads) {
-  PathStretch stretch{.label = "reaching", .points_per_s = 60, .square_beads = true};
-  for (int i = 0; i <= 60; ++i) stretch.points_m.emplace_back(0.01f * static_cast<float>(i), 0, 1);
-  EXPECT_EQ(Count(MakeDrawList({.path = {stretch}}).paths, Primitive::kBox), 6);
+  PathInterval interval{.label = "reaching", .points_per_s = 60, .square_beads = true};
+  for (int i = 0; i <= 60; ++i) interval.points_m.emplace_back(0.01f * static_cast<float>(i), 0, 1);
+  EXPECT_EQ(Count(MakeDrawList({.path = {interval}}).paths, Primitive::kBox), 6);
 }
 
 TEST(DrawListTest, GrainsAreBallsWhereTheSnapshotHasThem) {
@@ -193,9 +193,9 @@ TEST(DrawListTest, SnapshotMovesBodiesAndHandsAreDrawnLinkByLink) {
 }
 
 TEST(DrawListTest, PathHasBeadsInTimeAndAnArrow) {
-  PathStretch stretch{.label = "reaching", .points_per_s = 60};
-  for (int i = 0; i <= 60; ++i) stretch.points_m.emplace_back(0.01f * static_cast<float>(i), 0, 1);
-  DrawList list = MakeDrawList({.path = {stretch}});
+  PathInterval interval{.label = "reaching", .points_per_s = 60};
+  for (int i = 0; i <= 60; ++i) interval.points_m.emplace_back(0.01f * static_cast<float>(i), 0, 1);
+  DrawList list = MakeDrawList({.path = {interval}});
   EXPECT_EQ(Count(list.paths, Primitive::kMesh), 1);
   EXPECT_EQ(Count(list.paths, Primitive::kBall), 6) << "one second, a bead every 0.2 s";
   EXPECT_EQ(Count(list.paths, Primitive::kCone), 1);
@@ -204,13 +204,13 @@ TEST(DrawListTest, PathHasBeadsInTimeAndAnArrow) {
   EXPECT_LT((arrow->X_WI.linear() * Vector3f::UnitZ() - Vector3f::UnitX()).norm(), 1e-4f)
       << "points along the path";
 
-  stretch.label = "";
-  list = MakeDrawList({.path = {stretch}});
+  interval.label = "";
+  list = MakeDrawList({.path = {interval}});
   EXPECT_EQ(list.paths.size(), 1u) << "idle: only the tube";
 }
 
-TEST(DrawListTest, NeighbouringStretchesAreJoined) {
-  const PathStretch first{.label = "a", .points_m = {{0, 0, 0}, {0.1f, 0, 0}}},
+TEST(DrawListTest, NeighbouringIntervalsAreJoined) {
+  const PathInterval first{.label = "a", .points_m = {{0, 0, 0}, {0.1f, 0, 0}}},
       second{.label = "b", .points_m = {{0.13f, 0, 0}, {0.2f, 0, 0}}},
       far{.label = "c", .points_m = {{1, 0, 0}, {1.1f, 0, 0}}};
   const DrawList list = MakeDrawList({.path = {first, second, far}});

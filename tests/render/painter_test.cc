@@ -93,9 +93,10 @@ TEST_F(PainterTest, TubesHaveTheColourOfTheirPhase) {
   const Image image = Draw(picture_);
   const IdImage ids = painter_->DrawIds(picture_);
   ASSERT_EQ(ids.ids.size(), image.rgb.size() / 3);
-  for (const std::size_t stretch : {0, 3, 4, 5}) {
-    const std::string name = "path:" + std::to_string(stretch) + ":" + picture_.path[stretch].label;
-    const Vector3f hue = Hue(picture_.path[stretch].color);
+  for (const std::size_t interval : {0, 3, 4, 5}) {
+    const std::string name =
+        "path:" + std::to_string(interval) + ":" + picture_.path[interval].label;
+    const Vector3f hue = Hue(picture_.path[interval].color);
     int of_tube = 0, in_color = 0;
     for (std::size_t i = 0; i < ids.ids.size(); ++i) {
       if (ids.names[ids.ids[i]] != name) continue;

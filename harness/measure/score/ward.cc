@@ -13,7 +13,7 @@ namespace {
 using grammar::Interval;
 using grammar::Tick;
 
-/// A stretch between two successive boundaries of either side.
+/// An interval between two successive boundaries of either side.
 struct Piece {
   Tick length = 0;
   bool is_true = false;

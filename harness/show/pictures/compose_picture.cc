@@ -96,10 +96,10 @@ const grammar::NamedEvent* PhaseOf(const episode::RunResult& run, const Selectio
   return nullptr;
 }
 
-/// The path of one hand, cut where its phase changes; a stretch starts at the end of the one
+/// The path of one hand, cut where its phase changes; an interval starts at the end of the one
 /// before.
 void AppendPath(const physics::Scene& scene, const episode::RunResult& run,
-                const Selection& selection, int hand, std::vector<render::PathStretch>& path) {
+                const Selection& selection, int hand, std::vector<render::PathInterval>& path) {
   const std::string& name = scene.hands[hand].name;
   const grammar::NamedEvent* phase = nullptr;
   double next_point_s = 0;
@@ -129,9 +129,9 @@ void AppendPath(const physics::Scene& scene, const episode::RunResult& run,
 /// The path of one body in its colour, while it moves.
 void AppendBodyPath(const episode::RunResult& run, const Selection& selection,
                     physics::BodyIndex body, const render::Color& color,
-                    std::vector<render::PathStretch>& path) {
+                    std::vector<render::PathInterval>& path) {
   constexpr float kStill_m = 0.002f;
-  render::PathStretch stretch{
+  render::PathInterval interval{
       .label = selection.entity, .color = color, .points_per_s = kPathPoints_per_s};
   double next_point_s = 0;
   for (const physics::Snapshot& snapshot : run.recording) {
@@ -139,11 +139,12 @@ void AppendBodyPath(const episode::RunResult& run, const Selection& selection,
     if (!selection.IsIn(t_s) || t_s < next_point_s) continue;
     const physics::BodyState& state = snapshot.body(body);
     const Eigen::Vector3f point = state.X_WB.p_m.cast<float>();
-    if (!stretch.points_m.empty() && (stretch.points_m.back() - point).norm() < kStill_m) continue;
-    stretch.points_m.push_back(point);
+    if (!interval.points_m.empty() && (interval.points_m.back() - point).norm() < kStill_m)
+      continue;
+    interval.points_m.push_back(point);
     next_point_s = t_s + 1 / kPathPoints_per_s;
   }
-  if (stretch.points_m.size() > 1) path.push_back(std::move(stretch));
+  if (interval.points_m.size() > 1) path.push_back(std::move(interval));
 }
 
 /// Bodies that a hand holds at a tick.

@@ -53,15 +53,15 @@ class Evidence {
   double Excursion_m(int hand, int frame, double window_s, int end) const;
 
  private:
-  struct Stretch {
+  struct ExcursionWindow {
     int hand = 0;
     double window_s = 0;
     int end = 0;
-    friend auto operator<=>(const Stretch&, const Stretch&) = default;
+    friend auto operator<=>(const ExcursionWindow&, const ExcursionWindow&) = default;
   };
   mutable std::map<Pair, std::vector<double>> distances_;
   mutable std::map<int, std::vector<double>> motions_;
-  mutable std::map<Stretch, std::vector<double>> excursions_;
+  mutable std::map<ExcursionWindow, std::vector<double>> excursions_;
 };
 
 /// Whether the body's true shape reaches into the hand's region of interest: the sphere ahead of

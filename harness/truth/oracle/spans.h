@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stretches of frames and what can be done with them. Tested by
+// Intervals of frames and what can be done with them. Tested by
 // tests/harness/truth/oracle/oracle_test.cc
 #pragma once
 
@@ -33,7 +33,7 @@ Spans Rest(const Spans& spans, Span window);
 /// Everything that is covered by one or the other.
 Spans Union(const Spans& a, const Spans& b);
 
-/// Maximal stretches of true frames.
+/// Maximal intervals of true frames.
 Spans WhereTrue(const std::vector<bool>& flags);
 
 /// Joins spans whose gap lasts `ticks` or less; `frame_ticks[i]` is the tick of frame i.

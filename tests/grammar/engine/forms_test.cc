@@ -50,7 +50,7 @@ TEST(Forms, WhatComesAtTheDeadlineIsInTime) {
   EXPECT_EQ(WatchTouch(kMissed, {0, 10, 26}, 26).size(), 1u);
 }
 
-// A drum is touched in these stretches of ticks; a frame each tick. Each event as "[0,5)@7 x3".
+// A drum is touched in these intervals of ticks; a frame each tick. Each event as "[0,5)@7 x3".
 std::string Drummed(const std::string& text, const std::vector<Interval>& touches) {
   Scene scene;
   const auto program = testing::CompileText("grammar t\n" + text);
