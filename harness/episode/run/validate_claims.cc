@@ -50,7 +50,7 @@ grammar::Diagnostics ValidateClaims(const scenario::Scenario& scenario,
   ClaimDiagnostics diagnostics(scenario, document);
   for (const truth::Claim& claim : scenario.expects) {
     diagnostics.Add(claim, truth::UnknownNames(claim, known));
-    if (is_own_grammar) diagnostics.Add(claim, truth::Misfits(claim, known));
+    if (is_own_grammar) diagnostics.Add(claim, truth::Mismatches(claim, known));
   }
   return diagnostics.Take();
 }
@@ -61,11 +61,11 @@ grammar::Diagnostics UndecidedClaims(const scenario::Scenario& scenario,
   const truth::ClaimableEvents known = ClaimableIn(scenario, program);
   ClaimDiagnostics diagnostics(scenario, document);
   for (const truth::Claim& claim : scenario.expects) {
-    std::vector<truth::ClaimProblem> misfits = truth::Misfits(claim, known);
-    if (misfits.empty()) continue;
-    misfits.resize(1);
-    misfits.front().message = "not judged: " + misfits.front().message;
-    diagnostics.Add(claim, misfits);
+    std::vector<truth::ClaimProblem> mismatches = truth::Mismatches(claim, known);
+    if (mismatches.empty()) continue;
+    mismatches.resize(1);
+    mismatches.front().message = "not judged: " + mismatches.front().message;
+    diagnostics.Add(claim, mismatches);
   }
   grammar::Diagnostics warnings = diagnostics.Take();
   for (grammar::Diagnostic& warning : warnings) warning.is_warning = true;

@@ -33,7 +33,7 @@ std::size_t IndexOf(const EventSignature& event, const ClaimedEvent& claimed, st
   return static_cast<std::size_t>(std::ranges::find(event.roles, name) - event.roles.begin());
 }
 
-/// Misfits of one claimed event.
+/// Mismatches of one claimed event.
 class FittingEvent {
  public:
   FittingEvent(const EventSignature& event, const ClaimedEvent& claimed,
@@ -163,7 +163,7 @@ std::vector<ClaimProblem> UnknownNames(const Claim& claim, const ClaimableEvents
       const std::string& value = role.value.text;
       const EventSignature* event = Find(known, claimed.name.text);
       if (event && std::ranges::count(event->attributes, role.name.text) > 0 && !IsStyle(role))
-        continue;  // one of Misfits()
+        continue;  // one of Mismatches()
       if (IsAnybody(role) || std::ranges::count(IsStyle(role) ? styles : entities, value) > 0)
         continue;
       problems.push_back({role.value.offset,
@@ -175,7 +175,7 @@ std::vector<ClaimProblem> UnknownNames(const Claim& claim, const ClaimableEvents
   return problems;
 }
 
-std::vector<ClaimProblem> Misfits(const Claim& claim, const ClaimableEvents& known) {
+std::vector<ClaimProblem> Mismatches(const Claim& claim, const ClaimableEvents& known) {
   std::vector<ClaimProblem> problems;
   for (const ClaimedEvent& claimed : claim.events) {
     if (const EventSignature* event = Find(known, claimed.name.text)) {

@@ -27,9 +27,9 @@ std::vector<ClaimProblem> UnknownNames(const Claim& claim, const ClaimableEvents
 
 /// What the claim says of events that this grammar does not have, or not so: no timeline of it can
 /// decide the claim.
-std::vector<ClaimProblem> Misfits(const Claim& claim, const ClaimableEvents& known);
+std::vector<ClaimProblem> Mismatches(const Claim& claim, const ClaimableEvents& known);
 
-/// Whether a recognised event is one of those that are claimed. The claim must have no misfits.
+/// Whether a recognised event is one of those that are claimed. The claim must have no mismatches.
 bool Fits(const grammar::NamedEvent& event, const ClaimedEvent& claimed,
           const ClaimableEvents& known);
 

@@ -140,9 +140,9 @@ std::vector<ClaimVerdict> JudgeClaims(const std::vector<Claim>& claims, const st
                                   : std::string("--set");
     ClaimVerdict& verdict = verdicts.emplace_back(ClaimVerdict{
         .claim = claim.text, .place = place, .says = kNotJudged, .found = {}, .times = {}});
-    const std::vector<ClaimProblem> misfits = Misfits(claim, known);
-    if (!misfits.empty()) {
-      verdict.found = "not judged: " + misfits.front().message;
+    const std::vector<ClaimProblem> mismatches = Mismatches(claim, known);
+    if (!mismatches.empty()) {
+      verdict.found = "not judged: " + mismatches.front().message;
       continue;
     }
     const ClaimJudge judge(claim, known, timeline);

@@ -14,8 +14,8 @@ std::string Text(const std::vector<ClaimProblem>& problems) {
             (problem.hint.empty() ? "" : " | " + problem.hint) + "\n";
   return text;
 }
-std::string Misfit(const std::string& claim) {
-  return Text(Misfits(ClaimOf(claim), StageOfClaims()));
+std::string Mismatch(const std::string& claim) {
+  return Text(Mismatches(ClaimOf(claim), StageOfClaims()));
 }
 std::string Unknown(const std::string& claim) {
   return Text(UnknownNames(ClaimOf(claim), StageOfClaims()));
@@ -47,38 +47,38 @@ TEST(FitClaim, TheTwoOfASymmetricEventStandInEitherOrder) {
   EXPECT_FALSE(Fits(touch, ClaimOf("contact(jug, hand)").events[0], known));
 }
 
-TEST(FitClaim, WhatTheGrammarDoesNotHaveIsAMisfit) {
-  EXPECT_EQ(Misfit("grasping(hand, cup, style=wrap) meets sliding(any, cup)"), "");
-  EXPECT_EQ(Misfit("no slidin"),
+TEST(FitClaim, WhatTheGrammarDoesNotHaveIsAMismatch) {
+  EXPECT_EQ(Mismatch("grasping(hand, cup, style=wrap) meets sliding(any, cup)"), "");
+  EXPECT_EQ(Mismatch("no slidin"),
             "3: grammar 'stage' has no event 'slidin' | did you mean "
             "'sliding'?\n");
-  EXPECT_EQ(Misfit("pushing"),
+  EXPECT_EQ(Mismatch("pushing"),
             "0: grammar 'stage' has no event 'pushing' | "
             "known: grasping, sliding, contact\n");
-  EXPECT_EQ(Misfit("sliding(hand, cup, table)"),
+  EXPECT_EQ(Mismatch("sliding(hand, cup, table)"),
             "19: 'sliding' has 2 roles | "
             "it is sliding(hand, object)\n");
-  EXPECT_EQ(Misfit("sliding(objekt=cup)"),
+  EXPECT_EQ(Mismatch("sliding(objekt=cup)"),
             "8: 'sliding' has no role 'objekt' | "
             "did you mean 'object'?\n");
-  EXPECT_EQ(Misfit("sliding(hand, hand=hand)"), "14: the role 'hand' is given twice\n");
-  EXPECT_EQ(Misfit("no contact(cup, cup)"), "16: 'cup' cannot have two roles of 'contact'\n");
-  EXPECT_EQ(Misfit("contact(any, any)"), "");
-  EXPECT_EQ(Misfit("sliding(style=wrap)"), "8: 'sliding' has no style\n");
-  EXPECT_EQ(Misfit("no sliding(hand, table)"),
+  EXPECT_EQ(Mismatch("sliding(hand, hand=hand)"), "14: the role 'hand' is given twice\n");
+  EXPECT_EQ(Mismatch("no contact(cup, cup)"), "16: 'cup' cannot have two roles of 'contact'\n");
+  EXPECT_EQ(Mismatch("contact(any, any)"), "");
+  EXPECT_EQ(Mismatch("sliding(style=wrap)"), "8: 'sliding' has no style\n");
+  EXPECT_EQ(Mismatch("no sliding(hand, table)"),
             "17: 'table' is never 'object' of 'sliding', which takes a Movable | "
             "that can be cup, jug\n");
 }
 
 TEST(FitClaim, ExchangedParticipantsAreExchanged) {
-  EXPECT_EQ(Misfit("grasping(cup, hand)"),
+  EXPECT_EQ(Mismatch("grasping(cup, hand)"),
             "9: 'cup' is never 'hand' of 'grasping', which takes a Hand | "
             "did you mean 'grasping(hand, cup)'?\n"
             "14: 'hand' is never 'object' of 'grasping', which takes a Thing | "
             "did you mean 'grasping(hand, cup)'?\n");
-  EXPECT_EQ(Misfit("grasping(cup, jug)"),
+  EXPECT_EQ(Mismatch("grasping(cup, jug)"),
             "9: 'cup' is never 'hand' of 'grasping', which takes a Hand | that can be hand\n");
-  EXPECT_EQ(Misfit("grasping(object=table, hand=cup, style=wrap)"),
+  EXPECT_EQ(Mismatch("grasping(object=table, hand=cup, style=wrap)"),
             "28: 'cup' is never 'hand' of 'grasping', which takes a Hand | that can be hand\n");
 }
 
@@ -86,7 +86,7 @@ TEST(FitClaim, ValuesOfEventsAreNotClaimed) {
   const char* claim = "contact(hand, cup, force=jug)";
   ClaimableEvents known = StageOfClaims();
   known.events.back().attributes = {"force"};
-  EXPECT_EQ(Text(Misfits(ClaimOf(claim), known)),
+  EXPECT_EQ(Text(Mismatches(ClaimOf(claim), known)),
             "19: 'force' is a value of 'contact'; a claim asks for roles and 'style' only | "
             "leave it out; 'prehend run' prints the values of events\n");
   EXPECT_EQ(Text(UnknownNames(ClaimOf("contact(hand, cup, force=hard)"), known)), "");
