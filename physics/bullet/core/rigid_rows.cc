@@ -37,7 +37,7 @@ void RigidRows::Setup(const Pools& pools) {
     pushes_[At(i)] = SixOf(body.internalGetPushVelocity(), body.internalGetTurnVelocity());
   }
   others_.clear();
-  FindLoneBodies(pools);
+  FindSingleBodies(pools);
   Flatten(pools, pools.joints, 1, joints_);
   Flatten(pools, pools.contacts, 1, contacts_);
   for (Row& row : contacts_) row.most = kNoLimit;
@@ -53,24 +53,24 @@ void RigidRows::Setup(const Pools& pools) {
   ComputeResponses(rolling_, kRollingRows, rolling_responses_);
 }
 
-void RigidRows::FindLoneBodies(const Pools& pools) {
-  lone_.resize(speeds_.size());
-  for (std::size_t i = 0; i < lone_.size(); ++i) {
+void RigidRows::FindSingleBodies(const Pools& pools) {
+  single_.resize(speeds_.size());
+  for (std::size_t i = 0; i < single_.size(); ++i) {
     const btSolverBody& body = pools.bodies[static_cast<int>(i)];
-    lone_[i] = Moves(body) && !IsGrain(body) && !pools.shared[i];
+    single_[i] = Moves(body) && !IsGrain(body) && !pools.shared[i];
   }
   for (const btConstraintArray* rows : {&pools.joints, &pools.contacts, &pools.rolling}) {
     for (int i = 0; i < rows->size(); ++i) {
       const int a = (*rows)[i].m_solverBodyIdA, b = (*rows)[i].m_solverBodyIdB;
       if (rows != &pools.contacts || (Moves(pools.bodies[a]) && Moves(pools.bodies[b])))
-        lone_[At(a)] = lone_[At(b)] = 0;
+        single_[At(a)] = single_[At(b)] = 0;
     }
   }
-  lone_bodies_.Setup(lone_, pools.bodies, speeds_, pools.contacts, pools.frictions);
+  single_bodies_.Setup(single_, pools.bodies, speeds_, pools.contacts, pools.frictions);
 }
 
-bool RigidRows::IsLone(const btSolverConstraint& source) const {
-  return lone_[At(source.m_solverBodyIdA)] || lone_[At(source.m_solverBodyIdB)];
+bool RigidRows::IsSingle(const btSolverConstraint& source) const {
+  return single_[At(source.m_solverBodyIdA)] || single_[At(source.m_solverBodyIdB)];
 }
 
 void RigidRows::Arrange(const btConstraintArray& sources, std::size_t group,
@@ -84,7 +84,7 @@ void RigidRows::Arrange(const btConstraintArray& sources, std::size_t group,
   for (std::size_t i = 0; i < count; ++i) {
     const btSolverConstraint& source = sources[static_cast<int>(i * group)];
     level_[i] = -1;
-    if (IsLone(source)) continue;
+    if (IsSingle(source)) continue;
     ++arranged;
     int level = 0;
     for (const int body : {source.m_solverBodyIdA, source.m_solverBodyIdB})
@@ -148,7 +148,7 @@ void RigidRows::TakePenetrations(const Pools& pools) {
   };
   for (const Row& contact : contacts_) take(*contact.source);
   for (int i = 0; i < pools.contacts.size(); ++i)
-    if (IsLone(pools.contacts[i])) take(pools.contacts[i]);
+    if (IsSingle(pools.contacts[i])) take(pools.contacts[i]);
 }
 
 inline const RigidSide* RigidRows::OtherOf(const Row& row) const {
@@ -211,7 +211,7 @@ btScalar RigidRows::SolvePair(Row& first, Row& second, btScalar limit,
 }
 
 btScalar RigidRows::Solve(int iteration, int contact_iterations) {
-  if (iteration == 0) lone_bodies_.Solve(contact_iterations);
+  if (iteration == 0) single_bodies_.Solve(contact_iterations);
   btScalar largest = 0;
   for (Row& row : joints_)
     if (iteration < row.iterations) largest = std::max(largest, Solve(row));
@@ -256,7 +256,7 @@ btScalar RigidRows::SolvePenetrations() {
 void RigidRows::WriteBack(const Pools& pools) const {
   for (const Rows* rows : {&joints_, &contacts_, &frictions_, &rolling_})
     for (const Row& row : *rows) row.source->m_appliedImpulse = row.impulse;
-  lone_bodies_.WriteBack();
+  single_bodies_.WriteBack();
   for (int i = 0; i < pools.bodies.size(); ++i) {
     btSolverBody& body = pools.bodies[i];
     if (!Moves(body)) continue;

@@ -3,7 +3,7 @@
 // same arithmetic, except that friction and rolling friction are limited by circles
 // (physics/bullet/lanes/friction_circle.h). Every row is first written out flat, a side that does
 // not move costs nothing, and rows without a common body are adjacent, so that none waits for its
-// neighbour's result. Bodies that touch only what does not move are left to LoneBodies. Tested by
+// neighbour's result. Bodies that touch only what does not move are left to SingleBodies. Tested by
 // tests/physics/bullet/solver_test.cc
 #pragma once
 
@@ -11,8 +11,8 @@
 
 #include <vector>
 
-#include "physics/bullet/core/lone_bodies.h"
 #include "physics/bullet/core/rigid_side.h"
+#include "physics/bullet/core/single_bodies.h"
 #include "physics/bullet/lanes/friction_circle.h"
 
 namespace prehend::physics {
@@ -58,10 +58,10 @@ class RigidRows {
   };
   using Rows = std::vector<Row>;
 
-  void FindLoneBodies(const Pools& pools);
-  bool IsLone(const btSolverConstraint& source) const;
+  void FindSingleBodies(const Pools& pools);
+  bool IsSingle(const btSolverConstraint& source) const;
   /// Computes the order of groups of `group` rows, which have the same bodies. Groups with a common
-  /// body keep their order, and so do the rows of a group. Groups of lone bodies are left out.
+  /// body keep their order, and so do the rows of a group. Groups of single bodies are left out.
   void Arrange(const btConstraintArray& sources, std::size_t group,
                const btAlignedObjectArray<btSolverBody>& bodies);
   void Flatten(const Pools& pools, const btConstraintArray& sources, std::size_t group, Rows& rows);
@@ -81,8 +81,8 @@ class RigidRows {
   /// Of the last two of every `group` rows.
   void ComputeResponses(const Rows& rows, std::size_t group, Responses& responses) const;
 
-  std::vector<char> lone_;  ///< by body
-  LoneBodies lone_bodies_;
+  std::vector<char> single_;  ///< by body
+  SingleBodies single_bodies_;
   Rows joints_, contacts_, frictions_, rolling_, penetrations_;
   Responses friction_responses_, rolling_responses_;  ///< by pair of rows
   btScalar grains_change_ = 0;  ///< largest squared change of a speed, when they were last solved

@@ -2,7 +2,7 @@
 // The loops of physics/bullet/lanes/kernels.h. Included by one file per kind of processor, which
 // says at its top for which one it is compiled, so nothing here may be an inline function of
 // another header: the linker keeps only one of those. Tested by
-// tests/physics/bullet/lone_bodies_test.cc and tests/physics/bullet/grain_contacts_test.cc
+// tests/physics/bullet/single_bodies_test.cc and tests/physics/bullet/grain_contacts_test.cc
 #pragma once
 
 #include "physics/bullet/lanes/friction_circle.h"
@@ -13,7 +13,7 @@ namespace prehend::physics::PREHEND_WIDE {
 
 /// RigidSide::SpeedAlong()
 template <std::size_t n>
-PREHEND_INLINE Wide<n> SpeedAlong(const LoneRow<n>& row, const Wide<n>* v) {
+PREHEND_INLINE Wide<n> SpeedAlong(const SingleRow<n>& row, const Wide<n>* v) {
   const Lanes<n>* const j = row.jacobian;
   return (Load(j[0]) * v[0] + Load(j[1]) * v[1] + Load(j[2]) * v[2]) +
          (Load(j[3]) * v[3] + Load(j[4]) * v[4] + Load(j[5]) * v[5]);
@@ -21,13 +21,13 @@ PREHEND_INLINE Wide<n> SpeedAlong(const LoneRow<n>& row, const Wide<n>* v) {
 
 /// Change of the impulse that gives the wanted speed, without limits.
 template <std::size_t n>
-PREHEND_INLINE Wide<n> WantedChange(const LoneRow<n>& row, const Wide<n>* v) {
+PREHEND_INLINE Wide<n> WantedChange(const SingleRow<n>& row, const Wide<n>* v) {
   return (Load(row.wanted) - Load(row.impulse) * Load(row.softness)) -
          SpeedAlong(row, v) * Load(row.inverse_mass);
 }
 
 template <std::size_t n>
-PREHEND_INLINE void Push(const LoneRow<n>& row, const Wide<n>& change, Wide<n>* v) {
+PREHEND_INLINE void Push(const SingleRow<n>& row, const Wide<n>& change, Wide<n>* v) {
   const Lanes<n>* const r = row.response;
   v[0] = v[0] + Load(r[0]) * change;
   v[1] = v[1] + Load(r[1]) * change;
@@ -63,7 +63,7 @@ PREHEND_INLINE Wide<n> One() {
 
 /// Lane by lane: few slide at a time.
 template <std::size_t n>
-[[gnu::noinline]] static void SlideOnTheCircle(const LoneContacts<n>& contact,
+[[gnu::noinline]] static void SlideOnTheCircle(const SingleContacts<n>& contact,
                                                const Marks<n>& slides, const Wide<n>& limit,
                                                const WidePair<n>& wanted, const WidePair<n>& before,
                                                WidePair<n>& change) {
@@ -87,13 +87,13 @@ template <std::size_t n>
 
 /// Returns whether anything changed.
 template <std::size_t n>
-PREHEND_INLINE bool SolveLoneOnce(LoneContacts<n>* contacts, std::size_t count, Wide<n>* v) {
+PREHEND_INLINE bool SolveSingleOnce(SingleContacts<n>* contacts, std::size_t count, Wide<n>* v) {
   using Values = Wide<n>;
   const Values zero{};
   Marks<n> changed{};
   for (std::size_t i = 0; i < count; ++i) {
-    LoneContacts<n>& contact = contacts[i];
-    LoneRow<n>& row = contact.normal;
+    SingleContacts<n>& contact = contacts[i];
+    SingleRow<n>& row = contact.normal;
     Values change = WantedChange(row, v);
     const Values impulse = Load(row.impulse), sum = impulse + change, least = Load(contact.least);
     const Marks<n> pulls = sum < least;
@@ -104,8 +104,8 @@ PREHEND_INLINE bool SolveLoneOnce(LoneContacts<n>* contacts, std::size_t count, 
     changed = changed | (speed * speed > zero);
   }
   for (std::size_t i = 0; i < count; ++i) {
-    LoneContacts<n>& contact = contacts[i];
-    LoneRow<n>&first = contact.first, &second = contact.second;
+    SingleContacts<n>& contact = contacts[i];
+    SingleRow<n>&first = contact.first, &second = contact.second;
     const Values pressure = Load(contact.normal.impulse);
     const Marks<n> pressed = pressure > zero;
     if (!Any(pressed)) continue;
@@ -142,12 +142,12 @@ PREHEND_INLINE bool SolveLoneOnce(LoneContacts<n>* contacts, std::size_t count, 
 }
 
 template <std::size_t n>
-static void SolveLone(LoneContacts<n>* contacts, std::size_t count, Lanes<n>* speeds,
-                      int iterations) {
+static void SolveSingle(SingleContacts<n>* contacts, std::size_t count, Lanes<n>* speeds,
+                        int iterations) {
   Wide<n> v[6] = {Load(speeds[0]), Load(speeds[1]), Load(speeds[2]),
                   Load(speeds[3]), Load(speeds[4]), Load(speeds[5])};
   for (int i = 0; i < iterations; ++i)
-    if (!SolveLoneOnce(contacts, count, v)) break;
+    if (!SolveSingleOnce(contacts, count, v)) break;
   for (int i = 0; i < 6; ++i) Store(v[i], speeds[i]);
 }
 
@@ -232,6 +232,6 @@ static btScalar SolveGrains(GrainBlock* blocks, std::size_t count) {
   return most;
 }
 
-constexpr Kernels kKernels{SolveLone<8>, SolveLone<4>, SolveLone<2>, SolveGrains};
+constexpr Kernels kKernels{SolveSingle<8>, SolveSingle<4>, SolveSingle<2>, SolveGrains};
 
 }  // namespace prehend::physics::PREHEND_WIDE

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inner loops of LoneBodies and GrainRows, compiled for several processors: the widest that
+// The inner loops of SingleBodies and GrainRows, compiled for several processors: the widest that
 // runs here is chosen. All give the same bits. Only for physics/bullet/core. Tested by
-// tests/physics/bullet/lone_bodies_test.cc and tests/physics/bullet/grain_contacts_test.cc
+// tests/physics/bullet/single_bodies_test.cc and tests/physics/bullet/grain_contacts_test.cc
 #pragma once
 
 #include <LinearMath/btScalar.h>
@@ -14,7 +14,7 @@ namespace prehend::physics {
 
 /// A row of one body in each lane (physics/bullet/core/rigid_rows.h).
 template <std::size_t n>
-struct LoneRow {
+struct SingleRow {
   Lanes<n> jacobian[6], response[6];
   Lanes<n> wanted, softness, inverse_mass, mass, impulse;
 };
@@ -22,8 +22,8 @@ struct LoneRow {
 /// A contact of one body in each lane, and its friction. A lane that has fewer contacts than the
 /// others has rows that change nothing.
 template <std::size_t n>
-struct LoneContacts {
-  LoneRow<n> normal, first, second;
+struct SingleContacts {
+  SingleRow<n> normal, first, second;
   Lanes<n> least, friction;
   Lanes<n> cosine, sine, first_response, second_response;  ///< of PrincipalResponse
   Lanes<n> moves;                                          ///< 1, or 0 if a row cannot move
@@ -47,13 +47,13 @@ struct GrainBlock {
 
 struct Kernels {
   template <std::size_t n>
-  using SolveLone = void (*)(LoneContacts<n>* contacts, std::size_t count, Lanes<n>* six_speeds,
-                             int iterations);
+  using SolveSingle = void (*)(SingleContacts<n>* contacts, std::size_t count, Lanes<n>* six_speeds,
+                               int iterations);
 
   /// Solve each row `iterations` times, or until nothing changes any more.
-  SolveLone<8> solve_eight;
-  SolveLone<4> solve_four;
-  SolveLone<2> solve_two;
+  SolveSingle<8> solve_eight;
+  SolveSingle<4> solve_four;
+  SolveSingle<2> solve_two;
   /// Solves each contact once. Returns the largest squared change of a speed.
   btScalar (*solve_grains)(GrainBlock* blocks, std::size_t count);
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // For processors of x86-64 with AVX2. Fused multiplication, which would change bits, stays off.
-// Tested by tests/physics/bullet/lone_bodies_test.cc
+// Tested by tests/physics/bullet/single_bodies_test.cc
 #include <LinearMath/btScalar.h>
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For any processor. Tested by tests/physics/bullet/lone_bodies_test.cc
+// For any processor. Tested by tests/physics/bullet/single_bodies_test.cc
 #include "physics/bullet/lanes/kernel_loops.h"
 #include "physics/bullet/lanes/kernels.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several doubles side by side in memory, as physics/bullet/lanes/wide.h loads them. Only for
-// physics/bullet/core. Tested by tests/physics/bullet/lone_bodies_test.cc
+// physics/bullet/core. Tested by tests/physics/bullet/single_bodies_test.cc
 #pragma once
 
 #include <cstddef>

@@ -33,7 +33,7 @@ class Numbers {
     for (double& value : lanes.values) value = Between(least, most);
   }
   template <std::size_t n>
-  void Fill(LoneRow<n>& row) {
+  void Fill(SingleRow<n>& row) {
     for (std::size_t i = 0; i < 6; ++i) {
       Fill(row.jacobian[i], -1, 1);
       row.response[i] = row.jacobian[i];
@@ -45,8 +45,8 @@ class Numbers {
     Fill(row.impulse, 0, 0.1);
   }
   template <std::size_t n>
-  LoneContacts<n> Contacts() {
-    LoneContacts<n> contacts{};
+  SingleContacts<n> Contacts() {
+    SingleContacts<n> contacts{};
     Fill(contacts.normal), Fill(contacts.first), Fill(contacts.second);
     Fill(contacts.friction, -0.1, 0.6);
     for (std::size_t lane = 0; lane < n; ++lane) {
@@ -79,9 +79,9 @@ class Numbers {
 
 /// All values after some iterations.
 template <std::size_t n>
-std::vector<double> Solved(unsigned seed, Kernels::SolveLone<n> kernel) {
+std::vector<double> Solved(unsigned seed, Kernels::SolveSingle<n> kernel) {
   Numbers numbers(seed);
-  std::vector<LoneContacts<n>> contacts;
+  std::vector<SingleContacts<n>> contacts;
   for (int i = 0; i < 5; ++i) contacts.push_back(numbers.Contacts<n>());
   std::array<Lanes<n>, 6> speeds{};
   for (Lanes<n>& speed : speeds) numbers.Fill(speed, -0.1, 0.1);
@@ -91,7 +91,7 @@ std::vector<double> Solved(unsigned seed, Kernels::SolveLone<n> kernel) {
     all.insert(all.end(), std::begin(lanes.values), std::end(lanes.values));
   };
   for (const Lanes<n>& speed : speeds) add(speed);
-  for (const LoneContacts<n>& contact : contacts)
+  for (const SingleContacts<n>& contact : contacts)
     add(contact.normal.impulse), add(contact.first.impulse), add(contact.second.impulse);
   return all;
 }
@@ -129,9 +129,9 @@ TEST(Kernels, HaveTheSameBitsForEveryProcessor) {
 TEST(Kernels, SolveLanesAsIfTheyWereAlone) {
   // The same body in the first lane of two and of eight: the others are none of its business.
   Numbers numbers(1);
-  LoneContacts<2> two = numbers.Contacts<2>();
-  LoneContacts<8> eight = numbers.Contacts<8>();
-  const auto copy = [](const LoneRow<2>& from, LoneRow<8>& to) {
+  SingleContacts<2> two = numbers.Contacts<2>();
+  SingleContacts<8> eight = numbers.Contacts<8>();
+  const auto copy = [](const SingleRow<2>& from, SingleRow<8>& to) {
     for (std::size_t i = 0; i < 6; ++i) {
       to.jacobian[i][0] = from.jacobian[i][0];
       to.response[i][0] = from.response[i][0];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One body per lane; the loops are in physics/bullet/lanes/kernel_loops.h. Tested by
-// tests/physics/bullet/lone_bodies_test.cc
-#include "physics/bullet/core/lone_bodies.h"
+// tests/physics/bullet/single_bodies_test.cc
+#include "physics/bullet/core/single_bodies.h"
 
 #include <algorithm>
 
@@ -14,14 +14,14 @@ std::size_t At(int index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
 
-void LoneBodies::Setup(const std::vector<char>& lone,
-                       const btAlignedObjectArray<btSolverBody>& bodies, std::vector<Six>& speeds,
-                       const btConstraintArray& contacts, const btConstraintArray& frictions) {
+void SingleBodies::Setup(const std::vector<char>& single,
+                         const btAlignedObjectArray<btSolverBody>& bodies, std::vector<Six>& speeds,
+                         const btConstraintArray& contacts, const btConstraintArray& frictions) {
   const auto body_of = [&](const btSolverConstraint& contact) {
-    if (lone[At(contact.m_solverBodyIdA)]) return contact.m_solverBodyIdA;
-    return lone[At(contact.m_solverBodyIdB)] ? contact.m_solverBodyIdB : -1;
+    if (single[At(contact.m_solverBodyIdA)]) return contact.m_solverBodyIdA;
+    return single[At(contact.m_solverBodyIdB)] ? contact.m_solverBodyIdB : -1;
   };
-  place_.assign(lone.size(), 0);
+  place_.assign(single.size(), 0);
   for (int i = 0; i < contacts.size(); ++i)
     if (const int body = body_of(contacts[i]); body >= 0) ++place_[At(body)];
   bodies_.clear();
@@ -44,7 +44,7 @@ void LoneBodies::Setup(const std::vector<char>& lone,
   Arrange();
 }
 
-void LoneBodies::Arrange() {
+void SingleBodies::Arrange() {
   eight_.Clear();
   four_.Clear();
   two_.Clear();
@@ -64,15 +64,15 @@ void LoneBodies::Arrange() {
 }
 
 template <std::size_t lanes>
-void LoneBodies::Blocks<lanes>::Clear() {
+void SingleBodies::Blocks<lanes>::Clear() {
   blocks.clear();
   contacts.clear();
   sources.clear();
 }
 
 template <std::size_t lanes>
-void LoneBodies::Blocks<lanes>::Add(const Body* bodies, std::size_t count,
-                                    const std::vector<Contact>& all) {
+void SingleBodies::Blocks<lanes>::Add(const Body* bodies, std::size_t count,
+                                      const std::vector<Contact>& all) {
   Block<lanes>& block = blocks.emplace_back(Block<lanes>{{}, contacts.size(), bodies[0].count});
   contacts.resize(block.first + block.count);
   sources.resize(contacts.size());
@@ -87,7 +87,7 @@ void LoneBodies::Blocks<lanes>::Add(const Body* bodies, std::size_t count,
   }
 }
 
-RigidSide LoneBodies::SideOf(const Body& body, const btSolverConstraint& source) {
+RigidSide SingleBodies::SideOf(const Body& body, const btSolverConstraint& source) {
   if (source.m_solverBodyIdA == body.index)
     return MakeRigidSide(*body.body, *body.speeds, source.m_contactNormal1,
                          source.m_relpos1CrossNormal, source.m_angularComponentA);
@@ -96,8 +96,8 @@ RigidSide LoneBodies::SideOf(const Body& body, const btSolverConstraint& source)
 }
 
 template <std::size_t lanes>
-void LoneBodies::SetRow(LoneRow<lanes>& row, std::size_t lane, const RigidSide& side,
-                        const btSolverConstraint& source) {
+void SingleBodies::SetRow(SingleRow<lanes>& row, std::size_t lane, const RigidSide& side,
+                          const btSolverConstraint& source) {
   for (std::size_t i = 0; i < 6; ++i) {
     row.jacobian[i][lane] = side.jacobian[i];
     row.response[i][lane] = side.response[i];
@@ -110,8 +110,8 @@ void LoneBodies::SetRow(LoneRow<lanes>& row, std::size_t lane, const RigidSide& 
 }
 
 template <std::size_t lanes>
-void LoneBodies::SetContact(LoneContacts<lanes>& contacts, std::size_t lane, const Body& body,
-                            const Contact& contact) {
+void SingleBodies::SetContact(SingleContacts<lanes>& contacts, std::size_t lane, const Body& body,
+                              const Contact& contact) {
   const auto side_of = [&](const btSolverConstraint& source) { return SideOf(body, source); };
   const RigidSide first = side_of(*contact.first_friction),
                   second = side_of(*contact.second_friction);
@@ -130,7 +130,7 @@ void LoneBodies::SetContact(LoneContacts<lanes>& contacts, std::size_t lane, con
 }
 
 template <std::size_t lanes>
-void LoneBodies::Blocks<lanes>::Solve(Kernels::SolveLone<lanes> kernel, int iterations) {
+void SingleBodies::Blocks<lanes>::Solve(Kernels::SolveSingle<lanes> kernel, int iterations) {
   for (const Block<lanes>& block : blocks) {
     std::array<Lanes<lanes>, 6> speeds{};
     for (std::size_t lane = 0; lane < lanes; ++lane)
@@ -144,7 +144,7 @@ void LoneBodies::Blocks<lanes>::Solve(Kernels::SolveLone<lanes> kernel, int iter
 }
 
 template <std::size_t lanes>
-void LoneBodies::Blocks<lanes>::WriteBack() const {
+void SingleBodies::Blocks<lanes>::WriteBack() const {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const Contact& source = sources[i][lane];
@@ -156,13 +156,13 @@ void LoneBodies::Blocks<lanes>::WriteBack() const {
   }
 }
 
-void LoneBodies::Solve(int iterations, const Kernels& kernels) {
+void SingleBodies::Solve(int iterations, const Kernels& kernels) {
   eight_.Solve(kernels.solve_eight, iterations);
   four_.Solve(kernels.solve_four, iterations);
   two_.Solve(kernels.solve_two, iterations);
 }
 
-void LoneBodies::WriteBack() const {
+void SingleBodies::WriteBack() const {
   eight_.WriteBack();
   four_.WriteBack();
   two_.WriteBack();

@@ -2,7 +2,7 @@
 // Bodies that touch only what does not move: a thing on a table. No row has two of them, so each is
 // solved by itself, all iterations at once, several of them side by side. The bits are those of
 // RigidRows, which solves all others. Only for physics/bullet/core. Tested by
-// tests/physics/bullet/lone_bodies_test.cc
+// tests/physics/bullet/single_bodies_test.cc
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
@@ -15,11 +15,11 @@
 
 namespace prehend::physics {
 
-class LoneBodies {
+class SingleBodies {
  public:
-  /// Of Bullet's bodies those that are marked as `lone`, with their `speeds`, and of its rows those
-  /// that have such a body. They must outlive the other calls.
-  void Setup(const std::vector<char>& lone, const btAlignedObjectArray<btSolverBody>& bodies,
+  /// Of Bullet's bodies those that are marked as `single`, with their `speeds`, and of its rows
+  /// those that have such a body. They must outlive the other calls.
+  void Setup(const std::vector<char>& single, const btAlignedObjectArray<btSolverBody>& bodies,
              std::vector<Six>& speeds, const btConstraintArray& contacts,
              const btConstraintArray& frictions);
 
@@ -49,21 +49,21 @@ class LoneBodies {
   template <std::size_t lanes>
   struct Blocks {
     std::vector<Block<lanes>> blocks;
-    std::vector<LoneContacts<lanes>> contacts;
+    std::vector<SingleContacts<lanes>> contacts;
     std::vector<std::array<Contact, lanes>> sources;  ///< of contacts
 
     void Clear();
     /// At most as many bodies as there are lanes, the one with most contacts first.
     void Add(const Body* bodies, std::size_t count, const std::vector<Contact>& contacts);
-    void Solve(Kernels::SolveLone<lanes> kernel, int iterations);
+    void Solve(Kernels::SolveSingle<lanes> kernel, int iterations);
     void WriteBack() const;
   };
   static RigidSide SideOf(const Body& body, const btSolverConstraint& source);
   template <std::size_t lanes>
-  static void SetRow(LoneRow<lanes>& row, std::size_t lane, const RigidSide& side,
+  static void SetRow(SingleRow<lanes>& row, std::size_t lane, const RigidSide& side,
                      const btSolverConstraint& source);
   template <std::size_t lanes>
-  static void SetContact(LoneContacts<lanes>& contacts, std::size_t lane, const Body& body,
+  static void SetContact(SingleContacts<lanes>& contacts, std::size_t lane, const Body& body,
                          const Contact& contact);
   void Arrange();
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reference is RigidRows without lone bodies: the same random rows, solved by both, end with
+// The reference is RigidRows without single bodies: the same random rows, solved by both, end with
 // the same bits, however many bodies there are and however many contacts each has.
-#include "physics/bullet/core/lone_bodies.h"
+#include "physics/bullet/core/single_bodies.h"
 
 #include <btBulletDynamicsCommon.h>
 #include <gtest/gtest.h>
@@ -113,7 +113,7 @@ class RandomRows {
   btConstraintArray contacts_, frictions_, none_;
 };
 
-TEST(LoneBodies, HaveTheBitsOfRowsThatAreSolvedInTurn) {
+TEST(SingleBodies, HaveTheBitsOfRowsThatAreSolvedInTurn) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     RandomRows rows(static_cast<int>(seed % 23), seed);
     for (const int iterations : {1, 2, 50})
