@@ -11,7 +11,7 @@
 
 #include "grammar/base/frame.h"
 #include "harness/base/base/result.h"
-#include "harness/episode/sense/look_bridge.h"
+#include "harness/episode/sense/gap_tolerance.h"
 
 namespace prehend::episode {
 

@@ -25,7 +25,7 @@
 namespace prehend::episode {
 namespace {
 
-LookBridge BridgeOf(const EpisodeHeader& header) {
+GapTolerance BridgeOf(const EpisodeHeader& header) {
   const double most = header.bridge_s * static_cast<double>(header.entity_table.ticks_per_second);
   return {header.entity_table.entities.size(), static_cast<grammar::Tick>(most)};
 }
@@ -70,7 +70,7 @@ class EpisodeReader {
   grammar::Diagnostics TakeLineOrNothing(const std::string& text) {
     const EpisodeFrame now = now_;
     const std::vector<bool> has_ahead = has_ahead_, has_spheres = has_spheres_;
-    const LookBridge bridge = bridge_;
+    const GapTolerance bridge = bridge_;
     const std::size_t frames = episode.frames.size();
     const bool said_its_end = episode.says_its_end;
     const grammar::Tick end_tick = episode.end_tick;
@@ -315,7 +315,7 @@ class EpisodeReader {
   /// came here is not known.
   double SinceLastLook_s(std::size_t entity, double dt_s) {
     if (IsTracked(now_.entities[entity])) return dt_s;
-    const LookBridge::Seen* last = bridge_.LastOf(entity, now_.tick);
+    const GapTolerance::Seen* last = bridge_.LastOf(entity, now_.tick);
     now_.entities[entity] = last ? last->look : grammar::EntitySample();
     return last ? static_cast<double>(now_.tick - last->tick) /
                       static_cast<double>(episode.header.entity_table.ticks_per_second)
@@ -457,7 +457,7 @@ class EpisodeReader {
   FrameEntry scanned_;                         ///< of TakeUsualFrame(); kept for its memory
   YamlDocument no_document_;
   EpisodeFrame now_;  ///< what is not tracked is not, however short
-  LookBridge bridge_;
+  GapTolerance bridge_;
 };
 
 grammar::Frame EpisodeFrame::View() {
@@ -466,7 +466,7 @@ grammar::Frame EpisodeFrame::View() {
 }
 
 void BridgeLooks(Recording& episode) {
-  LookBridge bridge = BridgeOf(episode.header);
+  GapTolerance bridge = BridgeOf(episode.header);
   for (EpisodeFrame& frame : episode.frames) bridge.Fill(frame.tick, frame.entities);
   episode.gaps = bridge.Gaps();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/sense/look_bridge.h. Tested by tests/program/not_tracked_test.cc
-#include "harness/episode/sense/look_bridge.h"
+// See harness/episode/sense/gap_tolerance.h. Tested by tests/program/not_tracked_test.cc
+#include "harness/episode/sense/gap_tolerance.h"
 
 #include <fmt/format.h>
 
@@ -8,12 +8,12 @@
 
 namespace prehend::episode {
 
-const LookBridge::Seen* LookBridge::LastOf(std::size_t entity, grammar::Tick tick) const {
+const GapTolerance::Seen* GapTolerance::LastOf(std::size_t entity, grammar::Tick tick) const {
   const std::optional<Seen>& last = seen_[entity].last;
   return last && tick - last->tick <= most_ ? &*last : nullptr;
 }
 
-void LookBridge::Fill(grammar::Tick tick, std::vector<grammar::EntitySample>& looks) {
+void GapTolerance::Fill(grammar::Tick tick, std::vector<grammar::EntitySample>& looks) {
   for (std::size_t i = 0; i < looks.size(); ++i) {
     Entity& entity = seen_[i];
     if (grammar::IsTracked(looks[i])) {
@@ -30,7 +30,7 @@ void LookBridge::Fill(grammar::Tick tick, std::vector<grammar::EntitySample>& lo
   before_ = tick;
 }
 
-std::vector<LookGaps> LookBridge::Gaps() const {
+std::vector<LookGaps> GapTolerance::Gaps() const {
   std::vector<LookGaps> all;
   for (const Entity& entity : seen_) all.push_back(entity.gaps);
   return all;

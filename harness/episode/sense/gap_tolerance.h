@@ -18,11 +18,11 @@ struct LookGaps {
 };
 
 /// Takes the frames of an episode one after another.
-class LookBridge {
+class GapTolerance {
  public:
-  LookBridge() = default;
+  GapTolerance() = default;
   /// `most`: for so many ticks after its last look an entity is as it was then.
-  LookBridge(std::size_t entities, grammar::Tick most) : most_(most), seen_(entities) {}
+  GapTolerance(std::size_t entities, grammar::Tick most) : most_(most), seen_(entities) {}
 
   struct Seen {
     grammar::Tick tick = 0;
