@@ -24,7 +24,7 @@ std::vector<std::pair<std::string, std::string>> ScenariosOn(const fs::path& pag
   return found;
 }
 
-/// `accept` refuses events that are others elsewhere.
+/// `accept` refuses events that are others after a transform.
 TEST(Cookbook, EachScenarioCouldBeAccepted) {
   const fs::path folder = FreshFolder("cookbook");
   WriteFile(folder / "prehend.yaml", "");

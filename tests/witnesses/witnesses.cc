@@ -11,7 +11,7 @@
 #include "harness/suite/judge/judge_golden.h"
 #include "harness/truth/golden/golden_files.h"
 #include "tests/witnesses/closed_form_score.h"
-#include "tests/witnesses/elsewhere/elsewhere.h"
+#include "tests/witnesses/metamorphic/metamorphic.h"
 
 namespace prehend::witnesses {
 namespace {
@@ -20,11 +20,11 @@ constexpr const char* kRoot = PREHEND_SOURCE_DIR;
 constexpr const char* kStories = PREHEND_SOURCE_DIR "/tests/witnesses/stories";
 constexpr const char* kUsage = R"(usage: witnesses closed-forms [--json] [GRAMMAR..]
        witnesses table [PREHEND]
-       witnesses elsewhere SCENARIO TRANSFORM..
+       witnesses metamorphic SCENARIO TRANSFORM..
 closed-forms: grammars (default: pick_and_place and original_2020) and the oracle, on recordings
 whose events are known on paper. table: README's table of evaluators; plays the whole library with
-the program PREHEND (default: that of this build). elsewhere: whether a scenario tells the same
-story after each transform, as JSON; tests/witnesses/elsewhere/same_elsewhere does it with the library.
+the program PREHEND (default: that of this build). metamorphic: whether a scenario tells the same
+story after each transform, as JSON; tests/witnesses/metamorphic/same_after_transforms does it with the library.
 )";
 
 int Complain(const grammar::Diagnostics& diagnostics) {
@@ -66,7 +66,7 @@ int RunTable(const std::string& program) {
   return 0;
 }
 
-int RunElsewhere(const std::string& name, const std::vector<std::string>& transforms) {
+int RunTransforms(const std::string& name, const std::vector<std::string>& transforms) {
   for (const std::string& transform : transforms) {
     if (std::ranges::find(TransformNames(), transform) != TransformNames().end()) continue;
     std::cerr << transform << ": wanted one of";
@@ -85,7 +85,7 @@ int RunElsewhere(const std::string& name, const std::vector<std::string>& transf
   if (checked.result.status.kind == physics::RunStatus::Kind::kCompleted) {
     const truth::Golden here = suite::CompareWithGolden(*golden, checked).pending;
     for (const std::string& transform : transforms) {
-      const TransformVerdict verdict = JudgeElsewhere(checked, here, transform);
+      const TransformVerdict verdict = JudgeTransform(checked, here, transform);
       verdicts.push_back({{"transform", transform},
                           {"verdict", verdict.says},
                           {"why", verdict.why},
@@ -101,8 +101,8 @@ int Run(const std::vector<std::string>& arguments) {
   if (what == "closed-forms") return RunClosedForms({arguments.begin() + 1, arguments.end()});
   if (what == "table" && arguments.size() <= 2)
     return RunTable(arguments.size() == 2 ? arguments[1] : PREHEND_BINARY_DIR "/prehend");
-  if (what == "elsewhere" && arguments.size() > 2)
-    return RunElsewhere(arguments[1], {arguments.begin() + 2, arguments.end()});
+  if (what == "metamorphic" && arguments.size() > 2)
+    return RunTransforms(arguments[1], {arguments.begin() + 2, arguments.end()});
   std::cerr << kUsage;
   return 2;
 }

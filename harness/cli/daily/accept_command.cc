@@ -153,7 +153,7 @@ std::optional<ExitCode> RefuseUnlessSteady(const CommandContext& context, const 
     for (const suite::Finding& broken : ensemble.broken) context.out << broken.details;
     return Complain(
         context, ExitCode::kDiffers,
-        fmt::format("what the scenario expects does not hold in {} of {} plays elsewhere (printed "
+        fmt::format("what the scenario expects does not hold after {} of {} transforms (printed "
                     "above); nothing was accepted\n  ",
                     ensemble.plays_broken, ensemble.plays - 1) +
             suite::kUntilClaimsHold);
@@ -167,7 +167,7 @@ std::optional<ExitCode> RefuseUnlessSteady(const CommandContext& context, const 
   for (const suite::Finding& difference : ensemble.differences) context.out << difference.details;
   return Complain(
       context, ExitCode::kDiffers,
-      fmt::format("the events are others in {} of {} plays elsewhere (printed above); nothing was "
+      fmt::format("the events are others after {} of {} transforms (printed above); nothing was "
                   "accepted\n  give the scenario a margin{}, or say why that may be: --unsteady "
                   "\"...\"",
                   ensemble.differences.size(), ensemble.plays - 1,
@@ -181,7 +181,7 @@ std::optional<ExitCode> MeasureSpreadsAnew(const CommandContext& context, const 
   if (truth::WriteGolden(golden) == truth::WriteGolden(*played.old)) return std::nullopt;
   const std::string problem = truth::GoldenFiles(context.root).WriteAccepted(golden);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
-  context.out << "how far boundaries move elsewhere was measured anew\n";
+  context.out << "how far transforms move boundaries was measured anew\n";
   return std::nullopt;
 }
 
@@ -265,7 +265,7 @@ ExitCode AcceptEvents(const ParsedOptions& options, const CommandContext& contex
   return ExitCode::kAgrees;
 }
 
-/// The golden of a recording lies beside it; nothing is simulated, so nothing is played elsewhere.
+/// The golden of a recording lies beside it; nothing is simulated, so nothing is transformed.
 ExitCode AcceptRecording(const std::string& file, const ParsedOptions& options,
                          const CommandContext& context) {
   for (const char* of_play : {"--pictures", "--unsteady", "--exact"}) {
@@ -417,7 +417,7 @@ Command AcceptCommand() {
                    .help = "take over boundaries that moved within their tolerance, too: after a "
                            "change that moved many, or the next small one fails"},
                   {.name = "--unsteady",
-                   .help = "why the events may differ when the scenario is played elsewhere, which "
+                   .help = "why the events may differ after a metamorphic transform, which "
                            "accept does; is written into the golden; without it they may not",
                    .placeholder = "TEXT"},
                   {.name = "--pictures",

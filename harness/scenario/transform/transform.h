@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same story elsewhere: changes of a scenario that move only rounding and the order of
+// Metamorphic transforms: changes of a scenario that move only rounding and the order of
 // computations. A verdict that depends on them rests on chaos (metamorphic testing: T. Y. Chen et
 // al., "Metamorphic testing: a review of challenges and opportunities", ACM Computing Surveys
 // 51(1), 2018). Tested by tests/harness/scenario/transform/transform_test.cc

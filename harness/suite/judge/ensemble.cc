@@ -63,10 +63,10 @@ Ensemble PlayEnsemble(const episode::LoadedRun& loaded, const grammar::Timeline&
     auto scenario = scenario::Transformed(loaded.scenario, transform);
     if (!scenario) continue;
     const std::string name(NameOf(transform));
-    PlayElsewhere play = Play({.name = name,
-                               .scenario = std::move(*scenario),
-                               .tolerance = scenario::DefaultTolerance(loaded.scenario)},
-                              loaded, golden);
+    TransformedPlay play = Play({.name = name,
+                                 .scenario = std::move(*scenario),
+                                 .tolerance = scenario::DefaultTolerance(loaded.scenario)},
+                                loaded, golden);
     ++ensemble.plays;
     Findings broken = BrokenIn(play, name);
     if (!broken.empty()) ++ensemble.plays_broken;
@@ -95,9 +95,9 @@ void KeepSpreads(const Ensemble& ensemble, truth::Golden& golden) {
   }
 }
 
-PlayElsewhere Play(const Elsewhere& there, const episode::LoadedRun& original,
-                   const truth::Golden& here) {
-  PlayElsewhere play;
+TransformedPlay Play(const TransformedScenario& there, const episode::LoadedRun& original,
+                     const truth::Golden& here) {
+  TransformedPlay play;
   episode::RunResult run = episode::RunScenario(there.scenario, original.program);
   if (run.status.kind != physics::RunStatus::Kind::kCompleted) {
     play.failed = {{.reason = there.name + ": the simulation failed",
@@ -117,7 +117,7 @@ PlayElsewhere Play(const Elsewhere& there, const episode::LoadedRun& original,
   return play;
 }
 
-Findings BrokenIn(const PlayElsewhere& play, const std::string& name) {
+Findings BrokenIn(const TransformedPlay& play, const std::string& name) {
   Findings findings = play.failed;
   for (Finding& finding : ClaimFindings(play.claims))
     findings.push_back({.exit_code = finding.exit_code,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scenario played elsewhere: the same events, boundaries within the tolerances of its golden.
-// Tested by tests/harness/suite/judge/ensemble_test.cc and
-// tests/witnesses/elsewhere/elsewhere_test.cc
+// A scenario after metamorphic transforms: the same events, boundaries within the tolerances of its
+// golden. Tested by tests/harness/suite/judge/ensemble_test.cc and
+// tests/witnesses/metamorphic/metamorphic_test.cc
 #pragma once
 
 #include <functional>
@@ -32,7 +32,7 @@ Ensemble PlayEnsemble(const episode::LoadedRun& loaded, const grammar::Timeline&
 void KeepSpreads(const Ensemble& ensemble, truth::Golden& golden);
 
 /// A scenario after a change that leaves its story the same.
-struct Elsewhere {
+struct TransformedScenario {
   std::string name;  ///< of the change
   scenario::Scenario scenario;
   /// Of boundaries without one of their own, in ticks of this scenario.
@@ -42,17 +42,17 @@ struct Elsewhere {
   std::function<void(grammar::Timeline&)> rename_back = {};
 };
 
-struct PlayElsewhere {
+struct TransformedPlay {
   Findings failed;                              ///< to come to its end
   std::vector<truth::ClaimVerdict> claims;      ///< of what the scenario expects, here as there
   Findings differs;                             ///< from the golden
   std::optional<truth::Comparison> comparison;  ///< of a play that came to its end
 };
 /// Events of those who are not in the original are left out.
-PlayElsewhere Play(const Elsewhere& there, const episode::LoadedRun& original,
-                   const truth::Golden& here);
+TransformedPlay Play(const TransformedScenario& there, const episode::LoadedRun& original,
+                     const truth::Golden& here);
 
 /// What is wrong with it whatever a golden says.
-Findings BrokenIn(const PlayElsewhere& play, const std::string& name);
+Findings BrokenIn(const TransformedPlay& play, const std::string& name);
 
 }  // namespace prehend::suite

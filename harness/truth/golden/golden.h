@@ -17,8 +17,8 @@
 //
 // NAME~NUMBER is a value of the event, which agrees within 5 % or 0.001; accepted=2 says that this
 // line is as the second of the accepted lines made it (otherwise the first). spread=0.0/12.5ms says
-// how far begin and end moved when the scenario was played elsewhere
-// (harness/scenario/transform/transform.h); no spread: not at all. Events that differ elsewhere
+// how far begin and end moved after the metamorphic transforms
+// (harness/scenario/transform/transform.h); no spread: not at all. Events that differ after one
 // need a line
 // "# unsteady: "the reason"". Tested by tests/harness/truth/golden/golden_test.cc
 #pragma once
@@ -64,7 +64,7 @@ struct Golden {
   std::vector<Acceptance> accepted;  ///< oldest first
   std::vector<Acceptance> pictures;  ///< when its pictures were accepted, and why
   int ensemble_plays = 0;            ///< of which the spreads are; 0: not measured. Not compared
-  std::string unsteady;              ///< why events may differ elsewhere; empty: they may not
+  std::string unsteady;  ///< why events may differ after a transform; empty: they may not
   grammar::Tick ticks_per_second = 480;
   std::vector<std::string> comments;  ///< other lines of the header
   std::vector<GoldenEvent> events;    ///< in the order of ComesBefore()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same scenario with its entities called otherwise, or with a copy of them beside them.
-// Tested by tests/witnesses/elsewhere/elsewhere_test.cc
+// Tested by tests/witnesses/metamorphic/metamorphic_test.cc
 #pragma once
 
 #include <map>

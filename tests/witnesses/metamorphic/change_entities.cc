@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// See tests/witnesses/elsewhere/change_entities.h. Tested by
-// tests/witnesses/elsewhere/elsewhere_test.cc
-#include "tests/witnesses/elsewhere/change_entities.h"
+// See tests/witnesses/metamorphic/change_entities.h. Tested by
+// tests/witnesses/metamorphic/metamorphic_test.cc
+#include "tests/witnesses/metamorphic/change_entities.h"
 
 #include <fmt/format.h>
 
 #include <set>
 #include <utility>
 
-#include "tests/witnesses/elsewhere/move_scenario.h"
+#include "tests/witnesses/metamorphic/move_scenario.h"
 
 namespace prehend::witnesses {
 namespace {

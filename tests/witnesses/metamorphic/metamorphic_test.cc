@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/witnesses/elsewhere/elsewhere.h"
+#include "tests/witnesses/metamorphic/metamorphic.h"
 
 #include <gtest/gtest.h>
 
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
 #include "harness/truth/claims/parse_claim.h"
-#include "tests/witnesses/elsewhere/change_entities.h"
-#include "tests/witnesses/elsewhere/move_scenario.h"
+#include "tests/witnesses/metamorphic/change_entities.h"
+#include "tests/witnesses/metamorphic/move_scenario.h"
 
 namespace prehend::witnesses {
 namespace {
@@ -19,18 +19,18 @@ episode::LoadedRun Load(const std::string& scenario) {
 }
 
 std::string WhyNot(const episode::LoadedRun& loaded, const std::string& transform) {
-  const auto there = ElsewhereAfter(loaded, transform);
+  const auto there = TransformedBy(loaded, transform);
   return there ? "" : there.error();
 }
 
 scenario::Scenario After(const episode::LoadedRun& loaded, const std::string& transform) {
-  const auto there = ElsewhereAfter(loaded, transform);
+  const auto there = TransformedBy(loaded, transform);
   if (there) return there->scenario;
   ADD_FAILURE() << there.error();
   return {};
 }
 
-TEST(Elsewhere, AMirrorImageOfAMirrorImageIsTheOriginal) {
+TEST(Metamorphic, AMirrorImageOfAMirrorImageIsTheOriginal) {
   episode::LoadedRun loaded = Load("grasp/gem_of_flat_faces_is_grasped_and_placed");
   const scenario::Scenario original = loaded.scenario;
   loaded.scenario = After(loaded, "mirror");
@@ -43,7 +43,7 @@ TEST(Elsewhere, AMirrorImageOfAMirrorImageIsTheOriginal) {
   }
 }
 
-TEST(Elsewhere, RightHandsBecomeLeftOnes) {
+TEST(Metamorphic, RightHandsBecomeLeftOnes) {
   const episode::LoadedRun loaded = Load("pick_and_place/milk_carton_wrap");
   const scenario::Scenario& original = loaded.scenario;
   const scenario::Scenario mirrored = After(loaded, "mirror");
@@ -52,13 +52,13 @@ TEST(Elsewhere, RightHandsBecomeLeftOnes) {
   EXPECT_EQ(mirrored.scene.hands[0].X_WH.p_m.y(), -original.scene.hands[0].X_WH.p_m.y());
 }
 
-TEST(Elsewhere, OtherStoriesAreRefused) {
+TEST(Metamorphic, OtherStoriesAreRefused) {
   EXPECT_EQ(WhyNot(Load("planar/disc_rolls_to_rest"), "turn"), "it is planar");
   EXPECT_EQ(WhyNot(Load("gaze/eyes_lead_the_hand"), "mirror"),
             "a person's right hand would be on the left");
 }
 
-TEST(Elsewhere, NoiseMakesAnotherStory) {
+TEST(Metamorphic, NoiseMakesAnotherStory) {
   const episode::LoadedRun noisy = Load("sensors/missed_touches_are_bridged");
   EXPECT_EQ(WhyNot(noisy, "mirror"),
             "the noise of its sensors is drawn along the axes of the world");
@@ -68,7 +68,7 @@ TEST(Elsewhere, NoiseMakesAnotherStory) {
   EXPECT_EQ(WhyNot(noisy, "rename"), "");
 }
 
-TEST(Elsewhere, WhoSeesEveryTickSeesNoMore) {
+TEST(Metamorphic, WhoSeesEveryTickSeesNoMore) {
   episode::LoadedRun loaded = Load("planar/disc_rolls_to_rest");
   loaded.scenario.sensing.sensing_hz = 300;
   EXPECT_EQ(After(loaded, "watch").sensing.sensing_hz, 480);
@@ -76,14 +76,14 @@ TEST(Elsewhere, WhoSeesEveryTickSeesNoMore) {
   EXPECT_EQ(WhyNot(loaded, "watch"), "the grammar sees every tick already");
 }
 
-TEST(Elsewhere, WhatReachesFarHasNoRoomForACopy) {
+TEST(Metamorphic, WhatReachesFarHasNoRoomForACopy) {
   episode::LoadedRun loaded = Load("planar/disc_rolls_to_rest");
   loaded.scenario.scene.bodies[0].X_WB.p_m.x() = 7;
   EXPECT_EQ(WhyNot(loaded, "copies"),
             loaded.scenario.scene.bodies[0].name + " reaches too far for a copy beside it");
 }
 
-TEST(Elsewhere, NewNamesAreInTheOppositeOrder) {
+TEST(Metamorphic, NewNamesAreInTheOppositeOrder) {
   const episode::LoadedRun loaded = Load("gaze/eyes_lead_the_hand");
   const std::vector<physics::Body>& before = loaded.scenario.scene.bodies;
   const std::vector<physics::Body> after = After(loaded, "rename").scene.bodies;
@@ -95,7 +95,7 @@ TEST(Elsewhere, NewNamesAreInTheOppositeOrder) {
   }
 }
 
-TEST(Elsewhere, ACopyDoesWhatTheOriginalDoes) {
+TEST(Metamorphic, ACopyDoesWhatTheOriginalDoes) {
   const episode::LoadedRun loaded = Load("gaze/eyes_lead_the_hand");
   const scenario::Scenario& original = loaded.scenario;
   const scenario::Scenario both = After(loaded, "copies");
@@ -123,7 +123,7 @@ TEST(Elsewhere, ACopyDoesWhatTheOriginalDoes) {
   }
 }
 
-TEST(Elsewhere, PlacesThatOutcomesAskForMoveAlong) {
+TEST(Metamorphic, PlacesThatOutcomesAskForMoveAlong) {
   const auto ends_near_m = [](const scenario::Scenario& scenario) {
     return scenario.outcomes.at(0).conditions.at(1).wanted.near_m.value();
   };
@@ -154,7 +154,7 @@ class SameStory : public testing::TestWithParam<std::string> {};
 // Who touches whom is symmetric: the alphabet decides who is named first.
 TEST_P(SameStory, HasTheSameEvents) {
   const auto [here, golden] = Here(Load("reach/slow_approach_is_one_reach"));
-  const TransformVerdict judged = JudgeElsewhere(here, golden, GetParam());
+  const TransformVerdict judged = JudgeTransform(here, golden, GetParam());
   EXPECT_EQ(judged.says, kSameStory) << judged.why << "\n" << judged.details;
   EXPECT_EQ(judged.transform, GetParam());
 }
@@ -163,12 +163,12 @@ INSTANTIATE_TEST_SUITE_P(All, SameStory, testing::ValuesIn(TransformNames()),
                          [](const auto& row) { return row.param; });
 
 // `until`, `orbit` and `press_n` name things, too.
-TEST(Elsewhere, WhatScriptsNameHasItsNewName) {
+TEST(Metamorphic, WhatScriptsNameHasItsNewName) {
   for (const char* scenario : {"reach/resting_beside_a_can_before_it_is_taken",
                                "slide/sponge_is_pressed_and_wipes_the_table"}) {
     const auto [here, golden] = Here(Load(scenario));
     for (const char* transform : {"rename", "copies"}) {
-      const TransformVerdict judged = JudgeElsewhere(here, golden, transform);
+      const TransformVerdict judged = JudgeTransform(here, golden, transform);
       EXPECT_EQ(judged.says, kSameStory) << transform << ": " << judged.why;
     }
   }
@@ -179,10 +179,10 @@ TEST(Elsewhere, WhatScriptsNameHasItsNewName) {
 }
 
 // 0.3 s of waiting last 0.3 s at every rate; an event that has moved by more than 50 ms differs.
-TEST(Elsewhere, OtherRatesAreComparedInSeconds) {
+TEST(Metamorphic, OtherRatesAreComparedInSeconds) {
   auto [here, golden] = Here(Load("reach/slow_approach_is_one_reach"));
   grammar::Interval& interval = golden.events.at(0).event.interval;
-  const auto says = [&] { return JudgeElsewhere(here, golden, "rate").says; };
+  const auto says = [&] { return JudgeTransform(here, golden, "rate").says; };
   interval.end += golden.ticks_per_second / 100;
   EXPECT_EQ(says(), kSameStory);
   interval.end += golden.ticks_per_second / 10;
@@ -190,27 +190,27 @@ TEST(Elsewhere, OtherRatesAreComparedInSeconds) {
 }
 
 // A golden may be marked as unsteady; what the scenario expects must hold everywhere all the same.
-TEST(Elsewhere, ClaimsAreJudgedInEachPlay) {
+TEST(Metamorphic, ClaimsAreJudgedInEachPlay) {
   episode::LoadedRun loaded = Load("planar/disc_rolls_to_rest");
   loaded.scenario.expects = {truth::ParseClaim("no contact(disc, ramp)").value()};
   auto [here, golden] = Here(std::move(loaded));
-  EXPECT_EQ(JudgeElsewhere(here, golden, "nudge").says, kSameStory)
+  EXPECT_EQ(JudgeTransform(here, golden, "nudge").says, kSameStory)
       << "it does not hold here either";
   golden.unsteady = "chaos";
   here.result.timeline.events.clear();
-  const TransformVerdict judged = JudgeElsewhere(here, golden, "nudge");
+  const TransformVerdict judged = JudgeTransform(here, golden, "nudge");
   EXPECT_EQ(judged.says, kOtherStory);
   EXPECT_NE(judged.why.find("nudge: expects: 'no contact(disc, ramp)'"), std::string::npos)
       << judged.why;
   EXPECT_NE(judged.details.find("contact(disc, ramp) 0.0"), std::string::npos) << judged.details;
 }
 
-TEST(Elsewhere, WhatMayDifferIsSaid) {
+TEST(Metamorphic, WhatMayDifferIsSaid) {
   auto [here, golden] = Here(Load("planar/disc_rolls_to_rest"));
   golden.events.pop_back();
-  EXPECT_EQ(JudgeElsewhere(here, golden, "nudge").says, kOtherStory);
+  EXPECT_EQ(JudgeTransform(here, golden, "nudge").says, kOtherStory);
   golden.unsteady = "chaos";
-  const TransformVerdict judged = JudgeElsewhere(here, golden, "nudge");
+  const TransformVerdict judged = JudgeTransform(here, golden, "nudge");
   EXPECT_EQ(judged.says, kMayDiffer);
   EXPECT_EQ(judged.why, "chaos");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See tests/witnesses/elsewhere/elsewhere.h. Tested by tests/witnesses/elsewhere/elsewhere_test.cc
-#include "tests/witnesses/elsewhere/elsewhere.h"
+// See tests/witnesses/metamorphic/metamorphic.h. Tested by
+// tests/witnesses/metamorphic/metamorphic_test.cc
+#include "tests/witnesses/metamorphic/metamorphic.h"
 
 #include <algorithm>
 #include <map>
@@ -11,8 +12,8 @@
 #include "harness/scenario/transform/transform.h"
 #include "harness/suite/judge/judge_claims.h"
 #include "harness/truth/timeline/event_text.h"
-#include "tests/witnesses/elsewhere/change_entities.h"
-#include "tests/witnesses/elsewhere/move_scenario.h"
+#include "tests/witnesses/metamorphic/change_entities.h"
+#include "tests/witnesses/metamorphic/move_scenario.h"
 
 namespace prehend::witnesses {
 namespace {
@@ -89,11 +90,11 @@ const std::vector<std::string>& TransformNames() {
   return names;
 }
 
-tl::expected<suite::Elsewhere, std::string> ElsewhereAfter(const episode::LoadedRun& loaded,
-                                                           const std::string& transform) {
+tl::expected<suite::TransformedScenario, std::string> TransformedBy(
+    const episode::LoadedRun& loaded, const std::string& transform) {
   const scenario::Scenario& scenario = loaded.scenario;
   if (const std::string why = WhyNot(scenario, transform); !why.empty()) return tl::unexpected(why);
-  suite::Elsewhere there{
+  suite::TransformedScenario there{
       .name = transform, .scenario = scenario, .tolerance = scenario::DefaultTolerance(scenario)};
   physics::WorldSettings& world = there.scenario.scene.world;
   if (transform == "turn") {
@@ -127,11 +128,11 @@ tl::expected<suite::Elsewhere, std::string> ElsewhereAfter(const episode::Loaded
   return there;
 }
 
-TransformVerdict JudgeElsewhere(const suite::CheckedRun& checked, const truth::Golden& here,
+TransformVerdict JudgeTransform(const suite::CheckedRun& checked, const truth::Golden& here,
                                 const std::string& transform) {
-  const auto there = ElsewhereAfter(checked.loaded, transform);
+  const auto there = TransformedBy(checked.loaded, transform);
   if (!there) return {transform, kNotApplied, there.error(), ""};
-  suite::PlayElsewhere play = suite::Play(*there, checked.loaded, here);
+  suite::TransformedPlay play = suite::Play(*there, checked.loaded, here);
   // A claim that does not hold here either says nothing of the transform.
   const std::vector<truth::ClaimVerdict> claims_here =
       suite::JudgeClaims(checked.loaded, checked.result.timeline);

@@ -16,7 +16,7 @@
 #include "harness/episode/run/load_run.h"
 #include "physics/scene/geometry.h"
 #include "physics/simulation.h"
-#include "tests/witnesses/elsewhere/move_scenario.h"
+#include "tests/witnesses/metamorphic/move_scenario.h"
 
 namespace prehend::witnesses {
 namespace {

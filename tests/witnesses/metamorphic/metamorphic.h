@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same story elsewhere: each transform of harness/scenario/transform/transform.h, and turned,
+// Metamorphic transforms: each transform of harness/scenario/transform/transform.h, and turned,
 // mirrored, under other names, beside a copy, at other rates. A verdict must not depend on it.
-// Tested by tests/witnesses/elsewhere/elsewhere_test.cc
+// Tested by tests/witnesses/metamorphic/metamorphic_test.cc
 #pragma once
 
 #include <string>
@@ -21,8 +21,8 @@ const std::vector<std::string>& TransformNames();
 
 /// The scenario so changed, whose events are those of the original. Otherwise why the two are not
 /// the same story. `transform` is one of TransformNames().
-tl::expected<suite::Elsewhere, std::string> ElsewhereAfter(const episode::LoadedRun& loaded,
-                                                           const std::string& transform);
+tl::expected<suite::TransformedScenario, std::string> TransformedBy(
+    const episode::LoadedRun& loaded, const std::string& transform);
 
 /// What became of one transform of a scenario.
 struct TransformVerdict {
@@ -40,7 +40,7 @@ inline constexpr const char* kNotApplied = "not applied";
 /// its golden. Where the golden is marked as unsteady, events may differ after a change that
 /// changes rounding; a claim that is broken is another story all the same, if it holds in the
 /// unchanged run.
-TransformVerdict JudgeElsewhere(const suite::CheckedRun& checked, const truth::Golden& here,
+TransformVerdict JudgeTransform(const suite::CheckedRun& checked, const truth::Golden& here,
                                 const std::string& transform);
 
 }  // namespace prehend::witnesses

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scenario as a whole elsewhere: each place and direction in it, those of its script and its
-// outcomes included. Tested by tests/witnesses/elsewhere/elsewhere_test.cc
+// A scenario as a whole, moved: each place and direction in it, those of its script and its
+// outcomes included. Tested by tests/witnesses/metamorphic/metamorphic_test.cc
 #pragma once
 
 #include "harness/scenario/scenario/scenario.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// strength_elsewhere crate [STEP_KG]: how heavy a crate one hand lifts by its bar, with everything
-// turned by several angles. strength_elsewhere trials [COUNT [NAME..]]: how many trials of
+// strength_by_angle crate [STEP_KG]: how heavy a crate one hand lifts by its bar, with everything
+// turned by several angles. strength_by_angle trials [COUNT [NAME..]]: how many trials of
 // scenarios/trials end with their first outcome as written, turned by 40 degrees, mirrored (the
 // left hand) and both. Prints a table in Markdown. Exit status 0: the heaviest crates are within 3
 // % (and one step) of each other, the counts of a scenario within 2 of 200 (at least 1).
@@ -18,7 +18,7 @@
 #include "harness/episode/run/run_trials.h"
 #include "physics/scene/geometry.h"
 #include "physics/simulation.h"
-#include "tests/witnesses/elsewhere/move_scenario.h"
+#include "tests/witnesses/metamorphic/move_scenario.h"
 
 namespace prehend::witnesses {
 namespace {
@@ -124,7 +124,7 @@ int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
   if (what == "crate") return prehend::witnesses::Crate(argc > 2 ? std::atof(argv[2]) : 0.05);
   if (what != "trials") {
-    std::printf("usage: strength_elsewhere crate [STEP_KG] | trials [COUNT [NAME..]]\n");
+    std::printf("usage: strength_by_angle crate [STEP_KG] | trials [COUNT [NAME..]]\n");
     return 2;
   }
   std::vector<std::string> names(argv + std::min(argc, 3), argv + argc);

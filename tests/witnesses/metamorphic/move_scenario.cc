@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See tests/witnesses/elsewhere/move_scenario.h. Tested by
-// tests/witnesses/elsewhere/elsewhere_test.cc
-#include "tests/witnesses/elsewhere/move_scenario.h"
+// See tests/witnesses/metamorphic/move_scenario.h. Tested by
+// tests/witnesses/metamorphic/metamorphic_test.cc
+#include "tests/witnesses/metamorphic/move_scenario.h"
 
 #include <algorithm>
 #include <cmath>
