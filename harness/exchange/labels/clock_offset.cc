@@ -27,8 +27,8 @@ double Share(const Seconds& a, const Seconds& b) {
   return both / (std::max(a.end_s, b.end_s) - std::min(a.begin_s, b.begin_s));
 }
 
-/// The labels of one name and roles in one take, and what was recognised of these, which does not
-/// overlap.
+/// The labels of one name and roles in one recording, and what was recognised of these, which does
+/// not overlap.
 struct Pair {
   std::vector<Seconds> marked, recognised;
 
@@ -49,10 +49,10 @@ struct Pair {
 }  // namespace
 
 std::optional<ClockOffset> FindClockOffset(
-    std::span<const std::pair<grammar::Timeline, grammar::Timeline>> takes) {
+    std::span<const std::pair<grammar::Timeline, grammar::Timeline>> recordings) {
   std::vector<Pair> pairs;
   ClockOffset best;
-  for (const auto& [truth, recognised] : takes) {
+  for (const auto& [truth, recognised] : recordings) {
     const auto seconds = [](const grammar::NamedEvent& event, grammar::Tick per_s) {
       return Seconds{static_cast<double>(event.interval.begin) / static_cast<double>(per_s),
                      static_cast<double>(event.interval.end) / static_cast<double>(per_s)};

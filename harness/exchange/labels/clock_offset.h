@@ -17,9 +17,9 @@ struct ClockOffset {
   int found_now = 0, found_then = 0, all = 0;
 };
 
-/// Of takes, each with its labels and what was recognised, the offset of up to 5 s with which the
-/// most labels are found. Nothing if that are hardly more than now.
+/// Of recordings, each with its labels and what was recognised, the offset of up to 5 s with which
+/// the most labels are found. Nothing if that are hardly more than now.
 std::optional<ClockOffset> FindClockOffset(
-    std::span<const std::pair<grammar::Timeline, grammar::Timeline>> takes);
+    std::span<const std::pair<grammar::Timeline, grammar::Timeline>> recordings);
 
 }  // namespace prehend::exchange

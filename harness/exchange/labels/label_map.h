@@ -58,8 +58,8 @@ class LabelReading {
   /// What the map adds to all times.
   double offset_s() const { return offset_s_; }
 
-  /// The events of the file with this index in a take of these entities and this length. Errors
-  /// are entities that it does not have or that cannot have such a role, and labels beyond its end.
+  /// The events of the file with this index in a recording of these entities and this length.
+  /// Errors are entities that are missing or cannot have such a role, and labels beyond its end.
   Result<grammar::Timeline> Truth(std::size_t file,
                                   const std::vector<grammar::EntityInfo>& entities,
                                   grammar::Tick ticks_per_second, grammar::Tick end) const;

@@ -18,8 +18,8 @@
 namespace prehend::measure {
 namespace {
 
-/// The name of the take, and a line for each event that is missing, too much, or has a boundary
-/// beyond the collar; "" if there is none.
+/// The name of the recording, and a line for each event that is missing, too much, or has a
+/// boundary beyond the collar; "" if there is none.
 std::string DifferencesOf(const EpisodeToScore& episode, double collar_s) {
   const auto per_s = static_cast<double>(episode.truth.ticks_per_second);
   const auto collar = static_cast<grammar::Tick>(std::lround(collar_s * per_s));

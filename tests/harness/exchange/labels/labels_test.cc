@@ -167,9 +167,9 @@ TEST_F(Labels, AnotherClockIsNoticed) {
     marked.events.push_back(at(begin % 20 == 0 ? 55 : 65));  // people differ by 100 ms
   }
   const auto of = [](const grammar::Timeline& truth, const grammar::Timeline& recognised) {
-    const std::vector<std::pair<grammar::Timeline, grammar::Timeline>> takes = {
+    const std::vector<std::pair<grammar::Timeline, grammar::Timeline>> recordings = {
         {truth, recognised}};
-    return FindClockOffset(takes);
+    return FindClockOffset(recordings);
   };
   const auto clock = of(marked, found);
   ASSERT_TRUE(clock);
