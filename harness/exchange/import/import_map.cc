@@ -76,9 +76,9 @@ ValueFormat<MappedEntity> EntityFormat() {
 ValueFormat<ImportMap> MapFormat() {
   using M = ImportMap;
   const auto name = Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'");
-  std::vector<std::pair<std::string, ImportWarning>> warnings;
+  std::vector<std::pair<std::string, Warning>> warnings;
   for (std::size_t i = 0; i < kWarningNames.size(); ++i)
-    warnings.emplace_back(kWarningNames[i], static_cast<ImportWarning>(i));
+    warnings.emplace_back(kWarningNames[i], static_cast<Warning>(i));
   return StructFormat<M>("a map")
       .Required("import", &M::version, Integer<int>(1, 1), "The version of this format.")
       .Optional("episode", &M::episode, name, "The recording's name.")
@@ -131,7 +131,7 @@ ValueFormat<ImportMap> MapFormat() {
           "stays where it was, or nobody knows where it is.")
       .Optional("smooth_s", &M::smooth_s, Number(0, 2),
                 "Each pose is the mean of those at most half of this before or after it.")
-      .Optional("sure", &M::sure, ListOf(Choice<ImportWarning>(warnings), 0, kWarningNames.size()),
+      .Optional("sure", &M::sure, ListOf(Choice<Warning>(warnings), 0, kWarningNames.size()),
                 "Looks wrong, but is right.")
       .Optional("ticks_per_second", &M::ticks_per_second, Integer<std::int64_t>(100, 1'000'000),
                 "The recording's unit of time.")
@@ -257,7 +257,7 @@ std::string EndingOf(const std::string& poses_path) {
 
 }  // namespace
 
-bool ImportMap::IsSure(ImportWarning warning) const {
+bool ImportMap::IsSure(Warning warning) const {
   return std::ranges::find(sure, warning) != sure.end();
 }
 

@@ -23,7 +23,7 @@ enum class Separator { kComma, kSemicolon, kTab };
 enum class Lost { kRefuse, kHold, kUnknown };
 enum class Clock { kHeader, kLog, kPublish };
 /// What looks wrong, and is accepted because the map says that it is right.
-enum class ImportWarning { kUnit, kAxes, kQuaternionOrder, kTime, kPlace, kZero, kUpright };
+enum class Warning { kUnit, kAxes, kQuaternionOrder, kTime, kPlace, kZero, kUpright };
 
 inline constexpr std::array kWarningNames = {"unit",  "axes", "quaternion_order", "time",
                                              "place", "zero", "upright"};
@@ -83,13 +83,13 @@ struct ImportMap {
   double bridge_s = 0.1;  ///< the longest gap that is filled with a straight line
   Lost lost = Lost::kRefuse;
   double smooth_s = 0;  ///< poses are means over so long, where nothing was lost
-  std::vector<ImportWarning> sure;
+  std::vector<Warning> sure;
   std::int64_t ticks_per_second = 10'000;
   Columns columns;  ///< of CSV only
   McapKeys mcap;
   std::vector<Named<MappedEntity>> entities;
 
-  bool IsSure(ImportWarning warning) const;
+  bool IsSure(Warning warning) const;
   double MetresPerUnit() const;
   /// From the file's axes to those of which `axes` is z: of positions, and of bodies' own axes.
   Eigen::Quaterniond AxesTurn() const;

@@ -169,10 +169,10 @@ class Importer {
 
   void WarnOfRestPoses() {
     NotUpright turned;
-    if (const auto range = RangeTooSmall(file_, map_); range && !map_.IsSure(ImportWarning::kUnit))
+    if (const auto range = RangeTooSmall(file_, map_); range && !map_.IsSure(Warning::kUnit))
       return Warn(
           fmt::format("{}: {}; or, if it is right, sure: [unit]", range->text, range->remedy));
-    if (!map_.IsSure(ImportWarning::kUpright)) turned = FindNotUpright(imported_.episode, map_);
+    if (!map_.IsSure(Warning::kUpright)) turned = FindNotUpright(imported_.episode, map_);
     for (std::string& text : turned.warnings) Warn(std::move(text));
     TooLarge large = ThingsTooLarge(map_);
     for (std::string& text : large.warnings) Warn(std::move(text));

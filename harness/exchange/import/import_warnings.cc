@@ -32,20 +32,20 @@ class ImportWarningFinder {
       : poses_(poses), map_(map.map), errors_(map.document), scale_(map.map.MetresPerUnit()) {}
 
   grammar::Diagnostics Find() {
-    if (Asks(ImportWarning::kZero) && !map_.zero_is_missing) Zeros();
-    if (Asks(ImportWarning::kTime)) Times();
-    if (Asks(ImportWarning::kUnit)) Unit();
+    if (Asks(Warning::kZero) && !map_.zero_is_missing) Zeros();
+    if (Asks(Warning::kTime)) Times();
+    if (Asks(Warning::kUnit)) Unit();
     // With a wrong unit, lengths mean nothing.
-    if (errors_.empty() && Asks(ImportWarning::kAxes)) Up();
-    if (errors_.empty() && Asks(ImportWarning::kPlace)) Near();
-    if (Asks(ImportWarning::kQuaternionOrder) && poses_.quaternion_order) Order();
+    if (errors_.empty() && Asks(Warning::kAxes)) Up();
+    if (errors_.empty() && Asks(Warning::kPlace)) Near();
+    if (Asks(Warning::kQuaternionOrder) && poses_.quaternion_order) Order();
     return errors_.Sorted();
   }
 
  private:
-  bool Asks(ImportWarning warning) const { return !map_.IsSure(warning); }
+  bool Asks(Warning warning) const { return !map_.IsSure(warning); }
 
-  void Add(const Where& where, ImportWarning warning, const std::string& message,
+  void Add(const Where& where, Warning warning, const std::string& message,
            const std::string& remedy) {
     errors_.Add(where, message,
                 fmt::format("{}; or, if it is right, sure: [{}]", remedy,
@@ -59,7 +59,7 @@ class ImportWarningFinder {
       const auto zeros = std::ranges::count_if(
           body.samples, [](const PoseSample& sample) { return sample.p.isZero(0); });
       if (zeros == 0 || static_cast<std::size_t>(zeros) == body.samples.size()) continue;
-      Add(entity.value.from->where, ImportWarning::kZero,
+      Add(entity.value.from->where, Warning::kZero,
           fmt::format("'{}' is at exactly 0, 0, 0 in {} of {} poses; many trackers write that for "
                       "'not tracked'",
                       body.name, zeros, body.samples.size()),
@@ -73,13 +73,13 @@ class ImportWarningFinder {
     const double step_s = *std::ranges::min_element(steps);
     const double rate_hz = 1 / step_s;
     if (map_.rate_hz && std::abs(rate_hz / map_.rate_hz->value - 1) > 0.05) {
-      Add(map_.rate_hz->where, ImportWarning::kTime,
+      Add(map_.rate_hz->where, Warning::kTime,
           fmt::format("rate_hz: {:g}, but poses are {:.4g} s apart: {:.4g} Hz", map_.rate_hz->value,
                       step_s, rate_hz),
           poses_.counts_frames ? "the times look like frame numbers: time_unit: frame"
                                : "correct rate_hz or time_unit");
     } else if (rate_hz < kLeastRate_hz || rate_hz > kMostRate_hz) {
-      Add(TimeWhere(), ImportWarning::kTime,
+      Add(TimeWhere(), Warning::kTime,
           fmt::format("poses are {:.4g} s apart: {:.4g} Hz{}", step_s, rate_hz,
                       poses_.counts_frames       ? ""
                       : Plausible(rate_hz * 1e3) ? "; the times look like milliseconds"
@@ -109,7 +109,7 @@ class ImportWarningFinder {
     if (poses_.stature) {
       const double height_m = poses_.stature->norm() * scale_;
       if (height_m < kLeastStature_m || height_m > kMostStature_m)
-        Add(map_.UnitWhere(), ImportWarning::kUnit,
+        Add(map_.UnitWhere(), Warning::kUnit,
             fmt::format("from feet to head the skeleton is {:.3g} m ({:.4g} in the file)", height_m,
                         poses_.stature->norm()),
             fmt::format("correct unit, or metres_per_unit: {:.3g}, if it is 1.6 m",
@@ -126,14 +126,14 @@ class ImportWarningFinder {
     }
     const double median_m = Median(std::move(distances)), span_m = extent.diagonal().norm();
     if (median_m > kFarFromOrigin_m) {
-      Add(map_.UnitWhere(), ImportWarning::kUnit,
+      Add(map_.UnitWhere(), Warning::kUnit,
           fmt::format("the poses are {:.4g} m from the origin (median){}", median_m,
                       scale_ != 1      ? ""
                       : median_m > 150 ? "; they look like millimetres"
                                        : "; they look like centimetres or millimetres"),
           "correct unit");
     } else if (span_m < kNothingMoves_m) {
-      Add(map_.UnitWhere(), ImportWarning::kUnit,
+      Add(map_.UnitWhere(), Warning::kUnit,
           fmt::format("all poses are within {:.3g} mm{}", span_m * 1e3,
                       scale_ == 1 ? ""
                                   : fmt::format("; as metres they would be within {:.3g} m",
@@ -186,7 +186,7 @@ class ImportWarningFinder {
       poses_.stature->maxCoeff(&tallest);
       const double along_up = poses_.stature->dot(up);
       if (tallest != nearest && along_up < 0.7 * poses_.stature->norm())
-        Add(map_.UpWhere(), ImportWarning::kAxes,
+        Add(map_.UpWhere(), Warning::kAxes,
             fmt::format("the head is {:.2f} m from the feet along {}, and {:.2f} m along {}: {} "
                         "looks up",
                         (*poses_.stature)[tallest] * scale_, kAxes[tallest], along_up * scale_,
@@ -199,7 +199,7 @@ class ImportWarningFinder {
     for (const int axis : {1, 2, 0}) {
       const Lifts other = LiftsAlong(Eigen::Vector3d::Unit(axis));
       if (axis == nearest || other.lifted < other.moving) continue;
-      Add(map_.UpWhere(), ImportWarning::kAxes,
+      Add(map_.UpWhere(), Warning::kAxes,
           fmt::format("nothing is lifted along {}, but '{}' rises {:.2f} m along {} and comes "
                       "down again: {} looks up",
                       stated_up, other.example, other.highest_m, kAxes[axis], kAxes[axis]),
@@ -238,15 +238,14 @@ class ImportWarningFinder {
     const std::string text =
         fmt::format("nothing tracked comes nearer to '{}' than {:.2f} m ('{}')",
                     nearest.place->name, nearest.distance_m, nearest.comes->name);
-    if (Asks(ImportWarning::kUnit)) {
+    if (Asks(Warning::kUnit)) {
       if (const auto range = RangeTooSmall(poses_, map_))
-        return Add(map_.UnitWhere(), ImportWarning::kUnit, range->text + "; " + text,
-                   range->remedy);
+        return Add(map_.UnitWhere(), Warning::kUnit, range->text + "; " + text, range->remedy);
       if (const std::string unit = UnitThatComesNear(); !unit.empty())
-        return Add(map_.UnitWhere(), ImportWarning::kUnit,
+        return Add(map_.UnitWhere(), Warning::kUnit,
                    fmt::format("{}; in {} it would come to it", text, unit), "unit: " + unit);
     }
-    Add(nearest.place->name_where, ImportWarning::kPlace, text,
+    Add(nearest.place->name_where, Warning::kPlace, text,
         "correct its at_m (z up, metres, after the change of axes), or unit, or axes");
   }
 
@@ -281,7 +280,7 @@ class ImportWarningFinder {
     const double w = Median(std::move(as_read)), other_w = Median(std::move(other));
     if (w > 0.5 || other_w < 0.85) return;
     Add(map_.quaternion_order ? map_.quaternion_order->where : FirstBodyWhere(),
-        ImportWarning::kQuaternionOrder,
+        Warning::kQuaternionOrder,
         fmt::format("the {} of four numbers, as w, is {:.2f} (median, without its sign), the {} is "
                     "{:.2f}: this looks like {}",
                     w_first ? "first" : "last", w, w_first ? "last" : "first", other_w,

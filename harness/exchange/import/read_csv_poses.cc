@@ -300,7 +300,7 @@ class CsvPoseReader {
   void CheckTimes() {
     poses.counts_frames = map_.time_unit->value != TimeUnit::kFrame && steps_ >= kLeastSteps &&
                           whole_steps_ == steps_ && 10 * unit_steps_ >= 9 * steps_;
-    if (poses.counts_frames && !map_.rate_hz && !map_.IsSure(ImportWarning::kTime))
+    if (poses.counts_frames && !map_.rate_hz && !map_.IsSure(Warning::kTime))
       poses.notes.push_back(fmt::format(
           "the times of '{}' are whole numbers that grow by 1 each: they look like frame numbers; "
           "in the map: time_unit: frame, and rate_hz; or, if they are times, sure: [time]",
