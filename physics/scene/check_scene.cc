@@ -21,12 +21,9 @@ bool IsNoneOrBelow(Index<Thing> index, std::size_t size) {
 }
 
 void CheckBody(const Body& body) {
-  PREHEND_CHECK(IsPose(body.X_WB));
-  PREHEND_CHECK(std::isfinite(body.mass_kg) && body.mass_kg >= 0);
+  PREHEND_CHECK(IsPose(body.X_WB) && std::isfinite(body.mass_kg) && body.mass_kg >= 0);
   for (const PlacedShape& placed : body.shapes) PREHEND_CHECK(IsPose(placed.X_BS));
-  if (!body.grains) return;
-  PREHEND_CHECK(!body.grains->p_WG_m.empty());
-  for (const Eigen::Vector3d& p_WG_m : body.grains->p_WG_m) PREHEND_CHECK(p_WG_m.allFinite());
+  PREHEND_CHECK(!body.grains || !body.grains->p_WG_m.empty());
 }
 
 void CheckJoint(const Joint& joint, std::size_t bodies) {
@@ -73,26 +70,20 @@ void CheckScene(const Scene& scene) {
 }
 
 bool IsOf(const Scene& scene, const Snapshot& snapshot) {
-  if (snapshot.bodies.size() != scene.bodies.size() ||
-      snapshot.joints.size() != scene.joints.size() ||
-      snapshot.hands.size() != scene.hands.size() || snapshot.gazes.size() != scene.persons.size())
-    return false;
-  for (std::size_t i = 0; i < scene.hands.size(); ++i) {
-    const std::size_t links = scene.hands[i].model.links.size();
-    const HandState& hand = snapshot.hands[i];
-    if (hand.joints.size() != links || hand.X_WL.size() != links) return false;
-  }
-  const auto all = snapshot.AllContacts();
-  return std::ranges::all_of(all,
-                             [&](const auto& contacts) {
-                               return std::ranges::all_of(contacts, [&](const auto& contact) {
-                                 return IsSideOf(scene, contact.a) && IsSideOf(scene, contact.b);
-                               });
-                             }) &&
-         std::ranges::all_of(snapshot.gazes, [&](const GazeState& gaze) {
-           return IsNoneOrBelow(gaze.body, scene.bodies.size()) &&
-                  IsNoneOrBelow(gaze.hand, scene.hands.size());
-         });
+  for (const auto& contacts : snapshot.AllContacts())
+    for (const ContactPoint& contact : contacts)
+      if (!IsSideOf(scene, contact.a) || !IsSideOf(scene, contact.b)) return false;
+  for (const GazeState& gaze : snapshot.gazes)
+    if (!IsNoneOrBelow(gaze.body, scene.bodies.size()) ||
+        !IsNoneOrBelow(gaze.hand, scene.hands.size()))
+      return false;
+  const auto fits = [](const Hand& hand, const HandState& now) {
+    return now.joints.size() == hand.model.links.size() && now.X_WL.size() == now.joints.size();
+  };
+  return snapshot.bodies.size() == scene.bodies.size() &&
+         snapshot.joints.size() == scene.joints.size() &&
+         snapshot.gazes.size() == scene.persons.size() &&
+         std::ranges::equal(scene.hands, snapshot.hands, fits);
 }
 
 }  // namespace prehend::physics
