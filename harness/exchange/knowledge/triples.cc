@@ -93,13 +93,6 @@ std::string ShortName(std::string_view iri) {
   return std::string(iri);
 }
 
-bool IsLocalName(std::string_view text) {
-  return !text.empty() && std::ranges::all_of(text, [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-';
-  });
-}
-
 std::string ToTurtle(const std::vector<Triple>& triples) {
   std::string text;
   const Environment environment(serd_env_new(nullptr), &serd_env_free);

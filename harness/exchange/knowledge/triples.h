@@ -45,9 +45,6 @@ std::string FullName(std::string_view name);
 /// The other way round; a name without a prefix stays as it is.
 std::string ShortName(std::string_view iri);
 
-/// Whether every byte of it may stand in a name after the prefix: letters, digits, '_' and '-'.
-bool IsLocalName(std::string_view text);
-
 /// A document with its prefixes. Statements of one subject that follow each other are joined.
 std::string ToTurtle(const std::vector<Triple>& triples);
 
