@@ -30,8 +30,10 @@ bool IsOfAHand(const fs::path& file) {
   return file.string().ends_with(".hand.yaml") || file.string().ends_with(".grasps.yaml");
 }
 
-/// A verb or a thing of `prehend new`, with marks where words of the name come.
-bool IsTemplate(const fs::path& file) { return file.parent_path().filename() == "templates"; }
+/// What `new` makes scenarios and projects of.
+bool IsTemplate(const fs::path& file) {
+  return file.string().starts_with((kScenarios / "templates/").string());
+}
 
 TEST(ScenarioFiles, BeginWithTheLineThatEditorsLookFor) {
   const auto files = FilesBelow(kScenarios, ".yaml");

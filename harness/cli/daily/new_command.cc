@@ -62,66 +62,17 @@ std::optional<std::string> Composed(const Model& model, const std::filesystem::p
   return std::nullopt;
 }
 
-constexpr const char* kOwnGrammar =
-    R"(# Rules of your own. The language: docs/grammar-tutorial.md of prehend teaches it.
-grammar my_rules
-
-use pick_and_place      # from what ships with prehend: reaching, grasping, picking_up, transporting, ..
-
-param still_below = 5 cm/s
-param still_for   = 0.3 s
-
-# A thing is held in the air and does not move.
-event held_still(hand: Hand, object: Movable)
-  while grasping(hand, object) and not supported_by(object, any) and speed(object) < still_below
-  bridging 50 ms
-  lasting still_for
-)";
-
-constexpr const char* kProjectText =
-    R"(# The root of a project of prehend. Only the place of this file matters: prehend, called in this folder or
-# below it, uses its scenarios, goldens, grammars and hands first, and what ships with prehend second.
-)";
-
-constexpr const char* kProjectReadme = R"(# A project of prehend
-
-| folder | holds |
-|---|---|
-| `scenarios/SKILL/NAME.yaml` | what happens, and what must be recognised |
-| `golden/SKILL/NAME.timeline` | what was accepted, written by `prehend accept` |
-| `grammars/NAME.grammar` | your rules; a file here comes before one of the same name that ships with prehend |
-| `hands/NAME.hand.yaml` | your hands, likewise |
-| `build/` | reports and what waits for review; can be deleted |
-
-    prehend check                   # all scenarios of this project, with a web page
-    prehend review                  # what is new or differs
-    prehend accept carton_is_held_still --reason "..."
-    prehend new cup_is_lifted       # one more scenario
-    prehend run milk_carton_wrap    # scenarios that ship with prehend can be run, too
-)";
-
-constexpr const char* kEditorSettings = R"({
-  "yaml.schemas": {"./scenarios/scenario.schema.json": "scenarios/**/*.yaml"}
-}
-)";
-
-/// A scenario of a project with rules of its own.
-std::string FirstScenario(const scenario::Templates& templates) {
-  std::string text = scenario::ComposeScenario(templates, "carton_is_carried", "carry").text;
-  const auto replace = [&](std::string_view from, std::string_view to) {
-    if (const std::size_t at = text.find(from); at != text.npos) text.replace(at, from.size(), to);
-  };
-  replace("scenario: name", "scenario: carton_is_held_still");
-  replace("a carton is picked up, carried",
-          "a carton is picked up, held still for a moment, carried");
-  replace("grammar: pick_and_place   # a file of grammar/library/, without \".grammar\"",
-          "grammar: my_rules   # grammars/my_rules.grammar");
-  replace("  - no sliding\n", "  - no sliding\n  - one held_still(right_hand, carton)\n");
-  replace("  - right_hand: {carry_to_m",
-          "  - right_hand: {wait_s: 0.5}\n  - right_hand: {carry_to_m");
-  replace("at: transporting.begin", "at: held_still.begin");
-  return text;
-}
+/// What a project starts with, as it ships but for the schema; the file that makes a project of the
+/// folder comes last.
+constexpr const char* kProject = "scenarios/templates/project";
+constexpr const char* kSchema = "scenarios/scenario.schema.json";
+constexpr const char* kProjectFiles[] = {"scenarios/pick_and_place/carton_is_held_still.yaml",
+                                         kSchema,
+                                         "grammars/my_rules.grammar",
+                                         "README.md",
+                                         ".vscode/settings.json",
+                                         ".gitignore",
+                                         kProjectFile};
 
 /// `new --project DIR`.
 ExitCode MakeProject(const std::string& typed, const CommandContext& context) {
@@ -133,19 +84,12 @@ ExitCode MakeProject(const std::string& typed, const CommandContext& context) {
     return Complain(context, ExitCode::kBadInput,
                     "--project: found " + ReadableName(typed) +
                         ", which is not empty; wanted a new or an empty folder");
-  const Result<scenario::Templates> templates = scenario::ReadTemplates(ShippedRoot());
-  if (!templates) return Complain(context, templates.error());
-  const std::pair<const char*, std::string> files[] = {
-      {"scenarios/pick_and_place/carton_is_held_still.yaml", FirstScenario(*templates)},
-      {"scenarios/scenario.schema.json", scenario::ScenarioSchema()},
-      {"grammars/my_rules.grammar", kOwnGrammar},
-      {"README.md", kProjectReadme},
-      {".vscode/settings.json", kEditorSettings},
-      {".gitignore", "build/\n"},
-      {kProjectFile, kProjectText},  // last: without it the folder is no project
-  };
-  for (const auto& [name, text] : files) {
-    const std::string problem = WriteTextFile(folder / name, text);
+  for (const char* name : kProjectFiles) {
+    const Result<std::string> text =
+        name == kSchema ? scenario::ScenarioSchema()
+                        : ReadTextFile((fs::path(ShippedRoot()) / kProject / name).string());
+    if (!text) return Complain(context, text.error());
+    const std::string problem = WriteTextFile(folder / name, *text);
     if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
     context.out << (folder / name).string() << "\n";
   }
