@@ -43,8 +43,9 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
       return Complain(context, ExitCode::kBadInput, lack);
     Result<scenario::Scenario> read = scenario::ReadScenario(file.path, {}, library);
     std::ranges::copy(ErrorsOf(read), std::back_inserter(diagnostics));
-    const scenario::Scenario scenario =
-        std::move(read).value_or(scenario::Scenario{.shows = "(cannot be read)"});
+    scenario::Scenario scenario;
+    scenario.shows = "(cannot be read)";
+    if (read) scenario = std::move(*read);
     const std::string id = episode::ScenarioId(file.skill, file.name);
     text += fmt::format("{}{}\n", id, TagsText(scenario.tags)) +
             Wrapped(kIndent + scenario.shows, kColumns, kIndent.size()) + "\n";

@@ -10,6 +10,13 @@
 
 namespace prehend::episode {
 
+RunResult::RunResult() = default;
+RunResult::RunResult(const RunResult& other) = default;
+RunResult::RunResult(RunResult&& other) noexcept = default;
+RunResult& RunResult::operator=(const RunResult& other) = default;
+RunResult& RunResult::operator=(RunResult&& other) noexcept = default;
+RunResult::~RunResult() = default;
+
 /// Adds the time since the last lap to one of the counters; costs nothing when not measuring.
 class LapClock {
  public:

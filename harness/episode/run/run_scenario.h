@@ -27,6 +27,14 @@ struct RunSeconds {
 };
 
 struct RunResult {
+  // Compiled once, not wherever one is made or destroyed.
+  RunResult();
+  RunResult(const RunResult& other);
+  RunResult(RunResult&& other) noexcept;
+  RunResult& operator=(const RunResult& other);
+  RunResult& operator=(RunResult&& other) noexcept;
+  ~RunResult();
+
   physics::RunStatus status;
   grammar::Tick ticks = 0;
   bool is_unfinished = false;  ///< nobody says that it ended here: a recording without 'end_tick'

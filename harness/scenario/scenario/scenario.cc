@@ -11,6 +11,13 @@
 
 namespace prehend::scenario {
 
+Scenario::Scenario() = default;
+Scenario::Scenario(const Scenario& other) = default;
+Scenario::Scenario(Scenario&& other) noexcept = default;
+Scenario& Scenario::operator=(const Scenario& other) = default;
+Scenario& Scenario::operator=(Scenario&& other) noexcept = default;
+Scenario::~Scenario() = default;
+
 grammar::Tick DefaultTolerance(const Scenario& scenario) {
   const int rate_hz = scenario.scene.world.rate_hz;
   const int sensing_hz = scenario.sensing.sensing_hz;

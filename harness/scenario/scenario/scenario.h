@@ -61,6 +61,14 @@ const std::vector<std::string>& CameraWords();
 
 /// A whole scenario.
 struct Scenario {
+  // Compiled once, not wherever one is made or destroyed.
+  Scenario();
+  Scenario(const Scenario& other);
+  Scenario(Scenario&& other) noexcept;
+  Scenario& operator=(const Scenario& other);
+  Scenario& operator=(Scenario&& other) noexcept;
+  ~Scenario();
+
   std::string name;
   std::string file;   ///< where it was read from
   std::string skill;  ///< the folder below scenarios/, or ""

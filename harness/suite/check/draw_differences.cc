@@ -78,7 +78,9 @@ std::vector<BoundaryDifference> BoundaryDifferencesOf(const truth::Comparison& c
 
 /// The run with fewer snapshots; that at `kept` is among them.
 episode::RunResult Thinned(const episode::RunResult& run, Tick kept) {
-  episode::RunResult thin{.status = run.status, .ticks = run.ticks};
+  episode::RunResult thin;
+  thin.status = run.status;
+  thin.ticks = run.ticks;
   thin.timeline = run.timeline;
   thin.drawings = run.drawings;
   const auto step = std::max<Tick>(

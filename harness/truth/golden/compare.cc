@@ -250,6 +250,13 @@ class Pairer {
 
 }  // namespace
 
+Comparison::Comparison() = default;
+Comparison::Comparison(const Comparison& other) = default;
+Comparison::Comparison(Comparison&& other) noexcept = default;
+Comparison& Comparison::operator=(const Comparison& other) = default;
+Comparison& Comparison::operator=(Comparison&& other) noexcept = default;
+Comparison::~Comparison() = default;
+
 bool Pairing::IsFurtherPiece() const {
   return pieces.empty() &&
          (agreement == LineVerdict::kFragmented || agreement == LineVerdict::kMerged);

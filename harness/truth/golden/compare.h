@@ -69,6 +69,14 @@ struct Margin {
 };
 
 struct Comparison {
+  // Compiled once, not wherever one is made or destroyed.
+  Comparison();
+  Comparison(const Comparison& other);
+  Comparison(Comparison&& other) noexcept;
+  Comparison& operator=(const Comparison& other);
+  Comparison& operator=(Comparison&& other) noexcept;
+  ~Comparison();
+
   grammar::Tick ticks_per_second = 480;
   std::vector<Pairing> pairings;  ///< in the order of time
   std::vector<RelationChange>

@@ -77,7 +77,7 @@ TEST(RunText, AFailedRunNamesEntityTickReasonAndAdvice) {
                 .reason = "runaway speed",
                 .advice = "lower the gains"};
   EXPECT_EQ(StatusText(run), "failed at 0.5000 s (tick 240): cup: runaway speed; lower the gains");
-  const OrderedJson json = RunJson(HeadingOf(scenario::Scenario{.name = "x"}, run), run);
+  const OrderedJson json = RunJson(HeadingOf(scenario::Scenario(), run), run);
   EXPECT_EQ(json["status"], "failed");
   EXPECT_EQ(json["failure"].dump(),
             R"({"tick":240,"entity":"cup","reason":"runaway speed","advice":"lower the gains"})");
