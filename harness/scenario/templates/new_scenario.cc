@@ -149,33 +149,6 @@ std::string Filled(std::string_view text, const std::map<std::string, std::strin
   return filled;
 }
 
-constexpr std::string_view kText =
-    R"(# yaml-language-server: $schema=../scenario.schema.json
-# Every key is explained in docs/scenario-format.md, more scripts are in docs/script-cookbook.md. Units are the last
-# word of a key; z is up.
-scenario: name
-shows: @shows@   # what it proves, as a sentence
-grammar: @grammar@   # a file of grammar/library/, without ".grammar"
-tags: []
-
-# What must be recognised if the sentence is true. Write it before the first run: afterwards it is easy to expect
-# whatever came out. `any` fits everybody. `check` fails on what contradicts a line, and `accept` refuses it.
-expects:
-@expects@
-# Things. `on` puts one onto another; then at_m gives x and y only.
-entities:
-@entities@
-# Hands, and where they start.
-actors:
-@actors@
-# One stage after another. Actors named in one stage act at the same time.
-script:
-@script@
-# Pictures for the report: at an event's begin or end, or at a time in seconds.
-pictures:
-  - {at: @picture@, camera: @camera@}
-)";
-
 using Values = std::map<std::string, std::string>;
 
 /// What the marks of a template stand for.
@@ -189,8 +162,9 @@ Values ValuesOf(const NamedThing& of, const ThingTemplate& destination) {
   return values;
 }
 
-/// kText with the parts of the verb; where each line comes from is kept.
-void WriteText(const VerbTemplate& verb, const Values& values, NewScenario& made) {
+/// `frame` with the parts of the verb; where each line comes from is kept.
+void WriteText(const std::string& frame, const VerbTemplate& verb, const Values& values,
+               NewScenario& made) {
   const std::map<std::string, const Located<std::string>*> blocks = {{"@expects@", &verb.expects},
                                                                      {"@entities@", &verb.entities},
                                                                      {"@actors@", &verb.actors},
@@ -207,7 +181,7 @@ void WriteText(const VerbTemplate& verb, const Values& values, NewScenario& made
                                                          {"grammar", verb.grammar[0].where.place},
                                                          {"  - {at", verb.picture.where.place}};
   int line_number = 1;
-  std::istringstream in{std::string(kText)};
+  std::istringstream in(frame);
   for (std::string line; std::getline(in, line); ++line_number) {
     if (const auto block = blocks.find(line); block != blocks.end()) {
       int line_of_template = block->second->where.place.line;
@@ -274,7 +248,7 @@ NewScenario ComposeScenario(const Templates& templates, std::string_view name,
   }
   const Values values = ValuesOf(thing, destination);
   made.what = Filled(verb.shows.value, values);
-  WriteText(verb, values, made);
+  WriteText(templates.frame, verb, values, made);
   return made;
 }
 

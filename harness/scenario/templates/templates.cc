@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "harness/base/base/project_paths.h"
+#include "harness/base/base/text_file.h"
 #include "harness/base/yaml/struct_format.h"
 
 namespace prehend::scenario {
@@ -161,7 +162,11 @@ Result<Templates> ReadTemplates(const std::string& root) {
   if (!document) return tl::unexpected(document.error());
   const Result<ThingsYaml> things = ReadAs(ThingsFormat(), *document);
   if (!things) return tl::unexpected(things.error());
-  Templates templates{.verbs = {},
+  Result<std::string> frame =
+      ReadTextFile((std::filesystem::path(ShippedRoot()) / kFolder / "scenario.txt").string());
+  if (!frame) return tl::unexpected(frame.error());
+  Templates templates{.frame = std::move(*frame),
+                      .verbs = {},
                       .things = Bodies(things->things),
                       .in = Bodies(things->in),
                       .on = Bodies(things->on)};

@@ -38,6 +38,7 @@ struct ThingTemplate {
 };
 
 struct Templates {
+  std::string frame;                ///< scenario.txt: a scenario with marks for a verb's parts
   std::vector<VerbTemplate> verbs;  ///< in their order
   /// What fits into a hand; what something can be put in or on, the default first.
   std::vector<ThingTemplate> things, in, on;
