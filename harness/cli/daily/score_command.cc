@@ -6,7 +6,7 @@
 
 #include "harness/base/base/default_grammar.h"
 #include "harness/cli/command/typed_episode.h"
-#include "harness/measure/score/score_json.h"
+#include "harness/measure/score/score.h"
 #include "harness/measure/score/score_labels.h"
 #include "harness/measure/score/score_scenarios.h"
 #include "harness/suite/check/select_scenarios.h"

@@ -1,16 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores from the literature that are not in the table, over the episodes in which an event is true
-// or found. Labels are events with their roles; each label is scored alone, because events of
-// different labels overlap. Tested by tests/harness/measure/score/score_test.cc
+// Scores from the literature that are not in the table: of the partition of an episode into
+// labelled segments and background (where its boundaries are, which frames belong together), and by
+// how much of an event is covered. Segments must not overlap within a side. Tested by
+// tests/harness/measure/score/score_metrics_test.cc against printouts of the reference programs.
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "harness/measure/score/labelled.h"
 #include "harness/measure/score/overlap_metrics.h"
+#include "harness/measure/score/segments.h"
 
 namespace prehend::measure {
 
+/// Median distance, in ticks, from a boundary of one side to the nearest of the other
+/// (mir_eval.segment.deviation, trimmed). No value if one side has none.
+struct Deviation {
+  double from_truth = 0, from_prediction = 0;
+};
+std::optional<Deviation> BoundaryDeviation(const Episode& episode);
+
+struct PrecisionRecall {
+  double precision = 1, recall = 1;
+  double F1() const;  ///< 0 when both are 0
+};
+
+/// Of all pairs of frames that the prediction gives the same label, the share for which the truth
+/// does, and the other way round (Levy & Sandler 2008; mir_eval.segment.pairwise at one frame per
+/// tick). Background is a label. 1 without pairs.
+PrecisionRecall PairwiseAgreement(const Episode& episode);
+
+/// Precision: purity, the share of frames in the piece of the truth that dominates their predicted
+/// piece. Recall: coverage, the same with the sides exchanged (Bredin 2017, pyannote.metrics).
+/// Pieces of background count.
+PrecisionRecall PurityAndCoverage(const Episode& episode);
+
+/// A fragmented event still counts (Bilen et al. 2020, "A framework for the robust evaluation of
+/// sound event detection"; psds_eval with 50 % for detections and for true events, and at most 100
+/// false predictions an hour).
+struct IntersectionScore {
+  double macro_f1 = 1;  ///< mean F1 over the labels of the truth
+  /// Mean over the labels of the truth of the share of events that are found, times how far the
+  /// label is from having too many false predictions: the area under the polyphonic ROC of a
+  /// recogniser with one operating point.
+  double psds = 1;
+};
+
+/// Both are 1 without truth. Predictions whose label the truth does not have are ignored (psds_eval
+/// refuses them).
+IntersectionScore ScoreByIntersection(const Episode& episode, double ticks_per_second);
+
+/// All of them, over the episodes in which an event is true or found. Labels are events with their
+/// roles; each label is scored alone, because events of different labels overlap.
 struct FurtherScores {
   double map_50 = 1;   ///< mean over the episodes of the mean average precision at IoU 0.5
   Hits boundary_hits;  ///< boundaries within the collar, pooled

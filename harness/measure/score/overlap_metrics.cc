@@ -8,8 +8,6 @@
 #include <map>
 #include <set>
 
-#include "harness/measure/score/partition_metrics.h"
-
 namespace prehend::measure {
 namespace {
 
@@ -260,6 +258,47 @@ Hits BoundaryHits(const Episode& episode, double window) {
       },
       partner);
   return {hits, static_cast<int>(predicted.size()) - hits, static_cast<int>(truth.size()) - hits};
+}
+
+namespace {
+
+std::ptrdiff_t Meeting(const Segment& one, const Segments& others) {
+  return std::ranges::count_if(
+      others, [&](const Segment& other) { return Overlap(one.interval, other.interval) > 0; });
+}
+
+/// Whether a segment that overlaps `one` also overlaps another one of its side.
+bool SharesPartner(const Segment& one, const Segments& others, const Segments& own) {
+  return std::ranges::any_of(others, [&](const Segment& other) {
+    return Overlap(one.interval, other.interval) > 0 && Meeting(other, own) > 1;
+  });
+}
+
+}  // namespace
+
+Ward& Ward::operator+=(const Ward& other) {
+  correct += other.correct;
+  deleted += other.deleted;
+  fragmented += other.fragmented;
+  merged += other.merged;
+  fragmented_and_merged += other.fragmented_and_merged;
+  inserted += other.inserted;
+  return *this;
+}
+
+Ward CompareByWard(const Segments& truth, const Segments& said) {
+  Ward ward;
+  for (const Segment& one : truth) {
+    const auto pieces = Meeting(one, said);
+    const bool merged = SharesPartner(one, said, truth);
+    ++(pieces == 0            ? ward.deleted
+       : pieces > 1 && merged ? ward.fragmented_and_merged
+       : pieces > 1           ? ward.fragmented
+       : merged               ? ward.merged
+                              : ward.correct);
+  }
+  for (const Segment& one : said) ward.inserted += Meeting(one, truth) == 0 ? 1 : 0;
+  return ward;
 }
 
 }  // namespace prehend::measure

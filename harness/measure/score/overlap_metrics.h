@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores of whole segments and of frames, as the literature on temporal segmentation defines them.
-// All are of one episode; counts of several episodes may be added (pooled). Tested by
-// tests/harness/measure/score/score_metrics_test.cc against printouts of the reference programs.
+// Scores of whole segments and of frames, as the literature on temporal segmentation defines them;
+// and the event errors of Ward et al. All are of one episode; counts of several episodes may be
+// added (pooled). Tested by tests/harness/measure/score/score_metrics_test.cc against printouts of
+// the reference programs.
 #pragma once
 
 #include <cstdint>
@@ -79,5 +80,16 @@ EventErrors MatchWithCollar(const Segments& truth, const Segments& prediction, d
 /// Boundaries of the partition (background included, both outer ends left out) hit within a window
 /// (<=): the largest matching. As mir_eval.segment.detection, trimmed.
 Hits BoundaryHits(const Episode& episode, double window);
+
+/// True segments by their class; and of what was recognised, what belongs to no true one.
+struct Ward {
+  int correct = 0, deleted = 0, fragmented = 0, merged = 0, fragmented_and_merged = 0;
+  int inserted = 0;
+
+  Ward& operator+=(const Ward& other);
+};
+
+/// Of one label. Both sides in the order of time, without overlaps within a side.
+Ward CompareByWard(const Segments& truth, const Segments& said);
 
 }  // namespace prehend::measure

@@ -7,7 +7,7 @@
 #include <functional>
 #include <set>
 
-#include "harness/measure/score/labelled.h"
+#include "harness/measure/score/segments.h"
 #include "harness/truth/timeline/match_events.h"
 
 namespace prehend::measure {
@@ -53,9 +53,7 @@ void AddEpisode(const EpisodeToScore& judged, const LabelledEpisode& episode,
   score.within_collar += MatchWithCollar(truth, found, collar_s * per_s, 0);
   // Frames and Ward's classes are per label, because events of different labels overlap.
   for (const Episode& label : episode.by_label) {
-    const Ward ward = CompareByWard(IntervalsOf(label.truth), IntervalsOf(label.prediction));
-    score.ward.ticks += ward.ticks;
-    score.ward.events += ward.events;
+    score.ward += CompareByWard(label.truth, label.prediction);
     score.frames += CountFrames(label);
   }
   const grammar::Timeline true_events = OfKind(judged.truth, event),

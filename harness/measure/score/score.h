@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,6 @@
 #include "harness/measure/score/evaluators.h"
 #include "harness/measure/score/further_scores.h"
 #include "harness/measure/score/overlap_metrics.h"
-#include "harness/measure/score/ward.h"
 
 namespace prehend::measure {
 
@@ -76,5 +76,17 @@ std::string ScoresText(const std::vector<Score>& scores, double collar_s);
 
 /// The totals of several grammars beside each other, as a Markdown table.
 std::string SideBySide(const std::vector<Score>& scores, double collar_s);
+
+/// {"collar_s", "grammars": [{"grammar", "episodes", "not_covered", "ignored", "total": {..},
+/// "events": [{..}]}]}; shares from 0 to 1, times in seconds; docs/regression-suite.md says what
+/// each is.
+nlohmann::ordered_json ScoresJson(const std::vector<Score>& scores, double collar_s);
+
+/// {"by_event": {EVENT: {"of", "confirmed"}}, "differences": ["..", ..]}
+nlohmann::ordered_json EvaluationJson(const Evaluation& evaluation);
+
+/// [{"witness", "proves", "grammars": [{"grammar", "of", "confirmed", "by_event", "differences"}]}]
+nlohmann::ordered_json EvaluatorsJson(const std::vector<Score>& scores,
+                                      const std::vector<Evaluator>& evaluators);
 
 }  // namespace prehend::measure

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/program/score_test.cc
-#include "harness/measure/score/score_json.h"
-
 #include <nlohmann/json.hpp>
+
+#include "harness/measure/score/score.h"
 
 namespace prehend::measure {
 namespace {
@@ -34,7 +34,7 @@ Json FurtherJson(const EventScore& s) {
 }
 
 Json EventScoreJson(const EventScore& s) {
-  const WardEvents& ward = s.ward.events;
+  const Ward& ward = s.ward;
   return {{"event", s.event},
           {"true", s.truths},
           {"found", s.found},

@@ -10,7 +10,13 @@
 #include "grammar/contents.h"
 #include "harness/base/process/wire.h"
 #include "harness/base/process/worker_pool.h"
+#include "harness/episode/episode/open_episode.h"
 #include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
+#include "harness/episode/run/run_text.h"
+#include "harness/episode/run/segment.h"
+#include "harness/episode/run/validate_claims.h"
+#include "harness/truth/claims/judge_claims.h"
 #include "harness/truth/oracle/oracle.h"
 #include "harness/truth/timeline/timeline_wire.h"
 
@@ -33,11 +39,69 @@ namespace {
 
 constexpr double kTimeLimit_s = 300;
 
+/// Without events that are not scored.
+grammar::Timeline Scored(const grammar::Timeline& timeline,
+                         const std::vector<std::string>& wanted) {
+  grammar::Timeline scored = timeline;
+  std::erase_if(scored.events, [&](const grammar::NamedEvent& event) {
+    return !truth::OracleDefines(event.event) ||
+           (!wanted.empty() && std::ranges::find(wanted, event.event) == wanted.end());
+  });
+  return scored;
+}
+
+/// How often each kind of event was recognised that the oracle does not define.
+std::map<std::string, int> Ignored(const grammar::Timeline& found) {
+  std::map<std::string, int> counts;
+  for (const grammar::NamedEvent& event : found.events) {
+    if (!truth::OracleDefines(event.event)) ++counts[event.event];
+  }
+  return counts;
+}
+
+/// One episode per grammar, all with the same truth: a grammar that does not define a kind of
+/// event, or misspells it, has missed all such events.
 ScenarioOnWire Played(const ScoreRequest& request) {
-  auto episodes = EpisodesToScore(request);
-  if (episodes) return {.episodes = std::move(*episodes)};
-  return {.problem = grammar::Format(episodes.error().diagnostics),
-          .is_bad_input = episodes.error().is_bad_input};
+  const auto unread = [](const grammar::Diagnostics& why) {
+    return ScenarioOnWire{.problem = grammar::Format(why), .is_bad_input = true};
+  };
+  Result<episode::Episode> episode =
+      episode::OpenEpisode(request.episode, {request.grammars.front(), {}}, request.root);
+  if (!episode) return unread(episode.error());
+  const Result<episode::RunResult> played = episode->Run(true);
+  if (!played) return unread(played.error());
+  const scenario::Scenario& scenario = episode->loaded().scenario;
+  const episode::RunResult& run = *played;
+  if (run.status.kind != physics::RunStatus::Kind::kCompleted)
+    return {.problem = grammar::Format(grammar::Diagnostic{
+                .file = request.episode.file, .place = {}, .message = episode::StatusText(run)})};
+  const grammar::Tick end = run.ticks + 1;
+  std::vector<grammar::Timeline> possible;
+  for (const grammar::Timeline& truth :
+       truth::PossibleTimelines(scenario.scene, run.recording, end))
+    possible.push_back(Scored(truth, request.events));
+  ScenarioOnWire sent;
+  for (const std::string& name : request.grammars) {
+    const grammar::CompileResult compiled =
+        episode::LoadGrammar(request.root, name, request.settings);
+    if (!compiled.program) return unread(compiled.diagnostics);
+    const grammar::Timeline found =
+        episode::Resegment(scenario, run.recording, compiled.program, end);
+    EpisodeToScore& one = sent.episodes.emplace_back();
+    one = {.scenario = request.id,
+           .ticks = end,
+           .truth = possible.front(),
+           .found = Scored(found, request.events),
+           .ignored = Ignored(found),
+           .by_definitions = {},
+           .by_claims = ByClaims(
+               request.id,
+               truth::JudgeClaims(scenario.expects, scenario.file,
+                                  episode::ClaimableIn(scenario, *compiled.program), found))};
+    one.by_definitions =
+        ByDefinitions(request.id, possible, one.found, scenario::DefaultTolerance(scenario));
+  }
+  return sent;
 }
 
 /// Of the judged events those that no rule of the grammar prints.

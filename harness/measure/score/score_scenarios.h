@@ -6,9 +6,22 @@
 #include <string>
 #include <vector>
 
-#include "harness/measure/score/score_scenario.h"
+#include "grammar/monitor.h"
+#include "harness/base/base/result.h"
+#include "harness/episode/run/episode_name.h"
+#include "harness/measure/score/score.h"
 
 namespace prehend::measure {
+
+/// One scenario, which is simulated once and segmented by several grammars.
+struct ScoreRequest {
+  episode::EpisodeName episode;
+  std::string id;
+  std::string root;
+  std::vector<std::string> grammars;  ///< names or paths
+  std::vector<std::string> events;    ///< only these are scored; empty: all that the oracle defines
+  grammar::Overrides settings = {};   ///< of parameters of all grammars
+};
 
 /// Grammars that are scored together.
 struct ScoredGrammars {

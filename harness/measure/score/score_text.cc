@@ -54,7 +54,7 @@ Row Header(double collar_s) {
 }
 
 Row RowOf(const EventScore& s) {
-  const WardEvents& ward = s.ward.events;
+  const Ward& ward = s.ward;
   const auto count = [](int n) { return n == 0 ? std::string(".") : std::to_string(n); };
   return {s.event,
           std::to_string(s.truths),
@@ -139,7 +139,7 @@ std::string SideBySide(const std::vector<Score>& scores, double collar_s) {
       kMsPerS * collar_s);
   for (const Score& score : scores) {
     const EventScore& s = score.total;
-    const WardEvents& ward = s.ward.events;
+    const Ward& ward = s.ward;
     int not_covered = 0;
     for (const std::string& event : score.not_covered) not_covered += TruthsOf(score, event);
     text += fmt::format(

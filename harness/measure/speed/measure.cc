@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <span>
 
 #include "grammar/contents.h"
 #include "harness/episode/run/run_scenario.h"
-#include "harness/episode/sense/entity_table.h"
-#include "harness/episode/sense/sensing.h"
+#include "harness/episode/run/segment.h"
+#include "harness/episode/sense/episode_file.h"
 #include "harness/measure/speed/stopwatch.h"
 
 namespace prehend::measure {
@@ -28,40 +27,39 @@ episode::EpisodeFrame Copy(const grammar::Frame& frame) {
   return copy;
 }
 
-/// The monitor alone: several of them watch the same frames from memory, some at once.
+/// The monitor alone: it watches frames from memory, some at once.
 SpeedFigure Watch(episode::Episode& episode, int runs) {
-  struct Run {
-    grammar::Monitor monitor;
-    std::vector<grammar::Event> events;
-    double seconds = 0;
-  };
-  std::vector<Run> all;
   const grammar::EntityTable entities = episode.entities();
-  for (int i = 0; i < runs; ++i)
-    all.push_back({.monitor = grammar::Monitor(episode.program(), entities), .events = {}});
-  std::vector<episode::EpisodeFrame> frames;
   SpeedFigure figure{
       .what = grammar::GrammarName(*episode.program()) + " on " + episode.name().scenario,
-      .unit = "frame"};
-  const auto watch = [&] {
-    for (Run& run : all) {
-      const Stopwatch stopwatch;
-      for (episode::EpisodeFrame& frame : frames) run.monitor.Advance(frame.View(), run.events);
-      run.seconds += stopwatch.seconds();
-    }
-    figure.operations += static_cast<double>(frames.size());
-    frames.clear();
-  };
-  const episode::Episode::End end = episode.EachFrame([&](const grammar::Frame& frame) {
-    frames.push_back(Copy(frame));
-    if (frames.size() == kFramesAtOnce) watch();
-  });
-  watch();
-  for (Run& run : all) run.monitor.Finish(end.tick, run.events);
-  figure.seconds = std::ranges::min_element(all, {}, &Run::seconds)->seconds;
-  figure.events = static_cast<double>(all.front().events.size());
-  figure.simulated_s =
-      static_cast<double>(end.tick) / static_cast<double>(entities.ticks_per_second);
+      .unit = "frame",
+      .seconds = std::numeric_limits<double>::infinity()};
+  for (int i = 0; i < runs; ++i) {
+    double operations = 0, seconds = 0;
+    const episode::FrameFeed play =
+        [&](const std::function<void(const episode::FrameNews&)>& take) {
+          std::vector<episode::EpisodeFrame> frames;
+          const auto watch = [&] {
+            const Stopwatch stopwatch;
+            for (episode::EpisodeFrame& frame : frames) take(frame.View());
+            seconds += stopwatch.seconds();
+            operations += static_cast<double>(frames.size());
+            frames.clear();
+          };
+          const episode::Episode::End end = episode.EachFrame([&](const grammar::Frame& frame) {
+            frames.push_back(Copy(frame));
+            if (frames.size() == kFramesAtOnce) watch();
+          });
+          watch();
+          figure.simulated_s =
+              static_cast<double>(end.tick) / static_cast<double>(entities.ticks_per_second);
+          return end.tick;
+        };
+    figure.events = static_cast<double>(
+        episode::Segment(episode.program(), entities, play).timeline.events.size());
+    figure.operations = operations;
+    figure.seconds = std::min(figure.seconds, seconds);
+  }
   return figure;
 }
 
@@ -70,20 +68,6 @@ double TimePhysics(const scenario::Scenario& scenario) {
   physics::Simulation simulation(scenario.scene, scenario.script);
   const Stopwatch watch;
   while (simulation.Step()) {
-  }
-  return watch.seconds();
-}
-
-/// Sensing and grammar alone, on recorded snapshots.
-double TimeWatching(const scenario::Scenario& scenario,
-                    std::shared_ptr<const grammar::Program> program,
-                    std::span<const physics::Snapshot> recording) {
-  episode::Sensing sensing(scenario.scene, scenario.sensing);
-  grammar::Monitor monitor(std::move(program), episode::MakeEntityTable(scenario));
-  std::vector<grammar::Event> events;
-  const Stopwatch watch;
-  for (const physics::Snapshot& snapshot : recording) {
-    if (sensing.Due(snapshot.tick)) monitor.AdvanceBy(sensing.SenseChanges(snapshot), events);
   }
   return watch.seconds();
 }
@@ -100,8 +84,9 @@ SpeedFigure BesidePhysics(const episode::LoadedRun& loaded, int runs) {
   figure.seconds = figure.physics_s = std::numeric_limits<double>::infinity();
   for (int i = 0; i < runs; ++i) {
     figure.physics_s = std::min(figure.physics_s, TimePhysics(loaded.scenario));
-    figure.seconds =
-        std::min(figure.seconds, TimeWatching(loaded.scenario, loaded.program, run.recording));
+    const Stopwatch watch;
+    episode::Resegment(loaded.scenario, run.recording, loaded.program, run.ticks + 1);
+    figure.seconds = std::min(figure.seconds, watch.seconds());
   }
   return figure;
 }

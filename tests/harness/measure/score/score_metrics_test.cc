@@ -9,10 +9,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "harness/measure/score/intersection_metrics.h"
+#include "harness/measure/score/further_scores.h"
 #include "harness/measure/score/overlap_metrics.h"
-#include "harness/measure/score/partition_metrics.h"
-#include "harness/measure/score/ward.h"
 
 namespace prehend::measure {
 namespace {
@@ -225,57 +223,38 @@ INSTANTIATE_TEST_SUITE_P(Cases, ScoreMetrics,
                          [](const auto& named) { return named.param; });
 
 Ward WardOf(const std::string& name, const std::string& label) {
-  const Episode episode = EpisodeOf(name);
-  std::vector<grammar::Interval> truth, said;
-  for (const Segment& s : episode.truth) {
-    if (s.label == label) truth.push_back(s.interval);
-  }
-  for (const Segment& s : episode.prediction) {
-    if (s.label == label) said.push_back(s.interval);
-  }
-  return CompareByWard(truth, said);
+  Episode episode = EpisodeOf(name);
+  const auto is_other = [&](const Segment& s) { return s.label != label; };
+  std::erase_if(episode.truth, is_other);
+  std::erase_if(episode.prediction, is_other);
+  return CompareByWard(episode.truth, episode.prediction);
 }
 
 TEST(WardMetrics, AsTheReferencePrintsThem) {
   for (const char* label : {"reach", "grasp", "transport", "put"}) {
-    const Ward late = WardOf("B_late1", label);
-    EXPECT_EQ(late.ticks.underfilled_begin, 1) << label;
-    EXPECT_EQ(late.ticks.overfilled_end, 1) << label;
-    EXPECT_EQ(late.events.correct, 1) << label;
-    EXPECT_EQ(late.events.said_correct, 1) << label;
-    EXPECT_EQ(WardOf("A_exact", label).events.correct, 1) << label;
-    EXPECT_EQ(WardOf("F_empty", label).events.deleted, 1) << label;
+    EXPECT_EQ(WardOf("B_late1", label).correct, 1) << label;
+    EXPECT_EQ(WardOf("B_late1", label).inserted, 0) << label;
+    EXPECT_EQ(WardOf("A_exact", label).correct, 1) << label;
+    EXPECT_EQ(WardOf("F_empty", label).deleted, 1) << label;
   }
   const Ward grasp = WardOf("C_flicker", "grasp");
-  EXPECT_EQ(grasp.ticks.inserted, 1);
-  EXPECT_EQ(grasp.events.inserted, 1);
-  EXPECT_EQ(grasp.events.correct, 1);
-  for (const char* label : {"reach", "transport"}) {
-    const Ward broken = WardOf("C_flicker", label);
-    EXPECT_EQ(broken.ticks.fragmented, 1) << label;
-    EXPECT_EQ(broken.events.fragmented, 1) << label;
-    EXPECT_EQ(broken.events.fragmenting, 2) << label;
-  }
-  EXPECT_EQ(WardOf("D_missing_sub", "reach").ticks.overfilled_end, 5);
-  EXPECT_EQ(WardOf("D_missing_sub", "reach").events.correct, 1);
-  const Ward merge = WardOf("E_repeat_merge", "reach");
-  EXPECT_EQ(merge.ticks.merged, 2);
-  EXPECT_EQ(merge.events.merged, 2);
-  EXPECT_EQ(merge.events.merging, 1);
-  EXPECT_EQ(WardOf("E_repeat_merge", "transport").ticks.underfilled_end, 5);
+  EXPECT_EQ(grasp.inserted, 1);
+  EXPECT_EQ(grasp.correct, 1);
+  for (const char* label : {"reach", "transport"})
+    EXPECT_EQ(WardOf("C_flicker", label).fragmented, 1) << label;
+  EXPECT_EQ(WardOf("D_missing_sub", "reach").correct, 1);
+  EXPECT_EQ(WardOf("E_repeat_merge", "reach").merged, 2);
 }
 
-TEST(WardMetrics, EveryTickAndEventHasOneClass) {
-  const Ward ward = CompareByWard({{0, 10}, {20, 30}, {40, 50}}, {{5, 25}, {27, 29}, {60, 70}});
-  EXPECT_EQ(ward.events.Truths(), 3);
-  EXPECT_EQ(ward.events.Said(), 3);
-  EXPECT_EQ(ward.events.fragmented_and_merged, 1);
-  EXPECT_EQ(ward.events.deleted, 1);
-  EXPECT_EQ(ward.events.inserted, 1);
-  EXPECT_EQ(ward.ticks.correct + ward.ticks.deleted + ward.ticks.fragmented +
-                ward.ticks.underfilled_begin + ward.ticks.underfilled_end,
-            30);
-  EXPECT_EQ(CompareByWard({}, {}).events.Truths(), 0);
+TEST(WardMetrics, EveryTrueEventHasOneClass) {
+  const Ward ward = CompareByWard({{"", {0, 10}}, {"", {20, 30}}, {"", {40, 50}}},
+                                  {{"", {5, 25}}, {"", {27, 29}}, {"", {60, 70}}});
+  EXPECT_EQ(
+      ward.correct + ward.deleted + ward.fragmented + ward.merged + ward.fragmented_and_merged, 3);
+  EXPECT_EQ(ward.fragmented_and_merged, 1);
+  EXPECT_EQ(ward.deleted, 1);
+  EXPECT_EQ(ward.inserted, 1);
+  EXPECT_EQ(CompareByWard({}, {}).correct, 0);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(ScoreOf, WhatIsNotSaidIsMissed) {
   Score score = ScoreOf("g", episodes, 0.05);
   score.not_covered = {"slide"};
   EXPECT_EQ(score.total.truths, 2);
-  EXPECT_EQ(score.total.ward.events.deleted, 1);
+  EXPECT_EQ(score.total.ward.deleted, 1);
   EXPECT_NEAR(score.total.overlap_50.F1(), 2.0 / 3, 1e-12);
   const std::string table = ScoreTable(score, 0.05);
   EXPECT_TRUE(table.ends_with(

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/measure/score/score_test.cc
-#include "harness/measure/score/labelled.h"
+#include "harness/measure/score/segments.h"
 
 #include <map>
+#include <set>
 
 namespace prehend::measure {
 namespace {
@@ -15,6 +16,15 @@ Segments SegmentsOf(const grammar::Timeline& timeline) {
 }
 
 }  // namespace
+
+std::vector<grammar::Tick> InnerBoundaries(const Segments& segments, grammar::Tick ticks) {
+  std::set<grammar::Tick> boundaries;
+  for (const Segment& segment : segments)
+    boundaries.insert({segment.interval.begin, segment.interval.end});
+  boundaries.erase(0);
+  boundaries.erase(ticks);
+  return {boundaries.begin(), boundaries.end()};
+}
 
 LabelledEpisode Labelled(const grammar::Timeline& truth, const grammar::Timeline& found,
                          grammar::Tick ticks) {
@@ -31,12 +41,6 @@ LabelledEpisode Labelled(const grammar::Timeline& truth, const grammar::Timeline
     episode.by_label.push_back(std::move(of_label));
   }
   return episode;
-}
-
-std::vector<grammar::Interval> IntervalsOf(const Segments& segments) {
-  std::vector<grammar::Interval> intervals;
-  for (const Segment& segment : segments) intervals.push_back(segment.interval);
-  return intervals;
 }
 
 }  // namespace prehend::measure
