@@ -75,7 +75,8 @@ TEST_F(DamagedEpisodes, AreRefusedOrAnswerAsBefore) {
 }
 
 TEST_F(DamagedEpisodes, EveryBitThatSaysWhetherThereAreChecksumsIsWatched) {
-  for (const std::size_t byte : {20, 60, 61, 62, 63}) {  // room for checksums, version
+  for (const std::size_t byte :
+       {20, 60, 61, 62, 63, 68, 69, 70, 71}) {  // room for checksums, version, whose
     for (int bit = 0; bit < 8; ++bit) {
       WriteFlipped(byte, bit);
       EXPECT_EQ(Prehend({"episode", "list", file_}).exit_code, 2) << byte << " " << bit;

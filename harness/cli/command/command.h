@@ -60,7 +60,6 @@ Command ScoreCommand();
 Command ExplainCommand();
 Command TracksCommand();
 Command EpisodesCommand();
-Command MigrateCommand();
 Command VerifyCommand();
 Command ReportCommand();
 Command QueryCommand();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend episode list: what episode files hold. prehend episode verify: their frames, checked
-// against their state hashes. prehend episode migrate: files of an older version. Tested by
-// tests/program/episodes_test.cc
+// against their state hashes. Tested by tests/program/episodes_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +9,6 @@
 #include "harness/cli/command/typed_episode.h"
 #include "harness/episode/episode/resegment_many.h"
 #include "harness/episode/episodes/episode_file.h"
-#include "harness/episode/episodes/migrate.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::cli {
@@ -127,32 +125,6 @@ Command VerifyCommand() {
                    "episode verify suite.episodes --episode 'slide/*'"},
       .options = {EpisodeFilesArgument(), EpisodesOption(), JobsOption("episodes"), JsonOption()},
       .run = RunVerify};
-}
-
-namespace {
-
-ExitCode RunMigrate(const ParsedOptions& options, const CommandContext& context) {
-  const std::string& output = options.Text("--output");
-  const auto migrated = episode::MigrateFile(options.Text("file"), output, context.root);
-  if (!migrated) return Complain(context, migrated.error());
-  context.out << fmt::format("{}: {} episode{}, {} bytes ({} before)\n", output, migrated->episodes,
-                             migrated->episodes == 1 ? "" : "s", migrated->to_bytes,
-                             migrated->from_bytes);
-  return ExitCode::kAgrees;
-}
-
-}  // namespace
-
-Command MigrateCommand() {
-  return {.name = "episode migrate",
-          .summary = "Write an episode file of an older version as one of this version",
-          .examples = {"episode migrate old.episodes -o new.episodes"},
-          .options = {{.name = "file",
-                       .help = "an episode file that other commands refuse as too old",
-                       .required = true},
-                      Required(OutputOption("the new file; the old one stays as it is",
-                                            "FILE.episodes"))},
-          .run = RunMigrate};
 }
 
 }  // namespace prehend::cli

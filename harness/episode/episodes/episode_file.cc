@@ -48,16 +48,9 @@ EpisodeFile::EpisodeFile(std::string path, std::unique_ptr<State> state)
 EpisodeFile::~EpisodeFile() = default;
 EpisodeFile::EpisodeFile(EpisodeFile&&) noexcept = default;
 
-Result<EpisodeFile> EpisodeFile::Open(const std::string& path) { return OpenAny(path, kReadable); }
-
-Result<EpisodeFile> EpisodeFile::OpenOld(const std::string& path) {
-  return OpenAny(path, kMigratable);
-}
-
-Result<EpisodeFile> EpisodeFile::OpenAny(const std::string& path, Versions wanted) {
+Result<EpisodeFile> EpisodeFile::Open(const std::string& path) {
   try {
-    EpisodeFile file(path, std::make_unique<State>(State{OpenToRead(path, wanted)}));
-    file.version_ = file.state_->database.Number("PRAGMA user_version");
+    EpisodeFile file(path, std::make_unique<State>(State{OpenToRead(path)}));
     Statement find = file.state_->database.Prepare(
         "SELECT episode.id, episode.uuid, scenario, status, grammar, ticks_per_second,"
         " CASE status WHEN 'recording' THEN coalesce((SELECT max(last_tick) FROM chunk WHERE"

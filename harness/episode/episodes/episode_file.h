@@ -59,14 +59,10 @@ struct KeptTask {
 class EpisodeFile {
  public:
   static Result<EpisodeFile> Open(const std::string& path);
-  /// A file of an older version, to be migrated.
-  static Result<EpisodeFile> OpenOld(const std::string& path);
   ~EpisodeFile();
   EpisodeFile(EpisodeFile&&) noexcept;
 
   const std::string& path() const { return path_; }
-  /// Of its format.
-  std::int64_t version() const { return version_; }
   /// In the order in which they were begun.
   const std::vector<EpisodeRow>& episodes() const { return episodes_; }
 
@@ -88,10 +84,8 @@ class EpisodeFile {
   friend class EpisodeFrames;
   struct State;
   EpisodeFile(std::string path, std::unique_ptr<State> state);
-  static Result<EpisodeFile> OpenAny(const std::string& path, Versions wanted);
 
   std::string path_;
-  std::int64_t version_ = kSchemaVersion;
   std::unique_ptr<State> state_;
   std::vector<EpisodeRow> episodes_;
 };

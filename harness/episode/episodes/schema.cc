@@ -15,7 +15,7 @@
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/content_hash.h"
-#include "harness/base/base/shell_quote.h"
+#include "harness/episode/episodes/summed_pages.h"
 
 namespace prehend::episode {
 namespace {
@@ -146,7 +146,7 @@ bool IsAsMade(const Database& database) {
   return made == kTables;
 }
 
-void RefuseOthers(const Database& database, const std::string& path, Versions these) {
+void RefuseOthers(const Database& database) {
   const std::int64_t application = database.Number("PRAGMA application_id");
   if (application != kApplicationId)
     throw DatabaseError("is an SQLite database of another program, not an episode file");
@@ -157,14 +157,6 @@ void RefuseOthers(const Database& database, const std::string& path, Versions th
         version, kSchemaVersion));
   }
   if (version < 1) throw DatabaseError("is damaged: its format has no version");
-  if (version > these.last)
-    throw DatabaseError(fmt::format("has version {} of the format already", version));
-  if (version < these.first) {
-    throw DatabaseError(fmt::format(
-        "has version {} of the format, this program reads version {}; '{}' writes a "
-        "file of it that can be read",
-        version, these.last, CommandText({"episode", "migrate", path, "-o", "NEW.episodes"})));
-  }
   if (IsAsMade(database)) return;
   // Tables and columns that a program reads must be there; what others added is left alone.
   constexpr const char* kColumns =
@@ -205,11 +197,11 @@ Database OpenToWrite(const std::string& path) {
                                  kSchemaVersion));
   }
   transaction.Commit();
-  RefuseOthers(database, path, kReadable);
+  RefuseOthers(database);
   return database;
 }
 
-Database OpenToRead(const std::string& path, Versions wanted) {
+Database OpenToRead(const std::string& path) {
   if (const std::string why = WhyNotEpisodes(path); !why.empty()) throw DatabaseError(why);
   std::error_code error;
   if (fs::exists(path + "-journal", error)) {
@@ -224,7 +216,7 @@ Database OpenToRead(const std::string& path, Versions wanted) {
     }
   }
   Database database(path, Database::Mode::kRead);
-  RefuseOthers(database, path, wanted);
+  RefuseOthers(database);
   return database;
 }
 

@@ -10,15 +10,7 @@
 
 namespace prehend::episode {
 
-inline constexpr std::int64_t kApplicationId = 0x70726568;  ///< "preh"
-/// Of the format. Files of version 2 are the same without checksums; of version 1 the frames are
-/// coded otherwise.
-inline constexpr std::int64_t kSchemaVersion = 3;
-struct Versions {
-  std::int64_t first = 1, last = 1;
-};
-inline constexpr Versions kReadable = {2, kSchemaVersion};
-inline constexpr Versions kMigratable = {1, kSchemaVersion - 1};
+inline constexpr std::int64_t kSchemaVersion = 1;  ///< of the format
 /// A part's row is its chunk's times this, plus the number of the part.
 inline constexpr std::int64_t kPartsPerChunk = 1 << 20;
 
@@ -26,13 +18,11 @@ inline constexpr std::int64_t kPartsPerChunk = 1 << 20;
 /// and ends with `.episodes`.
 bool IsEpisodeFile(const std::string& path);
 
-/// Opens a file for writing; creates it with its tables if it is not there. A file keeps its
-/// version. Throws DatabaseError.
+/// Opens a file for writing; creates it with its tables if it is not there. Throws DatabaseError.
 Database OpenToWrite(const std::string& path);
 
-/// Opens a file of one of these versions for reading. Throws DatabaseError with the reason why it
-/// is none.
-Database OpenToRead(const std::string& path, Versions wanted = kReadable);
+/// Opens a file for reading. Throws DatabaseError with the reason why it is no episode file.
+Database OpenToRead(const std::string& path);
 
 /// A random one (version 4, RFC 9562).
 std::string NewUuid();

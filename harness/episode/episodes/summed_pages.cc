@@ -30,9 +30,9 @@ sqlite3_file* Below(sqlite3_file* file) {
 /// Of a database with this header; 0 if its pages have no checksums.
 int SummedPageBytes(const unsigned char* header) {
   const int bytes = header[16] << 8 | header[17];
-  const std::int64_t version =
-      std::int64_t{header[60]} << 24 | header[61] << 16 | header[62] << 8 | header[63];
-  if (header[20] != kBytesOfSum && version < kSummedVersion) return 0;
+  const std::int64_t application =
+      std::int64_t{header[68]} << 24 | header[69] << 16 | header[70] << 8 | header[71];
+  if (header[20] != kBytesOfSum && application != kApplicationId) return 0;
   return bytes == 1 ? kMostPageBytes : bytes;
 }
 

@@ -10,14 +10,14 @@
 
 namespace prehend::episode {
 
+/// Of an episode file, in its header ("preh").
+inline constexpr std::int64_t kApplicationId = 0x70726568;
 /// Of each page, for its checksum.
 inline constexpr int kBytesOfSum = 8;
-/// The first version of the format (PRAGMA user_version) whose files all have checksums. A file has
-/// them that has this version, or room for them.
-inline constexpr std::int64_t kSummedVersion = 3;
 
 /// The name of a file system of SQLite that writes checksums and compares them; a page that does
-/// not have its own cannot be read (SQLITE_IOERR_DATA). Files of before are read as they are.
+/// not have its own cannot be read (SQLITE_IOERR_DATA). Databases of other programs, which have
+/// neither room for them nor the application id of an episode file, are read as they are.
 const char* SummedPages();
 
 }  // namespace prehend::episode

@@ -70,8 +70,7 @@ std::optional<PartReader::Contacts> PartReader::ContactsOf(
   auto bytes = compressor_.Unpack(packed, kMostPartBytes);
   if (!bytes) return std::nullopt;
   auto decoded = DecodeContacts(
-      *bytes, {.version = layout_.version,
-               .has = [&](const physics::ContactSide& side) { return IsSide(layout_, side); },
+      *bytes, {.has = [&](const physics::ContactSide& side) { return IsSide(layout_, side); },
                .pose =
                    [&](std::size_t frame, const physics::ContactSide& side) {
                      return frame < frames ? pose(frame, side) : physics::Pose();
@@ -96,8 +95,7 @@ std::optional<std::vector<PartReader::RestingFrom>> PartReader::Resting(std::str
     from.frame = static_cast<std::size_t>(*frame);
     if (*has == 0) continue;
     auto decoded = DecodeContacts(
-        *bytes, {.version = layout_.version,
-                 .has = [&](const physics::ContactSide& side) { return IsSide(layout_, side); },
+        *bytes, {.has = [&](const physics::ContactSide& side) { return IsSide(layout_, side); },
                  .pose = [](std::size_t, const physics::ContactSide&) { return physics::Pose(); }});
     if (!decoded) return std::nullopt;
     from.points = std::make_shared<const ContactPoints>(std::move(decoded->points));

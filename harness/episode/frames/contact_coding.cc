@@ -49,31 +49,6 @@ std::vector<int> SamePlaces(std::span<const Word> counts) {
   return before;
 }
 
-/// Per row the row of the frame before that has the same sides, or -1; of several the n-th.
-std::vector<int> SameSides(std::span<const Word> counts, std::span<const Word> ids,
-                           std::size_t keys) {
-  std::vector<int> before(ids.size(), -1);
-  std::vector<std::vector<int>> last(keys), now(keys);
-  std::vector<std::size_t> used;
-  std::size_t row = 0;
-  for (const Word count : counts) {
-    std::vector<std::size_t> used_now;
-    for (Word i = 0; i < count; ++i, ++row) {
-      const auto id = static_cast<std::size_t>(ids[row]);
-      if (now[id].empty()) used_now.push_back(id);
-      if (now[id].size() < last[id].size()) before[row] = last[id][now[id].size()];
-      now[id].push_back(static_cast<int>(row));
-    }
-    for (const std::size_t id : used) last[id].clear();
-    for (const std::size_t id : used_now) {
-      std::swap(last[id], now[id]);
-      now[id].clear();
-    }
-    used = std::move(used_now);
-  }
-  return before;
-}
-
 Columns OneColumn(const std::vector<Word>& words) {
   Columns columns(words.size(), 1);
   columns.words = words;
@@ -274,22 +249,6 @@ bool DecodeValues(const Chains& chains, const ContactWorld& world, std::string_v
   return true;
 }
 
-/// The same of version 1, in the order of the rows.
-bool DecodeOldValues(std::span<const Word> counts, std::span<const Word> ids, std::size_t keys,
-                     std::string_view& bytes, std::vector<physics::ContactPoint>& points) {
-  const auto values =
-      Decode(bytes, points.size(), kValues, {.before = SameSides(counts, ids, keys)});
-  if (!values) return false;
-  for (std::size_t row = 0; row < points.size(); ++row) {
-    const auto value = [&](std::size_t i) { return std::bit_cast<double>(values->At(row, i)); };
-    points[row].p_W_m = {value(0), value(1), value(2)};
-    points[row].nhat_BA_W = {value(3), value(4), value(5)};
-    points[row].distance_m = value(6);
-    points[row].normal_impulse_n_s = value(7);
-  }
-  return true;
-}
-
 }  // namespace
 
 const physics::ContactSide& OwnerOf(const physics::ContactPoint& point) {
@@ -360,10 +319,7 @@ std::optional<DecodedContacts> DecodeContacts(std::string_view& bytes, const Con
     decoded.points[row].b = SideOf(key, 3);
   }
   const bool good =
-      world.version == 1
-          ? DecodeOldValues(decoded.counts, ids->words, keys.size(), bytes, decoded.points)
-          : DecodeValues(Chains(decoded.counts, ids->words, keys.size()), world, bytes,
-                         decoded.points);
+      DecodeValues(Chains(decoded.counts, ids->words, keys.size()), world, bytes, decoded.points);
   if (!good) return std::nullopt;
   return decoded;
 }

@@ -34,7 +34,6 @@ struct DecodedContacts {
 
 /// What has to be known to decode them.
 struct ContactWorld {
-  int version = 2;  ///< of the coding
   std::function<bool(const physics::ContactSide&)> has = {};
   /// Of a side that is there, in a frame that was counted.
   std::function<physics::Pose(std::size_t frame, const physics::ContactSide&)> pose = {};

@@ -13,11 +13,7 @@
 
 namespace prehend::episode {
 
-/// Of the coding of frames; files of version 1 are only read to be migrated.
-inline constexpr int kFrameVersion = 2;
-
 struct FrameLayout {
-  int version = kFrameVersion;
   int rate_hz = 480;
   std::size_t bodies = 0;
   std::vector<std::size_t> grains;  ///< how many, of each body that is grains

@@ -158,10 +158,7 @@ const PlacedLinks& FramePlayer::Placed(std::size_t hand, std::size_t place, std:
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     physics::Pose found = placed.X_WL[lane];
     AddOff(*links_[hand], frame(lane), link, found);
-    if (layout_.version == 1)
-      placed.X_WL[lane] = found;  // the links on it went on from the guess
-    else
-      placed.Correct(lane, found);
+    placed.Correct(lane, found);
   }
   return placed;
 }

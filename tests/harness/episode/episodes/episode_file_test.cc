@@ -170,7 +170,7 @@ TEST(EpisodeFileOfMany, ForeignAndDamagedFilesAreRefusedWithTheirCause) {
             "is cut off: an episode file has at least 100 bytes");
   OpenToWrite(good.string()).Execute("PRAGMA user_version=9");
   EXPECT_EQ(MessageOf(EpisodeFile::Open(good.string())),
-            "has version 9 of the format; this program reads version 3, a newer one is "
+            "has version 9 of the format; this program reads version 1, a newer one is "
             "needed");
 }
 
