@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The transcendental functions of the C library, the same to the last bit on every processor. The C
 // library's own choose an implementation by the processor (with or without fused multiplication)
-// and differ in last bits; so would every state hash. The program's functions take precedence over
-// the C library's, also for Bullet and Box2D.
+// and differ in last bits; so would every state hash. This file is compiled twice: with
+// physics/portable_names.h for the rooms, and without it for programs that simulate, in which these
+// functions take the place of the C library's, for Bullet and Box2D.
 //
 // SLEEF's functions without fused multiplication ("cinz", "purec") give the same results on all
 // platforms: N. Shibata and F. Petrogalli, "SLEEF: A Portable Vectorized Library of C Standard
 // Mathematical Functions", IEEE TPDS 31(6), 2020. Errors are at most 1 ulp (hypot: 0.5 ulp). In
 // single precision they are the rounded results in double precision. Tested by
 // tests/physics/portable_math_test.cc
-#include "physics/base/portable_math.h"
-
 #include <sleef.h>
 
-#include <algorithm>
 #include <bit>
-#include <cstddef>
 #include <cstdint>
 
 #define PREHEND_UNARY(name, sleef)                    \
@@ -68,25 +65,3 @@ void sincosf(float x, float* sine, float* cosine) noexcept {
   *cosine = cosf(x);
 }
 }
-
-namespace prehend::physics {
-
-void SinesAndCosines(const std::array<double, 4>& angles, std::array<double, 4>& sines,
-                     std::array<double, 4>& cosines) {
-#ifdef __SSE2__
-  // For larger angles, what one of a pair is may decide how the other is computed.
-  constexpr double kLargest = 10;
-  const auto is_small = [](double x) { return x >= -kLargest && x <= kLargest; };
-  if (std::ranges::all_of(angles, is_small)) {
-    for (std::size_t i = 0; i < 4; i += 2) {
-      const __m128d pair = _mm_loadu_pd(&angles[i]);
-      _mm_storeu_pd(&sines[i], Sleef_cinz_sind2_u10sse2(pair));
-      _mm_storeu_pd(&cosines[i], Sleef_cinz_cosd2_u10sse2(pair));
-    }
-    return;
-  }
-#endif
-  for (std::size_t i = 0; i < 4; ++i) sincos(angles[i], &sines[i], &cosines[i]);
-}
-
-}  // namespace prehend::physics

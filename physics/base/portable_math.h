@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Functions of several numbers at once, in physics/portable_math.cc. Every result is that of
-// std::sin and std::cos, to the last bit. Tested by tests/physics/portable_math_test.cc
+// Functions of several numbers at once. Every result is that of std::sin and std::cos, to the last
+// bit. Tested by tests/physics/portable_math_test.cc
 #pragma once
 
 #include <array>

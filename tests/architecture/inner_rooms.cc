@@ -35,8 +35,8 @@ const Arrows& ProjectArrows() {
        {"physics/base", "physics/bullet/core", "physics/hand", "physics/scene", "physics/world"}},
       {"physics/box2d", {"physics/base", "physics/hand", "physics/scene", "physics/world"}},
       {"physics",
-       {"physics/base", "physics/box2d", "physics/bullet", "physics/hand", "physics/motion",
-        "physics/person", "physics/scene", "physics/world"}},
+       {"physics/box2d", "physics/bullet", "physics/hand", "physics/motion", "physics/person",
+        "physics/scene", "physics/world"}},
 
       {"render/gl", {"physics/base", "physics/scene"}},
       {"render/image", {"physics/base"}},
