@@ -3,8 +3,8 @@
 // assertion throws std::logic_error, so that a run ends with its internal failure and says where.
 //
 //   PREHEND_CHECK(condition)   always
-//   PREHEND_DCHECK(condition)  in builds with PREHEND_DEBUG_CHECKS (the presets dev, asan-ubsan and
-//                              fuzz); for places that every frame passes
+//   PREHEND_DCHECK(condition)  in builds with PREHEND_DEBUG_CHECKS (every preset but release,
+//                              no-render and bench); for places that every frame passes
 //
 // Tested by tests/grammar/base/check_test.cc
 #pragma once
