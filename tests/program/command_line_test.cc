@@ -47,7 +47,9 @@ TEST_F(CommandLine, HelpIsEverywhere) {
 TEST_F(CommandLine, SaysItsVersion) {
   const Said said = Do("--version");
   EXPECT_EQ(said.exit_code, 0);
-  EXPECT_TRUE(std::regex_match(said.out, std::regex("prehend \\d+\\.\\d+\\.\\d+\n"))) << said.out;
+  EXPECT_TRUE(std::regex_match(
+      said.out, std::regex("prehend \\d+\\.\\d+\\.\\d+( \\([0-9a-f]{7,}(-dirty)?\\))?\n")))
+      << said.out;
 }
 
 /// A command line that is refused.

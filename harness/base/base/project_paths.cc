@@ -3,6 +3,8 @@
 // and tests/program/project_test.cc
 #include "harness/base/base/project_paths.h"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -15,14 +17,27 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLibrary = "grammar/library";
+constexpr const char* kInstalled = "share/prehend";
 
-/// The nearest folder, `folder` or above it, that has this in it.
-std::optional<std::string> RootAbove(fs::path folder, const char* what) {
+/// The nearest folder, `folder` or above it, that has this in it, or in a folder `below` it.
+std::optional<std::string> RootAbove(fs::path folder, const char* what, const char* below = "") {
   std::error_code error;
   for (;; folder = folder.parent_path()) {
     if (fs::exists(folder / what, error)) return folder.string();
+    if (fs::exists(folder / below / what, error)) return (folder / below).string();
     if (folder == folder.parent_path()) return std::nullopt;
   }
+}
+
+/// The program, or the library or Python module that this function is in.
+fs::path ThisBinary() {
+  std::error_code error;
+  Dl_info here{};
+  const bool found = dladdr(reinterpret_cast<const void*>(&ThisBinary), &here) != 0;
+  const std::string name = found && here.dli_fname ? here.dli_fname : "";
+  if (fs::path(name).filename().string().find(".so") != std::string::npos)
+    return fs::canonical(name, error);
+  return fs::read_symlink("/proc/self/exe", error);
 }
 
 std::vector<std::string> Folders(const std::string& root, const char* own, const char* library) {
@@ -59,17 +74,18 @@ std::string PathIn(const std::vector<std::string>& folders, const std::string& f
 }  // namespace
 
 std::string ShippedRoot() {
-  static const std::string root = [] {
-    std::error_code error;
-    const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-    return RootAbove(executable.parent_path(), kLibrary).value_or("");
-  }();
+  static const std::string root =
+      RootAbove(ThisBinary().parent_path(), kLibrary, kInstalled).value_or("");
   return root;
 }
 
 bool IsOwnProject(const std::string& root) {
   std::error_code error;
   return !fs::is_directory(fs::path(root) / kLibrary, error);
+}
+
+std::string BuildFolder(const std::string& root) {
+  return root.ends_with(kInstalled) ? "build" : (fs::path(root) / "build").string();
 }
 
 bool IsCalledIn(const std::string& root) {

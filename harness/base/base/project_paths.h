@@ -23,11 +23,14 @@ inline constexpr const char* kProjectFile = "prehend.yaml";
 /// ancestor of the working directory with grammar/library.
 std::optional<std::string> FindProjectRoot();
 
-/// What ships with the program: the nearest ancestor of the executable with grammar/library; "" if
-/// there is none.
+/// What ships with the program: the nearest ancestor of the executable, or of the library that this
+/// code is in, with grammar/library or share/prehend/grammar/library; "" if there is none.
 std::string ShippedRoot();
 /// Whether `root` is a project of one's own, which uses what ships.
 bool IsOwnProject(const std::string& root);
+
+/// Where what is made goes: ROOT/build; of what is installed, `build` in the working directory.
+std::string BuildFolder(const std::string& root);
 
 /// Whether the program is called in `root` or below it, or was told by $PREHEND_HOME to work there.
 bool IsCalledIn(const std::string& root);

@@ -88,7 +88,7 @@ std::string WhyNotText(const std::vector<std::string>& words) {
 
 }  // namespace
 
-ExitCode RunCommandLine(int argc, const char* const* argv) {
+ExitCode RunCommandLine(int argc, const char* const* argv, const char* commit) {
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   try {
     if (const std::string why = WhyNotText(words); !why.empty()) {
@@ -96,8 +96,8 @@ ExitCode RunCommandLine(int argc, const char* const* argv) {
       return ExitCode::kBadInput;
     }
     const std::vector<Command> commands = AllCommands();
-    const ParsedArguments parsed =
-        ParseArguments(DescribeProgram("prehend " PREHEND_VERSION), commands, words);
+    const ParsedArguments parsed = ParseArguments(
+        DescribeProgram(std::string("prehend " PREHEND_VERSION) + commit), commands, words);
     if (const auto* error = std::get_if<UsageError>(&parsed)) return Report(*error);
     const auto* const info = std::get_if<InfoText>(&parsed);
     const ExitCode code = info ? Print(*info) : Run(std::get<ChosenCommand>(parsed), words);

@@ -7,8 +7,8 @@
 
 namespace prehend::cli {
 
-/// All of `prehend`. Reads the environment: PREHEND_HOME, PREHEND_COMMAND, CI,
-/// NO_COLOR.
-ExitCode RunCommandLine(int argc, const char* const* argv);
+/// All of `prehend`. `commit` follows the version where that is printed. Reads the environment:
+/// PREHEND_HOME, PREHEND_COMMAND, CI, NO_COLOR.
+ExitCode RunCommandLine(int argc, const char* const* argv, const char* commit);
 
 }  // namespace prehend::cli

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "harness/base/base/content_hash.h"
+#include "harness/base/base/project_paths.h"
 #include "harness/base/base/shell_quote.h"
 #include "harness/show/pictures/pictures.h"
 #include "harness/suite/judge/unreferenced_goldens.h"
@@ -66,7 +67,7 @@ ExitCode AcceptPictures(const CommandContext& context, const std::string& reason
                         const episode::RunResult& run) {
   const truth::GoldenFiles files(context.root);
   const std::string& id = golden.scenario;
-  const fs::path folder = fs::path(context.root) / "build/pending-pictures" / scenario.skill;
+  const fs::path folder = fs::path(BuildFolder(context.root)) / "pending-pictures" / scenario.skill;
   std::error_code error;
   fs::create_directories(folder, error);
   const show::PictureResult drawn = show::DrawGoldens(scenario, run, folder.string());

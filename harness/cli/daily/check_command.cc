@@ -139,7 +139,7 @@ std::uint64_t MemoryLimit_bytes(const ParsedOptions& options) {
 
 /// Who is somewhere else than in the project finds the report there.
 std::string DefaultReport(const std::string& root) {
-  return (IsCalledIn(root) ? fs::path(root) / "build/report" : fs::path("build/report")).string();
+  return (fs::path(IsCalledIn(root) ? BuildFolder(root) : "build") / "report").string();
 }
 
 suite::SuiteRequest RequestFrom(const ParsedOptions& options, const CommandContext& context,

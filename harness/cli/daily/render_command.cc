@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/base/base/atomic_file.h"
+#include "harness/base/base/project_paths.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/other_view.h"
 #include "harness/cli/command/picture_options.h"
@@ -134,7 +135,7 @@ show::PictureResult Draw(const ParsedOptions& options, const episode::LoadedRun&
   if (!output.empty())
     return show::DrawPicture(loaded.scenario, run, loaded.scenario.pictures.front(), output,
                              format);
-  const fs::path folder = fs::path(root) / "build" / "pictures" / loaded.scenario.skill;
+  const fs::path folder = fs::path(BuildFolder(root)) / "pictures" / loaded.scenario.skill;
   std::error_code error;
   fs::create_directories(folder, error);
   return show::DrawPictures(loaded.scenario, run, folder.string(), format);
@@ -184,9 +185,10 @@ tl::expected<PlayedRun, ExitCode> Play(const ParsedOptions& options,
 ExitCode WriteOut(const std::string& svg, const ParsedOptions& options,
                   const scenario::Scenario& scenario, const std::string& ending,
                   const CommandContext& context) {
-  const fs::path file = options.TextOr("--output", (fs::path(context.root) / "build" / "pictures" /
-                                                    scenario.skill / (scenario.name + ending))
-                                                       .string());
+  const fs::path file = options.TextOr(
+      "--output",
+      (fs::path(BuildFolder(context.root)) / "pictures" / scenario.skill / (scenario.name + ending))
+          .string());
   const std::string problem = show::WriteDrawing(file, svg);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   context.out << file.string() << "\n";

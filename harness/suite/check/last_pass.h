@@ -10,6 +10,7 @@
 #include <string>
 
 #include "harness/base/base/content_hash.h"
+#include "harness/base/base/project_paths.h"
 #include "harness/suite/check/verdict.h"
 
 namespace prehend::suite {
@@ -29,7 +30,7 @@ std::vector<std::string> ChangedInputs(const LastPass& record);
 class LastPasses {
  public:
   explicit LastPasses(const std::filesystem::path& project_root)
-      : folder_(project_root / "build" / "check") {}
+      : folder_(std::filesystem::path(BuildFolder(project_root)) / "check") {}
 
   /// `scenario` is its id, here and below. Nothing without a readable record.
   std::optional<LastPass> Read(const std::string& scenario) const;

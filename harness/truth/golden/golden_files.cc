@@ -8,6 +8,7 @@
 #include <iterator>
 #include <tuple>
 
+#include "harness/base/base/project_paths.h"
 #include "harness/base/base/text_file.h"
 
 namespace prehend::truth {
@@ -124,7 +125,7 @@ fs::path GoldenFiles::GoldenPath(const std::string& scenario) const {
 }
 
 fs::path GoldenFiles::PendingPath(const std::string& scenario) const {
-  return root_ / "build" / "pending" / (scenario + kExtension);
+  return fs::path(BuildFolder(root_)) / "pending" / (scenario + kExtension);
 }
 
 Result<std::optional<Golden>> GoldenFiles::ReadGoldenOf(const std::string& scenario) const {
@@ -181,7 +182,7 @@ std::vector<KeptPicture> GoldenFiles::PicturesOf(const std::string& scenario) co
 std::vector<KeptPicture> GoldenFiles::Pictures() const { return PicturesBelow(root_ / "golden"); }
 
 std::vector<KeptPicture> GoldenFiles::PendingPictures() const {
-  return PicturesBelow(root_ / "build" / "pending");
+  return PicturesBelow(fs::path(BuildFolder(root_)) / "pending");
 }
 
 fs::path GoldenFiles::DifferencePath(const std::string& scenario, const std::string& file) const {
@@ -197,7 +198,7 @@ void GoldenFiles::RemovePendingPicture(const std::string& scenario, const std::s
 std::vector<std::string> GoldenFiles::List() const { return IdsBelow(root_ / "golden"); }
 
 std::vector<std::string> GoldenFiles::ListPending() const {
-  return IdsBelow(root_ / "build" / "pending");
+  return IdsBelow(fs::path(BuildFolder(root_)) / "pending");
 }
 
 }  // namespace prehend::truth

@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Installs a build below a temporary folder, away from the checkout, and uses it as a stranger does.
+
+usage: installed.py BUILD_FOLDER
+"""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BUILD = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else "build/test").resolve()
+HERE = pathlib.Path(__file__).resolve().parent
+PORTABLE = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "exp2", "log", "log2", "log10", "cbrt",
+            "pow", "hypot", "sincos"}
+
+
+def run(*words, cwd, code=0, **variables):
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("PREHEND_")}
+    done = subprocess.run([str(word) for word in words], cwd=cwd, env=environment | variables, text=True,
+                          capture_output=True, timeout=300)
+    assert done.returncode == code, f"{words}: {done.returncode}\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.prefix = pathlib.Path(cls.folder.name) / "prefix"
+        cls.elsewhere = pathlib.Path(cls.folder.name) / "elsewhere"
+        cls.elsewhere.mkdir()
+        run("cmake", "--install", BUILD, "--prefix", cls.prefix, cwd=cls.elsewhere)
+        cls.prehend = cls.prefix / "bin/prehend"
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_plays_what_ships(self):
+        self.assertIn("picking_up", run(self.prehend, "run", "milk_carton_wrap", cwd=self.elsewhere))
+
+    def test_checks_a_project_of_ones_own(self):
+        run(self.prehend, "new", "--project", "kitchen", cwd=self.elsewhere)
+        project = self.elsewhere / "kitchen"
+        self.assertIn("0 passed, 0 failed", run(self.prehend, "check", cwd=project, code=5))
+
+    def test_writes_nothing_into_what_ships(self):
+        before = sorted(self.prefix.rglob("*"))
+        run(self.prehend, "check", "slide/four_centimetres_are_a_slide", cwd=self.elsewhere)
+        self.assertEqual(before, sorted(self.prefix.rglob("*")))
+
+    def test_says_its_version_in_all_places(self):
+        version = re.match(r"prehend (\d+\.\d+\.\d+)", run(self.prehend, "--version", cwd=self.elsewhere))[1]
+        self.assertIn(f'PREHEND_VERSION "{version}"', (self.prefix / "include/prehend/version.h").read_text())
+        self.assertIn(f'"prehend {version}"', (self.prefix / "share/man/man1/prehend.1").read_text())
+
+    def test_completes_commands_and_scenarios(self):
+        script = self.prefix / "share/bash-completion/completions/prehend"
+        complete = f"""source {script}; PATH={self.prehend.parent}:$PATH
+            words() {{ COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _prehend; echo "${{COMPREPLY[*]}}"; }}
+            words prehend ch; words prehend episode re; words prehend check --rep"""
+        said = run("bash", "-c", complete, cwd=self.elsewhere).splitlines()
+        self.assertEqual(said[:3], ["check", "resegment", "--repeat --replay --report"])
+
+    def test_the_manual_names_every_command(self):
+        page = (self.prefix / "share/man/man1/prehend.1").read_text()
+        for command in ("check", "episode query", "grammar sweep", "scenario schema"):
+            self.assertIn(f".SS prehend {command}\n", page)
+
+    def test_archives_leave_the_c_library_alone(self):
+        for archive in self.prefix.rglob("*.a"):
+            names = {line.split()[-1] for line in run("nm", archive, cwd=self.elsewhere).splitlines() if line.strip()}
+            self.assertFalse(names & PORTABLE, archive)
+
+    def test_a_stranger_links_the_grammar_library(self):
+        build = self.elsewhere / "consumer"
+        run("cmake", "-S", HERE / "consumer", "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}", cwd=self.elsewhere)
+        run("cmake", "--build", build, cwd=self.elsewhere)
+        said = run(build / "watch", cwd=self.elsewhere)
+        self.assertIn("near(hand, cup) 81..120", said)
+        self.assertTrue("U sin@GLIBC" in run("nm", "-D", build / "watch", cwd=self.elsewhere))
+
+
+if __name__ == "__main__":
+    unittest.main()
