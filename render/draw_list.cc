@@ -7,6 +7,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "physics/base/visitors.h"
+
 namespace prehend::render {
 namespace {
 
@@ -17,11 +19,6 @@ constexpr float kGhostAlpha = 0.40f;
 constexpr float kForearmAlpha = 0.55f;
 constexpr float kUsualDistance_m =
     2.1f;  // distance of eye and scene for which beads and tubes are sized
-
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
 
 Affine3f ToAffine(const physics::Pose& pose) {
   return Eigen::Translation3f(pose.p_m.cast<float>()) * pose.q.cast<float>();
@@ -35,33 +32,34 @@ void SetRoundedBox(const Vector3f& outer_half_m, float rounding_m, Item* item) {
 }
 
 void SetShape(const physics::Shape& shape, Item* item, DrawList* list) {
-  std::visit(Overloaded{[&](const physics::Box& box) {
-                          const Vector3f half = box.size_m.cast<float>() / 2;
-                          SetRoundedBox(half, std::min(0.008f, 0.16f * half.minCoeff()), item);
-                        },
-                        [&](const physics::Sphere& sphere) {
-                          item->primitive = Primitive::kBall;
-                          item->rounding_m = static_cast<float>(sphere.radius_m);
-                        },
-                        [&](const physics::Cylinder& cylinder) {
-                          const auto r = static_cast<float>(cylinder.radius_m);
-                          const auto h = static_cast<float>(cylinder.length_m) / 2;
-                          item->primitive = Primitive::kCylinder;
-                          item->rounding_m = std::min(0.005f, 0.2f * std::min(r, h));
-                          item->half_size_m = Vector3f(r, r, h).array() - item->rounding_m;
-                        },
-                        [&](const physics::Capsule& capsule) {
-                          item->primitive = Primitive::kBall;
-                          item->rounding_m = static_cast<float>(capsule.radius_m);
-                          item->half_size_m = {0, 0, static_cast<float>(capsule.length_m) / 2};
-                        },
-                        [&](const physics::Hull& hull) {
-                          item->primitive = Primitive::kMesh;
-                          item->mesh = static_cast<int>(list->meshes.size());
-                          item->half_size_m.setOnes();
-                          list->meshes.push_back(HullMesh(hull));
-                        }},
-             shape);
+  std::visit(
+      physics::Overloaded{[&](const physics::Box& box) {
+                            const Vector3f half = box.size_m.cast<float>() / 2;
+                            SetRoundedBox(half, std::min(0.008f, 0.16f * half.minCoeff()), item);
+                          },
+                          [&](const physics::Sphere& sphere) {
+                            item->primitive = Primitive::kBall;
+                            item->rounding_m = static_cast<float>(sphere.radius_m);
+                          },
+                          [&](const physics::Cylinder& cylinder) {
+                            const auto r = static_cast<float>(cylinder.radius_m);
+                            const auto h = static_cast<float>(cylinder.length_m) / 2;
+                            item->primitive = Primitive::kCylinder;
+                            item->rounding_m = std::min(0.005f, 0.2f * std::min(r, h));
+                            item->half_size_m = Vector3f(r, r, h).array() - item->rounding_m;
+                          },
+                          [&](const physics::Capsule& capsule) {
+                            item->primitive = Primitive::kBall;
+                            item->rounding_m = static_cast<float>(capsule.radius_m);
+                            item->half_size_m = {0, 0, static_cast<float>(capsule.length_m) / 2};
+                          },
+                          [&](const physics::Hull& hull) {
+                            item->primitive = Primitive::kMesh;
+                            item->mesh = static_cast<int>(list->meshes.size());
+                            item->half_size_m.setOnes();
+                            list->meshes.push_back(HullMesh(hull));
+                          }},
+      shape);
 }
 
 // Appearance and object number of a body or hand that is added to the list.

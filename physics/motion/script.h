@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "physics/base/pose.h"
+#include "physics/base/visitors.h"
 #include "physics/motion/posture.h"
 #include "physics/motion/trajectory.h"
 #include "physics/scene/scene.h"

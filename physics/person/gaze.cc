@@ -92,20 +92,26 @@ std::optional<GazeTarget> GazeLeader::TargetOf(std::size_t stage, std::size_t in
   const auto body = [](BodyIndex target) {
     return GazeTarget{.kind = GazeTarget::Kind::kBody, .body = target};
   };
-  if (const auto* reach = std::get_if<ReachStep>(&step.action)) {
-    reached = FindBody(scene_, reach->object);
-    return body(reached);
-  }
-  if (const auto* carry = std::get_if<CarryStep>(&step.action)) {
-    if (const auto place = LandingPlace(*carry, stage, index, now))
-      return GazeTarget{.kind = GazeTarget::Kind::kPoint, .p_W_m = *place};
-  }
-  if (std::holds_alternative<RetreatStep>(step.action)) return GazeTarget{};
-  const bool moves = !std::holds_alternative<WaitStep>(step.action) &&
-                     !std::holds_alternative<PlaceStep>(step.action);
-  if (!moves) return std::nullopt;
-  if (reached != kNone) return body(reached);
-  return GazeTarget{.kind = GazeTarget::Kind::kHand, .hand = step.hand};
+  const auto moved = [&] {
+    return reached != kNone ? body(reached)
+                            : GazeTarget{.kind = GazeTarget::Kind::kHand, .hand = step.hand};
+  };
+  using Target = std::optional<GazeTarget>;
+  return std::visit(
+      Overloaded{[&](const ReachStep& reach) -> Target {
+                   reached = FindBody(scene_, reach.object);
+                   return body(reached);
+                 },
+                 [&](const CarryStep& carry) -> Target {
+                   const auto place = LandingPlace(carry, stage, index, now);
+                   if (!place) return moved();
+                   return GazeTarget{.kind = GazeTarget::Kind::kPoint, .p_W_m = *place};
+                 },
+                 [](const RetreatStep&) -> Target { return GazeTarget{}; },
+                 [](const OneOf<WaitStep, PlaceStep> auto&) -> Target { return std::nullopt; },
+                 [&](const OneOf<TriggerStep, MoveStep, FollowJointStep, PosesStep, TurnHandStep,
+                                 OrbitStep, PressStep> auto&) -> Target { return moved(); }},
+      step.action);
 }
 
 /// The place on the support of the next put-down; nullopt if none follows.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/base/visitors.h"
+
 namespace prehend::physics {
 namespace {
 
@@ -174,10 +176,13 @@ double VolumeOf(const Shape& shape) { return std::visit(VolumeOfShape{}, shape);
 bool IsRoundAboutVertical(const Body& body, const Pose& X_WB) {
   if (body.shapes.size() != 1) return false;
   const PlacedShape& placed = body.shapes.front();
-  if (std::holds_alternative<Sphere>(placed.shape)) return true;
-  if (std::holds_alternative<Box>(placed.shape) || std::holds_alternative<Hull>(placed.shape))
-    return false;
-  return std::abs(((X_WB * placed.X_BS).q * Eigen::Vector3d::UnitZ()).z()) > kUprightCosine;
+  const Eigen::Vector3d axis_W = (X_WB * placed.X_BS).q * Eigen::Vector3d::UnitZ();
+  return std::visit(Overloaded{[](const Sphere&) { return true; },
+                               [](const OneOf<Box, Hull> auto&) { return false; },
+                               [&](const OneOf<Cylinder, Capsule> auto&) {
+                                 return std::abs(axis_W.z()) > kUprightCosine;
+                               }},
+                    placed.shape);
 }
 
 bool IsInside(const Body& body, const Pose& X_WB, const Eigen::Vector3d& p_W_m) {

@@ -40,7 +40,7 @@ const Arrows& ProjectArrows() {
 
       {"render/gl", {"physics/base", "physics/scene"}},
       {"render/image", {"physics/base"}},
-      {"render", {"physics/scene", "render/gl", "render/image"}},
+      {"render", {"physics/base", "physics/scene", "render/gl", "render/image"}},
 
       {"harness/base/base", {"grammar/base"}},
       {"harness/base/process", {}},

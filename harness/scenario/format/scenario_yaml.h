@@ -163,10 +163,12 @@ struct PersonActorYaml {
 };
 using ActorYaml = std::variant<HandActorYaml, PersonActorYaml>;
 
-/// When a step of the script begins; see StepOrder in physics/motion/script.h.
+/// When a step of the script begins; see StepOrder in physics/motion/script.h. What ends it before
+/// its time: only some steps have this key.
 struct StepTimingYaml {
   std::optional<Located<std::string>> name, after, with;
   double delay_s = 0;
+  std::optional<Located<physics::Until>> until;
 };
 
 // The steps of the script. Default durations are human-like (docs/scenario-format.md).
@@ -178,13 +180,9 @@ struct ReachYaml : StepTimingYaml {
   std::optional<Located<Eigen::Vector3d>> point_m;
   double over_s = 0.8;
 };
-/// "touching(milk)", "gap(milk) < 5 mm", either with ", or go on"; see
-/// harness/scenario/resolve/build_script.cc.
-using UntilYaml = std::optional<Located<std::string>>;
 struct CloseYaml : StepTimingYaml {
   double close_to = 1;
   double over_s = 0.6;
-  UntilYaml until;
 };
 struct OpenYaml : StepTimingYaml {
   double open_to = 0;
@@ -193,18 +191,15 @@ struct OpenYaml : StepTimingYaml {
 struct LiftYaml : StepTimingYaml {
   double lift_by_m = 0;
   double over_s = 0.6;
-  UntilYaml until;
 };
 struct MoveYaml : StepTimingYaml {
   Located<Eigen::Vector3d> move_by_m{Eigen::Vector3d::Zero(), {}};
   double over_s = 0.8;
-  UntilYaml until;
 };
 struct CarryYaml : StepTimingYaml {
   Where where;
   Located<Eigen::Vector2d> carry_to_m{Eigen::Vector2d::Zero(), {}};
   double over_s = 1.0;
-  UntilYaml until;
 };
 struct PlaceYaml : StepTimingYaml {
   Where where;
@@ -214,7 +209,6 @@ struct PlaceYaml : StepTimingYaml {
 struct RetreatYaml : StepTimingYaml {
   double retreat_by_m = 0;
   double over_s = 0.6;
-  UntilYaml until;
 };
 struct FollowJointYaml : StepTimingYaml {
   Located<std::string> follow_joint;
@@ -273,7 +267,6 @@ struct OrbitYaml : StepTimingYaml {
   };
   Around orbit;
   double over_s = 1.5;
-  UntilYaml until;
 };
 struct PressYaml : StepTimingYaml {
   double press_n = 0;
@@ -323,6 +316,14 @@ using StepYaml =
                  RetreatYaml, FollowJointYaml, PosesYaml, RecordingYaml, TurnHandYaml, OrbitYaml,
                  PressYaml, LookAtYaml, LookAtPointYaml, EyesYaml, WalkYaml, TurnYaml, LeanYaml,
                  SwayYaml, MoveLimbYaml>;
+/// Steps that only hands, or only persons can do. Recordings and waiting are for both.
+template <class T>
+concept StepOfHand =
+    physics::OneOf<T, ReachYaml, CloseYaml, OpenYaml, LiftYaml, MoveYaml, CarryYaml, PlaceYaml,
+                   RetreatYaml, FollowJointYaml, PosesYaml, TurnHandYaml, OrbitYaml, PressYaml>;
+template <class T>
+concept StepOfPerson = physics::OneOf<T, LookAtYaml, LookAtPointYaml, EyesYaml, WalkYaml, TurnYaml,
+                                      LeanYaml, SwayYaml, MoveLimbYaml>;
 
 /// One item of the script: what each named actor does at the same time. The steps of an actor that
 /// does several stand one after another.

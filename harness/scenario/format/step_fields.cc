@@ -10,6 +10,7 @@
 #include "harness/scenario/format/scenario_fields.h"
 #include "harness/scenario/format/scenario_formats.h"
 #include "harness/scenario/format/step_remedies.h"
+#include "harness/scenario/format/until_format.h"
 
 namespace prehend::scenario {
 namespace {
@@ -19,29 +20,10 @@ constexpr double kMaxSway_m = 0.4;   // farther, she would fall
 constexpr double kMinStep_s = 0.01;  // shorter than any human movement
 constexpr double kMaxStep_s = 600;
 
-ValueFormat<double> Duration() { return Number(kMinStep_s, kMaxStep_s); }
-const std::string kOverDoc = "Duration in seconds.";
 const std::string kDelayDoc = "Seconds to wait first, while others in this stage already act.";
 const std::string kUntilDoc =
     "Ends the step before its time: 'touching(milk)' or 'gap(milk) < 5 mm'. If that never happens "
     "the run fails; with ', or go on' it goes on.";
-const std::string kConditions = "'touching(milk)' or 'gap(milk) < 5 mm', perhaps with ', or go on'";
-ValueFormat<std::string> UntilFormat() {
-  const auto condition = Word(
-      "(touching\\([a-z][a-z0-9_]*\\)|gap\\([a-z][a-z0-9_]*\\) < [0-9]+(\\.[0-9]+)? (mm|cm|m))(, "
-      "or go "
-      "on)?",
-      kConditions, 120);
-  return ValueFormat<std::string>(condition.schema(), [condition](const YamlNode& node,
-                                                                  DiagnosticList& errors,
-                                                                  std::string& until) {
-    const std::string remedy = node.kind == YamlNode::Kind::kScalar ? UntilRemedy(node.text) : "";
-    if (remedy.empty()) return condition.Read(node, errors, until);
-    errors.Add(node.where, fmt::format("until: expected {}, found '{}'", kConditions, node.text),
-               remedy);
-    return false;
-  });
-}
 const std::string kForceDoc =
     "Yields: slows down so that it pushes with no more than this, newtons.";
 const std::string kRelativeDoc =
@@ -49,11 +31,19 @@ const std::string kRelativeDoc =
     "'hand' (this hand itself), an entity or another hand.";
 const std::string kStyleDoc = "The grasp style that the hand takes; default: unchanged.";
 
-/// The keys that say when a step begins.
+enum class MayEnd { kInTime, kBefore };
+
+/// With the keys that say when a step begins and ends.
 template <class Entry>
-StructFormat<Entry> WithTiming(StructFormat<Entry> format) {
+ValueFormat<StepYaml> Step(StructFormat<Entry>& format, MayEnd may_end = MayEnd::kInTime) {
   using T = StepTimingYaml;
   using Name = decltype(T::name) Entry::*;
+  if constexpr (requires { &Entry::over_s; })
+    format.Optional("over_s", &Entry::over_s, Number(kMinStep_s, kMaxStep_s),
+                    "Duration in seconds.");
+  if (may_end == MayEnd::kBefore)
+    format.Optional("until", static_cast<decltype(T::until) Entry::*>(&T::until), UntilFormat(),
+                    kUntilDoc);
   format
       .Optional("delay_s", static_cast<double Entry::*>(&T::delay_s), Number(0, kMaxStep_s),
                 kDelayDoc)
@@ -65,7 +55,7 @@ StructFormat<Entry> WithTiming(StructFormat<Entry> format) {
                 "It begins when the step of this name, in the same stage, begins.")
       .AtMostOneOf({"after", "with"});
   for (const char* word : {"times", "repeat", "count"}) format.Remedy(word, kRepeatRemedy);
-  return format;
+  return AsAlternative<StepYaml>(format.format());
 }
 
 /// A point [x, y]; whoever gives a height is told why it has none.
@@ -87,121 +77,86 @@ std::string StepNoun(const std::string& key) {
          " step";
 }
 
-/// A step with one value and a duration; most steps are of this kind.
+/// A step with one value; most steps are of this kind.
 template <class Entry, class M, class F>
-ValueFormat<StepYaml> TimedStep(const std::string& key, M Entry::*member, ValueFormat<F> format,
-                                const std::string& doc) {
-  return AsAlternative<StepYaml>(
-      WithTiming(StructFormat<Entry>(StepNoun(key))
-                     .Required(key, member, std::move(format), doc)
-                     .Optional("over_s", &Entry::over_s, Duration(), kOverDoc))
-          .format());
-}
-
-/// The same, and it may end before its time.
-template <class Entry, class M, class F>
-ValueFormat<StepYaml> GuardedStep(const std::string& key, M Entry::*member, ValueFormat<F> format,
-                                  const std::string& doc) {
-  return AsAlternative<StepYaml>(
-      WithTiming(StructFormat<Entry>(StepNoun(key))
-                     .Required(key, member, std::move(format), doc)
-                     .Optional("over_s", &Entry::over_s, Duration(), kOverDoc)
-                     .Optional("until", &Entry::until, UntilFormat(), kUntilDoc))
-          .format());
+ValueFormat<StepYaml> OneValueStep(const std::string& key, M Entry::*member,
+                                   const ValueFormat<F>& format, const std::string& doc,
+                                   MayEnd may_end = MayEnd::kInTime) {
+  return Step(StructFormat<Entry>(StepNoun(key)).Required(key, member, format, doc), may_end);
 }
 
 ValueFormat<StepYaml> TurnHandFormat() {
   using T = TurnHandYaml;
-  return AsAlternative<StepYaml>(
-      WithTiming(
-          StructFormat<T>("a turn_by_deg step")
-              .Required(
-                  "turn_by_deg", &T::turn_by_deg, Vector<3>(-3600, 3600),
-                  "The hand turns about its palm: degrees about x, y or z; of several about the "
-                  "axis that they point along, by their length.")
-              .Optional("axes", &T::own_axes, Choice<bool>({{"world", false}, {"hand", true}}),
-                        "Whose axes these are.")
-              .Optional("over_s", &T::over_s, Duration(), kOverDoc))
-          .format());
+  return Step(
+      StructFormat<T>("a turn_by_deg step")
+          .Required("turn_by_deg", &T::turn_by_deg, Vector<3>(-3600, 3600),
+                    "The hand turns about its palm: degrees about x, y or z; of several about the "
+                    "axis that they point along, by their length.")
+          .Optional("axes", &T::own_axes, Choice<bool>({{"world", false}, {"hand", true}}),
+                    "Whose axes these are."));
 }
 
 ValueFormat<StepYaml> OrbitFormat() {
   using O = OrbitYaml;
   using A = OrbitYaml::Around;
-  return AsAlternative<StepYaml>(
-      WithTiming(
-          StructFormat<O>("an orbit step")
-              .Required("orbit", &O::orbit,
-                        StructFormat<A>("an orbit")
-                            .Required("around", &A::around, Identifier(),
-                                      "The entity that the hand goes around, turning with it.")
-                            .Optional("by_deg", &A::by_deg, Number(-3600, 3600),
-                                      "How far, counter-clockwise as seen from above.")
-                            .Optional("at_m", &A::at_m, Number(0.01, kMaxMove_m),
-                                      "Distance from its centre in the end; default: as now.")
-                            .format(),
-                        "Around the vertical through an entity's centre.")
-              .Optional("over_s", &O::over_s, Duration(), kOverDoc)
-              .Optional("until", &O::until, UntilFormat(), kUntilDoc))
-          .format());
+  return Step(StructFormat<O>("an orbit step")
+                  .Required("orbit", &O::orbit,
+                            StructFormat<A>("an orbit")
+                                .Required("around", &A::around, Identifier(),
+                                          "The entity that the hand goes around, turning with it.")
+                                .Optional("by_deg", &A::by_deg, Number(-3600, 3600),
+                                          "How far, counter-clockwise as seen from above.")
+                                .Optional("at_m", &A::at_m, Number(0.01, kMaxMove_m),
+                                          "Distance from its centre in the end; default: as now.")
+                                .format(),
+                            "Around the vertical through an entity's centre."),
+              MayEnd::kBefore);
 }
 
 ValueFormat<StepYaml> PressFormat() {
   using P = PressYaml;
-  return AsAlternative<StepYaml>(
-      WithTiming(StructFormat<P>("a press_n step")
-                     .Required("press_n", &P::press_n, Number(0.1, 200),
-                               "Press with this force, with the hand or with what it holds.")
-                     .Required("against", &P::against, Identifier(), "The entity that is pressed.")
-                     .Optional("along", &P::along, Vector<3>(-1, 1),
-                               "Where to, a direction in world axes; default: down.")
-                     .Optional("over_s", &P::over_s, Duration(), kOverDoc))
-          .format());
+  return Step(StructFormat<P>("a press_n step")
+                  .Required("press_n", &P::press_n, Number(0.1, 200),
+                            "Press with this force, with the hand or with what it holds.")
+                  .Required("against", &P::against, Identifier(), "The entity that is pressed.")
+                  .Optional("along", &P::along, Vector<3>(-1, 1),
+                            "Where to, a direction in world axes; default: down."));
 }
 
 ValueFormat<StepYaml> ReachFormat() {
   using R = ReachYaml;
   using physics::Approach;
-  return AsAlternative<StepYaml>(
-      WithTiming(
-          StructFormat<R>("a reach step")
-              .Required("reach", &R::reach, Identifier(),
-                        "The entity to move the hand to, ready to close around it.")
-              .Optional("style", &R::style, Identifier(), "The grasp style, one of the hand's.")
-              .Optional("from", &R::from,
-                        Choice<Approach>({{"auto", Approach::kAuto},
-                                          {"above", Approach::kAbove},
-                                          {"side", Approach::kSide}}),
-                        "Where the hand comes from; auto chooses by style and shape.")
-              .Optional(
-                  "offset_m", &R::offset_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
-                  "Added to where the hand goes, world axes: reach beside or above the entity.")
-              .Optional(
-                  "point_m", &R::point_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                  "The point to grasp, in the entity's own coordinate frame; default: its centre.")
-              .Optional("over_s", &R::over_s, Duration(), kOverDoc))
-          .format());
+  return Step(
+      StructFormat<R>("a reach step")
+          .Required("reach", &R::reach, Identifier(),
+                    "The entity to move the hand to, ready to close around it.")
+          .Optional("style", &R::style, Identifier(), "The grasp style, one of the hand's.")
+          .Optional("from", &R::from,
+                    Choice<Approach>({{"auto", Approach::kAuto},
+                                      {"above", Approach::kAbove},
+                                      {"side", Approach::kSide}}),
+                    "Where the hand comes from; auto chooses by style and shape.")
+          .Optional("offset_m", &R::offset_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
+                    "Added to where the hand goes, world axes: reach beside or above the entity.")
+          .Optional(
+              "point_m", &R::point_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+              "The point to grasp, in the entity's own coordinate frame; default: its centre."));
 }
 
 ValueFormat<StepYaml> FollowJointFormat() {
   using F = FollowJointYaml;
-  return AsAlternative<StepYaml>(
-      WithTiming(
-          StructFormat<F>("a follow_joint step")
-              .Required("follow_joint", &F::follow_joint, Identifier(),
-                        "The entity on a slider or hinge whose path the hand follows, with "
-                        "what it holds.")
-              .Optional("to", &F::to, Number(0, 1),
-                        "Where the joint ends: 0 is the minimum of its range, 1 the maximum.")
-              .Optional("over_s", &F::over_s, Duration(), kOverDoc))
-          .format());
+  return Step(StructFormat<F>("a follow_joint step")
+                  .Required("follow_joint", &F::follow_joint, Identifier(),
+                            "The entity on a slider or hinge whose path the hand follows, with "
+                            "what it holds.")
+                  .Optional("to", &F::to, Number(0, 1),
+                            "Where the joint ends: 0 is the minimum of its range, 1 the maximum."));
 }
 
 ValueFormat<StepYaml> WaitFormat() {
-  return AsAlternative<StepYaml>(WithTiming(StructFormat<WaitYaml>("a wait step")
-                                                .Required("wait_s", &WaitYaml::wait_s, Duration(),
-                                                          "Hold still for this long."))
-                                     .format());
+  return Step(StructFormat<WaitYaml>("a wait step")
+                  .Required("wait_s", &WaitYaml::wait_s, Number(kMinStep_s, kMaxStep_s),
+                            "Hold still for this long."));
 }
 
 ValueFormat<PoseYaml> PoseFormat() {
@@ -223,31 +178,26 @@ ValueFormat<PoseYaml> PoseFormat() {
 }
 
 ValueFormat<StepYaml> PosesFormat() {
-  return AsAlternative<StepYaml>(
-      WithTiming(
-          StructFormat<PosesYaml>("a poses step")
-              .Required(
-                  "poses", &PosesYaml::poses, ListOf(PoseFormat(), 1, kMaxPoses),
-                  "Way-points of the tracked target, as a tracker would give them; the last one "
-                  "ends the step.")
-              .Optional("style", &PosesYaml::style, Identifier(), kStyleDoc)
-              .Optional("relative_to", &PosesYaml::relative_to, Identifier(), kRelativeDoc)
-              .Optional("axes", &PosesYaml::world_axes,
-                        Choice<bool>({{"own", false}, {"world", true}}),
-                        "Whose axes relative way-points are in: its own, or the world's.")
-              .Check([](const YamlNode& node, const PosesYaml& step, DiagnosticList& errors) {
-                for (std::size_t i = 1; i < step.poses.size(); ++i) {
-                  const double before_s = step.poses[i - 1].t_s, t_s = step.poses[i].t_s;
-                  if (t_s > before_s) continue;
-                  errors.Add(
-                      node.Find("poses")->children[i].Find("t_s")->where,
-                      fmt::format(
-                          "t_s: expected more than {}, the time of the previous pose, found {}",
-                          before_s, t_s),
-                      "t_s counts from the beginning of the step, not from the previous pose");
-                }
-              }))
-          .format());
+  return Step(
+      StructFormat<PosesYaml>("a poses step")
+          .Required("poses", &PosesYaml::poses, ListOf(PoseFormat(), 1, kMaxPoses),
+                    "Way-points of the tracked target, as a tracker would give them; the last one "
+                    "ends the step.")
+          .Optional("style", &PosesYaml::style, Identifier(), kStyleDoc)
+          .Optional("relative_to", &PosesYaml::relative_to, Identifier(), kRelativeDoc)
+          .Optional("axes", &PosesYaml::world_axes, Choice<bool>({{"own", false}, {"world", true}}),
+                    "Whose axes relative way-points are in: its own, or the world's.")
+          .Check([](const YamlNode& node, const PosesYaml& step, DiagnosticList& errors) {
+            for (std::size_t i = 1; i < step.poses.size(); ++i) {
+              const double before_s = step.poses[i - 1].t_s, t_s = step.poses[i].t_s;
+              if (t_s > before_s) continue;
+              errors.Add(
+                  node.Find("poses")->children[i].Find("t_s")->where,
+                  fmt::format("t_s: expected more than {}, the time of the previous pose, found {}",
+                              before_s, t_s),
+                  "t_s counts from the beginning of the step, not from the previous pose");
+            }
+          }));
 }
 
 /// Reports keys that apply to another kind of file.
@@ -266,75 +216,65 @@ void CheckKindOfRecording(const YamlNode& node, const RecordingYaml& entry,
 ValueFormat<StepYaml> RecordingFormat() {
   using R = RecordingYaml;
   const auto seconds = Number(0, kMaxDuration_s);
-  return AsAlternative<StepYaml>(
-      WithTiming(
-          StructFormat<R>("a recording step")
-              .Required(
-                  "recording", &R::recording,
-                  Word("[A-Za-z0-9_./-]+\\.(csv|json|bvh)", "a .csv, .json or .bvh file", 255),
-                  "A recorded motion: a CSV file, JSON of aframe-motion-capture-components, or "
-                  "BVH of a whole body.")
-              .Optional("device", &R::device, Word("[A-Za-z0-9_-]+", "a name like 'right'"),
-                        "Which device of a JSON file moves the hand; required there.")
-              .Optional("button", &R::button, Integer<int>(0, 31),
-                        "Which button of that device is the trigger; default 1.")
-              .Optional("press_s", &R::press_s, Number(0, 5),
-                        "Duration of a press, for recordings that only have pressed and released.")
-              .Optional("style", &R::style, Identifier(), kStyleDoc)
-              .Optional("from_s", &R::from_s, seconds, "Samples before this time are left out.")
-              .Optional("to_s", &R::to_s, seconds,
-                        "Samples after this time are left out; default: none.")
-              .Optional("start_at_m", &R::start_at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                        "The motion is shifted so that the palm starts here; default: not shifted.")
-              .Optional("yaw_deg", &R::yaw_deg, Number(-360, 360),
-                        "The motion is turned by this about the vertical, before it is shifted.")
-              .Optional("palm_m", &R::palm_m, Vector<3>(-1, 1),
-                        "The palm's centre, in the device's axes.")
-              .Optional("palm_rpy_deg", &R::palm_rpy_deg, Vector<3>(-360, 360),
-                        "Rotation of the palm relative to the device.")
-              .Optional("join_s", &R::join_s, Number(0, 60),
-                        "Time to get from where the target is to where the recording starts.")
-              .Optional("max_gap_s", &R::max_gap_s, Number(0, 60), "Longer gaps are refused.")
-              .Optional("max_jump_m", &R::max_jump_m, Number(0, 100), "Larger jumps are refused.")
-              .Optional("scale", &R::scale, Number(1e-4, 100),
-                        "Metres per unit of a BVH file; default: scaled to the length of her legs.")
-              .Renamed("most_gap_s", "max_gap_s")
-              .Renamed("most_jump_m", "max_jump_m")
-              .Check(CheckKindOfRecording))
-          .format());
+  return Step(
+      StructFormat<R>("a recording step")
+          .Required("recording", &R::recording,
+                    Word("[A-Za-z0-9_./-]+\\.(csv|json|bvh)", "a .csv, .json or .bvh file", 255),
+                    "A recorded motion: a CSV file, JSON of aframe-motion-capture-components, or "
+                    "BVH of a whole body.")
+          .Optional("device", &R::device, Word("[A-Za-z0-9_-]+", "a name like 'right'"),
+                    "Which device of a JSON file moves the hand; required there.")
+          .Optional("button", &R::button, Integer<int>(0, 31),
+                    "Which button of that device is the trigger; default 1.")
+          .Optional("press_s", &R::press_s, Number(0, 5),
+                    "Duration of a press, for recordings that only have pressed and released.")
+          .Optional("style", &R::style, Identifier(), kStyleDoc)
+          .Optional("from_s", &R::from_s, seconds, "Samples before this time are left out.")
+          .Optional("to_s", &R::to_s, seconds,
+                    "Samples after this time are left out; default: none.")
+          .Optional("start_at_m", &R::start_at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+                    "The motion is shifted so that the palm starts here; default: not shifted.")
+          .Optional("yaw_deg", &R::yaw_deg, Number(-360, 360),
+                    "The motion is turned by this about the vertical, before it is shifted.")
+          .Optional("palm_m", &R::palm_m, Vector<3>(-1, 1),
+                    "The palm's centre, in the device's axes.")
+          .Optional("palm_rpy_deg", &R::palm_rpy_deg, Vector<3>(-360, 360),
+                    "Rotation of the palm relative to the device.")
+          .Optional("join_s", &R::join_s, Number(0, 60),
+                    "Time to get from where the target is to where the recording starts.")
+          .Optional("max_gap_s", &R::max_gap_s, Number(0, 60), "Longer gaps are refused.")
+          .Optional("max_jump_m", &R::max_jump_m, Number(0, 100), "Larger jumps are refused.")
+          .Optional("scale", &R::scale, Number(1e-4, 100),
+                    "Metres per unit of a BVH file; default: scaled to the length of her legs.")
+          .Renamed("most_gap_s", "max_gap_s")
+          .Renamed("most_jump_m", "max_jump_m")
+          .Check(CheckKindOfRecording));
 }
 
 ValueFormat<StepYaml> MoveLimbFormat() {
   using M = MoveLimbYaml;
   using physics::LimbEnd;
-  return AsAlternative<StepYaml>(
-      WithTiming(
-          StructFormat<M>("a move_limb step")
-              .Required("move_limb", &M::move_limb,
-                        Choice<LimbEnd>({{"right_elbow", LimbEnd::kRightElbow},
-                                         {"left_elbow", LimbEnd::kLeftElbow},
-                                         {"right_wrist", LimbEnd::kRightWrist},
-                                         {"left_wrist", LimbEnd::kLeftWrist},
-                                         {"right_foot", LimbEnd::kRightFoot},
-                                         {"left_foot", LimbEnd::kLeftFoot}}),
-                        "Which part of a person goes there; the rest of the limb follows.")
-              .Optional("to_m", &M::to_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                        "World coordinates; without it the limb returns to its rest position.")
-              .Optional("max_force_n", &M::max_force_n, Number(1, 10000), kForceDoc)
-              .Optional("over_s", &M::over_s, Duration(), kOverDoc)
-              .Renamed("most_n", "max_force_n"))
-          .format());
+  return Step(StructFormat<M>("a move_limb step")
+                  .Required("move_limb", &M::move_limb,
+                            Choice<LimbEnd>({{"right_elbow", LimbEnd::kRightElbow},
+                                             {"left_elbow", LimbEnd::kLeftElbow},
+                                             {"right_wrist", LimbEnd::kRightWrist},
+                                             {"left_wrist", LimbEnd::kLeftWrist},
+                                             {"right_foot", LimbEnd::kRightFoot},
+                                             {"left_foot", LimbEnd::kLeftFoot}}),
+                            "Which part of a person goes there; the rest of the limb follows.")
+                  .Optional("to_m", &M::to_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+                            "World coordinates; without it the limb returns to its rest position.")
+                  .Optional("max_force_n", &M::max_force_n, Number(1, 10000), kForceDoc)
+                  .Renamed("most_n", "max_force_n"));
 }
 
 ValueFormat<StepYaml> WalkFormat() {
   using W = WalkYaml;
-  return AsAlternative<StepYaml>(
-      WithTiming(StructFormat<W>("a walk_to_m step")
-                     .Required("walk_to_m", &W::walk_to_m, GroundPoint("she stays on the floor"),
-                               "The point between a person's feet goes to this [x, y].")
-                     .Optional("max_force_n", &W::max_force_n, Number(1, 10000), kForceDoc)
-                     .Optional("over_s", &W::over_s, Duration(), kOverDoc))
-          .format());
+  return Step(StructFormat<W>("a walk_to_m step")
+                  .Required("walk_to_m", &W::walk_to_m, GroundPoint("she stays on the floor"),
+                            "The point between a person's feet goes to this [x, y].")
+                  .Optional("max_force_n", &W::max_force_n, Number(1, 10000), kForceDoc));
 }
 
 ValueFormat<StepYaml> OneStepFormat() {
@@ -342,23 +282,25 @@ ValueFormat<StepYaml> OneStepFormat() {
   return ByKey<StepYaml>(
       "a step",
       {{"reach", ReachFormat()},
-       {"close_to", GuardedStep("close_to", &CloseYaml::close_to, grip,
+       {"close_to", OneValueStep("close_to", &CloseYaml::close_to, grip,
+                                 "Grip: 0 open, 1 closed with full effort.", MayEnd::kBefore)},
+       {"open_to", OneValueStep("open_to", &OpenYaml::open_to, grip,
                                 "Grip: 0 open, 1 closed with full effort.")},
-       {"open_to",
-        TimedStep("open_to", &OpenYaml::open_to, grip, "Grip: 0 open, 1 closed with full effort.")},
-       {"lift_by_m", GuardedStep("lift_by_m", &LiftYaml::lift_by_m, Number(-kMaxMove_m, kMaxMove_m),
-                                 "Straight up by this much; negative is down.")},
+       {"lift_by_m",
+        OneValueStep("lift_by_m", &LiftYaml::lift_by_m, Number(-kMaxMove_m, kMaxMove_m),
+                     "Straight up by this much; negative is down.", MayEnd::kBefore)},
        {"move_by_m",
-        GuardedStep("move_by_m", &MoveYaml::move_by_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
-                    "Straight by [x, y, z], world axes.")},
-       {"carry_to_m", GuardedStep("carry_to_m", &CarryYaml::carry_to_m,
-                                  GroundPoint("the height is kept; 'lift_by_m' changes it"),
-                                  "The held object's centre goes to this [x, y], height kept.")},
-       {"place_on", TimedStep("place_on", &PlaceYaml::place_on, Identifier(),
-                              "Lower until the held object stands on this entity.")},
+        OneValueStep("move_by_m", &MoveYaml::move_by_m, Vector<3>(-kMaxMove_m, kMaxMove_m),
+                     "Straight by [x, y, z], world axes.", MayEnd::kBefore)},
+       {"carry_to_m", OneValueStep("carry_to_m", &CarryYaml::carry_to_m,
+                                   GroundPoint("the height is kept; 'lift_by_m' changes it"),
+                                   "The held object's centre goes to this [x, y], height kept.",
+                                   MayEnd::kBefore)},
+       {"place_on", OneValueStep("place_on", &PlaceYaml::place_on, Identifier(),
+                                 "Lower until the held object stands on this entity.")},
        {"retreat_by_m",
-        GuardedStep("retreat_by_m", &RetreatYaml::retreat_by_m, Number(0, kMaxMove_m),
-                    "Back by this much, along the path the hand came.")},
+        OneValueStep("retreat_by_m", &RetreatYaml::retreat_by_m, Number(0, kMaxMove_m),
+                     "Back by this much, along the path the hand came.", MayEnd::kBefore)},
        {"follow_joint", FollowJointFormat()},
        {"wait_s", WaitFormat()},
        {"poses", PosesFormat()},
@@ -366,21 +308,21 @@ ValueFormat<StepYaml> OneStepFormat() {
        {"orbit", OrbitFormat()},
        {"press_n", PressFormat()},
        {"recording", RecordingFormat()},
-       {"look_at", TimedStep("look_at", &LookAtYaml::look_at, Identifier(),
-                             "The entity or hand that a person looks at from now on.")},
-       {"look_at_m", TimedStep("look_at_m", &LookAtPointYaml::look_at_m,
-                               Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                               "The point that a person looks at from now on.")},
-       {"eyes", TimedStep("eyes", &EyesYaml::eyes, EyesFormat(),
-                          "A person's eyes lead her hands again, or look ahead.")},
+       {"look_at", OneValueStep("look_at", &LookAtYaml::look_at, Identifier(),
+                                "The entity or hand that a person looks at from now on.")},
+       {"look_at_m", OneValueStep("look_at_m", &LookAtPointYaml::look_at_m,
+                                  Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+                                  "The point that a person looks at from now on.")},
+       {"eyes", OneValueStep("eyes", &EyesYaml::eyes, EyesFormat(),
+                             "A person's eyes lead her hands again, or look ahead.")},
        {"walk_to_m", WalkFormat()},
-       {"turn_to_deg", TimedStep("turn_to_deg", &TurnYaml::turn_to_deg, Number(-360, 360),
-                                 "A person turns to this yaw.")},
-       {"lean_deg", TimedStep("lean_deg", &LeanYaml::lean_deg, Number(-30, 90),
-                              "A person's trunk leans forwards by this.")},
+       {"turn_to_deg", OneValueStep("turn_to_deg", &TurnYaml::turn_to_deg, Number(-360, 360),
+                                    "A person turns to this yaw.")},
+       {"lean_deg", OneValueStep("lean_deg", &LeanYaml::lean_deg, Number(-30, 90),
+                                 "A person's trunk leans forwards by this.")},
        {"sway_by_m",
-        TimedStep("sway_by_m", &SwayYaml::sway_by_m, Vector<2>(-kMaxSway_m, kMaxSway_m),
-                  "A person's hips shift this far [ahead, left] from above her feet.")},
+        OneValueStep("sway_by_m", &SwayYaml::sway_by_m, Vector<2>(-kMaxSway_m, kMaxSway_m),
+                     "A person's hips shift this far [ahead, left] from above her feet.")},
        {"move_limb", MoveLimbFormat()}},
       StepRemedies());
 }

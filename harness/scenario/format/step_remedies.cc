@@ -3,11 +3,7 @@
 // tests/harness/scenario/format/scenario_errors_test.cc
 #include "harness/scenario/format/step_remedies.h"
 
-#include <fmt/format.h>
-
-#include <charconv>
 #include <sstream>
-#include <string_view>
 #include <utility>
 
 namespace prehend::scenario {
@@ -57,27 +53,6 @@ Remedies StepRemedies() {
     for (std::string word; each >> word;) remedies.emplace_back(word, remedy);
   }
   return remedies;
-}
-
-std::string UntilRemedy(const std::string& condition) {
-  const std::size_t open = condition.find('('), close = condition.find(')');
-  if (open == std::string::npos || close == std::string::npos || close < open) return "";
-  const std::string word = condition.substr(0, open);
-  const std::string thing = condition.substr(open + 1, close - open - 1);
-  if (word != "touching" && word.starts_with("touch"))
-    return fmt::format("write: touching({})", thing);
-  const std::size_t less = condition.find('<', close);
-  if (word != "gap" || less == std::string::npos) return "";
-  const std::size_t digits = condition.find_first_of("0123456789", less);
-  if (digits == std::string::npos) return "";
-  double number = 0;
-  const char* const end = condition.data() + condition.size();
-  const auto read = std::from_chars(condition.data() + digits, end, number);
-  const std::string_view unit(read.ptr, static_cast<std::size_t>(end - read.ptr));
-  if (!unit.empty() && !unit.starts_with(',')) return "";
-  // Who leaves the unit out thinks of millimetres, or of metres as elsewhere in the file.
-  return fmt::format("a length has a unit: gap({}) < {} mm", thing,
-                     number < 1 ? 1000 * number : number);
 }
 
 }  // namespace prehend::scenario

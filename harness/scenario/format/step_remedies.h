@@ -16,7 +16,4 @@ inline constexpr const char* kRepeatRemedy =
 /// Keys of steps that there are not.
 Remedies StepRemedies();
 
-/// How a condition that cannot be read was meant; "" if it can be read, or that is not known.
-std::string UntilRemedy(const std::string& condition);
-
 }  // namespace prehend::scenario

@@ -57,8 +57,7 @@ struct PersonStepMaker {
     const double over_s = e.poses.empty() ? 0 : e.poses.back().t_s;
     return {0, physics::HeadPosesStep{e.poses}, over_s};
   }
-  template <class HandYaml>
-  physics::PersonStep operator()(const HandYaml&) const {
+  physics::PersonStep operator()(const StepOfHand auto&) const {
     errors.Add(step.name_where, fmt::format("'{}' is a person; this step is for hands", step.name),
                "persons look, walk, turn, lean, move a limb; their hands are actors of their own");
     return {};

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 
 #include "harness/scenario/format/limits.h"
@@ -127,8 +126,7 @@ struct StepMaker {
     return {physics::kNone,
             physics::PressStep{e.against.value, e.press_n, e.along.value.normalized()}, e.over_s};
   }
-  template <class PersonYaml>
-  physics::Step operator()(const PersonYaml&) const {
+  physics::Step operator()(const StepOfPerson auto&) const {
     if (is_hand)
       errors.Add(written.name_where,
                  fmt::format("'{}' is a hand; this step is for persons", written.name),
@@ -138,14 +136,14 @@ struct StepMaker {
 
   /// What ends the step before its time; most steps have no such key.
   std::optional<physics::Until> UntilOf() const {
-    return std::visit(
-        [&](const auto& entry) -> std::optional<physics::Until> {
-          if constexpr (requires { entry.until; }) {
-            if (entry.until) return ParseUntil(*entry.until);
-          }
-          return {};
-        },
-        written.value);
+    const std::optional<Located<physics::Until>>& until = TimingOf(written.value).until;
+    if (!until) return {};
+    CheckEntity("until", {until->value.thing, until->where});
+    const double gap_m = until->value.gap_m.value_or(0);
+    if (gap_m > kMaxGap_m)
+      errors.Add(until->where, fmt::format("until: a gap of {:g} mm is too far, at most {:g} mm",
+                                           1000 * gap_m, 1000 * kMaxGap_m));
+    return until->value;
   }
 
  private:
@@ -188,25 +186,6 @@ struct StepMaker {
           name.where, fmt::format("relative_to: no entity or hand is called '{}'", name.value),
           name.value, known);
     return NamedFrame(name);
-  }
-
-  /// Of a text that its format has accepted: "gap(milk) < 5 mm, or go on".
-  physics::Until ParseUntil(const Located<std::string>& text) const {
-    const std::size_t open = text.value.find('('), close = text.value.find(')');
-    const Located<std::string> thing{text.value.substr(open + 1, close - open - 1), text.where};
-    CheckEntity("until", thing);
-    physics::Until until{
-        .thing = thing.value, .gap_m = {}, .or_go_on = text.value.ends_with("or go on")};
-    if (text.value.starts_with("touching")) return until;
-    const char* number = text.value.c_str() + close + 4;
-    char* unit = nullptr;
-    const double value = std::strtod(number, &unit);
-    const std::string_view rest(unit);
-    until.gap_m = value * (rest.starts_with(" mm") ? 0.001 : rest.starts_with(" cm") ? 0.01 : 1);
-    if (*until.gap_m > kMaxGap_m)
-      errors.Add(text.where, fmt::format("until: a gap of {:g} mm is too far, at most {:g} mm",
-                                         1000 * *until.gap_m, 1000 * kMaxGap_m));
-    return until;
   }
 
   /// Reports entities that do not exist or are not physical objects.
@@ -298,48 +277,48 @@ void CheckLength(const ScenarioYaml& entry, const physics::Script& script, Diagn
   }
 }
 
-/// What the earlier steps of a hand guarantee to the next one.
-struct HandSoFar {
-  std::string reached;  ///< the entity last reached for
-  bool closed = false;  ///< its grip has been commanded
+/// Steps that move a held object need a hand that may hold one.
+struct HoldingCheck {
+  const std::string& hand;
+  DiagnosticList& errors;
+  std::string reached = {};  ///< the entity last reached for
+  bool closed = false;       ///< its grip has been commanded
+
+  void operator()(const ReachYaml& reach) { reached = reach.reach.value; }
+  void operator()(const CloseYaml& close) { closed |= close.close_to > 0; }
+  void operator()(const PosesYaml& e) { Follow(e.poses); }
+  void operator()(const RecordingYaml& e) { Follow(e.poses); }
+  void operator()(const CarryYaml& carry) { MustHold("carry_to_m", carry.where); }
+  void operator()(const PlaceYaml& place) {
+    MustHold("place_on", place.where);
+    if (place.place_on.value == reached)
+      errors.Add(
+          place.place_on.where,
+          fmt::format("place_on: {} holds '{}' and cannot place it on itself", hand, reached));
+  }
+  /// They can be done with an empty hand, too.
+  void operator()(const physics::OneOf<OpenYaml, LiftYaml, MoveYaml, RetreatYaml, FollowJointYaml,
+                                       WaitYaml, TurnHandYaml, OrbitYaml, PressYaml> auto&) {}
+  void operator()(const StepOfPerson auto&) {}
+
+ private:
+  template <class T>
+  void Follow(const std::vector<T>& poses) {
+    closed |= std::ranges::any_of(poses, [](const T& pose) { return pose.trigger > 0.0; });
+  }
+  void MustHold(const char* key, const Where& where) const {
+    if (!reached.empty() || closed) return;
+    errors.Add(where, fmt::format("{}: {} cannot hold anything here", key, hand),
+               "no step before this one reaches for something or closes the hand");
+  }
 };
 
-/// Steps that move a held object need a hand that may hold one.
 void CheckHolding(const std::vector<StageYaml>& script, DiagnosticList& errors) {
-  std::map<std::string, HandSoFar> hands;
-  const auto check_holds = [&](const std::string& key, const Named<StepYaml>& step,
-                               const Where& where) {
-    const HandSoFar& hand = hands[step.name];
-    if (!hand.reached.empty() || hand.closed) return;
-    errors.Add(where, fmt::format("{}: {} cannot hold anything here", key, step.name),
-               "no step before this one reaches for something or closes the hand");
-  };
+  std::map<std::string, HoldingCheck> hands;
   for (const StageYaml& stage : script) {
-    for (const Named<StepYaml>& step : stage) {
-      HandSoFar& hand = hands[step.name];
-      if (const auto* reach = std::get_if<ReachYaml>(&step.value))
-        hand.reached = reach->reach.value;
-      if (const auto* close = std::get_if<CloseYaml>(&step.value))
-        hand.closed |= close->close_to > 0;
-      if (const auto* poses = std::get_if<PosesYaml>(&step.value)) {
-        for (const PoseYaml& pose : poses->poses) hand.closed |= pose.trigger.value_or(0) > 0;
-      }
-      if (const auto* recording = std::get_if<RecordingYaml>(&step.value)) {
-        for (const physics::TimedPose& pose : recording->poses)
-          hand.closed |= pose.trigger.value_or(0) > 0;
-      }
-      if (const auto* carry = std::get_if<CarryYaml>(&step.value)) {
-        check_holds("carry_to_m", step, carry->where);
-      }
-      if (const auto* place = std::get_if<PlaceYaml>(&step.value)) {
-        check_holds("place_on", step, place->where);
-        if (place->place_on.value == hand.reached) {
-          errors.Add(place->place_on.where,
-                     fmt::format("place_on: {} holds '{}' and cannot place it on itself", step.name,
-                                 hand.reached));
-        }
-      }
-    }
+    for (const Named<StepYaml>& step : stage)
+      std::visit(hands.try_emplace(step.name, HoldingCheck{step.name, errors}).first->second,
+                 step.value);
   }
 }
 

@@ -71,8 +71,10 @@ struct StepCheck {
     errors.Add(e.orbit.around.where, "orbit: this leaves the plane y = 0", kZeroY);
   }
   void operator()(const PressYaml& e) const { CheckWay("along", e.along.value.y(), e.along.where); }
-  template <class Other>
-  void operator()(const Other&) const {}
+  /// They keep to the plane by themselves; persons are refused as a whole.
+  void operator()(const physics::OneOf<CloseYaml, OpenYaml, LiftYaml, PlaceYaml, RetreatYaml,
+                                       FollowJointYaml, WaitYaml> auto&) const {}
+  void operator()(const StepOfPerson auto&) const {}
 
  private:
   void CheckWay(const char* key, double y, const Where& where) const {

@@ -120,21 +120,15 @@ class OnPaper {
   void operator()(const SwayYaml&) { LoseAll(); }
   void operator()(const MoveLimbYaml&) { LoseAll(); }
   /// Waiting and looking move nothing.
-  template <class Other>
-  void operator()(const Other&) {}
+  void operator()(
+      const physics::OneOf<WaitYaml, LookAtYaml, LookAtPointYaml, EyesYaml, TurnYaml> auto&) {}
 
  private:
   void Play(const Named<StepYaml>& step) {
     hand_ = &hands_[step.name];
     std::visit(*this, step.value);
-    const bool is_guarded = std::visit(
-        [](const auto& entry) {
-          if constexpr (requires { entry.until; }) return entry.until.has_value();
-          return false;
-        },
-        step.value);
     // It ends somewhere on its way.
-    if (is_guarded) LoseAll();
+    if (TimingOf(step.value).until) LoseAll();
   }
 
   void Check(const Named<StepYaml>& step) {

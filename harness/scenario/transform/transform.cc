@@ -37,8 +37,12 @@ struct ShiftStep {
   void operator()(physics::BodyPosesStep& step) const {
     for (physics::TimedPosture& timed : step.postures) timed.posture.hips_W_m += by_m;
   }
-  template <typename Other>  // names no place
-  void operator()(Other&) const {}
+  /// They name no place.
+  void operator()(const physics::OneOf<
+                  physics::WaitStep, physics::ReachStep, physics::TriggerStep, physics::MoveStep,
+                  physics::PlaceStep, physics::RetreatStep, physics::FollowJointStep,
+                  physics::TurnHandStep, physics::OrbitStep, physics::PressStep, physics::EyesStep,
+                  physics::TurnStep, physics::LeanStep, physics::SwayStep> auto&) const {}
 };
 
 /// `order[i]` is what becomes the i-th of `items`.

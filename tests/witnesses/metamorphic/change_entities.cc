@@ -39,8 +39,12 @@ struct RenameIn {
   void operator()(physics::LookAtStep& step) const {
     if (auto* const name = std::get_if<std::string>(&step.target)) (*this)(*name);
   }
-  template <typename Other>  // names nobody
-  void operator()(Other&) const {}
+  /// They name nobody.
+  void operator()(const physics::OneOf<
+                  physics::WaitStep, physics::TriggerStep, physics::MoveStep, physics::CarryStep,
+                  physics::RetreatStep, physics::TurnHandStep, physics::EyesStep, physics::WalkStep,
+                  physics::TurnStep, physics::LeanStep, physics::SwayStep, physics::MoveLimbStep,
+                  physics::HeadPosesStep, physics::BodyPosesStep> auto&) const {}
 };
 
 constexpr const char* kOfTheCopy = "_of_the_copy";

@@ -99,8 +99,11 @@ struct MoveStep {
         direction = motion.Direction(direction);
     }
   }
-  template <typename Other>  // says nothing about the world
-  void operator()(Other&) const {}
+  /// They say nothing about the world.
+  void operator()(
+      const physics::OneOf<physics::WaitStep, physics::TriggerStep, physics::PlaceStep,
+                           physics::RetreatStep, physics::FollowJointStep, physics::EyesStep,
+                           physics::LeanStep, physics::SwayStep> auto&) const {}
 };
 
 /// The place that an outcome asks for.
