@@ -204,7 +204,7 @@ void PrintText(const std::vector<suite::ScenarioVerdict>& verdicts, const TextOp
                                verdict.scenario, note.empty() ? "" : "  ", note);
     if (brief && verdict.exit_code != ExitCode::kAgrees) continue;
     context.out << Indented(suite::NotesText(verdict));
-    context.out << Indented(verdict.details);  // of what passed: claims that were not judged
+    context.out << Indented(DetailsText(verdict));  // of what passed: claims that were not judged
     if (verdict.exit_code == ExitCode::kAgrees) continue;
     context.out << "    " << suite::CommandLabel(verdict) << ": " << verdict.command << "\n";
   }

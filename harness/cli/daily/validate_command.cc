@@ -14,6 +14,7 @@
 #include "harness/cli/command/command.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/validate_claims.h"
+#include "harness/suite/check/verdict.h"
 #include "harness/suite/judge/unreferenced_goldens.h"
 #include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/golden/golden_files.h"
@@ -109,23 +110,11 @@ tl::expected<Validated, ExitCode> Validate(const std::string& typed, const Parse
   return validated;
 }
 
-nlohmann::ordered_json ToJson(const grammar::Diagnostics& diagnostics) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const grammar::Diagnostic& diagnostic : diagnostics) {
-    all.push_back({{"file", diagnostic.file},
-                   {"line", diagnostic.place.line},
-                   {"column", diagnostic.place.column},
-                   {"message", diagnostic.message},
-                   {"hint", diagnostic.hint}});
-  }
-  return all;
-}
-
 nlohmann::ordered_json ToJson(const Validated& validated) {
   return {{"file", validated.file},
           {"ok", validated.diagnostics.empty()},
-          {"diagnostics", ToJson(validated.diagnostics)},
-          {"warnings", ToJson(validated.warnings)}};
+          {"diagnostics", suite::DiagnosticsJson(validated.diagnostics)},
+          {"warnings", suite::DiagnosticsJson(validated.warnings)}};
 }
 
 /// What was typed; by default every scenario, or with --grammar that grammar alone.

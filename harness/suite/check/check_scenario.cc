@@ -108,7 +108,10 @@ void Store(const CheckedEpisode& checked) {
 /// The first finding decides; one that is wrong comes before a golden that does not exist yet.
 void Conclude(const Findings& findings, ScenarioVerdict& verdict) {
   verdict.verdict = Verdict::kPassed;
-  for (const Finding& finding : findings) verdict.details += finding.details;
+  for (const Finding& finding : findings) {
+    verdict.details += finding.details;
+    std::ranges::copy(finding.errors, std::back_inserter(verdict.errors));
+  }
   if (findings.empty()) return;
   const auto wrong = std::ranges::find_if(
       findings, [](const Finding& finding) { return finding.exit_code != ExitCode::kPending; });
@@ -120,7 +123,7 @@ void Conclude(const Findings& findings, ScenarioVerdict& verdict) {
 
 ScenarioVerdict Unreadable(const CheckRequest& request, ScenarioVerdict verdict,
                            const grammar::Diagnostics& why) {
-  Conclude({{ExitCode::kBadInput, "cannot be read", Format(why)}}, verdict);
+  Conclude({{ExitCode::kBadInput, "cannot be read", "", why}}, verdict);
   if (request.IsPlayed()) verdict.command = CommandAbout("validate", request.id, request.changes);
   return verdict;
 }

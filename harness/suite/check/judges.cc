@@ -61,7 +61,7 @@ Findings GoldenAndTruth(CheckedEpisode& checked) {
   std::optional<truth::Golden> golden;
   if (request.in_project) {
     auto read = truth::GoldenFiles(request.root).ReadGoldenOf(request.id);
-    if (!read) return {{ExitCode::kBadInput, "the golden cannot be read", Format(read.error())}};
+    if (!read) return {{ExitCode::kBadInput, "the golden cannot be read", "", read.error()}};
     golden = std::move(*read);
   }
   checked.golden = CompareWithGolden(golden, checked.run);
@@ -102,7 +102,7 @@ Findings GoldenBesideRecording(CheckedEpisode& checked) {
   ScenarioVerdict& verdict = checked.verdict;
   Result<JudgedRecording> judged = JudgeSegmented(
       std::move(*checked.recording), GoldenOfRecording(request, &checked.run.loaded.scenario));
-  if (!judged) return {{ExitCode::kBadInput, "cannot be read", Format(judged.error())}};
+  if (!judged) return {{ExitCode::kBadInput, "cannot be read", "", judged.error()}};
   verdict.ticks = judged->segmented.end;
   verdict.has_golden = judged->golden.has_value();
   verdict.drawings = truth::EventDrawings(*judged->segmented.program);

@@ -57,13 +57,17 @@ std::string NotesText(const ScenarioVerdict& verdict) {
   return text;
 }
 
+std::string DetailsText(const ScenarioVerdict& verdict) {
+  return Format(verdict.errors) + verdict.details;
+}
+
 namespace {
 
 bool SameOutcome(const ScenarioVerdict& a, const ScenarioVerdict& b) {
   const auto outcome = [](const ScenarioVerdict& v) {
     return std::tie(v.verdict, v.exit_code, v.reason, v.details, v.state_hash, v.ticks);
   };
-  return outcome(a) == outcome(b);
+  return outcome(a) == outcome(b) && Format(a.errors) == Format(b.errors);
 }
 
 /// "flaky: of 5 runs 3 passed, 2 failed; 2 different state hashes"

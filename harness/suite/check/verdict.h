@@ -12,6 +12,7 @@
 
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/exit_code.h"
+#include "harness/base/base/result.h"
 #include "harness/suite/check/attribute.h"
 #include "harness/suite/check/explained.h"
 #include "harness/suite/check/settings.h"
@@ -52,10 +53,11 @@ struct ScenarioVerdict {
   std::string scenario;  ///< skill/name
   std::string shows;
   Verdict verdict = Verdict::kFailed;
-  ExitCode exit_code = ExitCode::kAgrees;  ///< what a check of this scenario alone ends with
-  std::string reason;                      ///< one line; empty when passed
-  std::string details;             ///< differences, violations, diagnostics; several lines or empty
-  std::vector<std::string> notes;  ///< NoteLines(): steps that did not do what they say
+  ExitCode exit_code = ExitCode::kAgrees;   ///< what a check of this scenario alone ends with
+  std::string reason;                       ///< one line; empty when passed
+  grammar::Diagnostics errors;              ///< of its input
+  std::string details;                      ///< differences, violations; several lines or empty
+  std::vector<std::string> notes;           ///< NoteLines(): steps that did not do what they say
   std::vector<truth::ClaimVerdict> claims;  ///< of a run that completed
   std::optional<truth::Comparison>
       comparison;                 ///< with the golden; without one every event is extra
@@ -88,11 +90,17 @@ bool LeadsToReview(const ScenarioVerdict& verdict);
 /// What stands before its command: "again", or "next" of one that leads on.
 std::string_view CommandLabel(const ScenarioVerdict& verdict);
 
+/// Its errors and details; several lines or empty.
+std::string DetailsText(const ScenarioVerdict& verdict);
+
 /// The smallest margin of what passed; else empty.
 std::string MarginText(const ScenarioVerdict& verdict);
 
 /// The notes, a line each; of what passed, their number; or "".
 std::string NotesText(const ScenarioVerdict& verdict);
+
+/// As `--json` prints them: file, line, column, message, hint.
+nlohmann::ordered_json DiagnosticsJson(const grammar::Diagnostics& diagnostics);
 
 /// As `prehend check --json` prints it: keys in docs/regression-suite.md.
 nlohmann::ordered_json VerdictJson(const ScenarioVerdict& verdict);

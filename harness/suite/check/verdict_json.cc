@@ -23,6 +23,14 @@ struct adl_serializer<std::optional<T>> {
 
 }  // namespace nlohmann
 
+namespace prehend::grammar {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Place, line, column)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Diagnostic, file, place, message, source_line, caret_column,
+                                   hint, is_warning)
+
+}  // namespace prehend::grammar
+
 namespace prehend::truth {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EventDrawing, as, color, ghost, hand, first, last)
@@ -49,7 +57,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportedPicture, file, caption)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DrawnDifference, what, expected, recognised, in_golden, in_run)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attribution, event, what, shift_ms, because, question)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, shows, verdict, exit_code, reason,
-                                   details, notes, claims, comparison, has_golden, drawings,
+                                   errors, details, notes, claims, comparison, has_golden, drawings,
                                    explain, cause, attributions, settings, command, state_hash,
                                    ticks, seconds, peak_memory_kib, inputs, pictures, not_recorded,
                                    picture_differences, drawn_differences, explained, replay)
@@ -87,6 +95,17 @@ Json InputsJson(const FileHashes& inputs) {
 
 }  // namespace
 
+Json DiagnosticsJson(const grammar::Diagnostics& diagnostics) {
+  Json all = Json::array();
+  for (const grammar::Diagnostic& diagnostic : diagnostics)
+    all.push_back({{"file", diagnostic.file},
+                   {"line", diagnostic.place.line},
+                   {"column", diagnostic.place.column},
+                   {"message", diagnostic.message},
+                   {"hint", diagnostic.hint}});
+  return all;
+}
+
 Json VerdictJson(const ScenarioVerdict& verdict) {
   const truth::Comparison none;
   const truth::Comparison& compared =
@@ -98,7 +117,8 @@ Json VerdictJson(const ScenarioVerdict& verdict) {
           {"verdict", Name(verdict.verdict)},
           {"exit_code", static_cast<int>(verdict.exit_code)},
           {"reason", verdict.reason},
-          {"details", verdict.details},
+          {"details", DetailsText(verdict)},
+          {"errors", DiagnosticsJson(verdict.errors)},
           {"notes", verdict.notes},
           {"claims", truth::ClaimsJson(verdict.claims)},
           {"differences", truth::DifferencesJson(compared, verdict.explain)},

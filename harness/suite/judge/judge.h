@@ -18,6 +18,7 @@ struct Finding {
   ExitCode exit_code = ExitCode::kDiffers;  ///< of a check that finds only this
   std::string reason;                       ///< one line
   std::string details;                      ///< several lines or empty
+  grammar::Diagnostics errors = {};         ///< of its input
 };
 using Findings = std::vector<Finding>;
 

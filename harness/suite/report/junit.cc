@@ -31,7 +31,7 @@ const char* Element(const ScenarioVerdict& verdict) {
 /// What servers show first: the reason, and of differences the first one, with its numbers.
 std::string Message(const ScenarioVerdict& verdict) {
   if (!verdict.DiffersFromGolden()) {
-    const std::string first = verdict.details.substr(0, verdict.details.find('\n'));
+    const std::string text = DetailsText(verdict), first = text.substr(0, text.find('\n'));
     const bool says_more = !first.empty() && first != verdict.reason;  // a claim's is its reason
     return says_more ? verdict.reason + "; first: " + first : verdict.reason;
   }
@@ -58,9 +58,10 @@ void AddOutcome(pugi::xml_node test_case, const ScenarioVerdict& verdict) {
     AddElement(test_case, element, {{"message", "nothing changed since it passed"}});
     return;
   }
-  AddElement(test_case, element,
-             {{"type", std::string(Name(verdict.verdict))}, {"message", Message(verdict)}},
-             fmt::format("{}{}: {}\n", verdict.details, CommandLabel(verdict), verdict.command));
+  AddElement(
+      test_case, element,
+      {{"type", std::string(Name(verdict.verdict))}, {"message", Message(verdict)}},
+      fmt::format("{}{}: {}\n", DetailsText(verdict), CommandLabel(verdict), verdict.command));
 }
 
 void AddCase(pugi::xml_node suite, const ScenarioVerdict& verdict) {

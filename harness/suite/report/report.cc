@@ -238,12 +238,12 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, bool open,
     pictures.Add(pair, moment.recognised);
   }
   replays.Add(fold, verdict.replay);
-  if (!verdict.details.empty()) {
+  if (const std::string text = DetailsText(verdict); !text.empty()) {
     // Where it is explained above, it does not have to be read first.
     pugi::xml_node details = AddElement(fold, "details");
     if (verdict.explained.differences.empty()) details.append_attribute("open").set_value("open");
     AddElement(details, "summary", {}, "Everything that was found, as text");
-    AddElement(details, "pre", {{"tabindex", "0"}}, verdict.details);
+    AddElement(details, "pre", {{"tabindex", "0"}}, text);
   }
   const std::string margin = MarginText(verdict);
   if (!margin.empty()) AddElement(fold, "div", {{"class", "soft"}}, margin);

@@ -118,6 +118,9 @@ TEST_F(CheckScenarioTest, WhatCannotBeReadIsBadInput) {
   EXPECT_EQ(golden.verdict, Verdict::kFailed);
   EXPECT_EQ(golden.exit_code, ExitCode::kBadInput);
   EXPECT_EQ(golden.reason, "the golden cannot be read");
+  ASSERT_EQ(golden.errors.size(), 1u);
+  EXPECT_TRUE(golden.errors[0].file.ends_with("rest/carton_stands.timeline"));
+  EXPECT_EQ(golden.errors[0].place.line, 1);
   EXPECT_FALSE(golden.comparison);
   EXPECT_FALSE(fs::exists(files_.PendingPath(kId)));
 }

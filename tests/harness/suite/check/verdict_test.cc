@@ -27,6 +27,12 @@ TEST(Verdict, TravelsWithAllItsFields) {
                                 .verdict = Verdict::kPending,
                                 .exit_code = ExitCode::kPending,
                                 .reason = "no golden yet",
+                                .errors = {{.file = "a.yaml",
+                                            .place = {2, 3},
+                                            .message = "x",
+                                            .source_line = "  x",
+                                            .caret_column = 3,
+                                            .hint = "y"}},
                                 .details = "a\nb\n",
                                 .notes = {"note: 1.0 s: hand: it has closed"},
                                 .claims = {{.claim = "no sliding",
@@ -50,6 +56,7 @@ TEST(Verdict, TravelsWithAllItsFields) {
   const ScenarioVerdict unpacked = UnpackedVerdict(nlohmann::json::parse(packed));
   EXPECT_EQ(Packed(unpacked).dump(), packed);
   EXPECT_EQ(VerdictJson(unpacked), VerdictJson(verdict));
+  EXPECT_EQ(DetailsText(unpacked), "a.yaml:2:3: error: x\n    x\n    ^\n  hint: y\na\nb\n");
   EXPECT_TRUE(unpacked.DiffersFromGolden());
   EXPECT_EQ(truth::DifferenceText(*unpacked.comparison, "x"),
             truth::DifferenceText(*verdict.comparison, "x"));
@@ -66,10 +73,10 @@ TEST(Verdict, IsPrintedWithTheDocumentedKeys) {
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_EQ(keys,
             (std::vector<std::string>{
-                "scenario",        "verdict",     "exit_code", "reason",     "details", "notes",
-                "claims",          "differences", "relations", "blame",      "causes",  "headroom",
-                "boundaries",      "command",     "shows",     "state_hash", "ticks",   "seconds",
-                "peak_memory_kib", "inputs",      "pictures"}));
+                "scenario", "verdict",         "exit_code",   "reason",    "details",    "errors",
+                "notes",    "claims",          "differences", "relations", "blame",      "causes",
+                "headroom", "boundaries",      "command",     "shows",     "state_hash", "ticks",
+                "seconds",  "peak_memory_kib", "inputs",      "pictures"}));
   EXPECT_EQ(json["verdict"], "passed");
   EXPECT_EQ(json["headroom"], "margin: 6.0 of 10.0 ms left at end of sliding(hand, cup)");
   const nlohmann::ordered_json end_of_slide = {
@@ -91,6 +98,14 @@ TEST(Verdict, IsPrintedWithTheDocumentedKeys) {
   EXPECT_EQ(VerdictJson(verdict)["headroom"], "") << "what failed has no margin";
   verdict.has_golden = false;
   EXPECT_EQ(VerdictJson(verdict)["differences"].size(), 0u) << "nothing to compare with";
+  verdict.errors = {{.file = "x.yaml", .place = {4, 7}, .message = "expected a number"}};
+  const nlohmann::ordered_json error = {{"file", "x.yaml"},
+                                        {"line", 4},
+                                        {"column", 7},
+                                        {"message", "expected a number"},
+                                        {"hint", ""}};
+  EXPECT_EQ(VerdictJson(verdict)["errors"], nlohmann::ordered_json::array({error}));
+  EXPECT_EQ(VerdictJson(verdict)["details"], "x.yaml:4:7: error: expected a number\n");
 }
 
 struct Case {
