@@ -109,9 +109,12 @@ Word GuessAt(Guess guess, std::span<const Word> column, const Order& order, std:
       return PolynomialGuess(column, order, before, 4);
     case Guess::kBeside:
       return column[row - 1];
-    default:
-      return column[static_cast<std::size_t>(before)];
+    case Guess::kConstant:
+    case Guess::kBefore:
+    case Guess::kMotion:
+      break;
   }
+  return column[static_cast<std::size_t>(before)];
 }
 
 Vector3 Vector3At(const Columns& columns, std::size_t row, std::size_t first) {
@@ -204,10 +207,14 @@ class Encoder {
         return PolynomialDistances<3>(words, to);
       case Guess::kCube:
         return PolynomialDistances<4>(words, to);
-      default:
-        for (std::size_t row = 1; row < words.size(); ++row)
-          to[row - 1] = Distance(words[row], words[row - 1]);
+      case Guess::kConstant:
+      case Guess::kBefore:
+      case Guess::kMotion:
+      case Guess::kBeside:
+        break;
     }
+    for (std::size_t row = 1; row < words.size(); ++row)
+      to[row - 1] = Distance(words[row], words[row - 1]);
   }
 
   template <std::size_t values>

@@ -120,9 +120,18 @@ class BinaryDecoder {
         return std::to_string(reader_.Number<std::uint32_t>());
       case Basic::kInt64:
         return std::to_string(reader_.Number<std::int64_t>());
-      default:
+      case Basic::kUint64:
         return std::to_string(reader_.Number<std::uint64_t>());
+      case Basic::kBool:
+      case Basic::kFloat32:
+      case Basic::kFloat64:
+      case Basic::kTime:
+      case Basic::kText:
+      case Basic::kWideText:
+      case Basic::kMessage:
+        break;  // no Role::kId
     }
+    return "";
   }
 
   /// How many elements a field has; 0 after an error.
@@ -260,7 +269,10 @@ class BinaryDecoder {
       case Role::kZ:
         facts.p[static_cast<int>(role) - static_cast<int>(Role::kX)] = TakeReal(field.basic);
         return;
-      default:
+      case Role::kQx:
+      case Role::kQy:
+      case Role::kQz:
+      case Role::kQw:
         facts.xyzw[static_cast<int>(role) - static_cast<int>(Role::kQx)] = TakeReal(field.basic);
     }
   }

@@ -237,9 +237,15 @@ std::uint64_t BytesOf(Basic basic) {
     case Basic::kFloat64:
     case Basic::kTime:
       return 8;
-    default:
-      return 4;
+    case Basic::kInt32:
+    case Basic::kUint32:
+    case Basic::kFloat32:
+    case Basic::kText:
+    case Basic::kWideText:
+    case Basic::kMessage:
+      break;  // of a text its length
   }
+  return 4;
 }
 
 std::string PlainTypeName(std::string_view name) {

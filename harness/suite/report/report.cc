@@ -366,9 +366,11 @@ std::vector<ScenarioVerdict> WorstFirst(std::vector<ScenarioVerdict> verdicts) {
         return 1;
       case Verdict::kPending:
         return 2;
-      default:
-        return 3;
+      case Verdict::kPassed:
+      case Verdict::kUnchanged:
+        break;
     }
+    return 3;
   };
   std::ranges::stable_sort(verdicts, {}, rank);
   return verdicts;
