@@ -69,10 +69,20 @@ struct EntitySample {
   int gazes_at = kNoEntity;
 };
 
+/// Whether no grammar can tell one look from the other: in all but `asleep` they are the same.
+inline bool SameFacts(const EntitySample& a, const EntitySample& b) {
+  // All are named, so that a new one does not compile before it is here.
+  const auto& [p_WB_m, q_WB, v_WB, w_WB, asleep, joint_position, joint_fraction, gazes_at] = a;
+  return p_WB_m == b.p_WB_m && q_WB.coeffs() == b.q_WB.coeffs() && v_WB == b.v_WB_m_per_s &&
+         w_WB == b.w_WB_rad_per_s && joint_position == b.joint_position &&
+         joint_fraction == b.joint_fraction && gazes_at == b.gazes_at;
+}
+
 /// A ball that stands for a piece of a hand's surface, for distances from hand to object.
 struct CollisionSphere {
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   double radius_m = 0;
+  friend bool operator==(const CollisionSphere&, const CollisionSphere&) = default;
 };
 
 /// How fast, up or down, their material moves against each other at a point, m/s.
@@ -112,6 +122,7 @@ struct Touch {
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d nhat_BA_W = Eigen::Vector3d::Zero();
   std::uint32_t sensor_sets = 0;  ///< when one of the two is a hand: which of its sensor sets touch
+  friend bool operator==(const Touch&, const Touch&) = default;
 };
 
 /// One look at the world. Ticks increase from frame to frame by any amount. Spans live until the

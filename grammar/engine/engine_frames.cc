@@ -10,27 +10,23 @@
 namespace prehend::grammar {
 namespace {
 
-bool Same(const EntitySample& a, const EntitySample& b) {
-  return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() &&
-         a.v_WB_m_per_s == b.v_WB_m_per_s && a.w_WB_rad_per_s == b.w_WB_rad_per_s &&
-         a.joint_position == b.joint_position && a.joint_fraction == b.joint_fraction &&
-         a.gazes_at == b.gazes_at;
-}
-
+// All but the trigger.
 bool SamePose(const HandSample& a, const HandAtFrame& b) {
-  const auto same = [](const CollisionSphere& x, const CollisionSphere& y) {
-    return x.p_W_m == y.p_W_m && x.radius_m == y.radius_m;
-  };
-  return a.style == b.look.style && a.ahead_W == b.look.ahead_W &&
-         std::equal(a.collision_spheres.begin(), a.collision_spheres.end(),
-                    b.collision_spheres.begin(), b.collision_spheres.end(), same);
+  const auto& [entity, trigger, style, ahead_W, collision_spheres] = a;
+  return style == b.look.style && ahead_W == b.look.ahead_W &&
+         std::ranges::equal(collision_spheres, b.collision_spheres);
 }
 
-bool Same(const Touch& a, bool swapped, const TouchSample& b) {
-  return a.up_on_a == b.up[swapped ? 1 : 0] && a.up_on_b == b.up[swapped ? 0 : 1] &&
-         a.normal_force_n == b.force_n && a.vertical_speed_m_per_s == b.vertical_speed_m_per_s &&
-         a.p_W_m == b.p_W_m && a.nhat_BA_W == (swapped ? -b.nhat_W : b.nhat_W) &&
-         a.sensor_sets == b.sensor_sets;
+// As the roles of an instance name the two.
+TouchSample SampleOf(const Touch& touch, bool swapped, FrameNumber frame) {
+  const auto& [a, b, up_on_a, up_on_b, force_n, speed_m_per_s, p_W_m, nhat_BA_W, sets] = touch;
+  return {.frame = frame,
+          .up = swapped ? std::array{up_on_b, up_on_a} : std::array{up_on_a, up_on_b},
+          .force_n = force_n,
+          .vertical_speed_m_per_s = speed_m_per_s,
+          .p_W_m = p_W_m,
+          .nhat_W = swapped ? -nhat_BA_W : nhat_BA_W,
+          .sensor_sets = sets};
 }
 
 }  // namespace
@@ -62,7 +58,7 @@ void Engine::Advance(const Frame& frame, std::vector<Event>& out) {
   if (!BeginFrame(frame, out)) return;
   for (std::size_t i = 0; i < frame.entities.size(); ++i) {
     const int entity = static_cast<int>(i);
-    if (!Same(frame.entities[i], history_.Look(entity, history_.now())))
+    if (!SameFacts(frame.entities[i], history_.Look(entity, history_.now())))
       Look(entity, frame.entities[i]);
   }
   for (const HandSample& hand : frame.hands) Look(hand);
@@ -232,8 +228,9 @@ void Engine::ApplyContacts(std::span<const Touch> touches) {
         swapped ? touch.up_on_b : touch.up_on_a, swapped ? touch.up_on_a : touch.up_on_b,
         touch.normal_force_n, touch.vertical_speed_m_per_s, touch.sensor_sets);
     const ThresholdSet changed = crossed ^ state.crossed_thresholds;
-    if (instance.open &&
-        (keeps_touches_ ? Same(touch, swapped, state.touches.back()) : changed == 0))
+    if (instance.open && (keeps_touches_ ? SampleOf(touch, swapped, state.touches.back().frame) ==
+                                               state.touches.back()
+                                         : changed == 0))
       continue;
     state.crossed_thresholds = crossed;
     if (recalls_touches_) Keep(instance, touch, swapped);
@@ -253,15 +250,7 @@ void Engine::Keep(RuleInstance& instance, const Touch& touch, bool swapped) {
   touching.crossings.PushBack() = {history_.now(), touching.crossed_thresholds};
   if (!keeps_touches_) return;
   ForgetSamples(touching.touches, first);
-  TouchSample& sample = touching.touches.PushBack();
-  sample.frame = history_.now();
-  sample.up =
-      swapped ? std::array{touch.up_on_b, touch.up_on_a} : std::array{touch.up_on_a, touch.up_on_b};
-  sample.force_n = touch.normal_force_n;
-  sample.vertical_speed_m_per_s = touch.vertical_speed_m_per_s;
-  sample.p_W_m = touch.p_W_m;
-  sample.nhat_W = swapped ? -touch.nhat_BA_W : touch.nhat_BA_W;
-  sample.sensor_sets = touch.sensor_sets;
+  touching.touches.PushBack() = SampleOf(touch, swapped, history_.now());
 }
 
 void Engine::BeginTouch(RuleInstance& touching) {

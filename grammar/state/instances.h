@@ -44,6 +44,7 @@ struct TouchSample {
   Eigen::Vector3d p_W_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d nhat_W = Eigen::Vector3d::Zero();
   std::uint32_t sensor_sets = 0;
+  friend bool operator==(const TouchSample&, const TouchSample&) = default;
 };
 
 /// Which thresholds it has crossed.

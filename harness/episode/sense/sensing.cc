@@ -61,14 +61,6 @@ grammar::EntitySample LookAt(const physics::BodyState& body) {
           .asleep = body.asleep};
 }
 
-/// Whether no grammar can distinguish them.
-bool SameSample(const grammar::EntitySample& a, const grammar::EntitySample& b) {
-  return a.p_WB_m == b.p_WB_m && a.q_WB.coeffs() == b.q_WB.coeffs() &&
-         a.v_WB_m_per_s == b.v_WB_m_per_s && a.w_WB_rad_per_s == b.w_WB_rad_per_s &&
-         a.joint_position == b.joint_position && a.joint_fraction == b.joint_fraction &&
-         a.gazes_at == b.gazes_at;
-}
-
 /// For each entity whether sensors measure its pose: it moves, or could. Where fixed things and
 /// abstract entities are is known.
 std::vector<bool> MeasuredOf(const physics::Scene& scene) {
@@ -77,12 +69,6 @@ std::vector<bool> MeasuredOf(const physics::Scene& scene) {
     measured.push_back(!body.fixed && body.abstract == physics::Abstract::kNot);
   measured.resize(scene.bodies.size() + scene.hands.size(), true);
   return measured;
-}
-
-bool Alike(const grammar::Touch& a, const grammar::Touch& b) {
-  return a.up_on_a == b.up_on_a && a.up_on_b == b.up_on_b && a.normal_force_n == b.normal_force_n &&
-         a.vertical_speed_m_per_s == b.vertical_speed_m_per_s && a.p_W_m == b.p_W_m &&
-         a.nhat_BA_W == b.nhat_BA_W && a.sensor_sets == b.sensor_sets;
 }
 
 }  // namespace
@@ -131,7 +117,7 @@ grammar::Frame Sensing::WithoutNoise() {
 
 void Sensing::Show(int entity, const grammar::EntitySample& look) {
   grammar::EntitySample& before = entities_[static_cast<std::size_t>(entity)];
-  if (!SameSample(look, before)) shown_.push_back(entity);
+  if (!SameFacts(look, before)) shown_.push_back(entity);
   before = look;
 }
 
@@ -207,7 +193,7 @@ void Sensing::CompareTouches(const Touches& before, const Touches& now) {
     for (; old != before.end() && PairOf(*old) < PairOf(touch); ++old)
       contact_ends_.push_back({old->a, old->b});
     const bool touched = old != before.end() && PairOf(*old) == PairOf(touch);
-    if (!touched || !Alike(*old, touch)) touch_changes_.push_back(touch);
+    if (!touched || !(*old == touch)) touch_changes_.push_back(touch);
     if (touched) ++old;
   }
   for (; old != before.end(); ++old) contact_ends_.push_back({old->a, old->b});
