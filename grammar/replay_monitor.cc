@@ -14,7 +14,7 @@ struct ReplayMonitor::State {
     engine.Remember(log);
   }
   const RuleInstance& At(InstanceId instance) { return engine.instances()[instance]; }
-  Evaluator::View View(const Moment& at);
+  Evaluator::View View(const Viewpoint& at);
 
   CandidateLog log;
   Engine engine;
@@ -45,13 +45,13 @@ void ReplayMonitor::Finish(Tick end) {
       by_instance[id].push_back({.instance = id, .span = past[i], .decided = past[i].end.tick});
     }
   }
-  using Kind = CandidateOutcome::Kind;
   for (CandidateOutcome& outcome : state_->log) {
     CandidateLog& outcomes = by_instance[outcome.instance];
-    if (outcome.kind != Kind::kWalkedBack) {
+    if (outcome.If<fate::WalkedBack>() == nullptr) {
       // It takes the place of the walk back to which it belongs.
       const auto same = [&](const CandidateOutcome& other) {
-        return other.kind == Kind::kWalkedBack && other.span.end.frame == outcome.span.end.frame;
+        return other.If<fate::WalkedBack>() != nullptr &&
+               other.span.end.frame == outcome.span.end.frame;
       };
       const auto walk = std::ranges::find_if(outcomes, same);
       if (walk != outcomes.end()) outcome.walk = walk->walk;
@@ -61,7 +61,7 @@ void ReplayMonitor::Finish(Tick end) {
   }
   for (CandidateLog& outcomes : by_instance) {
     std::erase_if(outcomes, [](const CandidateOutcome& outcome) {
-      return outcome.kind == Kind::kWalkedBack;
+      return outcome.If<fate::WalkedBack>() != nullptr;
     });
     std::ranges::stable_sort(outcomes, {},
                              [](const CandidateOutcome& outcome) { return outcome.span.end.tick; });
@@ -130,8 +130,7 @@ const CandidateLog& ReplayMonitor::OutcomesOf(InstanceId instance) const {
 const CandidateOutcome* ReplayMonitor::LastBegun(InstanceId instance, FrameNumber frame) const {
   const CandidateOutcome* last = nullptr;
   for (const CandidateOutcome& outcome : OutcomesOf(instance)) {
-    if (outcome.kind == CandidateOutcome::Kind::kInterval && outcome.span.begin.frame <= frame)
-      last = &outcome;
+    if (outcome.IsInterval() && outcome.span.begin.frame <= frame) last = &outcome;
   }
   return last;
 }
@@ -141,7 +140,7 @@ const CandidateOutcome* ReplayMonitor::Covering(InstanceId instance, FrameNumber
   return last != nullptr && frame < last->span.end.frame ? last : nullptr;
 }
 
-Evaluator::View ReplayMonitor::State::View(const Moment& at) {
+Evaluator::View ReplayMonitor::State::View(const Viewpoint& at) {
   RuleInstance& instance = engine.instances()[at.instance];
   const FrameNumber last = engine.history().now();
   // After the episode every value is known.
@@ -152,17 +151,17 @@ Evaluator::View ReplayMonitor::State::View(const Moment& at) {
   return view;
 }
 
-bool ReplayMonitor::Is(bool truth, NodeId node, const Moment& at) {
+bool ReplayMonitor::Is(bool truth, NodeId node, const Viewpoint& at) {
   Evaluator::View view = state_->View(at);
   view.negated = !truth;
   return (state_->engine.evaluator().Truth(node, view) == Kleene::kTrue) == truth;
 }
 
-std::optional<double> ReplayMonitor::Number(NodeId node, const Moment& at) {
+std::optional<double> ReplayMonitor::Number(NodeId node, const Viewpoint& at) {
   return state_->engine.evaluator().Number(node, state_->View(at));
 }
 
-std::optional<Reach> ReplayMonitor::ReachOf(NodeId node, const Moment& at) {
+std::optional<Reach> ReplayMonitor::ReachOf(NodeId node, const Viewpoint& at) {
   return state_->engine.evaluator().ReachOf(program().nodes[node], state_->View(at));
 }
 

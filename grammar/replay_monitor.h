@@ -66,17 +66,17 @@ class ReplayMonitor {
 
   /// A binding at a frame, with the boundaries of the interval that it is asked for, as far as the
   /// clause needs them.
-  struct Moment {
+  struct Viewpoint {
     InstanceId instance;
     FrameNumber frame = 0;
     std::optional<FrameNumber> begin = std::nullopt;
     std::optional<FrameNumber> end = std::nullopt;
   };
-  bool Truth(NodeId node, const Moment& at) { return Is(true, node, at); }
+  bool Truth(NodeId node, const Viewpoint& at) { return Is(true, node, at); }
   /// Whether the node is true, or is not. Of what is not tracked, it is neither.
-  bool Is(bool truth, NodeId node, const Moment& at);
-  std::optional<double> Number(NodeId node, const Moment& at);
-  std::optional<Reach> ReachOf(NodeId node, const Moment& at);
+  bool Is(bool truth, NodeId node, const Viewpoint& at);
+  std::optional<double> Number(NodeId node, const Viewpoint& at);
+  std::optional<Reach> ReachOf(NodeId node, const Viewpoint& at);
 
  private:
   struct State;

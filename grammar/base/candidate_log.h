@@ -3,6 +3,7 @@
 // Tested by tests/harness/show/explain/explain_test.cc
 #pragma once
 
+#include <variant>
 #include <vector>
 
 #include "grammar/base/ids.h"
@@ -26,28 +27,46 @@ struct WalkBack {
   FrameNumber at = 0;
 };
 
+/// What became of a run, and why.
+namespace fate {
+struct Interval {
+  FrameNumber confirmed = kNever;  ///< the frame of its confirmation, if it needed one
+};
+struct TooShort {};  ///< `lasting`
+struct TooLong {};   ///< `lasting .. to`
+struct TooFew {      ///< `repeat .. at least`
+  int found = 0;
+};
+struct Refused {};    ///< `requires` was false at its end
+struct Unconfirmed {  ///< `within` ended, or the episode did, before `by` began
+  FrameNumber over = 0;
+};
+struct Dropped {  ///< `during` was false, before the end came
+  FrameNumber at = 0;
+};
+struct TooLate {};      ///< no end `within` the time
+struct Came {};         ///< what must not come came
+struct Unfinished {};   ///< `or drop`, and the episode ended
+struct NothingBack {};  ///< an `until` with no frame before it to begin with
+struct WalkedBack {};   ///< an `until` with some; what becomes of them is noted next
+}  // namespace fate
+
+using Fate = std::variant<fate::Interval, fate::TooShort, fate::TooLong, fate::TooFew,
+                          fate::Refused, fate::Unconfirmed, fate::Dropped, fate::TooLate,
+                          fate::Came, fate::Unfinished, fate::NothingBack, fate::WalkedBack>;
+
 /// One run, from where it began to where it ended or was given up.
 struct CandidateOutcome {
-  enum class Kind {
-    kInterval,  ///< it is an interval; `cause` is the frame of its confirmation, if it needed one
-    kTooShort,  ///< `lasting`
-    kTooLong,   ///< `lasting .. to`
-    kTooFew,    ///< `repeat .. at least`; there were `cause`
-    kRefused,   ///< `requires` was false at its end
-    kUnconfirmed,  ///< `within` ended at `cause`, or the episode did, before `by` began
-    kDropped,      ///< `during` was false at `cause`, which came before the end
-    kTooLate,      ///< no end `within` the time
-    kCame,         ///< what must not come came
-    kUnfinished,   ///< `or drop`, and the episode ended
-    kNothingBack,  ///< an `until` with no frame before it to begin with
-    kWalkedBack,   ///< an `until` with some; what becomes of them is noted next
-  };
-  Kind kind = Kind::kInterval;
+  Fate fate;
   InstanceId instance;
   Span span;
-  FrameNumber cause = kNever;
   Tick decided = 0;
   WalkBack walk = {};  ///< kUntilSince only
+  template <typename Which>
+  const Which* If() const {
+    return std::get_if<Which>(&fate);
+  }
+  bool IsInterval() const { return If<fate::Interval>() != nullptr; }
 };
 
 using CandidateLog = std::vector<CandidateOutcome>;

@@ -250,10 +250,10 @@ class Engine final : private Followers {
   Tick AtLeastLasts(const RuleInstance& instance) const;
   void NoteUndecidedEnds();
   void FinishInstance(RuleInstance& instance, Moment end);
-  void Note(const RuleInstance& instance, CandidateOutcome::Kind kind, const Span& span,
-            FrameNumber cause = kNever, const WalkBack& walk = {}) {
+  void Note(const RuleInstance& instance, const Fate& fate, const Span& span,
+            const WalkBack& walk = {}) {
     if (log_ != nullptr)
-      log_->push_back({kind, instance.index, span, cause, DecidedAt(instance, span), walk});
+      log_->push_back({fate, instance.index, span, DecidedAt(instance, span), walk});
   }
 
   // Compositions get each finished interval of their parts.

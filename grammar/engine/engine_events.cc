@@ -39,23 +39,23 @@ bool Engine::Close(RuleInstance& instance, Moment end, bool open_end) {
 bool Engine::Conclude(RuleInstance& instance, const Span& span) {
   const Rule& rule = RuleOf(instance);
   if (span.end.tick - span.begin.tick < TicksOf(instance).lasting) {
-    Note(instance, CandidateOutcome::Kind::kTooShort, span);
+    Note(instance, fate::TooShort{}, span);
     return true;
   }
   if (TicksOf(instance).IsTooLong(span.end.tick - span.begin.tick)) {
-    Note(instance, CandidateOutcome::Kind::kTooLong, span);
+    Note(instance, fate::TooLong{}, span);
     return true;
   }
   if (const auto* holds = rule.If<WhileRule>();
       holds != nullptr && instance.count < holds->at_least) {
-    Note(instance, CandidateOutcome::Kind::kTooFew, span, instance.count);
+    Note(instance, fate::TooFew{instance.count}, span);
     return true;
   }
   if (rule.requirement != kNone) {
     const FrameNumber last = std::min(span.end.frame, history_.now());
     const Kleene required = evaluator_.Truth(rule.requirement, {instance, last, last});
     if (required == Kleene::kUnknown) return false;
-    if (required == Kleene::kFalse) Note(instance, CandidateOutcome::Kind::kRefused, span);
+    if (required == Kleene::kFalse) Note(instance, fate::Refused{}, span);
     if (required == Kleene::kFalse) return true;
   }
   Pending finished{.span = span, .style = instance.style, .next = span.end.frame};
@@ -82,8 +82,7 @@ void Engine::ResolvePending(RuleInstance& instance) {
     for (; pending.next <= history_.now(); ++pending.next) {
       const Evaluator::View view{instance, pending.next};
       const Kleene within = evaluator_.Holds(rule.confirmed_within, view);
-      if (within == Kleene::kFalse)
-        Note(instance, CandidateOutcome::Kind::kUnconfirmed, pending.span, pending.next);
+      if (within == Kleene::kFalse) Note(instance, fate::Unconfirmed{pending.next}, pending.span);
       if (within == Kleene::kFalse) return true;
       const Kleene begins = evaluator_.Begins(rule.confirmed_by, view);
       if (And(within, begins) == Kleene::kTrue) {
@@ -99,8 +98,7 @@ void Engine::ResolvePending(RuleInstance& instance) {
 void Engine::Emit(RuleInstance& instance, const Pending& finished) {
   const Rule& rule = RuleOf(instance);
   const Span& span = finished.span;
-  Note(instance, CandidateOutcome::Kind::kInterval, span,
-       rule.confirmed_by == kNone ? kNever : finished.next);
+  Note(instance, fate::Interval{rule.confirmed_by == kNone ? kNever : finished.next}, span);
   if (rule.referenced) Keep(instance, span);
   if (!rule.part_of.empty()) NotifyCompositions(instance, span);
   if (!rule.printed) return;
@@ -182,12 +180,12 @@ void Engine::FinishInstance(RuleInstance& instance, Moment end) {
   } else if (instance.open && (from_to == nullptr || !from_to->or_drop)) {
     Close(instance, end, true);
   } else if (instance.open) {
-    Note(instance, CandidateOutcome::Kind::kUnfinished, {instance.begin, end});
+    Note(instance, fate::Unfinished{}, {instance.begin, end});
   }
   ResolvePending(instance);  // a gap that nothing bridges any more ends an interval that others may
                              // have confirmed
   for (const Pending& pending : instance.pending)
-    Note(instance, CandidateOutcome::Kind::kUnconfirmed, pending.span, end.frame);
+    Note(instance, fate::Unconfirmed{end.frame}, pending.span);
   instance.open = instance.in_gap = instance.awake = false;
   instance.pending.clear();
   instance.known = kNever;

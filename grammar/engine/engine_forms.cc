@@ -252,7 +252,7 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
   if (instance.open) {
     const Kleene closes = evaluator_.Truth(rule.to, view);
     if (closes == Kleene::kTrue && rule.absence) {
-      Note(instance, CandidateOutcome::Kind::kCame, {instance.begin, history_.At(frame)}, frame);
+      Note(instance, fate::Came{}, {instance.begin, history_.At(frame)});
       instance.open = false;
     }
     if (closes == Kleene::kTrue) return !instance.open || Close(instance, history_.At(frame));
@@ -260,7 +260,7 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
     if (holds == Kleene::kFalse && !rule.or_drop) return Close(instance, history_.At(frame));
     if (closes == Kleene::kUnknown || holds == Kleene::kUnknown) return false;
     if (holds == Kleene::kFalse) {
-      Note(instance, CandidateOutcome::Kind::kDropped, {instance.begin, history_.At(frame)}, frame);
+      Note(instance, fate::Dropped{frame}, {instance.begin, history_.At(frame)});
       instance.open = false;
     }
     return true;
@@ -292,8 +292,7 @@ bool Engine::MeetDeadline(RuleInstance& instance, Moment now) {
   const Tick deadline = instance.begin.tick + TicksOf(instance).within;
   if (now.tick < deadline || (now.tick == deadline && !rule.absence)) return true;
   if (!rule.absence) {
-    Note(instance, CandidateOutcome::Kind::kTooLate, {instance.begin, {now.frame, deadline}},
-         now.frame);
+    Note(instance, fate::TooLate{}, {instance.begin, {now.frame, deadline}});
     instance.open = false;
     return true;
   }
@@ -321,9 +320,8 @@ bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
     const WalkBack walk = BeginOfWalk(instance, frame);
     const FrameNumber begin = walk.begin;
     if (begin == kNever) return false;
-    const CandidateOutcome::Kind kind =
-        begin < frame ? CandidateOutcome::Kind::kWalkedBack : CandidateOutcome::Kind::kNothingBack;
-    Note(instance, kind, {history_.At(begin), history_.At(frame)}, frame, walk);
+    Note(instance, begin < frame ? Fate(fate::WalkedBack{}) : fate::NothingBack{},
+         {history_.At(begin), history_.At(frame)}, walk);
     if (begin < frame) {
       if (!evaluator_.CaptureAnchors(instance, begin)) return false;
       instance.style = StyleAt(instance, begin);

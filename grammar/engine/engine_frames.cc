@@ -183,7 +183,7 @@ void Engine::NoteUndecidedEnds() {
     const NodeId until = RuleOf(instance).As<UntilSinceRule>().until;
     if (evaluator_.Truth(until, {instance, end.frame}) != Kleene::kTrue) continue;
     const Moment at = history_.At(end.frame);
-    Note(instance, CandidateOutcome::Kind::kNothingBack, {at, at}, end.frame);
+    Note(instance, fate::NothingBack{}, {at, at});
   }
 }
 

@@ -38,7 +38,8 @@ bool Clauses::IsChoice(grammar::NodeId node, bool truth) const {
 }
 
 // Of a choice that is fulfilled, nothing is missing: what fulfils it is all there is to say.
-void Clauses::Split(grammar::NodeId node, const Moment& at, bool truth, std::vector<Clause>& out) {
+void Clauses::Split(grammar::NodeId node, const Viewpoint& at, bool truth,
+                    std::vector<Clause>& out) {
   const Node& n = NodeAt(node);
   if (n.op == Op::kNot) return Split(n.args[0], at, !truth, out);
   if (n.op != Op::kAnd && n.op != Op::kOr) return out.push_back({node, truth});
@@ -48,13 +49,13 @@ void Clauses::Split(grammar::NodeId node, const Moment& at, bool truth, std::vec
   }
 }
 
-std::vector<Clauses::Clause> Clauses::Split(grammar::NodeId node, const Moment& at, bool truth) {
+std::vector<Clauses::Clause> Clauses::Split(grammar::NodeId node, const Viewpoint& at, bool truth) {
   std::vector<Clause> clauses;
   Split(node, at, truth, clauses);
   return clauses;
 }
 
-std::optional<Clauses::Measured> Clauses::Measure(grammar::NodeId node, const Moment& at) {
+std::optional<Clauses::Measured> Clauses::Measure(grammar::NodeId node, const Viewpoint& at) {
   const Node& n = NodeAt(node);
   if (IsComparison(n.op)) {
     const auto value = past_.Number(n.args[0], at);
@@ -74,11 +75,11 @@ std::optional<Clauses::Measured> Clauses::Measure(grammar::NodeId node, const Mo
                                                                                        : upright;
 }
 
-bool Clauses::IsNotTracked(grammar::NodeId node, const Moment& at) {
+bool Clauses::IsNotTracked(grammar::NodeId node, const Viewpoint& at) {
   return !past_.Is(true, node, at) && !past_.Is(false, node, at);
 }
 
-Reason Clauses::Measurement(const Clause& clause, const Moment& at,
+Reason Clauses::Measurement(const Clause& clause, const Viewpoint& at,
                             const std::optional<Measured>& before) {
   Reason reason{.mark = Mark::kHeld,
                 .what = ClauseText(past_, at.instance, clause.node),
@@ -110,7 +111,7 @@ Reason Clauses::Measurement(const Clause& clause, const Moment& at,
   return reason;
 }
 
-std::vector<Reading::Sample> Clauses::Course(grammar::NodeId node, const Moment& at) {
+std::vector<Reading::Sample> Clauses::Course(grammar::NodeId node, const Viewpoint& at) {
   const Tick around = past_.AtMostTicks(kCourse_s);
   const FrameNumber floor =
       AsksFor(past_.program(), node, Op::kAtBegin) && at.begin ? *at.begin : 0;
@@ -118,7 +119,7 @@ std::vector<Reading::Sample> Clauses::Course(grammar::NodeId node, const Moment&
   const FrameNumber first = std::max(floor, past_.FrameAt(std::max<Tick>(0, now - around)));
   const FrameNumber last = std::min(past_.frames() - 1, past_.FrameAt(now + around));
   std::vector<Reading::Sample> course;
-  Moment then = at;
+  Viewpoint then = at;
   for (then.frame = first; then.frame <= last; ++then.frame) {
     if (const auto measured = Measure(node, then))
       course.push_back({past_.TickOf(then.frame), measured->value, measured->limit});
@@ -126,11 +127,11 @@ std::vector<Reading::Sample> Clauses::Course(grammar::NodeId node, const Moment&
   return course;
 }
 
-std::string Clauses::Since(grammar::NodeId node, const Moment& at, bool truth) {
+std::string Clauses::Since(grammar::NodeId node, const Viewpoint& at, bool truth) {
   const FrameNumber floor =
       AsksFor(past_.program(), node, Op::kAtBegin) && at.begin ? *at.begin : 0;
   FrameNumber first = at.frame;
-  Moment earlier = at;
+  Viewpoint earlier = at;
   for (earlier.frame = at.frame - 1; earlier.frame >= floor && past_.Is(truth, node, earlier);
        --earlier.frame) {
     first = earlier.frame;
@@ -138,8 +139,8 @@ std::string Clauses::Since(grammar::NodeId node, const Moment& at, bool truth) {
   return first == 0 ? "from the first frame on" : "since " + Time(first);
 }
 
-Reason Clauses::Leaf(grammar::NodeId node, const Moment& at, bool truth, bool brief) {
-  Moment earlier = at;
+Reason Clauses::Leaf(grammar::NodeId node, const Viewpoint& at, bool truth, bool brief) {
+  Viewpoint earlier = at;
   --earlier.frame;
   const bool turned = at.frame > 0 && !past_.Is(truth, node, earlier);
   Reason reason = Measurement({node, truth}, at, turned ? Measure(node, earlier) : std::nullopt);
@@ -210,8 +211,7 @@ Reason Clauses::Reference(InstanceId instance, int slot, FrameNumber frame, bool
         begun == nullptr ? "never held so far" : "had ended at " + Time(begun->span.end.frame);
     if (begun != nullptr) reason.tick = begun->span.end.tick;
     for (const CandidateOutcome& next : past_.OutcomesOf(target)) {
-      if (next.kind != CandidateOutcome::Kind::kInterval || next.span.begin.frame <= frame)
-        continue;
+      if (!next.IsInterval() || next.span.begin.frame <= frame) continue;
       reason.how += ", begins at " + Time(next.span.begin.frame);
       break;
     }
@@ -220,7 +220,7 @@ Reason Clauses::Reference(InstanceId instance, int slot, FrameNumber frame, bool
 }
 
 // Of a reference, a boundary of its interval; of any other condition, its clauses.
-void Clauses::Edge(grammar::NodeId node, const Moment& at, bool truth, const Follow& follow,
+void Clauses::Edge(grammar::NodeId node, const Viewpoint& at, bool truth, const Follow& follow,
                    bool brief, Reasons& out) {
   const Node& n = NodeAt(node);
   const bool end = n.op == Op::kEnds;
@@ -235,36 +235,27 @@ void Clauses::Edge(grammar::NodeId node, const Moment& at, bool truth, const Fol
     const InstanceId target = past_.Referred(at.instance, arg.slot);
     for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
       const FrameNumber boundary = end ? outcome.span.end.frame : outcome.span.begin.frame;
-      if (outcome.kind != CandidateOutcome::Kind::kInterval || boundary != at.frame) continue;
+      if (!outcome.IsInterval() || boundary != at.frame) continue;
       return out.push_back(Boundary(target, outcome, end, follow));
     }
   }
 }
 
 // A conjunction is true because all its parts are, and false because of those that are not.
-void Clauses::Collect(grammar::NodeId node, const Moment& at, bool truth, const Follow& follow,
+void Clauses::Collect(grammar::NodeId node, const Viewpoint& at, bool truth, const Follow& follow,
                       bool brief, Reasons& out) {
   const Node& n = NodeAt(node);
-  switch (n.op) {
-    case Op::kNot:
-      return Collect(n.args[0], at, !truth, follow, brief, out);
-    case Op::kAnd:
-    case Op::kOr:
-      for (const grammar::NodeId arg : {n.args[0], n.args[1]}) {
-        if (past_.Is(truth, arg, at)) Collect(arg, at, truth, follow, brief, out);
-      }
-      return;
-    case Op::kBegins:
-    case Op::kEnds:
-      return Edge(node, at, truth, follow, brief, out);
-    case Op::kHolds:
-      return out.push_back(Reference(at.instance, n.slot, at.frame, truth, follow));
-    default:
-      return out.push_back(Leaf(node, at, truth, brief));
+  if (n.op == Op::kNot) return Collect(n.args[0], at, !truth, follow, brief, out);
+  if (n.op == Op::kBegins || n.op == Op::kEnds) return Edge(node, at, truth, follow, brief, out);
+  if (n.op == Op::kHolds)
+    return out.push_back(Reference(at.instance, n.slot, at.frame, truth, follow));
+  if (n.op != Op::kAnd && n.op != Op::kOr) return out.push_back(Leaf(node, at, truth, brief));
+  for (const grammar::NodeId arg : {n.args[0], n.args[1]}) {
+    if (past_.Is(truth, arg, at)) Collect(arg, at, truth, follow, brief, out);
   }
 }
 
-Reasons Clauses::Change(grammar::NodeId node, const Moment& at, bool truth, const Follow& follow,
+Reasons Clauses::Change(grammar::NodeId node, const Viewpoint& at, bool truth, const Follow& follow,
                         bool brief) {
   Reasons reasons;
   Collect(node, at, truth, follow, brief, reasons);
@@ -274,7 +265,7 @@ Reasons Clauses::Change(grammar::NodeId node, const Moment& at, bool truth, cons
 }
 
 // Of a moment that is not now: when it is, the next one first.
-std::string Clauses::WhenInstead(const Node& edge, const Moment& at) {
+std::string Clauses::WhenInstead(const Node& edge, const Viewpoint& at) {
   const bool begins = edge.op == Op::kBegins;
   if ((!begins && edge.op != Op::kEnds) || NodeAt(edge.args[0]).op != Op::kHolds) return {};
   const InstanceId target = past_.Referred(at.instance, NodeAt(edge.args[0]).slot);
@@ -282,15 +273,14 @@ std::string Clauses::WhenInstead(const Node& edge, const Moment& at) {
   if (target == kNone) return {};
   for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
     const FrameNumber frame = begins ? outcome.span.begin.frame : outcome.span.end.frame;
-    const bool is_one =
-        outcome.kind == CandidateOutcome::Kind::kInterval && (begins || frame < past_.frames());
+    const bool is_one = outcome.IsInterval() && (begins || frame < past_.frames());
     if (is_one && frame > at.frame) return "; it is next at " + Time(frame);
     if (is_one) last = frame;
   }
   return last ? "; it was last at " + Time(*last) : "; it never is";
 }
 
-Reason Clauses::Told(const Clause& clause, const Moment& at) {
+Reason Clauses::Told(const Clause& clause, const Viewpoint& at) {
   const Node& n = NodeAt(clause.node);
   const bool now = past_.Truth(clause.node, at);
   Reason reason;
@@ -307,7 +297,7 @@ Reason Clauses::Told(const Clause& clause, const Moment& at) {
   return reason;
 }
 
-Reasons Clauses::State(grammar::NodeId node, const Moment& at, bool truth) {
+Reasons Clauses::State(grammar::NodeId node, const Viewpoint& at, bool truth) {
   Reasons reasons;
   for (const Clause& clause : Split(node, at, truth)) reasons.push_back(Told(clause, at));
   return reasons;
@@ -324,7 +314,7 @@ double Clauses::NearestMember(InstanceId any_instance, FrameNumber frame, int de
   return nearest;
 }
 
-double Clauses::Nearness(grammar::NodeId node, const Moment& at, bool truth, int depth) {
+double Clauses::Nearness(grammar::NodeId node, const Viewpoint& at, bool truth, int depth) {
   constexpr int kMaxDepth = 6;
   const Node& n = NodeAt(node);
   if (past_.Is(truth, node, at)) return 1;

@@ -12,7 +12,7 @@
 
 namespace prehend::show {
 
-using Moment = grammar::ReplayMonitor::Moment;
+using Viewpoint = grammar::ReplayMonitor::Viewpoint;
 
 class Clauses {
  public:
@@ -24,17 +24,17 @@ class Clauses {
 
   /// The clauses that make the node what it is at the frame: true, or false. What became so at this
   /// very frame is followed. `brief` leaves out what was so already.
-  Reasons Change(grammar::NodeId node, const Moment& at, bool truth, const Follow& follow,
+  Reasons Change(grammar::NodeId node, const Viewpoint& at, bool truth, const Follow& follow,
                  bool brief = false);
   /// The same for a reference of the binding.
   Reason Reference(grammar::InstanceId instance, int slot, grammar::FrameNumber frame, bool truth,
                    const Follow& follow);
 
   /// The clauses of the node, as they were at the frame: those that are not `truth` have failed.
-  Reasons State(grammar::NodeId node, const Moment& at, bool truth);
+  Reasons State(grammar::NodeId node, const Viewpoint& at, bool truth);
 
   /// 1 when the node has this truth; else how near its clauses are to it, less than 1.
-  double Nearness(grammar::NodeId node, const Moment& at, bool truth, int depth = 0);
+  double Nearness(grammar::NodeId node, const Viewpoint& at, bool truth, int depth = 0);
 
   /// What is left of a node without `and`, `or` and `not`.
   struct Clause {
@@ -43,13 +43,13 @@ class Clauses {
   };
   /// The clauses that the node depends on at the frame: of alternatives one of which is as it has
   /// to be, only those that are.
-  std::vector<Clause> Split(grammar::NodeId node, const Moment& at, bool truth);
+  std::vector<Clause> Split(grammar::NodeId node, const Viewpoint& at, bool truth);
   /// Whether one of the node's two parts is enough: of an `or` that has to be true, or an `and`
   /// that has to be false.
   bool IsChoice(grammar::NodeId node, bool truth) const;
 
   /// A sentence about one comparison, region, test or reference, as it was at the frame.
-  Reason Told(const Clause& clause, const Moment& at);
+  Reason Told(const Clause& clause, const Viewpoint& at);
 
   std::string Time(grammar::FrameNumber frame);
   double Seconds(grammar::Tick ticks) const {
@@ -64,22 +64,23 @@ class Clauses {
     std::string of;  ///< " from the centre"
   };
   /// Nobody knows the value, as something in it is not tracked.
-  bool IsNotTracked(grammar::NodeId node, const Moment& at);
-  std::optional<Measured> Measure(grammar::NodeId node, const Moment& at);
-  std::vector<Reading::Sample> Course(grammar::NodeId node, const Moment& at);
+  bool IsNotTracked(grammar::NodeId node, const Viewpoint& at);
+  std::optional<Measured> Measure(grammar::NodeId node, const Viewpoint& at);
+  std::vector<Reading::Sample> Course(grammar::NodeId node, const Viewpoint& at);
   Reason Boundary(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome, bool end,
                   const Follow& follow);
-  void Edge(grammar::NodeId node, const Moment& at, bool truth, const Follow& follow, bool brief,
+  void Edge(grammar::NodeId node, const Viewpoint& at, bool truth, const Follow& follow, bool brief,
             Reasons& out);
-  Reason Leaf(grammar::NodeId node, const Moment& at, bool truth, bool brief);
-  Reason Measurement(const Clause& clause, const Moment& at, const std::optional<Measured>& before);
-  void Collect(grammar::NodeId node, const Moment& at, bool truth, const Follow& follow, bool brief,
-               Reasons& out);
-  void Split(grammar::NodeId node, const Moment& at, bool truth, std::vector<Clause>& out);
-  std::string WhenInstead(const grammar::Node& edge, const Moment& at);
+  Reason Leaf(grammar::NodeId node, const Viewpoint& at, bool truth, bool brief);
+  Reason Measurement(const Clause& clause, const Viewpoint& at,
+                     const std::optional<Measured>& before);
+  void Collect(grammar::NodeId node, const Viewpoint& at, bool truth, const Follow& follow,
+               bool brief, Reasons& out);
+  void Split(grammar::NodeId node, const Viewpoint& at, bool truth, std::vector<Clause>& out);
+  std::string WhenInstead(const grammar::Node& edge, const Viewpoint& at);
   Reason Impossible(grammar::InstanceId instance, int slot);
   double NearestMember(grammar::InstanceId any_instance, grammar::FrameNumber frame, int depth);
-  std::string Since(grammar::NodeId node, const Moment& at, bool truth);
+  std::string Since(grammar::NodeId node, const Viewpoint& at, bool truth);
   const grammar::Node& NodeAt(grammar::NodeId node) const { return past_.program().nodes[node]; }
 
   grammar::ReplayMonitor& past_;

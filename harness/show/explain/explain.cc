@@ -24,7 +24,7 @@ std::vector<const CandidateOutcome*> IntervalsOf(ReplayMonitor& past, const Ask&
   std::vector<const CandidateOutcome*> intervals;
   for (const InstanceId instance : BindingsThatFit(past, ask.rule, ask.entities)) {
     for (const CandidateOutcome& outcome : past.OutcomesOf(instance)) {
-      if (outcome.kind == CandidateOutcome::Kind::kInterval) intervals.push_back(&outcome);
+      if (outcome.IsInterval()) intervals.push_back(&outcome);
     }
   }
   std::stable_sort(intervals.begin(), intervals.end(),
@@ -53,8 +53,7 @@ std::vector<WhyEvent> ExplainAll(ReplayMonitor& past) {
     if (!past.program().rules[rule].printed) continue;
     for (const InstanceId instance : past.InstancesOf(rule)) {
       for (const CandidateOutcome& outcome : past.OutcomesOf(instance)) {
-        if (outcome.kind == CandidateOutcome::Kind::kInterval)
-          events.push_back(reasons.Explain(instance, outcome, true));
+        if (outcome.IsInterval()) events.push_back(reasons.Explain(instance, outcome, true));
       }
     }
   }

@@ -116,7 +116,7 @@ class Collector {
       if (values == nullptr) continue;
       std::fill(values->begin(), values->end(), 0);
       for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
-        if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
+        if (!outcome.IsInterval()) continue;
         const FrameNumber end = std::min(outcome.span.end.frame, past_.frames());
         for (FrameNumber frame = outcome.span.begin.frame; frame < end; ++frame)
           (*values)[frame] = 1;
@@ -158,7 +158,7 @@ class Collector {
     }
   }
 
-  void Fill(const Signal& signal, FrameNumber first, FrameNumber end, ReplayMonitor::Moment at,
+  void Fill(const Signal& signal, FrameNumber first, FrameNumber end, ReplayMonitor::Viewpoint at,
             std::vector<std::optional<double>>& values) {
     for (at.frame = first; at.frame < end; ++at.frame) {
       if (signal.what == Signal::What::kNumber) {

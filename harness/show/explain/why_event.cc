@@ -39,6 +39,13 @@ Reason Remark(std::string what, std::string how = {}) {
           .because = {}};
 }
 
+// The frame, if it needed one.
+std::optional<FrameNumber> ConfirmedAt(const CandidateOutcome& outcome) {
+  const auto* interval = outcome.If<grammar::fate::Interval>();
+  const bool is_confirmed = interval != nullptr && interval->confirmed != grammar::kNever;
+  return is_confirmed ? std::optional(interval->confirmed) : std::nullopt;
+}
+
 // A clause that stands in both is told once.
 void AddNew(Reasons more, Reasons& reasons) {
   for (Reason& reason : more) {
@@ -60,7 +67,7 @@ Clauses::Follow EventReasons::FollowFrom(int depth) {
   };
 }
 
-Reasons EventReasons::Change(grammar::NodeId node, const Moment& at, bool truth, int depth) {
+Reasons EventReasons::Change(grammar::NodeId node, const Viewpoint& at, bool truth, int depth) {
   return node == kNone ? Reasons{} : clauses_.Change(node, at, truth, FollowFrom(depth), brief_);
 }
 
@@ -73,13 +80,13 @@ Reasons EventReasons::Begin(InstanceId instance, const CandidateOutcome& outcome
     case Form::kAny:
       return BeginOrEndOfAny(instance, begin, false, depth);
     case Form::kWhile: {
-      const Moment at{.instance = instance, .frame = begin, .begin = begin};
+      const Viewpoint at{.instance = instance, .frame = begin, .begin = begin};
       Reasons reasons = Change(rule.As<WhileRule>().condition, at, true, depth);
       AddNew(Change(rule.As<WhileRule>().until, at, false, depth), reasons);
       return reasons;
     }
     case Form::kFromTo: {
-      const Moment at{.instance = instance, .frame = begin, .begin = begin};
+      const Viewpoint at{.instance = instance, .frame = begin, .begin = begin};
       Reasons reasons = Change(rule.As<FromToRule>().from, at, true, depth);
       AddNew(Change(rule.As<FromToRule>().during, at, true, kMaxDepth), reasons);
       return reasons;
@@ -115,7 +122,7 @@ Reasons EventReasons::End(InstanceId instance, const CandidateOutcome& outcome, 
                     {.instance = instance, .frame = end, .begin = begin}, hysteresis, depth);
     }
     case Form::kFromTo: {
-      const Moment at{.instance = instance, .frame = end, .begin = begin};
+      const Viewpoint at{.instance = instance, .frame = end, .begin = begin};
       const bool closed = past_.Truth(from_to->to, at);
       return Change(closed ? from_to->to : from_to->during, at, closed, depth);
     }
@@ -268,7 +275,7 @@ Reasons EventReasons::BeginOrEndOfAny(InstanceId instance, FrameNumber frame, bo
   for (const InstanceId member : members) {
     for (const CandidateOutcome& outcome : past_.OutcomesOf(member)) {
       const FrameNumber boundary = end ? outcome.span.end.frame : outcome.span.begin.frame;
-      if (outcome.kind != CandidateOutcome::Kind::kInterval || boundary != frame) continue;
+      if (!outcome.IsInterval() || boundary != frame) continue;
       const Rule& rule = past_.RuleOf(member);
       reasons.push_back(
           {.mark = Mark::kTurned,
@@ -290,7 +297,7 @@ bool EventReasons::ChooseParts(InstanceId instance, const CandidateOutcome& whol
   if (part == composition.parts.size()) return true;
   const InstanceId target = past_.Referred(instance, composition.parts[part]);
   for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
-    if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
+    if (!outcome.IsInterval()) continue;
     if (part == 0 && outcome.span.begin.frame != whole.span.begin.frame) continue;
     if (part + 1 == composition.parts.size() && outcome.span.end.frame != whole.span.end.frame)
       continue;
@@ -339,19 +346,19 @@ Reasons EventReasons::Counted(InstanceId instance, const CandidateOutcome& outco
   }
   if (rule.requirement != kNone) {
     const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
-    const Moment at{
+    const Viewpoint at{
         .instance = instance, .frame = last, .begin = outcome.span.begin.frame, .end = last};
     for (Reason& reason : clauses_.State(rule.requirement, at, true)) {
       reason.what = "requires " + reason.what;
       reasons.push_back(std::move(reason));
     }
   }
-  if (rule.confirmed_by != kNone && outcome.cause != grammar::kNever) {
+  if (const std::optional<FrameNumber> confirmed = ConfirmedAt(outcome)) {
     const InstanceId by = past_.Referred(instance, rule.confirmed_by);
     const InstanceId within = past_.Referred(instance, rule.confirmed_within);
-    reasons.push_back(Remark("confirmed by " + Label(past_, by),
-                             "it began at " + clauses_.Time(outcome.cause) + ", while " +
-                                 Label(past_, within) + " held"));
+    reasons.push_back(Remark(
+        "confirmed by " + Label(past_, by),
+        "it began at " + clauses_.Time(*confirmed) + ", while " + Label(past_, within) + " held"));
   }
   return reasons;
 }
@@ -372,9 +379,9 @@ Reasons EventReasons::Waited(InstanceId instance, const CandidateOutcome& outcom
     reasons.push_back(Remark(Label(past_, instance), "a signal over a window looks " +
                                                          Seconds(rule.looks_around_s) + " ahead"));
   }
-  if (rule.confirmed_by != kNone && outcome.cause != grammar::kNever) {
+  if (const std::optional<FrameNumber> confirmed = ConfirmedAt(outcome)) {
     reasons.push_back(Remark(Label(past_, past_.Referred(instance, rule.confirmed_by)),
-                             "had to begin, and did so at " + clauses_.Time(outcome.cause)));
+                             "had to begin, and did so at " + clauses_.Time(*confirmed)));
   }
   for (Reason& reason : WaitedFor(instance, outcome, depth)) reasons.push_back(std::move(reason));
   return reasons;

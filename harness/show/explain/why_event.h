@@ -44,7 +44,7 @@ class EventReasons {
   Reasons WaitedFor(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,
                     int depth);
   double LooksBack_s(grammar::InstanceId instance);
-  Reasons Change(grammar::NodeId node, const Moment& at, bool truth, int depth);
+  Reasons Change(grammar::NodeId node, const Viewpoint& at, bool truth, int depth);
   Clauses::Follow FollowFrom(int depth);
   const grammar::Node& NodeAt(grammar::NodeId node) const { return past_.program().nodes[node]; }
   std::string Seconds(double seconds) const;

@@ -16,6 +16,7 @@
 
 namespace prehend::show {
 
+namespace fate = grammar::fate;
 using grammar::CandidateOutcome;
 using grammar::FrameNumber;
 using grammar::FromToRule;
@@ -62,6 +63,7 @@ WhyMissing MissingReasons::Explain(const std::vector<InstanceId>& instances,
                                    std::optional<FrameNumber> at) {
   const Window window = at ? Around(*at) : Whole();
   std::optional<Cause> worst;
+  PREHEND_CHECK(!instances.empty());
   InstanceId nearest = instances.front();
   for (const InstanceId instance : instances) {
     Cause cause = OfInstance(instance, window, 0);
@@ -86,7 +88,7 @@ WhyMissing MissingReasons::Explain(const std::vector<InstanceId>& instances,
       why.because += ", at " + At(*failure->tick, past_.entity_table().ticks_per_second);
   }
   for (const CandidateOutcome& outcome : past_.OutcomesOf(nearest)) {
-    if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
+    if (!outcome.IsInterval()) continue;
     why.nearest.push_back({.event = why.event,
                            .where = why.where,
                            .interval = {outcome.span.begin.tick, outcome.span.end.tick},
@@ -121,7 +123,7 @@ const grammar::CandidateLog& MissingReasons::RunsOf(InstanceId instance) {
     if (ends.contains(frame) || !past_.Truth(rule->until, {.instance = instance, .frame = frame}))
       continue;
     const grammar::Moment end{frame, past_.TickOf(frame)};
-    runs.push_back({.kind = CandidateOutcome::Kind::kNothingBack,
+    runs.push_back({.fate = fate::NothingBack{},
                     .instance = instance,
                     .span = {end, end},
                     .decided = end.tick});
@@ -139,7 +141,7 @@ const CandidateOutcome* MissingReasons::NearestRun(InstanceId instance, const Wi
   for (const CandidateOutcome& outcome : RunsOf(instance)) {
     const bool within =
         outcome.span.begin.frame <= window.last && outcome.span.end.frame >= window.first;
-    if (outcome.kind == CandidateOutcome::Kind::kInterval || !within) continue;
+    if (outcome.IsInterval() || !within) continue;
     const bool covers =
         window.at && outcome.span.begin.frame <= *window.at && *window.at < outcome.span.end.frame;
     const double here = RunCloseness(outcome) + (covers ? 1 : 0);
@@ -155,28 +157,21 @@ double MissingReasons::RunCloseness(const CandidateOutcome& outcome) {
   const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
   const double lasted_s = static_cast<double>(outcome.span.end.tick - outcome.span.begin.tick) /
                           static_cast<double>(past_.entity_table().ticks_per_second);
-  switch (outcome.kind) {
-    case CandidateOutcome::Kind::kTooShort:
-      return 1 + 0.5 * lasted_s / rule.lasting_s;
-    case CandidateOutcome::Kind::kTooFew:
-      return 1 + 0.9 * static_cast<double>(outcome.cause) / rule.As<grammar::WhileRule>().at_least;
-    case CandidateOutcome::Kind::kRefused: {
-      const Moment at{.instance = outcome.instance,
-                      .frame = last,
-                      .begin = outcome.span.begin.frame,
-                      .end = last};
-      return 1 + 0.9 * clauses_.Nearness(rule.requirement, at, true);
-    }
-    case CandidateOutcome::Kind::kUnconfirmed:
-      return 1.9;
-    case CandidateOutcome::Kind::kNothingBack: {
-      if (outcome.span.end.frame == 0) return 0.9;  // nor could there be anything
-      const Moment before{.instance = outcome.instance, .frame = last - 1, .end = last};
-      return 1 + 0.5 * clauses_.Nearness(rule.As<UntilSinceRule>().since, before, true);
-    }
-    default:
-      return 1.5;
+  if (outcome.If<fate::TooShort>() != nullptr) return 1 + 0.5 * lasted_s / rule.lasting_s;
+  if (const auto* few = outcome.If<fate::TooFew>())
+    return 1 + 0.9 * few->found / rule.As<grammar::WhileRule>().at_least;
+  if (outcome.If<fate::Refused>() != nullptr) {
+    const Viewpoint at{.instance = outcome.instance,
+                       .frame = last,
+                       .begin = outcome.span.begin.frame,
+                       .end = last};
+    return 1 + 0.9 * clauses_.Nearness(rule.requirement, at, true);
   }
+  if (outcome.If<fate::Unconfirmed>() != nullptr) return 1.9;
+  if (outcome.If<fate::NothingBack>() == nullptr) return 1.5;
+  if (outcome.span.end.frame == 0) return 0.9;  // nor could there be anything
+  const Viewpoint before{.instance = outcome.instance, .frame = last - 1, .end = last};
+  return 1 + 0.5 * clauses_.Nearness(rule.As<UntilSinceRule>().since, before, true);
 }
 
 std::string MissingReasons::Awaited(InstanceId instance) {
@@ -213,7 +208,7 @@ MissingReasons::Weighed MissingReasons::Weigh(Reason reason) {
 }
 
 MissingReasons::Weighed MissingReasons::Weigh(
-    grammar::NodeId node, const Moment& at, bool truth,
+    grammar::NodeId node, const Viewpoint& at, bool truth,
     const std::function<Weighed(const Clauses::Clause&)>& tell) {
   const grammar::Node& n = past_.program().nodes[node];
   if (n.op == grammar::Op::kNot) return Weigh(n.args[0], at, !truth, tell);
@@ -237,7 +232,7 @@ MissingReasons::Weighed MissingReasons::Weigh(
 // What is required, as it was at the end.
 Reasons MissingReasons::Requirement(const CandidateOutcome& outcome, int depth) {
   const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
-  const Moment at{
+  const Viewpoint at{
       .instance = outcome.instance, .frame = last, .begin = outcome.span.begin.frame, .end = last};
   const Window run{outcome.span.begin.frame, last};
   const auto tell = [&](const Clauses::Clause& clause) {
@@ -259,11 +254,12 @@ Reasons MissingReasons::EndThatNeverCame(const CandidateOutcome& outcome, FrameN
   const FromToRule& rule = past_.RuleOf(outcome.instance).As<FromToRule>();
   if (rule.absence) return {};
   const FrameNumber last = std::min({outcome.span.end.frame, past_.frames() - 1, look_until});
-  const Moment end{.instance = outcome.instance, .frame = last, .begin = outcome.span.begin.frame};
+  const Viewpoint end{
+      .instance = outcome.instance, .frame = last, .begin = outcome.span.begin.frame};
   const auto tell = [&](const Clauses::Clause& clause) {
     const grammar::Node& moment = past_.program().nodes[clause.node];
     if (moment.op != grammar::Op::kBegins || !clause.truth) return Weighed{};
-    Moment at = end;
+    Viewpoint at = end;
     at.frame = Closest(moment.args[0], at, {outcome.span.begin.frame, last});
     return Weigh(moment.args[0], at, true, [&](const Clauses::Clause& part) {
       Reason reason = clauses_.Told(part, at);
@@ -275,7 +271,7 @@ Reasons MissingReasons::EndThatNeverCame(const CandidateOutcome& outcome, FrameN
   return Weigh(rule.to, end, true, tell).reasons;
 }
 
-void MissingReasons::AddClauses(const char* word, grammar::NodeId node, const Moment& at,
+void MissingReasons::AddClauses(const char* word, grammar::NodeId node, const Viewpoint& at,
                                 Reasons& reasons) {
   for (Reason& reason : clauses_.State(node, at, true)) {
     reason.what = word + reason.what;
@@ -288,121 +284,118 @@ std::string MissingReasons::Lasted(const CandidateOutcome& outcome) {
                   past_.entity_table().ticks_per_second);
 }
 
-// Too short, too long, or with too little in it.
-MissingReasons::Fate MissingReasons::OfLength(const CandidateOutcome& outcome) {
-  const Rule& rule = past_.RuleOf(outcome.instance);
-  switch (outcome.kind) {
-    case CandidateOutcome::Kind::kTooShort:
-      return {"too short", OnlyFailed("lasting " + QuantityText(rule.lasting_s, grammar::kSeconds),
-                                      "it lasted only " + Lasted(outcome))};
-    case CandidateOutcome::Kind::kTooLong:
-      return {"too long",
-              OnlyFailed("lasting .. to " + QuantityText(rule.lasting_most_s, grammar::kSeconds),
-                         "it lasted " + Lasted(outcome))};
-    default:
-      return {"too few",
-              OnlyFailed("at least " + std::to_string(rule.As<grammar::WhileRule>().at_least),
-                         "there " + std::string(outcome.cause == 1 ? "was " : "were ") +
-                             std::to_string(outcome.cause))};
-  }
-}
-
-MissingReasons::Fate MissingReasons::Unconfirmed(const CandidateOutcome& outcome, int depth) {
+MissingReasons::Telling MissingReasons::Unconfirmed(const CandidateOutcome& outcome,
+                                                    FrameNumber over, int depth) {
   const Rule& rule = past_.RuleOf(outcome.instance);
   const InstanceId by = past_.Referred(outcome.instance, rule.confirmed_by);
   const InstanceId within = past_.Referred(outcome.instance, rule.confirmed_within);
-  const bool episode = outcome.cause >= past_.frames();
-  Fate fate{"not confirmed", OnlyFailed("confirmed by " + Label(past_, by),
-                                        "it did not begin before " +
-                                            (episode ? std::string("the episode ended")
-                                                     : Label(past_, within) + " was over") +
-                                            " at " + clauses_.Time(outcome.cause))};
-  const Window wait{outcome.span.end.frame, std::min(outcome.cause, past_.frames() - 1)};
-  fate.because.back().because = OfInstance(by, wait, depth + 1).reasons;
-  return fate;
+  const bool episode = over >= past_.frames();
+  Telling told{"not confirmed", OnlyFailed("confirmed by " + Label(past_, by),
+                                           "it did not begin before " +
+                                               (episode ? std::string("the episode ended")
+                                                        : Label(past_, within) + " was over") +
+                                               " at " + clauses_.Time(over))};
+  const Window wait{outcome.span.end.frame, std::min(over, past_.frames() - 1)};
+  told.because.back().because = OfInstance(by, wait, depth + 1).reasons;
+  return told;
 }
 
-// Of `from .. to` and `from .. without`: what was waited for did not come, or what must not, did.
-MissingReasons::Fate MissingReasons::WithoutEnd(const CandidateOutcome& outcome,
-                                                FrameNumber look_until) {
-  const InstanceId instance = outcome.instance;
-  const FromToRule& rule = past_.RuleOf(instance).As<FromToRule>();
-  const std::string within = QuantityText(rule.within_s, grammar::kSeconds);
-  switch (outcome.kind) {
-    case CandidateOutcome::Kind::kDropped: {
-      Fate fate{"dropped", EndThatNeverCame(outcome, look_until)};
-      AddClauses("during ", rule.during,
-                 {.instance = instance, .frame = outcome.cause, .begin = outcome.span.begin.frame},
-                 fate.because);
-      return fate;
-    }
-    case CandidateOutcome::Kind::kTooLate:
-      return {"dropped", OnlyFailed(Awaited(instance),
-                                    "it did not come within " + within + ", " + HowLate(outcome))};
-    case CandidateOutcome::Kind::kCame:
-      return {"what must not come came",
-              OnlyFailed(Awaited(instance),
-                         "it came after " + Lasted(outcome) + ", at " +
-                             At(outcome.span.end.tick, past_.entity_table().ticks_per_second))};
-    default:
-      return {"dropped", OnlyFailed(Awaited(instance),
-                                    !rule.absence ? "the episode ended before"
-                                                  : "it is decided only " + within +
-                                                        " later, the episode ended before")};
-  }
-}
-
-MissingReasons::Fate MissingReasons::NothingBefore(const CandidateOutcome& outcome) {
-  Fate fate{"nothing before its end at " + clauses_.Time(outcome.span.end.frame),
-            events_.CutOfWalk(outcome.instance, outcome)};
-  for (Reason& cut : fate.because) cut.mark = Mark::kFailed;
+MissingReasons::Telling MissingReasons::NothingBefore(const CandidateOutcome& outcome) {
+  Telling told{"nothing before its end at " + clauses_.Time(outcome.span.end.frame),
+               events_.CutOfWalk(outcome.instance, outcome)};
+  for (Reason& cut : told.because) cut.mark = Mark::kFailed;
   const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
   AddClauses(
       "since ", past_.RuleOf(outcome.instance).As<UntilSinceRule>().since,
       {.instance = outcome.instance, .frame = std::max<FrameNumber>(last - 1, 0), .end = last},
-      fate.because);
-  return fate;
+      told.because);
+  return told;
 }
 
-MissingReasons::Fate MissingReasons::FateOf(const CandidateOutcome& outcome, int depth,
-                                            FrameNumber look_until) {
-  switch (outcome.kind) {
-    case CandidateOutcome::Kind::kTooShort:
-    case CandidateOutcome::Kind::kTooLong:
-    case CandidateOutcome::Kind::kTooFew:
-      return OfLength(outcome);
-    case CandidateOutcome::Kind::kRefused:
-      return {"not what is required", Requirement(outcome, depth)};
-    case CandidateOutcome::Kind::kUnconfirmed:
-      return Unconfirmed(outcome, depth);
-    case CandidateOutcome::Kind::kDropped:
-    case CandidateOutcome::Kind::kTooLate:
-    case CandidateOutcome::Kind::kCame:
-    case CandidateOutcome::Kind::kUnfinished:
-      return WithoutEnd(outcome, look_until);
-    case CandidateOutcome::Kind::kNothingBack:
-      return NothingBefore(outcome);
-    default:
-      return {};
-  }
+// One per fate of a run: a new one does not compile without its words.
+MissingReasons::Telling MissingReasons::Tell(const CandidateOutcome& outcome, int depth,
+                                             FrameNumber look_until) {
+  struct Teller {
+    MissingReasons& reasons;
+    const CandidateOutcome& outcome;
+    int depth;
+    FrameNumber look_until;
+    const Rule& rule = reasons.past_.RuleOf(outcome.instance);
+
+    Telling operator()(fate::TooShort) const {
+      return {"too short", OnlyFailed("lasting " + QuantityText(rule.lasting_s, grammar::kSeconds),
+                                      "it lasted only " + reasons.Lasted(outcome))};
+    }
+    Telling operator()(fate::TooLong) const {
+      return {"too long",
+              OnlyFailed("lasting .. to " + QuantityText(rule.lasting_most_s, grammar::kSeconds),
+                         "it lasted " + reasons.Lasted(outcome))};
+    }
+    Telling operator()(fate::TooFew few) const {
+      return {"too few",
+              OnlyFailed("at least " + std::to_string(rule.As<grammar::WhileRule>().at_least),
+                         "there " + std::string(few.found == 1 ? "was " : "were ") +
+                             std::to_string(few.found))};
+    }
+    Telling operator()(fate::Refused) const {
+      return {"not what is required", reasons.Requirement(outcome, depth)};
+    }
+    Telling operator()(fate::Unconfirmed unconfirmed) const {
+      return reasons.Unconfirmed(outcome, unconfirmed.over, depth);
+    }
+    Telling operator()(fate::Dropped dropped) const {
+      Telling told{"dropped", reasons.EndThatNeverCame(outcome, look_until)};
+      reasons.AddClauses(
+          "during ", rule.As<FromToRule>().during,
+          {.instance = outcome.instance, .frame = dropped.at, .begin = outcome.span.begin.frame},
+          told.because);
+      return told;
+    }
+    Telling operator()(fate::TooLate) const {
+      return {"dropped",
+              OnlyFailed(reasons.Awaited(outcome.instance),
+                         "it did not come within " + Within() + ", " + reasons.HowLate(outcome))};
+    }
+    Telling operator()(fate::Came) const {
+      return {
+          "what must not come came",
+          OnlyFailed(reasons.Awaited(outcome.instance),
+                     "it came after " + reasons.Lasted(outcome) + ", at " +
+                         At(outcome.span.end.tick, reasons.past_.entity_table().ticks_per_second))};
+    }
+    Telling operator()(fate::Unfinished) const {
+      return {"dropped",
+              OnlyFailed(reasons.Awaited(outcome.instance),
+                         !rule.As<FromToRule>().absence ? "the episode ended before"
+                                                        : "it is decided only " + Within() +
+                                                              " later, the episode ended before")};
+    }
+    Telling operator()(fate::NothingBack) const { return reasons.NothingBefore(outcome); }
+    Telling operator()(fate::Interval) const { return {}; }
+    Telling operator()(fate::WalkedBack) const { return {}; }
+    std::string Within() const {
+      return QuantityText(rule.As<FromToRule>().within_s, grammar::kSeconds);
+    }
+  };
+  return std::visit(Teller{*this, outcome, depth, look_until}, outcome.fate);
 }
 
 MissingReasons::Cause MissingReasons::OfRun(const CandidateOutcome& outcome, int depth,
                                             FrameNumber look_until) {
-  using enum CandidateOutcome::Kind;
   const Rule& rule = past_.RuleOf(outcome.instance);
-  Fate fate = FateOf(outcome, depth, look_until);
+  Telling told = Tell(outcome, depth, look_until);
   const std::string span = "from " + clauses_.Time(outcome.span.begin.frame) + " to " +
                            At(outcome.span.end.tick, past_.entity_table().ticks_per_second) + ": ";
   Reason run{.mark = Mark::kFailed,
              .what = Label(past_, outcome.instance),
-             .how = (outcome.kind == kNothingBack ? "" : span) + fate.how,
+             .how = (outcome.If<fate::NothingBack>() != nullptr ? "" : span) + told.how,
              .where = Source(rule.file, rule.place),
              .tick = outcome.span.begin.tick,
              .reading = {},
-             .because = std::move(fate.because)};
-  const bool has_end = outcome.kind == kTooShort || outcome.kind == kTooLong ||
-                       outcome.kind == kTooFew || outcome.kind == kRefused;
+             .because = std::move(told.because)};
+  const bool has_end =
+      outcome.If<fate::TooShort>() != nullptr || outcome.If<fate::TooLong>() != nullptr ||
+      outcome.If<fate::TooFew>() != nullptr || outcome.If<fate::Refused>() != nullptr;
   if (has_end) {
     Reason began{.mark = Mark::kNote,
                  .what = "it began there",

@@ -47,17 +47,17 @@ class MissingReasons {
   std::string Awaited(grammar::InstanceId instance);
   std::string HowLate(const grammar::CandidateOutcome& outcome);
   /// What became of a run, and why.
-  struct Fate {
+  struct Telling {
     std::string how;
     Reasons because;
   };
-  Fate OfLength(const grammar::CandidateOutcome& outcome);
-  Fate Unconfirmed(const grammar::CandidateOutcome& outcome, int depth);
-  Fate WithoutEnd(const grammar::CandidateOutcome& outcome, grammar::FrameNumber look_until);
-  Fate NothingBefore(const grammar::CandidateOutcome& outcome);
-  Fate FateOf(const grammar::CandidateOutcome& outcome, int depth, grammar::FrameNumber look_until);
+  Telling Unconfirmed(const grammar::CandidateOutcome& outcome, grammar::FrameNumber over,
+                      int depth);
+  Telling NothingBefore(const grammar::CandidateOutcome& outcome);
+  Telling Tell(const grammar::CandidateOutcome& outcome, int depth,
+               grammar::FrameNumber look_until);
   /// The clauses of a condition, each after this word.
-  void AddClauses(const char* word, grammar::NodeId node, const Moment& at, Reasons& reasons);
+  void AddClauses(const char* word, grammar::NodeId node, const Viewpoint& at, Reasons& reasons);
   std::string Lasted(const grammar::CandidateOutcome& outcome);
   /// `look_until`: what came later than that could not have helped.
   Cause OfRun(const grammar::CandidateOutcome& outcome, int depth,
@@ -71,7 +71,7 @@ class MissingReasons {
   static Weighed Weigh(Reason reason);
   /// The clauses of a node. What stands in its way is first: of alternatives the one that missed by
   /// least, of what is needed together the one that missed by most.
-  Weighed Weigh(grammar::NodeId node, const Moment& at, bool truth,
+  Weighed Weigh(grammar::NodeId node, const Viewpoint& at, bool truth,
                 const std::function<Weighed(const Clauses::Clause&)>& tell);
   Reasons Requirement(const grammar::CandidateOutcome& outcome, int depth);
   Reasons EndThatNeverCame(const grammar::CandidateOutcome& outcome,
@@ -87,13 +87,13 @@ class MissingReasons {
   Cause OfFact(grammar::InstanceId instance, const Window& window);
 
   /// The clauses of a condition where they came closest to holding, the first failed one followed.
-  Cause OfClauses(grammar::NodeId node, Moment at, const Window& window, int depth);
+  Cause OfClauses(grammar::NodeId node, Viewpoint at, const Window& window, int depth);
   /// What a condition holds by that should not: references of its clauses, of `any` the bindings.
   Reasons WhyItHolds(grammar::InstanceId instance, grammar::FrameNumber frame);
   void Follow(Reason& reason, grammar::InstanceId target, grammar::FrameNumber frame,
               const Window& window, int depth);
   Reason ClosestApproach(grammar::InstanceId instance, const Window& window);
-  grammar::FrameNumber Closest(grammar::NodeId node, Moment at, const Window& window);
+  grammar::FrameNumber Closest(grammar::NodeId node, Viewpoint at, const Window& window);
   /// The moment never came.
   Cause OfMoment(grammar::NodeId node, grammar::InstanceId instance, const Window& window,
                  int depth);

@@ -47,7 +47,7 @@ Reason Failed(std::string what, std::string how, Reasons because = {}) {
 Reason MissingReasons::Intervals(InstanceId instance, std::string how) {
   std::size_t count = 0;
   for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
-    if (outcome.kind != CandidateOutcome::Kind::kInterval) continue;
+    if (!outcome.IsInterval()) continue;
     if (count++ == kMaxIntervals) how += ", ..";
     if (count > kMaxIntervals) continue;
     how += (count == 1 ? " " : ", ") +
@@ -87,7 +87,7 @@ MissingReasons::Cause MissingReasons::OfFact(InstanceId instance, const Window& 
   return {{std::move(reason)}, 0};
 }
 
-FrameNumber MissingReasons::Closest(grammar::NodeId node, Moment at, const Window& window) {
+FrameNumber MissingReasons::Closest(grammar::NodeId node, Viewpoint at, const Window& window) {
   FrameNumber first = window.first;
   FrameNumber last = window.last;
   if (window.at) {
@@ -118,7 +118,7 @@ FrameNumber MissingReasons::Closest(grammar::NodeId node, Moment at, const Windo
   return closest;
 }
 
-MissingReasons::Cause MissingReasons::OfClauses(grammar::NodeId node, Moment at,
+MissingReasons::Cause MissingReasons::OfClauses(grammar::NodeId node, Viewpoint at,
                                                 const Window& window, int depth) {
   at.frame = Closest(node, at, window);
   Cause cause{.reasons = {}, .closeness = clauses_.Nearness(node, at, true)};
@@ -163,7 +163,7 @@ Reasons MissingReasons::WhyItHolds(InstanceId instance, FrameNumber frame) {
   if (instance == kNone) return reasons;
   if (past_.RuleOf(instance).form() == Form::kAny) add_all(instance);
   if (const auto* rule = past_.RuleOf(instance).If<grammar::WhileRule>()) {
-    const Moment at{.instance = instance, .frame = frame};
+    const Viewpoint at{.instance = instance, .frame = frame};
     for (const Clauses::Clause& clause : clauses_.Split(rule->condition, at, true)) {
       const grammar::Node& n = past_.program().nodes[clause.node];
       if (n.op == Op::kHolds && clause.truth) add_all(past_.Referred(instance, n.slot));
@@ -207,7 +207,7 @@ MissingReasons::Cause MissingReasons::OfWhile(InstanceId instance, const Window&
 MissingReasons::Cause MissingReasons::OfMoment(grammar::NodeId node, InstanceId instance,
                                                const Window& window, int depth) {
   // Some of it happened, but not all at once.
-  const Moment at{.instance = instance, .frame = Closest(node, {.instance = instance}, window)};
+  const Viewpoint at{.instance = instance, .frame = Closest(node, {.instance = instance}, window)};
   if (past_.program().nodes[node].op == Op::kAnd && clauses_.Nearness(node, at, true) >= 0.5) {
     return OfClauses(node, {.instance = instance}, window, depth);
   }
@@ -259,7 +259,7 @@ MissingReasons::Cause MissingReasons::OfFromTo(InstanceId instance, const Window
   }
   for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) {
     if (outcome.span.begin.frame != from) continue;
-    if (outcome.kind != CandidateOutcome::Kind::kInterval) return OfRun(outcome, depth);
+    if (!outcome.IsInterval()) return OfRun(outcome, depth);
     reason.how = "the one before, " +
                  truth::IntervalText({outcome.span.begin.tick, outcome.span.end.tick},
                                      past_.entity_table().ticks_per_second) +
@@ -268,7 +268,7 @@ MissingReasons::Cause MissingReasons::OfFromTo(InstanceId instance, const Window
     return {{std::move(reason)}, 0.9};
   }
   reason.how = "could have begun at " + clauses_.Time(from);
-  const Moment at{.instance = instance, .frame = from, .begin = from};
+  const Viewpoint at{.instance = instance, .frame = from, .begin = from};
   if (during != kNone && !past_.Truth(during, at)) {
     for (Reason& state : clauses_.State(during, at, true)) {
       state.what = "during " + state.what;
@@ -310,7 +310,7 @@ std::optional<MissingReasons::Cause> MissingReasons::OfLaterEnd(InstanceId insta
   for (const CandidateOutcome& outcome : RunsOf(instance)) {
     if (outcome.span.end.frame <= at) continue;
     const bool reaches = outcome.span.end.tick - past_.TickOf(at) <= past_.AtMostTicks(back_s);
-    const bool is_interval = outcome.kind == CandidateOutcome::Kind::kInterval;
+    const bool is_interval = outcome.IsInterval();
     if (reaches && !is_interval) return OfRun(outcome, depth);
     Reason reason = Failed(Label(past_, instance), "");
     reason.where = Source(rule.file, rule.place);
@@ -381,10 +381,10 @@ MissingReasons::Cause MissingReasons::OfRest(InstanceId instance, const Window& 
                "it held " + truth::IntervalText({outcome.span.begin.tick, outcome.span.end.tick},
                                                 past_.entity_table().ticks_per_second));
     if (const auto* looks_back = past_.RuleOf(target).If<UntilSinceRule>()) {
-      const Moment at{.instance = target,
-                      .frame = frame,
-                      .begin = outcome.span.begin.frame,
-                      .end = outcome.span.end.frame};
+      const Viewpoint at{.instance = target,
+                         .frame = frame,
+                         .begin = outcome.span.begin.frame,
+                         .end = outcome.span.end.frame};
       covered.because = clauses_.State(looks_back->since, at, true);
     }
     reason.because.push_back(std::move(covered));
@@ -434,9 +434,7 @@ MissingReasons::Cause MissingReasons::OfCompose(InstanceId instance, const Windo
     std::string relation;
     for (const CandidateOutcome& left : past_.OutcomesOf(parts[clause.left])) {
       for (const CandidateOutcome& right : past_.OutcomesOf(parts[clause.right])) {
-        if (left.kind != CandidateOutcome::Kind::kInterval ||
-            right.kind != CandidateOutcome::Kind::kInterval)
-          continue;
+        if (!left.IsInterval() || !right.IsInterval()) continue;
         const grammar::Allen is = grammar::Relate(ticks(left), ticks(right));
         const grammar::Tick gap = grammar::GapBetween(ticks(left), ticks(right));
         const bool fits = (grammar::Bit(is) & clause.relations) != 0;
