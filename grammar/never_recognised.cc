@@ -84,39 +84,39 @@ class Judge {
 
   Judged Truth(const Rule& rule, NodeId index) const {
     const Node& node = program_.nodes[index];
-    switch (node.op) {
-      case Op::kAnd:
-        return And(Truth(rule, node.args[0]), Truth(rule, node.args[1]));
-      case Op::kOr:
-        return Or(Truth(rule, node.args[0]), Truth(rule, node.args[1]));
-      case Op::kNot: {
-        const Judged judged = Truth(rule, node.args[0]);
-        return {Not(judged.truth), judged.fact};
-      }
-      case Op::kBegins:
-      case Op::kEnds: {
-        // What is always true begins with the episode.
-        const Judged judged = Truth(rule, node.args[0]);
-        return judged.truth == Kleene::kFalse ? judged : Judged{};
-      }
-      case Op::kHolds: {
-        const std::string_view why = NeverOfReference(rule, node.slot);
-        return why.empty() ? Judged{} : Judged{Kleene::kFalse, why};
-      }
-      case Op::kGazed:
-        return facts_.gazes ? Judged{} : Judged{Kleene::kFalse, "gazes"};
-      case Op::kSensorSet:
-        return facts_.sensor_sets ? Judged{} : Judged{Kleene::kFalse, "sensor sets"};
-      case Op::kLess:
-      case Op::kLessEqual:
-      case Op::kGreater:
-      case Op::kGreaterEqual:
-      case Op::kEqual:
-      case Op::kNotEqual:
-        return Compared(node);
-      default:
-        return {};
+    if (node.op == Op::kAnd) return And(Truth(rule, node.args[0]), Truth(rule, node.args[1]));
+    if (node.op == Op::kOr) return Or(Truth(rule, node.args[0]), Truth(rule, node.args[1]));
+    if (IsComparison(node.op)) return Compared(node);
+    if (IsLogic(node.op)) {
+      const Judged judged = Truth(rule, node.args[0]);
+      if (node.op == Op::kNot) return {Not(judged.truth), judged.fact};
+      // What is always true begins with the episode.
+      return judged.truth == Kleene::kFalse ? judged : Judged{};
     }
+    const std::string_view why =
+        node.op == Op::kHolds ? NeverOfReference(rule, node.slot) : Lacks(RowOf(node.op).needs);
+    return why.empty() ? Judged{} : Judged{Kleene::kFalse, why};
+  }
+
+  /// The fact, if there is none in the episode.
+  std::string_view Lacks(Fact fact) const {
+    switch (fact) {
+      case Fact::kNoFact:
+        return "";
+      case Fact::kTouches:
+        return facts_.touches ? "" : "touches";
+      case Fact::kSensorSets:
+        return facts_.sensor_sets ? "" : "sensor sets";
+      case Fact::kForces:
+        return facts_.forces ? "" : "forces";
+      case Fact::kOrientations:
+        return facts_.orientations ? "" : "orientations";
+      case Fact::kGrips:
+        return facts_.grips ? "" : "grips";
+      case Fact::kGazes:
+        return facts_.gazes ? "" : "gazes";
+    }
+    return "";
   }
 
   struct Missing {
@@ -125,45 +125,19 @@ class Judge {
   };
 
   std::optional<Missing> MissingOf(const Node& node) const {
-    switch (node.op) {
-      case Op::kNumber:
-        return Missing{node.number, ""};
-      case Op::kSensorSets:
-        if (!facts_.sensor_sets) return Missing{0, facts_.touches ? "sensor sets" : "touches"};
-        break;
-      case Op::kUp:
-        if (!facts_.touches) return Missing{-1, "touches"};
-        break;
-      case Op::kForceBetween:
-        if (!facts_.forces) return Missing{0, "forces"};
-        break;
-      case Op::kTilt:
-        if (!facts_.orientations) return Missing{0, "orientations"};
-        break;
-      case Op::kTouchSpeed:
-        if (!facts_.touches) return Missing{0, "touches"};
-        break;
-      case Op::kTrigger:
-        if (!facts_.grips) return Missing{0, "grips"};
-        break;
-      default:
-        break;
-    }
-    return std::nullopt;
+    if (node.op == Op::kNumber) return Missing{node.number, ""};
+    const Operator& row = RowOf(node.op);
+    if (Lacks(row.needs).empty()) return std::nullopt;
+    const bool counts_sets = row.needs == Fact::kSensorSets && !facts_.touches;
+    return Missing{row.without, counts_sets ? "touches" : Lacks(row.needs)};
   }
 
   Judged Compared(const Node& node) const {
     const auto left = MissingOf(program_.nodes[node.args[0]]);
     const auto right = MissingOf(program_.nodes[node.args[1]]);
     if (!left || !right) return {};
-    const double a = left->value, b = right->value;
-    const bool truth = node.op == Op::kLess           ? a < b
-                       : node.op == Op::kLessEqual    ? a <= b
-                       : node.op == Op::kGreater      ? a > b
-                       : node.op == Op::kGreaterEqual ? a >= b
-                       : node.op == Op::kEqual        ? a == b
-                                                      : a != b;
-    return {Known(truth), left->fact.empty() ? right->fact : left->fact};
+    return {Known(Compares(node.op, left->value, right->value)),
+            left->fact.empty() ? right->fact : left->fact};
   }
 
   const Program& program_;

@@ -8,7 +8,6 @@
 #include <limits>
 #include <optional>
 
-#include "grammar/analysis/builtins.h"
 #include "grammar/analysis/contradictions.h"
 #include "grammar/analysis/share_values.h"
 
@@ -33,25 +32,15 @@ void CollectNecessary(const Program& program, NodeId index, std::vector<int>& re
                       bool at_moments = true) {
   if (index == kNone) return;
   const Node& node = program.nodes[index];
-  switch (node.op) {
-    case Op::kHolds:
-    case Op::kSensorSet:
-      references.push_back(node.slot);
-      break;
-    case Op::kAnd:
-      CollectNecessary(program, node.args[0], references, at_moments);
-      CollectNecessary(program, node.args[1], references, at_moments);
-      break;
-    case Op::kBegins:
-    case Op::kEnds:
-      if (at_moments) CollectNecessary(program, node.args[0], references);
-      break;
-    case Op::kGreater:
-    case Op::kGreaterEqual:
-      if (ImpliesTouch(program, node)) references.push_back(program.nodes[node.args[0]].slot);
-      break;
-    default:
-      break;
+  if (node.op == Op::kHolds || node.op == Op::kSensorSet) {
+    references.push_back(node.slot);
+  } else if (node.op == Op::kAnd) {
+    CollectNecessary(program, node.args[0], references, at_moments);
+    CollectNecessary(program, node.args[1], references, at_moments);
+  } else if (node.op == Op::kBegins || node.op == Op::kEnds) {
+    if (at_moments) CollectNecessary(program, node.args[0], references);
+  } else if (IsComparison(node.op) && ImpliesTouch(program, node)) {
+    references.push_back(program.nodes[node.args[0]].slot);
   }
 }
 
@@ -132,17 +121,11 @@ void FindOpening(const Program& program, Rule& rule, NodeId index) {
   }
 }
 
-// Poses, hands or touches of the frame, not only whether two touch.
-bool IsLook(Op op) {
-  const Asks asks = AskedBy(op);
-  return asks != Asks::kNothing && asks != Asks::kTouching;
-}
-
 bool UsesLooks(const Program& program, NodeId index) {
   if (index == kNone) return false;
   const Node& node = program.nodes[index];
-  return IsLook(node.op) || std::any_of(node.args.begin(), node.args.end(),
-                                        [&](NodeId arg) { return UsesLooks(program, arg); });
+  return RowOf(node.op).IsLook() ||
+         std::ranges::any_of(node.args, [&](NodeId arg) { return UsesLooks(program, arg); });
 }
 
 // For values of a touch, not only for thresholds that it has crossed.
@@ -150,7 +133,7 @@ bool AsksTouches(const Program& program, NodeId index) {
   if (index == kNone) return false;
   const Node& node = program.nodes[index];
   if (node.by_threshold.value != kNone) return false;
-  return AsksTouchValues(node.op) ||
+  return RowOf(node.op).AsksTouchValues() ||
          std::any_of(node.args.begin(), node.args.end(),
                      [&](NodeId arg) { return AsksTouches(program, arg); });
 }
@@ -170,16 +153,16 @@ double LooksAround(const Program& program, NodeId index) {
   const Node& node = program.nodes[index];
   double seconds = 0;
   for (const NodeId arg : node.args) seconds = std::max(seconds, LooksAround(program, arg));
-  return HasWindow(node.op) ? seconds + node.number / 2 : seconds;
+  return node.window != kNone ? seconds + node.number / 2 : seconds;
 }
 
-// Windows, one in another; a speed from frame to frame in one of them counts as one, too.
+// Windows, one in another; a value that asks for the frame before counts as one, too.
 int Windows(const Program& program, NodeId index) {
   if (index == kNone) return 0;
   const Node& node = program.nodes[index];
-  int windows = node.op == Op::kClosingSpeed || node.op == Op::kSurfaceSpeed ? 1 : 0;
+  int windows = 0;
   for (const NodeId arg : node.args) windows = std::max(windows, Windows(program, arg));
-  return HasWindow(node.op) ? windows + 1 : windows;
+  return RowOf(node.op).ChangesByItself() && node.op != Op::kNearest ? windows + 1 : windows;
 }
 
 // The number of a threshold, entered if it is new; kNone if there are too many.
@@ -206,14 +189,13 @@ void FindThreshold(Program& program, Node& node) {
   const Op op = mirrored ? Mirrored(node.op) : node.op;
   const NodeId value = node.args[mirrored ? 1 : 0];
   const Node& number = program.nodes[node.args[mirrored ? 0 : 1]];
-  const Builtin* const signal = FindBuiltin(program.nodes[value].op);
-  if (number.op != Op::kNumber || signal == nullptr || !signal->measured_as) return;
-  const Measured& measured = *signal->measured_as;
+  const std::optional<Measured>& measured = RowOf(program.nodes[value].op).measured_as;
+  if (number.op != Op::kNumber || !measured) return;
   const bool strict = op == Op::kGreater || op == Op::kLessEqual;
   const bool when_crossed = op == Op::kGreater || op == Op::kGreaterEqual;
   const double at_least = strict ? NextLarger(number.number) : number.number;
-  const int as_named = Enter(program, {measured[0], at_least});
-  const int swapped = Enter(program, {measured[1], at_least});
+  const int as_named = Enter(program, {(*measured)[0], at_least});
+  const int swapped = Enter(program, {(*measured)[1], at_least});
   if (as_named != kNone && swapped != kNone)
     node.by_threshold = {value, {as_named, swapped}, when_crossed};
 }
@@ -285,12 +267,12 @@ void WatchEntities(const Program& program, Rule& rule, NodeId index) {
   const Node& node = program.nodes[index];
   if (node.by_threshold.value != kNone) return WatchThresholds(program, rule, node.by_threshold);
   if (node.op == Op::kAtEnd) return;
-  const Asks asks = AskedBy(node.op);
-  if (AsksTouchValues(node.op)) rule.watches_press |= kAnyChange;
-  if (asks == Asks::kGrip) rule.watches_grips |= kAnyChange;
+  const Operator& row = RowOf(node.op);
+  if (row.AsksTouchValues()) rule.watches_press |= kAnyChange;
+  if (row.asks == Asks::kGrip) rule.watches_grips |= kAnyChange;
   for (const int role : node.roles) {
-    if (role != kNone && asks == Asks::kGrip) rule.watches_grip[role] = true;
-    if (role != kNone && AsksPoses(node.op)) rule.watches_pose[role] = true;
+    if (role != kNone && row.asks == Asks::kGrip) rule.watches_grip[role] = true;
+    if (role != kNone && row.AsksPoses()) rule.watches_pose[role] = true;
   }
   for (const NodeId arg : node.args) WatchEntities(program, rule, arg);
 }

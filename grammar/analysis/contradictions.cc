@@ -3,6 +3,7 @@
 #include "grammar/analysis/contradictions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "grammar/analysis/classes.h"
@@ -10,72 +11,39 @@
 namespace prehend::grammar {
 
 Op Mirrored(Op op) {
-  switch (op) {
-    case Op::kLess:
-      return Op::kGreater;
-    case Op::kLessEqual:
-      return Op::kGreaterEqual;
-    case Op::kGreater:
-      return Op::kLess;
-    case Op::kGreaterEqual:
-      return Op::kLessEqual;
-    default:
-      return op;
-  }
+  constexpr std::array kMirrored = {Op::kGreater,   Op::kGreaterEqual, Op::kLess,
+                                    Op::kLessEqual, Op::kEqual,        Op::kNotEqual};
+  return kMirrored[static_cast<std::size_t>(op) - static_cast<std::size_t>(Op::kLess)];
 }
 
 namespace {
 
 Op Negated(Op op) {
-  switch (op) {
-    case Op::kLess:
-      return Op::kGreaterEqual;
-    case Op::kLessEqual:
-      return Op::kGreater;
-    case Op::kGreater:
-      return Op::kLessEqual;
-    case Op::kGreaterEqual:
-      return Op::kLess;
-    case Op::kEqual:
-      return Op::kNotEqual;
-    default:
-      return Op::kEqual;
-  }
+  constexpr std::array kNegated = {Op::kGreaterEqual, Op::kGreater,  Op::kLessEqual,
+                                   Op::kLess,         Op::kNotEqual, Op::kEqual};
+  return kNegated[static_cast<std::size_t>(op) - static_cast<std::size_t>(Op::kLess)];
 }
 
 }  // namespace
 
 bool Bounds::Add(NodeId index, bool negated) {
   const Node& node = program_.nodes[index];
-  switch (node.op) {
-    case Op::kNot:
-      return Add(node.args[0], !negated);
-    case Op::kAnd:
-    case Op::kOr:
-      if ((node.op == Op::kAnd) != negated)
-        return Add(node.args[0], negated) && Add(node.args[1], negated);
-      alternatives_.push_back({index, negated});
-      return true;
-    case Op::kLess:
-    case Op::kLessEqual:
-    case Op::kGreater:
-    case Op::kGreaterEqual:
-    case Op::kEqual:
-    case Op::kNotEqual:
-      return AddComparison(negated ? Negated(node.op) : node.op, node);
-    // What begins is true from now on. What ends is false, but an event may end where its next
-    // interval begins.
-    case Op::kBegins:
-      return (negated || Add(node.args[0])) && AddAtom(index, negated);
-    case Op::kEnds: {
-      const bool says_more = !negated && !MayFollowAtOnce(node.args[0]);
-      return (!says_more || Add(node.args[0], true)) && AddAtom(index, negated);
-    }
-    case Op::kIsA:
-      return AddClass(node, negated);
-    default:
-      return AddAtom(index, negated);
+  if (node.op == Op::kNot) return Add(node.args[0], !negated);
+  if (node.op == Op::kAnd || node.op == Op::kOr) {
+    if ((node.op == Op::kAnd) != negated)
+      return Add(node.args[0], negated) && Add(node.args[1], negated);
+    alternatives_.push_back({index, negated});
+    return true;
   }
+  if (IsComparison(node.op)) return AddComparison(negated ? Negated(node.op) : node.op, node);
+  if (node.op == Op::kIsA) return AddClass(node, negated);
+  // What begins is true from now on. What ends is false, but an event may end where its next
+  // interval begins.
+  if (node.op == Op::kBegins && !negated && !Add(node.args[0])) return false;
+  if (node.op == Op::kEnds && !negated && !MayFollowAtOnce(node.args[0]) &&
+      !Add(node.args[0], true))
+    return false;
+  return AddAtom(index, negated);
 }
 
 // Of `or` nothing is known.

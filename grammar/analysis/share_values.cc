@@ -9,46 +9,21 @@
 #include <string>
 #include <vector>
 
-#include "grammar/analysis/builtins.h"
-
 namespace prehend::grammar {
 namespace {
 
-bool CostsTime(Op op) {
-  const bool windowed = HasWindow(op) && op != Op::kDriftAlong;
-  return windowed || op == Op::kClearance || op == Op::kGap;
-}
-
-// Those that look at poses and nothing else: neither at touches, nor at other rules, nor at the
-// begin or the end of an interval.
-bool LooksAtPosesOnly(Op op) {
-  switch (op) {
-    case Op::kNumber:
-    case Op::kAdd:
-    case Op::kSubtract:
-    case Op::kMultiply:
-    case Op::kDivide:
-    case Op::kNegate:
-    case Op::kAbs:
-    case Op::kDistance:
-    case Op::kHeight:
-    case Op::kPosition:
-    case Op::kPositionOn:
-    case Op::kSpeed:
-    case Op::kVerticalSpeed:
-    case Op::kRelativeVerticalSpeed:
-    case Op::kRelativeSpeed:
-    case Op::kTilt:
-      return true;
-    default:
-      return CostsTime(op);
-  }
+// It looks at poses and nothing else: neither at touches, nor at other rules, nor at the begin or
+// the end of an interval.
+bool LooksAtPosesOnly(const Node& node) {
+  const Operator& row = RowOf(node.op);
+  return row.type != Type::kTruth && (row.AsksPoses() || row.asks == Asks::kNothing) &&
+         !row.AsksTouchValues() && !node.needs_end && node.op != Op::kCount && node.slot == kNone;
 }
 
 // False if it depends on more than poses. Appends to the text what the value is.
 bool Describe(const Program& program, NodeId index, std::vector<int>& roles, std::string& text) {
   const Node& node = program.nodes[index];
-  if (!LooksAtPosesOnly(node.op) || node.slot != kNone) return false;
+  if (!LooksAtPosesOnly(node)) return false;
   text += std::to_string(static_cast<int>(node.op)) + "," + std::to_string(node.number) + "(";
   for (const int role : node.roles) {
     if (role == kNone) continue;
@@ -63,41 +38,17 @@ bool Describe(const Program& program, NodeId index, std::vector<int>& roles, std
   return true;
 }
 
-// What every value of the node is made of; kAtEnd itself, too. A window that is too short for a
-// value does not ask for it.
-bool NeedsEnd(const Program& program, NodeId index) {
-  if (index == kNone) return false;
-  const Node& node = program.nodes[index];
-  switch (node.op) {
-    case Op::kAtEnd:
-      return true;
-    case Op::kLess:
-    case Op::kLessEqual:
-    case Op::kGreater:
-    case Op::kGreaterEqual:
-    case Op::kEqual:
-    case Op::kNotEqual:
-    case Op::kInSphere:
-    case Op::kSolidInSphere:
-    case Op::kInCylinder:
-    case Op::kAdd:
-    case Op::kSubtract:
-    case Op::kMultiply:
-    case Op::kDivide:
-    case Op::kNegate:
-    case Op::kAbs:
-    case Op::kDistance:
-    case Op::kHeight:
-      return std::ranges::any_of(node.args, [&](NodeId arg) { return NeedsEnd(program, arg); });
-    default:
-      return false;
-  }
+// Whether some argument has it. A condition does not always ask for all of its parts, nor a window
+// that is too short for its value.
+bool AnArgument(const Program& program, const Node& node, bool Node::*has) {
+  return !IsLogic(node.op) && std::ranges::any_of(node.args, [&](NodeId arg) {
+    return arg != kNone && program.nodes[arg].*has;
+  });
 }
 
 int WindowOf(Program& program, const Node& node) {
-  if (!HasWindow(node.op)) return kNone;
-  const bool inside = node.op >= Op::kMean && node.op <= Op::kMedian;
-  const TimeWindow window{.seconds = node.number, .inside = inside};
+  if (!RowOf(node.op).HasWindow()) return kNone;
+  const TimeWindow window{.seconds = node.number, .inside = RowOf(node.op).in_window};
   const auto found = std::ranges::find(program.windows, window);
   const auto place = static_cast<int>(found - program.windows.begin());
   if (found == program.windows.end()) program.windows.push_back(window);
@@ -107,14 +58,17 @@ int WindowOf(Program& program, const Node& node) {
 }  // namespace
 
 void ShareValues(Program& program) {
-  for (const NodeId index : IdsOf(program.nodes)) {
-    program.nodes[index].window = WindowOf(program, program.nodes[index]);
-    program.nodes[index].needs_end = NeedsEnd(program, index);
+  for (Node& node : program.nodes) {  // arguments first
+    const Operator& row = RowOf(node.op);
+    node.window = WindowOf(program, node);
+    node.needs_end =
+        node.op == Op::kAtEnd || (!row.HasWindow() && AnArgument(program, node, &Node::needs_end));
+    node.by_itself = row.ChangesByItself() || AnArgument(program, node, &Node::by_itself);
   }
   std::map<std::string, int> shared;
   for (const NodeId index : IdsOf(program.nodes)) {
     Node& node = program.nodes[index];
-    if (!CostsTime(node.op)) continue;
+    if (!RowOf(node.op).shared) continue;
     std::vector<int> roles;
     std::string text;
     if (!Describe(program, index, roles, text) || roles.empty() || roles.size() > 2) continue;

@@ -8,8 +8,8 @@
 namespace prehend::grammar {
 
 /// Gives nodes that have the same value for the same entities the same Node::shared. Only those
-/// that cost time: windows, clearances, gaps. Sets Node::window and Node::needs_end, too. After
-/// lowering.
+/// that cost time: windows, clearances, gaps. Sets Node::window, Node::needs_end and
+/// Node::by_itself, too. After lowering.
 void ShareValues(Program& program);
 
 }  // namespace prehend::grammar

@@ -33,11 +33,6 @@ Range Magnitude(const Range& a) {
   return {.low = nearest, .high = std::max(std::abs(a.low), std::abs(a.high)), .whole = a.whole};
 }
 
-Range OfSignal(const Node& node) {
-  const Builtin* builtin = FindBuiltin(node.op);
-  return builtin == nullptr ? Range{} : builtin->range;
-}
-
 bool Misses(const Range& counts, const Range& value) {
   return counts.whole && value.IsPoint() && value.low != std::floor(value.low);
 }
@@ -51,65 +46,32 @@ Verdict Opposite(Verdict verdict) {
 
 Range RangeOf(const Program& program, const Rule& rule, NodeId index) {
   const Node& node = program.nodes[index];
-  const auto arg = [&](std::size_t i) { return RangeOf(program, rule, node.args[i]); };
-  switch (node.op) {
-    case Op::kCount:
-      return {.low = node.number, .whole = true};
-    case Op::kNumber:
-      return {.low = node.number, .high = node.number};
-    case Op::kAdd: {
-      const Range a = arg(0);
-      const Range b = arg(1);
-      return Around({a.low + b.low, a.high + b.high});
-    }
-    case Op::kSubtract: {
-      const Range a = arg(0);
-      const Range b = arg(1);
-      return Around({a.low - b.high, a.high - b.low});
-    }
-    case Op::kMultiply:
-      return Times(arg(0), arg(1));
-    case Op::kDivide:
-      return Over(arg(0), arg(1));
-    case Op::kNegate:
-      return Times(arg(0), {.low = -1, .high = -1});
-    case Op::kAbs:
-      return Magnitude(arg(0));
-    case Op::kAtBegin:
-      return RangeOf(program, rule, rule.anchors[node.slot]);
-    case Op::kAtEnd:
-    case Op::kMinimum:
-    case Op::kMaximum:
-    case Op::kMedian:
-      return arg(0);
-    case Op::kMean: {
-      const Range a = arg(0);
-      return {.low = a.low, .high = a.high};
-    }
-    default:
-      return OfSignal(node);
-  }
+  if (node.op == Op::kAtBegin)
+    return RangeOf(program, rule, rule.anchors[static_cast<std::size_t>(node.slot)]);
+  if (node.op == Op::kCount) return {.low = node.number, .whole = true};
+  if (node.op == Op::kNumber) return {.low = node.number, .high = node.number};
+  if (!RowOf(node.op).is_made) return RowOf(node.op).range;
+  const Range a = RangeOf(program, rule, node.args[0]);
+  const Range b = node.args[1] == kNone ? a : RangeOf(program, rule, node.args[1]);
+  if (node.op == Op::kAdd) return Around({a.low + b.low, a.high + b.high});
+  if (node.op == Op::kSubtract) return Around({a.low - b.high, a.high - b.low});
+  if (node.op == Op::kMultiply) return Times(a, b);
+  if (node.op == Op::kDivide) return Over(a, b);
+  if (node.op == Op::kNegate) return Times(a, {.low = -1, .high = -1});
+  if (node.op == Op::kAbs) return Magnitude(a);
+  return {.low = a.low, .high = a.high, .whole = a.whole && node.op != Op::kMean};
 }
 
 Verdict Judge(Op op, const Range& left, const Range& right) {
-  switch (op) {
-    case Op::kLess:
-      if (left.low >= right.high) return Verdict::kNever;
-      return left.high < right.low ? Verdict::kAlways : Verdict::kPossible;
-    case Op::kLessEqual:
-      return Opposite(Judge(Op::kLess, right, left));
-    case Op::kGreater:
-      return Judge(Op::kLess, right, left);
-    case Op::kGreaterEqual:
-      return Opposite(Judge(Op::kLess, left, right));
-    case Op::kEqual:
-      if (left.low > right.high || left.high < right.low || Misses(left, right) ||
-          Misses(right, left))
-        return Verdict::kNever;
-      return left.IsPoint() && right.IsPoint() ? Verdict::kAlways : Verdict::kPossible;
-    default:
-      return Opposite(Judge(Op::kEqual, left, right));
-  }
+  if (op == Op::kGreater) return Judge(Op::kLess, right, left);
+  if (op == Op::kLessEqual) return Opposite(Judge(Op::kLess, right, left));
+  if (op == Op::kGreaterEqual) return Opposite(Judge(Op::kLess, left, right));
+  if (op == Op::kNotEqual) return Opposite(Judge(Op::kEqual, left, right));
+  if (op == Op::kLess && left.low >= right.high) return Verdict::kNever;
+  if (op == Op::kLess) return left.high < right.low ? Verdict::kAlways : Verdict::kPossible;
+  if (left.low > right.high || left.high < right.low || Misses(left, right) || Misses(right, left))
+    return Verdict::kNever;
+  return left.IsPoint() && right.IsPoint() ? Verdict::kAlways : Verdict::kPossible;
 }
 
 std::string RangeText(const Range& range, const Dimension& dimension) {
@@ -140,16 +102,15 @@ std::string Signature(const Program& program, const Rule& rule, NodeId index) {
   std::vector<int> roles(node.roles.begin(), node.roles.end());
   std::string text = std::to_string(static_cast<int>(node.op)) + "n" + std::to_string(node.name) +
                      ":" + QuantityText({node.number, kPlain});
-  bool either_way =
-      node.op == Op::kForceBetween || node.op == Op::kTouchSpeed || node.op == Op::kDistance;
+  bool both_ways = RowOf(node.op).both_ways;
   if (node.op == Op::kHolds) {
     const Reference& reference = rule.references[node.slot];
     roles.assign(reference.roles.begin(), reference.roles.end());
     text += "e" + std::to_string(reference.rule.number());
-    either_way = program.rules[reference.rule].symmetric;
+    both_ways = program.rules[reference.rule].symmetric;
   }
   if (node.op == Op::kIsA) text += program.class_names[node.slot];
-  if (either_way) {
+  if (both_ways) {
     std::sort(args.begin(), args.end());
     std::sort(roles.begin(), roles.begin() + 2);
   }

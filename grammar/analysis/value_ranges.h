@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The range of each number of a program. A comparison that can only be true, or only be false, is
-// reported as an error. The ranges of single signals are in the table of
-// grammar/analysis/builtins.cc. Tested by
+// reported as an error. The ranges of single signals are in grammar/program/operators.cc. Tested by
 // tests/grammar/analysis/value_ranges_test.cc
 #pragma once
 
 #include <string>
 
-#include "grammar/analysis/builtins.h"
 #include "grammar/program/program.h"
 
 namespace prehend::grammar {

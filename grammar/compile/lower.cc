@@ -15,8 +15,6 @@ namespace {
 using ast::Expr;
 
 constexpr std::size_t kMaxNodes = 10000;
-constexpr std::array<std::string_view, 4> kOverInterval = {"displacement", "displacement_along",
-                                                           "rise", "drop"};
 constexpr double kLongest_s = 86400;  // more is a slip of the finger
 
 std::string_view TypeText(Type type) {
@@ -61,7 +59,7 @@ void NoteClass(Program& program, std::string_view name, const std::string& file,
 }
 
 bool IsOverInterval(std::string_view name) {
-  return std::find(kOverInterval.begin(), kOverInterval.end(), name) != kOverInterval.end();
+  return std::ranges::count(SignalsOverIntervals(), name, &OverInterval::name) > 0;
 }
 
 bool Symbols::IsParamIn(std::string_view file, std::string_view name) const {
@@ -190,7 +188,7 @@ NodeId Lowering::Add(Node node) {
 // A value observed of an entity; an attribute takes it where the interval begins.
 NodeId Lowering::AddSignal(Node node) {
   const NodeId here = Add(node);
-  const bool observes = node.roles[0] != kNone || IsOverWindow(node.op);
+  const bool observes = node.roles[0] != kNone || RowOf(node.op).IsOverWindow();
   return attribute_ && observes ? AnchorAtBegin(here) : here;
 }
 
@@ -239,8 +237,8 @@ std::vector<std::string> Lowering::KnownNames(bool calls) const {
   if (calls) {
     for (const auto& [name, rule] : symbols_.rules) names.push_back(name);
     for (const auto& [name, define] : symbols_.defines) names.push_back(name);
-    for (const Builtin& builtin : Builtins()) names.emplace_back(builtin.name);
-    names.insert(names.end(), kOverInterval.begin(), kOverInterval.end());
+    for (const Operator& builtin : Operators()) names.emplace_back(builtin.name);
+    for (const OverInterval& signal : SignalsOverIntervals()) names.emplace_back(signal.name);
     names.emplace_back("is");
   } else {
     for (const auto& [name, param] : symbols_.params) names.push_back(name);
@@ -395,8 +393,7 @@ Lowering::Typed Lowering::LowerBinary(const Expr& expr) {
                right.dimension == kPlain ? "the right side needs a unit"
                                          : "both sides must have the same unit");
   }
-  if (op >= Op::kLess && op <= Op::kNotEqual)
-    return LowerComparison(op, left, right, expr, is_handed_in);
+  if (IsComparison(op)) return LowerComparison(op, left, right, expr, is_handed_in);
   return LowerArithmetic(op, left, right, expr);
 }
 
@@ -413,18 +410,8 @@ Lowering::Typed Lowering::LowerArithmetic(Op op, const Typed& left, const Typed&
     return Bad(expr.place, "this is divided by zero",
                WithParams(expr.args[1], "divide by something else"));
   }
-  if (a.op == Op::kNumber && b.op == Op::kNumber) {
-    switch (op) {
-      case Op::kAdd:
-        return NumberNode(a.number + b.number, dimension, expr.place);
-      case Op::kSubtract:
-        return NumberNode(a.number - b.number, dimension, expr.place);
-      case Op::kMultiply:
-        return NumberNode(a.number * b.number, dimension, expr.place);
-      default:
-        return NumberNode(a.number / b.number, dimension, expr.place);
-    }
-  }
+  if (a.op == Op::kNumber && b.op == Op::kNumber)
+    return NumberNode(Calculate(op, a.number, b.number), dimension, expr.place);
   return {.node = Add({.op = op, .args = {left.node, right.node, kNone, kNone}}),
           .type = Type::kNumber,
           .dimension = dimension};

@@ -11,7 +11,6 @@
 #include <string_view>
 #include <vector>
 
-#include "grammar/analysis/builtins.h"
 #include "grammar/analysis/classes.h"
 #include "grammar/analysis/value_ranges.h"
 #include "grammar/base/source.h"
@@ -59,7 +58,7 @@ inline bool StartsWithCapital(std::string_view name) {
   return !name.empty() && name[0] >= 'A' && name[0] <= 'Z';
 }
 
-/// The signals that are measured over an interval: displacement, displacement_along, rise, drop.
+/// Whether it is a signal that is measured over an interval.
 bool IsOverInterval(std::string_view name);
 
 inline std::string Quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
@@ -177,12 +176,12 @@ class Lowering {
   Typed LowerValue(const Scope::Value& value);
   bool BindParameter(const DefineSource& source, std::size_t index, const ast::Expr& arg,
                      Scope& scope);
-  Typed LowerBuiltin(const Builtin& builtin, const ast::Expr& expr);
+  Typed LowerBuiltin(const Operator& builtin, const ast::Expr& expr);
   Typed LowerOverInterval(const ast::Expr& expr);
   Typed LowerIs(const ast::Expr& expr);
   Typed TwiceTheSame(const ast::Expr& role, std::string_view callee);
   bool LiesOnItself(const Node& node);
-  bool LowerArgument(const ast::Expr& arg, Argument wanted, const Builtin& builtin, Node& node,
+  bool LowerArgument(const ast::Expr& arg, Argument wanted, const Operator& builtin, Node& node,
                      int& next_node, int& next_role, Typed& result);
   bool LowerSet(const ast::Expr& arg, Node& node);
 
@@ -198,7 +197,7 @@ class Lowering {
   int AddReference(const Reference& reference);
   NodeId AnchorAtBegin(NodeId node);
   int TouchOf(const Node& node);
-  NodeId DistanceAlong(std::array<int, 2> roles);
+  NodeId AtOneMoment(const OverInterval::Part& part, std::array<int, 2> roles);
   int FindRole(std::string_view name) const;
   int FindParam(std::string_view name) const;
   std::optional<int> RoleArgument(const ast::Expr& expr, std::string_view wanted_class,

@@ -3,6 +3,7 @@
 // Errors: unknown callees, the number and kind of arguments, classes that do not fit a role, one
 // entity in two roles, definitions that refer to themselves.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -18,25 +19,14 @@ using ast::Expr;
 
 constexpr int kMaxDefineDepth = 16;
 
-std::string_view ClassOf(Argument argument) {
-  switch (argument) {
-    case Argument::kHand:
-      return "Hand";
-    case Argument::kThing:
-      return "Thing";
-    case Argument::kMovable:
-      return "Movable";
-    case Argument::kJointed:
-      return "Jointed";
-    default:
-      return "Entity";
-  }
-}
+// Of those that are roles.
+constexpr std::array<std::string_view, 5> kClassOf = {"Entity", "Hand", "Thing", "Movable",
+                                                      "Jointed"};
 
 // "2 or 3 arguments", of all signals of this name.
 std::string ArgumentCounts(std::string_view name) {
   std::set<std::size_t> counts;
-  for (const Builtin& builtin : Builtins()) {
+  for (const Operator& builtin : Operators()) {
     if (builtin.name != name) continue;
     counts.insert(builtin.arguments.size());
     if (builtin.left_out_m > 0) counts.insert(builtin.arguments.size() - 1);
@@ -90,7 +80,7 @@ Lowering::Typed Lowering::LowerCall(const Expr& expr) {
   if (const auto found = symbols_.defines.find(expr.text); found != symbols_.defines.end()) {
     return LowerDefine(found->second, expr);
   }
-  if (const Builtin* builtin = FindBuiltin(expr.text, expr.args.size()))
+  if (const Operator* builtin = FindBuiltin(expr.text, expr.args.size()))
     return LowerBuiltin(*builtin, expr);
   return Bad(expr.place, "unknown event, condition or signal " + Quoted(expr.text),
              Suggest(expr.text, KnownNames(true)));
@@ -336,58 +326,53 @@ int Lowering::TouchOf(const Node& node) {
       {.rule = kTouchingRule, .roles = {node.roles[0], node.roles[1], kNone, kNone}});
 }
 
-// The piece that touches where the interval begins, and how far it has got along the plane in which
-// it touched there.
-NodeId Lowering::DistanceAlong(std::array<int, 2> roles) {
-  Node touch{.op = Op::kTouchIn, .roles = roles};
-  touch.slot = TouchOf(touch);
-  Node normal = touch;
-  normal.op = Op::kNormalIn;
-  Node on_second = touch;
-  on_second.number = normal.number = 1;
-  return Add({.op = Op::kDistanceAlong,
-              .args = {AnchorAtBegin(Add(touch)), AnchorAtBegin(Add(on_second)),
-                       AnchorAtBegin(Add(normal)), kNone},
-              .roles = roles});
+NodeId Lowering::AtOneMoment(const OverInterval::Part& part, std::array<int, 2> roles) {
+  Node node{.op = part.op, .roles = roles, .number = part.number};
+  if (part.op == Op::kHeight)
+    node = {.op = part.op,
+            .args = {Add({.op = Op::kPosition, .roles = roles}), kNone, kNone, kNone}};
+  if (RowOf(part.op).AsksTouchValues()) node.slot = TouchOf(node);
+  return Add(node);
 }
 
-// displacement, displacement_along, rise and drop compare this frame with the interval's begin.
+// They compare this frame with the interval's begin.
 Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
   if (!anchors_.begin) {
     return Bad(expr.place, Quoted(expr.text) + " is measured over an interval; there is none here",
                "it can be used after 'to', 'during', 'requires' and 'while .. until'");
   }
-  const bool is_along = expr.text == "displacement_along";
-  const bool is_displacement = is_along || expr.text == "displacement";
-  if (expr.args.size() < (is_along ? 2 : 1) || expr.args.size() > (is_displacement ? 2 : 1)) {
-    return Bad(expr.place, Quoted(expr.text) + (is_along          ? " takes two roles"
-                                                : is_displacement ? " takes one or two roles"
-                                                                  : " takes one role"));
+  const OverInterval* signal = nullptr;
+  std::string counts;
+  for (const OverInterval& one : SignalsOverIntervals()) {
+    if (one.name != expr.text) continue;
+    counts += std::string(counts.empty() ? " takes " : " or ") + (one.roles == 1 ? "one" : "two");
+    if (one.roles == expr.args.size()) signal = &one;
   }
-  Node now{.op = is_displacement ? (expr.args.size() == 2 ? Op::kPositionOn : Op::kPosition)
-                                 : Op::kHeight};
+  if (signal == nullptr) {
+    return Bad(expr.place,
+               Quoted(expr.text) + counts + (counts == " takes one" ? " role" : " roles"));
+  }
+  std::array<int, 2> roles = {kNone, kNone};
   for (std::size_t i = 0; i < expr.args.size(); ++i) {
     const std::optional<int> role = RoleArgument(expr.args[i], "Entity", expr.text);
     if (!role) return {.bad = true};
-    if (i == 1 && now.roles[0] == *role) return TwiceTheSame(expr.args[i], expr.text);
-    now.roles[i] = *role;
+    if (i == 1 && roles[0] == *role) return TwiceTheSame(expr.args[i], expr.text);
+    roles[i] = *role;
   }
-  if (is_along)
-    return {.node = DistanceAlong(now.roles), .type = Type::kNumber, .dimension = kMetres};
-  if (!is_displacement) {
-    now.args[0] = Add({.op = Op::kPosition, .roles = {now.roles[0], kNone}});
-    now.roles[0] = kNone;
+  Node node{.op = signal->op};
+  if (signal->looks) node.roles = roles;
+  NodeId here;
+  for (std::size_t i = 0; i < signal->parts.size() && signal->parts[i]; ++i) {
+    const OverInterval::Part& part = *signal->parts[i];
+    const bool is_new = i == 0 || part.op != signal->parts[i - 1]->op ||
+                        part.number != signal->parts[i - 1]->number;
+    if (is_new) here = AtOneMoment(part, roles);
+    node.args[i] = part.at_begin ? AnchorAtBegin(here) : here;
   }
-  const NodeId here = Add(now);
-  const NodeId there = AnchorAtBegin(here);
-  const bool falls = expr.text == "drop";
-  return {.node = Add({.op = is_displacement ? Op::kDistance : Op::kSubtract,
-                       .args = {falls ? there : here, falls ? here : there, kNone, kNone}}),
-          .type = Type::kNumber,
-          .dimension = kMetres};
+  return {.node = Add(node), .type = Type::kNumber, .dimension = signal->dimension};
 }
 
-Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr) {
+Lowering::Typed Lowering::LowerBuiltin(const Operator& builtin, const Expr& expr) {
   const std::size_t most = builtin.arguments.size();
   const std::size_t least = builtin.left_out_m > 0 ? most - 1 : most;
   if (expr.args.size() < least || expr.args.size() > most) {
@@ -401,7 +386,7 @@ Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr)
   int next_node = 0;
   int next_role = 0;
   const bool in_attribute = attribute_;
-  if (IsOverWindow(node.op)) attribute_ = false;  // itself is what is taken at the begin
+  if (builtin.IsOverWindow()) attribute_ = false;  // itself is what is taken at the begin
   for (std::size_t i = 0; i < expr.args.size(); ++i) {
     if (!LowerArgument(expr.args[i], builtin.arguments[i], builtin, node, next_node, next_role,
                        result)) {
@@ -418,7 +403,7 @@ Lowering::Typed Lowering::LowerBuiltin(const Builtin& builtin, const Expr& expr)
                Quoted(builtin.name) + " needs two different positions, and both are the same",
                "name another one");
   }
-  if (builtin.asks == Asks::kTouching || AsksTouchValues(builtin.op)) node.slot = TouchOf(node);
+  if (builtin.asks == Asks::kTouching || builtin.AsksTouchValues()) node.slot = TouchOf(node);
   result.node = AddSignal(node);
   return result;
 }
@@ -447,7 +432,7 @@ bool Lowering::LowerSet(const Expr& arg, Node& node) {
   return false;
 }
 
-bool Lowering::LowerArgument(const Expr& arg, Argument wanted, const Builtin& builtin, Node& node,
+bool Lowering::LowerArgument(const Expr& arg, Argument wanted, const Operator& builtin, Node& node,
                              int& next_node, int& next_role, Typed& result) {
   switch (wanted) {
     case Argument::kPosition: {
@@ -492,17 +477,22 @@ bool Lowering::LowerArgument(const Expr& arg, Argument wanted, const Builtin& bu
                "for example: 100 ms");
       return false;
     }
-    default: {
-      const std::optional<int> role = RoleArgument(arg, ClassOf(wanted), builtin.name);
-      if (!role) return false;
-      if (next_role == 1 && node.roles[0] == *role) {
-        TwiceTheSame(arg, builtin.name);
-        return false;
-      }
-      node.roles[next_role++] = *role;
-      return true;
-    }
+    case Argument::kEntity:
+    case Argument::kHand:
+    case Argument::kThing:
+    case Argument::kMovable:
+    case Argument::kJointed:
+      break;
   }
+  const std::optional<int> role =
+      RoleArgument(arg, kClassOf[static_cast<std::size_t>(wanted)], builtin.name);
+  if (!role) return false;
+  if (next_role == 1 && node.roles[0] == *role) {
+    TwiceTheSame(arg, builtin.name);
+    return false;
+  }
+  node.roles[next_role++] = *role;
+  return true;
 }
 
 }  // namespace prehend::grammar

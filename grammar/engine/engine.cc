@@ -12,7 +12,8 @@ Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
       entity_table_(std::move(entity_table)),
       entity_count_(static_cast<int>(entity_table_.entities.size())),
       history_(entity_table_),
-      instances_(*program_, entity_table_, *this),
+      instances_(*program_, entity_table_,
+                 [this](InstanceId follower) { return KnownOf(follower); }),
       evaluator_(*program_, entity_table_, history_, instances_),
       thresholds_(program_->thresholds),
       recalls_touches_(program_->recalls_touches || program_->asks_touches),
@@ -196,10 +197,10 @@ void Engine::NotifyIfChanged(RuleInstance& instance) {
 }
 
 // Every frame is decided, and the next one gives the same result unless something changes or an
-// alarm comes. A form that is not listed here never rests while it is open.
+// alarm comes. A touch never rests while it is open.
 bool Engine::MayRest(const RuleInstance& instance) {
   const Rule& rule = RuleOf(instance);
-  if (instance.next <= history_.now() || !instance.pending.empty() || evaluator_.depends_on_time())
+  if (instance.next <= history_.now() || !instance.pending.empty() || instance.by_itself)
     return rule.form() == Form::kCompose && !rule.referenced && LacksAPart(instance);
   switch (rule.form()) {
     case Form::kCompose:
@@ -219,7 +220,7 @@ bool Engine::MayRest(const RuleInstance& instance) {
     case Form::kAny:
     case Form::kRestOf:
       break;
-    default:
+    case Form::kTouching:
       return !instance.open && instances_.GuardRests(instance);
   }
   const bool time_makes_certain = rule.referenced && !MayComeToNothing(instance);
@@ -291,7 +292,7 @@ bool Engine::StepOrRest(RuleInstance& instance) {
 // confirmation of an interval.
 bool Engine::AwaitOthers(RuleInstance& instance) {
   if (Follow(instance)) return true;
-  if (instance.next > history_.now() || !instance.pending.empty() || evaluator_.depends_on_time() ||
+  if (instance.next > history_.now() || !instance.pending.empty() || instance.by_itself ||
       RuleOf(instance).form() == Form::kCompose || !program_->waits ||
       (looks_at_all_ && RuleOf(instance).uses_looks))
     return false;
@@ -353,8 +354,8 @@ bool Engine::IsAtTheKnown(const RuleInstance& instance) const {
 // A frame was decided. Those that follow are left out as long as they cannot differ from it.
 void Engine::SkipUnchanged(RuleInstance& instance) const {
   const FrameNumber now = history_.now();
-  if (instance.next >= now || evaluator_.depends_on_time() || !instance.pending.empty() ||
-      instance.in_gap || !program_->waits)
+  if (instance.next >= now || instance.by_itself || !instance.pending.empty() || instance.in_gap ||
+      !program_->waits)
     return;
   const Form form = RuleOf(instance).form();
   const bool has_deadline = instance.open && TicksOf(instance).within >= 0;

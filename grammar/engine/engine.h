@@ -11,7 +11,7 @@
 // (grammar/engine/engine.cc). An instance rests as soon as its newest frame is decided and
 // nothing but a change can decide otherwise: what it asks about wakes it. What time alone changes
 // is either an alarm (the end of a gap, the shortest duration) or, where a value moves by itself
-// (Evaluator::depends_on_time), keeps the instance awake. So a frame costs as much as changes in
+// (RuleInstance::by_itself), keeps the instance awake. So a frame costs as much as changes in
 // it. Data structures: grammar/state/instances.h (state per binding), grammar/state/history.h
 // (the frames that some instance may still ask for). Tested by tests/grammar/monitor_test.cc and
 // the corpus in tests/grammar/corpus/
@@ -36,7 +36,7 @@
 
 namespace prehend::grammar {
 
-class Engine final : private Followers {
+class Engine final {
  public:
   Engine(std::shared_ptr<const Program> program, EntityTable entity_table);
   Engine(const Engine&) = delete;  // the members refer to each other
@@ -198,7 +198,7 @@ class Engine final : private Followers {
   Follows WhenItFollows(const Rule& rule) const;
   bool MayFollow(RuleInstance& instance, FrameNumber resumes);
   bool Follow(RuleInstance& instance);
-  FrameNumber KnownOf(InstanceId follower) override;
+  FrameNumber KnownOf(InstanceId follower);
   void TellFollowers(RuleInstance& instance);
   void AskWhetherFollowersRest(RuleInstance& instance);
   void LetFollowersRest(RuleId rule);

@@ -119,6 +119,7 @@ bool Engine::LacksAPart(const RuleInstance& composition) {
 void Engine::StepCompose(RuleInstance& instance) {
   const Rule& rule = RuleOf(instance);
   auto& state = instance.As<ComposeState>();
+  instance.by_itself = false;
   const FrameNumber settled = PartsSettled(instance);
   for (;;) {
     const std::optional<Span> whole =

@@ -31,22 +31,9 @@ void Engine::ForEachFollowed(const RuleInstance& instance, const Visit& visit) c
 bool Engine::AsksOnlyOthers(NodeId index) const {
   if (index == kNone) return true;
   const Node& node = program_->nodes[index];
-  switch (node.op) {
-    case Op::kAnd:
-    case Op::kOr:
-      return AsksOnlyOthers(node.args[0]) && AsksOnlyOthers(node.args[1]);
-    case Op::kNot:
-    case Op::kBegins:
-    case Op::kEnds:
-      return AsksOnlyOthers(node.args[0]);
-    case Op::kHolds:
-    case Op::kOwns:
-    case Op::kPartOf:
-    case Op::kIsA:
-      return true;
-    default:
-      return false;
-  }
+  return RowOf(node.op).type == Type::kTruth && !IsComparison(node.op) &&
+         !RowOf(node.op).IsLook() &&
+         std::ranges::all_of(node.args, [this](NodeId arg) { return AsksOnlyOthers(arg); });
 }
 
 namespace {
@@ -77,21 +64,11 @@ bool Engine::AsksForTheNearest(const Rule& rule) const {
 // Whatever else happens: it cannot be known to be false before the end is.
 bool Engine::IsUnknownUntilTheEnd(NodeId index) const {
   const Node& node = program_->nodes[index];
-  switch (node.op) {
-    case Op::kAnd:
-      return IsUnknownUntilTheEnd(node.args[0]) && IsUnknownUntilTheEnd(node.args[1]);
-    case Op::kOr:
-      return IsUnknownUntilTheEnd(node.args[0]) || IsUnknownUntilTheEnd(node.args[1]);
-    case Op::kInSphere:
-    case Op::kInCylinder:
-    case Op::kLess:
-    case Op::kLessEqual:
-    case Op::kGreater:
-    case Op::kGreaterEqual:
-      return node.needs_end;
-    default:
-      return false;
-  }
+  if (node.op == Op::kAnd)
+    return IsUnknownUntilTheEnd(node.args[0]) && IsUnknownUntilTheEnd(node.args[1]);
+  if (node.op == Op::kOr)
+    return IsUnknownUntilTheEnd(node.args[0]) || IsUnknownUntilTheEnd(node.args[1]);
+  return node.needs_end;
 }
 
 // Whether instances of the rule may follow others. Where nothing is known later as a window of time
@@ -292,10 +269,7 @@ void Engine::CatchUp(RuleInstance& instance, FrameNumber end) {
   Following& following = following_[instance.index];
   following.resumes = std::max(following.resumes, next);
   instance.next = std::max(instance.next, following.resumes);
-  const bool depended_on_time = evaluator_.depends_on_time();
   while (instance.next < std::min(end, following.assumed) && StepFrame(instance)) continue;
-  evaluator_.ResetTimeDependence();
-  if (depended_on_time) evaluator_.MarkTimeDependent();
 }
 
 // Up to where nothing begins or ends, if it asks about nothing but others and these go on as they
@@ -324,7 +298,7 @@ FrameNumber Engine::StaysUntil(RuleInstance& instance) {
       }
       return rest.known;
     }
-    default: {
+    case Form::kAny: {
       const int one = RuleOf(instance).As<AnyRule>().one;
       const auto& any = instance.As<AnyState>();
       Bound none{true, kNever};
@@ -335,7 +309,12 @@ FrameNumber Engine::StaysUntil(RuleInstance& instance) {
       }
       return none.known;
     }
+    case Form::kTouching:
+    case Form::kUntilSince:
+    case Form::kCompose:
+      break;
   }
+  return 0;  // they ask for more
 }
 
 Engine::Bound Engine::Both(Bound a, Bound b) {
@@ -356,39 +335,31 @@ Engine::Bound Engine::BoundOf(InstanceId index) const {
 Engine::Bound Engine::BoundOf(NodeId index, RuleInstance& instance) {
   const Node& node = program_->nodes[index];
   const auto opposite = [](Bound one) { return Bound{!one.holds, one.known}; };
-  switch (node.op) {
-    case Op::kAnd: {
-      const Bound left = BoundOf(node.args[0], instance);
-      return IsSettled(left) ? left : Both(left, BoundOf(node.args[1], instance));
-    }
-    case Op::kOr: {
-      const Bound left = opposite(BoundOf(node.args[0], instance));
-      return opposite(IsSettled(left) ? left
-                                      : Both(left, opposite(BoundOf(node.args[1], instance))));
-    }
-    case Op::kNot:
-      return opposite(BoundOf(node.args[0], instance));
-    case Op::kBegins:
-    case Op::kEnds: {
-      const Bound of = BoundOf(node.args[0], instance);
-      // What was so in the frame before does not become so.
-      const bool is_past = program_->nodes[node.args[0]].op != Op::kHolds &&
-                           of.holds == (node.op == Op::kBegins) && of.known != kNever;
-      return {false, is_past ? of.known + 1 : of.known};
-    }
-    case Op::kHolds:
-    case Op::kOwns: {
-      const InstanceId other = instances_.Resolve(instance, node.slot);
-      Bound bound = BoundOf(other);
-      if (node.op == Op::kOwns && bound.holds) {
-        bound.holds = instances_[other].As<AnyState>().owner ==
-                      instance.entities[static_cast<std::size_t>(node.roles[0])];
-      }
-      return bound;
-    }
-    default:
-      return {evaluator_.Truth(index, {instance, history_.now()}) == Kleene::kTrue, kNever};
+  if (node.op == Op::kAnd) {
+    const Bound left = BoundOf(node.args[0], instance);
+    return IsSettled(left) ? left : Both(left, BoundOf(node.args[1], instance));
   }
+  if (node.op == Op::kOr) {
+    const Bound left = opposite(BoundOf(node.args[0], instance));
+    return opposite(IsSettled(left) ? left : Both(left, opposite(BoundOf(node.args[1], instance))));
+  }
+  if (node.op == Op::kNot) return opposite(BoundOf(node.args[0], instance));
+  if (node.op == Op::kBegins || node.op == Op::kEnds) {
+    const Bound of = BoundOf(node.args[0], instance);
+    // What was so in the frame before does not become so.
+    const bool is_past = program_->nodes[node.args[0]].op != Op::kHolds &&
+                         of.holds == (node.op == Op::kBegins) && of.known != kNever;
+    return {false, is_past ? of.known + 1 : of.known};
+  }
+  if (node.op != Op::kHolds && node.op != Op::kOwns)
+    return {evaluator_.Truth(index, {instance, history_.now()}) == Kleene::kTrue, kNever};
+  const InstanceId other = instances_.Resolve(instance, node.slot);
+  Bound bound = BoundOf(other);
+  if (node.op == Op::kOwns && bound.holds) {
+    bound.holds = instances_[other].As<AnyState>().owner ==
+                  instance.entities[static_cast<std::size_t>(node.roles[0])];
+  }
+  return bound;
 }
 
 // The truth of one that is followed has changed.

@@ -19,7 +19,7 @@ void Engine::StepInstance(RuleInstance& instance) {
 // One frame, if it can be decided.
 bool Engine::StepFrame(RuleInstance& instance) {
   bool decided = false;
-  evaluator_.ResetTimeDependence();
+  instance.by_itself = false;
   switch (RuleOf(instance).form()) {
     case Form::kTouching:
     case Form::kCompose:
@@ -35,7 +35,7 @@ bool Engine::StepFrame(RuleInstance& instance) {
       decided = StepFromTo(instance, instance.next);
       if (was_open && !instance.open)
         // The begin of the next run was not asked for in this frame, so no change would wake it.
-        evaluator_.MarkTimeDependent();
+        instance.by_itself = true;
       break;
     }
     case Form::kUntilSince:
@@ -66,7 +66,7 @@ bool Engine::LooksTheSame(RuleInstance& instance) {
     return false;
   if (rule.form() == Form::kWhile && RestsFarApart(instance)) return true;
   const bool was_open = instance.open;
-  if (!StepFrame(instance) || evaluator_.depends_on_time()) return false;
+  if (!StepFrame(instance) || instance.by_itself) return false;
   const auto* looks_back = instance.If<UntilSinceState>();
   const bool ended_here = looks_back != nullptr && looks_back->last_end == now;
   return instance.open == was_open && settled() &&
@@ -97,7 +97,7 @@ bool Engine::StepWhile(RuleInstance& instance, FrameNumber frame) {
       .instance = instance, .frame = frame, .begin_known = knows_begin};
   truth = And(truth, Not(evaluator_.Truth(until, since_begin)));
   // Where nothing changes any more it may begin anew, as it speaks of another begin then.
-  if (is_anchored && instance.open && truth != Kleene::kTrue) evaluator_.MarkTimeDependent();
+  if (is_anchored && instance.open && truth != Kleene::kTrue) instance.by_itself = true;
   return StepRun(instance, frame, truth);
 }
 
@@ -156,7 +156,7 @@ bool Engine::ChooseOwner(RuleInstance& owners, FrameNumber frame) {
   if (unknown || !some) return !unknown;
   const Tick last = history_.At(frame).tick + TicksOf(owners).nearest;
   if (!finishing_ && history_.At(history_.now()).tick < last) {
-    evaluator_.MarkTimeDependent();
+    owners.by_itself = true;
     return false;
   }
   // Where each holds first, in the order of the cast.
@@ -169,7 +169,7 @@ bool Engine::ChooseOwner(RuleInstance& owners, FrameNumber frame) {
       holds = instances_.TruthAt(member, ++first);
     }
     if (holds == Kleene::kUnknown) {
-      evaluator_.MarkTimeDependent();
+      owners.by_itself = true;
       return false;
     }
     if (holds == Kleene::kFalse) continue;
@@ -313,7 +313,7 @@ bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
   if (ends == Kleene::kUnknown) {
     if (!is_quiet && LeadsHere(instance, frame)) return false;
     // It does not matter whether an end is here; but at the next frame it may.
-    evaluator_.MarkTimeDependent();
+    instance.by_itself = true;
     if (log_ != nullptr) undecided_ends_.push_back({instance.index, frame});
   }
   if (ends == Kleene::kTrue) {

@@ -19,86 +19,10 @@
 #include "grammar/base/quantity.h"
 #include "grammar/base/source.h"
 #include "grammar/program/law.h"
+#include "grammar/program/operators.h"
 #include "grammar/program/thresholds.h"
 
 namespace prehend::grammar {
-
-enum class Op : std::uint8_t {
-  // Truth values.
-  kAnd,
-  kOr,
-  kNot,
-  kLess,
-  kLessEqual,
-  kGreater,
-  kGreaterEqual,
-  kEqual,
-  kNotEqual,
-  kHolds,   ///< reference `slot` is true
-  kBegins,  ///< args[0] becomes true at this frame; of a reference: one of its intervals begins
-  kEnds,    ///< likewise
-  kInSphere,
-  kSolidInSphere,
-  kInCylinder,
-  kInside,
-  kNearest,
-  kOwns,  ///< reference `slot`, to a rule with AnyRule::one, is true, and for roles[0]
-  kPartOf,
-  kIsA,
-  kGazed,
-  kSensorSet,  ///< the set named `name`, or without a name the `number`th
-  // Numbers, SI units.
-  kNumber,
-  kAdd,
-  kSubtract,
-  kMultiply,
-  kDivide,
-  kNegate,
-  kAbs,
-  kTrigger,
-  kSensorSets,
-  kUp,
-  kForceBetween,
-  kTouchSpeed,
-  kDistanceAlong,  ///< along roles[1], of the piece of roles[0] that was at args[0] in it and at
-                   ///< args[1] in roles[1], where args[2] is the normal
-  kGap,
-  kClearance,
-  kClosingSpeed,
-  kSurfaceSpeed,
-  kDistance,
-  kHeight,
-  kSpeed,
-  kVerticalSpeed,
-  kRelativeVerticalSpeed,
-  kSpeedAlong,
-  kDriftAlong,  ///< over `number` seconds around the frame
-  kTilt,
-  kJointFraction,
-  kJointAngle,
-  kJointTravel,
-  kWeight,
-  kStrength,
-  kTurnRate,  ///< over `number` seconds around the frame
-  kRate,      ///< of args[0], over `number` seconds around the frame
-  kRelativeSpeed,
-  kSpeedOver,  ///< over `number` seconds around the frame, like all below
-  kRelativeSpeedOver,
-  kMean,  ///< of args[0]
-  kMinimum,
-  kMaximum,
-  kMedian,
-  // Positions in metres.
-  kPosition,
-  kPositionOn,
-  kAhead,
-  kTouchIn,   ///< where roles[0] touches roles[1], as seen from the first or second: `number`
-  kNormalIn,  ///< the contact normal there, likewise
-  // Numbers or positions.
-  kAtBegin,  ///< the value that anchor `slot` had where the interval begins
-  kAtEnd,    ///< args[0] where the interval ends
-  kCount,    ///< how many intervals `repeat` has found
-};
 
 /// A comparison that is answered by thresholds, when its value is measured.
 struct ByThreshold {
@@ -115,11 +39,12 @@ struct Node {
   std::array<int, 2> roles = {kNone, kNone};  ///< roles of the rule
   int slot = kNone;                           ///< reference, anchor or class name
   int name = kNone;                           ///< kSensorSet: index into Program::sensor_sets
-  double number = 0;  ///< kNumber, kSensorSet, kTouchIn, kNormalIn, and the windows of kDriftAlong,
-                      ///< kTurnRate, kRate .. kMedian
+  double number = 0;       ///< kNumber, kSensorSet, kTouchIn, kNormalIn, and windows in seconds
   int window = kNone;      ///< index into Program::windows, of a node with a window
   bool needs_end = false;  ///< a value or a comparison of values that is not known before the
                            ///< interval's end is
+  bool by_itself = false;  ///< likewise, that may change with time alone, though nothing that it
+                           ///< is made of changes
   ByThreshold by_threshold = {};
   int shared = kNone;  ///< nodes with the same number have the same value for the same entities ..
   std::array<int, 2> shared_roles = {kNone, kNone};  ///< .. in these roles

@@ -50,10 +50,10 @@ void TouchingState::Reset() {
 }
 
 RuleInstances::RuleInstances(const Program& program, const EntityTable& entity_table,
-                             Followers& followers)
+                             std::function<FrameNumber(InstanceId)> known_of)
     : program_(program),
       entity_table_(entity_table),
-      followers_(followers),
+      known_of_(std::move(known_of)),
       guarded_(program.rules.size()),
       pose_watchers_(entity_table.entities.size()),
       grip_watchers_(entity_table.entities.size()),
@@ -302,6 +302,7 @@ void RuleInstances::Unlink(InstanceId index, InstanceId watcher, std::vector<Ins
 
 void RuleInstances::Free(InstanceId index, std::vector<InstanceId>& orphans) {
   RuleInstance& instance = instances_[index];
+  PREHEND_CHECK(!instance.awake && !instance.open && !instance.in_gap && instance.pending.empty());
   UnwatchEntities(instance);
   if (instance.rule == kTouchingRule) {
     touches_.Erase(PairKey(instance.entities[0], instance.entities[1]));
@@ -314,8 +315,11 @@ void RuleInstances::Free(InstanceId index, std::vector<InstanceId>& orphans) {
   if (const auto* any = instance.If<AnyState>()) {
     for (const InstanceId member : any->members) Unlink(member, index, orphans);
   }
-  for (const Watcher& any : instance.watchers)
-    std::erase(instances_[any.instance].As<AnyState>().members, index);
+  for (const Watcher& watcher : instance.watchers) {
+    auto* const any = instances_[watcher.instance].If<AnyState>();
+    PREHEND_CHECK(any != nullptr);
+    std::erase(any->members, index);
+  }
   std::visit([](auto& state) { state.Reset(); }, instance.of_form);
   instance.watchers.clear();
   instance.past.Clear();

@@ -18,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -138,6 +139,7 @@ struct alignas(64) RuleInstance : InstanceKey {  // rule kNone: the instance is 
   bool waits : 1 = false;            ///< awake, but not stepped until one it asks about tells more
   bool follows : 1 = false;          ///< waits, and is as it was until one of those begins or ends
   bool followed : 1 = false;         ///< some instance follows this one
+  bool by_itself : 1 = false;        ///< what its last step found may change with time alone
   bool awaited = false;              ///< some instance waits for this one to tell more
   Kleene reported = Kleene::kFalse;  ///< the truth at the newest frame, as far as the watchers know
   FrameNumber known = kNever;        ///< truth is final before this frame; see KnownOf()
@@ -192,15 +194,6 @@ struct Watch {
   int other = kNone;  ///< in its other role, if it has two
 };
 
-/// Says how far an instance is known that follows others.
-class Followers {
- public:
-  virtual FrameNumber KnownOf(InstanceId follower) = 0;
-
- protected:
-  ~Followers() = default;
-};
-
 /// What the truth of an instance is where it is not known yet, as far as that has been seen.
 enum class Beyond : std::uint8_t {
   kAsAsked,    ///< those who follow others are asked how far they are known
@@ -210,7 +203,9 @@ enum class Beyond : std::uint8_t {
 
 class RuleInstances {
  public:
-  RuleInstances(const Program& program, const EntityTable& entity_table, Followers& followers);
+  /// `known_of`: how far an instance is known that follows others.
+  RuleInstances(const Program& program, const EntityTable& entity_table,
+                std::function<FrameNumber(InstanceId)> known_of);
 
   /// Binds the rules that have no guard.
   void BindUnguarded();
@@ -226,8 +221,8 @@ class RuleInstances {
   /// Makes the instances that this one guards and appends them to `made`, those that were there
   /// already, too.
   void MakeDependents(InstanceId instance, std::vector<InstanceId>& made);
-  /// Frees an instance that nothing but kAny instances watches. Appends the instances that it
-  /// leaves without a watcher.
+  /// Frees an instance at rest that nothing but kAny instances watches. Appends the instances that
+  /// it leaves without a watcher.
   void Free(InstanceId instance, std::vector<InstanceId>& orphans);
   bool TooMany() const { return too_many_ != kNone; }
   /// Which rule needs them, and how many can play each of its roles.
@@ -297,7 +292,7 @@ class RuleInstances {
 
   /// The truth of the instance is final before this frame.
   FrameNumber KnownOf(const RuleInstance& instance) const {
-    return instance.follows ? followers_.KnownOf(instance.index) : instance.known;
+    return instance.follows ? known_of_(instance.index) : instance.known;
   }
   bool IsKnownAt(const RuleInstance& instance, FrameNumber frame) const {
     return frame < instance.known || (instance.follows && frame < KnownOf(instance));
@@ -382,7 +377,7 @@ class RuleInstances {
   void Unlink(InstanceId instance, InstanceId watcher, std::vector<InstanceId>& orphans);
   const Program& program_;
   const EntityTable& entity_table_;
-  Followers& followers_;
+  std::function<FrameNumber(InstanceId)> known_of_;
   StableBlocks<InstanceId, RuleInstance>
       instances_;                     // an instance stays where it is when others are made
   std::vector<float> rests_until_m_;  // up to the last one that rested; empty if none ever did

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One function per kind of node; a new signal is a case in SignalOf().
+// One function per type of value. A new signal is a case in Compute(), or in SignalOf() if it is
+// measured.
 #include "grammar/values/evaluate.h"
 
 #include <bit>
@@ -15,19 +16,10 @@ using Eigen::Vector3d;
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
-bool IsPosition(const Program& program, NodeId node) {
-  switch (program.nodes[node].op) {
-    case Op::kPosition:
-    case Op::kPositionOn:
-    case Op::kAhead:
-    case Op::kTouchIn:
-    case Op::kNormalIn:
-      return true;
-    case Op::kAtEnd:
-      return IsPosition(program, program.nodes[node].args[0]);
-    default:
-      return false;
-  }
+bool IsPosition(const Program& program, NodeId index) {
+  const Node& node = program.nodes[index];
+  return node.op == Op::kAtEnd ? IsPosition(program, node.args[0])
+                               : RowOf(node.op).type == Type::kPosition;
 }
 
 /// Directly, or through other parts. A recording may have rings of them, hence the bound.
@@ -43,6 +35,8 @@ bool IsPartOf(const EntityTable& entity_table, int part, int whole) {
 
 Kleene Evaluator::Truth(NodeId index, const View& view) const {
   const Node& node = program_.nodes[index];
+  if (node.needs_end && !view.end) return Kleene::kUnknown;
+  if (node.by_itself) view.instance.by_itself = true;
   switch (node.op) {
     case Op::kAnd: {
       const Kleene left = Truth(node.args[0], view);
@@ -65,7 +59,6 @@ Kleene Evaluator::Truth(NodeId index, const View& view) const {
     case Op::kInSphere:
     case Op::kSolidInSphere:
     case Op::kInCylinder: {
-      if (node.needs_end && !view.end) return Kleene::kUnknown;
       const std::optional<Reach> reach = ReachOf(node, view);
       if (!reach) return Kleene::kUnknown;
       if (std::isnan(reach->distance_m + reach->radius_m + reach->height_m + reach->most_height_m))
@@ -90,27 +83,32 @@ Kleene Evaluator::Truth(NodeId index, const View& view) const {
       return Known(SensorSet(node, view));
     case Op::kIsA:
       return Known(instances_.IsA(Entity(node, view, 0), program_.class_names[node.slot]));
-    default:
+    case Op::kLess:
+    case Op::kLessEqual:
+    case Op::kGreater:
+    case Op::kGreaterEqual:
+    case Op::kEqual:
+    case Op::kNotEqual:
       return Compare(node, view);
+      PREHEND_MADE_NUMBERS(PREHEND_CASE)
+      PREHEND_ANCHORED(PREHEND_CASE)
+      PREHEND_MEASURED_NUMBERS(PREHEND_CASE)
+      PREHEND_POSITIONS(PREHEND_CASE)
+      break;
   }
+  return Kleene::kUnknown;  // it is no truth value
 }
 
 bool Evaluator::IsTrue(NodeId index, const View& view) const {
   const Node& node = program_.nodes[index];
-  switch (node.op) {
-    case Op::kAnd:
-      return IsTrue(node.args[0], view) && IsTrue(node.args[1], view);
-    case Op::kOr:
-      return IsTrue(node.args[0], view) || IsTrue(node.args[1], view);
-    case Op::kBegins: {
-      View changing = view;
-      changing.negated = false;
-      const bool is_simple = program_.nodes[node.args[0]].op == Op::kHolds;
-      return (is_simple || IsTrue(node.args[0], changing)) && Truth(index, view) == Kleene::kTrue;
-    }
-    default:
-      return Truth(index, view) == Kleene::kTrue;
+  if (node.op == Op::kAnd) return IsTrue(node.args[0], view) && IsTrue(node.args[1], view);
+  if (node.op == Op::kOr) return IsTrue(node.args[0], view) || IsTrue(node.args[1], view);
+  if (node.op == Op::kBegins && program_.nodes[node.args[0]].op != Op::kHolds) {
+    View changing = view;
+    changing.negated = false;
+    if (!IsTrue(node.args[0], changing)) return false;
   }
+  return Truth(index, view) == Kleene::kTrue;
 }
 
 Kleene Evaluator::Holds(int slot, const View& view) const {
@@ -125,12 +123,13 @@ Kleene Evaluator::Owns(const Node& node, const View& view) const {
 }
 
 Kleene Evaluator::Begins(int slot, const View& view) const {
-  return AtAnInstant(instances_.BeginsAt(instances_.Resolve(view.instance, slot), view.frame));
+  return AtAnInstant(instances_.BeginsAt(instances_.Resolve(view.instance, slot), view.frame),
+                     view);
 }
 
 // What is true here only will be false at the next frame, where its parts are as they are.
-Kleene Evaluator::AtAnInstant(Kleene truth) const {
-  depends_on_time_ = depends_on_time_ || truth == Kleene::kTrue;
+Kleene Evaluator::AtAnInstant(Kleene truth, const View& view) {
+  if (truth == Kleene::kTrue) view.instance.by_itself = true;
   return truth;
 }
 
@@ -142,20 +141,20 @@ Kleene Evaluator::Edge(const Node& node, const View& view) const {
   if (arg.op == Op::kHolds) {
     const InstanceId instance = instances_.Resolve(view.instance, arg.slot);
     return AtAnInstant(begins ? instances_.BeginsAt(instance, view.frame)
-                              : instances_.EndsAt(instance, view.frame));
+                              : instances_.EndsAt(instance, view.frame),
+                       view);
   }
   View changing = view;
   changing.negated = false;  // what is lost ends, and is no longer
   const Kleene now = Truth(node.args[0], changing);
   const Kleene wanted = begins ? now : Not(now);
   if (wanted == Kleene::kFalse) return wanted;
-  depends_on_time_ =
-      depends_on_time_ ||
-      now == Kleene::kUnknown;  // even if there is no change here, the next frame looks back at it
+  if (now == Kleene::kUnknown)  // even if there is no change here, the next frame looks back at it
+    view.instance.by_itself = true;
   const bool is_first = view.frame == 0;
   Kleene before = Kleene::kFalse;
   if (!is_first) before = Truth(node.args[0], changing.At(view.frame - 1));
-  return AtAnInstant(And(wanted, begins ? Not(before) : before));
+  return AtAnInstant(And(wanted, begins ? Not(before) : before), view);
 }
 
 // What is measured was compared when it was seen.
@@ -179,7 +178,6 @@ Kleene Evaluator::CompareMeasured(const ByThreshold& by, const View& view) const
 
 Kleene Evaluator::Compare(const Node& node, const View& view) const {
   if (node.by_threshold.value != kNone) return CompareMeasured(node.by_threshold, view);
-  if (node.needs_end && !view.end) return Kleene::kUnknown;
   const Node& of = program_.nodes[node.args[0]];
   const Node& with = program_.nodes[node.args[1]];
   const bool all_less = node.op == Op::kLess || node.op == Op::kLessEqual;
@@ -194,20 +192,7 @@ Kleene Evaluator::Compare(const Node& node, const View& view) const {
   const std::optional<double> right = Number(node.args[1], view);
   if (!right) return Kleene::kUnknown;
   if (std::isnan(*left) || std::isnan(*right)) return Known(view.negated);
-  switch (node.op) {
-    case Op::kLess:
-      return Known(*left < *right);
-    case Op::kLessEqual:
-      return Known(*left <= *right);
-    case Op::kGreater:
-      return Known(*left > *right);
-    case Op::kGreaterEqual:
-      return Known(*left >= *right);
-    case Op::kEqual:
-      return Known(*left == *right);
-    default:
-      return Known(*left != *right);
-  }
+  return Known(Compares(node.op, *left, *right));
 }
 
 std::optional<Reach> Evaluator::ReachOf(const Node& node, const View& view) const {
@@ -260,6 +245,7 @@ std::optional<double> Evaluator::Number(NodeId index, const View& view) const {
   const Node& node = program_.nodes[index];
   if (node.op == Op::kNumber) return node.number;
   if (node.needs_end && !view.end) return std::nullopt;
+  if (node.by_itself) view.instance.by_itself = true;
   return node.shared == kNone ? Compute(node, view) : Shared(node, view);
 }
 
@@ -275,15 +261,10 @@ std::optional<double> Evaluator::Shared(const Node& node, const View& view) cons
   Computed& computed = computed_[place % kComputed];
   const bool known = computed.frame == view.frame && computed.shared == node.shared &&
                      computed.a == a && computed.b == b;
-  if (!known) {
-    const bool depended_on_time = std::exchange(depends_on_time_, false);
-    const std::optional<double> value = Compute(node, view);
-    if (value) computed = {view.frame, node.shared, a, b, depends_on_time_, *value};
-    depends_on_time_ = depends_on_time_ || depended_on_time;
-    return value;
-  }
-  depends_on_time_ = depends_on_time_ || computed.depends_on_time;
-  return computed.value;
+  if (known) return computed.value;
+  const std::optional<double> value = Compute(node, view);
+  if (value) computed = {view.frame, node.shared, a, b, *value};
+  return value;
 }
 
 std::optional<double> Evaluator::Compute(const Node& node, const View& view) const {
@@ -333,9 +314,13 @@ std::optional<double> Evaluator::Compute(const Node& node, const View& view) con
     case Op::kMaximum:
     case Op::kMedian:
       return OfWindow(node, view);
-    default:
+      PREHEND_MEASURED_NUMBERS(PREHEND_CASE)
       return SignalOf(node, view);
+      PREHEND_TRUTHS(PREHEND_CASE)
+      PREHEND_POSITIONS(PREHEND_CASE)
+      break;
   }
+  return kNotKnown;  // it is no number
 }
 
 std::optional<double> Evaluator::Arithmetic(const Node& node, const View& view) const {
@@ -345,16 +330,7 @@ std::optional<double> Evaluator::Arithmetic(const Node& node, const View& view) 
   if (node.op == Op::kAbs) return std::abs(*left);
   const std::optional<double> right = Number(node.args[1], view);
   if (!right) return std::nullopt;
-  switch (node.op) {
-    case Op::kAdd:
-      return *left + *right;
-    case Op::kSubtract:
-      return *left - *right;
-    case Op::kMultiply:
-      return *left * *right;
-    default:
-      return *left / *right;
-  }
+  return Calculate(node.op, *left, *right);
 }
 
 double Evaluator::SignalOf(const Node& node, const View& view) const {
@@ -415,9 +391,13 @@ double Evaluator::SignalOf(const Node& node, const View& view) const {
     case Op::kStrength:
       return entity_table_.entities[a].strength_n > 0 ? entity_table_.entities[a].strength_n
                                                       : kBoundless;
-    default:
-      return 0;
+      PREHEND_TRUTHS(PREHEND_CASE)
+      PREHEND_MADE_NUMBERS(PREHEND_CASE)
+      PREHEND_ANCHORED(PREHEND_CASE)
+      PREHEND_POSITIONS(PREHEND_CASE)
+      break;
   }
+  return kNotKnown;  // it is not measured
 }
 
 double Evaluator::Weight(int entity) const {
@@ -456,14 +436,12 @@ double Evaluator::Gap(int hand, int object, FrameNumber frame) const {
 }
 
 double Evaluator::ClosingSpeed(int hand, int object, FrameNumber frame) const {
-  depends_on_time_ = true;
   if (frame <= history_.first()) return 0;
   const double seconds = history_.Seconds(history_.At(frame).tick - history_.At(frame - 1).tick);
   return (Gap(hand, object, frame - 1) - Gap(hand, object, frame)) / seconds;
 }
 
 double Evaluator::SurfaceSpeed(int hand, FrameNumber frame) const {
-  depends_on_time_ = true;
   if (frame <= history_.first()) return 0;
   return Apart_m(hand, frame, frame - 1) / SecondsBetween(frame - 1, frame);
 }
@@ -511,6 +489,7 @@ const TouchSample* Evaluator::Touch(const Node& node, const View& view, bool& sw
 
 std::optional<Vector3d> Evaluator::Position(NodeId index, const View& view) const {
   const Node& node = program_.nodes[index];
+  if (node.by_itself) view.instance.by_itself = true;
   switch (node.op) {
     case Op::kAtBegin:
       if (!view.begin_known) return std::nullopt;
@@ -532,9 +511,14 @@ std::optional<Vector3d> Evaluator::Position(NodeId index, const View& view) cons
       const Vector3d ahead_W = hand == nullptr ? Vector3d(Vector3d::UnitX()) : hand->look.ahead_W;
       return history_.Look(entity, view.frame).p_WB_m + *distance * ahead_W;
     }
-    default:
+    case Op::kPosition:
       return history_.Look(Entity(node, view, 0), view.frame).p_WB_m;
+      PREHEND_TRUTHS(PREHEND_CASE)
+      PREHEND_MADE_NUMBERS(PREHEND_CASE)
+      PREHEND_MEASURED_NUMBERS(PREHEND_CASE)
+      break;
   }
+  return Vector3d::Constant(kNotKnown);  // it is no position
 }
 
 bool Evaluator::CaptureAnchors(RuleInstance& instance, FrameNumber frame) const {

@@ -52,6 +52,8 @@ class Evaluator {
     }
   };
 
+  /// Here and in Number() and Position(), RuleInstance::by_itself is set where that was asked for
+  /// what may change with time alone: a node that does, or a moment, which is over one frame later.
   /// kUnknown while it depends on truths that are not final, on a begin or an end that is not
   /// known, or on frames to come. Of what is not tracked, neither a condition nor its opposite
   /// holds.
@@ -90,13 +92,6 @@ class Evaluator {
   /// Whether FalseFor_m() may tell something of it.
   bool NeedsNearness(NodeId node) const;
 
-  /// Whether a value asked for since ResetTimeDependence() may change with time alone, though
-  /// nothing that it is made of changes: an instant that is over one frame later, a speed from
-  /// frame to frame, a window of time.
-  bool depends_on_time() const { return depends_on_time_; }
-  void ResetTimeDependence() { depends_on_time_ = false; }
-  void MarkTimeDependent() { depends_on_time_ = true; }
-
   /// From the origin of `whom` to the surface of `who`, as `nearest` measures it.
   double AwayFrom_m(int who, int whom, FrameNumber frame) const;
 
@@ -106,7 +101,7 @@ class Evaluator {
 
  private:
   Kleene Owns(const Node& node, const View& view) const;
-  Kleene AtAnInstant(Kleene truth) const;
+  static Kleene AtAnInstant(Kleene truth, const View& view);
   Kleene Edge(const Node& node, const View& view) const;
   Kleene Compare(const Node& node, const View& view) const;
   bool IsTracked(int entity, FrameNumber frame) const {
@@ -181,7 +176,6 @@ class Evaluator {
   const History& history_;
   RuleInstances& instances_;
   Thresholds thresholds_;
-  mutable bool depends_on_time_ = false;
   /// A window of the program, around the last frames; the same for all bindings.
   struct Windows {
     Tick half = 0;
@@ -197,7 +191,6 @@ class Evaluator {
   struct Computed {
     FrameNumber frame = -1;
     int shared = kNone, a = kNoEntity, b = kNoEntity;
-    bool depends_on_time = false;
     double value = 0;
   };
   static constexpr std::size_t kComputed = 1024;  ///< a power of two

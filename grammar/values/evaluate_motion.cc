@@ -27,7 +27,6 @@ Vector3d Along(const Vector3d& v, const Vector3d& nhat) { return v - v.dot(nhat)
 // Nothing while a frame of it is still to come.
 std::optional<Evaluator::Window> Evaluator::WindowAround(const Node& node,
                                                          FrameNumber frame) const {
-  depends_on_time_ = true;
   Windows& windows = windows_[static_cast<std::size_t>(node.window)];
   auto& known = windows.known[static_cast<std::size_t>(frame) % windows.known.size()];
   if (known.frame == frame)  // of ticks that are forgotten the first one stands for all
@@ -75,20 +74,13 @@ std::optional<double> Evaluator::SpeedOver(const Node& node, const View& view) c
 namespace {
 
 double OfValues(Op op, std::vector<double>& values) {
-  switch (op) {
-    case Op::kMean:
-      return std::accumulate(values.begin(), values.end(), 0.0) /
-             static_cast<double>(values.size());
-    case Op::kMinimum:
-      return *std::ranges::min_element(values);
-    case Op::kMaximum:
-      return *std::ranges::max_element(values);
-    default: {
-      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), middle, values.end());
-      return *middle;
-    }
-  }
+  if (op == Op::kMean)
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  if (op == Op::kMinimum) return *std::ranges::min_element(values);
+  if (op == Op::kMaximum) return *std::ranges::max_element(values);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 }  // namespace
@@ -129,11 +121,7 @@ Kleene Evaluator::AllInWindow(const Node& node, double number, const View& view)
   // If the value at the last frame is known, all of them are.
   const std::optional<double> last = Number(of.args[0], view.At(window->late));
   if (!last) return Kleene::kUnknown;
-  const bool is_beyond = node.op == Op::kLess        ? *last >= number
-                         : node.op == Op::kLessEqual ? *last > number
-                         : node.op == Op::kGreater   ? *last <= number
-                                                     : *last < number;
-  return is_beyond ? Kleene::kFalse : Kleene::kTrue;
+  return Known(std::isnan(*last) || Compares(node.op, *last, number));
 }
 
 // The way of a as seen from b between two frames, turned to where b is now, without its upright

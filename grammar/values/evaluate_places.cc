@@ -40,7 +40,6 @@ double Evaluator::AwayFrom_m(int who, int whom, FrameNumber frame) const {
 // Others of the class move, too, and nobody watches them. Of two that are equally near, the first
 // in the cast is.
 bool Evaluator::IsNearest(const Node& node, const View& view) const {
-  depends_on_time_ = true;
   const int who = Entity(node, view, 0);
   const int whom = Entity(node, view, 1);
   const std::string& of_class =
@@ -203,20 +202,13 @@ bool IsAtMost(const Node& node) { return node.op == Op::kLess || node.op == Op::
 bool Evaluator::NeedsNearness(NodeId index) const {
   const Node& node = program_.nodes[index];
   const auto is_number = [&](NodeId arg) { return program_.nodes[arg].op == Op::kNumber; };
-  switch (node.op) {
-    case Op::kAnd:
-      return NeedsNearness(node.args[0]) || NeedsNearness(node.args[1]);
-    case Op::kOr:
-      return NeedsNearness(node.args[0]) && NeedsNearness(node.args[1]);
-    case Op::kInside:
-      return true;
-    case Op::kSolidInSphere:
-      return program_.nodes[node.args[0]].op == Op::kPosition && is_number(node.args[1]);
-    case Op::kInSphere:
-      return AreOrigins(program_, node.args[0], node.args[1]) && is_number(node.args[2]);
-    default:
-      break;
-  }
+  if (node.op == Op::kAnd) return NeedsNearness(node.args[0]) || NeedsNearness(node.args[1]);
+  if (node.op == Op::kOr) return NeedsNearness(node.args[0]) && NeedsNearness(node.args[1]);
+  if (node.op == Op::kInside) return true;
+  if (node.op == Op::kSolidInSphere)
+    return program_.nodes[node.args[0]].op == Op::kPosition && is_number(node.args[1]);
+  if (node.op == Op::kInSphere)
+    return AreOrigins(program_, node.args[0], node.args[1]) && is_number(node.args[2]);
   if (!IsAtMost(node) || !is_number(node.args[1])) return false;
   const Node& value = program_.nodes[node.args[0]];
   return IsAbsoluteClearance(program_, value) ||
@@ -247,27 +239,23 @@ double Evaluator::OutOfReach_m(const Node& node, RuleInstance& instance, FrameNu
   const auto origin = [&](NodeId arg) -> const Vector3d& {
     return history_.Look(Entity(program_.nodes[arg], view, 0), frame).p_WB_m;
   };
-  switch (node.op) {
-    case Op::kInside:
-      return OutOfBox_m(Entity(node, view, 0), Entity(node, view, 1), frame);
-    case Op::kSolidInSphere: {
-      const int entity = Entity(node, view, 0);
-      return DistanceToSurface_m(origin(node.args[0]),
-                                 entity_table_.entities[static_cast<std::size_t>(entity)],
-                                 history_.Look(entity, frame)) -
-             number(node.args[1]);
-    }
-    case Op::kInSphere:
-      return (origin(node.args[0]) - origin(node.args[1])).norm() - number(node.args[2]);
-    default: {
-      const Node& value = program_.nodes[node.args[0]];
-      const double most_m = number(node.args[1]);
-      if (value.op == Op::kDistance)
-        return (origin(value.args[0]) - origin(value.args[1])).norm() - most_m;
-      const Node& clearance = program_.nodes[value.args[0]];
-      return OffTop_m(Entity(clearance, view, 0), Entity(clearance, view, 1), most_m, frame);
-    }
+  if (node.op == Op::kInside)
+    return OutOfBox_m(Entity(node, view, 0), Entity(node, view, 1), frame);
+  if (node.op == Op::kSolidInSphere) {
+    const int entity = Entity(node, view, 0);
+    return DistanceToSurface_m(origin(node.args[0]),
+                               entity_table_.entities[static_cast<std::size_t>(entity)],
+                               history_.Look(entity, frame)) -
+           number(node.args[1]);
   }
+  if (node.op == Op::kInSphere)
+    return (origin(node.args[0]) - origin(node.args[1])).norm() - number(node.args[2]);
+  const Node& value = program_.nodes[node.args[0]];
+  const double most_m = number(node.args[1]);
+  if (value.op == Op::kDistance)
+    return (origin(value.args[0]) - origin(value.args[1])).norm() - most_m;
+  const Node& clearance = program_.nodes[value.args[0]];
+  return OffTop_m(Entity(clearance, view, 0), Entity(clearance, view, 1), most_m, frame);
 }
 
 // How far the centre of a is from the box of b.

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A function is read in one piece: at most kMostLinesOfFunction, a command less, tables more. What
-// is laid out by clang-format ends with a '}' alone in its line, below the first character of its
-// head.
+// A function is read in one piece: at most kMostLinesOfFunction, a command less. What is laid out
+// by clang-format ends with a '}' alone in its line, below the first character of its head.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -20,8 +18,7 @@ constexpr int kMostLinesOfFunction = 80;
 constexpr int kMostLinesOfCommands = 60;
 constexpr const char* kCommands = "harness/cli/";
 
-/// Functions that return a table, a row after another; so does one that returns a Command.
-constexpr const char* kTables[] = {"grammar/analysis/builtins.cc"};
+/// A function that returns a Command is a table.
 constexpr const char* kTableOfOptions = "Command ";
 
 struct Block {
@@ -80,7 +77,6 @@ TEST(FunctionLength, IsThatOfTheLongestFunction) {
 
 TEST(FunctionLength, FitsOnAScreenOutsideOfTables) {
   for (const SourceFile& file : SourceFiles({"grammar", "harness", "physics", "render"})) {
-    if (std::ranges::count(kTables, file.path) > 0) continue;
     const int most = file.path.starts_with(kCommands) ? kMostLinesOfCommands : kMostLinesOfFunction;
     const Block longest = LongestIn(file.text);
     EXPECT_LE(longest.lines, most) << file.path << ":" << longest.line << ": " << longest.head;

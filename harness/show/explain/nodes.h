@@ -9,10 +9,6 @@
 
 namespace prehend::show {
 
-inline bool IsComparison(grammar::Op op) {
-  return op >= grammar::Op::kLess && op <= grammar::Op::kNotEqual;
-}
-
 inline bool IsRegion(grammar::Op op) {
   return op == grammar::Op::kInSphere || op == grammar::Op::kSolidInSphere ||
          op == grammar::Op::kInCylinder;
