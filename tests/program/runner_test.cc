@@ -260,8 +260,16 @@ TEST_F(Runner, JunitXmlIsWrittenForTheServer) {
   Check("--junit " + file.string(), 0);
   const std::string xml = ReadFile(file);
   EXPECT_TRUE(xml.starts_with("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites ")) << xml;
-  EXPECT_NE(xml.find("<testcase classname=\"rest\" name=\"carton_rests\" time="),
+  EXPECT_NE(xml.find("<testcase classname=\"rest\" name=\"carton_rests\" file=\""),
             std::string::npos);
+  EXPECT_NE(xml.find("scenarios/rest/carton_rests.yaml\" line=\"1\" time="), std::string::npos);
+}
+
+TEST_F(Runner, AnEmptyShardPassesWithAnEmptyFileForTheServer) {
+  Accept();
+  const fs::path file = root_ / "verdicts.xml";
+  EXPECT_TRUE(Check("--shard 2/2 --junit " + file.string(), 0).empty());
+  EXPECT_NE(ReadFile(file).find("<testsuites name=\"prehend\" tests=\"0\""), std::string::npos);
 }
 
 }  // namespace

@@ -323,9 +323,6 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   if (!cannot.empty()) return Complain(context, ExitCode::kBadInput, cannot);
   if (options.Has("--shard")) {
     suite::KeepShard(*suite::ParseShard(options.Text("--shard")), *selection);
-    if (selection->scenarios.empty() && selection->orphans.empty())
-      return Complain(context, ExitCode::kNothing,
-                      "this shard is empty; fewer scenarios are selected than there are shards");
   }
   const suite::SuiteRequest request = RequestFrom(options, context, std::move(*selection));
   const std::string page = (fs::path(request.report_folder) / "index.html").string();
@@ -359,8 +356,9 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
     interrupt.EndProcess();
   }
   if (problem.empty()) problem = NotRecordedText(verdicts);
-  return problem.empty() ? suite::WorstOf(verdicts)
-                         : Complain(context, ExitCode::kFailure, problem);
+  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
+  // An empty shard has agreed with all that it had.
+  return verdicts.empty() && options.Has("--shard") ? ExitCode::kAgrees : suite::WorstOf(verdicts);
 }
 
 }  // namespace

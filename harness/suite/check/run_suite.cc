@@ -146,6 +146,7 @@ class Suite {
       verdict.ticks = std::max<std::int64_t>(0, last_tick);
       verdict.command = RepeatCommand(RequestOf({scenario})) + HowText();
     }
+    verdict.file = scenarios_[scenario].path;
     verdict.seconds = result.seconds;
     verdict.peak_memory_kib = result.peak_memory_kib;
     return verdict;
@@ -187,7 +188,10 @@ class Suite {
   }
 
   static ScenarioVerdict OrphanVerdict(const UnreferencedGolden& orphan) {
-    ScenarioVerdict verdict{.scenario = orphan.scenario, .shows = {}, .verdict = Verdict::kFailed};
+    ScenarioVerdict verdict{.scenario = orphan.scenario,
+                            .file = orphan.files.front().string(),
+                            .shows = {},
+                            .verdict = Verdict::kFailed};
     verdict.exit_code = ExitCode::kDiffers;
     verdict.reason = "a golden without scenario";
     verdict.details = Text(orphan);

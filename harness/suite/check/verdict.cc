@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <set>
@@ -55,6 +56,22 @@ std::string NotesText(const ScenarioVerdict& verdict) {
   std::string text;
   for (const std::string& note : verdict.notes) text += note + "\n";
   return text;
+}
+
+FirstPlace WhereToLook(const ScenarioVerdict& verdict) {
+  FirstPlace where{.file = verdict.file};
+  const auto claim =
+      std::ranges::find(verdict.claims, truth::kContradicted, &truth::ClaimVerdict::says);
+  if (!verdict.errors.empty()) {
+    where = {verdict.errors.front().file, std::max(1, verdict.errors.front().place.line)};
+  } else if (claim != verdict.claims.end()) {
+    const std::size_t colon = claim->place.rfind(':');
+    where = {claim->place.substr(0, colon), std::stoi(claim->place.substr(colon + 1))};
+  }
+  std::error_code error;
+  const std::string below = std::filesystem::current_path(error).string() + "/";
+  if (where.file.starts_with(below)) where.file.erase(0, below.size());
+  return where;
 }
 
 std::string DetailsText(const ScenarioVerdict& verdict) {

@@ -51,6 +51,7 @@ inline constexpr std::size_t kMostDrawnDifferences = 3;
 
 struct ScenarioVerdict {
   std::string scenario;  ///< skill/name
+  std::string file;      ///< what was checked
   std::string shows;
   Verdict verdict = Verdict::kFailed;
   ExitCode exit_code = ExitCode::kAgrees;   ///< what a check of this scenario alone ends with
@@ -83,6 +84,14 @@ struct ScenarioVerdict {
 
   bool DiffersFromGolden() const { return has_golden && comparison && !comparison->Agrees(); }
 };
+
+/// What to look at first: the first error in what was read, the first claim that does not hold, or
+/// the beginning of the file. Below the working directory the path is relative to it.
+struct FirstPlace {
+  std::string file;
+  int line = 1;
+};
+FirstPlace WhereToLook(const ScenarioVerdict& verdict);
 
 /// Whether it is pending and its command shows what can be accepted.
 bool LeadsToReview(const ScenarioVerdict& verdict);

@@ -56,11 +56,12 @@ namespace prehend::suite {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportedPicture, file, caption)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DrawnDifference, what, expected, recognised, in_golden, in_run)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attribution, event, what, shift_ms, because, question)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, shows, verdict, exit_code, reason,
-                                   errors, details, notes, claims, comparison, has_golden, drawings,
-                                   explain, cause, attributions, settings, command, state_hash,
-                                   ticks, seconds, peak_memory_kib, inputs, pictures, not_recorded,
-                                   picture_differences, drawn_differences, explained, replay)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, file, shows, verdict, exit_code,
+                                   reason, errors, details, notes, claims, comparison, has_golden,
+                                   drawings, explain, cause, attributions, settings, command,
+                                   state_hash, ticks, seconds, peak_memory_kib, inputs, pictures,
+                                   not_recorded, picture_differences, drawn_differences, explained,
+                                   replay)
 
 namespace {
 
@@ -113,7 +114,10 @@ Json VerdictJson(const ScenarioVerdict& verdict) {
   Json pictures = Json::array();
   for (const ReportedPicture& picture : verdict.pictures)
     pictures.push_back({{"file", picture.file}, {"caption", picture.caption}});
+  const FirstPlace where = WhereToLook(verdict);
   return {{"scenario", verdict.scenario},
+          {"file", where.file},
+          {"line", where.line},
           {"verdict", Name(verdict.verdict)},
           {"exit_code", static_cast<int>(verdict.exit_code)},
           {"reason", verdict.reason},

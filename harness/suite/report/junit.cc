@@ -67,10 +67,13 @@ void AddOutcome(pugi::xml_node test_case, const ScenarioVerdict& verdict) {
 void AddCase(pugi::xml_node suite, const ScenarioVerdict& verdict) {
   const std::size_t slash = verdict.scenario.rfind('/');
   const bool has_skill = slash != std::string::npos;
+  const FirstPlace where = WhereToLook(verdict);
   const pugi::xml_node test_case =
       AddElement(suite, "testcase",
                  {{"classname", has_skill ? verdict.scenario.substr(0, slash) : "scenarios"},
                   {"name", has_skill ? verdict.scenario.substr(slash + 1) : verdict.scenario},
+                  {"file", where.file},
+                  {"line", std::to_string(where.line)},
                   {"time", fmt::format("{:.3f}", verdict.seconds)}});
   AddOutcome(test_case, verdict);
   const std::string margin = MarginText(verdict);

@@ -73,10 +73,10 @@ TEST(Verdict, IsPrintedWithTheDocumentedKeys) {
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_EQ(keys,
             (std::vector<std::string>{
-                "scenario", "verdict",         "exit_code",   "reason",    "details",    "errors",
-                "notes",    "claims",          "differences", "relations", "blame",      "causes",
-                "headroom", "boundaries",      "command",     "shows",     "state_hash", "ticks",
-                "seconds",  "peak_memory_kib", "inputs",      "pictures"}));
+                "scenario",   "file",   "line",     "verdict",         "exit_code",   "reason",
+                "details",    "errors", "notes",    "claims",          "differences", "relations",
+                "blame",      "causes", "headroom", "boundaries",      "command",     "shows",
+                "state_hash", "ticks",  "seconds",  "peak_memory_kib", "inputs",      "pictures"}));
   EXPECT_EQ(json["verdict"], "passed");
   EXPECT_EQ(json["headroom"], "margin: 6.0 of 10.0 ms left at end of sliding(hand, cup)");
   const nlohmann::ordered_json end_of_slide = {

@@ -27,12 +27,20 @@ TEST(Junit, HasEveryKindOfOutcome) {
   verdicts[0].has_golden = true;
   verdicts[0].comparison = Compared("sliding", {100, 204});
   verdicts[0].seconds = 0.25;
-  verdicts[1] = {.scenario = "slide/bad", .shows = {}, .verdict = Verdict::kFailed};
+  verdicts[1] = {.scenario = "slide/bad",
+                 .file = "scenarios/slide/bad.yaml",
+                 .shows = {},
+                 .verdict = Verdict::kFailed};
   verdicts[1].exit_code = ExitCode::kDiffers;
   verdicts[1].reason = "\"1\" < 2 & 3\x1b\xff";
   verdicts[1].details = "shifted a -> b\n";
   verdicts[1].command = "prehend check slide/bad";
   verdicts[1].seconds = 1;
+  verdicts[1].claims = {{.claim = "no sliding",
+                         .place = "scenarios/slide/bad.yaml:31",
+                         .says = truth::kContradicted,
+                         .found = "found 1",
+                         .times = {}}};
   verdicts[2] = {.scenario = "alone", .shows = {}, .verdict = Verdict::kFailed};
   verdicts[2].exit_code = ExitCode::kFailure;
   verdicts[2].reason = "its process ended";
@@ -41,19 +49,19 @@ TEST(Junit, HasEveryKindOfOutcome) {
   EXPECT_EQ(JunitXml(verdicts), R"(<?xml version="1.0" encoding="UTF-8"?>
 <testsuites name="prehend" tests="4" failures="1" errors="1" time="1.250">
   <testsuite name="prehend check" tests="4" failures="1" errors="1" skipped="1" time="1.250">
-    <testcase classname="slide" name="good" time="0.250">
+    <testcase classname="slide" name="good" file="" line="1" time="0.250">
       <system-out>margin: 6.0 of 10.0 ms left at end of sliding(hand, cup)</system-out>
     </testcase>
-    <testcase classname="slide" name="bad" time="1.000">
+    <testcase classname="slide" name="bad" file="scenarios/slide/bad.yaml" line="31" time="1.000">
       <failure type="failed" message="&quot;1&quot; &lt; 2 &amp; 3��; first: shifted a -> b">shifted a -&gt; b
 again: prehend check slide/bad
 </failure>
     </testcase>
-    <testcase classname="scenarios" name="alone" time="0.000">
+    <testcase classname="scenarios" name="alone" file="" line="1" time="0.000">
       <error type="failed" message="its process ended">again: prehend check alone
 </error>
     </testcase>
-    <testcase classname="slide" name="old" time="0.000">
+    <testcase classname="slide" name="old" file="" line="1" time="0.000">
       <skipped message="nothing changed since it passed" />
     </testcase>
   </testsuite>
