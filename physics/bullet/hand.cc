@@ -26,6 +26,7 @@ std::unique_ptr<btCollisionShape> LinkShape(const HandLink& link) {
 
 BulletHand::BulletHand(const Hand& hand, int style, int group, btMultiBodyDynamicsWorld& world)
     : model_(hand.model),
+      places_(hand.model),
       world_(world),
       pids_(hand.model),
       command_{.target = {.X_WH = hand.X_WH}, .style = style} {
@@ -155,12 +156,10 @@ BodyState BulletHand::PalmState() const {
 
 void BulletHand::Describe(HandState& state) const {
   state.palm = PalmState();
-  state.X_WL.resize(model_.links.size());
   state.joints.resize(model_.links.size());
-  for (std::size_t i = 0; i < model_.links.size(); ++i) {
-    state.X_WL[i] = FromBullet(colliders_[i + 1]->getWorldTransform());
+  for (std::size_t i = 0; i < model_.links.size(); ++i)
     state.joints[i] = multibody_->getJointPos(static_cast<int>(i));
-  }
+  places_.Place(state.palm.X_WB, state.joints, state.X_WL);
   state.X_WTarget = command_.target.X_WH;
   state.trigger = command_.target.trigger;
   state.style = command_.style;

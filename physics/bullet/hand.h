@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "physics/hand/pid.h"
+#include "physics/scene/link_places.h"
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
 #include "physics/world/world.h"
@@ -48,6 +49,7 @@ class BulletHand {
   void DriveJoints(const GraspStyle& style, double trigger, double dt_s);
 
   HandModel model_;
+  LinkPlaces places_;
   btMultiBodyDynamicsWorld& world_;
   std::unique_ptr<btMultiBody> multibody_;
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;

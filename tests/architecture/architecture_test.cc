@@ -55,7 +55,7 @@ const std::vector<LibraryRule>& LibraryRules() {
       {"pugixml", std::regex("pugixml\\.hpp"), std::regex("(harness|tests)/.*")},
       {"muParser", std::regex("muParser.*"), std::regex("tests/witnesses/.*/formula\\.cc")},
       {"tl::expected", std::regex("tl/.*"), std::regex("(harness|tests)/.*")},
-      {"SLEEF", std::regex("sleef\\.h"), std::regex("physics/(base/)?portable_math\\.cc")},
+      {"SLEEF", std::regex("sleef\\.h"), std::regex("physics/portable_math\\.cc")},
       {"xxHash", std::regex("xxhash\\.h"), std::regex("harness/(.*/)?content_hash\\.cc")},
       {"SQLite", std::regex("sqlite3\\.h"), std::regex("(harness/episode/episodes|bench)/.*")},
       {"zstd", std::regex("zstd\\.h"),

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "physics/base/portable_math.h"
-
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
@@ -41,25 +39,6 @@ TEST(PortableMath, LastBitsAreFixed) {
     add(std::sin(static_cast<float>(y))), add(std::cos(static_cast<float>(y)));
   }
   EXPECT_EQ(hash, 0xdd1af602e52be6eu);
-}
-
-TEST(PortableMath, FourAtOnceAreTheSameToTheLastBit) {
-  std::mt19937_64 random(5);
-  const double special[] = {0.0, -0.0, 1e-300, HUGE_VAL, NAN, 1e6, -9.999, 10.001};
-  for (int i = 0; i < 100000; ++i) {
-    std::array<double, 4> angles{}, sines{}, cosines{};
-    for (double& angle : angles) {
-      const double x = std::ldexp(static_cast<double>(random() >> 11), -52) - 1;  // [-1, 1)
-      angle = random() % 40 == 0 ? special[random() % std::size(special)]
-                                 : x * std::pow(10.0, static_cast<double>(random() % 4) - 2);
-    }
-    SinesAndCosines(angles, sines, cosines);
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (std::isnan(std::sin(angles[k]))) continue;
-      ASSERT_EQ(Bits(sines[k]), Bits(std::sin(angles[k]))) << angles[k];
-      ASSERT_EQ(Bits(cosines[k]), Bits(std::cos(angles[k]))) << angles[k];
-    }
-  }
 }
 
 TEST(PortableMath, ErrorsAreAtMostOneUlp) {

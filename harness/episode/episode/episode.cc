@@ -78,11 +78,11 @@ Episode::End Episode::EachFrame(const std::function<void(const grammar::Frame&)>
   }
   Sensing sensing(scenario.scene, scenario.sensing);
   EpisodeFrames frames(*file_, row_, LayoutOf(scenario.scene));
-  const std::string damage =
+  const Result<void> read =
       frames.Play([&](const physics::Snapshot& snapshot) { look(sensing.Sense(snapshot)); },
                   [&](std::int64_t tick) { return sensing.Due(tick); });
-  End end{row_.ticks + 1, damage.empty() ? "" : name_.file + ": " + damage};
-  if (!damage.empty() || IsComplete(row_.end)) return end;
+  End end{row_.ticks + 1, read ? "" : name_.file + ": " + read.error().front().message};
+  if (!read || IsComplete(row_.end)) return end;
   RunResult run;
   run.status = row_.end;
   run.timeline.ticks_per_second = row_.ticks_per_second;
@@ -101,10 +101,10 @@ Result<grammar::Tick> Episode::EndTick() {
 Result<std::vector<physics::Snapshot>> Episode::ReadSnapshots(
     const std::function<bool(std::int64_t)>& wanted) const {
   std::vector<physics::Snapshot> snapshots;
-  const std::string damage =
+  const Result<void> read =
       EpisodeFrames(*file_, row_, LayoutOf(loaded_.scenario.scene))
           .Play([&](const physics::Snapshot& snapshot) { snapshots.push_back(snapshot); }, wanted);
-  if (!damage.empty()) return Failure(damage);
+  if (!read) return tl::unexpected(read.error());
   return snapshots;
 }
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -55,12 +54,10 @@ struct KeptTask {
   std::vector<Asset> assets;
 };
 
-/// A file that is open for reading. Functions that return a Result report damage with the file.
+/// A file that is open for reading. Errors name the file and, of frames, the episode.
 class EpisodeFile {
  public:
   static Result<EpisodeFile> Open(const std::string& path);
-  ~EpisodeFile();
-  EpisodeFile(EpisodeFile&&) noexcept;
 
   const std::string& path() const { return path_; }
   /// In the order in which they were begun.
@@ -75,46 +72,52 @@ class EpisodeFile {
   Result<std::vector<KeptEntity>> EntitiesOf(const EpisodeRow& episode) const;
   Result<std::vector<physics::ScriptNote>> NotesOf(const EpisodeRow& episode) const;
 
-  /// Calls `look` with this part of each chunk, in their order. Returns "", or what is damaged: a
-  /// part that is missing, or for which `look` says false.
-  std::string EachPart(const EpisodeRow& episode, std::size_t part,
-                       const std::function<bool(std::string_view)>& look) const;
+  struct ChunkOfPart {
+    std::int64_t first_tick = 0;
+    std::size_t frames = 0;
+    std::optional<std::string_view> part;  ///< nothing: the chunk does not have it
+  };
+  /// Calls `look`, which may throw Damage, with this part of each chunk, in their order.
+  Result<void> EachPart(const EpisodeRow& episode, std::size_t part,
+                        const std::function<void(const ChunkOfPart&)>& look) const;
 
  private:
   friend class EpisodeFrames;
-  struct State;
-  EpisodeFile(std::string path, std::unique_ptr<State> state);
+  EpisodeFile(std::string path, Database database)
+      : path_(std::move(path)), database_(std::move(database)) {}
 
   std::string path_;
-  std::unique_ptr<State> state_;
+  Database database_;
   std::vector<EpisodeRow> episodes_;
 };
 
 /// The frames of one episode. The file outlives it.
 class EpisodeFrames {
  public:
-  EpisodeFrames(const EpisodeFile& file, const EpisodeRow& episode, FrameLayout layout);
-  ~EpisodeFrames();
+  EpisodeFrames(const EpisodeFile& file, const EpisodeRow& episode, FrameLayout layout)
+      : file_(file), episode_(episode), player_(std::move(layout)) {}
 
-  /// Calls `look` with each frame that is `wanted`, in their order. Returns "", or what is damaged.
-  std::string Play(const std::function<void(const physics::Snapshot&)>& look,
-                   const std::function<bool(std::int64_t tick)>& wanted = {}, bool links = true);
+  /// Calls `look` with each frame that is `wanted`, in their order.
+  Result<void> Play(const std::function<void(const physics::Snapshot&)>& look,
+                    const std::function<bool(std::int64_t tick)>& wanted = {}, bool links = true);
 
-  /// The last frame up to this tick; nothing if there is none, or it is damaged. Which bodies may
-  /// have moved is not known of it. Takes time with the logarithm of the number of frames.
-  std::optional<physics::Snapshot> At(std::int64_t tick);
+  /// The last frame up to this tick; it is an error if there is none. Which bodies may have moved
+  /// is not known of it. Takes time with the logarithm of the number of frames.
+  Result<physics::Snapshot> At(std::int64_t tick);
 
   struct Moment {
     std::int64_t tick = 0;
     physics::BodyState body;
   };
-  /// All frames of one body. Nothing if it is damaged.
-  std::optional<std::vector<Moment>> TrackOf(std::size_t body);
+  /// All frames of one body.
+  Result<std::vector<Moment>> TrackOf(std::size_t body);
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
-  std::string damage_;  ///< why there is no state
+  void OpenChunk(Statement& parts, std::int64_t first_tick, std::int64_t frames, bool follows);
+
+  const EpisodeFile& file_;
+  EpisodeRow episode_;
+  FramePlayer player_;
 };
 
 }  // namespace prehend::episode

@@ -134,15 +134,15 @@ Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
   run.drawings = truth::EventDrawings(*loaded.program);
   Sensing sensing(loaded.scenario.scene, loaded.scenario.sensing);
   EpisodeFrames frames(file, episode, LayoutOf(loaded.scenario.scene));
-  std::string damage;
+  Result<void> played;
   const FrameFeed play = [&](const std::function<void(const FrameNews&)>& take) {
-    damage = frames.Play(
+    played = frames.Play(
         [&](const physics::Snapshot& snapshot) { take(sensing.SenseChanges(snapshot)); },
         [&](std::int64_t tick) { return sensing.Due(tick); });
     return run.ticks + 1;
   };
   Segmentation segmentation = Segment(loaded.program, MakeEntityTable(loaded.scenario), play);
-  if (!damage.empty()) return Failure(file, episode, damage);
+  if (!played) return tl::unexpected(std::move(played.error()));
   if (!segmentation.problem.empty())
     return Failure(file, episode, "the grammar cannot segment it: " + segmentation.problem);
   run.timeline = std::move(segmentation.timeline);
@@ -159,11 +159,11 @@ Result<RunResult> Replay(const EpisodeFile& file, const EpisodeRow& episode,
   if (!run) return run;
   physics::StateHash hash;
   EpisodeFrames frames(file, episode, LayoutOf(loaded.scenario.scene));
-  const std::string problem = frames.Play([&](const physics::Snapshot& snapshot) {
+  const Result<void> played = frames.Play([&](const physics::Snapshot& snapshot) {
     hash.Add(snapshot);
     run->recording.push_back(snapshot);
   });
-  if (!problem.empty()) return Failure(file, episode, problem);
+  if (!played) return tl::unexpected(played.error());
   if (!episode.state_hash.empty() && HashText(hash.value()) != episode.state_hash)
     return Failure(file, episode,
                    fmt::format("the file is damaged: its frames have the state hash {}, recorded "

@@ -3,6 +3,7 @@
 // tests/harness/episode/episodes/episode_file_test.cc
 #include "harness/episode/episodes/record_episode.h"
 
+#include "harness/episode/episodes/guarded.h"
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/episodes/task_files.h"
 #include "harness/episode/episodes/write_rows.h"
@@ -59,16 +60,14 @@ struct EpisodeRecorder::State {
 
 EpisodeRecorder::EpisodeRecorder(const RecordRequest& request, const scenario::Scenario& scenario)
     : file_(request.file) {
-  try {
+  problem_ = ProblemOf(file_, [&] {
     Database database = OpenToWrite(request.file);
     Transaction transaction(database);
     const std::int64_t task = WriteTask(database, TaskOf(request, scenario));
     const std::int64_t episode = WriteEpisode(database, task, EpisodeOf(request, scenario));
     transaction.Commit();
     state_ = std::make_unique<State>(std::move(database), scenario, episode);
-  } catch (const DatabaseError& error) {
-    problem_ = file_ + ": " + error.what();
-  }
+  });
 }
 
 EpisodeRecorder::~EpisodeRecorder() = default;
@@ -83,13 +82,11 @@ void EpisodeRecorder::Add(const physics::Snapshot& snapshot) {
 void EpisodeRecorder::WriteChunk() {
   State& state = *state_;
   const Chunk chunk = state.writer.Take();
-  try {
+  problem_ = ProblemOf(file_, [&] {
     Transaction transaction(state.database);
     state.rows.Write(chunk);
     transaction.Commit();
-  } catch (const DatabaseError& error) {
-    problem_ = file_ + ": " + error.what();
-  }
+  });
 }
 
 void EpisodeRecorder::Finish(const RunResult& run) {
@@ -97,23 +94,16 @@ void EpisodeRecorder::Finish(const RunResult& run) {
   if (!problem_.empty()) return;
   State& state = *state_;
   const bool completed = run.status.kind == physics::RunStatus::Kind::kCompleted;
-  try {
+  problem_ = ProblemOf(file_, [&] {
     Transaction transaction(state.database);
     WriteEnd(state.database, state.episode, completed ? kCompleted : kFailed, run,
              MakeEntityTable(state.scenario));
     transaction.Commit();
-  } catch (const DatabaseError& error) {
-    problem_ = file_ + ": " + error.what();
-  }
+  });
 }
 
 std::string WhyNotRecordable(const std::string& file) {
-  try {
-    (void)OpenToWrite(file);
-  } catch (const DatabaseError& error) {
-    return file + ": " + error.what();
-  }
-  return "";
+  return ProblemOf(file, [&] { (void)OpenToWrite(file); });
 }
 
 }  // namespace prehend::episode

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "grammar/contents.h"
+#include "harness/episode/episodes/guarded.h"
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/episodes/write_rows.h"
 #include "harness/episode/frames/recorded_frames.h"
@@ -19,7 +20,6 @@
 namespace prehend::episode {
 namespace {
 
-constexpr std::size_t kMostChunkBytes = std::size_t{1} << 28;
 /// Of a recording, a chunk has one part.
 constexpr std::size_t kFramesPart = 0;
 
@@ -64,16 +64,14 @@ NewTask TaskOf(const ImportRequest& request, const EpisodeHeader& header,
 
 void WriteFrames(const Database& database, std::int64_t row, const Recording& recording) {
   ChunkRows rows(database, row);
-  Compressor compressor(9);
+  TablePacker packer;
   std::span<const EpisodeFrame> left = recording.frames;
   while (!left.empty()) {
     const auto frames = left.first(FramesOfChunk(left));
-    const std::string bytes = EncodeRecordedFrames(frames, recording.placed,
-                                                   recording.header.entity_table.ticks_per_second);
     rows.Write({.first_tick = frames.front().tick,
                 .last_tick = frames.back().tick,
                 .frames = frames.size(),
-                .parts = {{kFramesPart, std::string(compressor.Pack(bytes))}}});
+                .parts = {{kFramesPart, packer.Pack(TablesOfFrames(frames, recording.placed))}}});
     left = left.subspan(frames.size());
   }
 }
@@ -137,7 +135,7 @@ Result<ImportedRecording> ImportRecording(const ImportRequest& request, Recordin
   end.ticks = recording.end_tick - 1;
   end.state_hash = HashOfFrames(recording);
   end.timeline = imported.segmented.timeline;
-  try {
+  imported.problem = ProblemOf(request.file, [&] {
     const Database database = OpenToWrite(request.file);
     Transaction transaction(database);
     const std::int64_t task = WriteTask(database, TaskOf(request, header, grammars));
@@ -152,9 +150,7 @@ Result<ImportedRecording> ImportRecording(const ImportRequest& request, Recordin
     WriteEnd(database, row, recording.says_its_end ? kCompleted : kUnfinished, end,
              header.entity_table);
     transaction.Commit();
-  } catch (const DatabaseError& error) {
-    imported.problem = request.file + ": " + error.what();
-  }
+  });
   return imported;
 }
 
@@ -174,21 +170,19 @@ Result<Recording> ReadRecording(const EpisodeFile& file, const EpisodeRow& row) 
   recording.header = std::move(*header);
   recording.end_tick = row.ticks + 1;
   recording.says_its_end = row.status == kCompleted;
-  Compressor compressor;
-  const std::string damage = file.EachPart(row, kFramesPart, [&](std::string_view packed) {
-    const auto bytes = compressor.Unpack(packed, kMostChunkBytes);
-    auto decoded = bytes ? DecodeRecordedFrames(*bytes, recording.header.entity_table)
-                         : std::optional<RecordedFrames>();
-    if (!decoded) return false;
+  TablePacker packer;
+  const auto take = [&](const EpisodeFile::ChunkOfPart& chunk) {
+    if (!chunk.part) throw Damage("a part is missing");
+    RecordedFrames read = FramesOfTables(packer.Unpack(*chunk.part), recording.header.entity_table);
     const bool follows =
-        recording.frames.empty() || recording.frames.back().tick < decoded->frames.front().tick;
-    if (!follows || recording.frames.size() + decoded->frames.size() > kMaxEpisodeFrames)
-      return false;
-    std::ranges::move(decoded->frames, std::back_inserter(recording.frames));
-    recording.placed = std::move(decoded->placed);
-    return true;
-  });
-  if (!damage.empty()) return tl::unexpected(NotRead(file, row, damage));
+        recording.frames.empty() || recording.frames.back().tick < read.frames.front().tick;
+    if (!follows || recording.frames.size() + read.frames.size() > kMaxEpisodeFrames)
+      throw Damage("they do not follow those before them");
+    std::ranges::move(read.frames, std::back_inserter(recording.frames));
+    recording.placed = std::move(read.placed);
+  };
+  const Result<void> done = file.EachPart(row, kFramesPart, take);
+  if (!done) return tl::unexpected(done.error());
   if (recording.frames.empty() || recording.frames.back().tick >= recording.end_tick)
     return tl::unexpected(NotRead(file, row, "the file is damaged: frames are missing"));
   return recording;

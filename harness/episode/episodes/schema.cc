@@ -63,11 +63,13 @@ CREATE TABLE note(
   episode INTEGER NOT NULL REFERENCES episode, position INTEGER NOT NULL, tick INTEGER NOT NULL,
   hand INTEGER NOT NULL, text TEXT NOT NULL, PRIMARY KEY(episode, position)) WITHOUT ROWID;
 CREATE TABLE chunk(
-  id INTEGER PRIMARY KEY, episode INTEGER NOT NULL REFERENCES episode, number INTEGER NOT NULL,
-  first_tick INTEGER NOT NULL, last_tick INTEGER NOT NULL, frames INTEGER NOT NULL);
-CREATE UNIQUE INDEX chunk_by_number ON chunk(episode, number);
-CREATE UNIQUE INDEX chunk_by_tick ON chunk(episode, first_tick);
-CREATE TABLE part(id INTEGER PRIMARY KEY, data BLOB NOT NULL);
+  episode INTEGER NOT NULL REFERENCES episode, first_tick INTEGER NOT NULL,
+  last_tick INTEGER NOT NULL, frames INTEGER NOT NULL,
+  PRIMARY KEY(episode, first_tick)) WITHOUT ROWID;
+CREATE TABLE part(
+  id INTEGER PRIMARY KEY, episode INTEGER NOT NULL REFERENCES episode, part INTEGER NOT NULL,
+  first_tick INTEGER NOT NULL, data BLOB NOT NULL);
+CREATE UNIQUE INDEX part_by_place ON part(episode, part, first_tick);
 CREATE VIEW episodes_flat AS
   SELECT episode.id, episode.uuid, scenario, status, grammar,
     CAST(ticks AS REAL) / ticks_per_second AS seconds, ticks, state_hash, outcome, seed, settings,

@@ -11,8 +11,6 @@
 namespace prehend::episode {
 
 inline constexpr std::int64_t kSchemaVersion = 1;  ///< of the format
-/// A part's row is its chunk's times this, plus the number of the part.
-inline constexpr std::int64_t kPartsPerChunk = 1 << 20;
 
 /// Whether a file is meant to be an episode file: it is an SQLite database, or does not exist yet
 /// and ends with `.episodes`.

@@ -89,7 +89,7 @@ std::int64_t WriteTask(const Database& database, const NewTask& task) {
   insert.Bind(uuid).Bind(task.scenario).Bind(files.run.scenario_file).Bind(files.run.grammar);
   insert.Bind(nlohmann::json(files.run.settings).dump()).Bind(task.shows).Run();
   const std::int64_t row = database.LastRow();
-  Compressor compressor(3);  // a run waits for it
+  Compressor compressor;
   Statement has = database.Prepare("SELECT 1 FROM asset WHERE hash = ?");
   Statement add = database.Prepare("INSERT INTO asset VALUES(?, ?, ?)");
   Statement name = database.Prepare("INSERT INTO task_asset VALUES(?, ?, ?)");
@@ -137,18 +137,18 @@ void WriteEnd(const Database& database, std::int64_t episode, const char* status
 }
 
 ChunkRows::ChunkRows(const Database& database, std::int64_t episode)
-    : database_(&database),
-      episode_(episode),
-      insert_chunk_(database.Prepare("INSERT INTO chunk(episode, number, first_tick, last_tick,"
-                                     " frames) VALUES(?, ?, ?, ?, ?)")),
-      insert_part_(database.Prepare("INSERT INTO part(id, data) VALUES(?, ?)")) {}
+    : episode_(episode),
+      insert_chunk_(database.Prepare("INSERT INTO chunk VALUES(?, ?, ?, ?)")),
+      insert_part_(database.Prepare(
+          "INSERT INTO part(episode, part, first_tick, data) VALUES(?, ?, ?, ?)")) {}
 
 void ChunkRows::Write(const Chunk& chunk) {
-  insert_chunk_.Bind(episode_).Bind(number_++).Bind(chunk.first_tick).Bind(chunk.last_tick);
+  insert_chunk_.Bind(episode_).Bind(chunk.first_tick).Bind(chunk.last_tick);
   insert_chunk_.Bind(static_cast<std::int64_t>(chunk.frames)).Run();
-  const std::int64_t first = database_->LastRow() * kPartsPerChunk;
-  for (const ChunkPart& part : chunk.parts)
-    insert_part_.Bind(first + static_cast<std::int64_t>(part.part)).BindBytes(part.bytes).Run();
+  for (const ChunkPart& part : chunk.parts) {
+    insert_part_.Bind(episode_).Bind(static_cast<std::int64_t>(part.part)).Bind(chunk.first_tick);
+    insert_part_.BindBytes(part.bytes).Run();
+  }
 }
 
 }  // namespace prehend::episode

@@ -54,9 +54,7 @@ class ChunkRows {
   void Write(const Chunk& chunk);
 
  private:
-  const Database* database_;
   std::int64_t episode_;
-  std::int64_t number_ = 0;
   Statement insert_chunk_, insert_part_;
 };
 

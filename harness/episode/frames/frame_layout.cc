@@ -3,120 +3,62 @@
 #include "harness/episode/frames/frame_layout.h"
 
 #include <algorithm>
-#include <bit>
+#include <span>
+#include <tuple>
+
+#include "harness/episode/frames/cells.h"
 
 namespace prehend::episode {
 namespace {
 
-constexpr std::size_t kBodyWidth = 14, kHandOwnWidth = 13 + 7 + 2, kGazeWidth = 9;
+void EachMotion(auto& cells, auto& body) {
+  cells(body.X_WB.p_m, body.X_WB.q, body.v_WB_m_per_s, body.w_WB_rad_per_s);
+}
 
-/// Puts values into a row, one after another.
-class RowWriter {
- public:
-  explicit RowWriter(std::span<Word> row) : row_(row) {}
-  void Put(double value) { row_[next_++] = std::bit_cast<Word>(value); }
-  void PutInteger(std::int64_t value) { row_[next_++] = static_cast<Word>(value); }
-  void Put(const Eigen::Vector3d& v) {
-    for (int i = 0; i < 3; ++i) Put(v[i]);
+void EachOfPoint(auto& cells, auto& point) {
+  for (auto* side : {&point.a, &point.b}) cells(side->body, side->hand, side->link);
+  cells(point.p_W_m, point.nhat_BA_W, point.distance_m, point.normal_impulse_n_s);
+}
+
+void EachOfTrack(const FrameLayout& layout, std::size_t track, auto& snapshot, auto& cells) {
+  if (track < layout.bodies) {
+    auto& body = snapshot.bodies[track];
+    EachMotion(cells, body);
+    cells(body.asleep);
+  } else if (track < layout.Joints()) {
+    std::size_t first = 0;
+    for (std::size_t i = layout.bodies; i < track; ++i) first += layout.grains[i - layout.bodies];
+    for (auto& grain :
+         std::span(snapshot.grains).subspan(first, layout.grains[track - layout.bodies]))
+      cells(grain);
+  } else if (track < layout.FirstHand()) {
+    for (auto& joint : snapshot.joints) cells(joint.position, joint.fraction);
+  } else if (track < layout.Gazes()) {
+    auto& hand = snapshot.hands[track - layout.FirstHand()];
+    EachMotion(cells, hand.palm);
+    cells(hand.X_WTarget.p_m, hand.X_WTarget.q, hand.trigger, hand.style);
+    for (auto& joint : hand.joints) cells(joint);
+  } else {
+    for (auto& gaze : snapshot.gazes)
+      cells(gaze.p_WE_m, gaze.toward_W, gaze.body, gaze.hand, gaze.distance_m);
   }
-  void Put(const Eigen::Quaterniond& q) {
-    for (int i = 0; i < 4; ++i) Put(q.coeffs()[i]);
-  }
-
- private:
-  std::span<Word> row_;
-  std::size_t next_ = 0;
-};
-
-class RowReader {
- public:
-  RowReader(const Columns& columns, std::size_t row) : columns_(columns), row_(row) {}
-  double Double() { return std::bit_cast<double>(columns_.At(row_, next_++)); }
-  int Integer() { return static_cast<int>(static_cast<std::int64_t>(columns_.At(row_, next_++))); }
-  void Take(Eigen::Vector3d& v) {
-    for (int i = 0; i < 3; ++i) v[i] = Double();
-  }
-  void Take(Eigen::Quaterniond& q) {
-    for (int i = 0; i < 4; ++i) q.coeffs()[i] = Double();
-  }
-
- private:
-  const Columns& columns_;
-  std::size_t row_;
-  std::size_t next_ = 0;
-};
-
-void PutMotion(const physics::BodyState& body, RowWriter& row) {
-  row.Put(body.X_WB.p_m);
-  row.Put(body.X_WB.q);
-  row.Put(body.v_WB_m_per_s);
-  row.Put(body.w_WB_rad_per_s);
 }
 
-void TakeMotion(RowReader& row, physics::BodyState& body) {
-  row.Take(body.X_WB.p_m);
-  row.Take(body.X_WB.q);
-  row.Take(body.v_WB_m_per_s);
-  row.Take(body.w_WB_rad_per_s);
+template <typename Thing>
+bool IsIndexOrNone(physics::Index<Thing> index, std::size_t size) {
+  return index == physics::kNone || index.IsBelow(size);
 }
 
-void PutHand(const physics::HandState& hand, RowWriter& row) {
-  PutMotion(hand.palm, row);
-  row.Put(hand.X_WTarget.p_m);
-  row.Put(hand.X_WTarget.q);
-  row.Put(hand.trigger);
-  row.PutInteger(hand.style);
-  for (const double joint : hand.joints) row.Put(joint);
+bool IsSide(const FrameLayout& layout, const physics::ContactSide& side) {
+  if (side.hand == physics::kNone) return side.body.IsBelow(layout.bodies);
+  return side.hand.IsBelow(layout.hands.size()) &&
+         IsIndexOrNone(side.link, At(layout.hands, side.hand).links.size());
 }
-
-void TakeHand(RowReader& row, physics::HandState& hand) {
-  TakeMotion(row, hand.palm);
-  row.Take(hand.X_WTarget.p_m);
-  row.Take(hand.X_WTarget.q);
-  hand.trigger = row.Double();
-  hand.style = row.Integer();
-  for (double& joint : hand.joints) joint = row.Double();
-}
-
-void PutGaze(const physics::GazeState& gaze, RowWriter& row) {
-  row.Put(gaze.p_WE_m);
-  row.Put(gaze.toward_W);
-  row.PutInteger(gaze.body.number());
-  row.PutInteger(gaze.hand.number());
-  row.Put(gaze.distance_m);
-}
-
-void TakeGaze(RowReader& row, physics::GazeState& gaze) {
-  row.Take(gaze.p_WE_m);
-  row.Take(gaze.toward_W);
-  gaze.body = physics::BodyIndex(row.Integer());
-  gaze.hand = physics::HandIndex(row.Integer());
-  gaze.distance_m = row.Double();
-}
-
-/// The grains of the n-th body that is grains.
-std::span<Eigen::Vector3d> GrainsAt(const FrameLayout& layout, std::size_t n,
-                                    physics::Snapshot& snapshot) {
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < n; ++i) first += layout.grains[i];
-  return std::span(snapshot.grains).subspan(first, layout.grains[n]);
-}
-
-bool IsIndex(int index, std::size_t size) { return index >= -1 && index < static_cast<int>(size); }
 
 }  // namespace
 
-std::size_t FrameLayout::Width(std::size_t track) const {
-  if (track < bodies) return kBodyWidth;
-  if (track < Joints()) return 3 * grains[track - bodies];
-  if (track < FirstHand()) return 2 * joints;
-  if (track < Gazes()) return kHandOwnWidth + hands[track - FirstHand()].links.size();
-  return kGazeWidth * gazes;
-}
-
 FrameLayout LayoutOf(const physics::Scene& scene) {
-  FrameLayout layout{.rate_hz = scene.world.rate_hz,
-                     .bodies = scene.bodies.size(),
+  FrameLayout layout{.bodies = scene.bodies.size(),
                      .grains = {},
                      .joints = scene.joints.size(),
                      .hands = {},
@@ -128,75 +70,87 @@ FrameLayout LayoutOf(const physics::Scene& scene) {
   return layout;
 }
 
-bool IsRigid(const FrameLayout& layout, std::size_t track) {
-  return track < layout.bodies || (track >= layout.FirstHand() && track < layout.Gazes());
+void AppendRow(const FrameLayout& layout, std::size_t track, const physics::Snapshot& snapshot,
+               std::vector<Word>& row) {
+  CellWriter cells(row);
+  EachOfTrack(layout, track, snapshot, cells);
 }
 
-void ReadRow(const FrameLayout& layout, std::size_t track, const physics::Snapshot& snapshot,
-             std::span<Word> row) {
-  RowWriter out(row);
-  if (track < layout.bodies) {
-    PutMotion(snapshot.bodies[track], out);
-    out.PutInteger(snapshot.bodies[track].asleep ? 1 : 0);
-  } else if (track < layout.Joints()) {
-    std::size_t first = 0;
-    for (std::size_t i = 0; i < track - layout.bodies; ++i) first += layout.grains[i];
-    for (std::size_t i = 0; i < layout.grains[track - layout.bodies]; ++i)
-      out.Put(snapshot.grains[first + i]);
-  } else if (track < layout.FirstHand()) {
-    for (const physics::JointState& joint : snapshot.joints) {
-      out.Put(joint.position);
-      out.Put(joint.fraction);
+void ReadRow(const FrameLayout& layout, std::size_t track, const Columns& columns, std::size_t row,
+             physics::Snapshot& snapshot) {
+  CellReader cells(columns, row);
+  EachOfTrack(layout, track, snapshot, cells);
+  bool is_good = true;
+  if (track >= layout.FirstHand() && track < layout.Gazes()) {
+    const std::size_t hand = track - layout.FirstHand();
+    const int style = snapshot.hands[hand].style;
+    const auto styles = static_cast<int>(layout.hands[hand].styles.size());
+    is_good = style >= 0 && style < std::max(styles, 1);
+  } else if (track >= layout.Gazes()) {
+    is_good = std::ranges::all_of(snapshot.gazes, [&](const physics::GazeState& gaze) {
+      return IsIndexOrNone(gaze.body, layout.bodies) &&
+             IsIndexOrNone(gaze.hand, layout.hands.size());
+    });
+  }
+  if (!is_good) throw Damage("a frame names what is not there");
+}
+
+std::size_t WidthOf(const FrameLayout& layout, std::size_t track) {
+  std::vector<Word> row;
+  AppendRow(layout, track, BlankSnapshot(layout), row);
+  return row.size();
+}
+
+void AppendLinks(const std::vector<physics::Pose>& X_WL, std::vector<Word>& row) {
+  CellWriter cells(row);
+  for (const physics::Pose& pose : X_WL) cells(pose.p_m, pose.q);
+}
+
+void ReadLinks(const Columns& columns, std::size_t row, std::vector<physics::Pose>& X_WL) {
+  CellReader cells(columns, row);
+  for (physics::Pose& pose : X_WL) cells(pose.p_m, pose.q);
+}
+
+Columns TableOfPoints(const std::vector<const ContactPoints*>& moments) {
+  struct Row {
+    const physics::ContactPoint* point;
+    std::size_t place, moment;  ///< place: among those of the same sides
+    auto Key() const { return std::tie(point->a, point->b, place, moment); }
+  };
+  std::vector<Row> rows;
+  for (std::size_t moment = 0; moment < moments.size(); ++moment) {
+    if (!moments[moment]) continue;
+    for (const physics::ContactPoint& point : *moments[moment]) {
+      const Row* before = rows.empty() || rows.back().moment != moment ? nullptr : &rows.back();
+      const bool same = before && before->point->a == point.a && before->point->b == point.b;
+      rows.push_back({&point, same ? before->place + 1 : 0, moment});
     }
-  } else if (track < layout.Gazes()) {
-    PutHand(snapshot.hands[track - layout.FirstHand()], out);
-  } else {
-    for (const physics::GazeState& gaze : snapshot.gazes) PutGaze(gaze, out);
   }
-}
-
-void WriteRow(const FrameLayout& layout, std::size_t track, const Columns& columns, std::size_t row,
-              physics::Snapshot& snapshot) {
-  RowReader in(columns, row);
-  if (track < layout.bodies) {
-    TakeMotion(in, snapshot.bodies[track]);
-    snapshot.bodies[track].asleep = in.Integer() != 0;
-  } else if (track < layout.Joints()) {
-    for (Eigen::Vector3d& grain : GrainsAt(layout, track - layout.bodies, snapshot)) in.Take(grain);
-  } else if (track < layout.FirstHand()) {
-    for (physics::JointState& joint : snapshot.joints) {
-      joint.position = in.Double();
-      joint.fraction = in.Double();
-    }
-  } else if (track < layout.Gazes()) {
-    TakeHand(in, snapshot.hands[track - layout.FirstHand()]);
-  } else {
-    for (physics::GazeState& gaze : snapshot.gazes) TakeGaze(in, gaze);
+  std::ranges::sort(rows, {}, &Row::Key);
+  std::vector<Word> words;
+  CellWriter cells(words);
+  for (const Row& row : rows) {
+    cells(row.moment);
+    EachOfPoint(cells, *row.point);
   }
+  return Transposed(words, kPointWidth);
 }
 
-physics::Pose PoseInRow(const Columns& columns, std::size_t row) {
-  RowReader in(columns, row);
-  physics::Pose pose;
-  in.Take(pose.p_m);
-  in.Take(pose.q);
-  return pose;
-}
-
-double JointInRow(const Columns& columns, std::size_t row, std::size_t link) {
-  return std::bit_cast<double>(columns.At(row, kHandOwnWidth + link));
-}
-
-bool HasValidIndices(const FrameLayout& layout, const physics::Snapshot& snapshot) {
-  for (std::size_t i = 0; i < layout.hands.size(); ++i) {
-    const std::size_t styles = std::max<std::size_t>(layout.hands[i].styles.size(), 1);
-    const int style = snapshot.hands[i].style;
-    if (style < 0 || !IsIndex(style, styles)) return false;
+std::vector<ContactPoints> PointsOfTable(const FrameLayout& layout, const Columns& table,
+                                         std::size_t moments) {
+  std::vector<ContactPoints> points(moments);
+  if (table.width != kPointWidth) throw Damage("contact points have too few columns");
+  for (std::size_t row = 0; row < table.rows; ++row) {
+    CellReader cells(table, row);
+    std::size_t moment = 0;
+    physics::ContactPoint point;
+    cells(moment);
+    EachOfPoint(cells, point);
+    if (moment >= moments || !IsSide(layout, point.a) || !IsSide(layout, point.b))
+      throw Damage("a contact point is of nothing");
+    points[moment].push_back(point);
   }
-  return std::ranges::all_of(snapshot.gazes, [&](const physics::GazeState& gaze) {
-    return IsIndex(gaze.body.number(), layout.bodies) &&
-           IsIndex(gaze.hand.number(), layout.hands.size());
-  });
+  return points;
 }
 
 physics::Snapshot BlankSnapshot(const FrameLayout& layout) {

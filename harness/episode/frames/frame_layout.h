@@ -4,7 +4,6 @@
 // Tested by tests/harness/episode/frames/frames_test.cc
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "harness/episode/frames/columns.h"
@@ -13,47 +12,48 @@
 
 namespace prehend::episode {
 
+using ContactPoints = std::vector<physics::ContactPoint>;
+
 struct FrameLayout {
-  int rate_hz = 480;
   std::size_t bodies = 0;
   std::vector<std::size_t> grains;  ///< how many, of each body that is grains
   std::size_t joints = 0;
   std::vector<physics::HandModel> hands;
   std::size_t gazes = 0;
 
-  std::size_t FirstGrains() const { return bodies; }
-  std::size_t Joints() const { return FirstGrains() + grains.size(); }
+  std::size_t Joints() const { return bodies + grains.size(); }
   std::size_t FirstHand() const { return Joints() + (joints > 0 ? 1 : 0); }
   std::size_t Gazes() const { return FirstHand() + hands.size(); }
   std::size_t tracks() const { return Gazes() + (gazes > 0 ? 1 : 0); }
-  std::size_t Width(std::size_t track) const;
 
-  // Part numbers: the head, the tracks, contacts, and links that their joints do not explain.
-  static constexpr std::size_t kHead = 0;
-  static std::size_t PartOfTrack(std::size_t track) { return 1 + track; }
-  std::size_t Contacts() const { return 1 + tracks(); }
-  std::size_t Resting() const { return 2 + tracks(); }
-  std::size_t PartOfLinks(std::size_t hand) const { return 3 + tracks() + hand; }
-  std::size_t parts() const { return 3 + tracks() + hands.size(); }
+  // The numbers of parts: of a track its own, then contact points of pairs that may move and of
+  // pairs that rest, then links of hands where they do not follow from palm and joints.
+  std::size_t Contacts() const { return tracks(); }
+  std::size_t Resting() const { return tracks() + 1; }
+  std::size_t LinksOf(std::size_t hand) const { return tracks() + 2 + hand; }
 };
 
 FrameLayout LayoutOf(const physics::Scene& scene);
 
-/// How often a track holds the motion of a rigid body in its first columns.
-bool IsRigid(const FrameLayout& layout, std::size_t track);
+/// Appends a track of a snapshot to a row; and back. Reading throws Damage where a number that
+/// other code uses as an index is out of its range.
+void AppendRow(const FrameLayout& layout, std::size_t track, const physics::Snapshot& snapshot,
+               std::vector<Word>& row);
+void ReadRow(const FrameLayout& layout, std::size_t track, const Columns& columns, std::size_t row,
+             physics::Snapshot& snapshot);
+/// How many words that are.
+std::size_t WidthOf(const FrameLayout& layout, std::size_t track);
 
-/// A track in a snapshot as words, and back. `row` has the track's width.
-void ReadRow(const FrameLayout& layout, std::size_t track, const physics::Snapshot& snapshot,
-             std::span<Word> row);
-void WriteRow(const FrameLayout& layout, std::size_t track, const Columns& columns, std::size_t row,
-              physics::Snapshot& snapshot);
+/// The same of the links of a hand.
+void AppendLinks(const std::vector<physics::Pose>& X_WL, std::vector<Word>& row);
+void ReadLinks(const Columns& columns, std::size_t row, std::vector<physics::Pose>& X_WL);
 
-/// Of the track of a body or a hand: where that is in a row, and how far a hand's joint has gone.
-physics::Pose PoseInRow(const Columns& columns, std::size_t row);
-double JointInRow(const Columns& columns, std::size_t row, std::size_t link);
-
-/// Whether the numbers of a snapshot that other code uses as indices are in their ranges.
-bool HasValidIndices(const FrameLayout& layout, const physics::Snapshot& snapshot);
+/// Contact points of several moments; null: none. A row is a point, with the number of its moment.
+/// A point stands below the one of the same sides in the moment before.
+inline constexpr std::size_t kPointWidth = 15;
+Columns TableOfPoints(const std::vector<const ContactPoints*>& moments);
+std::vector<ContactPoints> PointsOfTable(const FrameLayout& layout, const Columns& table,
+                                         std::size_t moments);
 
 /// A snapshot with everything that the layout has, at the origin.
 physics::Snapshot BlankSnapshot(const FrameLayout& layout);

@@ -6,61 +6,56 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
-#include "harness/episode/frames/chunk.h"
+#include "harness/episode/frames/frame_layout.h"
+#include "physics/scene/link_places.h"
 
 namespace prehend::episode {
 
-/// The bytes of a part of a chunk that is `back` chunks before the current one; nothing if there is
-/// no such part. Valid until the next call.
-using FetchPart = std::function<std::optional<std::string_view>(Word back, std::size_t part)>;
+/// The bytes of a part: `here` of the chunk that is opened, else of the last one up to it that has
+/// the part. Nothing if there is none. Valid until the next call.
+using FetchPart = std::function<std::optional<std::string_view>(std::size_t part, bool here)>;
 
+/// All throw Damage.
 class FramePlayer {
  public:
   explicit FramePlayer(FrameLayout layout);
-  FramePlayer(const FramePlayer&) = delete;
-  FramePlayer& operator=(const FramePlayer&) = delete;
 
-  /// Decodes a chunk. `follows`: it is the one after the chunk that was opened last, whose state is
-  /// kept; otherwise what rests is fetched from where it stands. False: damaged.
-  bool Open(const FetchPart& fetch, bool follows);
-  const std::vector<std::int64_t>& ticks() const { return head_.ticks; }
+  /// Decodes a chunk of so many frames. `follows`: it is the one after the chunk that was opened
+  /// last, whose state is kept; otherwise what rests is fetched from where it stands.
+  void Open(const FetchPart& fetch, std::int64_t first_tick, std::size_t frames, bool follows);
 
-  /// A frame of the chunk; nothing if it is damaged. Frames are shown in increasing order. Without
-  /// `links`, the poses of the hands' links are not computed. Valid until the next call.
-  const physics::Snapshot* Show(std::size_t frame, bool links = true);
+  /// A frame of the chunk. Frames are shown in increasing order. Without `links`, the poses of the
+  /// hands' links are not computed. Valid until the next call.
+  const physics::Snapshot& Show(std::size_t frame, bool links = true);
+
+  /// A track from its part: one row at least.
+  Columns Track(std::size_t track, std::string_view part);
 
   const FrameLayout& layout() const { return layout_; }
 
  private:
-  bool OpenTrack(const FetchPart& fetch, std::size_t track, bool follows);
-  bool OpenContacts(const FetchPart& fetch);
-  bool OpenResting(const FetchPart& fetch, bool follows);
-  /// The palm of a hand (place 0) or one of its links (place 1, ..) in the frames of a block of
-  /// kLanes, computed once.
-  const PlacedLinks& Placed(std::size_t hand, std::size_t place, std::size_t block);
-  const physics::Pose& PlaceOf(std::size_t hand, std::size_t place, std::size_t frame) {
-    return Placed(hand, place, frame / kLanes).X_WL[frame % kLanes];
-  }
-  physics::Pose PoseOf(std::size_t frame, const physics::ContactSide& side);
+  void OpenTrack(const FetchPart& fetch, std::size_t track, bool follows);
+  void OpenResting(const FetchPart& fetch, bool follows);
+  Columns Table(std::string_view part, std::size_t width);
 
   FrameLayout layout_;
-  PartReader parts_;
-  ChunkHead head_;
+  TablePacker packer_;
+  std::vector<std::size_t> widths_;  ///< of tracks
+  std::vector<physics::LinkPlaces> places_;
+
+  std::int64_t first_tick_ = 0;
+  std::size_t frames_ = 0;
   std::vector<std::optional<Columns>> tracks_;  ///< of those that change in this chunk
-  std::vector<std::size_t> moving_;             ///< which those are
-  std::optional<PartReader::Contacts> contacts_;
-  std::vector<PartReader::RestingFrom> resting_;
-  std::vector<std::optional<Columns>> links_;
-  std::vector<LinkGuess> guesses_;
-  struct HandPoses {  ///< block after block, in each place after place
-    std::vector<char> known;
-    std::vector<PlacedLinks> placed;
+  std::vector<std::optional<Columns>> links_;   ///< where they do not follow from the joints
+  std::vector<ContactPoints> contacts_;         ///< empty: there are none in this chunk
+  struct RestingFrom {
+    std::size_t frame = 0;
+    std::shared_ptr<const ContactPoints> points;
   };
-  std::vector<HandPoses> hand_poses_;
+  std::vector<RestingFrom> resting_;
   physics::Snapshot now_;
 };
 

@@ -4,351 +4,184 @@
 #include "harness/episode/frames/recorded_frames.h"
 
 #include <algorithm>
-#include <bit>
-#include <map>
 
-#include "harness/episode/frames/columns.h"
+#include "harness/episode/frames/cells.h"
 
 namespace prehend::episode {
 namespace {
 
-constexpr std::size_t kMostFrames = 480, kMostWords = 1 << 16, kMostRows = 1 << 20;
-constexpr std::size_t kSampleWidth = 17, kTouchWidth = 13, kSphereWidth = 4;
-/// Of a hand: trigger, style, three of its direction, the number of its collision spheres.
-constexpr std::size_t kHandWidth = 6;
+constexpr std::size_t kMostFrames = 480, kMostWords = 1 << 16;
+constexpr std::size_t kSampleWidth = 17, kHandWidth = 5, kTouchWidth = 13, kSphereWidth = 4;
+/// The tables of a chunk: whether each entity has been placed; the frames, a row each; collision
+/// spheres, with the number of their frame and hand; touches, with that of their frame.
+enum Table { kPlaced, kFrames, kSpheres, kTouches, kTables };
 
-/// Fills a row of columns, or reads it, from left to right.
-template <typename Table>
-class Cells {
- public:
-  Cells(Table& columns, std::size_t row) : columns_(columns), row_(row) {}
-  void Put(double value) { columns_.At(row_, next_++) = std::bit_cast<Word>(value); }
-  void PutInteger(std::int64_t value) { columns_.At(row_, next_++) = static_cast<Word>(value); }
-  template <typename Coefficients>
-  void PutAll(const Coefficients& values) {
-    for (Eigen::Index i = 0; i < values.size(); ++i) Put(values[i]);
-  }
-  double Double() { return std::bit_cast<double>(columns_.At(row_, next_++)); }
-  std::int64_t Integer() { return static_cast<std::int64_t>(columns_.At(row_, next_++)); }
-  template <typename Coefficients>
-  void TakeAll(Coefficients& values) {
-    for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = Double();
-  }
-
- private:
-  Table& columns_;
-  std::size_t row_;
-  std::size_t next_ = 0;
-};
-
-void PutSample(const grammar::EntitySample& look, Columns& columns, std::size_t row) {
-  Cells cells(columns, row);
-  cells.PutAll(look.p_WB_m);
-  cells.PutAll(look.q_WB.coeffs());
-  cells.PutAll(look.v_WB_m_per_s);
-  cells.PutAll(look.w_WB_rad_per_s);
-  cells.PutInteger(look.asleep ? 1 : 0);
-  cells.Put(look.joint_position);
-  cells.Put(look.joint_fraction);
-  cells.PutInteger(look.gazes_at);
+void EachOfSample(auto& cells, auto& look) {
+  cells(look.p_WB_m, look.q_WB, look.v_WB_m_per_s, look.w_WB_rad_per_s, look.asleep,
+        look.joint_position, look.joint_fraction, look.gazes_at);
 }
 
-bool TakeSample(const Columns& columns, std::size_t row, std::size_t entities,
-                grammar::EntitySample& look) {
-  Cells cells(columns, row);
-  cells.TakeAll(look.p_WB_m);
-  cells.TakeAll(look.q_WB.coeffs());
-  cells.TakeAll(look.v_WB_m_per_s);
-  cells.TakeAll(look.w_WB_rad_per_s);
-  look.asleep = cells.Integer() != 0;
-  look.joint_position = cells.Double();
-  look.joint_fraction = cells.Double();
-  const std::int64_t gazes_at = cells.Integer();
-  if (gazes_at < grammar::kNoEntity || gazes_at >= static_cast<std::int64_t>(entities))
-    return false;
-  look.gazes_at = static_cast<int>(gazes_at);
-  return true;
+void EachOfHand(auto& cells, auto& hand) { cells(hand.trigger, hand.style, hand.ahead_W); }
+
+void EachOfFrame(auto& cells, auto& frame) {
+  cells(frame.tick);
+  for (auto& look : frame.entities) EachOfSample(cells, look);
+  for (auto& hand : frame.hands) EachOfHand(cells, hand);
 }
 
-void PutTouch(const grammar::Touch& touch, Columns& columns, std::size_t row) {
-  Cells cells(columns, row);
-  cells.PutInteger(touch.a);
-  cells.PutInteger(touch.b);
-  cells.Put(touch.up_on_a);
-  cells.Put(touch.up_on_b);
-  cells.Put(touch.normal_force_n);
-  cells.Put(touch.vertical_speed_m_per_s);
-  cells.PutAll(touch.p_W_m);
-  cells.PutAll(touch.nhat_BA_W);
-  cells.PutInteger(touch.sensor_sets);
+void EachOfSphere(auto& cells, auto& sphere) { cells(sphere.p_W_m, sphere.radius_m); }
+
+void EachOfTouch(auto& cells, auto& touch) {
+  cells(touch.a, touch.b, touch.up_on_a, touch.up_on_b, touch.normal_force_n,
+        touch.vertical_speed_m_per_s, touch.p_W_m, touch.nhat_BA_W, touch.sensor_sets);
 }
 
-bool TakeTouch(const Columns& columns, std::size_t row, std::size_t entities,
-               grammar::Touch& touch) {
-  Cells cells(columns, row);
-  const std::int64_t a = cells.Integer(), b = cells.Integer();
-  if (a < 0 || b <= a || b >= static_cast<std::int64_t>(entities)) return false;
-  touch.a = static_cast<int>(a);
-  touch.b = static_cast<int>(b);
-  touch.up_on_a = cells.Double();
-  touch.up_on_b = cells.Double();
-  touch.normal_force_n = cells.Double();
-  touch.vertical_speed_m_per_s = cells.Double();
-  cells.TakeAll(touch.p_W_m);
-  cells.TakeAll(touch.nhat_BA_W);
-  touch.sensor_sets = static_cast<std::uint32_t>(cells.Integer());
-  return true;
+bool IsIndex(int index, std::size_t size) {
+  return index >= 0 && static_cast<std::size_t>(index) < size;
 }
 
-/// Per row the row at the same place among those of its owner in the frame before, or -1.
-class Continued {
- public:
-  /// `count` more rows, of this owner.
-  void Add(std::size_t owner, std::size_t count) {
-    const Begin last = last_.contains(owner) ? last_[owner] : Begin{};
-    for (std::size_t i = 0; i < count; ++i)
-      before_.push_back(i < last.count ? static_cast<int>(last.row + i) : -1);
-    last_[owner] = {before_.size() - count, count};
-  }
-  std::vector<int> before() const { return before_; }
-
- private:
-  struct Begin {
-    std::size_t row = 0, count = 0;
-  };
-  std::map<std::size_t, Begin> last_;
-  std::vector<int> before_;
-};
-
-/// How the columns of an entity are guessed: frames have the same distance in most recordings.
-Guesses MotionOf(std::span<const Word> ticks, grammar::Tick ticks_per_second) {
-  if (ticks.size() < 2 || ticks_per_second < 1) return {};
-  return {.dt_s = static_cast<double>(ticks[1] - ticks[0]) / static_cast<double>(ticks_per_second)};
-}
-
-Columns CountsOf(std::span<const EpisodeFrame> frames) {
-  Columns counts(frames.size(), 2);
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    counts.At(i, 0) = static_cast<Word>(frames[i].tick);
-    counts.At(i, 1) = frames[i].touches.size();
-  }
-  return counts;
-}
-
-std::vector<int> HandsOf(const grammar::EntityTable& table) {
-  std::vector<int> hands;
+/// A frame with everything that these entities have.
+EpisodeFrame BlankFrame(const grammar::EntityTable& table) {
+  EpisodeFrame frame;
+  frame.entities.resize(table.entities.size());
   for (std::size_t i = 0; i < table.entities.size(); ++i) {
     const std::vector<std::string>& classes = table.entities[i].classes;
-    if (!classes.empty() && classes.front() == "Hand") hands.push_back(static_cast<int>(i));
+    if (!classes.empty() && classes.front() == "Hand")
+      frame.hands.push_back({.entity = static_cast<int>(i)});
   }
-  return hands;
+  frame.collision_spheres.resize(frame.hands.size());
+  return frame;
 }
 
-class RecordedDecoder {
- public:
-  RecordedDecoder(std::string_view bytes, const grammar::EntityTable& table)
-      : bytes_(bytes), table_(table), hands_(HandsOf(table)) {}
+bool IsGood(const EpisodeFrame& frame, const grammar::EntityTable& table) {
+  const auto pair = [](const grammar::Touch& touch) { return std::pair(touch.a, touch.b); };
+  const std::size_t entities = table.entities.size();
+  return std::ranges::all_of(frame.entities,
+                             [&](const grammar::EntitySample& look) {
+                               return look.gazes_at == grammar::kNoEntity ||
+                                      IsIndex(look.gazes_at, entities);
+                             }) &&
+         std::ranges::all_of(frame.hands,
+                             [&](const grammar::HandSample& hand) {
+                               return hand.style == 0 || IsIndex(hand.style, table.styles.size());
+                             }) &&
+         std::ranges::all_of(frame.touches,
+                             [&](const grammar::Touch& touch) {
+                               return touch.a >= 0 && touch.a < touch.b &&
+                                      IsIndex(touch.b, entities);
+                             }) &&
+         std::ranges::adjacent_find(frame.touches, std::ranges::greater_equal{}, pair) ==
+             frame.touches.end();
+}
 
-  std::optional<RecordedFrames> Run() {
-    const std::optional<Word> frames = TakeVarint(bytes_);
-    if (!frames || *frames == 0 || *frames > kMostFrames) return std::nullopt;
-    result_.frames.resize(static_cast<std::size_t>(*frames));
-    if (!TakeCounts() || !TakeSamples() || !TakeHands() || !TakeTouches() || !bytes_.empty())
-      return std::nullopt;
-    return std::move(result_);
-  }
-
- private:
-  std::size_t rows() const { return result_.frames.size(); }
-
-  bool TakeCounts() {
-    for (std::size_t i = 0; i < table_.entities.size(); ++i) {
-      const std::optional<Word> placed = TakeVarint(bytes_);
-      if (!placed) return false;
-      result_.placed.push_back(*placed != 0);
-    }
-    std::optional<Columns> counts = Decode(bytes_, rows(), 2, {});
-    if (!counts) return false;
-    counts_ = std::move(*counts);
-    std::int64_t before = -1;
-    for (std::size_t i = 0; i < rows(); ++i) {
-      result_.frames[i].tick = static_cast<std::int64_t>(counts_.At(i, 0));
-      if (result_.frames[i].tick <= before || counts_.At(i, 1) > kMostRows) return false;
-      before = result_.frames[i].tick;
-    }
-    return true;
-  }
-
-  bool TakeSamples() {
-    const Guesses motion = MotionOf(counts_.Column(0), table_.ticks_per_second);
-    for (EpisodeFrame& frame : result_.frames) frame.entities.resize(table_.entities.size());
-    for (std::size_t entity = 0; entity < table_.entities.size(); ++entity) {
-      const std::optional<Columns> columns = Decode(bytes_, rows(), kSampleWidth, motion);
-      if (!columns) return false;
-      for (std::size_t i = 0; i < rows(); ++i) {
-        if (!TakeSample(*columns, i, table_.entities.size(), result_.frames[i].entities[entity]))
-          return false;
-      }
-    }
-    return true;
-  }
-
-  bool TakeHands() {
-    Continued continued;
-    std::vector<Columns> all;
-    std::size_t spheres = 0;
-    for (std::size_t hand = 0; hand < hands_.size(); ++hand) {
-      std::optional<Columns> columns = Decode(bytes_, rows(), kHandWidth, {});
-      if (!columns) return false;
-      all.push_back(std::move(*columns));
-    }
-    for (std::size_t i = 0; i < rows(); ++i) {
-      EpisodeFrame& frame = result_.frames[i];
-      for (std::size_t hand = 0; hand < hands_.size(); ++hand) {
-        Cells cells(all[hand], i);
-        grammar::HandSample& sample = frame.hands.emplace_back();
-        sample.entity = hands_[hand];
-        sample.trigger = cells.Double();
-        const std::int64_t style = cells.Integer();
-        if (style < 0 || (style > 0 && style >= static_cast<std::int64_t>(table_.styles.size())))
-          return false;
-        sample.style = static_cast<int>(style);
-        cells.TakeAll(sample.ahead_W);
-        const std::int64_t count = cells.Integer();
-        if (count < 0 || count > static_cast<std::int64_t>(kMostRows - spheres)) return false;
-        continued.Add(hand, static_cast<std::size_t>(count));
-        spheres += static_cast<std::size_t>(count);
-        frame.collision_spheres.emplace_back(static_cast<std::size_t>(count));
-      }
-    }
-    const std::optional<Columns> columns =
-        Decode(bytes_, spheres, kSphereWidth, {.before = continued.before()});
-    if (!columns) return false;
-    std::size_t row = 0;
-    for (EpisodeFrame& frame : result_.frames) {
-      for (auto& of_hand : frame.collision_spheres) {
-        for (grammar::CollisionSphere& sphere : of_hand) {
-          Cells cells(*columns, row++);
-          cells.TakeAll(sphere.p_W_m);
-          sphere.radius_m = cells.Double();
-        }
-      }
-    }
-    return true;
-  }
-
-  bool TakeTouches() {
-    Continued continued;
-    std::size_t touches = 0;
-    for (const Word count : counts_.Column(1)) {
-      continued.Add(0, static_cast<std::size_t>(count));
-      touches += static_cast<std::size_t>(count);
-      if (touches > kMostRows) return false;
-    }
-    const std::optional<Columns> columns =
-        Decode(bytes_, touches, kTouchWidth, {.before = continued.before()});
-    if (!columns) return false;
-    std::size_t row = 0;
-    for (std::size_t i = 0; i < rows(); ++i) {
-      std::vector<grammar::Touch>& found = result_.frames[i].touches;
-      found.resize(static_cast<std::size_t>(counts_.At(i, 1)));
-      for (grammar::Touch& touch : found) {
-        if (!TakeTouch(*columns, row++, table_.entities.size(), touch)) return false;
-      }
-      const auto pair = [](const grammar::Touch& touch) { return std::pair(touch.a, touch.b); };
-      if (std::ranges::adjacent_find(found, std::ranges::greater_equal{}, pair) != found.end())
-        return false;
-    }
-    return true;
-  }
-
-  std::string_view bytes_;
-  const grammar::EntityTable& table_;
-  std::vector<int> hands_;
-  Columns counts_;
-  RecordedFrames result_;
-};
-
-void EncodeHands(std::span<const EpisodeFrame> frames, std::string& bytes) {
-  const std::size_t hands = frames.front().hands.size();
-  Continued continued;
-  std::vector<grammar::CollisionSphere> spheres;
-  std::vector<Columns> all(hands, Columns(frames.size(), kHandWidth));
+/// What stands at the same place in the frame before stands above it.
+Columns SphereTable(std::span<const EpisodeFrame> frames) {
+  struct Row {
+    std::size_t hand, place, frame;
+    auto operator<=>(const Row&) const = default;
+  };
+  std::vector<Row> rows;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    for (std::size_t hand = 0; hand < hands; ++hand) {
-      const grammar::HandSample& sample = frames[i].hands[hand];
-      const std::vector<grammar::CollisionSphere>& of_hand = frames[i].collision_spheres[hand];
-      Cells cells(all[hand], i);
-      cells.Put(sample.trigger);
-      cells.PutInteger(sample.style);
-      cells.PutAll(sample.ahead_W);
-      cells.PutInteger(static_cast<std::int64_t>(of_hand.size()));
-      continued.Add(hand, of_hand.size());
-      spheres.insert(spheres.end(), of_hand.begin(), of_hand.end());
+    for (std::size_t hand = 0; hand < frames[i].collision_spheres.size(); ++hand) {
+      for (std::size_t k = 0; k < frames[i].collision_spheres[hand].size(); ++k)
+        rows.push_back({hand, k, i});
     }
   }
-  for (const Columns& columns : all) Encode(columns, {}, bytes);
-  Columns columns(spheres.size(), kSphereWidth);
-  for (std::size_t row = 0; row < spheres.size(); ++row) {
-    Cells cells(columns, row);
-    cells.PutAll(spheres[row].p_W_m);
-    cells.Put(spheres[row].radius_m);
+  std::ranges::sort(rows);
+  std::vector<Word> words;
+  CellWriter cells(words);
+  for (const Row& row : rows) {
+    cells(row.frame, row.hand);
+    EachOfSphere(cells, frames[row.frame].collision_spheres[row.hand][row.place]);
   }
-  Encode(columns, {.before = continued.before()}, bytes);
+  return Transposed(words, 2 + kSphereWidth);
 }
 
-void EncodeTouches(std::span<const EpisodeFrame> frames, std::string& bytes) {
-  Continued continued;
-  std::vector<const grammar::Touch*> touches;
-  for (const EpisodeFrame& frame : frames) {
-    continued.Add(0, frame.touches.size());
-    for (const grammar::Touch& touch : frame.touches) touches.push_back(&touch);
+/// The touch of the same two in the frame before stands above it.
+Columns TouchTable(std::span<const EpisodeFrame> frames) {
+  std::vector<std::pair<std::size_t, const grammar::Touch*>> rows;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    for (const grammar::Touch& touch : frames[i].touches) rows.emplace_back(i, &touch);
   }
-  Columns columns(touches.size(), kTouchWidth);
-  for (std::size_t row = 0; row < touches.size(); ++row) PutTouch(*touches[row], columns, row);
-  Encode(columns, {.before = continued.before()}, bytes);
-}
-
-std::size_t WordsOf(const EpisodeFrame& frame) {
-  std::size_t words = kSampleWidth * frame.entities.size() + kTouchWidth * frame.touches.size();
-  for (const auto& spheres : frame.collision_spheres)
-    words += kHandWidth + kSphereWidth * spheres.size();
-  return words;
+  std::ranges::sort(rows, {}, [](const auto& row) {
+    return std::tuple(row.second->a, row.second->b, row.first);
+  });
+  std::vector<Word> words;
+  CellWriter cells(words);
+  for (const auto& [frame, touch] : rows) {
+    cells(frame);
+    EachOfTouch(cells, *touch);
+  }
+  return Transposed(words, 1 + kTouchWidth);
 }
 
 }  // namespace
 
 std::size_t FramesOfChunk(std::span<const EpisodeFrame> frames) {
   std::size_t count = 0, words = 0;
-  while (count < std::min(frames.size(), kMostFrames) && (count == 0 || words < kMostWords))
-    words += WordsOf(frames[count++]);
+  while (count < std::min(frames.size(), kMostFrames) && (count == 0 || words < kMostWords)) {
+    const EpisodeFrame& frame = frames[count++];
+    words += kSampleWidth * frame.entities.size() + kTouchWidth * frame.touches.size();
+    for (const auto& spheres : frame.collision_spheres)
+      words += kHandWidth + kSphereWidth * spheres.size();
+  }
   return count;
 }
 
-std::string EncodeRecordedFrames(std::span<const EpisodeFrame> frames,
-                                 const std::vector<bool>& placed, grammar::Tick ticks_per_second) {
+std::vector<Columns> TablesOfFrames(std::span<const EpisodeFrame> frames,
+                                    const std::vector<bool>& placed) {
   const std::size_t entities = frames.front().entities.size();
-  std::string bytes;
-  AppendVarint(frames.size(), bytes);
+  std::vector<Columns> tables(kTables);
+  tables[kPlaced] = Columns(entities, 1);
   for (std::size_t i = 0; i < entities; ++i)
-    AppendVarint(i < placed.size() && placed[i] ? 1 : 0, bytes);
-  const Columns counts = CountsOf(frames);
-  Encode(counts, {}, bytes);
-  const Guesses motion = MotionOf(counts.Column(0), ticks_per_second);
-  for (std::size_t entity = 0; entity < entities; ++entity) {
-    Columns columns(frames.size(), kSampleWidth);
-    for (std::size_t i = 0; i < frames.size(); ++i)
-      PutSample(frames[i].entities[entity], columns, i);
-    Encode(columns, motion, bytes);
-  }
-  EncodeHands(frames, bytes);
-  EncodeTouches(frames, bytes);
-  return bytes;
+    tables[kPlaced].At(i, 0) = i < placed.size() && placed[i] ? 1 : 0;
+  std::vector<Word> words;
+  CellWriter cells(words);
+  for (const EpisodeFrame& frame : frames) EachOfFrame(cells, frame);
+  tables[kFrames] = Transposed(words, words.size() / frames.size());
+  tables[kSpheres] = SphereTable(frames);
+  tables[kTouches] = TouchTable(frames);
+  return tables;
 }
 
-std::optional<RecordedFrames> DecodeRecordedFrames(std::string_view bytes,
-                                                   const grammar::EntityTable& table) {
-  return RecordedDecoder(bytes, table).Run();
+RecordedFrames FramesOfTables(const std::vector<Columns>& tables,
+                              const grammar::EntityTable& entities) {
+  const EpisodeFrame blank = BlankFrame(entities);
+  const std::size_t width =
+      1 + kSampleWidth * blank.entities.size() + kHandWidth * blank.hands.size();
+  if (tables.size() != kTables || tables[kPlaced].words.size() != blank.entities.size() ||
+      tables[kFrames].rows == 0 || tables[kFrames].rows > kMostFrames ||
+      tables[kFrames].width != width || tables[kSpheres].width != 2 + kSphereWidth ||
+      tables[kTouches].width != 1 + kTouchWidth)
+    throw Damage("a part is of other entities");
+  RecordedFrames recorded;
+  for (const Word placed : tables[kPlaced].words) recorded.placed.push_back(placed != 0);
+  std::vector<EpisodeFrame>& frames = recorded.frames;
+  frames.assign(tables[kFrames].rows, blank);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    CellReader cells(tables[kFrames], i);
+    EachOfFrame(cells, frames[i]);
+    if (frames[i].tick < 0 || (i > 0 && frames[i].tick <= frames[i - 1].tick))
+      throw Damage("their ticks do not increase");
+  }
+  for (std::size_t row = 0; row < tables[kSpheres].rows; ++row) {
+    CellReader cells(tables[kSpheres], row);
+    std::size_t frame = 0, hand = 0;
+    cells(frame, hand);
+    if (frame >= frames.size() || hand >= blank.hands.size())
+      throw Damage("a collision sphere is of no hand");
+    EachOfSphere(cells, frames[frame].collision_spheres[hand].emplace_back());
+  }
+  for (std::size_t row = 0; row < tables[kTouches].rows; ++row) {
+    CellReader cells(tables[kTouches], row);
+    std::size_t frame = 0;
+    cells(frame);
+    if (frame >= frames.size()) throw Damage("a touch is in no frame");
+    EachOfTouch(cells, frames[frame].touches.emplace_back());
+  }
+  if (!std::ranges::all_of(frames, [&](const EpisodeFrame& f) { return IsGood(f, entities); }))
+    throw Damage("a frame names what is not there");
+  return recorded;
 }
 
 }  // namespace prehend::episode

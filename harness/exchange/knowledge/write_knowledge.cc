@@ -134,12 +134,12 @@ class KnowledgeWriter {
     std::vector<Transform> transforms;
     const std::int64_t day = MillisecondsOf(row.recorded_on);
     const std::int64_t ticks = std::max<std::int64_t>(row.ticks_per_second / kTransforms_per_s, 1);
-    const std::string damage = frames.Play(
+    const Result<void> played = frames.Play(
         [&](const physics::Snapshot& now) {
           AddTransforms(map, now, day + 1000 * now.tick / row.ticks_per_second, transforms);
         },
         [&](std::int64_t tick) { return tick % ticks == 0; }, false);
-    if (!damage.empty()) return Problem(file_->path(), damage);
+    if (!played) return played.error();
     const std::string folder = request_.folder + "/neem/" + row.uuid + "/";
     for (const auto& [name, bytes] : {std::pair{"triples", TriplesBson(all, hierarchy_)},
                                       std::pair{"tf", TransformsBson(transforms)},

@@ -111,7 +111,10 @@ TEST(EpisodeFileOfMany, AnyFrameAndAnyTrackIsFound) {
     EXPECT_EQ(found->hands[0].X_WL.back().p_m, truth.hands[0].X_WL.back().p_m);
     EXPECT_EQ(found->contacts.size(), truth.contacts.size());
   }
-  EXPECT_FALSE(frames.At(0)) << "the first frame is after the first tick";
+  const auto none = frames.At(0);
+  ASSERT_FALSE(none) << "the first frame is after the first tick";
+  EXPECT_EQ(none.error().front().message,
+            "episode 1 (reach/idling_beside_the_object_is_no_reach): has no frame up to tick 0");
   EXPECT_EQ(frames.At(1'000'000)->tick, played.result.ticks);
   const auto track = frames.TrackOf(1);
   ASSERT_TRUE(track);

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "harness/episode/frames/chunk.h"
-#include "harness/episode/frames/contact_coding.h"
 #include "harness/episode/frames/frame_player.h"
 
 namespace prehend::episode {
@@ -24,8 +23,7 @@ physics::HandModel TwoLinks() {
 }
 
 FrameLayout Layout() {
-  return {
-      .rate_hz = 480, .bodies = 3, .grains = {2}, .joints = 1, .hands = {TwoLinks()}, .gazes = 1};
+  return {.bodies = 3, .grains = {2}, .joints = 1, .hands = {TwoLinks()}, .gazes = 1};
 }
 
 /// Body 0 rests, body 1 moves all the time, body 2 now and then; contacts come and go.
@@ -33,7 +31,7 @@ std::vector<physics::Snapshot> Frames(std::size_t count) {
   const FrameLayout layout = Layout();
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-1, 1);
-  LinkGuess links(layout.hands[0]);
+  const physics::LinkPlaces links(layout.hands[0]);
   physics::Snapshot now = BlankSnapshot(layout);
   now.bodies[0].X_WB.p_m = {1, 2, 3};
   std::shared_ptr<const ContactPoints> resting;
@@ -61,13 +59,7 @@ std::vector<physics::Snapshot> Frames(std::size_t count) {
     hand.palm.X_WB.p_m = {0, t, 0};
     hand.joints = {std::sin(t), 0.001 * t};
     hand.style = i % 100 == 0 ? 1 : 0;
-    std::vector<PlacedLinks> placed(1 + links.size());
-    placed[0].PutPalm(0, hand.palm.X_WB);
-    for (std::size_t link = 0; link < links.size(); ++link) {
-      const auto parent = static_cast<std::size_t>(links.ParentOf(link) + 1);
-      links.Guess(link, placed[parent], {hand.joints[link]}, placed[link + 1]);
-      hand.X_WL[link] = placed[link + 1].X_WL[0];
-    }
+    links.Place(hand.palm.X_WB, hand.joints, hand.X_WL);
     if (i >= 480) hand.X_WL[1].p_m.x() += 1e-15 * any(random);
     now.gazes[0].body = physics::BodyIndex(static_cast<int>(i % 4) - 1);
     now.contacts.clear();
@@ -87,27 +79,23 @@ void ExpectSame(const physics::Snapshot& a, const physics::Snapshot& b) {
   const FrameLayout layout = Layout();
   ASSERT_EQ(a.tick, b.tick);
   for (std::size_t track = 0; track < layout.tracks(); ++track) {
-    std::vector<Word> x(layout.Width(track)), y(layout.Width(track));
-    ReadRow(layout, track, a, x);
-    ReadRow(layout, track, b, y);
+    std::vector<Word> x, y;
+    AppendRow(layout, track, a, x);
+    AppendRow(layout, track, b, y);
     ASSERT_EQ(x, y) << "track " << track << " at tick " << a.tick;
   }
-  for (std::size_t i = 0; i < a.hands[0].X_WL.size(); ++i) {
-    ASSERT_EQ(a.hands[0].X_WL[i].p_m, b.hands[0].X_WL[i].p_m) << a.tick;
-    ASSERT_EQ(a.hands[0].X_WL[i].q.coeffs(), b.hands[0].X_WL[i].q.coeffs()) << a.tick;
-  }
-  for (const int part : {0, 1}) {
-    const auto x = a.AllContacts()[static_cast<std::size_t>(part)],
-               y = b.AllContacts()[static_cast<std::size_t>(part)];
-    ASSERT_EQ(x.size(), y.size()) << a.tick;
-    for (std::size_t i = 0; i < x.size(); ++i) ASSERT_TRUE(SamePoint(x[i], y[i])) << a.tick;
-  }
+  std::vector<Word> x, y;
+  AppendLinks(a.hands[0].X_WL, x);
+  AppendLinks(b.hands[0].X_WL, y);
+  ASSERT_EQ(x, y) << a.tick;
+  ASSERT_EQ(TableOfPoints({&a.contacts}).words, TableOfPoints({&b.contacts}).words) << a.tick;
+  ASSERT_EQ(TableOfPoints({a.resting.get()}).words, TableOfPoints({b.resting.get()}).words);
 }
 
 /// Chunks in memory.
 struct Chunks {
   std::vector<Chunk> all;
-  std::map<std::pair<std::size_t, std::size_t>, std::string> parts;
+  std::map<std::pair<std::size_t, std::size_t>, std::string> parts;  ///< by part and chunk
 
   explicit Chunks(const std::vector<physics::Snapshot>& frames) {
     ChunkWriter writer(Layout());
@@ -118,91 +106,104 @@ struct Chunks {
     if (writer.frames() > 0) Keep(writer.Take());
   }
   void Keep(Chunk chunk) {
-    for (const ChunkPart& part : chunk.parts) parts[{all.size(), part.part}] = part.bytes;
+    for (const ChunkPart& part : chunk.parts) parts[{part.part, all.size()}] = part.bytes;
     all.push_back(std::move(chunk));
   }
-  FetchPart At(std::size_t number) {
-    return [this, number](Word back, std::size_t part) -> std::optional<std::string_view> {
-      if (back > number) return std::nullopt;
-      const auto found = parts.find({number - static_cast<std::size_t>(back), part});
-      if (found == parts.end()) return std::nullopt;
-      return found->second;
+  void Open(FramePlayer& player, std::size_t number, bool follows) const {
+    const auto fetch = [&](std::size_t part, bool here) -> std::optional<std::string_view> {
+      for (std::size_t chunk = number + 1; chunk-- > (here ? number : 0);) {
+        const auto found = parts.find({part, chunk});
+        if (found != parts.end()) return found->second;
+      }
+      return std::nullopt;
     };
+    player.Open(fetch, all[number].first_tick, all[number].frames, follows);
   }
 };
 
 TEST(Frames, ComeBackOneAfterAnother) {
   const std::vector<physics::Snapshot> frames = Frames(1500);
-  Chunks chunks(frames);
+  const Chunks chunks(frames);
   ASSERT_GT(chunks.all.size(), 2u);
   FramePlayer player(Layout());
   std::size_t next = 0;
   for (std::size_t i = 0; i < chunks.all.size(); ++i) {
-    ASSERT_TRUE(player.Open(chunks.At(i), i > 0));
-    for (std::size_t frame = 0; frame < player.ticks().size(); ++frame) {
-      const physics::Snapshot* shown = player.Show(frame);
-      ASSERT_TRUE(shown);
-      ExpectSame(*shown, frames[next++]);
-    }
+    chunks.Open(player, i, i > 0);
+    for (std::size_t frame = 0; frame < chunks.all[i].frames; ++frame)
+      ExpectSame(player.Show(frame), frames[next++]);
   }
   EXPECT_EQ(next, frames.size());
 }
 
 TEST(Frames, SomeOfThemComeBackToo) {
   const std::vector<physics::Snapshot> frames = Frames(1500);
-  Chunks chunks(frames);
+  const Chunks chunks(frames);
   FramePlayer player(Layout());
   for (std::size_t i = 0; i < chunks.all.size(); ++i) {
-    ASSERT_TRUE(player.Open(chunks.At(i), i > 0));
-    for (std::size_t frame = 100; frame < player.ticks().size(); frame += 101) {
-      const auto tick = player.ticks()[frame];
-      ExpectSame(*player.Show(frame), frames[static_cast<std::size_t>(tick) - 1]);
+    chunks.Open(player, i, i > 0);
+    for (std::size_t frame = 100; frame < chunks.all[i].frames; frame += 101) {
+      const auto first = static_cast<std::size_t>(chunks.all[i].first_tick);
+      ExpectSame(player.Show(frame), frames[first - 1 + frame]);
     }
   }
 }
 
 TEST(Frames, AnyChunkIsReadAlone) {
   const std::vector<physics::Snapshot> frames = Frames(1500);
-  Chunks chunks(frames);
+  const Chunks chunks(frames);
   for (std::size_t i = chunks.all.size(); i-- > 0;) {
     FramePlayer player(Layout());
-    ASSERT_TRUE(player.Open(chunks.At(i), false));
-    for (const std::size_t frame : {std::size_t{0}, player.ticks().size() - 1}) {
-      const auto tick = player.ticks()[frame];
-      ExpectSame(*player.Show(frame), frames[static_cast<std::size_t>(tick) - 1]);
+    chunks.Open(player, i, false);
+    for (const std::size_t frame : {std::size_t{0}, chunks.all[i].frames - 1}) {
+      const auto first = static_cast<std::size_t>(chunks.all[i].first_tick);
+      ExpectSame(player.Show(frame), frames[first - 1 + frame]);
     }
   }
 }
 
 TEST(Frames, WhatRestsHasNoPart) {
-  Chunks chunks(Frames(1500));
-  const std::size_t resting = FrameLayout::PartOfTrack(0), moving = FrameLayout::PartOfTrack(1);
-  EXPECT_TRUE(chunks.parts.contains({0, resting}));
-  EXPECT_FALSE(chunks.parts.contains({1, resting}));
-  EXPECT_TRUE(chunks.parts.contains({1, moving}));
-  const std::size_t links = Layout().PartOfLinks(0);
-  EXPECT_FALSE(chunks.parts.contains({0, links})) << "links that follow from the joints";
-  EXPECT_TRUE(chunks.parts.contains({2, links}));
+  const Chunks chunks(Frames(1500));
+  EXPECT_TRUE(chunks.parts.contains({0, 0}));
+  EXPECT_FALSE(chunks.parts.contains({0, 1}));
+  EXPECT_TRUE(chunks.parts.contains({1, 1}));
+  const std::size_t links = Layout().LinksOf(0);
+  EXPECT_FALSE(chunks.parts.contains({links, 0})) << "links that follow from the joints";
+  EXPECT_TRUE(chunks.parts.contains({links, 2}));
 }
 
-TEST(Frames, DamageIsReportedOrReadAsSomething) {
-  std::mt19937 random(5);
-  Chunks chunks(Frames(600));
-  for (int trial = 0; trial < 300; ++trial) {
-    Chunks bad = chunks;
-    for (auto& [key, bytes] : bad.parts) {
-      if (random() % 2 == 0) bytes[random() % bytes.size()] = static_cast<char>(random());
-    }
+TEST(Frames, DamageIsReported) {
+  const Chunks chunks(Frames(600));
+  const auto opens = [](const Chunks& some) {
     FramePlayer player(Layout());
-    for (std::size_t i = 0; i < bad.all.size(); ++i) {
-      if (!player.Open(bad.At(i), i > 0)) break;
-      for (std::size_t frame = 0; frame < player.ticks().size(); ++frame) (void)player.Show(frame);
+    for (std::size_t i = 0; i < some.all.size(); ++i) some.Open(player, i, i > 0);
+  };
+  opens(chunks);
+  for (const auto& [place, bytes] : chunks.parts) {
+    Chunks bad = chunks;
+    for (const std::size_t at : {std::size_t{3}, bytes.size() / 2, bytes.size() - 1}) {
+      bad.parts[place] = bytes;
+      bad.parts[place][at] ^= 4;
+      EXPECT_THROW(opens(bad), Damage) << place.first << " at " << at;
     }
+    if (place != std::pair<std::size_t, std::size_t>(1, 0)) continue;
+    bad.parts.erase(place);
+    EXPECT_THROW(opens(bad), Damage);
   }
-  chunks.parts.erase({1, FrameLayout::kHead});
-  FramePlayer player(Layout());
-  EXPECT_TRUE(player.Open(chunks.At(0), false));
-  EXPECT_FALSE(player.Open(chunks.At(1), true));
+}
+
+TEST(Frames, TablesThatNameWhatIsNotThereAreRefused) {
+  const FrameLayout layout = Layout();
+  const physics::Snapshot blank = BlankSnapshot(layout);
+  const ContactPoints points = {
+      {.a = {.body = physics::BodyIndex(3)}, .b = {.body = physics::BodyIndex(0)}}};
+  EXPECT_THROW((void)PointsOfTable(layout, TableOfPoints({&points}), 1), Damage);
+  for (const std::size_t track : {layout.FirstHand(), layout.Gazes()}) {
+    std::vector<Word> row;
+    AppendRow(layout, track, blank, row);
+    for (Word& word : row) word = 7;  // style, body, hand
+    physics::Snapshot read = blank;
+    EXPECT_THROW(ReadRow(layout, track, Transposed(row, row.size()), 0, read), Damage);
+  }
 }
 
 }  // namespace

@@ -49,9 +49,7 @@ struct SomeRecording {
       if (i % 2 == 0) frame.touches.push_back({.a = 0, .b = 2, .up_on_a = 0.5});
     }
   }
-  std::string Encoded() const {
-    return EncodeRecordedFrames(frames, placed, table.ticks_per_second);
-  }
+  std::vector<Columns> Tables() const { return TablesOfFrames(frames, placed); }
 };
 
 void ExpectSame(const EpisodeFrame& a, const EpisodeFrame& b) {
@@ -86,11 +84,10 @@ void ExpectSame(const EpisodeFrame& a, const EpisodeFrame& b) {
 TEST(RecordedFrames, ComeBackBitByBit) {
   for (const std::size_t count : {1, 2, 57}) {
     const SomeRecording recording(count);
-    const auto decoded = DecodeRecordedFrames(recording.Encoded(), recording.table);
-    ASSERT_TRUE(decoded);
-    EXPECT_EQ(decoded->placed, recording.placed);
-    ASSERT_EQ(decoded->frames.size(), count);
-    for (std::size_t i = 0; i < count; ++i) ExpectSame(decoded->frames[i], recording.frames[i]);
+    const RecordedFrames read = FramesOfTables(recording.Tables(), recording.table);
+    EXPECT_EQ(read.placed, recording.placed);
+    ASSERT_EQ(read.frames.size(), count);
+    for (std::size_t i = 0; i < count; ++i) ExpectSame(read.frames[i], recording.frames[i]);
   }
 }
 
@@ -101,22 +98,29 @@ TEST(RecordedFrames, ChunksAreFilledButNotOverfilled) {
   EXPECT_EQ(FramesOfChunk(std::span(recording.frames).last(3)), 3);
 }
 
-TEST(RecordedFrames, DamageIsRefusedAndHarmless) {
+TEST(RecordedFrames, OtherTablesAreRefusedOrHarmless) {
   const SomeRecording recording(20);
-  const std::string good = recording.Encoded();
-  EXPECT_FALSE(DecodeRecordedFrames("", recording.table));
-  EXPECT_FALSE(DecodeRecordedFrames(good + "x", recording.table));
-  for (std::size_t size = 0; size < good.size(); size += 37)
-    EXPECT_FALSE(DecodeRecordedFrames(good.substr(0, size), recording.table)) << size;
+  const std::vector<Columns> good = recording.Tables();
+  const auto read = [&](const std::vector<Columns>& tables) {
+    return FramesOfTables(tables, recording.table);
+  };
+  EXPECT_THROW((void)read({}), Damage);
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    std::vector<Columns> bad = good;
+    bad[i] = Columns(bad[i].rows, bad[i].width + 1);
+    EXPECT_THROW((void)read(bad), Damage) << i;
+  }
   std::mt19937 random(3);
   for (int i = 0; i < 3000; ++i) {
-    std::string bad = good;
-    for (int k = 0; k < 3; ++k) bad[random() % bad.size()] = static_cast<char>(random());
-    if (const auto decoded = DecodeRecordedFrames(bad, recording.table)) {
-      for (const EpisodeFrame& frame : decoded->frames) {
+    std::vector<Columns> bad = good;
+    std::vector<Word>& words = bad[random() % bad.size()].words;
+    words[random() % words.size()] = random() % 6 - 2;
+    try {
+      for (const EpisodeFrame& frame : read(bad).frames) {
         for (const grammar::Touch& touch : frame.touches) EXPECT_LT(touch.b, 3);
         for (const grammar::EntitySample& look : frame.entities) EXPECT_LT(look.gazes_at, 3);
       }
+    } catch (const Damage&) {
     }
   }
 }
