@@ -31,6 +31,17 @@ void DiagnosticList::AddUnknownName(Where where, std::string message, const std:
   Add(where, std::move(message), std::move(hint));
 }
 
+std::optional<std::size_t> DiagnosticList::Find(const Located<std::string>& name,
+                                                std::string_view key,
+                                                const std::vector<std::string>& known,
+                                                std::string_view noun) {
+  const auto found = std::ranges::find(known, name.value);
+  if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
+  AddUnknownName(name.where, fmt::format("{}: no {} is called '{}'", key, noun, name.value),
+                 name.value, known);
+  return std::nullopt;
+}
+
 std::string DiagnosticList::PlaceText(Where where) const {
   const YamlSource& source = document_.sources[static_cast<std::size_t>(where.source)];
   return fmt::format("{}:{}:{}", source.name, where.place.line, where.place.column);

@@ -3,6 +3,7 @@
 // place. Tested by tests/harness/base/yaml/struct_format_test.cc
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,12 @@ class DiagnosticList {
   /// For example "did you mean 'mass_kg'?", or the list of candidates when nothing is near.
   void AddUnknownName(Where where, std::string message, const std::string& name,
                       const std::vector<std::string>& candidates);
+
+  /// Where the name is among those known; else there is none, and an error: "KEY: no NOUN is called
+  /// 'NAME'".
+  std::optional<std::size_t> Find(const Located<std::string>& name, std::string_view key,
+                                  const std::vector<std::string>& known,
+                                  std::string_view noun = "entity");
 
   /// "FILE:LINE:COLUMN", for what is found out only when the scenario runs.
   std::string PlaceText(Where where) const;

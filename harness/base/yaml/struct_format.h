@@ -124,16 +124,17 @@ class StructFormat {
     rules_.named_by_key = true;
     return *this;
   }
-  template <class M, class F>
-  StructFormat& Required(std::string_view key, M T::*member, const ValueFormat<F>& format,
+  /// The member is one of T or of a base of T.
+  template <class M, class Base, class F>
+  StructFormat& Required(std::string_view key, M Base::*member, const ValueFormat<F>& format,
                          std::string_view doc) {
-    return Add(key, true, member, format, doc);
+    return Add<M>(key, true, member, format, doc);
   }
   /// The default is the member's value in T{}.
-  template <class M, class F>
-  StructFormat& Optional(std::string_view key, M T::*member, const ValueFormat<F>& format,
+  template <class M, class Base, class F>
+  StructFormat& Optional(std::string_view key, M Base::*member, const ValueFormat<F>& format,
                          std::string_view doc) {
-    return Add(key, false, member, format, doc);
+    return Add<M>(key, false, member, format, doc);
   }
   StructFormat& ExactlyOneOf(std::vector<std::string> keys) {
     rules_.exactly_one.push_back(std::move(keys));
@@ -202,15 +203,15 @@ ValueFormat<T> ByKey(const std::string& noun,
   return ValueFormat<T>(ErasedByKey(noun, std::move(erased), std::move(remedies)));
 }
 
-/// A struct read as one alternative of a variant.
-template <class V, class A>
-ValueFormat<V> AsAlternative(const ValueFormat<A>& format) {
+/// A struct read as one alternative of a variant, or as what `convert` makes of it.
+template <class V, class A, class Convert = std::identity>
+ValueFormat<V> AsAlternative(const ValueFormat<A>& format, Convert convert = {}) {
   return ValueFormat<V>({.schema = format.schema(),
-                         .read = [read = format.erased().read](
+                         .read = [read = format.erased().read, convert](
                                      const YamlNode& node, DiagnosticList& errors, void* value) {
                            A alternative{};
                            if (!read(node, errors, &alternative)) return false;
-                           *static_cast<V*>(value) = std::move(alternative);
+                           *static_cast<V*>(value) = convert(std::move(alternative));
                            return true;
                          }});
 }

@@ -14,6 +14,8 @@
 namespace prehend::scenario {
 namespace {
 
+using physics::JointKind;
+
 constexpr std::size_t kMaxParts = 256;
 constexpr double kMaxResistance = 1e5;
 constexpr double kMaxSlide_m = 10;
@@ -36,10 +38,31 @@ StructFormat<JointYaml> JointRecord(const std::string& noun) {
                                         "The entity that it is attached to.");
 }
 
+ValueFormat<JointYaml> OfKind(JointKind kind, const char* key, const StructFormat<JointYaml>& as) {
+  return AsAlternative<JointYaml>(as.format(), [=](JointYaml joint) {
+    joint.kind = kind;
+    joint.key = key;
+    return joint;
+  });
+}
+
+ValueFormat<JointYaml> GlueFormat() {
+  return AsAlternative<JointYaml>(WithPlace(Identifier()), [](Located<std::string> to) {
+    return JointYaml{{}, "fixed_to", std::move(to)};
+  });
+}
+
+/// A compound that is described as a whole.
+template <class Compound>
+ValueFormat<std::vector<physics::PlacedShape>> CompoundOf(const ValueFormat<Compound>& format) {
+  return AsAlternative<std::vector<physics::PlacedShape>>(
+      format, [](const Compound& compound) { return physics::ShapesOf(compound); });
+}
+
 ValueFormat<Eigen::Vector3d> Axis() { return Vector<3>(-1, 1); }
 
 void CheckAxis(const YamlNode& node, const JointYaml& joint, DiagnosticList& errors) {
-  if (joint.axis.norm() > 1e-6) return;
+  if (joint.axis_W.norm() > 1e-6) return;
   errors.Add(node.Find("axis")->where, "axis: expected a direction other than [0, 0, 0]");
 }
 
@@ -56,53 +79,55 @@ std::function<void(const YamlNode&, const JointYaml&, DiagnosticList&)> SpringPu
 
 ValueFormat<JointYaml> SliderFormat() {
   using J = JointYaml;
-  return JointRecord("a slider")
-      .Required("axis", &J::axis, Axis(),
-                "The direction in which it opens, in the world, as placed.")
-      .Required("range_m", &J::range, Vector<2>(-kMaxSlide_m, kMaxSlide_m),
-                "Range of motion relative to where it is placed: [min, max].")
-      .Optional("friction_n", &J::friction, Number(0, kMaxResistance),
-                "Largest force that it holds against.")
-      .Optional("damping_n_s_per_m", &J::damping, Number(0, kMaxResistance),
-                "Damping: force per speed.")
-      .Optional("spring_n_per_m", &J::spring, Number(0, kMaxResistance),
-                "Force that pulls it to rest_m.")
-      .Optional("rest_m", &J::rest, Number(-kMaxSlide_m, kMaxSlide_m),
-                "Where its spring exerts no force.")
-      .Check(CheckAxis)
-      .Check(CheckRange)
-      .Check(SpringPullsTo("rest_m", "spring_n_per_m"))
-      .format();
+  return OfKind(JointKind::kSlider, "slider",
+                JointRecord("a slider")
+                    .Required("axis", &J::axis_W, Axis(),
+                              "The direction in which it opens, in the world, as placed.")
+                    .Required("range_m", &J::range, Vector<2>(-kMaxSlide_m, kMaxSlide_m),
+                              "Range of motion relative to where it is placed: [min, max].")
+                    .Optional("friction_n", &J::friction, Number(0, kMaxResistance),
+                              "Largest force that it holds against.")
+                    .Optional("damping_n_s_per_m", &J::damping, Number(0, kMaxResistance),
+                              "Damping: force per speed.")
+                    .Optional("spring_n_per_m", &J::spring, Number(0, kMaxResistance),
+                              "Force that pulls it to rest_m.")
+                    .Optional("rest_m", &J::rest, Number(-kMaxSlide_m, kMaxSlide_m),
+                              "Where its spring exerts no force.")
+                    .Check(CheckAxis)
+                    .Check(CheckRange)
+                    .Check(SpringPullsTo("rest_m", "spring_n_per_m")));
 }
 
 ValueFormat<JointYaml> HingeFormat() {
   using J = JointYaml;
-  return JointRecord("a hinge")
-      .Required("at_m", &J::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                "A point of its axis, in the world, as placed.")
-      .Required("axis", &J::axis, Axis(),
-                "The direction of its axis; positive angles follow the right-hand rule.")
-      .Required("range_deg", &J::range, Vector<2>(-kMaxTurn_deg, kMaxTurn_deg),
-                "Range of rotation relative to where it is placed: [min, max].")
-      .Optional("friction_nm", &J::friction, Number(0, kMaxResistance),
-                "Largest torque that it holds against.")
-      .Optional("damping_nm_s_per_rad", &J::damping, Number(0, kMaxResistance),
-                "Damping: torque per angular speed.")
-      .Optional("spring_nm_per_rad", &J::spring, Number(0, kMaxResistance),
-                "Torque that turns it to rest_deg.")
-      .Optional("rest_deg", &J::rest, Number(-kMaxTurn_deg, kMaxTurn_deg),
-                "Where its spring exerts no force.")
-      .Check(CheckAxis)
-      .Check(CheckRange)
-      .Check(SpringPullsTo("rest_deg", "spring_nm_per_rad"))
-      .format();
+  return OfKind(
+      JointKind::kHinge, "hinge",
+      JointRecord("a hinge")
+          .Required("at_m", &J::pivot_W_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+                    "A point of its axis, in the world, as placed.")
+          .Required("axis", &J::axis_W, Axis(),
+                    "The direction of its axis; positive angles follow the right-hand rule.")
+          .Required("range_deg", &J::range, Vector<2>(-kMaxTurn_deg, kMaxTurn_deg),
+                    "Range of rotation relative to where it is placed: [min, max].")
+          .Optional("friction_nm", &J::friction, Number(0, kMaxResistance),
+                    "Largest torque that it holds against.")
+          .Optional("damping_nm_s_per_rad", &J::damping, Number(0, kMaxResistance),
+                    "Damping: torque per angular speed.")
+          .Optional("spring_nm_per_rad", &J::spring, Number(0, kMaxResistance),
+                    "Torque that turns it to rest_deg.")
+          .Optional("rest_deg", &J::rest, Number(-kMaxTurn_deg, kMaxTurn_deg),
+                    "Where its spring exerts no force.")
+          .Check(CheckAxis)
+          .Check(CheckRange)
+          .Check(SpringPullsTo("rest_deg", "spring_nm_per_rad")));
 }
 
 ValueFormat<JointYaml> BallJointFormat() {
-  return JointRecord("a ball joint")
-      .Required("at_m", &JointYaml::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
-                "The point about which it rotates, in the world, as placed.")
-      .format();
+  using J = JointYaml;
+  return OfKind(JointKind::kBall, "ball_joint",
+                JointRecord("a ball joint")
+                    .Required("at_m", &J::pivot_W_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
+                              "The point about which it rotates, in the world, as placed."));
 }
 
 /// A word is looked up; its hint is the nearest word.
@@ -148,7 +173,8 @@ void CheckJoint(const YamlNode& node, const EntityYaml& entity, DiagnosticList& 
                  "remove fixed or " + std::string(key));
     }
   }
-  if (!entity.fixed_to) return;
+  const Located<std::string>* const whole = FixedTo(entity);
+  if (!whole) return;
   for (const char* key : {"friction", "rolling_friction", "restitution", "linear_damping_per_s",
                           "angular_damping_per_s"}) {
     const YamlNode* surface = node.Find(key);
@@ -156,7 +182,7 @@ void CheckJoint(const YamlNode& node, const EntityYaml& entity, DiagnosticList& 
       errors.Add(
           surface->key_where,
           std::string(key) + ": an entity that is fixed to another has the surface of that one",
-          "give it to '" + entity.fixed_to->value + "'");
+          "give it to '" + whole->value + "'");
     }
   }
 }
@@ -218,16 +244,20 @@ ValueFormat<EntityYaml> EntityFormat() {
                 "The entity that it is a part of, as a handle is of a door.")
       .Optional("color", &E::color, ColorFormat(),
                 "How pictures show it: a word like blue, or '#RRGGBB'.")
-      .Optional("box", &E::box, BoxFormat(), "Its shape: a box.")
-      .Optional("sphere", &E::sphere, SphereFormat(), "Its shape: a sphere.")
-      .Optional("cylinder", &E::cylinder, CylinderFormat(), "Its shape: a cylinder, axis along z.")
-      .Optional("capsule", &E::capsule, CapsuleFormat(),
+      .Optional("box", &E::shape, AsAlternative<physics::Shape>(BoxFormat()), "Its shape: a box.")
+      .Optional("sphere", &E::shape, AsAlternative<physics::Shape>(SphereFormat()),
+                "Its shape: a sphere.")
+      .Optional("cylinder", &E::shape, AsAlternative<physics::Shape>(CylinderFormat()),
+                "Its shape: a cylinder, axis along z.")
+      .Optional("capsule", &E::shape, AsAlternative<physics::Shape>(CapsuleFormat()),
                 "Its shape: a cylinder with half spheres at its ends, axis along z.")
-      .Optional("hull", &E::hull, HullFormat(), "Its shape: a solid of flat faces, by its corners.")
-      .Optional("tray", &E::tray, TrayFormat(), "Its shape: a flat box without a lid.")
-      .Optional("mug", &E::mug, MugFormat(), "Its shape: a round cup, perhaps with a handle.")
-      .Optional("bowl", &E::bowl, BowlFormat(), "Its shape: a round dish.")
-      .Optional("shelf", &E::shelf, ShelfFormat(),
+      .Optional("hull", &E::shape, AsAlternative<physics::Shape>(HullFormat()),
+                "Its shape: a solid of flat faces, by its corners.")
+      .Optional("tray", &E::parts, CompoundOf(TrayFormat()), "Its shape: a flat box without a lid.")
+      .Optional("mug", &E::parts, CompoundOf(MugFormat()),
+                "Its shape: a round cup, perhaps with a handle.")
+      .Optional("bowl", &E::parts, CompoundOf(BowlFormat()), "Its shape: a round dish.")
+      .Optional("shelf", &E::parts, CompoundOf(ShelfFormat()),
                 "Its shape: boards between two sides, as a shelf or a cupboard.")
       .Optional("parts", &E::parts, ListOf(PartFormat(), 1, kMaxParts),
                 "Its shape: several shapes, rigidly together.")
@@ -254,18 +284,25 @@ ValueFormat<EntityYaml> EntityFormat() {
       .Optional("on", &E::on, Identifier(), "The entity it stands on; then at_m is [x, y].")
       .Optional("in", &E::in, Identifier(),
                 "Of grains: the vessel that they fill; instead of at_m.")
-      .Optional("fixed_to", &E::fixed_to, Identifier(),
+      .Optional("fixed_to", &E::joint, GlueFormat(),
                 "The entity that it is glued to: both move as one.")
-      .Optional("slider", &E::slider, SliderFormat(),
+      .Optional("slider", &E::joint, SliderFormat(),
                 "It slides on another entity, as a drawer does.")
-      .Optional("hinge", &E::hinge, HingeFormat(), "It turns on another entity, as a door does.")
-      .Optional("ball_joint", &E::ball_joint, BallJointFormat(),
+      .Optional("hinge", &E::joint, HingeFormat(), "It turns on another entity, as a door does.")
+      .Optional("ball_joint", &E::joint, BallJointFormat(),
                 "It rotates freely about a point of another entity.")
       .Optional("at_m", &E::at_m, ListOf(Number(-kMaxDistance_m, kMaxDistance_m), 2, 3),
                 "World coordinates of its centre: [x, y, z], or [x, y] with 'on'.")
-      .Optional("rpy_deg", &E::rpy_deg, Vector<3>(-360, 360),
+      .Optional("rpy_deg", &E::q,
+                AsAlternative<Eigen::Quaterniond>(Vector<3>(-360, 360), physics::FromRollPitchYaw),
                 "Roll, pitch and yaw in degrees: turns about the world's x, then y, then z axis.")
-      .Optional("yaw_deg", &E::yaw_deg, Number(-360, 360), "Turn about the vertical, degrees.")
+      .Optional(
+          "yaw_deg", &E::q,
+          AsAlternative<Eigen::Quaterniond>(Number(-360, 360),
+                                            [](double yaw_deg) {
+                                              return physics::FromRollPitchYaw({0, 0, yaw_deg});
+                                            }),
+          "Turn about the vertical, degrees.")
       .ExactlyOneOf({"box", "sphere", "cylinder", "capsule", "hull", "tray", "mug", "bowl", "shelf",
                      "parts", "grains", "region", "gaze_target", "camera", "light"})
       .ExactlyOneOf({"at_m", "in"})

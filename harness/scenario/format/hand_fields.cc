@@ -94,28 +94,15 @@ ValueFormat<PalmYaml> PalmFormat() {
       .format();
 }
 
-ValueFormat<PidGains> TranslationFormat() {
-  return StructFormat<PidGains>("the translation gains")
-      .Required("proportional_n_per_m", &PidGains::proportional, Number(0, 1e6), "Force per error.")
-      .Required("derivative_n_s_per_m", &PidGains::derivative, Number(0, 1e5),
-                "Force per speed of the error.")
-      .Required("integral_n_per_m_s", &PidGains::integral, Number(0, 1e6),
-                "Force per error and second.")
-      .Required("limit_n", &PidGains::limit, Number(0, 1e4), "Largest force.")
-      .Optional("integral_share", &PidGains::integral_share, Number(0, 1),
-                "Largest share of the integral's part.")
-      .format();
-}
-
-ValueFormat<PidGains> RotationFormat() {
-  return StructFormat<PidGains>("the rotation gains")
-      .Required("proportional_nm_per_rad", &PidGains::proportional, Number(0, 1e6),
-                "Torque per error.")
-      .Required("derivative_nm_s_per_rad", &PidGains::derivative, Number(0, 1e5),
-                "Torque per speed of the error.")
-      .Required("integral_nm_per_rad_s", &PidGains::integral, Number(0, 1e6),
-                "Torque per error and second.")
-      .Required("limit_nm", &PidGains::limit, Number(0, 1e4), "Largest torque.")
+/// `effort` is "Force" or "Torque".
+ValueFormat<PidGains> PidFormat(const std::string& noun, const std::string& effort,
+                                const std::string (&keys)[4]) {
+  return StructFormat<PidGains>(noun)
+      .Required(keys[0], &PidGains::proportional, Number(0, 1e6), effort + " per error.")
+      .Required(keys[1], &PidGains::derivative, Number(0, 1e5), effort + " per speed of the error.")
+      .Required(keys[2], &PidGains::integral, Number(0, 1e6), effort + " per error and second.")
+      .Required(keys[3], &PidGains::limit, Number(0, 1e4),
+                effort == "Force" ? "Largest force." : "Largest torque.")
       .Optional("integral_share", &PidGains::integral_share, Number(0, 1),
                 "Largest share of the integral's part.")
       .format();
@@ -134,47 +121,39 @@ ValueFormat<JointDriver> DriverFormat() {
       .format();
 }
 
-/// A member that a phalanx or a jaw has as a link.
-template <class Link, class Member>
-Member Link::*Of(Member LinkYaml::*member) {
-  return member;
-}
-
 /// Adds the fields that a phalanx and a jaw share; the units are those of its joint.
-template <class Link>
-StructFormat<Link> LinkRecord(StructFormat<Link> record, const char* strength, double strongest,
-                              const char* range, double farthest) {
-  return record
-      .Required("length_m", Of<Link>(&LinkYaml::length_m), PartLength(),
-                "From its joint to the next one.")
-      .Required("half_width_m", Of<Link>(&LinkYaml::half_width_m), PartLength(),
-                "Half of its width.")
-      .Required("half_thickness_m", Of<Link>(&LinkYaml::half_thickness_m), PartLength(),
+ValueFormat<LinkYaml> LinkFormat(StructFormat<LinkYaml>& record, const char* strength,
+                                 double strongest, const char* range, double farthest) {
+  using L = LinkYaml;
+  return record.Required("length_m", &L::length_m, PartLength(), "From its joint to the next one.")
+      .Required("half_width_m", &L::half_width_m, PartLength(), "Half of its width.")
+      .Required("half_thickness_m", &L::half_thickness_m, PartLength(),
                 "Half of its thickness, from back to pad.")
-      .Required("mass_kg", Of<Link>(&LinkYaml::mass_kg), PartMass(), "Mass.")
-      .Required(strength, Of<Link>(&LinkYaml::strength), Number(0, strongest),
+      .Required("mass_kg", &L::mass_kg, PartMass(), "Mass.")
+      .Required(strength, &L::strength, Number(0, strongest),
                 "Largest torque or force of its joint at effort 1.")
-      .Required(range, Of<Link>(&LinkYaml::range), Vector<2>(-farthest, farthest),
-                "Joint limits [min, max].")
-      .Check([key = std::string(range)](const YamlNode&, const Link& link, DiagnosticList& errors) {
+      .Required(range, &L::range, Vector<2>(-farthest, farthest), "Joint limits [min, max].")
+      .Check([key = std::string(range)](const YamlNode&, const L& link, DiagnosticList& errors) {
         CheckLeastMost(key, link.range.value, link.range.where, errors);
-      });
+      })
+      .format();
 }
 
-ValueFormat<PhalanxYaml> PhalanxFormat() {
-  using P = PhalanxYaml;
-  StructFormat<P> record("a phalanx");
-  record.Required("name", &P::name, Identifier(), "Its name after the digit's: index_proximal.")
-      .Optional("joint_axis", &P::joint_axis, Direction(),
-                "Axis of the joint at its base, in H; positive angles close.");
-  return LinkRecord(record, "strength_nm", 100, "range_deg", 180).format();
+ValueFormat<LinkYaml> PhalanxFormat() {
+  using L = LinkYaml;
+  return LinkFormat(
+      StructFormat<L>("a phalanx")
+          .Required("name", &L::called, Identifier(), "Its name after the digit's: index_proximal.")
+          .Optional("joint_axis", &L::joint_axis, Direction(),
+                    "Axis of the joint at its base, in H; positive angles close."),
+      "strength_nm", 100, "range_deg", 180);
 }
 
-ValueFormat<JawYaml> JawFormat() {
-  StructFormat<JawYaml> record("a jaw");
-  record.Required("slides", &JawYaml::slides, Direction(),
-                  "In H: the way it slides; positive values close.");
-  return LinkRecord(record, "strength_n", 1000, "range_m", 0.5).format();
+ValueFormat<LinkYaml> JawFormat() {
+  return LinkFormat(
+      StructFormat<LinkYaml>("a jaw").Required("slides", &LinkYaml::joint_axis, Direction(),
+                                               "In H: the way it slides; positive values close."),
+      "strength_n", 1000, "range_m", 0.5);
 }
 
 /// A last joint along the digit's own direction neither opens nor closes it.
@@ -282,9 +261,15 @@ ValueFormat<std::vector<Named<StyleYaml>>> StylesFormat() {
 
 ValueFormat<GainsYaml> GainsFormat() {
   return StructFormat<GainsYaml>("the gains")
-      .Required("translation", &GainsYaml::translation, TranslationFormat(),
+      .Required("translation", &GainsYaml::translation,
+                PidFormat("the translation gains", "Force",
+                          {"proportional_n_per_m", "derivative_n_s_per_m", "integral_n_per_m_s",
+                           "limit_n"}),
                 "How the palm follows a position.")
-      .Required("rotation", &GainsYaml::rotation, RotationFormat(),
+      .Required("rotation", &GainsYaml::rotation,
+                PidFormat("the rotation gains", "Torque",
+                          {"proportional_nm_per_rad", "derivative_nm_s_per_rad",
+                           "integral_nm_per_rad_s", "limit_nm"}),
                 "How the palm follows an orientation.")
       .format();
 }

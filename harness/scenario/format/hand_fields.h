@@ -22,22 +22,10 @@ struct PalmYaml {
   Located<std::string> sensor_set;
 };
 
-/// What a phalanx and a jaw have in common.
-struct LinkYaml {
-  double length_m = 0, half_width_m = 0, half_thickness_m = 0;
-  double mass_kg = 0;
-  double strength = 0;             ///< newton metres of a phalanx, newtons of a jaw
+/// A phalanx, or a jaw, which slides along a line, like a gripper's.
+struct LinkYaml : physics::HandLink {
+  Located<std::string> called;     ///< a phalanx, after its digit
   Located<Eigen::Vector2d> range;  ///< degrees of a phalanx, metres of a jaw
-};
-
-struct PhalanxYaml : LinkYaml {
-  Located<std::string> name;
-  Eigen::Vector3d joint_axis = Eigen::Vector3d::UnitY();
-};
-
-/// Slides along a line, like a gripper's.
-struct JawYaml : LinkYaml {
-  Eigen::Vector3d slides = Eigen::Vector3d::UnitX();
 };
 
 /// Has either phalanges or a jaw.
@@ -45,8 +33,8 @@ struct DigitYaml {
   Located<std::string> sensor_set;
   Eigen::Vector3d base_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
-  std::vector<PhalanxYaml> phalanges;
-  std::optional<JawYaml> jaw;
+  std::vector<LinkYaml> phalanges;
+  std::optional<LinkYaml> jaw;
 };
 
 /// Numbers for the joints of digits, by the digit's name.

@@ -30,7 +30,7 @@ ValueFormat<physics::Bowl> BowlFormat();
 ValueFormat<physics::Shelf> ShelfFormat();
 ValueFormat<physics::Hull> HullFormat();
 ValueFormat<GrainsYaml> GrainsFormat();
-ValueFormat<PartYaml> PartFormat();
+ValueFormat<physics::PlacedShape> PartFormat();
 
 // harness/scenario/format/abstract_fields.cc: entities with a position but no mass.
 ValueFormat<RegionYaml> RegionFormat();

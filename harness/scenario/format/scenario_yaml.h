@@ -20,13 +20,9 @@
 
 namespace prehend::scenario {
 
-/// One of the shapes of a compound; exactly one of the first five is given.
+/// One of the shapes of a compound.
 struct PartYaml {
-  std::optional<physics::Box> box;
-  std::optional<physics::Sphere> sphere;
-  std::optional<physics::Cylinder> cylinder;
-  std::optional<physics::Capsule> capsule;
-  std::optional<physics::Hull> hull;
+  physics::Shape shape;
   Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
 };
@@ -51,16 +47,12 @@ struct CameraYaml {
 };
 struct LightYaml {};
 
-/// A joint to another entity; which numbers are read depends on its kind.
-struct JointYaml {
-  Located<std::string> to;
-  Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
-  Located<Eigen::Vector2d> range{Eigen::Vector2d::Zero(), {}};  ///< metres or degrees
-  double friction = 0;
-  double damping = 0;
-  double spring = 0;  ///< per metre or per radian
-  double rest = 0;    ///< metres or degrees
+/// A joint to another entity; which numbers are read depends on its kind, and angles are in
+/// degrees.
+struct JointYaml : physics::Joint {
+  std::string key = {};  ///< "slider"
+  Located<std::string> to = {};
+  Located<Eigen::Vector2d> range{Eigen::Vector2d::Zero(), {}};
 };
 
 struct EntityYaml {
@@ -68,16 +60,8 @@ struct EntityYaml {
   Located<std::string> class_name{"Object", {}};
   std::optional<Located<std::string>> part_of;
   std::optional<Located<std::string>> color;  ///< see harness/scenario/scenario/colors.h
-  std::optional<physics::Box> box;
-  std::optional<physics::Sphere> sphere;
-  std::optional<physics::Cylinder> cylinder;
-  std::optional<physics::Capsule> capsule;
-  std::optional<physics::Hull> hull;
-  std::optional<physics::Tray> tray;
-  std::optional<physics::Mug> mug;
-  std::optional<physics::Bowl> bowl;
-  std::optional<physics::Shelf> shelf;
-  std::vector<PartYaml> parts;
+  std::optional<physics::Shape> shape;
+  std::vector<physics::PlacedShape> parts;  ///< of a compound
   std::optional<GrainsYaml> grains;
   std::optional<RegionYaml> region;
   std::optional<GazeTargetYaml> gaze_target;
@@ -90,14 +74,18 @@ struct EntityYaml {
   double restitution = 0;
   double linear_damping_per_s = 0;
   double angular_damping_per_s = 0;
-  std::optional<Located<std::string>> fixed_to;
-  std::optional<Located<JointYaml>> slider, hinge, ball_joint;
+  std::optional<Located<JointYaml>> joint;
   std::optional<Located<std::string>> on;
   std::optional<Located<std::string>> in;  ///< the vessel of grains, which have no at_m
   Located<std::vector<double>> at_m;
-  std::optional<Eigen::Vector3d> rpy_deg;
-  std::optional<double> yaw_deg;
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
 };
+
+/// The entity that it is glued to, or null.
+inline const Located<std::string>* FixedTo(const EntityYaml& entity) {
+  const bool is_fixed = entity.joint && entity.joint->value.kind == physics::JointKind::kFixed;
+  return is_fixed ? &entity.joint->value.to : nullptr;
+}
 
 inline physics::Abstract AbstractOf(const EntityYaml& entity) {
   using enum physics::Abstract;
@@ -222,8 +210,7 @@ struct PoseYaml {
   Where where;
   double t_s = 0;
   Eigen::Vector3d at_m = Eigen::Vector3d::Zero();
-  std::optional<Eigen::Vector3d> rpy_deg;
-  std::optional<Eigen::Vector4d> quat_wxyz;
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
   std::optional<double> trigger;
   std::optional<Located<std::string>> relative_to;  ///< else that of the step
 };

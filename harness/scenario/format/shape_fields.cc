@@ -158,21 +158,32 @@ ValueFormat<GrainsYaml> GrainsFormat() {
       .format();
 }
 
-ValueFormat<PartYaml> PartFormat() {
+ValueFormat<physics::PlacedShape> PartFormat() {
   using P = PartYaml;
-  return StructFormat<P>("a part")
-      .Optional("box", &P::box, BoxFormat(), "Its shape: a box.")
-      .Optional("sphere", &P::sphere, SphereFormat(), "Its shape: a sphere.")
-      .Optional("cylinder", &P::cylinder, CylinderFormat(), "Its shape: a cylinder, axis along z.")
-      .Optional("capsule", &P::capsule, CapsuleFormat(), "Its shape: a capsule, axis along z.")
-      .Optional("hull", &P::hull, HullFormat(), "Its shape: a solid of flat faces, by its corners.")
-      .Optional(
-          "at_m", &P::at_m, Vector<3>(-kMaxPartOffset_m, kMaxPartOffset_m),
-          "Its centre in the entity's own coordinate frame, whose origin is at the entity's at_m.")
-      .Optional("rpy_deg", &P::rpy_deg, Vector<3>(-360, 360),
-                "Roll, pitch and yaw in degrees: turns about the entity's x, then y, then z axis.")
-      .ExactlyOneOf({"box", "sphere", "cylinder", "capsule", "hull"})
-      .format();
+  using physics::Shape;
+  return AsAlternative<physics::PlacedShape>(
+      StructFormat<P>("a part")
+          .Optional("box", &P::shape, AsAlternative<Shape>(BoxFormat()), "Its shape: a box.")
+          .Optional("sphere", &P::shape, AsAlternative<Shape>(SphereFormat()),
+                    "Its shape: a sphere.")
+          .Optional("cylinder", &P::shape, AsAlternative<Shape>(CylinderFormat()),
+                    "Its shape: a cylinder, axis along z.")
+          .Optional("capsule", &P::shape, AsAlternative<Shape>(CapsuleFormat()),
+                    "Its shape: a capsule, axis along z.")
+          .Optional("hull", &P::shape, AsAlternative<Shape>(HullFormat()),
+                    "Its shape: a solid of flat faces, by its corners.")
+          .Optional("at_m", &P::at_m, Vector<3>(-kMaxPartOffset_m, kMaxPartOffset_m),
+                    "Its centre in the entity's own coordinate frame, whose origin is at the "
+                    "entity's at_m.")
+          .Optional(
+              "rpy_deg", &P::rpy_deg, Vector<3>(-360, 360),
+              "Roll, pitch and yaw in degrees: turns about the entity's x, then y, then z axis.")
+          .ExactlyOneOf({"box", "sphere", "cylinder", "capsule", "hull"})
+          .format(),
+      [](P part) {
+        return physics::PlacedShape{std::move(part.shape),
+                                    {part.at_m, physics::FromRollPitchYaw(part.rpy_deg)}};
+      });
 }
 
 }  // namespace prehend::scenario

@@ -37,21 +37,15 @@ enum class MayEnd { kInTime, kBefore };
 template <class Entry>
 ValueFormat<StepYaml> Step(StructFormat<Entry>& format, MayEnd may_end = MayEnd::kInTime) {
   using T = StepTimingYaml;
-  using Name = decltype(T::name) Entry::*;
   if constexpr (requires { &Entry::over_s; })
     format.Optional("over_s", &Entry::over_s, Number(kMinStep_s, kMaxStep_s),
                     "Duration in seconds.");
-  if (may_end == MayEnd::kBefore)
-    format.Optional("until", static_cast<decltype(T::until) Entry::*>(&T::until), UntilFormat(),
-                    kUntilDoc);
-  format
-      .Optional("delay_s", static_cast<double Entry::*>(&T::delay_s), Number(0, kMaxStep_s),
-                kDelayDoc)
-      .Optional("name", static_cast<Name>(&T::name), Identifier(),
-                "What other steps of this stage call it.")
-      .Optional("after", static_cast<Name>(&T::after), Identifier(),
+  if (may_end == MayEnd::kBefore) format.Optional("until", &T::until, UntilFormat(), kUntilDoc);
+  format.Optional("delay_s", &T::delay_s, Number(0, kMaxStep_s), kDelayDoc)
+      .Optional("name", &T::name, Identifier(), "What other steps of this stage call it.")
+      .Optional("after", &T::after, Identifier(),
                 "It begins when the step of this name, in the same stage, has ended.")
-      .Optional("with", static_cast<Name>(&T::with), Identifier(),
+      .Optional("with", &T::with, Identifier(),
                 "It begins when the step of this name, in the same stage, begins.")
       .AtMostOneOf({"after", "with"});
   for (const char* word : {"times", "repeat", "count"}) format.Remedy(word, kRepeatRemedy);
@@ -161,15 +155,22 @@ ValueFormat<StepYaml> WaitFormat() {
 
 ValueFormat<PoseYaml> PoseFormat() {
   using P = PoseYaml;
+  using Eigen::Quaterniond;
   return StructFormat<P>("a pose")
       .Required("t_s", &P::t_s, Number(0, kMaxDuration_s),
                 "When, since the start of the step; increasing.")
       .Required("at_m", &P::at_m, Vector<3>(-kMaxDistance_m, kMaxDistance_m),
                 "The palm's centre, in world coordinates or as 'relative_to' says.")
-      .Optional("rpy_deg", &P::rpy_deg, Vector<3>(-360, 360),
+      .Optional("rpy_deg", &P::q,
+                AsAlternative<Quaterniond>(Vector<3>(-360, 360), physics::FromRollPitchYaw),
                 "Roll, pitch and yaw; default is no rotation.")
-      .Optional("quat_wxyz", &P::quat_wxyz, UnitQuaternion(),
-                "Unit quaternion [w, x, y, z], instead of rpy_deg.")
+      .Optional(
+          "quat_wxyz", &P::q,
+          AsAlternative<Quaterniond>(UnitQuaternion(),
+                                     [](const Eigen::Vector4d& q) {
+                                       return Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+                                     }),
+          "Unit quaternion [w, x, y, z], instead of rpy_deg.")
       .Optional("trigger", &P::trigger, Number(0, 1), "Grip at that time; default: stays.")
       .Optional("relative_to", &P::relative_to, Identifier(),
                 "As that of the step, for this way-point alone.")

@@ -31,29 +31,20 @@ struct Column {
 };
 
 const std::map<std::string, Column>& KnownColumns() {
-  constexpr double kDegPerRad = 180 / std::numbers::pi;
-  static const std::map<std::string, Column> columns = {{"t_s", {"t", 1}},
-                                                        {"t_ms", {"t", 1e-3}},
-                                                        {"x_m", {"x", 1}},
-                                                        {"x_cm", {"x", 1e-2}},
-                                                        {"x_mm", {"x", 1e-3}},
-                                                        {"y_m", {"y", 1}},
-                                                        {"y_cm", {"y", 1e-2}},
-                                                        {"y_mm", {"y", 1e-3}},
-                                                        {"z_m", {"z", 1}},
-                                                        {"z_cm", {"z", 1e-2}},
-                                                        {"z_mm", {"z", 1e-3}},
-                                                        {"qw", {"qw", 1}},
-                                                        {"qx", {"qx", 1}},
-                                                        {"qy", {"qy", 1}},
-                                                        {"qz", {"qz", 1}},
-                                                        {"roll_deg", {"roll", 1}},
-                                                        {"roll_rad", {"roll", kDegPerRad}},
-                                                        {"pitch_deg", {"pitch", 1}},
-                                                        {"pitch_rad", {"pitch", kDegPerRad}},
-                                                        {"yaw_deg", {"yaw", 1}},
-                                                        {"yaw_rad", {"yaw", kDegPerRad}},
-                                                        {"trigger", {"trigger", 1}}};
+  static const std::map<std::string, Column> columns = [] {
+    std::map<std::string, Column> all = {{"t_s", {"t", 1}}, {"t_ms", {"t", 1e-3}}};
+    for (const std::string axis : {"x", "y", "z"}) {
+      all[axis + "_m"] = {axis, 1};
+      all[axis + "_cm"] = {axis, 1e-2};
+      all[axis + "_mm"] = {axis, 1e-3};
+    }
+    for (const std::string angle : {"roll", "pitch", "yaw"}) {
+      all[angle + "_deg"] = {angle, 1};
+      all[angle + "_rad"] = {angle, 180 / std::numbers::pi};
+    }
+    for (const char* plain : {"qw", "qx", "qy", "qz", "trigger"}) all[plain] = {plain, 1};
+    return all;
+  }();
   return columns;
 }
 

@@ -63,42 +63,31 @@ int HandBuilder::SensorSet(const Located<std::string>& name) {
   return 0;
 }
 
-/// Everything except its name, its position and its joint's axis.
-physics::HandLink LinkOf(const LinkYaml& link, double joint_unit, int sensor_set) {
-  return {.length_m = link.length_m,
-          .half_width_m = link.half_width_m,
-          .half_thickness_m = link.half_thickness_m,
-          .mass_kg = link.mass_kg,
-          .strength = link.strength,
-          .lower = link.range.value[0] * joint_unit,
-          .upper = link.range.value[1] * joint_unit,
-          .sensor_set = sensor_set};
-}
-
 void HandBuilder::AddDigit(const Named<DigitYaml>& digit, std::vector<physics::HandLink>& links) {
   const int sensor_set = SensorSet(digit.value.sensor_set);
   Eigen::Vector3d pivot_m = digit.value.base_m;
   physics::LinkIndex parent;
-  const auto add = [&](physics::HandLink link, const std::string& name, Where where,
-                       const Eigen::Vector3d& joint_axis) {
+  const auto add = [&](const LinkYaml& written, const std::string& name, Where where,
+                       double joint_unit) {
     if (std::ranges::count(links, name, &physics::HandLink::name) > 0)
       errors_.Add(where, fmt::format("two parts of the hand are called '{}'", name),
                   "a part has the name of its digit, a phalanx is called DIGIT_NAME");
+    physics::HandLink& link = links.emplace_back(written);
     link.name = name;
     link.parent = parent;
     link.pivot_m = pivot_m;
     link.direction = digit.value.direction;
-    link.joint_axis = joint_axis;
-    links.push_back(std::move(link));
+    link.lower = written.range.value[0] * joint_unit;
+    link.upper = written.range.value[1] * joint_unit;
+    link.sensor_set = sensor_set;
     parent = physics::LinkIndex(links.size() - 1);
-    pivot_m += digit.value.direction * links.back().length_m;
+    pivot_m += digit.value.direction * link.length_m;
   };
-  for (const PhalanxYaml& phalanx : digit.value.phalanges)
-    add(LinkOf(phalanx, physics::kRadPerDeg, sensor_set), digit.name + "_" + phalanx.name.value,
-        phalanx.name.where, phalanx.joint_axis);
+  for (const LinkYaml& phalanx : digit.value.phalanges)
+    add(phalanx, digit.name + "_" + phalanx.called.value, phalanx.called.where,
+        physics::kRadPerDeg);
   if (!digit.value.jaw) return;
-  add(LinkOf(*digit.value.jaw, 1, sensor_set), digit.name, digit.name_where,
-      digit.value.jaw->slides);
+  add(*digit.value.jaw, digit.name, digit.name_where, 1);
   links.back().slides = true;
 }
 

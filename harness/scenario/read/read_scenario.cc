@@ -36,10 +36,6 @@ namespace {
 using grammar::Diagnostics;
 using std::filesystem::path;
 
-bool Contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// What stands between '+' in the value of `grammar`.
 std::vector<std::string> SplitGrammars(const std::string& joined) {
   std::vector<std::string> grammars;
@@ -76,10 +72,8 @@ void CheckNames(const std::string& file, const ScenarioYaml& entry, const Scenar
       if (const path beside = path(file).parent_path() / grammar; !std::filesystem::exists(beside))
         errors.Add(entry.grammar.where, fmt::format("grammar: there is no file '{}'", grammar),
                    fmt::format("it was looked for as {}", beside.lexically_normal().string()));
-    } else if (!Contains(library.grammars, grammar)) {
-      errors.AddUnknownName(entry.grammar.where,
-                            fmt::format("grammar: no grammar is called '{}'", grammar), grammar,
-                            library.grammars);
+    } else {
+      errors.Find({grammar, entry.grammar.where}, "grammar", library.grammars, "grammar");
     }
   }
   for (const auto& actor : entry.actors) {
@@ -98,11 +92,7 @@ physics::HandModel FindHand(const std::string& file, const HandActorYaml& actor,
                             Diagnostics& in_hand_files) {
   const Located<std::string>& hand = actor.hand;
   const bool is_file = hand.value.ends_with(".yaml");
-  if (!is_file && !Contains(library.hands, hand.value)) {
-    errors.AddUnknownName(hand.where, fmt::format("hand: no hand is called '{}'", hand.value),
-                          hand.value, library.hands);
-    return {};
-  }
+  if (!is_file && !errors.Find(hand, "hand", library.hands, "hand")) return {};
   const auto beside = [&](const std::string& other) {
     return (path(file).parent_path() / other).string();
   };
@@ -243,13 +233,9 @@ Result<Scenario> Resolve(const std::string& file, const YamlDocument& document,
     scenario.base_classes.push_back({kind.name, kind.value.value});
   scenario.variations = std::move(entry.vary);
   scenario.pictures = std::move(entry.pictures);
-  for (const PictureYaml& picture : scenario.pictures) {
-    const std::string& camera = picture.camera.value;
-    if (WhyNoCamera(scenario, camera))
-      errors.AddUnknownName(picture.camera.where,
-                            fmt::format("camera: no camera is called '{}'", camera), camera,
-                            CamerasOf(scenario));
-  }
+  for (const PictureYaml& picture : scenario.pictures)
+    if (WhyNoCamera(scenario, picture.camera.value))
+      errors.Find(picture.camera, "camera", CamerasOf(scenario), "camera");
   if (!errors.empty()) return AllOf(errors, in_other_files);
   scenario.warnings = ImplausibleSizes(entry, scene, document);
   std::ranges::move(in_other_files, std::back_inserter(scenario.warnings));

@@ -23,15 +23,10 @@ class Relation {
   }
 
   /// False after an error.
-  bool Add(std::size_t i, const char* key, const Located<std::string>& name) {
-    const auto found = std::find(names_.begin(), names_.end(), name.value);
-    if (found == names_.end()) {
-      errors_.AddUnknownName(name.where,
-                             fmt::format("{}: no entity is called '{}'", key, name.value),
-                             name.value, names_);
-      return false;
-    }
-    target_[i] = static_cast<int>(found - names_.begin());
+  bool Add(std::size_t i, const std::string& key, const Located<std::string>& name) {
+    const auto found = errors_.Find(name, key, names_);
+    if (!found) return false;
+    target_[i] = static_cast<int>(*found);
     if (!LeadsBackTo(i)) return true;
     errors_.Add(name.where,
                 fmt::format("{}: '{}', directly or not, {}", key, names_[i], to_itself_));
@@ -64,37 +59,13 @@ class Relation {
   std::vector<int> target_;
 };
 
-struct Written {
-  const char* key;
-  JointKind kind;
-  const JointYaml* joint;  ///< null for fixed_to
-  const Located<std::string>* to;
-};
-
-std::optional<Written> JointOf(const EntityYaml& entity) {
-  if (entity.fixed_to) return Written{"fixed_to", JointKind::kFixed, nullptr, &*entity.fixed_to};
-  if (const auto& slider = entity.slider)
-    return Written{"slider", JointKind::kSlider, &slider->value, &slider->value.to};
-  if (const auto& hinge = entity.hinge)
-    return Written{"hinge", JointKind::kHinge, &hinge->value, &hinge->value.to};
-  if (const auto& ball = entity.ball_joint)
-    return Written{"ball_joint", JointKind::kBall, &ball->value, &ball->value.to};
-  return std::nullopt;
-}
-
-physics::Joint MakeJoint(const Written& written) {
-  physics::Joint joint{.kind = written.kind};
-  if (!written.joint) return joint;
-  const JointYaml& entry = *written.joint;
+physics::Joint MakeJoint(const JointYaml& written) {
+  physics::Joint joint = written;
   const double scale = written.kind == JointKind::kHinge ? physics::kRadPerDeg : 1;
-  joint.pivot_W_m = entry.at_m;
-  joint.axis_W = entry.axis.normalized();
-  joint.lower = entry.range.value[0] * scale;
-  joint.upper = entry.range.value[1] * scale;
-  joint.friction = entry.friction;
-  joint.damping = entry.damping;
-  joint.spring = entry.spring;
-  joint.rest = entry.rest * scale;
+  joint.axis_W.normalize();
+  joint.lower = written.range.value[0] * scale;
+  joint.upper = written.range.value[1] * scale;
+  joint.rest *= scale;
   return joint;
 }
 
@@ -105,22 +76,23 @@ std::vector<physics::Joint> BuildJoints(const ScenarioYaml& entry, DiagnosticLis
   Relation hangs_on(entry, "is attached to itself", errors);
   for (std::size_t i = 0; i < entry.entities.size(); ++i) {
     const EntityYaml& entity = entry.entities[i].value;
-    const auto written = JointOf(entity);
-    if (!written || !hangs_on.Add(i, written->key, *written->to)) continue;
+    if (!entity.joint) continue;
+    const JointYaml& written = entity.joint->value;
+    if (!hangs_on.Add(i, written.key, written.to)) continue;
     const auto base = static_cast<std::size_t>(hangs_on.target(i));
-    if (written->kind == JointKind::kFixed && entry.entities[base].value.fixed) {
-      errors.Add(written->to->where, fmt::format("fixed_to: '{}' never moves", written->to->value),
+    if (written.kind == JointKind::kFixed && entry.entities[base].value.fixed) {
+      errors.Add(written.to.where, fmt::format("fixed_to: '{}' never moves", written.to.value),
                  fmt::format("give '{}' 'fixed: true' instead", entry.entities[i].name));
     }
     if (AbstractOf(entry.entities[base].value) != physics::Abstract::kNot)
-      errors.Add(written->to->where,
-                 fmt::format("{}: '{}' is abstract: nothing can be attached to it", written->key,
-                             written->to->value));
+      errors.Add(written.to.where,
+                 fmt::format("{}: '{}' is abstract: nothing can be attached to it", written.key,
+                             written.to.value));
     if (entry.entities[base].value.grains)
-      errors.Add(written->to->where,
-                 fmt::format("{}: '{}' is grains: nothing can be attached to them", written->key,
-                             written->to->value));
-    physics::Joint& joint = joints.emplace_back(MakeJoint(*written));
+      errors.Add(written.to.where,
+                 fmt::format("{}: '{}' is grains: nothing can be attached to them", written.key,
+                             written.to.value));
+    physics::Joint& joint = joints.emplace_back(MakeJoint(written));
     joint.body = physics::BodyIndex(i);
     joint.base = physics::BodyIndex(base);
   }
@@ -135,7 +107,8 @@ std::vector<int> PartsOf(const ScenarioYaml& entry, DiagnosticList& errors) {
   }
   for (std::size_t i = 0; i < entry.entities.size(); ++i) {
     const EntityYaml& entity = entry.entities[i].value;
-    if (!entity.part_of && entity.fixed_to) part_of.AddQuietly(i, entity.fixed_to->value);
+    const Located<std::string>* const whole = FixedTo(entity);
+    if (!entity.part_of && whole) part_of.AddQuietly(i, whole->value);
   }
   return part_of.targets();
 }

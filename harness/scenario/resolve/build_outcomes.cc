@@ -24,7 +24,7 @@ class ConditionBuilder {
 
   std::optional<Outcome::Condition> Build(const ConditionYaml& wanted) const {
     Outcome::Condition condition{.wanted = wanted};
-    condition.body = Find("entity", wanted.entity, wanted.where);
+    condition.body = Find("entity", {wanted.entity, wanted.where});
     if (condition.body == physics::kNone) return std::nullopt;
     condition.joint = JointOf(condition.body);
     if ((wanted.joint_above || wanted.joint_below) && condition.joint < 0)
@@ -35,7 +35,7 @@ class ConditionBuilder {
           fmt::format("at_s: {} s is after the end of the run at {:.3f} s", *wanted.at_s, end_s_),
           "without at_s the condition is checked at the end");
     if (wanted.inside) {
-      condition.vessel = Find("inside", wanted.inside->value, wanted.inside->where);
+      condition.vessel = Find("inside", *wanted.inside);
       if (condition.vessel == condition.body)
         errors_.Add(wanted.inside->where, "inside: an entity cannot be inside itself");
     }
@@ -44,12 +44,9 @@ class ConditionBuilder {
 
  private:
   /// None after an error.
-  physics::BodyIndex Find(const char* key, const std::string& name, const Where& where) const {
-    const auto found = std::find(names_.begin(), names_.end(), name);
-    if (found != names_.end()) return physics::BodyIndex(found - names_.begin());
-    errors_.AddUnknownName(where, fmt::format("{}: no entity is called '{}'", key, name), name,
-                           names_);
-    return physics::kNone;
+  physics::BodyIndex Find(const char* key, const Located<std::string>& name) const {
+    const auto found = errors_.Find(name, key, names_);
+    return found ? physics::BodyIndex(*found) : physics::kNone;
   }
 
   int JointOf(physics::BodyIndex body) const {

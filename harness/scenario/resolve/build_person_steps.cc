@@ -82,9 +82,7 @@ struct PersonStepMaker {
     std::vector<std::string> names;
     for (const physics::Body& body : scene.bodies) names.push_back(body.name);
     for (const physics::Hand& hand : scene.hands) names.push_back(hand.name);
-    if (std::find(names.begin(), names.end(), name.value) != names.end()) return;
-    errors.AddUnknownName(name.where, fmt::format("look_at: no entity is called '{}'", name.value),
-                          name.value, names);
+    errors.Find(name, "look_at", names);
   }
 
   bool CheckBody(const Where& where, const char* key) const {

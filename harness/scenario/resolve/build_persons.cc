@@ -38,15 +38,11 @@ class PersonBuilder {
 
  private:
   physics::HandIndex FindHand(const char* key, const Located<std::string>& name) {
-    const auto found = std::find(hands_.begin(), hands_.end(), name.value);
-    if (found == hands_.end()) {
-      errors_.AddUnknownName(name.where, fmt::format("{}: no hand is called '{}'", key, name.value),
-                             name.value, hands_);
-      return physics::kNone;
-    }
+    const auto found = errors_.Find(name, key, hands_, "hand");
+    if (!found) return physics::kNone;
     if (!used_.insert(name.value).second)
       errors_.Add(name.where, fmt::format("{}: '{}' is already on another arm", key, name.value));
-    return physics::HandIndex(found - hands_.begin());
+    return physics::HandIndex(*found);
   }
 
   void AddParts(const physics::Person& person, const Where& where) {

@@ -21,52 +21,25 @@ using Eigen::Vector3d;
 constexpr double kDefaultSphereRollingFriction =
     0.006;  // a ball on a table stops within a metre (docs/physics.md)
 
-physics::PlacedShape ShapeOf(const PartYaml& part) {
-  const physics::Pose X_BS{part.at_m, physics::FromRollPitchYaw(part.rpy_deg)};
-  if (part.sphere) return {*part.sphere, X_BS};
-  if (part.cylinder) return {*part.cylinder, X_BS};
-  if (part.capsule) return {*part.capsule, X_BS};
-  if (part.hull) return {*part.hull, X_BS};
-  return {part.box.value_or(physics::Box{}), X_BS};
-}
-
-std::vector<physics::PlacedShape> ShapesOf(const EntityYaml& entity) {
-  if (entity.grains) return {};
-  if (entity.tray) return physics::ShapesOf(*entity.tray);
-  if (entity.mug) return physics::ShapesOf(*entity.mug);
-  if (entity.bowl) return physics::ShapesOf(*entity.bowl);
-  if (entity.shelf) return physics::ShapesOf(*entity.shelf);
-  if (entity.parts.empty()) {
-    return {ShapeOf(PartYaml{.box = entity.box,
-                             .sphere = entity.sphere,
-                             .cylinder = entity.cylinder,
-                             .capsule = entity.capsule,
-                             .hull = entity.hull})};
-  }
-  std::vector<physics::PlacedShape> shapes;
-  for (const PartYaml& part : entity.parts) shapes.push_back(ShapeOf(part));
-  return shapes;
-}
-
 /// Everything except the position.
 physics::Body MakeBody(const Named<EntityYaml>& named) {
   const EntityYaml& entity = named.value;
   physics::Body body;
   body.name = named.name;
-  body.shapes = ShapesOf(entity);
+  body.shapes = entity.parts;
+  if (entity.shape) body.shapes = {{*entity.shape, {}}};
   body.fixed = entity.fixed;
   body.mass_kg = entity.mass_kg ? entity.mass_kg->value : 0;
   if (entity.friction) body.friction = entity.friction->value;
-  const bool rolls = entity.sphere || entity.grains;
-  body.rolling_friction =
-      entity.rolling_friction.value_or(rolls ? kDefaultSphereRollingFriction : 0);
+  const bool is_ball = entity.shape && std::holds_alternative<physics::Sphere>(*entity.shape);
+  body.rolling_friction = entity.rolling_friction.value_or(
+      is_ball || entity.grains ? kDefaultSphereRollingFriction : 0);
   if (entity.grains)
     body.grains = physics::Grains{.radius_m = entity.grains->radius_m, .p_WG_m = {}};
   body.restitution = entity.restitution;
   body.linear_damping_per_s = entity.linear_damping_per_s;
   body.angular_damping_per_s = entity.angular_damping_per_s;
-  if (entity.rpy_deg) body.X_WB.q = physics::FromRollPitchYaw(*entity.rpy_deg);
-  if (entity.yaw_deg) body.X_WB.q = physics::FromRollPitchYaw({0, 0, *entity.yaw_deg});
+  body.X_WB.q = entity.q;
   if (AbstractOf(entity) != physics::Abstract::kNot) MakeAbstract(entity, body);
   return body;
 }

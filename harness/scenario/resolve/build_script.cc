@@ -43,7 +43,7 @@ int IndexOf(const std::string& name, const std::vector<std::string>& names) {
 physics::TimedPose TimedPoseOf(const PoseYaml& pose) {
   physics::TimedPose timed;
   timed.t_s = pose.t_s;
-  timed.X_WH = PoseOf(pose);
+  timed.X_WH = {pose.at_m, pose.q};
   timed.trigger = pose.trigger;
   return timed;
 }
@@ -181,27 +181,20 @@ struct StepMaker {
     else if (name.value == written.name && name.value != kHandFrame)
       errors.Add(name.where, fmt::format("relative_to: '{}' is this hand itself", name.value),
                  "write 'relative_to: hand'");
-    else if (std::ranges::count(known, name.value) == 0)
-      errors.AddUnknownName(
-          name.where, fmt::format("relative_to: no entity or hand is called '{}'", name.value),
-          name.value, known);
+    else
+      errors.Find(name, "relative_to", known, "entity or hand");
     return NamedFrame(name);
   }
 
   /// Reports entities that do not exist or are not physical objects.
   void CheckEntity(const char* key, const Located<std::string>& name) const {
-    const auto found = std::find(entities.begin(), entities.end(), name.value);
-    if (found != entities.end()) {
-      const auto index = static_cast<std::size_t>(found - entities.begin());
-      const std::string what = index < scene.bodies.size() ? WhyNoThing(scene.bodies[index]) : "";
-      if (!what.empty())
-        errors.Add(name.where,
-                   fmt::format("{}: '{}' is {}, not a physical object", key, name.value, what),
-                   what == "grains" ? "name the vessel that holds them" : "hands cannot touch it");
-      return;
-    }
-    errors.AddUnknownName(name.where, fmt::format("{}: no entity is called '{}'", key, name.value),
-                          name.value, entities);
+    const auto index = errors.Find(name, key, entities);
+    if (!index || *index >= scene.bodies.size()) return;
+    const std::string what = WhyNoThing(scene.bodies[*index]);
+    if (!what.empty())
+      errors.Add(name.where,
+                 fmt::format("{}: '{}' is {}, not a physical object", key, name.value, what),
+                 what == "grains" ? "name the vessel that holds them" : "hands cannot touch it");
   }
 
   /// A point to grasp must be on or in the entity.
@@ -323,14 +316,6 @@ void CheckHolding(const std::vector<StageYaml>& script, DiagnosticList& errors) 
 }
 
 }  // namespace
-
-physics::Pose PoseOf(const PoseYaml& pose) {
-  physics::Pose X_WH{pose.at_m};
-  if (pose.rpy_deg) X_WH.q = physics::FromRollPitchYaw(*pose.rpy_deg);
-  if (const auto& q = pose.quat_wxyz)
-    X_WH.q = Eigen::Quaterniond((*q)[0], (*q)[1], (*q)[2], (*q)[3]).normalized();
-  return X_WH;
-}
 
 physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& scene,
                             DiagnosticList& errors) {

@@ -15,7 +15,4 @@ namespace prehend::scenario {
 physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& scene,
                             DiagnosticList& errors);
 
-/// A way-point as the hand's pose.
-physics::Pose PoseOf(const PoseYaml& pose);
-
 }  // namespace prehend::scenario

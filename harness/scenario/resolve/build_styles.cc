@@ -91,12 +91,11 @@ void StyleBuilder::CheckRanges(const Located<PerDigit>& frame, const char* unit)
     if (digit == digits_.end() || targets.value.size() != JointsOf(digit->value)) continue;
     for (std::size_t i = 0; i < targets.value.size(); ++i) {
       const bool is_jaw = HasJaw(digit->value);
-      const LinkYaml& link =
-          is_jaw ? static_cast<const LinkYaml&>(*digit->value.jaw) : digit->value.phalanges[i];
+      const LinkYaml& link = is_jaw ? *digit->value.jaw : digit->value.phalanges[i];
       const Eigen::Vector2d& range = link.range.value;
       const double target = targets.value[i].value;
       if (target >= range[0] && target <= range[1]) continue;
-      const std::string part = is_jaw ? name : name + "_" + digit->value.phalanges[i].name.value;
+      const std::string part = is_jaw ? name : name + "_" + link.called.value;
       errors_.Add(targets.value[i].where,
                   fmt::format("{}: expected {} to {} {}, the range of the joint of '{}', found {}",
                               name, range[0], range[1], unit, part, target));

@@ -19,13 +19,6 @@ constexpr double kOnPlane_m = 1e-6;
 /// The hint for a position or a displacement.
 constexpr const char* kZeroY = "y must be 0 in a planar world";
 
-/// Where the keys of an entity's joint are.
-Where JointPlace(const EntityYaml& entity) {
-  if (entity.slider) return entity.slider->where;
-  if (entity.hinge) return entity.hinge->where;
-  return entity.ball_joint ? entity.ball_joint->where : entity.where;
-}
-
 const char* RemedyFor(physics::JointKind kind) {
   return kind == physics::JointKind::kSlider ? "axis: [x, 0, z]" : "hinge with axis: [0, 1, 0]";
 }
@@ -52,7 +45,7 @@ struct StepCheck {
   void operator()(const PosesYaml& e) const {
     for (const PoseYaml& pose : e.poses) {
       CheckWay("at_m", pose.at_m.y(), pose.where);
-      const Eigen::Vector3d y = PoseOf(pose).q * Eigen::Vector3d::UnitY();
+      const Eigen::Vector3d y = pose.q * Eigen::Vector3d::UnitY();
       if ((y - hand.X_WH.q * Eigen::Vector3d::UnitY()).norm() > kOnPlane_m)
         errors.Add(pose.where, "this pose turns the hand out of the plane y = 0",
                    "a hand turns about y only: rpy_deg: [0, pitch, 0]");
@@ -102,7 +95,7 @@ void CheckJoints(const ScenarioYaml& entry, const physics::Scene& scene, Diagnos
     const std::string why = physics::WhyNotPlanar(joint);
     if (why.empty()) continue;
     const auto& named = At(entry.entities, joint.body);
-    errors.Add(JointPlace(named.value),
+    errors.Add(named.value.joint->where,
                fmt::format("the joint of '{}' does not fit a planar world: {}", named.name, why),
                RemedyFor(joint.kind));
   }
