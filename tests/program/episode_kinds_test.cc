@@ -73,8 +73,12 @@ const Row kRows[] = {
     {{"episode", "list", kEpisode}, {2, 0, 2, 0}, "is not kept in an episode file; 'prehend "},
     {{"episode", "verify", kEpisode}, {2, 0, 2, 0}, "is not kept in an episode file; 'prehend "},
     {{"score", kEpisode}, {0, 0, 2, 2}, "its physical truth is not known; score it against labels"},
-    {{"grammar", "sweep", kEpisode, "--over", "reach_radius=20cm..40cm:2"}, {0, 0, 4, 4}, ""},
-    {{"grammar", "margins", kEpisode}, {0, 0, 4, 4}, ""},
+    {{"grammar", "sweep", kEpisode, "--over", "reach_radius=20cm..40cm:2"},
+     {0, 0, 2, 2},
+     "its physical truth is not known; score it against labels"},
+    {{"grammar", "margins", kEpisode},
+     {0, 0, 2, 2},
+     "its physical truth is not known; score it against labels"},
     {{"episode", "knowledge", kEpisode, "-o", kOut},
      {0, 0, 2, 2},
      "was not simulated, so the bodies"},
@@ -104,6 +108,14 @@ TEST(EpisodeKinds, EveryCommandTakesEachOrSaysWhatIsMissing) {
       for (const char* never : {"control character", "no such file", "No such file"})
         EXPECT_EQ((said.out + said.err).find(never), std::string::npos) << which;
     }
+  }
+}
+
+TEST(EpisodeKinds, AcceptDoesNotAskWhyWhereThereIsNoGolden) {
+  for (const std::size_t kept : {1, 3}) {
+    const Said said = Prehend({"accept", Episodes()[kept]}, {"CI="});
+    EXPECT_EQ(said.exit_code, 2);
+    EXPECT_NE(said.err.find("has no golden: that of "), std::string::npos) << said.err;
   }
 }
 

@@ -30,13 +30,13 @@ tl::expected<episode::Episode, ExitCode> OpenEpisodeOrComplain(const std::string
       .map_error([&](const grammar::Diagnostics& why) { return Complain(context, why); });
 }
 
-tl::expected<PlayedRun, ExitCode> PlayOrComplain(episode::Episode episode,
-                                                 const CommandContext& context) {
+tl::expected<suite::PlayedRun, ExitCode> PlayOrComplain(episode::Episode episode,
+                                                        const CommandContext& context) {
   Result<episode::RunResult> run = episode.Run(true);
   if (!run) return tl::unexpected(Complain(context, run.error()));
   if (run->recording.empty())
     return tl::unexpected(Complain(context, ExitCode::kFailure, episode::StatusText(*run)));
-  return PlayedRun{std::move(episode.loaded()), std::move(*run), episode.was_simulated()};
+  return suite::PlayedRun{std::move(episode.loaded()), std::move(*run), episode.was_simulated()};
 }
 
 }  // namespace prehend::cli

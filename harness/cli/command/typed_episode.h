@@ -10,6 +10,7 @@
 #include "harness/episode/episode/episode.h"
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/episode/lacks.h"
+#include "harness/suite/judge/other_view.h"
 
 namespace prehend::cli {
 
@@ -23,13 +24,7 @@ tl::expected<episode::Episode, ExitCode> OpenEpisodeOrComplain(const std::string
                                                                const ParsedOptions& options,
                                                                const CommandContext& context);
 
-/// A run with every frame.
-struct PlayedRun {
-  episode::LoadedRun loaded;
-  episode::RunResult run;
-  bool simulated = true;  ///< otherwise its scene is a placeholder: its frames are not to be sensed
-};
-tl::expected<PlayedRun, ExitCode> PlayOrComplain(episode::Episode episode,
-                                                 const CommandContext& context);
+tl::expected<suite::PlayedRun, ExitCode> PlayOrComplain(episode::Episode episode,
+                                                        const CommandContext& context);
 
 }  // namespace prehend::cli

@@ -8,7 +8,6 @@
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/cli/command/command.h"
-#include "harness/cli/command/other_view.h"
 #include "harness/cli/command/picture_options.h"
 #include "harness/cli/command/typed_episode.h"
 #include "harness/show/figures/comparison_sheet.h"
@@ -59,8 +58,9 @@ std::string KindHelp() {
 }
 
 /// Of any kind of episode.
-tl::expected<PlayedRun, ExitCode> PlayTyped(const std::string& typed, const ParsedOptions& options,
-                                            const CommandContext& context) {
+tl::expected<suite::PlayedRun, ExitCode> PlayTyped(const std::string& typed,
+                                                   const ParsedOptions& options,
+                                                   const CommandContext& context) {
   auto episode = OpenEpisodeOrComplain(typed, options, context);
   if (!episode) return tl::unexpected(episode.error());
   return PlayOrComplain(std::move(*episode), context);
@@ -78,7 +78,7 @@ ExitCode WriteSheet(const show::Sheet& sheet, const show::SceneFormat& format,
   return ExitCode::kAgrees;
 }
 
-ExitCode DrawKeyFrames(const PlayedRun& played, const ParsedOptions& options,
+ExitCode DrawKeyFrames(const suite::PlayedRun& played, const ParsedOptions& options,
                        const CommandContext& context) {
   const show::SceneFormat format = SceneFormatOf(options, "hand", kSheetWidth_px);
   show::ScenePainter painter;
@@ -109,7 +109,7 @@ ExitCode DrawGrasps(const std::string& typed, const ParsedOptions& options,
 
 /// Of the chart's scenes: those that are asked for, else those that tell most.
 tl::expected<std::vector<show::KeyMoment>, ExitCode> MomentsOf(const Kind& kind,
-                                                               const PlayedRun& played,
+                                                               const suite::PlayedRun& played,
                                                                const ParsedOptions& options,
                                                                const CommandContext& context) {
   const episode::RunResult& run = played.run;
@@ -131,7 +131,7 @@ tl::expected<std::vector<show::KeyMoment>, ExitCode> MomentsOf(const Kind& kind,
                           : show::SpreadScenes(run, window, count);
 }
 
-ExitCode DrawChart(const Kind& kind, const PlayedRun& played, const ParsedOptions& options,
+ExitCode DrawChart(const Kind& kind, const suite::PlayedRun& played, const ParsedOptions& options,
                    const CommandContext& context) {
   const scenario::Scenario& scenario = played.loaded.scenario;
   const show::Window window = WindowOf(options, played.run);
@@ -139,8 +139,8 @@ ExitCode DrawChart(const Kind& kind, const PlayedRun& played, const ParsedOption
   const std::string name = kind.name;
   if (name == "phases") chart = show::PhasesChart(scenario, played.run, window);
   if (options.Has("--against")) {
-    const auto other = OtherViewOrComplain(played, options.Text("--against"), context);
-    if (!other) return other.error();
+    const auto other = suite::ViewOf(played, options.Text("--against"), context.root);
+    if (!other) return Complain(context, other.error());
     chart = show::ComparisonChart(scenario, {.name = other->name, .events = &other->run},
                                   {.name = scenario.grammar, .events = &played.run},
                                   other->comparison, window);
@@ -215,7 +215,7 @@ Command FigureCommand() {
            Required(OutputOption("the file: .svg, .pdf or .png")),
            {.name = "--against",
             .help = "of phases: the same episode by another grammar, or the golden, beside it",
-            .placeholder = kViewForm},
+            .placeholder = "golden|GRAMMAR|ENGINE"},
            {.name = "--scenes",
             .help = "how many scenes are above a chart, 0 to 10; default: phases 5, others 3",
             .placeholder = "N",

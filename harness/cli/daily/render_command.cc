@@ -10,19 +10,15 @@
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/cli/command/command.h"
-#include "harness/cli/command/other_view.h"
 #include "harness/cli/command/picture_options.h"
 #include "harness/cli/command/typed_episode.h"
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/run_text.h"
-#include "harness/show/figures/comparison_sheet.h"
+#include "harness/show/figures/figures.h"
 #include "harness/show/pictures/choose_pictures.h"
 #include "harness/show/pictures/film.h"
 #include "harness/show/pictures/pictures.h"
 #include "harness/show/pictures/svg_file.h"
-#include "harness/suite/judge/accept_golden.h"
-#include "harness/suite/judge/compare_engines.h"
-#include "harness/truth/golden/golden_files.h"
 
 namespace prehend::cli {
 namespace {
@@ -170,8 +166,8 @@ std::string WhyNotTogether(const ParsedOptions& options) {
 }
 
 /// The run of a scenario or of an episode, with every frame.
-tl::expected<PlayedRun, ExitCode> Play(const ParsedOptions& options,
-                                       const CommandContext& context) {
+tl::expected<suite::PlayedRun, ExitCode> Play(const ParsedOptions& options,
+                                              const CommandContext& context) {
   auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
   if (!episode) return tl::unexpected(episode.error());
   auto played = PlayOrComplain(std::move(*episode), context);
@@ -208,48 +204,15 @@ ExitCode RenderStrip(const ParsedOptions& options, const CommandContext& context
                   options, loaded.scenario, ".strip.svg", context);
 }
 
-/// Golden pictures, the same as they are now, and what differs.
-ExitCode ComparePictures(const PlayedRun& played, const ParsedOptions& options,
-                         const CommandContext& context) {
-  const scenario::Scenario& scenario = played.loaded.scenario;
-  const std::string id = episode::ScenarioId(scenario.skill, scenario.name);
-  show::ScenePainter painter;
-  const show::Sheet sheet = show::GoldenPicturesSheet(
-      id, scenario, played.run, truth::GoldenFiles(context.root).PicturesOf(id), painter);
-  if (sheet.rows.empty())
-    return Complain(context, ExitCode::kNothing,
-                    "--against: " + id + " has no golden pictures; " +
-                        suite::AcceptPicturesCommand(id) + " keeps those of now");
-  if (!painter.error().empty())
-    return Complain(context, ExitCode::kFailure, "no picture: " + painter.error());
-  return WriteOut(SheetSvg(sheet, SceneFormatOf(options, "", kComparisonWidth_px).chart), options,
-                  scenario, ".against-pictures.png", context);
-}
-
 ExitCode RenderComparison(const ParsedOptions& options, const CommandContext& context) {
   const auto played = Play(options, context);
   if (!played) return played.error();
-  const std::string against = options.Text("--against");
-  if (against == "pictures") return ComparePictures(*played, options, context);
-  const auto other = OtherViewOrComplain(*played, against, context);
-  if (!other) return other.error();
-  const episode::LoadedRun& loaded = played->loaded;
-  const episode::RunResult& run = played->run;
-  const bool in_other_engine = !other->run.recording.empty();
-  const show::Side first{
-      .name = other->name, .events = &other->run, .scenes = in_other_engine ? &other->run : &run},
-      second{.name = in_other_engine ? suite::NameOf(loaded.scenario.scene.world.engine)
-                                     : loaded.scenario.grammar,
-             .events = &run,
-             .scenes = &run};
   const show::SceneFormat format = SceneFormatOf(options, "action", kComparisonWidth_px);
-  show::ScenePainter painter;
-  const show::Sheet sheet = ComparisonSheet(loaded.scenario, first, second, other->comparison,
-                                            WindowOf(options, run), format, painter);
-  if (!painter.error().empty())
-    return Complain(context, ExitCode::kFailure, "no picture: " + painter.error());
-  return WriteOut(SheetSvg(sheet, format.chart), options, loaded.scenario,
-                  ".against-" + other->name + ".png", context);
+  const auto made = suite::SheetAgainst(*played, options.Text("--against"),
+                                        WindowOf(options, played->run), format, context.root);
+  if (!made) return Complain(context, made.error());
+  return WriteOut(SheetSvg(made->sheet, format.chart), options, played->loaded.scenario,
+                  ".against-" + made->name + ".png", context);
 }
 
 ExitCode RenderFilm(const ParsedOptions& options, const CommandContext& context) {

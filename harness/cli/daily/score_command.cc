@@ -23,7 +23,7 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
           fmt::format("--truth compares what the labels mean: {} does not apply", other));
   }
   if (!options.Has("names"))
-    return Complain(context, ExitCode::kNothing,
+    return Complain(context, ExitCode::kBadInput,
                     "--truth: which recordings? score take1.jsonl --truth take1.csv");
   auto episodes = FindEpisodesOrComplain("names", options, context);
   if (!episodes) return episodes.error();

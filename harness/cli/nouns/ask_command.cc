@@ -8,7 +8,7 @@
 #include "harness/base/base/project_paths.h"
 #include "harness/base/process/run_tool.h"
 #include "harness/cli/command/command.h"
-#include "harness/cli/command/moment_pictures.h"
+#include "harness/show/figures/moment_pictures.h"
 #include "harness/show/pictures/pictures.h"
 #include "harness/truth/timeline/event_text.h"
 
@@ -73,26 +73,26 @@ std::string CellOf(const Json& value) {
 }
 
 /// All that an answer shows, in one picture per world that it shows; or of nothing.
-std::vector<Moment> MomentsOf(const Json& answer) {
-  std::vector<Moment> moments;
+std::vector<show::Moment> MomentsOf(const Json& answer) {
+  std::vector<show::Moment> moments;
   for (const Json& shown : answer["show"]) {
     const std::string what = shown["what"];
     const double from_s = shown["from"], to_s = shown["to"];
     if (what == "world" || moments.empty()) {
-      Moment& moment = moments.emplace_back();
+      show::Moment& moment = moments.emplace_back();
       moment.file = shown["file"];
       moment.episode = shown["number"];
       moment.scenario = "answer";
       moment.at_s = moment.from_s = moment.to_s = from_s;
     }
-    Moment& moment = moments.back();
+    show::Moment& moment = moments.back();
     if (what == "marker") moment.marked.push_back(shown["of"]);
     if (what != "trajectory") continue;
     moment.of.push_back(shown["of"]);
     moment.from_s = from_s;
     moment.to_s = to_s;
   }
-  for (Moment& moment : moments) {
+  for (show::Moment& moment : moments) {
     moment.name = moment.of.empty() ? "world" : moment.of.front();
     // A strip of no length cannot be drawn.
     if (moment.from_s == moment.to_s) moment.to_s = moment.from_s + 1;
@@ -121,18 +121,18 @@ ExitCode RunAsk(const ParsedOptions& options, const CommandContext& context) {
   Answered answered =
       AskSwipl(context.root, folder, options.Text("query"), options.IntOr("--most", kDefaultMost),
                options.NumberOr("--time-limit-s", kDefaultAsk_s));
-  MomentPictures drawn;
+  show::MomentPictures drawn;
   if (shows) {
-    std::vector<Moment> moments;
+    std::vector<show::Moment> moments;
     std::vector<std::size_t> answer_of;
     for (std::size_t i = 0; i < answered.answers.size(); ++i) {
-      for (Moment& moment : MomentsOf(answered.answers[i])) {
+      for (show::Moment& moment : MomentsOf(answered.answers[i])) {
         moments.push_back(std::move(moment));
         answer_of.push_back(i);
       }
       answered.answers[i]["pictures"] = Json::array();
     }
-    drawn = DrawMoments(moments, options.Text("--show"), context.root);
+    drawn = show::DrawMoments(moments, options.Text("--show"), context.root);
     for (std::size_t i = 0; i < drawn.files.size(); ++i) {
       if (!drawn.files[i].empty())
         answered.answers[answer_of[i]]["pictures"].push_back(drawn.files[i]);

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/command/command.h"
-#include "harness/cli/command/moment_pictures.h"
 #include "harness/episode/episode/keep_episodes.h"
 #include "harness/episode/episodes/query_events.h"
+#include "harness/show/figures/moment_pictures.h"
 #include "harness/show/pictures/pictures.h"
 #include "harness/truth/timeline/event_text.h"
 
@@ -173,11 +173,11 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
       answers.empty() && !known.events.contains(question.event) && !near.empty())
     context.err << fmt::format("prehend: no event is called '{}'; did you mean '{}'?\n",
                                question.event, near);
-  MomentPictures drawn;
+  show::MomentPictures drawn;
   if (options.Has("--show")) {
-    std::vector<Moment> moments;
-    for (const EventAnswer& answer : answers) moments.push_back(MomentOf(answer));
-    drawn = DrawMoments(moments, options.Text("--show"), context.root);
+    std::vector<show::Moment> moments;
+    for (const EventAnswer& answer : answers) moments.push_back(show::MomentOf(answer));
+    drawn = show::DrawMoments(moments, options.Text("--show"), context.root);
   }
   for (EventAnswer& answer : answers) answer.file = keeper.SourceOf(answer.file);
   if (options.Has("--json"))

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "grammar/contents.h"
-#include "harness/base/base/atomic_file.h"
 #include "harness/cli/command/typed_episode.h"
 #include "harness/episode/episode/open_episode.h"
 #include "harness/episode/episode/resegment_many.h"
@@ -117,27 +115,10 @@ ExitCode WriteLabels(const std::vector<episode::EpisodeName>& selected,
   Result<episode::Episode> episode = episode::OpenEpisode(
       selected.front(), {options.Text("--grammar"), options.All("--set")}, context.root);
   if (!episode) return Complain(context, episode.error());
-  const std::shared_ptr<const grammar::Program> program = episode->program();
-  const std::vector<std::string> only = options.All("--event");
-  const std::vector<std::string> known = EventNames(*program);
-  for (const std::string& name : only) {
-    if (std::ranges::count(known, name) > 0) continue;
-    const std::string near = grammar::NearestName(name, known);
-    return Complain(context, ExitCode::kBadInput,
-                    fmt::format("--event: grammar '{}' has no event '{}'{}", GrammarName(*program),
-                                name, near.empty() ? "" : "; did you mean '" + near + "'?"));
-  }
-  Result<grammar::Timeline> found = episode->Segment(program);
-  if (!found) return Complain(context, found.error());
-  std::erase_if(found->events, [&](const grammar::NamedEvent& event) {
-    return !only.empty() && std::ranges::count(only, event.event) == 0;
-  });
   const std::string& file = options.Text("--output");
-  const std::string problem =
-      WriteTextFile(file, exchange::LabelsText(file.substr(file.rfind('.')), *found,
-                                               *episode->EndTick(), context.today));
-  if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
-  context.out << fmt::format("{}: {} labels\n", file, found->events.size());
+  const auto labels = exchange::WriteLabels(*episode, options.All("--event"), file, context.today);
+  if (!labels) return Complain(context, labels.error());
+  context.out << fmt::format("{}: {} labels\n", file, *labels);
   return ExitCode::kAgrees;
 }
 

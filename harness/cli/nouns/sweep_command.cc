@@ -89,7 +89,7 @@ std::optional<ExitCode> ComplainOf(const measure::SweepResult& result,
   for (const std::string& line : result.left_out)
     context.err << "prehend: left out: " << line << "\n";
   if (result.episodes == 0)
-    return Complain(context, ExitCode::kNothing, "no episode has events to compare with");
+    return Complain(context, ExitCode::kBadInput, "no episode has events to compare with");
   return std::nullopt;
 }
 

@@ -11,6 +11,8 @@
 #include <pugixml.hpp>
 #include <vector>
 
+#include "grammar/contents.h"
+#include "harness/base/base/atomic_file.h"
 #include "harness/base/base/markup.h"
 #include "harness/truth/timeline/event_text.h"
 
@@ -143,6 +145,30 @@ std::string LabelsText(const std::string& ending, const grammar::Timeline& timel
                        grammar::Tick end, const std::string& date) {
   if (ending == ".eaf") return EafText(timeline, date);
   return ending == ".csv" ? CsvText(timeline) : TextGridText(timeline, end);
+}
+
+tl::expected<std::size_t, episode::NotFound> WriteLabels(episode::Episode& episode,
+                                                         const std::vector<std::string>& only,
+                                                         const std::string& file,
+                                                         const std::string& date) {
+  const grammar::Program& program = *episode.program();
+  const std::vector<std::string> known = EventNames(program);
+  for (const std::string& name : only) {
+    if (std::ranges::count(known, name) > 0) continue;
+    const std::string near = grammar::NearestName(name, known);
+    return tl::unexpected(episode::NotFound{
+        .message = fmt::format("--event: grammar '{}' has no event '{}'{}", GrammarName(program),
+                               name, near.empty() ? "" : "; did you mean '" + near + "'?")});
+  }
+  Result<grammar::Timeline> found = episode.Segment(episode.program());
+  if (!found) return tl::unexpected(episode::NotFound{.diagnostics = found.error()});
+  std::erase_if(found->events, [&](const grammar::NamedEvent& event) {
+    return !only.empty() && std::ranges::count(only, event.event) == 0;
+  });
+  const std::string problem = WriteTextFile(
+      file, LabelsText(file.substr(file.rfind('.')), *found, *episode.EndTick(), date));
+  if (problem.empty()) return found->events.size();
+  return tl::unexpected(episode::NotFound{.exit_code = ExitCode::kFailure, .message = problem});
 }
 
 }  // namespace prehend::exchange

@@ -5,8 +5,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "grammar/base/timeline.h"
+#include "harness/episode/episode/episode.h"
+#include "harness/episode/episode/find_episodes.h"
 
 namespace prehend::exchange {
 
@@ -15,5 +18,12 @@ namespace prehend::exchange {
 /// `ending`: .csv, .eaf or .TextGrid.
 std::string LabelsText(const std::string& ending, const grammar::Timeline& timeline,
                        grammar::Tick end, const std::string& date);
+
+/// Writes what the grammar of an episode recognises: `only` these events, if there are any. The
+/// ending of `file` says how. Returns the count of labels.
+tl::expected<std::size_t, episode::NotFound> WriteLabels(episode::Episode& episode,
+                                                         const std::vector<std::string>& only,
+                                                         const std::string& file,
+                                                         const std::string& date);
 
 }  // namespace prehend::exchange

@@ -7,9 +7,15 @@
 #include "harness/episode/run/run_text.h"
 
 namespace prehend::suite {
+namespace {
 
-const char* NameOf(physics::Engine engine) {
-  using physics::Engine;
+using physics::Engine;
+
+Engine Other(Engine engine) { return engine == Engine::kBox2d ? Engine::kBullet : Engine::kBox2d; }
+
+}  // namespace
+
+const char* NameOf(Engine engine) {
   switch (engine) {
     case Engine::kBox2d:
       return "box2d";
@@ -21,22 +27,33 @@ const char* NameOf(physics::Engine engine) {
   return "bullet";
 }
 
+episode::RunResult RunInOtherEngine(scenario::Scenario scenario,
+                                    std::shared_ptr<const grammar::Program> program,
+                                    const episode::RunOptions& options) {
+  scenario.scene.world.engine = Other(scenario.scene.world.engine);
+  return episode::RunScenario(scenario, std::move(program), options);
+}
+
+grammar::Tick EngineTolerance(const grammar::Timeline& timeline) {
+  return std::llround(0.05 * static_cast<double>(timeline.ticks_per_second));
+}
+
+truth::Golden GoldenOf(const grammar::Timeline& timeline) {
+  truth::Golden golden{.ticks_per_second = timeline.ticks_per_second};
+  for (const grammar::NamedEvent& event : timeline.events)
+    golden.events.push_back({.event = event});
+  return golden;
+}
+
 std::optional<EngineComparison> CompareEngines(const scenario::Scenario& scenario,
                                                std::shared_ptr<const grammar::Program> program,
                                                const grammar::Timeline& timeline) {
-  using physics::Engine;
   if (!scenario.scene.world.planar) return std::nullopt;
-  EngineComparison result;
-  scenario::Scenario in_other = scenario;
-  Engine& engine = in_other.scene.world.engine;
-  result.other = engine = engine == Engine::kBox2d ? Engine::kBullet : Engine::kBox2d;
-  result.run = episode::RunScenario(in_other, std::move(program));
-  if (result.run.status.kind != physics::RunStatus::Kind::kCompleted) return result;
-  truth::Golden expected{.ticks_per_second = timeline.ticks_per_second};
-  for (const grammar::NamedEvent& event : timeline.events)
-    expected.events.push_back({.event = event});
-  const auto tolerance = std::llround(kEngineTolerance_s * timeline.ticks_per_second);
-  result.comparison = truth::Compare(expected, result.run.timeline, tolerance);
+  EngineComparison result{.other = Other(scenario.scene.world.engine),
+                          .run = RunInOtherEngine(scenario, std::move(program))};
+  if (result.run.status.kind == physics::RunStatus::Kind::kCompleted)
+    result.comparison =
+        truth::Compare(GoldenOf(timeline), result.run.timeline, EngineTolerance(timeline));
   return result;
 }
 

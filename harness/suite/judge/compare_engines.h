@@ -12,10 +12,6 @@
 
 namespace prehend::suite {
 
-/// Boundaries may differ by this much between engines, which place contacts and distribute friction
-/// differently.
-inline constexpr double kEngineTolerance_s = 0.05;
-
 /// Said of a scenario that differs between them.
 inline constexpr const char* kUntilEnginesAgree =
     "it cannot be accepted until both engines agree: change the scenario, or fix what differs";
@@ -30,7 +26,17 @@ struct EngineComparison {
       comparison;  ///< of the other engine's timeline with the one given; empty if it failed
 };
 
-/// Plays the scenario in the engine that it does not name. Empty when it is not planar.
+/// In the engine that it does not name.
+episode::RunResult RunInOtherEngine(scenario::Scenario scenario,
+                                    std::shared_ptr<const grammar::Program> program,
+                                    const episode::RunOptions& options = {});
+/// Boundaries may differ by this much between engines, which place contacts and distribute friction
+/// differently.
+grammar::Tick EngineTolerance(const grammar::Timeline& timeline);
+/// With nothing that people wrote.
+truth::Golden GoldenOf(const grammar::Timeline& timeline);
+
+/// Plays the scenario in the other engine. Empty when it is not planar.
 std::optional<EngineComparison> CompareEngines(const scenario::Scenario& scenario,
                                                std::shared_ptr<const grammar::Program> program,
                                                const grammar::Timeline& timeline);

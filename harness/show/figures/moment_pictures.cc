@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/cli/command/moment_pictures.h. Tested by tests/program/query_test.cc
-#include "harness/cli/command/moment_pictures.h"
+// See harness/show/figures/moment_pictures.h. Tested by tests/program/query_test.cc
+#include "harness/show/figures/moment_pictures.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "harness/episode/episode/open_episode.h"
 #include "harness/show/pictures/pictures.h"
 
-namespace prehend::cli {
+namespace prehend::show {
 namespace {
 
 using episode::EventAnswer;
@@ -30,8 +30,8 @@ Result<Shown> Play(const Moment& moment, episode::EpisodeOpener& opener) {
   return Shown{std::move(episode->loaded()), std::move(*run)};
 }
 
-show::PictureFormat FormatOf(const Moment& moment, const physics::Scene& scene) {
-  show::PictureFormat format;
+PictureFormat FormatOf(const Moment& moment, const physics::Scene& scene) {
+  PictureFormat format;
   format.from_s = moment.from_s;
   format.to_s = moment.to_s;
   format.marked = moment.marked;
@@ -90,11 +90,10 @@ MomentPictures DrawMoments(const std::vector<Moment>& moments, const std::string
     }
     const scenario::Scenario& scenario = (*shown)->loaded.scenario;
     scenario::PictureYaml entry;
-    const show::PictureFormat format = FormatOf(moment, scenario.scene);
+    const PictureFormat format = FormatOf(moment, scenario.scene);
     entry.at.value = fmt::format("{:.6f}", moment.at_s);
     const std::string file = (std::filesystem::path(folder) / FileName(i + 1, moment)).string();
-    const show::PictureResult result =
-        show::DrawPicture(scenario, (*shown)->run, entry, file, format);
+    const PictureResult result = DrawPicture(scenario, (*shown)->run, entry, file, format);
     if (result.error.empty())
       drawn.files[i] = file;
     else
@@ -107,4 +106,4 @@ MomentPictures DrawMoments(const std::vector<Moment>& moments, const std::string
   return drawn;
 }
 
-}  // namespace prehend::cli
+}  // namespace prehend::show

@@ -9,7 +9,7 @@
 
 #include "harness/episode/episodes/query_events.h"
 
-namespace prehend::cli {
+namespace prehend::show {
 
 /// More than these are not drawn.
 inline constexpr std::size_t kMostMoments = 100;
@@ -37,4 +37,4 @@ struct MomentPictures {
 MomentPictures DrawMoments(const std::vector<Moment>& moments, const std::string& folder,
                            const std::string& root);
 
-}  // namespace prehend::cli
+}  // namespace prehend::show
