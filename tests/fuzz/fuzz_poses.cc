@@ -8,9 +8,8 @@
 #include <sstream>
 #include <string>
 
-#include "harness/exchange/messages/binary_poses.h"
-#include "harness/exchange/messages/json_poses.h"
-#include "harness/exchange/messages/mcap_file.h"
+#include "harness/exchange/messages/log_file.h"
+#include "harness/exchange/messages/message_pose.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prehend::fuzz;

@@ -9,7 +9,6 @@
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/missing_facts.h"
 #include "harness/exchange/import/import_poses.h"
-#include "harness/exchange/import/import_table.h"
 
 namespace prehend::cli {
 namespace {

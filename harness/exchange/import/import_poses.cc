@@ -14,10 +14,7 @@
 #include "grammar/base/wording.h"
 #include "harness/base/yaml/error_at.h"
 #include "harness/exchange/import/import_warnings.h"
-#include "harness/exchange/import/lengths.h"
-#include "harness/exchange/import/rest_plane.h"
 #include "harness/exchange/import/rest_poses.h"
-#include "harness/exchange/import/rest_support.h"
 
 namespace prehend::exchange {
 namespace {
@@ -168,13 +165,13 @@ class Importer {
   void Warn(std::string text) { imported_.warnings.push_back(std::move(text)); }
 
   void WarnOfRestPoses() {
-    NotUpright turned;
+    DoubtfulThings turned;
     if (const auto range = RangeTooSmall(file_, map_); range && !map_.IsSure(Warning::kUnit))
       return Warn(
           fmt::format("{}: {}; or, if it is right, sure: [unit]", range->text, range->remedy));
     if (!map_.IsSure(Warning::kUpright)) turned = FindNotUpright(imported_.episode, map_);
     for (std::string& text : turned.warnings) Warn(std::move(text));
-    TooLarge large = ThingsTooLarge(map_);
+    DoubtfulThings large = ThingsTooLarge(map_);
     for (std::string& text : large.warnings) Warn(std::move(text));
     turned.things.merge(large.things);
     if (std::string text = RestOnNothing(imported_.episode, turned.things); !text.empty())

@@ -36,4 +36,8 @@ struct Imported {
 /// Reads, checks and converts. Nothing comes of a file with errors.
 Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path);
 
+/// Extents, rates and gaps of each entity; and how it is turned in its markers' axes, where a time
+/// says that.
+std::string ImportTable(const Imported& imported);
+
 }  // namespace prehend::exchange

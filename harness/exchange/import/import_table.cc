@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/import_table.h.
-#include "harness/exchange/import/import_table.h"
-
+// See harness/exchange/import/import_poses.h. Tested by tests/program/import_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
+
+#include "harness/exchange/import/import_poses.h"
 
 namespace prehend::exchange {
 

@@ -1,22 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 // Poses of a log of messages, over time: of the bodies that a map asks for, of named bodies and of
-// the frames of a tree; and what else could be asked for. Tested by
+// the frames of a tree that move over time (tf of ROS); and what else could be asked for. Tested by
 // tests/program/import_messages_test.cc
 #pragma once
 
+#include <Eigen/Geometry>
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "harness/exchange/import/frame_tree.h"
 #include "harness/exchange/import/import_map.h"
-#include "harness/exchange/messages/body_address.h"
 #include "harness/exchange/messages/message_reader.h"
+#include "harness/exchange/messages/pose_fields.h"
 
 namespace prehend::exchange {
+
+struct TimedPose {
+  std::int64_t ns = 0;
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+};
+
+/// A frame, or the body of a topic, in its parent.
+struct FrameLink {
+  std::string parent;
+  bool fixed = false;            ///< known once, and for ever
+  std::vector<TimedPose> poses;  ///< sorted by time, after Sort()
+
+  /// Sorts, and drops what is said twice. Returns the time of two poses that differ, if there are.
+  std::optional<std::int64_t> Sort();
+  /// The usual time between two poses.
+  std::int64_t UsualStep_ns() const;
+};
+
+class FrameTree {
+ public:
+  /// By the frame's name.
+  std::map<std::string, FrameLink> links;
+
+  /// The frame that has no parent. A ring ends somewhere in it.
+  std::string RootOf(const std::string& frame) const;
+
+  /// The body in `world`, which must have the same root, at the times of the fastest link between
+  /// them. Of the others it is what lies between two poses at most `bridge_ns` (or their usual
+  /// step, and half of that) apart; where there is none, there is no pose. One pose, at time 0, if
+  /// nothing between them ever moves.
+  std::vector<TimedPose> InFrame(const FrameLink& body, const std::string& world,
+                                 std::int64_t bridge_ns) const;
+
+ private:
+  /// From the body up to its root.
+  std::vector<const FrameLink*> WayUp(const FrameLink& body) const;
+};
 
 /// Topics of tf may begin their names with a slash, and mean the same.
 std::string FrameName(std::string name);

@@ -39,8 +39,7 @@ struct PoseFile {
   bool has_orientations = true;                     ///< else only positions
   bool counts_frames = false;  ///< its times, in a unit of time, are whole and grow by one each
   std::size_t rows = 0;
-  double first_s = 0, last_s = 0;    ///< of all rows, also of those in which nothing is tracked
-  std::optional<double> began_at_s;  ///< the file's own time of second 0, since 1970
+  double first_s = 0, last_s = 0;  ///< of all rows, also of those in which nothing is tracked
 };
 
 /// The bodies of the map, without poses. One that is two entities is an error.

@@ -15,8 +15,7 @@
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/import/log_series.h"
 #include "harness/exchange/import/pose_file.h"
-#include "harness/exchange/messages/bag_file.h"
-#include "harness/exchange/messages/mcap_file.h"
+#include "harness/exchange/messages/log_file.h"
 
 namespace prehend::exchange {
 
@@ -333,7 +332,6 @@ class McapPoseReader {
     }
     if (!first) return;  // refused, each by its name
     poses.last_s = Seconds(*last - *first);
-    poses.began_at_s = Seconds(*first);
     if (poses.last_s > kMostDuration_s)
       return Fail(
           fmt::format("its poses are from {:.3f} to {:.3f} s: they are not of one clock; the "

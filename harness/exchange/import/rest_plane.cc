@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/rest_plane.h.
+// See harness/exchange/import/rest_poses.h.
 //
-// A thing rests where it gets less than a centimetre far in half a second. Its places of rest are
-// those at least 5 cm apart. Things stand: each place is half the thing's height above the plane.
-// That depends on which way is up, so the plane is fitted several times. What lies elsewhere, in a
-// hand or on a shelf, is left out one after the other, the farthest first.
-#include "harness/exchange/import/rest_plane.h"
-
+// Places of rest are at least 5 cm apart. Things stand: each place is half the thing's height above
+// the plane. That depends on which way is up, so the plane is fitted several times. What lies
+// elsewhere, in a hand or on a shelf, is left out one after the other, the farthest first.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -18,12 +15,11 @@
 
 #include "grammar/base/tracking.h"
 #include "harness/exchange/import/import_warnings.h"
+#include "harness/exchange/import/rest_poses.h"
 
 namespace prehend::exchange {
 namespace {
 
-constexpr double kLook_s = 0.5;
-constexpr double kSame_m = 0.01;
 constexpr double kApart_m = 0.05;  ///< of two places
 constexpr double kOff_m = 0.02;    ///< what is farther from the plane does not lie on it
 constexpr double kWide_m = 0.08;   ///< standard deviation of the places, across both ways
@@ -54,27 +50,21 @@ struct SeenRestPoses {
 SeenRestPoses RestPosesIn(const episode::Recording& episode, const std::set<std::size_t>& untrue) {
   SeenRestPoses seen;
   const auto& entities = episode.header.entity_table.entities;
-  const auto step = static_cast<grammar::Tick>(
-      kLook_s * static_cast<double>(episode.header.entity_table.ticks_per_second));
-  const episode::EpisodeFrame* before = nullptr;
-  for (const episode::EpisodeFrame& frame : episode.frames) {
-    if (before != nullptr && frame.tick - before->tick < step) continue;
-    const episode::EpisodeFrame* const last = std::exchange(before, &frame);
-    if (last == nullptr) continue;
+  EachLook(episode, [&](const episode::EpisodeFrame& last, const episode::EpisodeFrame& frame) {
     for (std::size_t i = 0; i < entities.size(); ++i) {
-      const grammar::EntitySample &look = frame.entities[i], &old = last->entities[i];
+      const grammar::EntitySample &look = frame.entities[i], &old = last.entities[i];
       if (!grammar::IsTracked(look) || !grammar::IsTracked(old)) continue;
       if (entities[i].classes.front() == "Hand") seen.hands.push_back(look.p_WB_m);
       if (untrue.contains(i) ||
           std::ranges::find(entities[i].classes, "Movable") == entities[i].classes.end() ||
-          (look.p_WB_m - old.p_WB_m).norm() >= kSame_m || seen.places.size() >= kMostPlaces)
+          (look.p_WB_m - old.p_WB_m).norm() >= kSamePlace_m || seen.places.size() >= kMostPlaces)
         continue;
       const bool is_known = std::ranges::any_of(seen.places, [&](const RestPoint& place) {
         return place.thing == i && (place.p_m - look.p_WB_m).norm() < kApart_m;
       });
       if (!is_known) seen.places.push_back({look.p_WB_m, entities[i].half_size_m.z(), i});
     }
-  }
+  });
   return seen;
 }
 

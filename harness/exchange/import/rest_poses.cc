@@ -7,7 +7,7 @@
 // is below: if it would stand there, but hovers or sinks in as it lies, it does not lie.
 //
 // Several things that are turned the same way rest on a frame that is not upright: of that,
-// harness/exchange/import/rest_plane.h says something.
+// harness/exchange/import/rest_poses.h says something.
 #include "harness/exchange/import/rest_poses.h"
 
 #include <fmt/format.h>
@@ -24,8 +24,7 @@
 namespace prehend::exchange {
 namespace {
 
-constexpr double kBetweenLooks_s = 0.5;
-constexpr double kSamePlace_m = 0.01, kSameTurn_deg = 3;
+constexpr double kSameTurn_deg = 3;
 constexpr double kLow_m = 0.03;    ///< above its lowest rest: higher it is held
 constexpr double kAtHand_m = 0.1;  ///< beyond the sphere around its box: nearer, a hand may hold it
 constexpr std::size_t kLeastLooks = 2;  ///< looks
@@ -57,7 +56,7 @@ class RestPoseFinder {
   RestPoseFinder(const episode::Recording& episode, const ImportMap& map)
       : episode_(episode), map_(map), entities_(episode.header.entity_table.entities) {}
 
-  NotUpright Find() {
+  DoubtfulThings Find() {
     std::vector<RestPose> rests;
     for (std::size_t i = 0; i < entities_.size(); ++i) {
       const MappedEntity& e = map_.entities[i].value;
@@ -111,20 +110,16 @@ class RestPoseFinder {
     std::vector<const episode::EpisodeFrame*> still;
     double lowest_m = std::numeric_limits<double>::infinity();
     bool turns = false;
-    const episode::EpisodeFrame* before = nullptr;
-    for (const episode::EpisodeFrame& frame : episode_.frames) {
-      if (before != nullptr && SecondsAt(frame) - SecondsAt(*before) < kBetweenLooks_s) continue;
-      const episode::EpisodeFrame* const last = std::exchange(before, &frame);
-      if (last == nullptr) continue;
-      const grammar::EntitySample &look = frame.entities[thing], &old = last->entities[thing];
-      if (!grammar::IsTracked(look) || !grammar::IsTracked(old)) continue;
+    EachLook(episode_, [&](const episode::EpisodeFrame& last, const episode::EpisodeFrame& frame) {
+      const grammar::EntitySample &look = frame.entities[thing], &old = last.entities[thing];
+      if (!grammar::IsTracked(look) || !grammar::IsTracked(old)) return;
       turns = turns || !look.q_WB.coeffs().isApprox(old.q_WB.coeffs(), 1e-12);
-      if ((Markers_m(frame, thing) - Markers_m(*last, thing)).norm() >= kSamePlace_m ||
+      if ((Markers_m(frame, thing) - Markers_m(last, thing)).norm() >= kSamePlace_m ||
           look.q_WB.angularDistance(old.q_WB) * 180 / EIGEN_PI >= kSameTurn_deg)
-        continue;
-      lowest_m = std::min(lowest_m, Markers_m(*last, thing).z());
-      still.push_back(last);
-    }
+        return;
+      lowest_m = std::min(lowest_m, Markers_m(last, thing).z());
+      still.push_back(&last);
+    });
     std::optional<RestPose> rest;
     for (const episode::EpisodeFrame* frame : still) {
       const grammar::EntitySample& look = frame->entities[thing];
@@ -205,12 +200,25 @@ class RestPoseFinder {
   const episode::Recording& episode_;
   const ImportMap& map_;
   const std::vector<grammar::EntityInfo>& entities_;
-  NotUpright found_;
+  DoubtfulThings found_;
 };
 
 }  // namespace
 
-NotUpright FindNotUpright(const episode::Recording& episode, const ImportMap& map) {
+void EachLook(const episode::Recording& episode,
+              const std::function<void(const episode::EpisodeFrame& before,
+                                       const episode::EpisodeFrame& now)>& look) {
+  const auto step = static_cast<grammar::Tick>(
+      kBetweenLooks_s * static_cast<double>(episode.header.entity_table.ticks_per_second));
+  const episode::EpisodeFrame* before = nullptr;
+  for (const episode::EpisodeFrame& frame : episode.frames) {
+    if (before != nullptr && frame.tick - before->tick < step) continue;
+    if (before != nullptr) look(*before, frame);
+    before = &frame;
+  }
+}
+
+DoubtfulThings FindNotUpright(const episode::Recording& episode, const ImportMap& map) {
   return RestPoseFinder(episode, map).Find();
 }
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/rest_support.h.
+// See harness/exchange/import/rest_poses.h.
 //
-// A thing rests where it gets less than a centimetre far in half a second. Then the lowest point of
-// its box must be near the top of another box that it is above. Half of the times are enough: a
-// hand may hold it still for a while.
-#include "harness/exchange/import/rest_support.h"
-
+// The lowest point of the box of what rests must be near the top of another box that it is above.
+// Half of the times are enough: a hand may hold it still for a while.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,12 +13,11 @@
 
 #include "grammar/base/tracking.h"
 #include "harness/exchange/import/import_warnings.h"
+#include "harness/exchange/import/rest_poses.h"
 
 namespace prehend::exchange {
 namespace {
 
-constexpr double kRest_s = 0.5;
-constexpr double kStill_m = 0.01;
 constexpr double kOnTop_m = 0.05;  ///< lie_about of grammar/library/contact_from_motion.grammar
 constexpr double kHigh_m = 1.6;
 constexpr double kLeast_s = 1;  ///< a shorter rest says nothing
@@ -39,7 +35,7 @@ bool IsAbove(const Eigen::AlignedBox3d& upper, const Eigen::AlignedBox3d& lower)
 /// Without "-0.0".
 double Tenths(double x) { return std::round(10 * x) / 10 + 0.0; }
 
-/// Where one thing rested, looked at once per kRest_s.
+/// Where one thing rested, looked at once per kBetweenLooks_s.
 struct RestPoses {
   std::vector<double> bottoms_m;  ///< of all rests
   std::size_t supported = 0;      ///< on how many of them something was near below
@@ -49,16 +45,11 @@ struct RestPoses {
 RestPoses RestPosesOf(const episode::Recording& episode, std::size_t thing) {
   RestPoses rests;
   const auto& entities = episode.header.entity_table.entities;
-  const auto step = static_cast<grammar::Tick>(
-      kRest_s * static_cast<double>(episode.header.entity_table.ticks_per_second));
-  const episode::EpisodeFrame* before = nullptr;
-  for (const episode::EpisodeFrame& frame : episode.frames) {
-    if (before != nullptr && frame.tick - before->tick < step) continue;
-    const episode::EpisodeFrame* const last = std::exchange(before, &frame);
+  EachLook(episode, [&](const episode::EpisodeFrame& last, const episode::EpisodeFrame& frame) {
     const grammar::EntitySample& look = frame.entities[thing];
-    if (last == nullptr || !grammar::IsTracked(look) ||
-        !((look.p_WB_m - last->entities[thing].p_WB_m).norm() < kStill_m))
-      continue;
+    if (!grammar::IsTracked(look) ||
+        !((look.p_WB_m - last.entities[thing].p_WB_m).norm() < kSamePlace_m))
+      return;
     const Eigen::AlignedBox3d box = BoxOf(entities[thing], look);
     rests.bottoms_m.push_back(box.min().z());
     rests.place.extend(Eigen::AlignedBox2d(box.min().head<2>(), box.max().head<2>()));
@@ -74,7 +65,7 @@ RestPoses RestPosesOf(const episode::Recording& episode, std::size_t thing) {
       ++rests.supported;
       break;
     }
-  }
+  });
   return rests;
 }
 
@@ -90,7 +81,7 @@ std::string RestOnNothing(const episode::Recording& episode, const std::set<std:
         std::ranges::find(entities[i].classes, "Movable") == entities[i].classes.end())
       continue;
     const RestPoses rests = RestPosesOf(episode, i);
-    if (static_cast<double>(rests.bottoms_m.size()) * kRest_s < kLeast_s ||
+    if (static_cast<double>(rests.bottoms_m.size()) * kBetweenLooks_s < kLeast_s ||
         2 * rests.supported >= rests.bottoms_m.size())
       continue;
     names.push_back(fmt::format("'{}'", entities[i].name));

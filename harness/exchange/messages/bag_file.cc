@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/messages/bag_file.h. A record is a header of named fields, and data. Chunks
+// See harness/exchange/messages/log_file.h. A record is a header of named fields, and data. Chunks
 // hold the records of connections and messages.
-#include "harness/exchange/messages/bag_file.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
 #include "harness/exchange/messages/byte_reader.h"
-#include "harness/exchange/messages/unpack.h"
+#include "harness/exchange/messages/log_file.h"
 
 namespace prehend::exchange {
 namespace {
@@ -87,18 +85,9 @@ class BagReader {
     const auto size = Number<std::uint32_t>(fields, "size");
     const auto field = fields.find("compression");
     const std::string_view compression = field == fields.end() ? "none" : field->second;
-    if (!file_.AdmitsChunk(size)) return;
-    std::string records;
-    if (compression == "lz4")
-      records = FromLz4(packed, size);
-    else if (compression == "none")
-      records = packed;
-    else
-      return file_.Fail(
-          fmt::format("a chunk with the compression '{}'; lz4 and none are read: 'rosbag "
-                      "decompress' makes such a file",
-                      compression.substr(0, 40)));
-    if (records.size() != size) return file_.Fail("a damaged chunk: it cannot be decompressed");
+    const std::string records = file_.Unpack(
+        compression, packed, size, "lz4 and none are read: 'rosbag decompress' makes such a file");
+    if (!file_.ok()) return;
     ByteReader inner{.bytes = records};
     while (inner.left() > 0 && file_.ok()) {
       bool ok = true;

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/messages/binary_poses.h. Tested by tests/program/import_messages_test.cc
-#include "harness/exchange/messages/binary_poses.h"
-
+// See harness/exchange/messages/message_pose.h. Tested by tests/program/import_messages_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/messages/byte_reader.h"
+#include "harness/exchange/messages/message_pose.h"
 
 namespace prehend::exchange {
 namespace {
@@ -104,34 +103,19 @@ class BinaryDecoder {
     return seconds * kNanosecondsOfSecond + nanoseconds;
   }
 
+  template <class T>
+  std::string IntegerText() {
+    return std::to_string(reader_.Number<T>());
+  }
+
   std::string TakeInteger(Basic basic) {
-    switch (basic) {
-      case Basic::kInt8:
-        return std::to_string(reader_.Number<std::int8_t>());
-      case Basic::kUint8:
-        return std::to_string(reader_.Number<std::uint8_t>());
-      case Basic::kInt16:
-        return std::to_string(reader_.Number<std::int16_t>());
-      case Basic::kUint16:
-        return std::to_string(reader_.Number<std::uint16_t>());
-      case Basic::kInt32:
-        return std::to_string(reader_.Number<std::int32_t>());
-      case Basic::kUint32:
-        return std::to_string(reader_.Number<std::uint32_t>());
-      case Basic::kInt64:
-        return std::to_string(reader_.Number<std::int64_t>());
-      case Basic::kUint64:
-        return std::to_string(reader_.Number<std::uint64_t>());
-      case Basic::kBool:
-      case Basic::kFloat32:
-      case Basic::kFloat64:
-      case Basic::kTime:
-      case Basic::kText:
-      case Basic::kWideText:
-      case Basic::kMessage:
-        break;  // no Role::kId
-    }
-    return "";
+    const bool is_signed = basic == Basic::kInt8 || basic == Basic::kInt16 ||
+                           basic == Basic::kInt32 || basic == Basic::kInt64;
+    const std::uint64_t bytes = BytesOf(basic);
+    if (bytes == 1) return is_signed ? IntegerText<std::int8_t>() : IntegerText<std::uint8_t>();
+    if (bytes == 2) return is_signed ? IntegerText<std::int16_t>() : IntegerText<std::uint16_t>();
+    if (bytes == 4) return is_signed ? IntegerText<std::int32_t>() : IntegerText<std::uint32_t>();
+    return is_signed ? IntegerText<std::int64_t>() : IntegerText<std::uint64_t>();
   }
 
   /// How many elements a field has; 0 after an error.

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/messages/json_poses.h. Tested by tests/program/import_mcap_test.cc
-#include "harness/exchange/messages/json_poses.h"
-
+// See harness/exchange/messages/message_pose.h. Tested by tests/program/import_mcap_test.cc
 #include <fmt/format.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "harness/base/base/text_file.h"
+#include "harness/exchange/messages/message_pose.h"
 
 namespace prehend::exchange {
 namespace {

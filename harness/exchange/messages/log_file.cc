@@ -3,10 +3,40 @@
 #include "harness/exchange/messages/log_file.h"
 
 #include <fmt/format.h>
+#include <lz4frame.h>
+#include <zstd.h>
 
 #include <algorithm>
+#include <memory>
 
 namespace prehend::exchange {
+namespace {
+
+/// Frames of LZ4, one after another. "" if they do not become `size` bytes.
+std::string FromLz4(std::string_view packed, std::size_t size) {
+  LZ4F_dctx* raw = nullptr;
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION))) return "";
+  const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> context(
+      raw, &LZ4F_freeDecompressionContext);
+  std::string out(size, '\0');
+  std::size_t read = 0, written = 0;
+  while (read < packed.size()) {
+    std::size_t in_size = packed.size() - read, out_size = size - written;
+    const std::size_t state = LZ4F_decompress(context.get(), out.data() + written, &out_size,
+                                              packed.data() + read, &in_size, nullptr);
+    read += in_size;
+    written += out_size;
+    if (LZ4F_isError(state) || (in_size == 0 && out_size == 0)) return "";
+  }
+  return written == size ? out : "";
+}
+
+std::string FromZstd(std::string_view packed, std::size_t size) {
+  std::string out(size, '\0');
+  return ZSTD_decompress(out.data(), size, packed.data(), packed.size()) == size ? out : "";
+}
+
+}  // namespace
 
 LogFile::LogFile(std::istream& in, std::uint64_t size, const TakesMessage& take,
                  const HearsOfChannel& tell)
@@ -50,6 +80,23 @@ bool LogFile::AdmitsChunk(std::uint64_t bytes) {
 bool LogFile::AdmitsMore(const char* what, std::size_t count) {
   if (count >= kMaxLogChannels) Fail(fmt::format("more than {} {}s", kMaxLogChannels, what));
   return ok();
+}
+
+std::string LogFile::Unpack(std::string_view compression, std::string_view packed,
+                            std::uint64_t size, std::string_view what_is_read) {
+  if (!AdmitsChunk(size)) return "";
+  const auto bytes = static_cast<std::size_t>(size);
+  const bool is_plain = compression.empty() || compression == "none";
+  if (!is_plain && compression != "lz4" && compression != "zstd") {
+    Fail(fmt::format("a chunk with the compression '{}'; {}", compression.substr(0, 40),
+                     what_is_read));
+    return "";
+  }
+  std::string records = is_plain               ? std::string(packed)
+                        : compression == "lz4" ? FromLz4(packed, bytes)
+                                               : FromZstd(packed, bytes);
+  if (records.size() != size) Fail("a damaged chunk: it cannot be decompressed");
+  return records;
 }
 
 std::string_view LogFile::Keep(std::string_view definition) {

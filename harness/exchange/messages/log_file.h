@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What files of logged messages (MCAP, bags of ROS 1) have in common: they are read from front to
-// back, record by record, within limits, and what is wrong is told with its place.
+// back, without the index, record by record, within limits, and what is wrong is told with its
+// place. Tested by tests/program/import_mcap_test.cc and tests/program/import_bag_test.cc
 #pragma once
 
 #include <cstdint>
@@ -63,7 +64,9 @@ class LogFile {
   void Skip(std::uint64_t count);
   /// Whether a record, or a chunk once it is decompressed, is within the limits.
   bool Admits(const char* what, std::uint64_t bytes);
-  bool AdmitsChunk(std::uint64_t bytes);
+  /// The records of a chunk. `what_is_read`: said of any other compression.
+  std::string Unpack(std::string_view compression, std::string_view packed, std::uint64_t size,
+                     std::string_view what_is_read);
   /// Whether one more than `count` channels, or types, is within the limits.
   bool AdmitsMore(const char* what, std::size_t count);
 
@@ -76,6 +79,8 @@ class LogFile {
   void TakeMessage(const LogMessage& message);
 
  private:
+  bool AdmitsChunk(std::uint64_t bytes);
+
   std::istream& in_;
   const std::uint64_t size_;
   const TakesMessage& take_;
@@ -86,5 +91,15 @@ class LogFile {
   std::size_t definition_bytes_ = 0;
   std::string problem_;
 };
+
+/// The messages of an MCAP file (https://mcap.dev/spec, version 0) in the order in which they stand
+/// there. `size`: of the whole stream, bytes. Returns what is wrong with the file, with the byte at
+/// which it was seen, or "". `channels` hears of each channel, also of those without a message.
+std::string ReadMcap(std::istream& in, std::uint64_t size, const TakesMessage& take,
+                     const HearsOfChannel& channels);
+/// The same of a bag of ROS 1 (http://wiki.ros.org/Bags/Format/2.0). A connection is a channel
+/// whose messages are encoded as "ros1".
+std::string ReadBag(std::istream& in, std::uint64_t size, const TakesMessage& take,
+                    const HearsOfChannel& channels);
 
 }  // namespace prehend::exchange

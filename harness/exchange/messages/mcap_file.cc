@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/messages/mcap_file.h. Tested by tests/program/import_mcap_test.cc
-#include "harness/exchange/messages/mcap_file.h"
-
+// See harness/exchange/messages/log_file.h. Tested by tests/program/import_mcap_test.cc
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include <map>
 
 #include "harness/exchange/messages/byte_reader.h"
-#include "harness/exchange/messages/unpack.h"
+#include "harness/exchange/messages/log_file.h"
 
 namespace prehend::exchange {
 namespace {
@@ -74,20 +72,9 @@ class McapReader {
     const std::string compression(reader.Text());
     const std::string_view packed = reader.Bytes(reader.Number<std::uint64_t>());
     if (!reader.ok) return file_.Fail("a chunk that ends before its end");
-    if (!file_.AdmitsChunk(size)) return;
-    const auto bytes = static_cast<std::size_t>(size);
-    std::string records;
-    if (compression == "zstd")
-      records = FromZstd(packed, bytes);
-    else if (compression == "lz4")
-      records = FromLz4(packed, bytes);
-    else if (compression.empty())
-      records = packed;
-    else
-      return file_.Fail(
-          fmt::format("a chunk with the compression '{}'; zstd, lz4 and none are read",
-                      compression.substr(0, 40)));
-    if (records.size() != size) return file_.Fail("a damaged chunk: it cannot be decompressed");
+    const std::string records =
+        file_.Unpack(compression, packed, size, "zstd, lz4 and none are read");
+    if (!file_.ok()) return;
     const auto seen = static_cast<std::uint32_t>(
         crc32_z(0, reinterpret_cast<const Bytef*>(records.data()), records.size()));
     if (checksum != 0 && checksum != seen)

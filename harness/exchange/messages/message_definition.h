@@ -59,4 +59,7 @@ std::string PlainTypeName(std::string_view name);
 std::string ReadDefinition(std::string_view type, std::string_view text, bool ros1,
                            MessageDefinition& definition);
 
+/// The definition of "geometry_msgs/Pose" and its like, or "".
+std::string_view TextOfKnownType(std::string_view type, bool ros1);
+
 }  // namespace prehend::exchange

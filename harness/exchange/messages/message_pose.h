@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pose, as a message says it.
+// Poses, as messages in JSON, in CDR (ROS 2) and in the encoding of ROS 1 say them. Tested by
+// tests/program/import_mcap_test.cc and tests/program/import_messages_test.cc
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "harness/exchange/messages/pose_fields.h"
 
 namespace prehend::exchange {
 
@@ -26,5 +30,22 @@ struct MessagePose {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
   Eigen::Vector4d xyzw = Eigen::Vector4d(0, 0, 0, 1);  ///< the fields x, y, z, w as they are
 };
+
+enum class JsonContent {
+  kPose,        ///< foxglove.PoseInFrame, geometry_msgs/PoseStamped
+  kPoses,       ///< foxglove.PosesInFrame, geometry_msgs/PoseArray
+  kTransform,   ///< foxglove.FrameTransform, geometry_msgs/TransformStamped
+  kTransforms,  ///< foxglove.FrameTransforms, tf2_msgs/TFMessage
+  kBodies       ///< {"bodies": {"cup": {"position": .., "orientation": ..}, "hand": null}}
+};
+
+/// Appends the message's poses. Returns what is wrong with it, or "".
+std::string DecodeJsonPoses(JsonContent content, std::string_view data,
+                            std::vector<MessagePose>& poses);
+
+/// Appends the message's poses: all of `wanted` fields, of others the first ones. Returns what is
+/// wrong with the message, or "".
+std::string DecodeBinaryPoses(const PoseLayout& layout, bool ros1, std::string_view data,
+                              const std::vector<bool>& wanted, std::vector<MessagePose>& poses);
 
 }  // namespace prehend::exchange

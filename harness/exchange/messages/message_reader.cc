@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "harness/base/base/text_file.h"
-#include "harness/exchange/messages/binary_poses.h"
-#include "harness/exchange/messages/known_types.h"
+#include "harness/exchange/messages/message_definition.h"
+#include "harness/exchange/messages/message_pose.h"
 
 namespace prehend::exchange {
 namespace {

@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "harness/exchange/messages/json_poses.h"
 #include "harness/exchange/messages/log_file.h"
+#include "harness/exchange/messages/message_pose.h"
 #include "harness/exchange/messages/pose_fields.h"
 
 namespace prehend::exchange {

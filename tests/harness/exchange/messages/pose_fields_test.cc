@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/exchange/messages/body_address.h"
-
 namespace prehend::exchange {
 namespace {
 
