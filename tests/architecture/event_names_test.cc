@@ -37,8 +37,7 @@ std::vector<std::string> NamesIn(const std::string& text, const std::set<std::st
 /// that it is about. Examples in help texts may name events, as here texts are compared whole. HTML
 /// has an attribute of the name of an event, too.
 bool MayNameEvents(const std::string& path) {
-  return path == "harness/suite/report/report.cc" ||
-         path == "harness/suite/report/explanations.cc" ||
+  return path == "harness/suite/report/report.cc" || path == "harness/suite/report/charts.cc" ||
          path.starts_with("harness/truth/oracle/") || path == "harness/base/base/default_grammar.h";
 }
 

@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "harness/cli/cli/command_tree.h"
+#include "harness/cli/cli/command_line.h"
 
 namespace prehend::cli {
 namespace {

@@ -15,7 +15,6 @@
 #include "grammar/base/diagnostic.h"
 #include "harness/base/base/exit_code.h"
 #include "harness/cli/command/options.h"
-#include "harness/cli/command/shared_options.h"
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/run/find_scenario.h"
 #include "harness/episode/run/load_run.h"

@@ -9,9 +9,43 @@
 #include <vector>
 
 #include "harness/cli/command/command.h"
-#include "harness/cli/command/program_description.h"
 
 namespace prehend::cli {
+
+/// A noun, the first word of several commands: "episode" of "episode list".
+struct Noun {
+  std::string name;
+  std::string summary;
+};
+
+/// Commands under a heading of the program's help; nouns come below them.
+struct CommandGroup {
+  std::string title;
+  std::vector<std::string> names;
+};
+
+/// What a command or an option was called once. It is no name any more: an error says the new one.
+struct OldName {
+  std::string old;
+  std::string now;
+};
+
+/// What the program says about itself.
+struct ProgramDescription {
+  std::string version;  ///< all of `--version`
+  std::string summary;
+  std::string footer;  ///< below the list of commands
+  std::vector<CommandGroup> groups = {};
+  std::vector<Noun> nouns = {};
+  std::vector<OldName> old_commands = {};
+  std::vector<OldName> old_options = {};  ///< the old name with its command: "run --mesure"
+};
+
+/// One line per command in groups, and one per noun with the names of its commands.
+std::string ProgramHelp(const ProgramDescription& program, const std::vector<Command>& commands);
+
+/// One line for each command of the noun.
+std::string NounHelp(const Noun& noun, const std::vector<Command>& commands);
 
 /// A command to run. `command` is one of those that were given.
 struct ChosenCommand {

@@ -16,7 +16,6 @@
 #include "harness/episode/episodes/schema.h"
 #include "harness/suite/check/causes.h"
 #include "harness/suite/check/run_suite.h"
-#include "harness/suite/report/junit.h"
 #include "harness/suite/report/page_texts.h"
 #include "harness/suite/report/report.h"
 

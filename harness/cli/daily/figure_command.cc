@@ -11,7 +11,7 @@
 #include "harness/cli/command/picture_options.h"
 #include "harness/cli/command/typed_episode.h"
 #include "harness/show/figures/comparison_sheet.h"
-#include "harness/show/figures/find_grasps.h"
+#include "harness/show/figures/scene_tiles.h"
 #include "harness/show/pictures/svg_file.h"
 #include "harness/suite/check/select_scenarios.h"
 

@@ -15,7 +15,6 @@
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/show/figures/figures.h"
-#include "harness/show/pictures/choose_pictures.h"
 #include "harness/show/pictures/film.h"
 #include "harness/show/pictures/pictures.h"
 #include "harness/show/pictures/svg_file.h"

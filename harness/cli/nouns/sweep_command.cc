@@ -9,12 +9,11 @@
 #include "harness/base/base/atomic_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/typed_episode.h"
-#include "harness/exchange/labels/label_files.h"
 #include "harness/exchange/labels/read_labels.h"
+#include "harness/exchange/labels/read_truths.h"
 #include "harness/measure/sweep/margins.h"
 #include "harness/measure/sweep/robust_settings.h"
 #include "harness/measure/sweep/sweep.h"
-#include "harness/measure/sweep/sweep_progress.h"
 #include "harness/show/pictures/svg_file.h"
 
 namespace prehend::cli {

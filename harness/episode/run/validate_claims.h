@@ -7,7 +7,7 @@
 #include "grammar/monitor.h"
 #include "harness/base/yaml/located_yaml.h"
 #include "harness/scenario/scenario/scenario.h"
-#include "harness/truth/claims/fit_claim.h"
+#include "harness/truth/claims/judge_claims.h"
 
 namespace prehend::episode {
 

@@ -7,13 +7,52 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "harness/base/base/result.h"
 #include "harness/episode/episodes/episode_file.h"
-#include "harness/exchange/knowledge/vocabulary.h"
+#include "harness/exchange/knowledge/triples.h"
 #include "physics/base/pose.h"
 
 namespace prehend::exchange {
+
+/// How an event is written down.
+struct EventTerm {
+  std::string name;      ///< "knowrob:Reaching"
+  std::string base;      ///< a class of DUL or SOMA above it; of another grammar's event empty
+  std::string relation;  ///< to `concept_name`: "dul:executesTask", "dul:isClassifiedBy"; or empty
+  std::string concept_name;  ///< "knowrob:ReachingTask"
+};
+
+class Vocabulary {
+ public:
+  /// Reads harness/exchange/knowledge/prehend.ttl of the project, or of what ships.
+  static Result<Vocabulary> Load(const std::string& root);
+
+  /// The terminology as it stands in its file.
+  const std::string& text() const { return text_; }
+
+  EventTerm TermOf(const std::string& event) const;
+  /// "knowrob:performedBy" of "hand".
+  std::string PropertyOf(const std::string& role) const;
+  /// "knowrob:WrapStyle" of "wrap".
+  std::string StyleOf(const std::string& style) const;
+  /// "knowrob:MilkCarton". A class that is called like a word that means something else gets
+  /// "Object" behind it.
+  std::string ClassOf(const std::string& name) const;
+  /// Whether the terminology has this name.
+  bool Has(const std::string& name) const { return known_.contains(name); }
+
+ private:
+  std::string text_;
+  std::map<std::string, EventTerm> events_;
+  std::map<std::string, std::string> roles_, styles_;
+  std::set<std::string> known_, things_;
+};
+
+/// "SlowWave" of "slow_wave"; what may not stand in a name is left out.
+std::string CamelCase(std::string_view words);
 
 /// A task as a map shows it. Entities stand in the order of their numbers.
 struct MapOfTask {

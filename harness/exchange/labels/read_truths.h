@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/exchange/labels/label_files.h"
+#include "harness/base/base/result.h"
+#include "harness/episode/run/episode_name.h"
 #include "harness/exchange/labels/label_map.h"
 
 namespace prehend::exchange {
@@ -20,5 +21,9 @@ Result<LabelReading> ReadTruths(const std::vector<episode::EpisodeName>& episode
 
 /// What a reading left out, as a line of warning; "" if it left out nothing.
 std::string BackwardWarning(const LabelReading& reading);
+
+/// The grammar that the recordings name for themselves, for commands without --grammar; of what was
+/// simulated the default one. Reports recordings that name different grammars.
+Result<std::string> OwnGrammar(const std::vector<episode::EpisodeName>& episodes);
 
 }  // namespace prehend::exchange

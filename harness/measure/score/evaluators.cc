@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "harness/truth/timeline/agree_within.h"
 #include "harness/truth/timeline/event_text.h"
+#include "harness/truth/timeline/match_events.h"
 
 namespace prehend::measure {
 

@@ -12,7 +12,7 @@
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/missing_facts.h"
 #include "harness/exchange/labels/clock_offset.h"
-#include "harness/exchange/labels/label_files.h"
+#include "harness/exchange/labels/read_truths.h"
 #include "harness/truth/timeline/match_events.h"
 
 namespace prehend::measure {

@@ -3,8 +3,12 @@
 // tests/program/sweep_test.cc
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -87,5 +91,33 @@ std::string MeasureText(const SweepRequest& request);
 /// One point per setting, or why the grammar cannot be compiled with one.
 Result<SweepResult> Sweep(const std::vector<episode::EpisodeName>& episodes,
                           const SweepRequest& request);
+
+/// Says once, after the first settings, how long all will take, unless that is soon.
+class SweepProgress {
+ public:
+  /// `is_person`: how far it is is shown, too, in a line that is written anew.
+  SweepProgress(std::size_t episodes, bool is_person, std::ostream& out)
+      : episodes_(episodes), is_person_(is_person), out_(out) {}
+  ~SweepProgress();
+  SweepProgress(const SweepProgress&) = delete;
+  SweepProgress& operator=(const SweepProgress&) = delete;
+
+  /// Settings, each on one episode.
+  void Tell(std::size_t done, std::size_t all);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Counted {
+    Clock::time_point at;
+    std::size_t done = 0;
+  };
+
+  const std::size_t episodes_;
+  const bool is_person_;
+  std::ostream& out_;
+  const Clock::time_point start_ = Clock::now();
+  std::optional<Counted> first_;
+  bool said_ = false;
+};
 
 }  // namespace prehend::measure

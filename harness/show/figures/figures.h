@@ -8,7 +8,7 @@
 #include <string>
 
 #include "harness/show/chart/chart.h"
-#include "harness/show/figures/window.h"
+#include "harness/show/figures/moments.h"
 
 namespace prehend::show {
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/episode/run/load_run.h"
 #include "harness/show/figures/moments.h"
 #include "harness/show/figures/sheet.h"
 #include "harness/show/pictures/scene_painter.h"
@@ -56,5 +57,19 @@ struct HeldScene {
 /// What is held in which style, the hand's parts coloured by the sets of their sensors.
 Sheet GraspSheet(const std::vector<HeldScene>& scenes, const SceneFormat& format,
                  ScenePainter& painter);
+
+struct PlayedGrasp {
+  episode::LoadedRun loaded;
+  episode::RunResult run;
+  HeldMoment held;
+};
+
+/// Of the first scenario, short ones first, in which a hand holds something in that style. Plays
+/// only what may show a style that is not known yet.
+Result<std::vector<PlayedGrasp>> FindGrasps(std::vector<episode::RunRequest> scenarios,
+                                            const std::string& root);
+
+/// They point to the grasps.
+std::vector<HeldScene> ScenesOf(const std::vector<PlayedGrasp>& grasps);
 
 }  // namespace prehend::show

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/pictures/choose_pictures.h. Tested by tests/program/render_test.cc
-#include "harness/show/pictures/choose_pictures.h"
-
+// See harness/show/pictures/pictures.h. Tested by tests/program/render_test.cc
 #include "harness/episode/run/event_time.h"
+#include "harness/show/pictures/pictures.h"
 
 namespace prehend::show {
 

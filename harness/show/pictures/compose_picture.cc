@@ -12,7 +12,6 @@
 
 #include "harness/episode/run/event_time.h"
 #include "harness/show/pictures/framing.h"
-#include "harness/show/pictures/regions_of_interest.h"
 #include "harness/show/pictures/scenery.h"
 #include "harness/truth/timeline/event_drawings.h"
 

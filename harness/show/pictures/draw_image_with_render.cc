@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/pictures/draw_image.h. Tested by
+// See harness/show/pictures/compose_picture.h. Tested by
 // tests/harness/show/pictures/scene_painter_test.cc
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include "harness/show/pictures/draw_image.h"
+#include "harness/show/pictures/compose_picture.h"
 
 namespace prehend::show {
 namespace {

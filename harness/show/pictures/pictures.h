@@ -115,4 +115,18 @@ PictureResult DrawSheet(const std::vector<SheetEntry>& entries, int columns,
 bool WritePictureDifference(const std::string& golden_file, const std::string& drawn_file,
                             const std::string& file);
 
+struct PictureChoice {
+  std::vector<std::string> at;  ///< a picture each: "grasping.begin", "1.5"; none: the scenario's
+  std::string camera;           ///< "": as the scenario's first picture says
+  bool all = false;             ///< without `at` all pictures of the scenario, not the first one
+};
+
+std::vector<scenario::PictureYaml> ChosenPictures(const PictureChoice& choice,
+                                                  const scenario::Scenario& scenario);
+
+/// Why they cannot be drawn of an episode with this grammar: "--at: ..", "--camera: .."; or "".
+std::string WhyNotChosen(const PictureChoice& choice,
+                         const std::vector<scenario::PictureYaml>& chosen,
+                         const scenario::Scenario& scenario, const grammar::Program& program);
+
 }  // namespace prehend::show

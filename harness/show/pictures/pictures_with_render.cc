@@ -10,7 +10,6 @@
 #include "harness/base/base/text_file.h"
 #include "harness/episode/run/event_time.h"
 #include "harness/show/pictures/compose_picture.h"
-#include "harness/show/pictures/draw_image.h"
 #include "harness/show/pictures/pictures.h"
 #include "render/inventory.h"
 

@@ -5,7 +5,6 @@
 
 #include "harness/episode/run/event_time.h"
 #include "harness/show/pictures/compose_picture.h"
-#include "harness/show/pictures/draw_image.h"
 #include "harness/show/pictures/scene_painter.h"
 
 namespace prehend::show {

@@ -4,11 +4,13 @@
 // tests/harness/show/pictures/scenery_test.cc
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "harness/episode/run/run_scenario.h"
 #include "harness/scenario/scenario/scenario.h"
 #include "render/picture.h"
 
@@ -44,5 +46,12 @@ std::vector<float> BodyAlphas(const physics::Scene& scene, const physics::Snapsh
 
 /// Direction from the middle of the things to the first light; nullopt without a light.
 std::optional<Eigen::Vector3f> ToLight(const physics::Scene& scene);
+
+/// Of each phase at the moment of `now`: the regions of its rule in the colour of the phase, and a
+/// star above each movable thing that is in a region in front of a hand. `shown` says which events
+/// the picture shows.
+std::vector<render::Marker> RegionMarkers(
+    const scenario::Scenario& scenario, const episode::RunResult& run, const physics::Snapshot& now,
+    const std::function<bool(const grammar::NamedEvent&)>& shown);
 
 }  // namespace prehend::show

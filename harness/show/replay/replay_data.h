@@ -4,11 +4,15 @@
 // tests/harness/show/replay/replay_data_test.cc
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "harness/episode/run/run_scenario.h"
 #include "harness/scenario/scenario/scenario.h"
+#include "physics/base/pose.h"
 
 namespace prehend::show {
 
@@ -17,5 +21,17 @@ nlohmann::json ReplayJson(const scenario::Scenario& scenario, const episode::Run
 
 /// The same as text, deflated (RFC 1950), in base64; empty without a recording.
 std::string ReplayData(const scenario::Scenario& scenario, const episode::RunResult& run);
+
+/// How far an interpolated pose may be from the true one.
+inline constexpr double kTrackTolerance_m = 0.0003;
+inline constexpr double kTrackTolerance_rad = 0.006;
+
+/// Indices of the poses that are kept, from the first to the last; of poses that are all the same,
+/// the first. `at`: when each pose is, strictly increasing.
+std::vector<std::size_t> KeysOf(std::span<const physics::Pose> poses,
+                                std::span<const std::int64_t> at);
+
+/// The pose between two others, `share` of the way.
+physics::Pose Between(const physics::Pose& a, const physics::Pose& b, double share);
 
 }  // namespace prehend::show

@@ -18,7 +18,7 @@
 #include "harness/suite/check/check_request.h"
 #include "harness/suite/judge/accept_golden.h"
 #include "harness/suite/judge/compare_engines.h"
-#include "harness/suite/judge/judge_claims.h"
+#include "harness/suite/judge/judge.h"
 #include "harness/suite/judge/judge_recording.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/golden/golden_files.h"

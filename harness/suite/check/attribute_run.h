@@ -10,7 +10,6 @@
 #include "harness/suite/check/attribute.h"
 #include "harness/suite/check/check_request.h"
 #include "harness/suite/check/last_pass.h"
-#include "harness/suite/check/state_trace.h"
 #include "harness/suite/judge/judge.h"
 
 namespace prehend::suite {

@@ -3,10 +3,14 @@
 // Tested by tests/harness/suite/check/last_pass_test.cc
 #include "harness/suite/check/last_pass.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "harness/base/base/atomic_file.h"
+#include "physics/scene/state_hash.h"
 
 namespace prehend::suite {
 namespace {
@@ -75,6 +79,115 @@ LastPasses::Costs LastPasses::ReadCosts() const {
 
 std::string LastPasses::WriteCosts(const Costs& costs) const {
   return WriteTextFile(folder_ / "costs.json", AsText(costs));
+}
+
+namespace {
+
+constexpr std::size_t kMaxTracedTicks = 20'000;
+constexpr std::size_t kMaxTracedEntities = 100'000;
+
+/// Half of the bits are enough to tell two states apart.
+template <typename State>
+std::uint32_t HashOf(const State& state) {
+  physics::StateHash hash;
+  hash.Add(state);
+  return static_cast<std::uint32_t>(hash.value());
+}
+
+void AddHashes(const physics::Snapshot& snapshot, std::vector<std::uint32_t>& hashes) {
+  for (const physics::BodyState& body : snapshot.bodies) hashes.push_back(HashOf(body));
+  for (const physics::HandState& hand : snapshot.hands) hashes.push_back(HashOf(hand));
+}
+
+std::int64_t WidestGap(const StateTrace& trace) {
+  std::int64_t widest = 0;
+  for (std::size_t i = 1; i < trace.ticks.size(); ++i)
+    widest = std::max(widest, trace.ticks[i] - trace.ticks[i - 1]);
+  return widest;
+}
+
+/// Nothing when both are equally long. If they have states of different ticks, that is known to the
+/// widest gap only.
+std::optional<Divergence> FirstTickOfTheLonger(const StateTrace& a, const StateTrace& b) {
+  const auto last = [](const StateTrace& run) { return run.ticks.empty() ? -1 : run.ticks.back(); };
+  const StateTrace& longer = last(a) > last(b) ? a : b;
+  const std::int64_t end = std::min(last(a), last(b));
+  const std::int64_t unseen = SameTicks(a, b) ? 1 : std::max(WidestGap(a), WidestGap(b));
+  if (last(longer) - end < unseen) return std::nullopt;
+  return Divergence{.tick = *std::upper_bound(longer.ticks.begin(), longer.ticks.end(), end),
+                    .entity = {}};
+}
+
+}  // namespace
+
+StateTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snapshot> recording) {
+  StateTrace trace;
+  for (const physics::Body& body : scene.bodies) trace.entities.push_back(body.name);
+  for (const physics::Hand& hand : scene.hands) trace.entities.push_back(hand.name);
+  const std::size_t step = recording.size() / kMaxTracedTicks + 1;
+  for (std::size_t i = 0; i < recording.size(); i += step) {
+    trace.ticks.push_back(recording[i].tick);
+    AddHashes(recording[i], trace.hashes);
+  }
+  return trace;
+}
+
+bool SameTicks(const StateTrace& a, const StateTrace& b) {
+  const auto both = static_cast<std::ptrdiff_t>(std::min(a.ticks.size(), b.ticks.size()));
+  return std::equal(a.ticks.begin(), a.ticks.begin() + both, b.ticks.begin());
+}
+
+std::optional<Divergence> FirstDivergence(const StateTrace& a, const StateTrace& b) {
+  const std::size_t entities = a.entities.size();
+  if (a.entities != b.entities) return Divergence{};
+  std::size_t i = 0, j = 0;
+  while (i < a.ticks.size() && j < b.ticks.size()) {
+    if (a.ticks[i] != b.ticks[j]) {
+      ++(a.ticks[i] < b.ticks[j] ? i : j);
+      continue;
+    }
+    for (std::size_t k = 0; k < entities; ++k) {
+      if (a.hashes[i * entities + k] != b.hashes[j * entities + k])
+        return Divergence{.tick = a.ticks[i], .entity = a.entities[k]};
+    }
+    ++i, ++j;
+  }
+  return FirstTickOfTheLonger(a, b);
+}
+
+std::string WriteTrace(const std::filesystem::path& path, const StateTrace& trace) {
+  std::string text = fmt::format("trace 1\n{}\n", trace.entities.size());
+  for (const std::string& entity : trace.entities) text += entity + "\n";
+  std::size_t next = 0;
+  for (const std::int64_t tick : trace.ticks) {
+    text += std::to_string(tick);
+    for (std::size_t k = 0; k < trace.entities.size(); ++k)
+      text += fmt::format(" {:x}", trace.hashes[next++]);
+    text += '\n';
+  }
+  return WriteTextFile(path, text);
+}
+
+std::optional<StateTrace> ReadTrace(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::string word;
+  int version = 0;
+  std::size_t entities = 0;
+  if (!(file >> word >> version >> entities) || word != "trace" || version != 1)
+    return std::nullopt;
+  if (entities > kMaxTracedEntities) return std::nullopt;
+  StateTrace trace;
+  for (std::size_t k = 0; k < entities && file >> word; ++k) trace.entities.push_back(word);
+  std::int64_t tick = 0;
+  while (file >> std::dec >> tick) {
+    trace.ticks.push_back(tick);
+    std::uint32_t hash = 0;
+    for (std::size_t k = 0; k < entities && file >> std::hex >> hash; ++k)
+      trace.hashes.push_back(hash);
+  }
+  const bool whole = file.eof() && trace.entities.size() == entities &&
+                     trace.hashes.size() == entities * trace.ticks.size();
+  return whole ? std::optional(std::move(trace)) : std::nullopt;
 }
 
 }  // namespace prehend::suite

@@ -4,14 +4,19 @@
 // tests/harness/suite/check/last_pass_test.cc
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/suite/check/verdict.h"
+#include "physics/scene/scene.h"
+#include "physics/scene/snapshot.h"
 
 namespace prehend::suite {
 
@@ -50,5 +55,31 @@ class LastPasses {
  private:
   std::filesystem::path folder_;
 };
+
+struct StateTrace {
+  std::vector<std::string> entities;  ///< bodies, then hands
+  std::vector<std::int64_t> ticks;
+  std::vector<std::uint32_t> hashes;  ///< for each tick one per entity
+  friend bool operator==(const StateTrace&, const StateTrace&) = default;
+};
+
+/// Of at most 20,000 snapshots; of a longer recording every n-th.
+StateTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snapshot> recording);
+
+struct Divergence {
+  std::int64_t tick = 0;
+  std::string entity;  ///< the first that differs; "" when one run has more ticks or other entities
+};
+
+/// Whether both have states of the same ticks, as long as both last.
+bool SameTicks(const StateTrace& a, const StateTrace& b);
+
+/// Nothing when the two move the same at all ticks that both have, and are equally long.
+std::optional<Divergence> FirstDivergence(const StateTrace& a, const StateTrace& b);
+
+/// A text file; "" or what went wrong.
+std::string WriteTrace(const std::filesystem::path& path, const StateTrace& trace);
+/// Nothing when there is none or it is damaged.
+std::optional<StateTrace> ReadTrace(const std::filesystem::path& path);
 
 }  // namespace prehend::suite

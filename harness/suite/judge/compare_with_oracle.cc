@@ -13,8 +13,8 @@
 #include "grammar/contents.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/oracle/oracle.h"
-#include "harness/truth/timeline/agree_within.h"
 #include "harness/truth/timeline/event_text.h"
+#include "harness/truth/timeline/match_events.h"
 
 namespace prehend::suite {
 namespace {

@@ -12,7 +12,7 @@
 #include "harness/episode/run/run_scenario.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/scenario/transform/transform.h"
-#include "harness/suite/judge/judge_claims.h"
+#include "harness/suite/judge/judge.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {

@@ -14,6 +14,7 @@
 #include "grammar/base/timeline.h"
 #include "grammar/check_laws.h"
 #include "grammar/describe.h"
+#include "harness/suite/judge/judge.h"
 
 namespace prehend::suite {
 
@@ -50,5 +51,9 @@ Violations CheckInvariants(const grammar::Timeline& timeline, const EpisodeFacts
 std::string Text(const Violation& violation, grammar::Tick ticks_per_second);
 /// "slides_are_supported at 1.2000..1.3000 s: ..", and a line with the law itself.
 std::string Text(const grammar::LawViolation& violation, grammar::Tick ticks_per_second);
+
+Findings JudgeInvariants(const CheckedRun& checked);
+
+Findings JudgeLaws(const CheckedRun& checked);
 
 }  // namespace prehend::suite

@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "grammar/base/timeline.h"
 #include "harness/base/base/exit_code.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
+#include "harness/truth/claims/judge_claims.h"
 
 namespace prehend::suite {
 
@@ -35,5 +37,17 @@ struct CheckedRun {
   episode::RunResult result;
   std::string explain;  ///< the command that asks about its events
 };
+
+/// Said of a scenario that contradicts its claims.
+inline constexpr const char* kUntilClaimsHold =
+    "it cannot be accepted until its claims hold: change the script so that it plays what the "
+    "scenario shows, or fix what is recognised";
+
+/// `timeline` is what the grammar of `loaded` recognised.
+std::vector<truth::ClaimVerdict> JudgeClaims(const episode::LoadedRun& loaded,
+                                             const grammar::Timeline& timeline);
+
+/// One per contradicted claim.
+Findings ClaimFindings(const std::vector<truth::ClaimVerdict>& verdicts);
 
 }  // namespace prehend::suite

@@ -5,9 +5,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
 
+#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/sensing.h"
 #include "harness/suite/judge/accept_golden.h"
-#include "harness/suite/judge/difference_context.h"
+#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {
 namespace {
@@ -68,6 +74,126 @@ Findings JudgeGolden(const GoldenComparison& compared, const CheckedRun& checked
   }
   if (!compared.TruthIsAccepted()) findings.push_back(TruthFinding(compared));
   return findings;
+}
+
+namespace {
+
+using grammar::Interval;
+using grammar::Tick;
+
+/// Touches within this time are listed.
+constexpr double kAround_s = 0.1;
+constexpr std::size_t kMaxTouches = 8;
+
+struct Touching {
+  int a = 0, b = 0;
+  Interval interval;
+};
+
+/// Entities of the expected and of the recognised event.
+std::set<int> Participants(const truth::Pairing& difference,
+                           const grammar::EntityTable& entity_table) {
+  std::set<int> ids;
+  for (const std::optional<grammar::NamedEvent>* side :
+       {&difference.expected, &difference.actual}) {
+    if (!*side) continue;
+    for (std::size_t i = 0; i < entity_table.entities.size(); ++i) {
+      const bool takes_part = std::ranges::any_of((*side)->roles, [&](const auto& role) {
+        return role.value == entity_table.entities[i].name;
+      });
+      if (takes_part) ids.insert(static_cast<int>(i));
+    }
+  }
+  return ids;
+}
+
+/// Every touch without a gap of a participant that overlaps the window, in the order of begins.
+std::vector<Touching> TouchesIn(Interval window, const std::set<int>& participants,
+                                std::span<const physics::Snapshot> recording,
+                                episode::Sensing& sensing) {
+  std::map<std::pair<int, int>, Touching> open;
+  std::vector<Touching> touches;
+  const auto close = [&](const Touching& touching) {
+    if (touching.interval.end >= window.begin && touching.interval.begin <= window.end)
+      touches.push_back(touching);
+  };
+  for (const physics::Snapshot& snapshot : recording) {
+    if (!sensing.Due(snapshot.tick)) continue;
+    const grammar::Frame frame = sensing.Sense(snapshot);
+    std::map<std::pair<int, int>, Touching> now;
+    for (const grammar::Touch& touch : frame.touches) {
+      if (!participants.contains(touch.a) && !participants.contains(touch.b)) continue;
+      const auto before = open.extract({touch.a, touch.b});
+      now[{touch.a, touch.b}] =
+          before ? before.mapped() : Touching{touch.a, touch.b, {frame.tick, frame.tick}};
+    }
+    for (auto& [pair, ended] : open) {
+      ended.interval.end = frame.tick;
+      close(ended);
+    }
+    open = std::move(now);
+  }
+  for (auto& [pair, lasting] : open) {
+    lasting.interval.end = recording.back().tick + 1;
+    close(lasting);
+  }
+  std::ranges::sort(touches, {}, [](const Touching& t) {
+    return std::tuple(t.interval.begin, t.interval.end, t.a, t.b);
+  });
+  return touches;
+}
+
+/// To millimetres, without a sign before a zero.
+double Rounded(double value) { return std::round(1000 * value) / 1000 + 0.0; }
+
+std::string StateText(const grammar::Frame& frame, const std::set<int>& participants,
+                      const grammar::EntityTable& entity_table) {
+  std::string text;
+  for (const int id : participants) {
+    const grammar::EntitySample& look = frame.entities[static_cast<std::size_t>(id)];
+    text +=
+        fmt::format("    {} at ({:.3f}, {:.3f}, {:.3f}) m, {:.3f} m/s, rising {:.3f} m/s",
+                    entity_table.entities[static_cast<std::size_t>(id)].name,
+                    Rounded(look.p_WB_m.x()), Rounded(look.p_WB_m.y()), Rounded(look.p_WB_m.z()),
+                    look.v_WB_m_per_s.norm(), Rounded(look.v_WB_m_per_s.z()));
+    for (const grammar::HandSample& hand : frame.hands) {
+      if (hand.entity == id) text += fmt::format(", grip {:.2f}", hand.trigger);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string DifferenceContext(const scenario::Scenario& scenario,
+                              std::span<const physics::Snapshot> recording,
+                              const truth::Pairing& difference) {
+  if (recording.empty()) return "";
+  const Tick tick = difference.DivergenceTick();
+  const grammar::EntityTable entity_table = episode::MakeEntityTable(scenario);
+  const std::set<int> participants = Participants(difference, entity_table);
+  const Tick rate = entity_table.ticks_per_second;
+  const Tick around = truth::TickAt(kAround_s, rate);
+  episode::Sensing sensing(scenario.scene, scenario.sensing);
+
+  const auto at = std::ranges::lower_bound(recording, tick, {}, &physics::Snapshot::tick);
+  const physics::Snapshot& snapshot = at == recording.end() ? recording.back() : *at;
+  std::string text = fmt::format("  facts at {} s (tick {}):\n",
+                                 truth::SecondsText(snapshot.tick, rate), snapshot.tick);
+  text += StateText(sensing.Sense(snapshot), participants, entity_table);
+  const std::vector<Touching> touches =
+      TouchesIn({tick - around, tick + around}, participants, recording, sensing);
+  for (std::size_t i = 0; i < std::min(touches.size(), kMaxTouches); ++i) {
+    const auto name = [&](int id) {
+      return entity_table.entities[static_cast<std::size_t>(id)].name;
+    };
+    text += fmt::format("    {} touches {} {}\n", name(touches[i].a), name(touches[i].b),
+                        truth::IntervalText(touches[i].interval, rate));
+  }
+  if (touches.size() > kMaxTouches)
+    text += fmt::format("    and {} more touches\n", touches.size() - kMaxTouches);
+  return text;
 }
 
 }  // namespace prehend::suite

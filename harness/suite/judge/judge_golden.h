@@ -4,11 +4,14 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
+#include "harness/scenario/scenario/scenario.h"
 #include "harness/suite/judge/compare_with_oracle.h"
 #include "harness/suite/judge/judge.h"
 #include "harness/truth/golden/compare.h"
+#include "physics/scene/snapshot.h"
 
 namespace prehend::suite {
 
@@ -37,5 +40,11 @@ Finding DifferenceFinding(const truth::Comparison& comparison, const std::string
 /// none.
 Findings JudgeGolden(const GoldenComparison& compared, const CheckedRun& checked,
                      const std::string& cause);
+
+/// Lines indented by two blanks; "" without a recording. Contacts are as sensed: no gap is
+/// tolerated.
+std::string DifferenceContext(const scenario::Scenario& scenario,
+                              std::span<const physics::Snapshot> recording,
+                              const truth::Pairing& difference);
 
 }  // namespace prehend::suite

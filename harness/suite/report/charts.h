@@ -3,6 +3,7 @@
 // by tests/harness/suite/report/charts_test.cc
 #pragma once
 
+#include <pugixml.hpp>
 #include <string>
 
 #include "harness/suite/check/explained.h"
@@ -20,5 +21,10 @@ std::string TimelineSvg(const truth::Comparison& comparison, grammar::Tick end,
 /// A signal over time: its value, its limit, and when the one crossed the other, as an <svg>
 /// element. The signal has at least one sample.
 std::string SignalSvg(const DecidingSignal& signal, grammar::Tick ticks_per_second);
+
+/// Adds an explanation for each difference, the first one unfolded, with its signals; and as data
+/// what turned at each boundary, which the page's script shows at the cursor.
+void AddExplanations(pugi::xml_node section, const Explained& explained,
+                     grammar::Tick ticks_per_second);
 
 }  // namespace prehend::suite

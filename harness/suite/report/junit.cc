@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/report/junit.h. Tested by tests/harness/suite/report/junit_test.cc
-#include "harness/suite/report/junit.h"
-
+// See harness/suite/report/report.h. Tested by tests/harness/suite/report/junit_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "harness/base/base/markup.h"
+#include "harness/suite/report/report.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {

@@ -17,7 +17,6 @@
 #include "harness/base/base/markup.h"
 #include "harness/suite/check/causes.h"
 #include "harness/suite/report/charts.h"
-#include "harness/suite/report/explanations.h"
 #include "harness/suite/report/page_texts.h"
 
 namespace prehend::suite {

@@ -33,4 +33,8 @@ inline constexpr std::size_t kMostReplayBytes = 10'000'000;
 
 std::string ReportHtml(const std::vector<ScenarioVerdict>& verdicts, const ReportHeader& header);
 
+/// Differences and pending goldens are failures, what could not be read or did not end is an error,
+/// what nothing changed for is skipped. The class of a case is its skill.
+std::string JunitXml(const std::vector<ScenarioVerdict>& verdicts);
+
 }  // namespace prehend::suite

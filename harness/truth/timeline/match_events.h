@@ -75,4 +75,15 @@ Agreement Agree(const grammar::Timeline& truth, const grammar::Timeline& found,
 ///   +25.0 ms, end +0.0 ms missing  sliding(right_hand, milk)   true 2.5000..3.0000 s
 std::string DescribeDisagreement(const Agreement& agreement, grammar::Tick tolerance);
 
+/// How well a timeline agrees with the timelines that the definitions allow; the first has the
+/// definitions' own numbers.
+/// - Found events that some of them have match. A boundary between the earliest and the latest of
+///   theirs has no offset: the match's `truth` has it where it was found. Otherwise `truth` has the
+///   nearer of the two.
+/// - An event that none of them has is extra.
+/// - An event of the first is missing if each of the others lacks a partner for one there, too. One
+///   that is not longer than the collar may lie between two frames: it is not missed.
+Agreement AgreeWithin(std::span<const grammar::Timeline> possible, const grammar::Timeline& found,
+                      grammar::Tick collar);
+
 }  // namespace prehend::truth

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tree of commands: its screens, and what becomes of names that are in it no longer.
-#include "harness/cli/cli/command_tree.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <iterator>
 #include <set>
 #include <sstream>
+
+#include "harness/cli/cli/command_line.h"
 
 namespace prehend::cli {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/replay/pose_track.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "harness/show/replay/replay_data.h"
 
 namespace prehend::show {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The first tick and entity where two runs part is found, also after a way through a file.
-#include "harness/suite/check/state_trace.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include "harness/base/base/atomic_file.h"
+#include "harness/suite/check/last_pass.h"
 
 namespace prehend::suite {
 namespace {

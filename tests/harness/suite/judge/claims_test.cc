@@ -14,7 +14,7 @@
 #include "harness/episode/run/load_grammar.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/oracle/oracle.h"
-#include "harness/truth/timeline/agree_within.h"
+#include "harness/truth/timeline/match_events.h"
 #include "tests/harness/suite/judge/played_scenario.h"
 
 namespace prehend::suite {

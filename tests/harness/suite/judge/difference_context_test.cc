@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The facts beside a difference are those of its participants, around its moment.
-#include "harness/suite/judge/difference_context.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/suite/judge/judge_golden.h"
 
 namespace prehend::suite {
 namespace {

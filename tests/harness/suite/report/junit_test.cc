@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The XML in full, as the schema of JUnit files wants it.
-#include "harness/suite/report/junit.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/suite/report/report.h"
 
 namespace prehend::suite {
 namespace {

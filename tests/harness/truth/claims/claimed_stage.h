@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/truth/claims/fit_claim.h"
+#include "harness/truth/claims/judge_claims.h"
 #include "harness/truth/claims/parse_claim.h"
 
 namespace prehend::truth {

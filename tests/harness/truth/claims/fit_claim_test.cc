@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which events a claim is about, and names that there are not.
-#include "harness/truth/claims/fit_claim.h"
-
+#include "harness/truth/claims/judge_claims.h"
 #include "tests/harness/truth/claims/claimed_stage.h"
 
 namespace prehend::truth {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/truth/timeline/agree_within.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/truth/timeline/match_events.h"
 
 namespace prehend::truth {
 namespace {

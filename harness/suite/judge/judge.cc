@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/judge/judge_claims.h. Tested by tests/harness/suite/judge/judge_claims_test.cc
-#include "harness/suite/judge/judge_claims.h"
+// See harness/suite/judge/judge.h. Tested by tests/harness/suite/judge/judge_claims_test.cc
+#include "harness/suite/judge/judge.h"
 
 #include "harness/episode/run/validate_claims.h"
 
