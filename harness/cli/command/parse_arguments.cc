@@ -187,6 +187,49 @@ UsageError UnknownCommand(const ProgramDescription& program, const std::vector<C
   return error;
 }
 
+/// The commands of a noun, by their second words.
+std::vector<std::pair<std::string, const Command*>> CommandsOf(
+    const Noun& noun, const std::vector<Command>& commands) {
+  std::vector<std::pair<std::string, const Command*>> found;
+  for (const Command& command : commands) {
+    if (command.name.starts_with(noun.name + " "))
+      found.emplace_back(command.name.substr(noun.name.size() + 1), &command);
+  }
+  return found;
+}
+
+std::string Line(const std::string& name, const std::string& summary) {
+  return fmt::format("  {:<10} {}\n", name, summary);
+}
+
+/// One line per command in groups, and one per noun with the names of its commands.
+std::string ProgramHelp(const ProgramDescription& program, const std::vector<Command>& commands) {
+  std::string help = program.summary + "\nUsage: prehend COMMAND [OPTIONS]\n";
+  for (const CommandGroup& group : program.groups) {
+    help += "\n" + group.title + ":\n";
+    for (const std::string& name : group.names)
+      help += Line(name, std::ranges::find(commands, name, &Command::name)->summary);
+  }
+  if (!program.nouns.empty())
+    help += "\nMore, as in '" + CommandText({program.nouns.front().name, "--help"}) + "':\n";
+  for (const Noun& noun : program.nouns) {
+    std::vector<std::string> names;
+    for (const auto& [name, command] : CommandsOf(noun, commands)) names.push_back(name);
+    help += Line(noun.name, fmt::format("{}: {}", noun.summary, fmt::join(names, ", ")));
+  }
+  return help + "\n" + program.footer + "\n";
+}
+
+/// One line for each command of the noun.
+std::string NounHelp(const Noun& noun, const std::vector<Command>& commands) {
+  std::string help = fmt::format("{}\nUsage: prehend {} COMMAND [OPTIONS]\n\nCommands:\n",
+                                 noun.summary, noun.name);
+  for (const auto& [name, command] : CommandsOf(noun, commands))
+    help += Line(name, command->summary);
+  return help + "\nEach has its own --help, as '" +
+         CommandText({noun.name, CommandsOf(noun, commands).front().first, "--help"}) + "'\n";
+}
+
 bool IsHelp(const std::string& word) { return word == "-h" || word == "--help"; }
 
 }  // namespace
@@ -210,51 +253,6 @@ ParsedArguments ParseArguments(const ProgramDescription& program,
   const auto command = std::ranges::find(commands, name, &Command::name);
   if (command == commands.end()) return UnknownCommand(program, commands, name, words);
   return ParseOptions(*command, program.old_options, words, noun == program.nouns.end() ? 1 : 2);
-}
-
-namespace {
-
-/// The commands of a noun, by their second words.
-std::vector<std::pair<std::string, const Command*>> CommandsOf(
-    const Noun& noun, const std::vector<Command>& commands) {
-  std::vector<std::pair<std::string, const Command*>> found;
-  for (const Command& command : commands) {
-    if (command.name.starts_with(noun.name + " "))
-      found.emplace_back(command.name.substr(noun.name.size() + 1), &command);
-  }
-  return found;
-}
-
-std::string Line(const std::string& name, const std::string& summary) {
-  return fmt::format("  {:<10} {}\n", name, summary);
-}
-
-}  // namespace
-
-std::string ProgramHelp(const ProgramDescription& program, const std::vector<Command>& commands) {
-  std::string help = program.summary + "\nUsage: prehend COMMAND [OPTIONS]\n";
-  for (const CommandGroup& group : program.groups) {
-    help += "\n" + group.title + ":\n";
-    for (const std::string& name : group.names)
-      help += Line(name, std::ranges::find(commands, name, &Command::name)->summary);
-  }
-  if (!program.nouns.empty())
-    help += "\nMore, as in '" + CommandText({program.nouns.front().name, "--help"}) + "':\n";
-  for (const Noun& noun : program.nouns) {
-    std::vector<std::string> names;
-    for (const auto& [name, command] : CommandsOf(noun, commands)) names.push_back(name);
-    help += Line(noun.name, fmt::format("{}: {}", noun.summary, fmt::join(names, ", ")));
-  }
-  return help + "\n" + program.footer + "\n";
-}
-
-std::string NounHelp(const Noun& noun, const std::vector<Command>& commands) {
-  std::string help = fmt::format("{}\nUsage: prehend {} COMMAND [OPTIONS]\n\nCommands:\n",
-                                 noun.summary, noun.name);
-  for (const auto& [name, command] : CommandsOf(noun, commands))
-    help += Line(name, command->summary);
-  return help + "\nEach has its own --help, as '" +
-         CommandText({noun.name, CommandsOf(noun, commands).front().first, "--help"}) + "'\n";
 }
 
 }  // namespace prehend::cli

@@ -41,12 +41,6 @@ struct ProgramDescription {
   std::vector<OldName> old_options = {};  ///< the old name with its command: "run --mesure"
 };
 
-/// One line per command in groups, and one per noun with the names of its commands.
-std::string ProgramHelp(const ProgramDescription& program, const std::vector<Command>& commands);
-
-/// One line for each command of the noun.
-std::string NounHelp(const Noun& noun, const std::vector<Command>& commands);
-
 /// A command to run. `command` is one of those that were given.
 struct ChosenCommand {
   const Command* command = nullptr;

@@ -15,7 +15,6 @@
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/validate_claims.h"
 #include "harness/suite/check/verdict.h"
-#include "harness/suite/judge/unreferenced_goldens.h"
 #include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/golden/golden_files.h"
 

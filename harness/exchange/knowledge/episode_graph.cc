@@ -15,12 +15,38 @@
 namespace prehend::exchange {
 namespace {
 
+/// "SlowWave" of "slow_wave"; what may not stand in a name is left out.
+std::string CamelCase(std::string_view words) {
+  std::string name;
+  bool begins = true;
+  for (const char c : words) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '_' || c == '-' || c == ' ') {
+      begins = true;
+    } else if (byte < 128 && std::isalnum(byte)) {
+      name += begins ? static_cast<char>(std::toupper(byte)) : c;
+      begins = false;
+    }
+  }
+  return name;
+}
+
 using episode::KeptEntity;
 
 std::string Individual(const std::string& uuid) { return "log:" + uuid; }
 
 bool IsA(const KeptEntity& entity, const char* wanted) {
   return std::ranges::find(entity.classes, wanted) != entity.classes.end();
+}
+
+/// "log:UUID" of the event that stands at this place of its timeline.
+std::string NameOfEvent(const std::string& episode_uuid, std::size_t index) {
+  return Individual(episode::UuidOf(fmt::format("{} event {}", episode_uuid, index)));
+}
+
+/// Names of the map of a task, and of the task.
+std::string NameOfMap(const std::string& task_uuid) {
+  return Individual(episode::UuidOf(task_uuid + " map"));
 }
 
 /// Collects statements about one subject after another.
@@ -164,14 +190,6 @@ class EventWriter {
 
 }  // namespace
 
-std::string NameOfEvent(const std::string& episode_uuid, std::size_t index) {
-  return Individual(episode::UuidOf(fmt::format("{} event {}", episode_uuid, index)));
-}
-
-std::string NameOfMap(const std::string& task_uuid) {
-  return Individual(episode::UuidOf(task_uuid + " map"));
-}
-
 std::vector<Triple> MapTriples(const MapOfTask& map, const Vocabulary& vocabulary) {
   Graph graph(vocabulary);
   const std::string map_name = NameOfMap(map.task.uuid);
@@ -227,21 +245,6 @@ constexpr const char* kTerminology = "harness/exchange/knowledge/prehend.ttl";
 constexpr const char* kRootOfThings = "knowrob:Entity";
 
 }  // namespace
-
-std::string CamelCase(std::string_view words) {
-  std::string name;
-  bool begins = true;
-  for (const char c : words) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '_' || c == '-' || c == ' ') {
-      begins = true;
-    } else if (byte < 128 && std::isalnum(byte)) {
-      name += begins ? static_cast<char>(std::toupper(byte)) : c;
-      begins = false;
-    }
-  }
-  return name;
-}
 
 Result<Vocabulary> Vocabulary::Load(const std::string& root) {
   const std::string file = InProjectOrShipped(root, kTerminology);

@@ -51,9 +51,6 @@ class Vocabulary {
   std::set<std::string> known_, things_;
 };
 
-/// "SlowWave" of "slow_wave"; what may not stand in a name is left out.
-std::string CamelCase(std::string_view words);
-
 /// A task as a map shows it. Entities stand in the order of their numbers.
 struct MapOfTask {
   episode::KeptTask task;
@@ -74,11 +71,5 @@ struct EpisodeOfTask {
 
 std::vector<Triple> EpisodeTriples(const EpisodeOfTask& episode, const MapOfTask& map,
                                    const Vocabulary& vocabulary);
-
-/// "log:UUID" of the event that stands at this place of its timeline.
-std::string NameOfEvent(const std::string& episode_uuid, std::size_t index);
-
-/// Names of the map of a task, and of the task.
-std::string NameOfMap(const std::string& task_uuid);
 
 }  // namespace prehend::exchange

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <pugixml.hpp>
 
 #include "harness/base/base/csv_cells.h"
 #include "harness/base/base/text_file.h"
@@ -31,7 +32,7 @@ std::string FromUtf16(std::string_view bytes, bool big_endian) {
                second = static_cast<std::uint8_t>(bytes[i + 1]);
     return static_cast<char32_t>(big_endian ? first << 8 | second : second << 8 | first);
   };
-  std::string text;
+  std::wstring codes;
   for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
     char32_t code = unit(i);
     const bool is_pair = code >= 0xD800 && code < 0xDC00 && i + 3 < bytes.size() &&
@@ -42,22 +43,9 @@ std::string FromUtf16(std::string_view bytes, bool big_endian) {
     } else if (code >= 0xD800 && code < 0xE000) {
       code = 0xFFFD;
     }
-    if (code < 0x80) {
-      text += static_cast<char>(code);
-    } else if (code < 0x800) {
-      text += static_cast<char>(0xC0 | code >> 6);
-      text += static_cast<char>(0x80 | (code & 0x3F));
-    } else if (code < 0x10000) {
-      text += static_cast<char>(0xE0 | code >> 12);
-      text += static_cast<char>(0x80 | (code >> 6 & 0x3F));
-      text += static_cast<char>(0x80 | (code & 0x3F));
-    } else {
-      text += static_cast<char>(0xF0 | code >> 18);
-      text += static_cast<char>(0x80 | (code >> 12 & 0x3F));
-      text += static_cast<char>(0x80 | (code >> 6 & 0x3F));
-      text += static_cast<char>(0x80 | (code & 0x3F));
-    }
+    codes += static_cast<wchar_t>(code);
   }
+  std::string text = pugi::as_utf8(codes);
   std::erase(text, '\r');
   return text;
 }

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "harness/measure/score/overlap_metrics.h"
-#include "harness/measure/score/segments.h"
 
 namespace prehend::measure {
 

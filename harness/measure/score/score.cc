@@ -7,7 +7,7 @@
 #include <functional>
 #include <set>
 
-#include "harness/measure/score/segments.h"
+#include "harness/measure/score/overlap_metrics.h"
 #include "harness/truth/timeline/match_events.h"
 
 namespace prehend::measure {

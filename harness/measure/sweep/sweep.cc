@@ -22,7 +22,6 @@
 #include "harness/exchange/labels/read_labels.h"
 #include "harness/exchange/labels/read_truths.h"
 #include "harness/measure/score/overlap_metrics.h"
-#include "harness/measure/score/segments.h"
 #include "harness/truth/golden/golden_files.h"
 #include "harness/truth/oracle/oracle.h"
 #include "harness/truth/timeline/match_events.h"

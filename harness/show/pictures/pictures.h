@@ -98,18 +98,6 @@ PictureResult DrawSheet(const scenario::Scenario& scenario, const episode::RunRe
                         const std::vector<scenario::PictureYaml>& entries, int columns,
                         const std::string& file, const PictureFormat& format = {});
 
-/// A picture of a sheet, with a title of its own.
-struct SheetEntry {
-  const scenario::Scenario* scenario = nullptr;
-  const episode::RunResult* run = nullptr;
-  scenario::PictureYaml picture;
-  std::string title;
-};
-
-/// The same of several runs.
-PictureResult DrawSheet(const std::vector<SheetEntry>& entries, int columns,
-                        const std::string& file, const PictureFormat& format = {});
-
 /// Writes the golden in pale grey with every pixel that differs in red; both must have one size.
 /// False when it cannot.
 bool WritePictureDifference(const std::string& golden_file, const std::string& drawn_file,

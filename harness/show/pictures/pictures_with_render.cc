@@ -164,34 +164,22 @@ PictureResult DrawPicture(const scenario::Scenario& scenario, const episode::Run
 PictureResult DrawSheet(const scenario::Scenario& scenario, const episode::RunResult& run,
                         const std::vector<scenario::PictureYaml>& entries, int columns,
                         const std::string& file, const PictureFormat& format) {
-  std::vector<SheetEntry> sheet;
-  for (std::size_t i = 0; i < entries.size(); ++i)
-    sheet.push_back({&scenario, &run, entries[i], {}});
-  return DrawSheet(sheet, columns, file, format);
-}
-
-PictureResult DrawSheet(const std::vector<SheetEntry>& entries, int columns,
-                        const std::string& file, const PictureFormat& format) {
   PictureResult result;
   render::Painter painter;
   result.error = painter.error();
-  if (std::ranges::any_of(entries,
-                          [](const SheetEntry& entry) { return entry.run->recording.empty(); }))
-    result.error = "the run recorded nothing to draw";
+  if (run.recording.empty()) result.error = "the run recorded nothing to draw";
   if (!result.error.empty()) return result;
   const int rows = (static_cast<int>(entries.size()) + columns - 1) / columns;
   render::Image sheet{columns * format.width_px, rows * format.height_px, {}};
   sheet.rgb.assign(3ull * sheet.width_px * sheet.height_px, 255);
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    const auto& [scenario, run, entry, title] = entries[i];
-    render::Picture picture = ComposePicture(*scenario, *run, entry, format);
+    const scenario::PictureYaml& entry = entries[i];
+    render::Picture picture = ComposePicture(scenario, run, entry, format);
     if (format.title) {
       const char letter = static_cast<char>('a' + i % 26);
       const auto at = episode::ParseEventTime(entry.at.value);
       const std::string event = at && at->time_s ? "" : entry.at.value + "  ·  ";
-      picture.title =
-          title.empty() ? fmt::format("{}  ·  {}{:.3f} s", letter, event, SecondsOf(picture, *run))
-                        : fmt::format("{}  ·  {}", letter, title);
+      picture.title = fmt::format("{}  ·  {}{:.3f} s", letter, event, SecondsOf(picture, run));
     }
     const render::Image image = painter.Draw(picture);
     if (image.rgb.empty()) {
@@ -201,7 +189,7 @@ PictureResult DrawSheet(const std::vector<SheetEntry>& entries, int columns,
     Paste(image, static_cast<int>(i) % columns * format.width_px,
           static_cast<int>(i) / columns * format.height_px, sheet);
     result.pictures.push_back(
-        {file, CaptionOf(picture, *run), episode::FindEventTime(entry.at.value, *run).missed});
+        {file, CaptionOf(picture, run), episode::FindEventTime(entry.at.value, run).missed});
   }
   if (!render::WritePng(sheet, file)) result.error = "cannot write " + file;
   return result;

@@ -38,11 +38,6 @@ PictureResult DrawSheet(const scenario::Scenario&, const episode::RunResult&,
   return CannotDraw();
 }
 
-PictureResult DrawSheet(const std::vector<SheetEntry>&, int, const std::string&,
-                        const PictureFormat&) {
-  return CannotDraw();
-}
-
 bool WritePictureDifference(const std::string&, const std::string&, const std::string&) {
   return false;
 }

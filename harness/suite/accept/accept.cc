@@ -21,7 +21,7 @@
 #include "harness/suite/judge/ensemble.h"
 #include "harness/suite/judge/judge.h"
 #include "harness/suite/judge/judge_recording.h"
-#include "harness/suite/judge/unreferenced_goldens.h"
+#include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/golden/golden_files.h"
 

@@ -3,8 +3,6 @@
 // Tested by tests/harness/suite/check/last_pass_test.cc
 #include "harness/suite/check/last_pass.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -13,6 +11,9 @@
 #include "physics/scene/state_hash.h"
 
 namespace prehend::suite {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StateTrace, entities, ticks, hashes)
+
 namespace {
 
 using RecordJson = nlohmann::json;
@@ -84,7 +85,6 @@ std::string LastPasses::WriteCosts(const Costs& costs) const {
 namespace {
 
 constexpr std::size_t kMaxTracedTicks = 20'000;
-constexpr std::size_t kMaxTracedEntities = 100'000;
 
 /// Half of the bits are enough to tell two states apart.
 template <typename State>
@@ -156,38 +156,20 @@ std::optional<Divergence> FirstDivergence(const StateTrace& a, const StateTrace&
 }
 
 std::string WriteTrace(const std::filesystem::path& path, const StateTrace& trace) {
-  std::string text = fmt::format("trace 1\n{}\n", trace.entities.size());
-  for (const std::string& entity : trace.entities) text += entity + "\n";
-  std::size_t next = 0;
-  for (const std::int64_t tick : trace.ticks) {
-    text += std::to_string(tick);
-    for (std::size_t k = 0; k < trace.entities.size(); ++k)
-      text += fmt::format(" {:x}", trace.hashes[next++]);
-    text += '\n';
-  }
-  return WriteTextFile(path, text);
+  return WriteTextFile(
+      path, RecordJson(trace).dump(-1, ' ', false, RecordJson::error_handler_t::replace));
 }
 
 std::optional<StateTrace> ReadTrace(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::string word;
-  int version = 0;
-  std::size_t entities = 0;
-  if (!(file >> word >> version >> entities) || word != "trace" || version != 1)
+  const RecordJson json = ReadJson(path);
+  if (json.is_discarded()) return std::nullopt;
+  try {
+    auto trace = json.get<StateTrace>();
+    const bool whole = trace.hashes.size() == trace.entities.size() * trace.ticks.size();
+    return whole ? std::optional(std::move(trace)) : std::nullopt;
+  } catch (const RecordJson::exception&) {
     return std::nullopt;
-  if (entities > kMaxTracedEntities) return std::nullopt;
-  StateTrace trace;
-  for (std::size_t k = 0; k < entities && file >> word; ++k) trace.entities.push_back(word);
-  std::int64_t tick = 0;
-  while (file >> std::dec >> tick) {
-    trace.ticks.push_back(tick);
-    std::uint32_t hash = 0;
-    for (std::size_t k = 0; k < entities && file >> std::hex >> hash; ++k)
-      trace.hashes.push_back(hash);
   }
-  const bool whole = file.eof() && trace.entities.size() == entities &&
-                     trace.hashes.size() == entities * trace.ticks.size();
-  return whole ? std::optional(std::move(trace)) : std::nullopt;
 }
 
 }  // namespace prehend::suite

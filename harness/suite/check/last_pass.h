@@ -77,7 +77,7 @@ bool SameTicks(const StateTrace& a, const StateTrace& b);
 /// Nothing when the two move the same at all ticks that both have, and are equally long.
 std::optional<Divergence> FirstDivergence(const StateTrace& a, const StateTrace& b);
 
-/// A text file; "" or what went wrong.
+/// "" or what went wrong.
 std::string WriteTrace(const std::filesystem::path& path, const StateTrace& trace);
 /// Nothing when there is none or it is damaged.
 std::optional<StateTrace> ReadTrace(const std::filesystem::path& path);

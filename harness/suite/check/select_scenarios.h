@@ -10,7 +10,7 @@
 
 #include "harness/base/base/exit_code.h"
 #include "harness/episode/run/find_scenario.h"
-#include "harness/suite/judge/unreferenced_goldens.h"
+#include "harness/suite/judge/validate_golden.h"
 
 namespace prehend::suite {
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -18,19 +19,9 @@
 namespace prehend::suite {
 
 std::string_view Name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kPassed:
-      return "passed";
-    case Verdict::kFailed:
-      return "failed";
-    case Verdict::kPending:
-      return "pending";
-    case Verdict::kFlaky:
-      return "flaky";
-    case Verdict::kUnchanged:
-      return "unchanged";
-  }
-  return "";
+  constexpr std::array<std::string_view, 5> kNames = {"passed", "failed", "pending", "flaky",
+                                                      "unchanged"};
+  return kNames.at(static_cast<std::size_t>(verdict));
 }
 
 bool LeadsToReview(const ScenarioVerdict& verdict) {

@@ -40,18 +40,6 @@ std::string OffsetText(const truth::Match& match, grammar::Tick ticks_per_second
 
 }  // namespace
 
-Judged JudgedByOracle(const scenario::Scenario& scenario, const grammar::Program& program,
-                      const episode::RunResult& run) {
-  Judged judged{.possible = truth::PossibleTimelines(scenario.scene, run.recording, run.ticks + 1),
-                .found = run.timeline};
-  std::erase_if(judged.found.events,
-                [](const auto& event) { return !truth::OracleDefines(event.event); });
-  // A grammar is not judged by events that it has no rules for.
-  for (grammar::Timeline& truth : judged.possible)
-    std::erase_if(truth.events, [&](const auto& event) { return !HasEvent(program, event.event); });
-  return judged;
-}
-
 int OracleComparison::Following() const {
   int following = 0;
   for (const truth::LabelAgreement& label : agreement.labels)
@@ -64,12 +52,18 @@ int OracleComparison::Differing() const { return judged - Following() + agreemen
 
 OracleComparison CompareWithOracle(const scenario::Scenario& scenario,
                                    const grammar::Program& program, const episode::RunResult& run) {
-  const Judged judged = JudgedByOracle(scenario, program, run);
+  std::vector<grammar::Timeline> possible =
+      truth::PossibleTimelines(scenario.scene, run.recording, run.ticks + 1);
+  grammar::Timeline found = run.timeline;
+  std::erase_if(found.events, [](const auto& event) { return !truth::OracleDefines(event.event); });
+  // A grammar is not judged by events that it has no rules for.
+  for (grammar::Timeline& truth : possible)
+    std::erase_if(truth.events, [&](const auto& event) { return !HasEvent(program, event.event); });
   const grammar::Tick tolerance = scenario::DefaultTolerance(scenario);
-  const std::size_t others = run.timeline.events.size() - judged.found.events.size();
-  return {.agreement = truth::AgreeWithin(judged.possible, judged.found, tolerance),
+  const std::size_t others = run.timeline.events.size() - found.events.size();
+  return {.agreement = truth::AgreeWithin(possible, found, tolerance),
           .tolerance = tolerance,
-          .judged = static_cast<int>(judged.found.events.size()),
+          .judged = static_cast<int>(found.events.size()),
           .not_judged = static_cast<int>(others)};
 }
 

@@ -16,15 +16,6 @@ namespace prehend::suite {
 /// people write the others.
 inline constexpr const char* kOracleLine = "oracle: ";
 
-/// What both the definitions and a grammar have events for.
-struct Judged {
-  std::vector<grammar::Timeline> possible;  ///< of harness/truth/oracle/oracle.h
-  grammar::Timeline found;
-};
-/// The run must have been recorded.
-Judged JudgedByOracle(const scenario::Scenario& scenario, const grammar::Program& program,
-                      const episode::RunResult& run);
-
 /// How far a run agrees with the ground truth.
 struct OracleComparison {
   truth::Agreement agreement;

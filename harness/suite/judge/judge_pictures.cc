@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/suite/judge/unreferenced_goldens.h"
+#include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/golden/golden_files.h"
 
 namespace prehend::suite {

@@ -34,6 +34,12 @@ bool AtTheSameTime(Interval a, Interval b) {
   return static_cast<double>(Overlap(a, b)) >= kMinSharedSpan * static_cast<double>(span);
 }
 
+/// Two numbers of an event agree within 5 % of the expected one, or 0.001 of its unit.
+bool ValuesAgree(double expected, double actual) {
+  constexpr double kRelative = 0.05, kAbsolute = 0.001;
+  return std::abs(actual - expected) <= std::max(kRelative * std::abs(expected), kAbsolute);
+}
+
 /// "object: milk -> cup" for every role, attribute or ending that differs.
 std::vector<std::string> Changes(const NamedEvent& expected, const NamedEvent& actual) {
   std::vector<std::string> changes;
@@ -293,11 +299,6 @@ std::vector<const Pairing*> Comparison::Differing() const {
 const Pairing* Comparison::FirstDivergence() const {
   const std::vector<const Pairing*> differing = Differing();
   return differing.empty() ? nullptr : differing.front();
-}
-
-bool ValuesAgree(double expected, double actual) {
-  constexpr double kRelative = 0.05, kAbsolute = 0.001;
-  return std::abs(actual - expected) <= std::max(kRelative * std::abs(expected), kAbsolute);
 }
 
 bool Comparison::Agrees() const {

@@ -91,17 +91,15 @@ struct Comparison {
       const;  ///< first divergence first; pieces are told of by one
 };
 
-/// Of every two pairs that share their entities and of which at least one differs. Two boundaries
-/// count as equal when they are no further apart than the tolerance.
+/// Where events lie to each other otherwise than the golden says: of every two pairs that share
+/// their entities and of which at least one differs. Two boundaries count as equal when they are no
+/// further apart than the tolerance.
 std::vector<RelationChange> ChangedRelations(const std::vector<Pairing>& pairings);
 
 /// Compares in the ticks of `actual`. `default_tolerance` (ticks) holds for golden lines without a
 /// tolerance.
 Comparison Compare(const Golden& expected, const grammar::Timeline& actual,
                    grammar::Tick default_tolerance);
-
-/// Two numbers of an event agree within 5 % of the expected one, or 0.001 of its unit.
-bool ValuesAgree(double expected, double actual);
 
 /// The differences as text, first divergence first, each with both intervals, signed offsets in
 /// milliseconds, and the question for `command`, "prehend explain ..", unless it is empty. `facts`
@@ -120,10 +118,5 @@ nlohmann::ordered_json RelationsJson(const Comparison& comparison);
 /// One line about the smallest margin, or "" without matched events:
 /// "margin: 4.2 of 8.3 ms left at begin of reaching(right_hand, milk)"
 std::string MarginText(const Comparison& comparison);
-
-/// Where events lie to each other otherwise than the golden says: of every two pairs that share
-/// their entities and of which at least one differs. Two boundaries count as equal when they are no
-/// further apart than the tolerance.
-std::vector<RelationChange> ChangedRelations(const std::vector<Pairing>& pairings);
 
 }  // namespace prehend::truth

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
+
 #include "harness/base/base/shell_quote.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/timeline/event_text.h"
@@ -52,25 +54,9 @@ std::string PairingText(const Pairing& pairing, Tick ticks_per_second, std::stri
 }  // namespace
 
 std::string_view Name(LineVerdict agreement) {
-  switch (agreement) {
-    case LineVerdict::kMatched:
-      return "matched";
-    case LineVerdict::kShifted:
-      return "shifted";
-    case LineVerdict::kChanged:
-      return "changed";
-    case LineVerdict::kRelabelled:
-      return "relabelled";
-    case LineVerdict::kFragmented:
-      return "fragmented";
-    case LineVerdict::kMerged:
-      return "merged";
-    case LineVerdict::kMissing:
-      return "missing";
-    case LineVerdict::kExtra:
-      return "extra";
-  }
-  return "";
+  constexpr std::array<std::string_view, 8> kNames = {
+      "matched", "shifted", "changed", "relabelled", "fragmented", "merged", "missing", "extra"};
+  return kNames.at(static_cast<std::size_t>(agreement));
 }
 
 // Asks why an event is as it is, or why it is missing; of a fragmented event about the first

@@ -59,8 +59,9 @@ TEST(StateTrace, ComesBackFromItsFile) {
   const StateTrace trace = TraceOf(TwoBodies(), Recording(10));
   ASSERT_EQ(WriteTrace(path, trace), "");
   EXPECT_EQ(ReadTrace(path), trace);
-  for (const char* damaged : {"", "trace 2\n0\n", "trace 1\n2\ncup\n", "trace 1\n1\ncup\n0 zz\n",
-                              "trace 1\n1\ncup\n0\n", "trace 1\n99999999999\n", "trace 1\n-1\n"}) {
+  for (const char* damaged :
+       {"", "{}", "[1]", R"({"entities": ["cup"], "ticks": [0], "hashes": []})",
+        R"({"entities": ["cup"], "ticks": ["zz"], "hashes": [1]})"}) {
     ASSERT_EQ(WriteTextFile(path, damaged), "");
     EXPECT_FALSE(ReadTrace(path)) << damaged;
   }

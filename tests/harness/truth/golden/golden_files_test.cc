@@ -7,7 +7,7 @@
 #include <fstream>
 #include <random>
 
-#include "harness/suite/judge/unreferenced_goldens.h"
+#include "harness/suite/judge/validate_golden.h"
 
 namespace prehend::truth {
 namespace {
