@@ -67,7 +67,7 @@ TEST(CommandTree, ANounAloneIsUsageAndItsHelpListsItsCommands) {
 }
 
 TEST(CommandTree, AnOldNameIsAnErrorThatSaysTheNewOne) {
-  ASSERT_EQ(DescribeProgram("prehend 1").old_commands.size(), 15u);
+  ASSERT_EQ(DescribeProgram("prehend 1").old_commands.size(), 14u);
   for (const OldName& name : DescribeProgram("prehend 1").old_commands) {
     std::vector<std::string> corrected = WordsIn(name.now);
     const std::vector<std::string> start = corrected;

@@ -82,6 +82,7 @@ TEST_F(RunScenarioTest, AGrammarThatCannotWatchTheSceneIsAFailedRun) {
     scenario.scene.bodies.push_back(scenario.scene.bodies.front());
     scenario.scene.bodies.back().name = "copy_" + std::to_string(i);
     scenario.body_classes.push_back(scenario.body_classes.front());
+    scenario.body_part_of.push_back(grammar::kNoEntity);
   }
   const auto compiled = grammar::Compile(
       {.file = "far.grammar",
