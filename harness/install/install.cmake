@@ -34,6 +34,15 @@ install(FILES ${PROJECT_BINARY_DIR}/version.h DESTINATION ${CMAKE_INSTALL_INCLUD
 configure_package_config_file(${here}/prehend-config.cmake.in ${PROJECT_BINARY_DIR}/prehend-config.cmake INSTALL_DESTINATION ${cmake_files})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/prehend-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/prehend-config.cmake ${PROJECT_BINARY_DIR}/prehend-config-version.cmake DESTINATION ${cmake_files})
+
+# prehend::episode. In the tree its headers are those of a room.
+install(TARGETS prehend_shared EXPORT prehend LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+foreach(header episode frames study)
+  file(READ ${PROJECT_SOURCE_DIR}/harness/library/library/${header}.h text)
+  string(REPLACE "harness/library/library/" "prehend/" text "${text}")
+  file(WRITE ${PROJECT_BINARY_DIR}/include/${header}.h "${text}")
+  install(FILES ${PROJECT_BINARY_DIR}/include/${header}.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/prehend)
+endforeach()
 install(EXPORT prehend NAMESPACE prehend:: DESTINATION ${cmake_files} FILE prehend-targets.cmake)
 
 # The Debian package: it depends on what it links, and recommends what it starts.

@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxLines = 600;
 
-const std::vector<std::string> kRooms = {"grammar", "physics", "render",
-                                         "harness", "tests",   "bench"};
+const std::vector<std::string> kRooms = {"grammar", "physics", "render", "harness",
+                                         "python",  "tests",   "bench"};
 
 /// Rooms (or single headers) that a room may include besides itself.
 const std::map<std::string, std::vector<std::string>> kArrows = {
@@ -32,6 +32,7 @@ const std::map<std::string, std::vector<std::string>> kArrows = {
     {"physics", {}},
     {"render", {"physics/base/", "physics/scene/"}},
     {"harness", {"grammar/", "physics/", "render/"}},
+    {"python", {"grammar/", "harness/library/"}},
     {"tests", {"grammar/", "physics/", "render/", "harness/", "tests/", "bench/"}},
     {"bench", {"grammar/", "physics/", "render/", "harness/"}},
 };
@@ -51,6 +52,7 @@ const std::vector<LibraryRule>& LibraryRules() {
       {"yaml-cpp", std::regex("yaml-cpp/.*"), std::regex("harness/.*")},
       {"JSON", std::regex("nlohmann/.*"), std::regex("(harness|tests|bench)/.*")},
       {"fmt", std::regex("fmt/.*"), std::regex("(harness|tests|bench)/.*")},
+      {"pybind11", std::regex("pybind11/.*"), std::regex("python/module\\.cc")},
       {"CLI11", std::regex("CLI/.*"), std::regex("harness/cli/command/parse_arguments\\.cc")},
       {"pugixml", std::regex("pugixml\\.hpp"), std::regex("(harness|tests)/.*")},
       {"muParser", std::regex("muParser.*"), std::regex("tests/witnesses/.*/formula\\.cc")},

@@ -7,6 +7,7 @@ usage: installed.py BUILD_FOLDER
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -83,6 +84,30 @@ class Installed(unittest.TestCase):
         said = run(build / "watch", cwd=self.elsewhere)
         self.assertIn("near(hand, cup) 81..120", said)
         self.assertTrue("U sin@GLIBC" in run("nm", "-D", build / "watch", cwd=self.elsewhere))
+
+    def test_a_stranger_links_the_episode_library(self):
+        build, node = self.elsewhere / "build", self.elsewhere / "node"
+        shutil.copytree(HERE / "node", node)
+        run("cmake", "-S", node, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}", cwd=self.elsewhere)
+        run("cmake", "--build", build, cwd=self.elsewhere)
+        self.assertEqual(run(build / "node", cwd=node), "near(right_hand, cup) 1.50..2.51 s\n")
+        (node / "near.grammar").write_text((node / "near.grammar").read_text().replace("distance", "distence"))
+        with self.assertRaisesRegex(AssertionError, r"near.grammar:6:9: error(.|\n)*did you mean 'distance'"):
+            run(build / "node", cwd=node)
+
+    def test_the_episode_library_has_no_engine_and_exports_its_headers(self):
+        library = next(self.prefix.rglob("libprehend_episode.so"))
+        self.assertNotRegex(run("ldd", library, cwd=self.elsewhere), "(?i)bullet|box2d|osmesa|libGL")
+        exported = run("nm", "-D", "-C", "--defined-only", library, cwd=self.elsewhere)
+        self.assertIn("prehend::OpenEpisodes", exported)
+        self.assertNotRegex(exported, r" [TWBD] (fmt|YAML|pugi|prehend::[a-z]+)::")
+
+    def test_python_imports_and_plays(self):
+        for module in self.prefix.rglob("_prehend.*.so"):  # where it was built
+            code = "import prehend; print(prehend.__version__, *prehend.open('milk_carton_wrap').events['event'])"
+            said = run("/usr/bin/python3", "-c", code, cwd=self.elsewhere, PYTHONPATH=str(module.parents[1]),
+                       PATH=f"{self.prehend.parent}:/usr/bin:/bin")
+            self.assertIn("transporting", said)
 
 
 if __name__ == "__main__":

@@ -15,9 +15,14 @@ namespace prehend::episode {
 Result<Episode> EpisodeOpener::OpenLines(const EpisodeName& name, const GrammarChoice& choice) {
   Result<Recording> recording = ReadRecording(name.file);
   if (!recording) return tl::unexpected(std::move(recording.error()));
+  return Open(std::move(*recording), name, choice);
+}
+
+Result<Episode> EpisodeOpener::Open(Recording recording, const EpisodeName& name,
+                                    const GrammarChoice& choice) {
   const Result<grammar::Overrides> parameters = ParameterSettings(choice.settings);
   if (!parameters) return tl::unexpected(parameters.error());
-  const EpisodeHeader& header = recording->header;
+  const EpisodeHeader& header = recording.header;
   grammar::CompileResult compiled = LoadGrammarOf(header, choice.grammar, root_, *parameters);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
   LoadedRun loaded{.scenario = PlaceholderFor(header), .program = std::move(compiled.program)};
@@ -25,7 +30,7 @@ Result<Episode> EpisodeOpener::OpenLines(const EpisodeName& name, const GrammarC
   loaded.scenario.grammar = GrammarName(*loaded.program);
   loaded.warnings = Warnings(*loaded.program, header.entity_table);
   Episode episode(name, std::move(loaded));
-  episode.recording_ = std::move(*recording);
+  episode.recording_ = std::move(recording);
   return episode;
 }
 

@@ -19,6 +19,8 @@ class EpisodeOpener {
   /// scenario may be fields of it. `files` receives what a scenario was read from.
   Result<Episode> Open(const EpisodeName& name, const GrammarChoice& choice = {},
                        std::vector<std::string>* files = nullptr);
+  /// A recording that is no file.
+  Result<Episode> Open(Recording recording, const EpisodeName& name, const GrammarChoice& choice);
 
  private:
   Result<Episode> OpenLines(const EpisodeName& name, const GrammarChoice& choice);

@@ -10,16 +10,20 @@
 
 namespace prehend::episode {
 
+struct FrameEntry;  // harness/episode/sense/episode_format.h
+
 class EpisodeStream {
  public:
-  /// `name` is that of the file, for messages.
-  explicit EpisodeStream(const std::string& name);
+  /// `name` is that of the file, for messages. `keeps_all`: the frames, for Whole().
+  explicit EpisodeStream(const std::string& name, bool keeps_all = false);
   ~EpisodeStream();
   EpisodeStream(const EpisodeStream&) = delete;
   EpisodeStream& operator=(const EpisodeStream&) = delete;
 
   /// Takes the next line, of at most kMaxEpisodeLineBytes. Returns what is wrong with it.
   grammar::Diagnostics Take(const std::string& line);
+  /// The same of values that are within the limits of the format.
+  grammar::Diagnostics Take(const FrameEntry& frame);
 
   bool has_header() const;
   const EpisodeHeader& header() const;
@@ -31,8 +35,12 @@ class EpisodeStream {
   bool says_its_end() const;
   /// The first tick after the episode, as far as it is known; 0 without any frame.
   grammar::Tick end_tick() const;
+  /// All that was taken, at the end.
+  Result<Recording> Whole(grammar::Tick end_tick);
 
  private:
+  template <typename TakeOne>
+  grammar::Diagnostics TakeAny(const TakeOne& take);
   struct Reader;
   std::unique_ptr<Reader> reader_;
   EpisodeFrame* frame_ = nullptr;

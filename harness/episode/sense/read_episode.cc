@@ -35,7 +35,12 @@ GapTolerance BridgeOf(const EpisodeHeader& header) {
 /// Reads line after line into an episode. The first line with an error ends it.
 class EpisodeReader {
  public:
-  explicit EpisodeReader(std::string file) : file_(std::move(file)), line_format_(LineFormat()) {}
+  /// `keeps_all`: frames of TakeOrNothing(), not only the last one.
+  explicit EpisodeReader(std::string file, bool keeps_all = false)
+      : file_(std::move(file)),
+        line_format_(LineFormat()),
+        keeps_all_(keeps_all),
+        no_document_{.sources = {{file_, ""}}, .root = {}} {}
 
   grammar::Diagnostics diagnostics;
   Recording episode;
@@ -65,16 +70,23 @@ class EpisodeReader {
     if (!errors.empty()) Report(errors.Sorted());
   }
 
-  /// As if the line had not been there, if there is anything wrong with it. Only the last frame is
-  /// kept.
-  grammar::Diagnostics TakeLineOrNothing(const std::string& text) {
+  void TakeFrame(const FrameEntry& frame) {
+    ++line_;
+    DiagnosticList errors(no_document_);
+    Take(frame, errors);
+    if (!errors.empty()) Report(errors.Sorted());
+  }
+
+  /// As if it had not been there, if there is anything wrong with the line or frame.
+  template <typename TakeOne>
+  grammar::Diagnostics TakeOrNothing(const TakeOne& take) {
     const EpisodeFrame now = now_;
     const std::vector<bool> has_ahead = has_ahead_, has_spheres = has_spheres_;
     const GapTolerance bridge = bridge_;
     const std::size_t frames = episode.frames.size();
     const bool said_its_end = episode.says_its_end;
     const grammar::Tick end_tick = episode.end_tick;
-    TakeLine(text);
+    take();
     grammar::Diagnostics found = std::move(diagnostics);
     diagnostics.clear();
     if (!found.empty() && had_header_) {
@@ -87,7 +99,7 @@ class EpisodeReader {
       episode.end_tick = end_tick;
     }
     if (found.empty() && header_) had_header_ = true;
-    if (episode.frames.size() > 1) episode.frames.erase(episode.frames.begin());
+    if (!keeps_all_ && episode.frames.size() > 1) episode.frames.erase(episode.frames.begin());
     return found;
   }
   bool has_header() const { return had_header_; }
@@ -449,6 +461,7 @@ class EpisodeReader {
   std::string file_;
   ValueFormat<LineEntry> line_format_;
   int line_ = 0;
+  const bool keeps_all_;
   bool header_ = false;
   bool had_header_ = false;  ///< a good one
   std::vector<std::string> names_;
@@ -475,18 +488,34 @@ struct EpisodeStream::Reader {
   EpisodeReader lines;
 };
 
-EpisodeStream::EpisodeStream(const std::string& name)
-    : reader_(std::make_unique<Reader>(Reader{EpisodeReader(name)})) {}
+EpisodeStream::EpisodeStream(const std::string& name, bool keeps_all)
+    : reader_(std::make_unique<Reader>(Reader{EpisodeReader(name, keeps_all)})) {}
 EpisodeStream::~EpisodeStream() = default;
 
-grammar::Diagnostics EpisodeStream::Take(const std::string& line) {
+template <typename TakeOne>
+grammar::Diagnostics EpisodeStream::TakeAny(const TakeOne& take) {
   std::vector<EpisodeFrame>& frames = reader_->lines.episode.frames;
   const bool first = frames.empty();
   const grammar::Tick before = first ? 0 : frames.back().tick;
-  grammar::Diagnostics found = reader_->lines.TakeLineOrNothing(line);
+  grammar::Diagnostics found = reader_->lines.TakeOrNothing(take);
   const bool is_new = !frames.empty() && (first || frames.back().tick != before);
   frame_ = is_new ? &frames.back() : nullptr;
   return found;
+}
+grammar::Diagnostics EpisodeStream::Take(const std::string& line) {
+  return TakeAny([&] { reader_->lines.TakeLine(line); });
+}
+grammar::Diagnostics EpisodeStream::Take(const FrameEntry& frame) {
+  return TakeAny([&] { reader_->lines.TakeFrame(frame); });
+}
+
+Result<Recording> EpisodeStream::Whole(grammar::Tick end_tick) {
+  EpisodeReader& lines = reader_->lines;
+  lines.episode.says_its_end = true;
+  lines.episode.end_tick = end_tick;
+  lines.Finish();
+  if (!lines.diagnostics.empty()) return tl::unexpected(std::move(lines.diagnostics));
+  return std::move(lines.episode);
 }
 
 bool EpisodeStream::has_header() const { return reader_->lines.has_header(); }

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/library/library/study.h. Tested by tests/python/test_study.py
+#include "harness/library/library/study.h"
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "grammar/contents.h"
+#include "harness/exchange/labels/read_truths.h"
+#include "harness/library/library/opened.h"
+#include "harness/measure/score/score.h"
+#include "harness/measure/sweep/margins.h"
+#include "harness/show/chart/chart.h"
+#include "harness/show/explain/explain.h"
+#include "harness/show/explain/replay.h"
+#include "harness/show/explain/tracks.h"
+#include "harness/truth/timeline/event_drawings.h"
+#include "harness/truth/timeline/event_text.h"
+
+namespace prehend {
+namespace {
+
+/// What a grammar saw of an episode.
+show::Watched Watch(episode::Episode& episode) {
+  show::Watched watched = show::Watch(episode);
+  if (!watched.problem.empty()) Refuse(episode.name().file, watched.problem);
+  return watched;
+}
+
+/// Of each event the roles that all true ones have.
+exchange::ComparedRoles RolesOf(const std::vector<Compared>& episodes) {
+  exchange::ComparedRoles roles;
+  std::set<std::string> seen;
+  for (const Compared& episode : episodes) {
+    for (const grammar::NamedEvent& event : episode.truth.events) {
+      std::vector<std::string>& common = roles[event.event];
+      const bool is_first = seen.insert(event.event).second;
+      for (const grammar::Role& role : event.roles) {
+        if (is_first) common.push_back(role.name);
+      }
+      std::erase_if(common, [&](const std::string& name) {
+        return std::ranges::count(event.roles, name, &grammar::Role::name) == 0;
+      });
+    }
+  }
+  return roles;
+}
+
+}  // namespace
+
+Signals SignalsOf(const Episode& episode, const Grammar* grammar,
+                  const std::vector<std::string>& only) {
+  return episode.impl().With(grammar, [&](episode::Episode& opened) {
+    const std::vector<std::string> known = show::TrackNames(*opened.program());
+    for (const std::string& name : only) {
+      if (std::ranges::count(known, name) > 0) continue;
+      const std::string near = grammar::NearestName(name, known);
+      Refuse("", "no event, condition or signal of the grammar is called '" + name + "'",
+             near.empty() ? "" : "did you mean '" + near + "'?");
+    }
+    const show::Watched watched = Watch(opened);
+    show::Tracks tracks =
+        show::CollectTracks(*watched.past, std::set<std::string>(only.begin(), only.end()));
+    if (!tracks.problem.empty()) Refuse("", tracks.problem);
+    Signals signals{.ticks = std::move(tracks.ticks), .signals = {}};
+    for (const show::Track& track : tracks.tracks) {
+      Signals::Signal& signal = signals.signals.emplace_back();
+      signal.name = track.name;
+      signal.unit = track.unit;
+      for (const std::optional<double>& value : track.values)
+        signal.values.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
+    return signals;
+  });
+}
+
+Explanation Explain(const Episode& episode, const Grammar* grammar, const std::string& event) {
+  return episode.impl().With(grammar, [&](episode::Episode& opened) {
+    std::optional<show::Ask> ask;
+    if (!event.empty())
+      ask = Unwrap(show::ParseAsk("event", event, *opened.program(), opened.entities()));
+    const show::Watched watched = Watch(opened);
+    grammar::ReplayMonitor& past = *watched.past;
+    const grammar::Tick per_s = past.entity_table().ticks_per_second;
+    nlohmann::ordered_json json = {{"episode", episode.name()},
+                                   {"grammar", grammar::GrammarName(past.program())},
+                                   {"ticks_per_second", per_s}};
+    const std::vector<show::WhyEvent> events =
+        ask ? show::ExplainEvents(past, *ask) : show::ExplainAll(past);
+    Explanation explanation;
+    if (ask && events.empty()) {
+      const show::WhyMissing why = show::ExplainMissing(past, *ask);
+      explanation.text = show::Text(why, per_s);
+      json["missing"] = show::ToJson(why, per_s);
+    } else {
+      json["events"] = nlohmann::ordered_json::array();
+      for (const show::WhyEvent& why : events) json["events"].push_back(show::ToJson(why, per_s));
+      if (!ask) explanation.text = show::Table(events, per_s);
+      for (const show::WhyEvent& why : events) {
+        if (ask) explanation.text += show::Text(why, per_s);
+      }
+    }
+    explanation.json = json.dump();
+    return explanation;
+  });
+}
+
+grammar::Timeline ReadLabels(const Episode& episode, const Grammar* grammar,
+                             const std::string& file, const std::string& map) {
+  return episode.impl().With(grammar, [&](episode::Episode& opened) {
+    const grammar::EntityTable table = opened.entities();
+    return Unwrap(Unwrap(exchange::ReadTruths({opened.name()}, {file}, map, *opened.program()))
+                      .Truth(0, table.entities, table.ticks_per_second, episode.end()));
+  });
+}
+
+std::string ScoreJson(const std::vector<Compared>& episodes, double collar_s) {
+  const exchange::ComparedRoles roles = RolesOf(episodes);
+  std::vector<measure::EpisodeToScore> all;
+  for (const Compared& one : episodes) {
+    if (one.found.ticks_per_second != one.truth.ticks_per_second)
+      Refuse("", "found and true events count time in different ticks",
+             "take both from the same episode");
+    measure::EpisodeToScore& scored = all.emplace_back();
+    scored.ticks = one.end;
+    scored.truth = exchange::Compared(one.truth, roles);
+    scored.found = exchange::Compared(one.found, roles);
+    for (const grammar::NamedEvent& event : one.found.events)
+      if (!roles.contains(event.event)) ++scored.ignored[event.event];
+  }
+  return measure::ScoresJson({measure::ScoreOf("", all, collar_s)}, collar_s)["grammars"][0].dump();
+}
+
+std::string MarginsCsv(const std::vector<std::string>& files, const Grammar& grammar,
+                       const std::vector<std::string>& truth, const std::string& map,
+                       const std::vector<std::string>& over, double within) {
+  measure::SweepRequest request{
+      .root = ProjectRoot(), .grammar = grammar.name_or_path(), .settings = {}, .axes = {}};
+  for (const auto& [name, value] : grammar.parameters())
+    request.settings.push_back(name + "=" + value);
+  if (const std::string why = measure::SetTruth(truth, request); !why.empty()) Refuse("", why);
+  request.label_map = map;
+  request.by_overlap = request.truth == measure::Truth::kLabels;
+  request.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<episode::EpisodeName> names;
+  for (const Episode& episode : OpenEpisodes(files)) names.push_back(episode.impl().name);
+  const measure::Margins margins = Unwrap(measure::FindMargins(names, request, within, over));
+  const std::vector<std::string>& left_out = margins.sweep.left_out;
+  if (margins.sweep.IsRefused(request) || margins.sweep.episodes == 0)
+    Refuse("", left_out.empty() ? "no episode has events to compare with" : left_out.front());
+  return measure::MarginsCsv(margins);
+}
+
+std::string TimelineSvg(const grammar::Timeline& timeline, grammar::Tick end,
+                        const Grammar* grammar) {
+  const truth::EventDrawings drawings =
+      grammar ? truth::EventDrawings(*grammar->program()) : truth::EventDrawings();
+  const auto seconds = [&](grammar::Tick tick) {
+    return static_cast<double>(tick) / static_cast<double>(timeline.ticks_per_second);
+  };
+  show::Chart chart{.title = "", .from_s = 0, .to_s = seconds(end), .rows = {}, .panels = {}};
+  for (const grammar::NamedEvent& event : timeline.events) {
+    const std::string& hand = truth::RoleValue(event, "hand");
+    const std::string name = hand.empty() ? event.event : hand + ": " + event.event;
+    const std::string label = event.Label();
+    show::Bar bar{.begin_s = seconds(event.interval.begin),
+                  .end_s = seconds(event.interval.end),
+                  .text = label.substr(std::min(label.size(), label.find('(') + 1)),
+                  .color = drawings.Of(event.event).color,
+                  .kind = event.event};
+    if (bar.text.ends_with(')')) bar.text.pop_back();
+    const auto is_free = [&](const show::Row& row) {
+      return row.name == name && row.bars.back().end_s <= bar.begin_s + 1e-9;
+    };
+    auto row = std::ranges::find_if(chart.rows, is_free);
+    if (row == chart.rows.end()) row = chart.rows.insert(row, {.name = name, .bars = {}});
+    row->bars.push_back(std::move(bar));
+  }
+  std::ranges::stable_sort(chart.rows, {}, &show::Row::name);
+  return show::ChartSvg(chart);
+}
+
+}  // namespace prehend

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What goes wrong: exceptions with a place and a remedy, and the warning for facts that are missing."""
+import re
+import warnings
+
+
+class Error(ValueError):
+    """Wrong input: what was found, what was wanted, and what to do.
+
+    Attributes
+    ----------
+    file : str
+        Where: a grammar, a recording, "frames" for arrays; "" if it is none of these.
+    line, column : int
+        From 1; 0 means the file as a whole.
+    message, remedy : str
+        Of the first thing that is wrong. ``str(error)`` has all of them, with the line and a caret.
+    diagnostics : list of tuple
+        All of them: (file, line, column, message, remedy, text).
+    """
+
+    def __init__(self, diagnostics):
+        if isinstance(diagnostics, str):
+            diagnostics = [("", 0, 0, diagnostics, "", diagnostics)]
+        self.diagnostics = list(diagnostics)
+        self.file, self.line, self.column, self.message, self.remedy, _ = self.diagnostics[0]
+        super().__init__("".join(one[5] for one in self.diagnostics).rstrip("\n"))
+
+
+class GrammarError(Error):
+    """A grammar that does not compile, or a parameter that it does not have."""
+
+
+class FrameError(Error):
+    """Arrays, tables or looks that are no frames: shapes, types, units, times."""
+
+
+class EpisodeError(Error):
+    """A file or scenario that cannot be opened, or an event that cannot be asked for."""
+
+
+class MissingFacts(UserWarning):
+    """Rules that ask for what an episode does not have: they never recognise anything."""
+
+
+def of(diagnostics):
+    """The exception for these diagnostics."""
+    kind = EpisodeError
+    if diagnostics and diagnostics[0][0] == "frames":
+        kind = FrameError
+    elif diagnostics and ".grammar" in diagnostics[0][0]:
+        kind = GrammarError
+    return kind(diagnostics)
+
+
+def fail(kind, message, remedy="", file=""):
+    """Raises it."""
+    text = f"{message}\n  hint: {remedy}" if remedy else message
+    raise kind([(file, 0, 0, message, remedy, text)])
+
+
+def warn(text, stacklevel=3):
+    """A Python warning for each of the program's."""
+    for one in re.split(r"\n(?=\S)", text.rstrip("\n")):
+        if one:
+            warnings.warn(one, MissingFacts, stacklevel=stacklevel)

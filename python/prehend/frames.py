@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From arrays and tables to episodes."""
+import json
+
+import numpy as np
+import pandas as pd
+
+from . import _prehend
+from .errors import FrameError, fail
+
+_FINE = 10_000  # ticks per second, as `prehend import` has them
+_POSE = ["x", "y", "z", "qw", "qx", "qy", "qz"]
+_HAND_SIZE_M = (0.09, 0.084, 0.025)
+
+
+def _plain(value):
+    """For JSON: NumPy's numbers and arrays as Python's."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"{type(value).__name__} is no number, text, list or dict")
+
+
+def to_json(value):
+    """Numbers that are none are null."""
+    try:
+        return json.dumps(value, default=_plain, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        fail(FrameError, f"found what is no plain value: {error}", "numbers are finite; None: not tracked")
+
+
+def _entity(name, spec):
+    """An entity as in the first line of a recording, and where it stands if nothing says so."""
+    if isinstance(spec, str):
+        if spec != "Hand":
+            fail(FrameError, f"entity '{name}' has no size", f"{name!r}: ({spec!r}, (x, y, z)) with the edges of its "
+                 "bounding box in metres, or a dict as in docs/recording-format.md", "frames")
+        spec = (spec, _HAND_SIZE_M)
+    if isinstance(spec, (tuple, list)):
+        if len(spec) != 2 or not isinstance(spec[0], str) or np.shape(spec[1]) != (3,):
+            fail(FrameError, f"entity '{name}': found {spec!r}, wanted (class, (x, y, z)) in metres", file="frames")
+        spec = {"class": spec[0], "size_m": [float(edge) for edge in spec[1]]}
+    if not isinstance(spec, dict):
+        fail(FrameError, f"entity '{name}': found a {type(spec).__name__}, wanted a class with a size, or a dict",
+             f"{name!r}: ('Cup', (0.08, 0.08, 0.1))", "frames")
+    spec = dict(spec)
+    if spec.get("class") == "Hand":
+        del spec["class"]
+        spec["hand"] = True
+    at_m, quat_wxyz = spec.pop("at_m", None), spec.pop("quat_wxyz", (1, 0, 0, 0))
+    return spec, None if at_m is None else np.array([[*at_m, *quat_wxyz]], dtype=float)
+
+
+def first_line(entities, ticks_per_second, name="episode", grammar="pick_and_place_from_motion", **more):
+    """The first line of a recording, and the poses of what stands where it is said to."""
+    if not isinstance(entities, dict) or not entities:
+        fail(FrameError, "entities: wanted a dict with at least one of them",
+             "{'cup': ('Cup', (0.08, 0.08, 0.1)), 'right_hand': 'Hand'}", "frames")
+    members, standing = {}, {}
+    for entity, spec in entities.items():
+        members[entity], at = _entity(entity, spec)
+        if at is not None:
+            standing[entity] = at
+    line = {"recording": 1, "episode": name, "grammar": grammar, "ticks_per_second": int(ticks_per_second),
+            "entities": members, **more}
+    return to_json(line), standing
+
+
+def _number_array(values, what, columns=None):
+    """As float64; without a copy if it is one."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiu":
+        fail(FrameError, f"{what}: found an array of {array.dtype}, wanted numbers",
+             "array.astype(float)" if array.dtype.kind in "bOUS" else "", "frames")
+    if columns is None and array.ndim != 1 or columns and (array.ndim != 2 or array.shape[1] not in columns):
+        wanted = "(N,)" if columns is None else " or ".join(f"(N, {count})" for count in columns)
+        fail(FrameError, f"{what}: found the shape {array.shape}, wanted {wanted}",
+             "" if columns is None else "x, y, z in metres, then qw, qx, qy, qz; one row per frame", "frames")
+    return array.astype(np.float64, copy=False)
+
+
+def _times(t, rate_hz, frames):
+    """Ticks, and how many there are in a second: frames at a regular rate lie on whole ticks."""
+    if (t is None) == (rate_hz is None):
+        fail(FrameError, "wanted either t or rate_hz", "t=seconds of each frame, or rate_hz=frames per second", "frames")
+    if rate_hz is not None:
+        if isinstance(rate_hz, bool) or not isinstance(rate_hz, (int, float, np.number)) or not 0.1 <= rate_hz <= 1e5:
+            fail(FrameError, f"rate_hz: found {rate_hz!r}, wanted frames per second, 0.1 to 100000", file="frames")
+        t = np.arange(frames) / float(rate_hz)
+    t = _number_array(t, "t")
+    if len(t) != frames:
+        fail(FrameError, f"t has {len(t)} times, and there are {frames} frames", "one time per frame", "frames")
+    if frames == 0:
+        fail(FrameError, "there are no frames", file="frames")
+    if not np.isfinite(t).all():
+        fail(FrameError, f"t[{np.flatnonzero(~np.isfinite(t))[0]}] is no number", "every frame has a time", "frames")
+    steps = np.diff(t)
+    if frames > 1 and steps.min() <= 0:
+        row = int(np.argmin(steps > 0)) + 1
+        fail(FrameError, f"t[{row}] = {t[row]:g} comes after {t[row - 1]:g}", "sort the frames by time; one frame per time",
+             "frames")
+    usual = float(np.median(steps)) if frames > 1 else 1.0
+    if usual > 2:
+        fail(FrameError, f"frames are {usual:g} s apart", "t is in seconds; divide milliseconds by 1000", "frames")
+    if abs(t[0]) > 1e6:
+        fail(FrameError, f"t begins at {t[0]:g} s", "count from the beginning: t - t[0]", "frames")
+    per_second = _FINE
+    rate = round(1 / usual)
+    if 1 <= rate <= _FINE and np.abs(t * rate - np.round(t * rate)).max() < 0.01:
+        per_second = rate * max(1, round(_FINE / rate))
+        return np.round(t * rate).astype(np.int64) * (per_second // rate), per_second
+    ticks = np.round(t * per_second).astype(np.int64)
+    if frames > 1 and np.diff(ticks).min() <= 0:
+        fail(FrameError, f"frames are less than {1 / per_second} s apart", "are the times seconds?", "frames")
+    return ticks, per_second
+
+
+def _of_table(table):
+    """A long table as arrays by entity: (t, {entity: (poses, mentioned)}, grips, touches)."""
+    missing = [name for name in ("t", "entity", "x", "y", "z") if name not in table.columns]
+    if missing:
+        fail(FrameError, f"the table has no column {missing[0]!r}",
+             "one row per frame and entity: t, entity, x, y, z, and optionally qw, qx, qy, qz, grip, touches", "frames")
+    turned = [name for name in _POSE[3:] if name in table.columns]
+    if turned and len(turned) != 4:
+        fail(FrameError, f"the table has {turned}, wanted all of qw, qx, qy, qz", file="frames")
+    columns = _POSE[:3] + turned
+    t, row = np.unique(_number_array(table["t"].to_numpy(), "column 't'"), return_inverse=True)
+    codes, names = pd.factorize(table["entity"], sort=False)
+    if (codes < 0).any():
+        fail(FrameError, f"row {int(np.argmax(codes < 0))}: no entity", "each row names one", "frames")
+    frames, values = len(t), np.column_stack([_number_array(table[name].to_numpy(), f"column {name!r}") for name in columns])
+    poses, grips, touches = {}, {}, {}
+    grip = _number_array(table["grip"].to_numpy(), "column 'grip'") if "grip" in table.columns else None
+    for code, name in enumerate(names):
+        own = codes == code
+        if len(np.unique(row[own])) != own.sum():
+            fail(FrameError, f"'{name}' has two rows at the same time", "one row per frame and entity", "frames")
+        array, mentioned = np.full((frames, len(columns)), np.nan), np.zeros(frames, dtype=bool)
+        array[row[own]], mentioned[row[own]] = values[own], True
+        poses[name] = (array, np.zeros(0, dtype=bool) if mentioned.all() else mentioned)
+        if grip is not None and not np.isnan(grip[own]).all():
+            grips[name] = np.full(frames, np.nan)
+            grips[name][row[own]] = grip[own]
+    if "touches" in table.columns:
+        for at, name, cell in zip(row, table["entity"], table["touches"]):
+            if cell is None or isinstance(cell, float):
+                continue
+            cell = cell.split() if isinstance(cell, str) else cell
+            for other in cell:
+                if (other, name) in touches and not np.isnan(touches[other, name][at]):
+                    continue  # the row of the other one says so, too
+                up = cell[other] if isinstance(cell, dict) else 0.0
+                touches.setdefault((name, other), np.full(frames, np.nan))[at] = up
+    return t, poses, grips, touches
+
+
+def make(frames, *, entities, t=None, rate_hz=None, grips=None, touches=None, name="episode",
+         grammar="pick_and_place_from_motion", bridge_s=0.1):
+    """See `prehend.episode`."""
+    if isinstance(frames, pd.DataFrame):
+        if t is not None or rate_hz is not None:
+            fail(FrameError, "a table has its times in the column 't'", "leave t and rate_hz away", "frames")
+        t, poses, table_grips, table_touches = _of_table(frames)
+        grips, touches = {**table_grips, **(grips or {})}, {**table_touches, **(touches or {})}
+        count = len(t)
+    elif isinstance(frames, dict):
+        nothing = np.zeros(0, dtype=bool)
+        poses = {one: (_number_array(array, f"'{one}'", (3, 7)), nothing) for one, array in frames.items()}
+        lengths = {one: len(array) for one, (array, _) in poses.items()}
+        if len(set(lengths.values())) > 1:
+            fail(FrameError, f"arrays of different lengths: {lengths}", "one row per frame in each; NaN: not tracked", "frames")
+        count = next(iter(lengths.values()), 0)
+    else:
+        fail(FrameError, f"frames: found a {type(frames).__name__}, wanted a DataFrame or a dict of arrays by entity",
+             "{'cup': array of shape (N, 7), ..}", "frames")
+    ticks, per_second = _times(t, rate_hz, count)
+    line, standing = first_line(entities, per_second, name, grammar, bridge_s=bridge_s)
+    names = list(entities)
+    for entity in poses:
+        if entity not in entities:
+            fail(FrameError, f"entities: '{entity}' is missing, of which there are poses", f"known: {', '.join(names)}", "frames")
+    for entity, at in standing.items():
+        if entity not in poses:  # mentioned once, and then it stays
+            poses[entity] = (np.repeat(at, count, axis=0), np.arange(count) == 0)
+    columns = [(names.index(one), array, mentioned) for one, (array, mentioned) in poses.items()]
+    held = []
+    for hand, values in (grips or {}).items():
+        if hand not in entities:
+            fail(FrameError, f"grips: no entity is called '{hand}'", f"known: {', '.join(names)}", "frames")
+        held.append((names.index(hand), _number_array(values, f"grips of '{hand}'")))
+        if len(held[-1][1]) != count:
+            fail(FrameError, f"grips of '{hand}': {len(held[-1][1])} values for {count} frames", "one per frame", "frames")
+    rows, ups = [np.zeros((0, 3), dtype=np.int64)], [np.zeros(0)]
+    for pair, values in (touches or {}).items():
+        if not isinstance(pair, tuple) or len(pair) != 2 or any(one not in entities for one in pair):
+            fail(FrameError, f"touches: found {pair!r}, wanted a pair of entities", f"known: {', '.join(names)}", "frames")
+        up = np.asarray(values)
+        up = np.where(up, 0.0, np.nan) if up.dtype.kind == "b" else _number_array(up, f"touches of {pair}")
+        if up.shape != (count,):
+            fail(FrameError, f"touches of {pair}: found the shape {up.shape} for {count} frames", "one value per frame", "frames")
+        at = np.flatnonzero(~np.isnan(up))
+        rows.append(np.column_stack([at, np.full((len(at), 2), [names.index(one) for one in pair])]))
+        ups.append(up[at])
+    rows, ups = np.concatenate(rows), np.concatenate(ups)
+    order = np.argsort(rows[:, 0], kind="stable")
+    return _prehend.episode_of(line, ticks, columns, held, rows[order], ups[order], int(ticks[-1]) + 1)

@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Grammars: compiled, and applied to episodes, arrays and live data."""
+import csv
+import io
+import json
+import os
+import pathlib
+import tempfile
+from typing import Optional, Union
+
+import numpy as np
+import pandas as pd
+
+from . import _prehend, episodes, events, frames
+from .errors import Error, FrameError, GrammarError, fail, warn
+
+
+class Grammar:
+    """A grammar, compiled.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        Of the library ("pick_and_place") or a file ("my/rules.grammar"); several with '+' between
+        them are one grammar.
+    **parameters
+        Other values for its parameters, with units as in its text: ``reach_radius="25 cm"``. Plain
+        numbers have none.
+
+    Raises
+    ------
+    GrammarError
+        With file, line, column and remedy.
+
+    Examples
+    --------
+    >>> Grammar("pick_and_place_from_motion").segment(prehend.open("take1.jsonl"))
+    """
+
+    def __init__(self, name_or_path: episodes.Path, **parameters: Union[str, float]):
+        values = {}
+        for name, value in parameters.items():
+            if isinstance(value, bool) or not isinstance(value, (str, int, float, np.number)):
+                fail(GrammarError, f"{name}: found {value!r}, wanted a text with a unit, or a number", f"{name}='25 cm'")
+            values[name] = value if isinstance(value, str) else repr(float(value))
+        if not isinstance(name_or_path, (str, os.PathLike)):
+            fail(GrammarError, f"found a {type(name_or_path).__name__}, wanted a name or path", "Grammar('pick_and_place')")
+        try:
+            self._compiled = _prehend.Grammar(os.fspath(name_or_path), values)
+        except Error as error:
+            raise GrammarError(error.diagnostics) from None
+
+    name = property(lambda self: self._compiled.name, doc="As in its text; str.")
+    parameters = property(lambda self: dict(self._compiled.parameters()), doc="Values of its parameters, dict of str.")
+
+    @property
+    def events(self) -> pd.DataFrame:
+        """What it recognises: DataFrame by event with roles, their classes, and whether it is a phase of a hand."""
+        table = pd.DataFrame(self._compiled.events(), columns=["event", "roles", "classes", "phase"])
+        return table.set_index("event")
+
+    def segment(self, frames_, **arrays) -> "events.Events":
+        """What happens in an episode.
+
+        Parameters
+        ----------
+        frames_ : Episode, Episodes, path, dict of arrays or pandas.DataFrame
+            Arrays and tables as `prehend.episode` takes them.
+        **arrays
+            Of arrays and tables: entities, t or rate_hz, grips, touches, as `prehend.episode`.
+
+        Returns
+        -------
+        Events
+            What `prehend episode resegment` prints, tick by tick.
+
+        Warns
+        -----
+        MissingFacts
+            Rules that ask for what the episode does not have: touches, grips, gazes.
+        """
+        return self._episode(frames_, **arrays).segment(self)
+
+    def _episode(self, one, **arrays):
+        if isinstance(one, (dict, pd.DataFrame)):
+            if "entities" not in arrays:
+                fail(FrameError, "entities are missing", "segment(frames, rate_hz=60, entities={'cup': ('Cup', (0.08, 0.08, "
+                     "0.1)), 'right_hand': 'Hand'})", "frames")
+            return episodes.episode(one, **arrays)
+        if isinstance(one, (str, os.PathLike)):
+            one = episodes.open(one)
+        if not isinstance(one, (episodes.Episode, episodes.Episodes)):
+            fail(FrameError, f"frames: found a {type(one).__name__}, wanted an episode, a DataFrame or a dict of arrays",
+                 "{'cup': array of shape (N, 3), ..}", "frames")
+        if arrays:
+            fail(FrameError, f"{', '.join(arrays)}: only of arrays and tables", "frames is an episode already", "frames")
+        return one
+
+    def monitor(self, entities: dict, **more) -> "Monitor":
+        """A `Monitor` for live data, of entities as `prehend.episode` takes them."""
+        return Monitor(self, entities, **more)
+
+    def explain(self, frames_, event: str = "", **arrays) -> "events.Explanation":
+        """Why an event began and ended, or did not happen: see `Episode.explain`."""
+        one = self._episode(frames_, **arrays)
+        return one.explain(event, grammar=self)
+
+    def score(self, found, truth, map=None, collar_s: float = 0.05) -> pd.DataFrame:  # pylint: disable=redefined-builtin
+        """How well events agree with true ones.
+
+        Parameters
+        ----------
+        found : Events, Episode, or list of them
+            Of one episode each. Of an episode: what this grammar recognises.
+        truth : path, pandas.DataFrame, or list of them
+            Labels: .csv, .eaf or .TextGrid; or a table with begin_s, end_s and either event and
+            roles, or label ("grasping(right_hand, cup)", or the event alone).
+        map : path, optional
+            What labels of a file mean (docs/labels.md).
+        collar_s : float
+            For the columns collar_f and collar_error_rate.
+
+        Returns
+        -------
+        pandas.DataFrame
+            By event, and "all": true, found, f1_10, f1_25, f1_50 (0 to 1), edit, Ward's classes,
+            boundary errors in seconds, latency, and more; docs/regression-suite.md says what each
+            is. Events that no label names are not judged.
+        """
+        many = lambda one: one if isinstance(one, (list, tuple, episodes.Episodes)) else [one]
+        found, truth = many(found), many(truth)
+        if len(found) != len(truth):
+            fail(Error, f"{len(found)} of found, {len(truth)} of truth", "one truth for each episode, in the same order")
+        compared = []
+        for one, labels in zip(found, truth):
+            one = one if isinstance(one, events.Events) else self.segment(one)
+            source = one._has_source()
+            with _file_of(labels, self) as file:
+                true = source.episode.read_labels(self._compiled, file, str(map or ""))
+            compared.append((one._tuples(), [event[:5] for event in true], source.episode.ticks_per_second(), source.end))
+        scores = json.loads(_prehend.score(compared, float(collar_s)))
+        return pd.json_normalize(scores["events"] + [scores["total"]], sep="_").set_index("event")
+
+    def margins(self, episodes_, truth, map=None, over=(), within: float = 0.01) -> pd.DataFrame:  # pylint: disable=redefined-builtin
+        """How far each parameter may be from its value before the score drops.
+
+        Parameters
+        ----------
+        episodes_ : Episodes, Episode, path, or list of them
+            Recordings and episode files; all episodes of these.
+        truth : list, path, pandas.DataFrame, "golden" or "recorded"
+            As `score` takes it, one for each episode; or goldens, or what was recorded.
+        map : path, optional
+            What labels mean.
+        over : list of str
+            These parameters; default: all.
+        within : float
+            So much of F1 may be lost.
+
+        Returns
+        -------
+        pandas.DataFrame
+            By parameter: value, f1, from, to, best, best_at, ..; those with the smallest range first.
+        """
+        opened = episodes.open(episodes_) if isinstance(episodes_, (str, os.PathLike)) else episodes_
+        opened = opened if isinstance(opened, (list, tuple, episodes.Episodes)) else [opened]
+        truth = truth if isinstance(truth, (list, tuple)) else [truth]
+        with tempfile.TemporaryDirectory(prefix="prehend_") as folder:
+            files, labels = [], []
+            for number, one in enumerate(opened):
+                files.append(one.file or os.path.join(folder, f"{number}.jsonl"))
+                if not one.file:
+                    one.write(files[-1])
+            for number, one in enumerate(truth):
+                labels.append(one if isinstance(one, str) else os.path.join(folder, f"{number}.csv"))
+                if not isinstance(one, str):
+                    with _file_of(one, self) as file:
+                        pathlib.Path(labels[-1]).write_text(pathlib.Path(file).read_text("utf-8"), "utf-8")
+            text = _prehend.margins(list(dict.fromkeys(files)), self._compiled, labels, str(map or ""), list(over),
+                                    float(within))
+        return pd.read_csv(io.StringIO(text)).set_index("parameter")
+
+    def __repr__(self):
+        return f"<prehend.Grammar {self.name!r}>"
+
+    def __str__(self):
+        return self._compiled.describe()
+
+
+class _file_of:  # pylint: disable=invalid-name
+    """Labels as a file: a table is written, as long as it is needed."""
+
+    def __init__(self, labels, grammar):
+        self._labels, self._grammar, self._file = labels, grammar, None
+
+    def __enter__(self):
+        if isinstance(self._labels, (str, os.PathLike)):
+            return os.fspath(self._labels)
+        table = self._labels
+        if not isinstance(table, pd.DataFrame):
+            fail(Error, f"truth: found a {type(table).__name__}, wanted a DataFrame or a file of labels")
+        missing = {"begin_s", "end_s"} - set(table.columns)
+        if missing or not {"event", "label"} & set(table.columns):
+            fail(Error, f"truth: the table has the columns {list(table.columns)}",
+                 "wanted begin_s, end_s and label; or event and a column for each role")
+        roles = dict(zip(self._grammar.events.index, self._grammar.events["roles"]))
+        with tempfile.NamedTemporaryFile("w", suffix=".csv", delete=False, encoding="utf-8", newline="") as self._file:
+            rows = csv.writer(self._file)
+            rows.writerow(["begin_s", "end_s", "label"])
+            for row in table.to_dict("records"):
+                label = row.get("label", row.get("event"))
+                named = [row.get(role) for role in roles.get(label, [])] if "label" not in row else []
+                if named and all(isinstance(one, str) and one for one in named):
+                    label = f"{label}({', '.join(named)})"
+                rows.writerow([repr(float(row["begin_s"])), repr(float(row["end_s"])), label])
+        return self._file.name
+
+    def __exit__(self, *_):
+        if self._file:
+            os.unlink(self._file.name)
+
+
+class Monitor:
+    """Watches frames as they come, and tells each event as soon as it is certain.
+
+    Parameters
+    ----------
+    grammar : Grammar
+    entities : dict
+        As `prehend.episode` takes them.
+    ticks_per_second : int
+        How finely time is counted.
+    bridge_s : float
+        For so long what is not tracked is as it was seen last.
+
+    Notes
+    -----
+    Its memory does not grow with time. It may be used by any thread, but by one at a time.
+
+    Examples
+    --------
+    >>> m = Grammar("pick_and_place").monitor({"cup": ("Cup", (0.08, 0.08, 0.1)), "right_hand": "Hand"})
+    >>> m.update(0.02, {"cup": (0, 0, 0.8), "right_hand": (0.1, 0, 0.8)}, grips={"right_hand": 0.5})
+    []
+    """
+
+    def __init__(self, grammar: Grammar, entities: dict, ticks_per_second: int = 10_000, bridge_s: float = 0.1,
+                 name: str = "live"):
+        line, self._standing = frames.first_line(entities, ticks_per_second, name, grammar.name, bridge_s=bridge_s)
+        self._monitor = _prehend.Monitor(grammar._compiled, line)
+        self._per_second, self._last, self._t = int(ticks_per_second), None, None
+        warn(self._monitor.warnings())
+
+    def update(self, t: float, poses: dict, grips: Optional[dict] = None, touches=()) -> list:
+        """A frame.
+
+        Parameters
+        ----------
+        t : float
+            Seconds, more than before.
+        poses : dict
+            By entity (x, y, z) or (x, y, z, qw, qx, qy, qz) in metres; None or NaN: not tracked; or a
+            dict as a sample of docs/recording-format.md. What is not mentioned stays where it was.
+        grips : dict of float
+            By hand, 0 open .. 1 closed.
+        touches : list
+            Pairs ``("cup", "table")``, also with the upward part of the contact normal on the first,
+            ``("cup", "table", 1.0)``; or dicts as in docs/recording-format.md. Touches that are not
+            listed have ended.
+
+        Returns
+        -------
+        list of dict
+            Events that became certain: event, its roles, begin_s, end_s, decided_s, open_end.
+        """
+        tick = self._tick(t)
+        if not isinstance(poses, dict):
+            fail(FrameError, f"poses: found a {type(poses).__name__}, wanted a dict by entity", "{'cup': (x, y, z)}", "frames")
+        samples = {one: self._sample(one, pose) for one, pose in poses.items()}
+        if self._last is None:
+            for one, at in self._standing.items():
+                samples.setdefault(one, self._sample(one, at[0]))
+        line = {"tick": tick, "samples": samples,
+                "hands": {hand: grip if isinstance(grip, dict) else {"trigger": grip} for hand, grip in (grips or {}).items()},
+                "touches": [one if isinstance(one, dict) else dict(zip(("a", "b", "up_on_a"), one)) for one in touches]}
+        found = self._monitor.take(frames.to_json(line))
+        self._last, self._t = tick, t
+        return self._told(found)
+
+    def finish(self, t: Optional[float] = None) -> list:
+        """The episode ends at t seconds, by default with the last frame: events that were open, as `update` tells them."""
+        return self._told(self._monitor.finish((self._last or 0) + 1 if t is None else self._tick(t)))
+
+    def _tick(self, t):
+        if isinstance(t, bool) or not isinstance(t, (int, float, np.number)) or not np.isfinite(t):
+            fail(FrameError, f"t: found {t!r}, wanted seconds", file="frames")
+        tick = int(round(float(t) * self._per_second))
+        if self._last is not None and tick <= self._last:
+            fail(FrameError, f"t = {t:g} s comes after {self._t:g} s", "times increase; leave late frames out", "frames")
+        return tick
+
+    @staticmethod
+    def _sample(entity, pose):
+        if pose is None or isinstance(pose, dict):
+            return pose
+        try:
+            values = [float(one) for one in pose]
+        except (TypeError, ValueError):
+            fail(FrameError, f"'{entity}': found {pose!r}, wanted numbers", "(x, y, z) or (x, y, z, qw, qx, qy, qz)", "frames")
+        if len(values) not in (3, 7):
+            fail(FrameError, f"'{entity}': found {len(values)} numbers, wanted 3 or 7", "(x, y, z) or (x, y, z, qw, qx, qy, qz)",
+                 "frames")
+        if all(np.isnan(values[:3])):
+            return None
+        return {"at_m": values[:3], **({"quat_wxyz": values[3:]} if len(values) == 7 else {})}
+
+    def _told(self, timeline):
+        rate = float(self._per_second)
+        return [{"event": event, **dict(roles), "begin_s": begin / rate, "end_s": end / rate, "decided_s": decided / rate,
+                 "open_end": open_end, **{name: value for name, value, _ in values}}
+                for event, roles, begin, end, decided, open_end, values in timeline]

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Live: what `update` tells in a loop is what `segment` finds, and its memory stays."""
+import json
+import os
+import threading
+import unittest
+import warnings
+
+import numpy as np
+
+import prehend
+import takes
+
+
+def resident_mb():
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+
+class Live(unittest.TestCase):
+    def setUp(self):
+        warnings.simplefilter("ignore", prehend.MissingFacts)
+
+    def watch(self, monitor, t, arrays, **more):
+        told = []
+        for i, time in enumerate(t):
+            poses = {name: array[i] for name, array in arrays.items()}
+            news = monitor.update(time, poses, **{key: value(i) for key, value in more.items()})
+            self.assertTrue(all(one["decided_s"] <= time + 1e-4 for one in news))
+            told += news
+        return told + monitor.finish()
+
+    def test_update_is_segment(self):
+        t, arrays = takes.carried(18)
+        arrays["cup"][100:104] = np.nan
+        arrays["cup"][400:430] = np.nan
+        grips = np.clip(t - 1, 0, 1)
+        grammar = prehend.Grammar("pick_and_place_from_motion")
+        found = grammar.segment(arrays, t=t, entities=takes.ENTITIES, grips={"right_hand": grips})
+        monitor = grammar.monitor(takes.ENTITIES, ticks_per_second=found._source.episode.ticks_per_second())
+        told = self.watch(monitor, t, arrays, grips=lambda i: {"right_hand": grips[i]})
+        self.assertGreater(len(told), 20)
+        key = lambda one: (one["begin_s"], one["end_s"], one["event"], one.get("object", ""), one.get("b", ""))
+        names = [name for name in found.columns if name not in ("scenario", "episode")]
+        self.assertEqual([[one.get(name, "") for name in names] for one in sorted(told, key=key)],
+                         [[one[name] for name in names] for one in sorted(found.to_dict("records"), key=key)])
+
+    def test_touches_and_dicts(self):
+        monitor = prehend.Grammar("contact").monitor(takes.ENTITIES)
+        poses = {"cup": {"at_m": (0, 0, 0.86)}, "right_hand": (0, 0, 1)}
+        told = monitor.update(0, poses, touches=[("cup", "table", 1.0)])
+        told += monitor.update(1, {}, touches=[{"a": "cup", "b": "table", "up_on_a": 1, "force_n": 3}])
+        told += monitor.update(2, {"cup": None})
+        told += monitor.finish(3)
+        self.assertEqual([(one["event"], one["begin_s"], one["end_s"]) for one in told],
+                         [("contact", 0.0, 2.0), ("supported_by", 0.0, 2.0)])
+
+    def test_a_refused_frame_changes_nothing(self):
+        monitor = prehend.Grammar("contact").monitor(takes.ENTITIES)
+        monitor.update(0, {"cup": (0, 0, 1)}, touches=[("cup", "table", 1.0)])
+        for wrong in ({"cup": (0, 0, 1e9)}, {"cap": (0, 0, 1)}, {"cup": (0, 0, 1, 2, 0, 0, 0)}):
+            with self.assertRaises(prehend.FrameError):
+                monitor.update(1, wrong)
+        monitor.update(1, {"cup": (0, 0, 1)}, touches=[("cup", "table", 1.0)])
+        self.assertEqual({one["end_s"] for one in monitor.finish(2)}, {2.0})
+
+    def test_an_hour_keeps_its_memory(self):
+        grammar = prehend.Grammar("pick_and_place_from_motion")
+        monitor = grammar.monitor(takes.ENTITIES)
+        t, arrays = takes.carried(12, 30)
+        hour = 3600 if os.environ.get("PREHEND_LONG") else 900
+        told, after = 0, []
+        for begin in range(0, hour, 12):
+            for i, time in enumerate(t):
+                told += len(monitor.update(begin + time, {name: array[i] for name, array in arrays.items()}))
+            after.append(resident_mb())
+        print(f"{hour} s watched, {told} events: {after[len(after) // 4]:.1f} MB after a quarter, {after[-1]:.1f} MB at the end")
+        self.assertGreater(told, hour / 6 * 5)
+        self.assertLess(after[-1] - after[len(after) // 4], 1.5)
+
+    def test_forked_processes_go_their_own_ways(self):
+        monitor = prehend.Grammar("contact").monitor(takes.ENTITIES)
+        monitor.update(0, {"cup": (0, 0, 1)}, touches=[("cup", "table", 1.0)])
+        read, write = os.pipe()
+        if os.fork() == 0:
+            os.write(write, json.dumps(monitor.finish(5)).encode())
+            os._exit(0)
+        os.wait()
+        self.assertEqual(json.loads(os.read(read, 10000))[0]["end_s"], 5.0)
+        self.assertEqual(monitor.finish(2)[0]["end_s"], 2.0)
+
+    def test_threads_segment_beside_each_other(self):
+        t, arrays = takes.carried()
+        grammar = prehend.Grammar("pick_and_place_from_motion")
+        episode = prehend.episode(arrays, t=t, entities=takes.ENTITIES)
+        counts = []
+        threads = [threading.Thread(target=lambda: counts.append(len(grammar.segment(episode)))) for _ in range(4)]
+        for one in threads:
+            one.start()
+        for one in threads:
+            one.join()
+        self.assertEqual(len(counts), 4)
+        self.assertEqual(len(set(counts)), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

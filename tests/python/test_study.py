@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scores, margins, explanations, signals, labels per frame, and what a notebook shows."""
+import json
+import unittest
+import warnings
+import xml.etree.ElementTree
+
+import numpy as np
+import pandas as pd
+
+import prehend
+import takes
+
+
+class Study(takes.Folder, unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        warnings.simplefilter("ignore", prehend.MissingFacts)
+        takes.program("import", "docs/motion_capture/poses.csv", "--map", "docs/motion_capture/bodies.yaml", "-o",
+                      cls.folder / "milk.jsonl")
+        cls.grammar = prehend.Grammar("pick_and_place_from_motion")
+        cls.milk = prehend.open(cls.folder / "milk.jsonl")[0]
+        cls.labels, cls.map = takes.ROOT / "docs/motion_capture/labels.csv", takes.ROOT / "docs/motion_capture/labels.yaml"
+
+    def test_score_is_the_programs(self):
+        mine = self.grammar.score(self.milk, self.labels, map=self.map)
+        told = json.loads(takes.program("score", self.folder / "milk.jsonl", "--truth", self.labels, "--map", self.map,
+                                        "--json"))["grammars"][0]
+        self.assertEqual([*mine.index[:-1]], [one["event"] for one in told["events"]])
+        for one in told["events"] + [told["total"]]:
+            for name in ("true", "found", "f1_10", "f1_50", "edit", "collar_f"):
+                self.assertEqual(mine.loc[one["event"], name], one[name], (one["event"], name))
+            self.assertEqual(mine.loc[one["event"], "begin_s_median"], one["begin_s"]["median"])
+
+    def test_score_against_tables(self):
+        found = self.grammar.segment(self.milk)
+        self.assertEqual(self.grammar.score(found, found).loc["all", "f1_50"], 1.0)
+        some = found[found["event"].isin(["grasping", "transporting"])].copy()
+        some["begin_s"] += 0.2
+        scores = self.grammar.score(self.milk, some)
+        self.assertEqual(list(scores.index), ["grasping", "transporting", "all"])
+        self.assertAlmostEqual(scores.loc["grasping", "begin_s_median"], -0.2, 4)
+        by_name = pd.DataFrame({"begin_s": [1.5], "end_s": [4.1], "label": ["grasping"]})
+        self.assertEqual(self.grammar.score(found, by_name).loc["grasping", "f1_50"], 1.0)
+        two = self.grammar.score([self.milk, found], [by_name, by_name])
+        self.assertEqual(two.loc["all", "true"], 2)
+
+    def test_margins_are_the_programs(self):
+        mine = self.grammar.margins(self.milk, str(self.labels), map=self.map, over=["hold_way", "hold_slip"])
+        file = self.folder / "margins.csv"
+        takes.program("grammar", "margins", self.folder / "milk.jsonl", "--truth", self.labels, "--map", self.map, "--over",
+                      "hold_way", "--over", "hold_slip", "-o", file)
+        pd.testing.assert_frame_equal(mine, pd.read_csv(file).set_index("parameter"))
+        t, arrays = takes.carried()
+        made = prehend.episode(arrays, t=t, entities=takes.ENTITIES)
+        again = self.grammar.margins(made, made.events, over=["hold_way"])
+        self.assertEqual(again.loc["hold_way", "f1"], 1.0)
+
+    def test_explain(self):
+        why = self.milk.explain("transporting")
+        self.assertEqual(str(why), takes.program("explain", self.folder / "milk.jsonl", "--event", "transporting"))
+        self.assertIn("<ul><li>", why._repr_html_())
+        why_not = self.grammar.explain(self.milk, "sliding@2s")
+        self.assertTrue(str(why_not).startswith("sliding"))
+        self.assertIn("did not happen", why_not._repr_html_())
+        self.assertFalse(why_not.data["missing"]["happened"])
+        self.assertEqual(len(str(self.milk.explain()).splitlines()), len(self.milk.events) + 1)
+
+    def test_signals_are_the_programs_tracks(self):
+        mine = self.milk.signals("distance", "grasping")
+        file = self.folder / "tracks.csv"
+        takes.program("grammar", "tracks", self.folder / "milk.jsonl", "--only", "distance", "--only", "grasping", "-o", file)
+        told = pd.read_csv(file)
+        self.assertEqual(mine.shape, (len(told), len(told.columns) - 2))
+        for name, column in zip(mine.columns, told.columns[2:]):
+            self.assertTrue(column.startswith(name))
+            np.testing.assert_allclose(mine[name], told[column], rtol=1e-4, atol=1e-4, err_msg=name)
+
+    def test_labels_per_frame(self):
+        labels = self.milk.events.labels(per_frame=30)
+        self.assertEqual(len(labels), 155)
+        self.assertEqual(labels.iloc[int(2.0 * 30)], "transporting")
+        self.assertEqual(labels.iloc[-1], "")
+        self.assertTrue(set(labels.cat.categories) < {"", "reaching", "fixation", "sliding", "grasping", "picking_up",
+                                                      "transporting", "putting_down"})
+        self.assertEqual(self.milk.events.labels(10, events=["contact"]).iloc[0], "contact")
+
+    def test_label_files(self):
+        events = self.milk.events
+        for ending in ("eaf", "TextGrid", "csv"):
+            events.write(self.folder / f"milk.{ending}")
+            takes.program("episode", "resegment", self.folder / "milk.jsonl", "-o", self.folder / f"same.{ending}")
+            self.assertEqual((self.folder / f"milk.{ending}").read_text(), (self.folder / f"same.{ending}").read_text())
+            self.assertEqual(self.grammar.score(events, self.folder / f"milk.{ending}").loc["all", "f1_50"], 1.0)
+        events.write(self.folder / "milk.json")
+        self.assertEqual(len(json.loads((self.folder / "milk.json").read_text())), len(events))
+
+    def test_what_a_notebook_shows(self):
+        events = self.milk.events
+        picture = xml.etree.ElementTree.fromstring(events._repr_svg_())
+        self.assertTrue(picture.tag.endswith("svg"))
+        self.assertIn("transporting", events.svg())
+        self.assertIn("<table", events._repr_html_())
+        self.assertIn("<svg", events[events["event"] == "grasping"]._repr_html_())
+        self.assertNotIn("<svg", events[["event"]]._repr_html_())
+        self.assertIn("<svg", self.milk._repr_html_())
+
+    def test_help_reads(self):
+        import pydoc
+
+        text = pydoc.render_doc(prehend, renderer=pydoc.plaintext)
+        for words in ("class Grammar", "Parameters\n", "Raises\n", "open(path", "FrameError", "metres"):
+            self.assertIn(words, text)
+        for name in prehend.__all__:
+            self.assertTrue(getattr(prehend, name).__doc__, name)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Calls that cannot be meant: an exception with a remedy each, and afterwards everything works as before."""
+import threading
+import unittest
+import warnings
+
+import numpy as np
+import pandas as pd
+
+import prehend
+import takes
+
+NAN = float("nan")
+T, GOOD = takes.carried(2)
+N = len(T)
+
+
+def segment(frames=None, grammar="pick_and_place_from_motion", entities=None, **more):
+    more = more if "t" in more or "rate_hz" in more or isinstance(frames, pd.DataFrame) else {"rate_hz": 60, **more}
+    return prehend.Grammar(grammar).segment(GOOD if frames is None else frames,
+                                            entities=takes.ENTITIES if entities is None else entities, **more)
+
+
+def cup(array):
+    return {**GOOD, "cup": array}
+
+
+def table(**columns):
+    return takes.long_table(T, GOOD).assign(**columns)
+
+
+def at(array, place, value):
+    array = np.array(array, dtype=float)
+    array[place] = value
+    return array
+
+
+def updated(*frames, **more):
+    monitor = prehend.Grammar("contact").monitor(takes.ENTITIES)
+    for t, poses in frames:
+        monitor.update(t, poses, **more)
+    return monitor
+
+
+class Truth:
+    events = None
+
+    @classmethod
+    def score(cls, truth, **more):
+        grammar = prehend.Grammar("pick_and_place_from_motion")
+        if cls.events is None:
+            cls.events = segment()
+        return grammar.score(cls.events, truth, **more)
+
+
+EPISODE = []
+
+
+def episode():
+    if not EPISODE:
+        EPISODE.append(prehend.episode(GOOD, rate_hz=60, entities=takes.ENTITIES))
+    return EPISODE[0]
+
+
+F, G, E, ANY = prehend.FrameError, prehend.GrammarError, prehend.EpisodeError, prehend.Error
+# What is called, the exception, and what it says: what was found, and a remedy.
+CALLS = {
+    # shapes and types
+    "two columns": (lambda: segment(cup(np.zeros((N, 2)))), F, r"'cup'.*\(120, 2\).*\(N, 3\) or \(N, 7\)"),
+    "one dimension": (lambda: segment(cup(np.zeros(3 * N))), F, r"'cup'.*\(360,\)"),
+    "transposed": (lambda: segment(cup(GOOD["cup"].T)), F, r"\(3, 120\).*one row per frame"),
+    "texts": (lambda: segment(cup(GOOD["cup"].astype(str))), F, r"<U\d+.*astype\(float\)"),
+    "objects": (lambda: segment(cup(GOOD["cup"].astype(object))), F, r"object.*astype\(float\)"),
+    "complex numbers": (lambda: segment(cup(GOOD["cup"] + 1j)), F, "complex128"),
+    "lengths that differ": (lambda: segment(cup(GOOD["cup"][:-1])), F, "different lengths.*119"),
+    "no frames": (lambda: segment({name: array[:0] for name, array in GOOD.items()}), F, "no frames"),
+    "a list": (lambda: segment([1, 2]), ANY, "found"),
+    "nothing": (lambda: prehend.Grammar("contact").segment(None), F, "NoneType.*DataFrame"),
+    "no entities": (lambda: prehend.Grammar("contact").segment(GOOD, rate_hz=60), F, "entities are missing.*'cup'"),
+    "an entity without a class": (lambda: segment(entities={"cup": ("Cup", (.1, .1, .1))}), F, "'right_hand' is missing"),
+    "an entity without a size": (lambda: segment(entities={"cup": "Cup", "right_hand": "Hand"}), F, "'cup' has no size.*edges"),
+    "a size of two numbers": (lambda: segment(entities={"cup": ("Cup", (1, 2)), "right_hand": "Hand"}), F, "metres"),
+    "a misspelt key": (lambda: segment(entities={"cup": {"class": "Cup", "size": (1, 1, 1)}, "right_hand": "Hand"}), F,
+                       "size_m"),
+    "a name that is none": (lambda: segment(entities={**takes.ENTITIES, "my cup": ("Cup", (1, 1, 1))}), F, "my cup"),
+    "an entity that is a number": (lambda: segment(entities={"cup": 3, "right_hand": "Hand"}), F, "'cup': found a int"),
+    # values
+    "half a position": (lambda: segment(cup(at(GOOD["cup"], (5, 1), NAN))), F, r"at 0\.083.*'cup'.*all three NaN"),
+    "an infinite position": (lambda: segment(cup(at(GOOD["cup"], 5, np.inf))), F, "'cup'.*metres"),
+    "millimetres, and far away": (lambda: segment(cup(GOOD["cup"] * 1e6)), F, "positions are metres"),
+    "a quaternion of length 0": (lambda: segment(cup(np.hstack([GOOD["cup"], np.zeros((N, 4))]))), F, "length 1"),
+    "a quaternion of length 2": (lambda: segment(cup(np.hstack([GOOD["cup"], np.ones((N, 4))]))), F, r"\(w, x, y, z\)"),
+    "a grip in percent": (lambda: segment(grips={"right_hand": np.full(N, 100.0)}), F, "grip of 'right_hand' is 100.*scale"),
+    "a grip of a cup": (lambda: segment(grips={"cup": np.zeros(N)}), F, "'cup' is not a hand"),
+    "a grip of nobody": (lambda: segment(grips={"left_hand": np.zeros(N)}), F, "'left_hand'.*known: table, cup"),
+    "too few grips": (lambda: segment(grips={"right_hand": np.zeros(3)}), F, "3 values for 120 frames"),
+    "a touch of one": (lambda: segment(touches={"cup": np.ones(N)}), F, "pair of entities"),
+    "a touch of itself": (lambda: segment(touches={("cup", "cup"): np.ones(N)}), F, "cannot touch itself"),
+    "a normal of length 2": (lambda: segment(touches={("cup", "table"): np.full(N, 2.0)}), F, "-1 to 1"),
+    # times
+    "no times": (lambda: prehend.episode(GOOD, entities=takes.ENTITIES), F, "either t or rate_hz"),
+    "two kinds of times": (lambda: segment(t=T, rate_hz=60), F, "either t or rate_hz"),
+    "ticks backwards": (lambda: segment(t=at(T, 7, 0.01)), F, r"t\[7\] = 0\.01 comes after.*sort"),
+    "a time twice": (lambda: segment(t=at(T, 7, T[6])), F, "comes after"),
+    "no number for a time": (lambda: segment(t=at(T, 7, NAN)), F, r"t\[7\] is no number"),
+    "times that are too few": (lambda: segment(t=T[:5]), F, "5 times.*120 frames"),
+    "milliseconds": (lambda: segment(t=T * 1000), F, "16.6667 s apart.*divide milliseconds by 1000"),
+    "seconds since 1970": (lambda: segment(t=T + 1.7e9), F, r"t - t\[0\]"),
+    "a rate of zero": (lambda: segment(rate_hz=0), F, "rate_hz: found 0"),
+    "a rate that is a text": (lambda: segment(rate_hz="60"), F, "rate_hz: found '60'"),
+    # tables
+    "a table without times": (lambda: segment(table().drop(columns="t")), F, "no column 't'"),
+    "a table with three of a quaternion": (lambda: segment(table(qw=1.0, qx=0.0, qy=0.0)), F, "all of qw, qx, qy, qz"),
+    "a table with rows twice": (lambda: segment(pd.concat([table(), table()])), F, "two rows at the same time"),
+    "a table with texts": (lambda: segment(table(x="1.0")), F, "column 'x'.*object"),
+    # grammars
+    "an unknown grammar": (lambda: prehend.Grammar("pick_and_plaice"), G, "did you mean 'pick_and_place'"),
+    "an unknown parameter": (lambda: prehend.Grammar("contact", contct_for="1 s"), G, "contct_for"),
+    "a wrong unit": (lambda: prehend.Grammar("pick_and_place", lift_rise="10 s"), G, "lift_rise"),
+    "a length without a unit": (lambda: prehend.Grammar("pick_and_place", lift_rise=0.1), G, "lift_rise"),
+    "a list as a parameter": (lambda: prehend.Grammar("contact", reach_radius=[1]), G, "text with a unit"),
+    "a grammar that is a number": (lambda: prehend.Grammar(3), G, "found a int"),
+    # live
+    "an update backwards": (lambda: updated((1, {}), (0.5, {})), F, "comes after 1 s.*leave late frames out"),
+    "an update of nobody": (lambda: updated((1, {"cap": (0, 0, 1)})), F, "did you mean 'cup'"),
+    "an update with two numbers": (lambda: updated((1, {"cup": (0, 1)})), F, "found 2 numbers, wanted 3 or 7"),
+    "an update with texts": (lambda: updated((1, {"cup": "here"})), F, "'cup': found 'here'"),
+    "an update at no time": (lambda: updated((NAN, {})), F, "wanted seconds"),
+    "an update with half a position": (lambda: updated((1, {"cup": (0, NAN, 1)})), F, "null|None|finite"),
+    "an update with an array of poses": (lambda: updated((1, np.zeros(3))), F, "wanted a dict by entity"),
+    "a touch of nobody": (lambda: updated((1, {}), touches=[("cup", "tabel")]), F, "did you mean 'table'"),
+    "an update after the end": (lambda: updated((1, {})).finish() or updated((1, {})).finish(0.2), F, "comes after|before its last"),
+    # episodes
+    "a file that is not there": (lambda: prehend.open("takes/nowhere.jsonl"), E, "no such file"),
+    "a glob without files": (lambda: prehend.open("nowhere/*.jsonl"), E, "no file matches"),
+    "an unknown scenario": (lambda: prehend.open("milk_carton_warp"), E, "did you mean 'milk_carton_wrap'"),
+    "an array": (lambda: prehend.open([np.zeros(3)]), E, r"ndarray.*prehend\.episode"),
+    "nothing to open": (lambda: prehend.open([]), E, "no path is named"),
+    "an unknown signal": (lambda: episode().signals("distence"), ANY, "did you mean 'distance'"),
+    "an unknown event": (lambda: episode().explain("graspin"), ANY, "did you mean 'grasping'"),
+    "labels of another kind": (lambda: episode().events.write("/tmp/x.xml"), ANY, r"\.csv, \.eaf or \.TextGrid"),
+    "labels zero times a second": (lambda: segment().labels(per_frame=0), ANY, "frames per second"),
+    "a truth without times": (lambda: Truth.score(pd.DataFrame({"event": ["grasping"]})), ANY, "begin_s, end_s and label"),
+    "a truth of nobody": (lambda: Truth.score(pd.DataFrame({"begin_s": [0], "end_s": [1], "label": ["graspng"]})), ANY,
+                          "grasping"),
+    "a truth that ends before it begins": (lambda: Truth.score(pd.DataFrame({"begin_s": [1], "end_s": [0],
+                                                                             "label": ["grasping"]})), ANY, "before it begins"),
+    "a truth that is a number": (lambda: Truth.score(3), ANY, "found a int"),
+    "two truths of one": (lambda: Truth.score([None, None]), ANY, "one truth for each"),
+}
+
+
+class WrongCalls(unittest.TestCase):
+    def setUp(self):
+        warnings.simplefilter("ignore")
+
+    def test_each_is_refused_with_a_remedy(self):
+        self.assertGreaterEqual(len(CALLS), 50)
+        for name, (call, kind, says) in CALLS.items():
+            with self.subTest(name):
+                with self.assertRaises(kind) as raised:
+                    call()
+                text = str(raised.exception).replace("\n", " ")
+                self.assertRegex(text, says)
+                self.assertIsInstance(raised.exception, ValueError)
+                self.assertTrue(raised.exception.message)
+        self.assertEqual(len(segment()), len(segment(t=T)))
+
+    def test_errors_have_places(self):
+        with self.assertRaises(prehend.GrammarError) as raised:
+            prehend.Grammar(takes.ROOT / "tests/python/wrong.grammar")
+        error = raised.exception
+        self.assertTrue(error.file.endswith("wrong.grammar"))
+        self.assertEqual((error.line, error.column), (4, 9))
+        self.assertIn("did you mean 'distance'?", error.remedy)
+        self.assertIn("^", str(error))
+
+    def test_a_monitor_is_of_one_thread_at_a_time(self):
+        monitor = prehend.Grammar("pick_and_place_from_motion").monitor(takes.ENTITIES)
+        refused, other = [], []
+
+        def watch(mine):
+            for i in range(3000):
+                try:
+                    monitor._monitor.take('{"tick": %d}' % (len(refused) + i * 2 + mine))
+                except prehend.FrameError as error:
+                    (refused if "another thread" in str(error) else other).append(str(error))
+
+        threads = [threading.Thread(target=watch, args=[mine]) for mine in (0, 1)]
+        for one in threads:
+            one.start()
+        for one in threads:
+            one.join()
+        monitor._monitor.take('{"tick": 1000000}')  # it still works
+        self.assertTrue(all("hint: a monitor for each thread" in one for one in refused))
+
+
+if __name__ == "__main__":
+    unittest.main()
