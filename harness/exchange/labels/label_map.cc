@@ -58,7 +58,9 @@ class MapReader {
       return errors_.Sorted();
     }
     for (const YamlNode& node : root.children) {
-      if (node.key == "offset_s")
+      if (node.key == "version")
+        ReadVersion(node);
+      else if (node.key == "offset_s")
         ReadNumber(node, map_.offset_s, "seconds", false);
       else if (node.key == "join_s")
         ReadNumber(node, map_.join_s, "seconds", true);
@@ -74,8 +76,8 @@ class MapReader {
         ReadTiers(node);
       else if (node.key != "labels")
         errors_.AddUnknownName(node.key_where, "unknown key '" + node.key + "'", node.key,
-                               {"labels", "tiers", "offset_s", "join_s", "time_unit", "rate_hz",
-                                "columns", "entities"});
+                               {"version", "labels", "tiers", "offset_s", "join_s", "time_unit",
+                                "rate_hz", "columns", "entities"});
     }
     if (const YamlNode* labels = root.Find("labels"))
       ReadLabelNodes(*labels);
@@ -95,6 +97,13 @@ class MapReader {
     else
       errors_.Add(node.where, fmt::format("{}: expected {}{}, found {}", node.key, what,
                                           positive ? ", more than 0" : "", Describe(node)));
+  }
+
+  /// 1 where no line says it.
+  void ReadVersion(const YamlNode& node) {
+    if (NumberOf(node) != 1)
+      errors_.Add(node.where,
+                  "version: expected 1, the version of this format, found " + Describe(node));
   }
 
   void ReadTimeUnit(const YamlNode& node) {

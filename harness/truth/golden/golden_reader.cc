@@ -143,6 +143,8 @@ class GoldenReader {
       ReadUnsteady();
     } else if (key == "ticks_per_second") {
       ReadTicksPerSecond(value);
+    } else if (key == "version") {  // 1 where no line says it
+      if (value != "1") Complain("found version " + value + " of the format, wanted 1");
     } else {
       column_ = key_column;
       return false;

@@ -454,6 +454,9 @@ TEST_F(Labels, FaultyMapsAreNamed) {
   EXPECT_EQ(MapProblem("labels: 3\n"),
             "map.yaml:1:9: error: labels: expected a mapping, found '3'");
   EXPECT_EQ(MapProblem("label:\n  a: ignore\n"), "map.yaml:1:1: error: unknown key 'label'");
+  EXPECT_EQ(MapProblem("version: 2\nlabels:\n  a: ignore\n"),
+            "map.yaml:1:10: error: version: expected 1, the version of this format, found '2'");
+  EXPECT_EQ(MapProblem("version: 1\nlabels:\n  a: ignore\n"), "");
   EXPECT_EQ(MapProblem("labels:\n  a: {event: grasp}\n"),
             "map.yaml:2:14: error: the grammar has no event 'grasp'");
   EXPECT_EQ(MapProblem("labels:\n  a: {event: grasping, thing: cup}\n"),

@@ -120,6 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
     Table, GoldenMistake,
     testing::Values(
         Mistake{"no_name", "=1 2", "4:1: expected an event's name"},
+        Mistake{"version", "# version: 2", "4:12: found version 2 of the format, wanted 1"},
         Mistake{"no_begin", "contact a=cup", "4:9: expected begin_s, a time in seconds"},
         Mistake{"no_end", "contact 1.0", "4:12: expected end_s, a time in seconds"},
         Mistake{"negative", "contact -1 2 a=cup", "4:9: expected begin_s, a time in seconds"},
