@@ -53,7 +53,7 @@ ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) 
       std::ranges::find(verdicts, ExitCode::kBadInput, &suite::ScenarioVerdict::exit_code);
   if (unread == verdicts.end()) return ExitCode::kAgrees;
   context.err << fmt::format("prehend: {}: {}\n{}", unread->scenario, unread->reason,
-                             unread->details);
+                             suite::DetailsText(*unread));
   return ExitCode::kBadInput;
 }
 
