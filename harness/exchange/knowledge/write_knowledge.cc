@@ -91,10 +91,10 @@ class KnowledgeWriter {
                   .scenario = row.scenario,
                   .entities = std::move(*entities),
                   .poses = {}};
-    if (const auto first = frames.At(0)) {
-      for (const physics::BodyState& body : first->bodies) map.poses.push_back(body.X_WB);
-      for (const physics::HandState& hand : first->hands) map.poses.push_back(hand.palm.X_WB);
-    }
+    const auto first = frames.At(1);
+    if (!first) return tl::unexpected(first.error());
+    for (const physics::BodyState& body : first->bodies) map.poses.push_back(body.X_WB);
+    for (const physics::HandState& hand : first->hands) map.poses.push_back(hand.palm.X_WB);
     std::vector<Triple> triples = MapTriples(map, vocabulary_);
     hierarchy_.Add(triples);
     ++written_.tasks;
