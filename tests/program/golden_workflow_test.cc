@@ -497,7 +497,7 @@ TEST_F(GoldenWorkflow, AClaimMustHoldInEachPlay) {
   EXPECT_EQ(Do("check balls --no-pictures").exit_code, 0);
   const Said refused = Do("accept balls --reason why --unsteady chaotic_balls");
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_NE(refused.err.find("what the scenario expects does not hold in "), std::string::npos)
+  EXPECT_NE(refused.err.find("what the scenario expects does not hold after "), std::string::npos)
       << refused.err;
   EXPECT_NE(refused.out.find("nudge: expects: '"), std::string::npos) << refused.out;
   EXPECT_EQ(ReadFile(Golden("rest/balls")), golden);

@@ -31,7 +31,9 @@ truth:
 
 Result<std::vector<ClosedFormScore>> ScoreOf(const std::string& text) {
   const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / "closed_form_score_test";
+      std::filesystem::path(testing::TempDir()) /
+      (std::string("closed_form_score_") +
+       testing::UnitTest::GetInstance()->current_test_info()->name());
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "stands.yaml") << text;
   return ScoreOnClosedForms(
