@@ -12,10 +12,12 @@ foreach(folder grammar/library physics/library scenarios golden)
   cmake_path(GET folder PARENT_PATH parent)
   install(DIRECTORY ${folder} DESTINATION ${share}/${parent})
 endforeach()
-install(FILES ${PROJECT_BINARY_DIR}/manual/prehend.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${PROJECT_BINARY_DIR}/manual/prehend.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${PROJECT_BINARY_DIR}/manual/prehend.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME prehend)
 install(FILES ${PROJECT_BINARY_DIR}/manual/_prehend DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
-install(FILES ${here}/copyright CITATION.cff README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/prehend)
+configure_file(${here}/changelog.in ${PROJECT_BINARY_DIR}/changelog @ONLY)
+execute_process(COMMAND gzip -9nkf ${PROJECT_BINARY_DIR}/changelog COMMAND_ERROR_IS_FATAL ANY)
+install(FILES ${here}/copyright ${PROJECT_BINARY_DIR}/changelog.gz CITATION.cff README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/prehend)
 
 # prehend::grammar: grammars are compiled and watched. Its headers include the standard library and Eigen only.
 target_include_directories(prehend_grammar INTERFACE
@@ -49,7 +51,7 @@ install(EXPORT prehend NAMESPACE prehend:: DESTINATION ${cmake_files} FILE prehe
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME prehend)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
-set(CPACK_PACKAGE_CONTACT "The prehend developers <prehend@localhost>")
+set(CPACK_PACKAGE_CONTACT "The prehend developers <developers@prehend.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "test harness and benchmark for grammars of manipulation activities")
 set(CPACK_PACKAGE_DESCRIPTION "Synthetic hands and bodies act in a simulated world, a grammar segments what
  they do into timed events, and the events are compared with accepted
@@ -58,6 +60,9 @@ set(CPACK_PACKAGE_DESCRIPTION "Synthetic hands and bodies act in a simulated wor
 set(CPACK_PACKAGE_HOMEPAGE_URL "")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${here}/triggers)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6, fonts-dejavu-core, python3 (>= 3.11), python3 (<< 3.12), python3-numpy, python3-pandas")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "swi-prolog-nox, librsvg2-bin, libeigen3-dev, libsleef-dev")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)

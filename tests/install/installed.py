@@ -4,6 +4,7 @@
 
 usage: installed.py BUILD_FOLDER
 """
+import gzip
 import os
 import pathlib
 import re
@@ -41,6 +42,9 @@ class Installed(unittest.TestCase):
     def tearDownClass(cls):
         cls.folder.cleanup()
 
+    def manual(self):
+        return gzip.decompress((self.prefix / "share/man/man1/prehend.1.gz").read_bytes()).decode()
+
     def test_plays_what_ships(self):
         self.assertIn("picking_up", run(self.prehend, "run", "milk_carton_wrap", cwd=self.elsewhere))
 
@@ -57,7 +61,7 @@ class Installed(unittest.TestCase):
     def test_says_its_version_in_all_places(self):
         version = re.match(r"prehend (\d+\.\d+\.\d+)", run(self.prehend, "--version", cwd=self.elsewhere))[1]
         self.assertIn(f'PREHEND_VERSION "{version}"', (self.prefix / "include/prehend/version.h").read_text())
-        self.assertIn(f'"prehend {version}"', (self.prefix / "share/man/man1/prehend.1").read_text())
+        self.assertIn(f'"prehend {version}"', self.manual())
 
     def test_completes_commands_and_scenarios(self):
         script = self.prefix / "share/bash-completion/completions/prehend"
@@ -68,7 +72,7 @@ class Installed(unittest.TestCase):
         self.assertEqual(said[:3], ["check", "resegment", "--repeat --replay --report"])
 
     def test_the_manual_names_every_command(self):
-        page = (self.prefix / "share/man/man1/prehend.1").read_text()
+        page = self.manual()
         for command in ("check", "episode query", "grammar sweep", "scenario schema"):
             self.assertIn(f".SS prehend {command}\n", page)
 
