@@ -19,5 +19,7 @@ template <class... Ts>
 struct Overloaded : Ts... {
   using Ts::operator()...;
 };
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;  // which Clang 14 does not find by itself
 
 }  // namespace prehend::physics
