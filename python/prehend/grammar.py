@@ -172,8 +172,9 @@ class Grammar:
                 if not one.file:
                     one.write(files[-1])
             for number, one in enumerate(truth):
-                labels.append(one if isinstance(one, str) else os.path.join(folder, f"{number}.csv"))
-                if not isinstance(one, str):
+                is_file = isinstance(one, (str, os.PathLike))
+                labels.append(os.fspath(one) if is_file else os.path.join(folder, f"{number}.csv"))
+                if not is_file:
                     with _file_of(one, self) as file:
                         pathlib.Path(labels[-1]).write_text(pathlib.Path(file).read_text("utf-8"), "utf-8")
             text = _prehend.margins(list(dict.fromkeys(files)), self._compiled, labels, str(map or ""), list(over),

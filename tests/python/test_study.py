@@ -56,6 +56,9 @@ class Study(takes.Folder, unittest.TestCase):
         made = prehend.episode(arrays, t=t, entities=takes.ENTITIES)
         again = self.grammar.margins(made, made.events, over=["hold_way"])
         self.assertEqual(again.loc["hold_way", "f1"], 1.0)
+        made.events.write(self.folder / "made.eaf")
+        kept = self.grammar.margins(made, self.folder / "made.eaf", over=["hold_way"])
+        self.assertEqual(kept.loc["hold_way", "f1"], 1.0)
 
     def test_explain(self):
         why = self.milk.explain("transporting")
