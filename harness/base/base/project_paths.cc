@@ -85,7 +85,8 @@ bool IsOwnProject(const std::string& root) {
 }
 
 std::string BuildFolder(const std::string& root) {
-  return root.ends_with(kInstalled) ? "build" : (fs::path(root) / "build").string();
+  const bool is_installed = root == ShippedRoot() && root.ends_with(kInstalled);
+  return is_installed ? "build" : (fs::path(root) / "build").string();
 }
 
 bool IsCalledIn(const std::string& root) {
