@@ -9,7 +9,7 @@
 #include "harness/truth/golden/golden.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace prehend::fuzz;
+  using namespace prehend;
   const std::string text(reinterpret_cast<const char*>(data), size);
   const Result<truth::Golden> read = truth::ReadGolden("fuzz.timeline", text);
   if (!read) {

@@ -9,7 +9,8 @@
 #include "harness/exchange/labels/read_labels.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace prehend::fuzz;
+  using namespace prehend;
+  using namespace prehend::exchange;
   if (size == 0) return 0;
   LabelFile file{.file = "labels",
                  .text = std::string(reinterpret_cast<const char*>(data) + 1, size - 1),

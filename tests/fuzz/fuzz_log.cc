@@ -74,6 +74,7 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** words) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace prehend::exchange;
   using namespace prehend::fuzz;
   static const Files files;
   if (size == 0) return 0;

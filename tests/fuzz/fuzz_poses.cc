@@ -12,7 +12,8 @@
 #include "harness/exchange/messages/message_pose.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace prehend::fuzz;
+  using namespace prehend;
+  using namespace prehend::exchange;
   if (size == 0) return 0;
   std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   const int kind = data[0] % 8;

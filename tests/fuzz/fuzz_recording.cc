@@ -15,7 +15,7 @@
 
 namespace {
 
-using namespace prehend::fuzz;
+using namespace prehend;
 
 /// A file without a place on any disk.
 class MemoryFile {

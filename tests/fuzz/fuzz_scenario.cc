@@ -10,7 +10,7 @@
 #include "harness/scenario/read/read_scenario.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace prehend::fuzz;
+  using namespace prehend;
   static const scenario::ScenarioLibrary library = episode::ProjectLibrary(PREHEND_SOURCE_DIR);
   const auto read = scenario::ReadScenarioText(
       "fuzz.yaml", std::string(reinterpret_cast<const char*>(data), size), {}, library);
