@@ -45,9 +45,10 @@ std::vector<std::string> LogTopic::Names(const std::string& topic, bool unasked_
   const bool has_poses = std::ranges::find(fields, true, &PoseField::oriented) != fields.end();
   for (const auto& [field, keys] : seen) {
     if (has_poses && !fields[field].oriented) continue;
-    const bool is_asked = std::ranges::any_of(asked, [&](const AskedBody& body) {
-      return body.links.contains(field) && body.address.keys == keys;
-    });
+    const bool is_asked =
+        std::ranges::any_of(asked, [&field = field, &keys = keys](const AskedBody& body) {
+          return body.links.contains(field) && body.address.keys == keys;
+        });
     if (!is_asked || !unasked_only)
       names.push_back(AddressOf(ReadableName(topic), fields, field, keys));
   }
