@@ -23,6 +23,7 @@ install(FILES ${here}/copyright ${PROJECT_BINARY_DIR}/changelog.gz CITATION.cff 
 target_include_directories(prehend_grammar INTERFACE
   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/prehend>)
 target_compile_features(prehend_grammar INTERFACE cxx_std_20)
+target_compile_definitions(prehend_grammar INTERFACE $<INSTALL_INTERFACE:EIGEN_MAX_ALIGN_BYTES=16>)
 set_target_properties(prehend_grammar PROPERTIES EXPORT_NAME grammar)
 set_target_properties(prehend_math PROPERTIES EXPORT_NAME math)
 install(TARGETS prehend_grammar prehend_math EXPORT prehend ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
