@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What goes wrong: exceptions with a place and a remedy, and the warning for facts that are missing."""
+"""What goes wrong: exceptions with a place and a remedy, and warnings of what is missing or looks wrong."""
+import os
 import re
+import sys
 import warnings
 
 
@@ -32,7 +34,7 @@ class GrammarError(Error):
 
 
 class FrameError(Error):
-    """Arrays, tables or looks that are no frames: shapes, types, units, times."""
+    """Arrays, tables or poses that are no frames: shapes, types, numbers, times."""
 
 
 class EpisodeError(Error):
@@ -41,6 +43,10 @@ class EpisodeError(Error):
 
 class MissingFacts(UserWarning):
     """Rules that ask for what an episode does not have: they never recognise anything."""
+
+
+class DoubtfulFrames(UserWarning):
+    """Poses or sizes that can hardly be meant: another unit, no table, z not up."""
 
 
 def of(diagnostics):
@@ -59,8 +65,11 @@ def fail(kind, message, remedy="", file=""):
     raise kind([(file, 0, 0, message, remedy, text)])
 
 
-def warn(text, stacklevel=3):
-    """A Python warning for each of the program's."""
+def warn(text, kind=MissingFacts):
+    """A Python warning for each of the program's, at the caller's line."""
+    frame, depth = sys._getframe(), 1
+    while frame.f_back and os.path.dirname(frame.f_code.co_filename) == os.path.dirname(__file__):
+        frame, depth = frame.f_back, depth + 1
     for one in re.split(r"\n(?=\S)", text.rstrip("\n")):
         if one:
-            warnings.warn(one, MissingFacts, stacklevel=stacklevel)
+            warnings.warn(one, kind, stacklevel=depth)

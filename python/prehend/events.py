@@ -69,7 +69,7 @@ class Events(pd.DataFrame):
         per_second = self._source.episode.ticks_per_second()
         roles, tick = self.roles, lambda s: int(round(s * per_second))
         return [(row["event"], [(role, row[role]) for role in roles if row[role]], tick(row["begin_s"]),
-                 tick(row["end_s"]), tick(row["decided_s"])) for row in self.to_dict("records")]
+                 tick(row["end_s"]), tick(row.get("decided_s", row["end_s"]))) for row in self.to_dict("records")]
 
     def _has_source(self):
         if self._source is None:

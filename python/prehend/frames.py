@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from . import _prehend
-from .errors import FrameError, fail
+from .errors import DoubtfulFrames, FrameError, fail, warn
 
 _FINE = 10_000  # ticks per second, as `prehend import` has them
 _POSE = ["x", "y", "z", "qw", "qx", "qy", "qz"]
@@ -33,6 +33,8 @@ def to_json(value):
 def _entity(name, spec):
     """An entity as in the first line of a recording, and where it stands if nothing says so."""
     if isinstance(spec, str):
+        if spec != "Hand" and spec.lower() == "hand":
+            fail(FrameError, f"entity '{name}': found {spec!r}, wanted 'Hand'", f"{name!r}: 'Hand'", "frames")
         if spec != "Hand":
             fail(FrameError, f"entity '{name}' has no size", f"{name!r}: ({spec!r}, (x, y, z)) with the edges of its "
                  "bounding box in metres, or a dict as in docs/recording-format.md", "frames")
@@ -98,7 +100,7 @@ def _times(t, rate_hz, frames):
     steps = np.diff(t)
     if frames > 1 and steps.min() <= 0:
         row = int(np.argmin(steps > 0)) + 1
-        fail(FrameError, f"t[{row}] = {t[row]:g} comes after {t[row - 1]:g}", "sort the frames by time; one frame per time",
+        fail(FrameError, f"t[{row}] = {t[row]:g} is not after {t[row - 1]:g}", "sort the frames by time; one frame per time",
              "frames")
     usual = float(np.median(steps)) if frames > 1 else 1.0
     if usual > 2:
@@ -156,6 +158,35 @@ def _of_table(table):
     return t, poses, grips, touches
 
 
+def doubts(entities, poses):
+    """What can hardly be meant of positions by entity, arrays (N, 3 or more) in metres: a line for each."""
+    sizes = {one: _entity(one, spec)[0] for one, spec in entities.items()}
+    is_hand = {one: bool(spec.get("hand")) for one, spec in sizes.items()}
+    told = [f"'{one}' is {max(spec['size_m']):g} m long\n  hint: sizes are the edges of the bounding box in metres"
+            for one, spec in sizes.items()
+            if not spec.get("fixed") and "size_m" in spec and max(spec["size_m"]) > 3]
+    seen = {one: at[~np.isnan(at[:, :3]).any(axis=1), :3] for one, at in poses.items()}
+    seen = {one: at for one, at in seen.items() if len(at)}
+    if seen and (span := np.ptp(np.concatenate(list(seen.values())), axis=0).max()) > 20:
+        told.append(f"positions are up to {span:g} m apart\n  hint: metres are wanted; divide millimetres by 1000")
+    if told:
+        return "\n".join(told)
+    for one, at in seen.items():
+        if is_hand[one] or sizes[one].get("fixed") or "size_m" not in sizes[one]:
+            continue
+        begin, low = at[0], at[0][2] - sizes[one]["size_m"][2] / 2
+        others = [(other, there[0]) for other, there in seen.items() if other != one]
+        if any(is_hand[other] and np.linalg.norm(there - begin) < 0.2 for other, there in others):
+            continue  # held, perhaps
+        below = [there[2] + sizes[other]["size_m"][2] / 2 for other, there in others
+                 if "size_m" in sizes[other] and not is_hand[other]
+                 and (np.abs(there - begin)[:2] < np.hypot(*sizes[other]["size_m"][:2]) / 2).all()]
+        if not any(abs(top - low) < 0.1 for top in below):
+            told.append(f"nothing is below '{one}' at the begin, whose lowest point is {low:.3g} m high\n  hint: name what it "
+                        "stands on ({'class': 'Table', 'fixed': True, 'size_m': .., 'at_m': ..}); z is up, in metres")
+    return "\n".join(told)
+
+
 def make(frames, *, entities, t=None, rate_hz=None, grips=None, touches=None, name="episode",
          grammar="pick_and_place_from_motion", bridge_s=0.1):
     """See `prehend.episode`."""
@@ -184,6 +215,7 @@ def make(frames, *, entities, t=None, rate_hz=None, grips=None, touches=None, na
     for entity, at in standing.items():
         if entity not in poses:  # mentioned once, and then it stays
             poses[entity] = (np.repeat(at, count, axis=0), np.arange(count) == 0)
+    warn(doubts(entities, {one: array for one, (array, _) in poses.items()}), DoubtfulFrames)
     columns = [(names.index(one), array, mentioned) for one, (array, mentioned) in poses.items()]
     held = []
     for hand, values in (grips or {}).items():

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from . import _prehend, episodes, events, frames
-from .errors import Error, FrameError, GrammarError, fail, warn
+from .errors import DoubtfulFrames, Error, FrameError, GrammarError, fail, warn
 
 
 class Grammar:
@@ -133,6 +133,9 @@ class Grammar:
             fail(Error, f"{len(found)} of found, {len(truth)} of truth", "one truth for each episode, in the same order")
         compared = []
         for one, labels in zip(found, truth):
+            if isinstance(one, pd.DataFrame) and not isinstance(one, events.Events):
+                fail(Error, "found: a table does not say which entities there are",
+                     "what segment() returned, monitor.events(told), or an episode")
             one = one if isinstance(one, events.Events) else self.segment(one)
             source = one._has_source()
             with _file_of(labels, self) as file:
@@ -248,7 +251,7 @@ class Monitor:
     def __init__(self, grammar: Grammar, entities: dict, ticks_per_second: int = 10_000, bridge_s: float = 0.1,
                  name: str = "live"):
         line, self._standing = frames.first_line(entities, ticks_per_second, name, grammar.name, bridge_s=bridge_s)
-        self._monitor = _prehend.Monitor(grammar._compiled, line)
+        self._monitor, self._entities, self._line, self._grammar = _prehend.Monitor(grammar._compiled, line), entities, line, grammar
         self._per_second, self._last, self._t = int(ticks_per_second), None, None
         warn(self._monitor.warnings())
 
@@ -281,9 +284,11 @@ class Monitor:
         if self._last is None:
             for one, at in self._standing.items():
                 samples.setdefault(one, self._sample(one, at[0]))
+            at_m = {one: np.array([pose["at_m"]]) for one, pose in samples.items() if pose and "at_m" in pose and one in self._entities}
+            warn(frames.doubts(self._entities, at_m), DoubtfulFrames)
         line = {"tick": tick, "samples": samples,
                 "hands": {hand: grip if isinstance(grip, dict) else {"trigger": grip} for hand, grip in (grips or {}).items()},
-                "touches": [one if isinstance(one, dict) else dict(zip(("a", "b", "up_on_a"), one)) for one in touches]}
+                "touches": [self._touch(one) for one in touches]}
         found = self._monitor.take(frames.to_json(line))
         self._last, self._t = tick, t
         return self._told(found)
@@ -292,12 +297,37 @@ class Monitor:
         """The episode ends at t seconds, by default with the last frame: events that were open, as `update` tells them."""
         return self._told(self._monitor.finish((self._last or 0) + 1 if t is None else self._tick(t)))
 
+    def events(self, told: list) -> "events.Events":
+        """What `update` and `finish` told, as `Events`: to be scored, drawn, written."""
+        end = max([self._last or 0, *(round(one["end_s"] * self._per_second) for one in told)]) + 1
+        episode = _prehend.episode_of(self._line, np.zeros(1, dtype=np.int64), [], [], np.zeros((0, 3), dtype=np.int64),
+                                      np.zeros(0), end)
+        roles, last = self._grammar.events["roles"], ["begin_s", "end_s", "decided_s", "open_end"]
+        table = events.Events([{"scenario": episode.name, "episode": 0, **one} for one in told])
+        named = [one for one in dict.fromkeys(role for row in roles for role in row) if one in table.columns]
+        table = table[["scenario", "episode", "event", *named, *last, *(set(table.columns) - {*named, *last, *table.columns[:3]})]]
+        table[named] = table[named].fillna("")
+        table._source = events.Source(episode, self._grammar, end)
+        return table.sort_values(["begin_s", "end_s"], ignore_index=True)
+
+    @staticmethod
+    def _touch(one):
+        if isinstance(one, dict):
+            return one
+        if not isinstance(one, (tuple, list)) or len(one) not in (2, 3):
+            fail(FrameError, f"touches: found {one!r}, wanted a pair", "[('cup', 'table')]", "frames")
+        return dict(zip(("a", "b", "up_on_a"), one))
+
     def _tick(self, t):
         if isinstance(t, bool) or not isinstance(t, (int, float, np.number)) or not np.isfinite(t):
             fail(FrameError, f"t: found {t!r}, wanted seconds", file="frames")
+        if abs(t - (self._t or 0)) > 1e6:
+            fail(FrameError, f"t: found {t:g} s, {'the first frame' if self._t is None else f'after {self._t:g} s'}",
+                 "count seconds from the beginning: t - t0", "frames")
         tick = int(round(float(t) * self._per_second))
         if self._last is not None and tick <= self._last:
-            fail(FrameError, f"t = {t:g} s comes after {self._t:g} s", "times increase; leave late frames out", "frames")
+            fail(FrameError, f"t = {t:g} s is not after {self._t:g} s by 1/{self._per_second} s",
+                 "times increase; leave late frames out", "frames")
         return tick
 
     @staticmethod
@@ -313,6 +343,8 @@ class Monitor:
                  "frames")
         if all(np.isnan(values[:3])):
             return None
+        if not np.isfinite(values).all():
+            fail(FrameError, f"'{entity}': found {tuple(values)}", "numbers, or NaN in all of x, y, z: not tracked", "frames")
         return {"at_m": values[:3], **({"quat_wxyz": values[3:]} if len(values) == 7 else {})}
 
     def _told(self, timeline):

@@ -7,6 +7,7 @@ import unittest
 import warnings
 
 import numpy as np
+import pandas as pd
 
 import prehend
 import takes
@@ -44,6 +45,18 @@ class Live(unittest.TestCase):
         names = [name for name in found.columns if name not in ("scenario", "episode")]
         self.assertEqual([[one.get(name, "") for name in names] for one in sorted(told, key=key)],
                          [[one[name] for name in names] for one in sorted(found.to_dict("records"), key=key)])
+
+    def test_what_it_told_is_events(self):
+        t, arrays = takes.carried(6)
+        grammar = prehend.Grammar("pick_and_place_from_motion")
+        found = grammar.segment(arrays, t=t, entities=takes.ENTITIES)
+        monitor = grammar.monitor(takes.ENTITIES, ticks_per_second=found._source.episode.ticks_per_second())
+        told = monitor.events(self.watch(monitor, t, arrays))
+        self.assertIn("<svg", told.svg())
+        labels = found[["event", "hand", "object", "begin_s", "end_s"]]
+        self.assertEqual(grammar.score(told, labels).loc["all", "f1_50"], 1.0)
+        with self.assertRaisesRegex(prehend.Error, "a table does not say which entities"):
+            grammar.score(pd.DataFrame(labels), labels)
 
     def test_touches_and_dicts(self):
         monitor = prehend.Grammar("contact").monitor(takes.ENTITIES)
