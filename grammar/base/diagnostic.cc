@@ -26,6 +26,15 @@ std::string Printable(std::string_view text) {
 
 bool IsContinuationByte(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
 
+// A message is as long as a person reads, whatever a file holds.
+std::string Cut(const std::string& message) {
+  constexpr std::size_t kMostBytes = 2000;
+  if (message.size() <= kMostBytes) return message;
+  std::size_t end = kMostBytes;
+  while (end > 0 && IsContinuationByte(message[end])) --end;
+  return message.substr(0, end) + "... (" + std::to_string(message.size() - end) + " bytes more)";
+}
+
 // The source line and the caret line below it. Tabs are repeated, so the caret stands right at any
 // tab width.
 std::string CaretBlock(std::string_view line, int column) {
@@ -76,10 +85,10 @@ std::string Format(const Diagnostic& diagnostic) {
     text +=
         ":" + std::to_string(diagnostic.place.line) + ":" + std::to_string(diagnostic.place.column);
   }
-  text += (diagnostic.is_warning ? ": warning: " : ": error: ") + diagnostic.message + "\n";
+  text += (diagnostic.is_warning ? ": warning: " : ": error: ") + Cut(diagnostic.message) + "\n";
   if (!diagnostic.source_line.empty())
     text += CaretBlock(diagnostic.source_line, diagnostic.caret_column);
-  if (!diagnostic.hint.empty()) text += "  hint: " + diagnostic.hint + "\n";
+  if (!diagnostic.hint.empty()) text += "  hint: " + Cut(diagnostic.hint) + "\n";
   return text;
 }
 

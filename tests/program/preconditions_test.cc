@@ -82,6 +82,37 @@ TEST_F(Preconditions, AnOutputReplacesNoInput) {
       << "what was written before may be written again";
 }
 
+TEST_F(Preconditions, NorAFolderOfTheProject) {
+  Accept();
+  const std::string file = (root_ / "a.episodes").string(), kb = (root_ / "kb").string();
+  ASSERT_EQ(Do("run carton_rests --record " + file).exit_code, 0);
+  ASSERT_EQ(Do("episode knowledge " + file + " -o " + kb).exit_code, 0);
+  for (const std::string folder : {"golden", "scenarios/rest", "grammars/own"}) {
+    const std::string there = (root_ / folder).string();
+    for (const std::string& command :
+         {"episode knowledge " + file + " -o " + there,
+          "episode query " + file + " --event contact --show " + there,
+          "episode ask " + kb + " true --show " + there, "check --report " + there}) {
+      const Said said = Do(command);
+      EXPECT_EQ(said.exit_code, 2) << command;
+      EXPECT_NE(said.err.find("a file of the project's "), std::string::npos) << said.err;
+    }
+  }
+  EXPECT_FALSE(fs::exists(root_ / "grammars/own"));
+}
+
+TEST_F(Preconditions, FewDescriptorsAreNoReasonToWait) {
+  Accept();
+  for (const char* count : {"4", "5", "6", "7"}) {
+    const Said said =
+        DoAfter(std::string("exec 3>&- 4>&- 5>&- 6>&- 7>&- 8>&- 9>&-; ulimit -n ") + count,
+                "check --no-pictures");
+    EXPECT_TRUE(said.exit_code == 0 || said.exit_code == 3) << count << said.err;
+    const bool says = (said.out + said.err).find("Too many open files") != std::string::npos;
+    EXPECT_TRUE(said.exit_code == 0 || says) << count << said.out << said.err;
+  }
+}
+
 // Nobody writes into the pipe: who opens it waits for ever.
 TEST_F(Preconditions, APipeIsNotWaitedFor) {
   Accept();

@@ -114,8 +114,8 @@ TEST(Query, EachAnswerIsDrawn) {
   const auto folder = FreshFolder("query_shown") / "new";
   const Said bad = Prehend({"episode", "query", file, "--show", file});
   if (bad.err.find("draws no pictures") != std::string::npos) GTEST_SKIP() << bad.err;
-  EXPECT_EQ(bad.exit_code, 3);
-  EXPECT_NE(bad.err.find(file + " is not a folder"), std::string::npos) << bad.err;
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_NE(bad.err.find(file + " is what is read"), std::string::npos) << bad.err;
   const auto answers =
       Asked(file, {"--event", "*ing", "--class", "any=Handle", "--show", folder.string()});
   ASSERT_GT(answers.size(), 1u);

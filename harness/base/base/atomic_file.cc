@@ -6,9 +6,12 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <iostream>
+
+#include "harness/base/base/text_file.h"
 
 namespace prehend {
 namespace {
@@ -38,6 +41,19 @@ std::string WhyNotReplaceable(const fs::path& path) {
 fs::path NameOf(int file) { return "/proc/self/fd/" + std::to_string(file); }
 
 }  // namespace
+
+std::string FileNameOf(std::string_view text) {
+  constexpr std::size_t kMost_bytes = 180;
+  std::string name(text.substr(0, kMost_bytes));
+  name.resize(name.size() - BegunUtf8(name));
+  for (char& c : name) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.' ||
+                          static_cast<unsigned char>(c) >= 0x80;
+    if (!is_plain) c = '_';
+  }
+  if (name.starts_with('.')) name.front() = '_';
+  return name;
+}
 
 std::string MakeFolderOf(const fs::path& path) {
   std::error_code error;

@@ -54,6 +54,10 @@ class FolderLock {
   int folder_ = -1;
 };
 
+/// A name that stays in its folder, whatever the text is: of ASCII, letters,
+/// digits, '-' and '.' stay, the rest and a '.' at the begin become '_'; at most 180 bytes.
+std::string FileNameOf(std::string_view text);
+
 /// Creates the folders above this path. Empty, or why that is not possible.
 std::string MakeFolderOf(const std::filesystem::path& path);
 

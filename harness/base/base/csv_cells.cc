@@ -3,6 +3,7 @@
 #include "harness/base/base/csv_cells.h"
 
 #include <algorithm>
+#include <charconv>
 
 namespace prehend {
 
@@ -40,6 +41,21 @@ std::vector<CsvCell> CsvCellsOf(std::string_view line, char separator) {
     begin = end + 1;
   }
   return cells;
+}
+
+std::string AsCsvCell(std::string_view cell) {
+  double number = 0;
+  const std::string_view digits = cell.substr(cell.starts_with('+') ? 1 : 0);
+  const char* const end = digits.data() + digits.size();
+  const bool is_number = std::from_chars(digits.data(), end, number).ptr == end;
+  const bool is_run = !cell.empty() &&
+                      std::string_view("=+-@").find(cell.front()) != std::string_view::npos &&
+                      !is_number;
+  std::string text = is_run ? "'" : "";
+  if (cell.find_first_of(",;\"\t\n") == std::string_view::npos) return text.append(cell);
+  text.insert(0, "\"");
+  for (const char c : cell) text += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return text + "\"";
 }
 
 }  // namespace prehend

@@ -3,6 +3,7 @@
 // tests/harness/base/base/csv_cells_test.cc
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,5 +17,9 @@ struct CsvCell {
 
 /// A cell may stand in quotes, and then hold separators; two quotes are one that does not end it.
 std::vector<CsvCell> CsvCellsOf(std::string_view line, char separator);
+
+/// A cell to be written: in quotes where it needs them. A text that a spreadsheet would run
+/// ("=cmd|..") gets an apostrophe before it.
+std::string AsCsvCell(std::string_view cell);
 
 }  // namespace prehend

@@ -72,18 +72,25 @@ bool IsFit(std::string_view text, std::size_t length) {
   return length > 0 && NameOfStrange(CodePoint(text.substr(0, length))).empty();
 }
 
-/// Each sequence that is not fit, or that is one of `others`, becomes U+FFFD.
-std::string Readable(std::string_view bytes, std::string_view others) {
+/// Each sequence that is not fit, or that is one of `others`, becomes what `instead` makes of it;
+/// it is given "" for a byte that begins no sequence.
+template <typename Instead>
+std::string Readable(std::string_view bytes, std::string_view others, const Instead& instead) {
   std::string text;
   text.reserve(bytes.size());
   while (!bytes.empty()) {
     const std::size_t length = Utf8Length(bytes);
     const bool fits = IsFit(bytes, length) && others.find(bytes.front()) == std::string_view::npos;
-    text += fits ? bytes.substr(0, length) : std::string_view("\uFFFD");
+    if (fits)
+      text += bytes.substr(0, length);
+    else
+      text += instead(bytes.substr(0, length));
     bytes.remove_prefix(std::max<std::size_t>(1, length));
   }
   return text;
 }
+
+constexpr const char* kNoCharacter = "\uFFFD";
 
 /// Without the line itself: printing it could garble a terminal.
 Diagnostic NotText(const std::string& file, std::string_view text, std::size_t offset,
@@ -138,9 +145,32 @@ std::string WhyNotReadable(const std::string& path, std::uintmax_t most_bytes) {
 
 }  // namespace
 
-std::string ReadableText(std::string_view bytes) { return Readable(bytes, ""); }
+std::string ReadableText(std::string_view bytes) {
+  return Readable(bytes, "", [](std::string_view) { return kNoCharacter; });
+}
 
-std::string ReadableName(std::string_view bytes) { return Readable(bytes, "\t\n"); }
+std::string ReadableName(std::string_view bytes) {
+  return Readable(bytes, "\t\n", [](std::string_view) { return kNoCharacter; });
+}
+
+std::string VisibleText(std::string_view bytes) {
+  return Readable(bytes, "", [](std::string_view sequence) {
+    const char32_t code = sequence.empty() ? 0 : CodePoint(sequence);
+    return sequence.empty() || code > 0xFFFF
+               ? std::string(kNoCharacter)
+               : fmt::format("\\u{:04x}", static_cast<unsigned>(code));
+  });
+}
+
+std::size_t BegunUtf8(std::string_view bytes) {
+  for (std::size_t count = 1; count <= std::min<std::size_t>(3, bytes.size()); ++count) {
+    const auto lead = static_cast<unsigned char>(bytes[bytes.size() - count]);
+    if ((lead & 0xC0) == 0x80) continue;
+    const std::size_t wanted = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
+    return wanted > count ? count : 0;
+  }
+  return 0;
+}
 
 std::string StrangeIn(std::string_view value) {
   for (std::size_t i = 0; i < value.size();) {

@@ -33,6 +33,11 @@ std::string ReadableText(std::string_view bytes);
 /// Likewise of a name of a file or folder, which stands in one line and one cell: tabs and line
 /// ends become U+FFFD, too.
 std::string ReadableName(std::string_view bytes);
+/// Bytes as a terminal may show them: what CheckText() would report is written
+/// as JSON writes it, "\u001b"; a byte that is not UTF-8 becomes U+FFFD.
+std::string VisibleText(std::string_view bytes);
+/// How many bytes at the end begin a sequence of UTF-8 that is not complete.
+std::size_t BegunUtf8(std::string_view bytes);
 
 /// The first thing in a value of one file that CheckText() would report, or a tab: "control
 /// character U+009B"; "" if there is none.

@@ -180,6 +180,7 @@ class Pool {
              workers_.size() < static_cast<std::size_t>(std::max(1, limits_.jobs))) {
         Start(next_++, done);
       }
+      if (workers_.empty()) continue;  // none of them could be started
       WaitAndRead(done);
       if (meanwhile_) meanwhile_();
       if (interrupt_ != nullptr && interrupt_->Came()) {

@@ -14,6 +14,7 @@
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/shell_quote.h"
 #include "harness/base/base/text_file.h"
+#include "harness/base/base/visible_stream.h"
 #include "harness/cli/command/preconditions.h"
 
 namespace prehend::cli {
@@ -48,8 +49,10 @@ ExitCode Run(const ChosenCommand& chosen, const std::vector<std::string>& words)
   CommandContext context{
       .out = std::cout, .err = std::cerr, .root = {}, .today = Today(), .words = words};
   context.in_ci = IsSet("CI");
-  context.colored = isatty(STDOUT_FILENO) && !IsSet("NO_COLOR");
-  context.progress = isatty(STDERR_FILENO);
+  const char* const terminal = std::getenv("TERM");
+  const bool obeys = !terminal || std::string_view(terminal) != "dumb";
+  context.colored = obeys && isatty(STDOUT_FILENO) && !IsSet("NO_COLOR");
+  context.progress = obeys && isatty(STDERR_FILENO);
   const auto root = FindProjectRoot();
   if (!root) {
     const char* const home = std::getenv("PREHEND_HOME");
@@ -89,6 +92,7 @@ std::string WhyNotText(const std::vector<std::string>& words) {
 
 ExitCode RunCommandLine(int argc, const char* const* argv, const char* commit) {
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  const VisibleBuffer out(std::cout), err(std::cerr);
   try {
     if (const std::string why = WhyNotText(words); !why.empty()) {
       std::cerr << "prehend: " << why << "\n";

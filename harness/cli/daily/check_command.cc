@@ -10,6 +10,7 @@
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/shell_quote.h"
+#include "harness/base/base/visible_stream.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/episodes/record_episode.h"
@@ -173,12 +174,14 @@ std::string Indented(const std::string& text) {
   return indented;
 }
 
-std::string Colored(suite::Verdict verdict, bool colored) {
-  const std::string name(Name(verdict));
-  if (!colored) return name;
+void PrintVerdict(suite::Verdict verdict, const CommandContext& context) {
   const bool good = verdict == suite::Verdict::kPassed || verdict == suite::Verdict::kUnchanged;
-  const int color = good ? 32 : verdict == suite::Verdict::kPending ? 33 : 31;
-  return fmt::format("\033[{}m{}\033[0m", color, name);
+  constexpr TerminalCode kRed{"\033[31m"}, kGreen{"\033[32m"}, kYellow{"\033[33m"};
+  constexpr TerminalCode kPlain{"\033[0m"};
+  if (context.colored)
+    context.out << (good ? kGreen : verdict == suite::Verdict::kPending ? kYellow : kRed);
+  context.out << Name(verdict);
+  if (context.colored) context.out << kPlain;
 }
 
 /// With more failures their details are in the report only, unless they are asked for.
@@ -199,8 +202,8 @@ void PrintText(const std::vector<suite::ScenarioVerdict>& verdicts, const TextOp
   const bool brief = failed > kMostDetailed && !options.verbose;
   for (const suite::ScenarioVerdict& verdict : verdicts) {
     const std::string note = verdict.reason.empty() ? MarginText(verdict) : verdict.reason;
-    context.out << fmt::format("{}  {}{}{}\n", Colored(verdict.verdict, context.colored),
-                               verdict.scenario, note.empty() ? "" : "  ", note);
+    PrintVerdict(verdict.verdict, context);
+    context.out << fmt::format("  {}{}{}\n", verdict.scenario, note.empty() ? "" : "  ", note);
     if (brief && verdict.exit_code != ExitCode::kAgrees) continue;
     context.out << Indented(suite::NotesText(verdict));
     context.out << Indented(DetailsText(verdict));  // of what passed: claims that were not judged
@@ -287,8 +290,8 @@ std::string WhyNotWritten(const ParsedOptions& options, const std::string& page)
 suite::SuiteProgress ProgressOn(const CommandContext& context) {
   if (!context.progress) return {};
   return [&](std::size_t done, std::size_t all, const std::string& id) {
-    context.err << fmt::format("\r\033[K[{}/{}] {}", done, all, id) << std::flush;
-    if (done == all) context.err << "\r\033[K" << std::flush;
+    context.err << kEraseLine << fmt::format("[{}/{}] {}", done, all, id) << std::flush;
+    if (done == all) context.err << kEraseLine << std::flush;
   };
 }
 
@@ -331,7 +334,7 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   const std::vector<suite::ScenarioVerdict> verdicts =
       suite::RunSuite(request, ProgressOn(context), &interrupt);
   const std::string stopped = StoppedText(request, verdicts, interrupt);
-  if (context.progress && !stopped.empty()) context.err << "\r\033[K";
+  if (context.progress && !stopped.empty()) context.err << kEraseLine;
 
   suite::ReportHeader header =
       suite::HeaderOf(CommandText(context.words) + stopped, context.root, context.today);

@@ -9,6 +9,7 @@
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/shell_quote.h"
 #include "harness/base/base/text_file.h"
+#include "harness/base/base/visible_stream.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episodes/record_run.h"
 #include "harness/episode/episodes/schema.h"
@@ -60,9 +61,9 @@ ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& re
   }
   const auto report = episode::RunTrials(request, context.root, settings, [&](int done) {
     if (context.progress)
-      context.err << "\r\033[K[" << done << "/" << settings.count << "]" << std::flush;
+      context.err << kEraseLine << "[" << done << "/" << settings.count << "]" << std::flush;
   });
-  if (context.progress) context.err << "\r\033[K" << std::flush;
+  if (context.progress) context.err << kEraseLine << std::flush;
   if (!report) return Complain(context, report.error());
   if (options.Has("--json")) {
     context.out << episode::TrialJson(*report).dump(2) << "\n";

@@ -47,7 +47,8 @@ Command KnowledgeCommand() {
                       {.name = "--output",
                        .help = "the folder; default: kb. It gets prehend.ttl, maps/ and episodes/",
                        .placeholder = "FOLDER",
-                       .other_name = "-o"},
+                       .other_name = "-o",
+                       .is_output = true},
                       {.name = "--also",
                        .help = "also as owl (RDF/XML beside each Turtle file) or neem (BSON "
                                "collections as mongodump writes them); may be repeated",

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/base/base/csv_cells.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/keep_episodes.h"
 #include "harness/episode/episodes/query_events.h"
@@ -56,13 +57,6 @@ void PrintQueryJson(const std::vector<EventAnswer>& answers,
   out << all.dump(2) << "\n";
 }
 
-std::string Csv(const std::string& cell) {
-  if (cell.find_first_of(",\"\n") == std::string::npos) return cell;
-  std::string quoted = "\"";
-  for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 void PrintQueryTable(const std::vector<EventAnswer>& answers,
                      const std::vector<std::string>& pictures, bool parts, bool csv,
                      std::ostream& out) {
@@ -86,7 +80,7 @@ void PrintQueryTable(const std::vector<EventAnswer>& answers,
   }
   if (csv) {
     for (const std::vector<std::string>& row : rows) {
-      for (std::size_t i = 0; i < row.size(); ++i) out << (i ? "," : "") << Csv(row[i]);
+      for (std::size_t i = 0; i < row.size(); ++i) out << (i ? "," : "") << AsCsvCell(row[i]);
       out << "\n";
     }
     return;
@@ -245,7 +239,8 @@ Command QueryCommand() {
                   {.name = "--show",
                    .help = "draw each answer into this folder: the world when the event begins, "
                            "with the paths of its hand and its thing until it ends",
-                   .placeholder = "FOLDER"},
+                   .placeholder = "FOLDER",
+                   .is_output = true},
                   JsonOption(),
                   {.name = "--csv", .help = "print CSV instead of a table"}},
       .run = RunQuery};

@@ -6,11 +6,15 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 
+#include "harness/base/base/text_file.h"
 #include "harness/episode/episodes/summed_pages.h"
 
 namespace prehend::episode {
@@ -130,10 +134,25 @@ bool Statement::IsNothing(int column) const {
 }
 
 std::string Statement::Text(int column) const {
-  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
-  return text
-             ? std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(statement_, column)))
-             : std::string();
+  const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
+  if (!bytes) return {};
+  std::string text(bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_, column)));
+  const auto is_plain = [](char c) { return (c >= ' ' && c <= '~') || c == '\t'; };
+  if (std::ranges::all_of(text, is_plain)) return text;
+  if (const std::string strange = StrangeIn(text); !strange.empty())
+    throw DatabaseError("the file is damaged: a text of it holds a " + strange);
+  return text;
+}
+
+std::string Statement::Uuid(int column) const {
+  std::string text = Text(column);
+  constexpr std::string_view kForm = "01234567-9012-4567-9012-456789012345";
+  const auto fits = [](char found, char wanted) {
+    return wanted == '-' ? found == '-' : std::isxdigit(static_cast<unsigned char>(found)) != 0;
+  };
+  if (!std::ranges::equal(text, kForm, fits))
+    throw DatabaseError("the file is damaged: found the UUID '" + text + "'");
+  return text;
 }
 
 std::string_view Statement::Bytes(int column) const {

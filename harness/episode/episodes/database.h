@@ -45,7 +45,10 @@ class Statement {
   std::int64_t Integer(int column) const;
   double Double(int column) const;
   bool IsNothing(int column) const;
+  /// Damage if it holds what no text of a file holds (CheckText()).
   std::string Text(int column) const;
+  /// Damage if it is no UUID: it becomes the name of a file, and of a thing in a knowledge base.
+  std::string Uuid(int column) const;
   std::string_view Bytes(int column) const;  ///< valid until the next step
 
  private:

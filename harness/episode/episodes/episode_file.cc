@@ -67,7 +67,7 @@ Result<EpisodeFile> EpisodeFile::Open(const std::string& path) {
     while (find.Step()) {
       EpisodeRow& row = file.episodes_.emplace_back();
       row = {.id = find.Integer(0),
-             .uuid = find.Text(1),
+             .uuid = find.Uuid(1),
              .scenario = find.Text(2),
              .status = find.Text(3),
              .simulated = find.Text(13) != kNoEngine,
@@ -119,7 +119,7 @@ Result<KeptTask> EpisodeFile::DescribeTaskOf(const EpisodeRow& episode) const {
         "SELECT task.uuid, shows, task.id FROM task JOIN episode ON episode.task = task.id"
         " WHERE episode.id = ?");
     if (!find.Bind(episode.id).Step()) throw Damage("an episode has no task");
-    KeptTask task{.uuid = find.Text(0), .shows = find.Text(1), .assets = {}};
+    KeptTask task{.uuid = find.Uuid(0), .shows = find.Text(1), .assets = {}};
     Statement assets =
         database_.Prepare("SELECT path, hash FROM task_asset WHERE task = ? ORDER BY path");
     assets.Bind(find.Integer(2));
@@ -134,25 +134,34 @@ Result<grammar::Timeline> EpisodeFile::TimelineOf(const EpisodeRow& episode) con
     Statement find = database_.Prepare(
         "SELECT id, event, begin_tick, end_tick, decided_tick, open_end FROM event"
         " WHERE episode = ? ORDER BY id");
+    // Their rows lie in the same order, each read once.
+    constexpr const char* kTheirs =
+        " WHERE event BETWEEN (SELECT min(id) FROM event WHERE episode = ?1) AND"
+        " (SELECT max(id) FROM event WHERE episode = ?1) ORDER BY event, position";
     Statement roles =
-        database_.Prepare("SELECT role, value FROM event_role WHERE event = ? ORDER BY position");
+        database_.Prepare(std::string("SELECT event, role, value FROM event_role") + kTheirs);
     Statement values = database_.Prepare(
-        "SELECT name, value, unit FROM event_value WHERE event = ? ORDER BY position");
+        std::string("SELECT event, name, value, unit FROM event_value") + kTheirs);
     find.Bind(episode.id);
+    bool has_role = roles.Bind(episode.id).Step(), has_value = values.Bind(episode.id).Step();
     while (find.Step()) {
       grammar::NamedEvent& event = timeline.events.emplace_back();
+      const std::int64_t id = find.Integer(0);
       event.event = find.Text(1);
       event.interval = {find.Integer(2), find.Integer(3)};
       event.decided = find.Integer(4);
       event.open_end = find.Integer(5) != 0;
-      roles.Bind(find.Integer(0));
-      while (roles.Step()) event.roles.push_back({roles.Text(0), roles.Text(1)});
-      roles.Reset();
-      values.Bind(find.Integer(0));
-      while (values.Step())
-        event.values.push_back({values.Text(0), values.Double(1), values.Text(2)});
-      values.Reset();
+      for (; has_role && roles.Integer(0) <= id; has_role = roles.Step()) {
+        if (roles.Integer(0) == id) event.roles.push_back({roles.Text(1), roles.Text(2)});
+      }
+      for (; has_value && values.Integer(0) <= id; has_value = values.Step()) {
+        if (values.Integer(0) == id)
+          event.values.push_back({values.Text(1), values.Double(2), values.Text(3)});
+      }
     }
+    const auto begin_of = [](const grammar::NamedEvent& event) { return event.interval.begin; };
+    if (!std::ranges::is_sorted(timeline.events, {}, begin_of))
+      std::ranges::stable_sort(timeline.events, {}, begin_of);
     return timeline;
   });
 }
@@ -173,7 +182,7 @@ Result<std::vector<KeptEntity>> EpisodeFile::EntitiesOf(const EpisodeRow& episod
         entities.push_back({.name = find.Text(1),
                             .classes = {},
                             .part_of = static_cast<int>(find.Integer(2)),
-                            .uuid = find.Text(4),
+                            .uuid = find.Uuid(4),
                             .mass_kg = find.Double(5),
                             .size_m = {find.Double(6), find.Double(7), find.Double(8)}});
       if (number + 1 != static_cast<std::int64_t>(entities.size()))

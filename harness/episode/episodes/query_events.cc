@@ -7,6 +7,8 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <limits>
+#include <span>
 
 #include "grammar/base/allen.h"
 #include "grammar/base/diagnostic.h"
@@ -27,7 +29,17 @@ class Asker {
  public:
   Asker(const EventQuestion& question, const std::vector<KeptEntity>& entities,
         const grammar::Timeline& timeline)
-      : question_(question), entities_(entities), timeline_(timeline) {}
+      : question_(question), entities_(entities), timeline_(timeline) {
+    for (const EventQuestion::Relation& relation : question.relations) {
+      Others& others = others_.emplace_back();
+      for (const grammar::NamedEvent& event : timeline.events) {
+        if (!Fits(relation.event, event.event)) continue;
+        others.longest = std::max(others.longest, event.interval.end - event.interval.begin);
+        others.first_end = std::min(others.first_end, event.interval.end);
+        others.events.push_back(&event);
+      }
+    }
+  }
 
   bool Holds(const grammar::NamedEvent& event) const {
     const auto seconds = [&](grammar::Tick ticks) {
@@ -52,11 +64,7 @@ class Asker {
                    [&](const std::string& value, const std::string& wanted) {
                      return IsPartOf(value, wanted);
                    }) &&
-           std::ranges::all_of(question_.relations,
-                               [&](const EventQuestion::Relation& relation) {
-                                 return HasRelation(event, relation);
-                               }) &&
-           (question_.with.empty() || HasParts(event));
+           HasRelations(event) && (question_.with.empty() || HasParts(event));
   }
 
  private:
@@ -97,18 +105,44 @@ class Asker {
     return false;
   }
 
-  bool HasRelation(const grammar::NamedEvent& event,
-                   const EventQuestion::Relation& relation) const {
-    return std::ranges::any_of(timeline_.events, [&](const grammar::NamedEvent& other) {
-      return &other != &event && Fits(relation.event, other.event) &&
-             grammar::kAllenNames[static_cast<std::size_t>(
-                 grammar::Relate(event.interval, other.interval))] == relation.relation;
-    });
+  /// The events that a relation speaks of, in the order of their begins.
+  struct Others {
+    std::vector<const grammar::NamedEvent*> events;
+    grammar::Tick longest = 0;
+    grammar::Tick first_end = std::numeric_limits<grammar::Tick>::max();
+  };
+
+  bool HasRelations(const grammar::NamedEvent& event) const {
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+      if (!HasRelation(event, question_.relations[i].relation, others_[i])) return false;
+    }
+    return true;
+  }
+
+  static bool HasRelation(const grammar::NamedEvent& event, const std::string& relation,
+                          const Others& others) {
+    if (others.events.empty()) return false;
+    const grammar::Interval& interval = event.interval;
+    using grammar::Allen;
+    const auto is = [&](Allen allen) {
+      return relation == grammar::kAllenNames[static_cast<std::size_t>(allen)];
+    };
+    if (is(Allen::kBefore)) return others.events.back()->interval.begin > interval.end;
+    if (is(Allen::kAfter)) return others.first_end < interval.begin;
+    // All others share a moment with it: they begin before it ends, and not too long before.
+    const auto begin_of = [](const grammar::NamedEvent* other) { return other->interval.begin; };
+    auto other =
+        std::ranges::lower_bound(others.events, interval.begin - others.longest, {}, begin_of);
+    for (; other != others.events.end() && begin_of(*other) <= interval.end; ++other) {
+      if (*other != &event && is(grammar::Relate(interval, (*other)->interval))) return true;
+    }
+    return false;
   }
 
   const EventQuestion& question_;
   const std::vector<KeptEntity>& entities_;
   const grammar::Timeline& timeline_;
+  std::vector<Others> others_;  ///< one for each relation of the question
 };
 
 }  // namespace
@@ -117,10 +151,11 @@ std::vector<const grammar::NamedEvent*> PartsOf(const grammar::NamedEvent& whole
                                                 const grammar::Timeline& timeline,
                                                 const std::vector<KeptEntity>& entities) {
   std::vector<const grammar::NamedEvent*> parts;
-  for (const grammar::NamedEvent& event : timeline.events) {
-    if (&event == &whole || event.interval.begin < whole.interval.begin ||
-        event.interval.begin >= whole.interval.end)
-      continue;
+  const auto begin_of = [](const grammar::NamedEvent& event) { return event.interval.begin; };
+  const auto first = std::ranges::lower_bound(timeline.events, whole.interval.begin, {}, begin_of);
+  const auto last = std::ranges::lower_bound(timeline.events, whole.interval.end, {}, begin_of);
+  for (const grammar::NamedEvent& event : std::span(first, last)) {
+    if (&event == &whole) continue;
     const bool same_participants = std::ranges::all_of(event.roles, [&](const auto& role) {
       return std::ranges::any_of(whole.roles, [&](const grammar::Role& other) {
         return other.value == role.value || !EntityNamed(role.value, entities);

@@ -49,7 +49,7 @@ struct EventAnswer {
 };
 
 /// The events of an episode that begin within this one and whose participants are all its own, in
-/// the order of the timeline.
+/// the order of the timeline, which is that of begins.
 std::vector<const grammar::NamedEvent*> PartsOf(const grammar::NamedEvent& whole,
                                                 const grammar::Timeline& timeline,
                                                 const std::vector<KeptEntity>& entities);

@@ -200,6 +200,11 @@ Database OpenToWrite(const std::string& path) {
   }
   transaction.Commit();
   RefuseOthers(database);
+  // A trigger would run when something is added; a view or a column of others could be wronged.
+  if (!IsAsMade(database)) {
+    throw DatabaseError(
+        "has tables, views or triggers of another program; it is read, but nothing is added to it");
+  }
   return database;
 }
 

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "grammar/contents.h"
+#include "harness/base/base/visible_stream.h"
 #include "harness/base/process/progress_counters.h"
 #include "harness/base/process/wire.h"
 #include "harness/base/process/worker_pool.h"
@@ -369,7 +370,7 @@ double Seconds(std::chrono::steady_clock::duration time) {
 }  // namespace
 
 SweepProgress::~SweepProgress() {
-  if (said_ && is_person_) out_ << "\r\033[K" << std::flush;
+  if (said_ && is_person_) out_ << kEraseLine << std::flush;
 }
 
 void SweepProgress::Tell(std::size_t done, std::size_t all) {
@@ -392,7 +393,7 @@ void SweepProgress::Tell(std::size_t done, std::size_t all) {
   }
   said_ = true;
   if (is_person_)
-    out_ << fmt::format("\r\033[K{} %, about {} more", 100 * done / all, TimeText(more_s))
+    out_ << kEraseLine << fmt::format("{} %, about {} more", 100 * done / all, TimeText(more_s))
          << std::flush;
 }
 

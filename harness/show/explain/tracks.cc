@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "harness/base/base/csv_cells.h"
 #include "harness/show/explain/nodes.h"
 #include "harness/show/explain/phrasing.h"
 #include "harness/truth/timeline/event_text.h"
@@ -190,11 +191,6 @@ const char* Name(Track::Kind kind) {
 }
 
 // Names hold commas; they hold no quotes but those of texts.
-std::string CsvCell(const std::string& text) {
-  std::string cell = "\"";
-  for (const char c : text) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return cell + "\"";
-}
 
 }  // namespace
 
@@ -216,7 +212,7 @@ Tracks CollectTracks(ReplayMonitor& past, const std::set<std::string>& only) {
 void WriteCsv(const Tracks& tracks, std::ostream& out) {
   std::string row = "time_s,tick";
   for (const Track& track : tracks.tracks)
-    row += "," + CsvCell(track.name + (track.unit.empty() ? "" : " [" + track.unit + "]"));
+    row += "," + AsCsvCell(track.name + (track.unit.empty() ? "" : " [" + track.unit + "]"));
   out << row << "\n";
   for (std::size_t frame = 0; frame < tracks.ticks.size(); ++frame) {
     row = fmt::format("{},{}", truth::SecondsText(tracks.ticks[frame], tracks.ticks_per_second),

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "harness/base/base/atomic_file.h"
 #include "harness/episode/episode/open_episode.h"
 #include "harness/show/pictures/pictures.h"
 
@@ -45,7 +46,7 @@ PictureFormat FormatOf(const Moment& moment, const physics::Scene& scene) {
 
 std::string FileName(std::size_t number, const Moment& moment) {
   const std::string scenario = moment.scenario.substr(moment.scenario.rfind('/') + 1);
-  return fmt::format("{:03}-{}-{}.png", number, scenario, moment.name);
+  return FileNameOf(fmt::format("{:03}-{}-{}", number, scenario, moment.name)) + ".png";
 }
 
 }  // namespace

@@ -36,5 +36,18 @@ TEST(CsvCells, AFaultOfQuotesIsNamed) {
   EXPECT_EQ(CsvCellsOf("\"b \"\"c\"\", d\" ,e", ',').size(), 2u);
 }
 
+TEST(CsvCells, AreWrittenInQuotesWhereTheyNeedThem) {
+  EXPECT_EQ(AsCsvCell("milk"), "milk");
+  EXPECT_EQ(AsCsvCell("hand=a, object=b"), "\"hand=a, object=b\"");
+  EXPECT_EQ(AsCsvCell("say \"a\""), "\"say \"\"a\"\"\"");
+}
+
+TEST(CsvCells, ASpreadsheetRunsNoneOfThem) {
+  EXPECT_EQ(AsCsvCell("=cmd|' /C calc'!A0"), "'=cmd|' /C calc'!A0");
+  EXPECT_EQ(AsCsvCell("@SUM(A1,A2)"), "\"'@SUM(A1,A2)\"");
+  EXPECT_EQ(AsCsvCell("-2+3"), "'-2+3");
+  for (const char* number : {"-2.5", "+1e-3", "7"}) EXPECT_EQ(AsCsvCell(number), number);
+}
+
 }  // namespace
 }  // namespace prehend

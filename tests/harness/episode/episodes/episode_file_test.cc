@@ -5,11 +5,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "harness/episode/episodes/load_episode.h"
+#include "harness/episode/episodes/query_events.h"
 #include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/run_text.h"
@@ -193,6 +195,94 @@ TEST(EpisodeFileOfMany, MissingTablesAndColumnsAreNamed) {
     said("CREATE TABLE remark(text TEXT); ALTER TABLE note ADD COLUMN author TEXT");
     return EpisodeFile::Open(bad.string()).has_value();
   }()) << "what others added is left alone";
+}
+
+/// What the first command that needs it says of a file after this change to its rows, whose pages
+/// have the right checksums.
+std::string AfterChange(const std::string& whole, const std::string& sql) {
+  const std::string file = whole + "2";
+  fs::copy_file(whole, file, fs::copy_options::overwrite_existing);
+  Database(file, Database::Mode::kWrite).Execute(sql);
+  const auto opened = EpisodeFile::Open(file);
+  if (!opened) return opened.error().front().message;
+  const EpisodeRow& row = opened->episodes().front();
+  if (const auto task = opened->DescribeTaskOf(row); !task) return task.error().front().message;
+  if (const auto things = opened->EntitiesOf(row); !things) return things.error().front().message;
+  const auto timeline = opened->TimelineOf(row);
+  return timeline ? "" : timeline.error().front().message;
+}
+
+TEST(EpisodeFileOfMany, AUuidIsOne) {
+  const std::string file = (Fresh("uuid") / "a.episodes").string();
+  ASSERT_EQ(Record(file).problem, "");
+  for (const std::string uuid : {"../../target", "x a log:Evil . log:y", "", "/etc/passwd",
+                                 "01234567-0123-0123-0123-01234567890g"}) {
+    for (const char* where : {"episode SET uuid = '", "task SET uuid = '", "entity SET uuid = '"}) {
+      EXPECT_EQ(AfterChange(file, "UPDATE " + (where + uuid) + "'"),
+                "the file is damaged: found the UUID '" + uuid + "'")
+          << where;
+    }
+  }
+  EXPECT_EQ(AfterChange(file, "UPDATE task SET uuid = '01234567-89ab-cdef-0123-456789abcdef'"), "");
+}
+
+TEST(EpisodeFileOfMany, NoTextOfItReachesATerminalAsACommand) {
+  const std::string file = (Fresh("strange") / "a.episodes").string();
+  ASSERT_EQ(Record(file).problem, "");
+  for (const char* change :
+       {"task SET scenario = 'a' || char(27) || '[31m'", "event SET event = 'a' || char(155)",
+        "event_role SET value = 'm' || char(8238)", "entity SET name = 'm' || char(8232)",
+        "episode SET grammar = cast(x'ff' AS TEXT)"}) {
+    const std::string said = AfterChange(file, std::string("UPDATE ") + change);
+    EXPECT_EQ(said.find("the file is damaged: a text of it holds a "), 0u) << change << said;
+  }
+}
+
+/// With a day of events, which meet each other; a question about every pair would take minutes.
+TEST(EpisodeFileOfMany, AQuestionCostsByEvents) {
+  const std::string file = (Fresh("day") / "a.episodes").string();
+  ASSERT_EQ(Record(file).problem, "");
+  const char* const count = std::getenv("PREHEND_EVENTS");  // more of them, by hand
+  const int events = count ? std::atoi(count) : 20'000;
+  Database(file, Database::Mode::kWrite)
+      .Execute(
+          "DELETE FROM event_role; DELETE FROM event_value; DELETE FROM event;"
+          "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < " +
+          std::to_string(events) +
+          ") INSERT INTO event SELECT x, 1, iif(x % 2, 'contact', 'sliding'), x, x + 1, x,"
+          " 0, 0, 0, 0 FROM n");
+  const auto answers = [&](const char* relation) {
+    KnownNames known;
+    EventQuestion question{.event = "contact"};
+    if (*relation) question.relations = {{relation, "sliding"}};
+    return Ask(file, question, known)->size();
+  };
+  const auto half = static_cast<std::size_t>(events) / 2;
+  EXPECT_EQ(answers(""), half);
+  EXPECT_EQ(answers("meets"), half);
+  EXPECT_EQ(answers("met_by"), half - 1) << "nothing is before the first one";
+  EXPECT_EQ(answers("before"), half - 1) << "the last one meets all that follows it";
+  EXPECT_EQ(answers("after"), half - 2) << "the second one meets the only one before it";
+  EXPECT_EQ(answers("overlaps") + answers("equals") + answers("inside"), 0u);
+}
+
+TEST(EpisodeFileOfMany, NothingOfAFileRunsWhenSomethingIsAdded) {
+  const fs::path folder = Fresh("trigger");
+  const fs::path good = folder / "a.episodes", bad = folder / "b.episodes";
+  ASSERT_EQ(Record(good.string()).problem, "");
+  for (const char* addition :
+       {"CREATE TRIGGER t AFTER INSERT ON episode BEGIN DELETE FROM event; END",
+        "CREATE VIEW v AS SELECT * FROM event", "CREATE TABLE remark(text TEXT)",
+        "ALTER TABLE event ADD COLUMN author TEXT DEFAULT (1)",
+        "CREATE INDEX i ON event(open_end)"}) {
+    fs::copy_file(good, bad, fs::copy_options::overwrite_existing);
+    Database(bad.string(), Database::Mode::kWrite).Execute(addition);
+    const std::string before = Slurped(bad);
+    EXPECT_NE(Record(bad.string()).problem.find("nothing is added to it"), std::string::npos)
+        << addition;
+    EXPECT_EQ(Slurped(bad), before) << addition;
+    EXPECT_EQ(MessageOf(EpisodeFile::Open(bad.string())), "") << "it is still read";
+  }
 }
 
 TEST(EpisodeFileOfMany, EveryDamagedByteIsReportedOrHarmless) {
