@@ -80,7 +80,10 @@ std::string DimensionText(const Dimension& dimension) {
 
 std::string QuantityText(const Quantity& quantity) {
   std::string text = Digits(quantity.value);
-  if (quantity.dimension != kPlain) text += " " + DimensionText(quantity.dimension);
+  const std::string dimension = DimensionText(quantity.dimension);
+  // As it is read: "0.05 /s".
+  if (quantity.dimension != kPlain)
+    text += " " + (dimension.starts_with("1/") ? dimension.substr(1) : dimension);
   return text;
 }
 
