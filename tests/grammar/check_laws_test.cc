@@ -87,7 +87,8 @@ const Break kBreaks[] = {
      [](Timeline& t) { Find(t, "transporting").interval.begin = 390; }},
     {"phases_cover_the_grasp",
      "phases_cover_the_grasp 400..410: grasping(hand, cup) lies outside supported_by(cup, any), "
-     "picking_up(hand, cup), transporting(hand, cup), putting_down(hand, cup)\n",
+     "picking_up(hand, cup), hovering(hand, cup), transporting(hand, cup), putting_down(hand, "
+     "cup)\n",
      [](Timeline& t) { Find(t, "transporting").interval.begin = 410; }},
     {"slides_are_supported",
      "slides_are_supported 220..310: sliding(hand, cup) lies inside no supported_by(cup, any)\n",

@@ -27,9 +27,9 @@ struct Row {
 };
 
 double UnitOf(const std::string& unit) {
-  static const std::map<std::string, double> kUnits = {{"", 1},        {"%", 0.01},   {"s", 1},
-                                                       {"ms", 1e-3},   {"cm", 1e-2},  {"mm", 1e-3},
-                                                       {"cm/s", 1e-2}, {"mm/s", 1e-3}};
+  static const std::map<std::string, double> kUnits = {
+      {"", 1},      {"%", 0.01},    {"s", 1},       {"ms", 1e-3}, {"cm", 1e-2},
+      {"mm", 1e-3}, {"cm/s", 1e-2}, {"mm/s", 1e-3}, {"N", 1},     {"/s", 1}};
   return kUnits.at(unit);
 }
 
@@ -86,7 +86,9 @@ TEST(DefinitionBands, AreThoseOfThePage) {
 TEST(DefinitionBands, HoldEveryParameterOfPickAndPlace) {
   const auto compiled = episode::LoadGrammar(PREHEND_SOURCE_DIR, "pick_and_place");
   ASSERT_TRUE(compiled.program);
-  std::set<std::string> on_the_page = {"grip_sides", "reach_back", "lift_sky"};
+  std::set<std::string> on_the_page = {"grip_sides", "grip_window", "grip_force", "grip_slip",
+                                       "grip_opens", "reach_brush", "put_slip",   "carry_way",
+                                       "reach_back", "lift_sky"};
   std::map<std::string, double> parameters;
   for (const grammar::ProgramParam& parameter : compiled.program->params)
     parameters[parameter.name] = parameter.value.value;
