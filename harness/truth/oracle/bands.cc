@@ -15,6 +15,9 @@ std::span<const Band> DefinitionBands() {
       Band{"support settled", &S::support_speed_m_per_s, 0.01, 0.04},
       Band{"support minimum", &S::support_minimum_s, 0.015, 0.030},
       Band{"grip command", &S::commanded_trigger, 0.2, 0.4},
+      Band{"hook force", &S::hook_force_n, 15, 25},
+      Band{"hook slip", &S::hook_slip_m_per_s, 0.2, 0.4},
+      Band{"grip opening", &S::opening_per_s, 0.7, 1.5},
       Band{"reach region", &S::reach_radius_m, 0.25, 0.35},
       Band{"reach dead-band", &S::reach_dead_band_m, 0.020, 0.030},
       Band{"reach idle speed", &S::idle_speed_m_per_s, 0.007, 0.015},
@@ -24,6 +27,7 @@ std::span<const Band> DefinitionBands() {
       Band{"onset", &S::onset_speed_m_per_s, 0.0005, 0.003},
       Band{"turn pause", &S::turn_pause_s, 0.05, 0.2},
       Band{"reach minimum", &S::reach_minimum_s, 0.08, 0.12},
+      Band{"reach brush", &S::reach_brush_s, 0.04, 0.06},
       Band{"slide speed", &S::slide_speed_m_per_s, 0.007, 0.015},
       Band{"slide window", &S::slide_window_s, 0.08, 0.12},
       Band{"slide jerk", &S::slide_moment_s, 0.04, 0.06},
@@ -38,6 +42,8 @@ std::span<const Band> DefinitionBands() {
       Band{"put look-back", &S::put_down_look_back_s, 3.0, 4.0},
       Band{"put dead-band", &S::put_down_dead_band_m, 0.004, 0.006},
       Band{"put window", &S::put_down_window_s, 0.08, 0.12},
+      Band{"put slip", &S::put_down_slip_s, 0.015, 0.025},
+      Band{"carry way", &S::carry_way_m, 0.004, 0.006},
   };
   return kBands;
 }

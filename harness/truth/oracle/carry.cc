@@ -37,8 +37,12 @@ class Carrier {
     Spans supported;
     for (const auto& [support, spans] : supports_) supported = Union(supported, spans);
     for (const Span& span : supported) FindSlides(Common(span, grasp_.span));
-    for (const Span& span : Rest(supported, grasp_.span))
-      DivideUnsupported(span, SupportLoss(supported, span.begin), Covers(supported, span.end));
+    for (const Span& span : Rest(supported, grasp_.span)) {
+      if (Hovers(supported, span))
+        found_.hovers.push_back(span);
+      else
+        DivideUnsupported(span, SupportLoss(supported, span.begin), Lands(supported, span.end));
+    }
     return found_;
   }
 
@@ -116,6 +120,28 @@ class Carrier {
     for (int frame = *loss; near && frame < unsupported_since; ++frame)
       near = region.Contains(place(frame));
     return near ? loss : std::nullopt;
+  }
+
+  /// Whether it is supported, be it soon after it was let go.
+  bool Lands(const Spans& supported, int end) const {
+    if (Covers(supported, end)) return true;
+    if (end != grasp_.span.end || end >= recording_.size()) return false;
+    return std::ranges::any_of(supported, [&](const Span& span) {
+      return span.begin > end && recording_.Seconds(end, span.begin) <= settings_.put_down_slip_s;
+    });
+  }
+
+  /// Whether it gets nowhere between two supports.
+  bool Hovers(const Spans& supported, Span unsupported) const {
+    int begin = -1, end = -1;
+    for (const Span& span : supported) {
+      if (span.end <= unsupported.begin) begin = span.end;
+      if (span.begin >= unsupported.end && end < 0) end = span.begin;
+    }
+    if (begin < 0 || end < 0) return false;
+    for (int frame = begin; frame < end; ++frame)
+      if ((place(frame) - place(begin)).norm() >= settings_.carry_way_m) return false;
+    return true;
   }
 
   Region PickUpRegion(int loss) const {

@@ -11,7 +11,7 @@
 namespace prehend::truth {
 
 struct Carrying {
-  Spans slides, pick_ups, transports, put_downs;
+  Spans slides, pick_ups, hovers, transports, put_downs;
 };
 
 /// `supports`: when the grasped object was supported, by support. Only for movable objects: a wall

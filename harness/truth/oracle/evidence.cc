@@ -74,7 +74,11 @@ class EvidenceReader {
       AddPush({b, a}, point, frame, -point.nhat_BA_W);
     } else if (IsBody(a) || IsBody(b)) {
       const physics::ContactSide& hand = IsBody(a) ? point.b : point.a;
-      sets[{hand.hand.number(), IsBody(a) ? a : b}] |= 1u << SensorSet(hand);
+      const Pair pair{hand.hand.number(), IsBody(a) ? a : b};
+      sets[pair] |= 1u << SensorSet(hand);
+      std::vector<double>& forces_n = evidence_.forces_n[pair];
+      forces_n.resize(recording_.size());
+      forces_n[frame] += point.normal_impulse_n_s * recording_.scene.world.rate_hz;
     }
   }
 

@@ -83,7 +83,8 @@ class TimelineBuilder {
         touches_.contacts.at({grasp.body, recording_.body_count() + grasp.hand});
     Span contact, contact_before;
     for (const Span& span : contacts) {
-      if (span.end <= grasp.span.begin) contact_before = span;
+      const bool brushes = recording_.Lasts_s(span) < settings_.reach_brush_s;
+      if (span.end <= grasp.span.begin && !brushes) contact_before = span;
       if (span.Contains(grasp.span.begin)) contact = span;
     }
     int earliest = contact_before.end;
@@ -110,6 +111,7 @@ class TimelineBuilder {
     Carrying carrying = FindCarrying(evidence_, settings_, grasp, supports);
     for (const Span& span : carrying.slides) Add("sliding", RolesOf(grasp), span);
     for (const Span& span : carrying.pick_ups) Add("picking_up", RolesOf(grasp), span);
+    for (const Span& span : carrying.hovers) Add("hovering", RolesOf(grasp), span);
     for (const Span& span : carrying.transports) Add("transporting", RolesOf(grasp), span);
     for (const Span& span : carrying.put_downs) Add("putting_down", RolesOf(grasp), span);
     return carrying;
@@ -126,9 +128,9 @@ class TimelineBuilder {
 }  // namespace
 
 std::span<const std::string_view> OracleEvents() {
-  static constexpr std::array<std::string_view, 10> kDefined = {
-      "contact", "supported_by", "grasping",     "reaching",     "fixation",
-      "sliding", "picking_up",   "transporting", "putting_down", "pick_and_place"};
+  static constexpr std::array<std::string_view, 11> kDefined = {
+      "contact",    "supported_by", "grasping",     "reaching",     "fixation",      "sliding",
+      "picking_up", "hovering",     "transporting", "putting_down", "pick_and_place"};
   return kDefined;
 }
 

@@ -16,6 +16,9 @@ struct OracleSettings {
   double support_minimum_s = 0.02;      ///< a blow is over sooner
   double commanded_trigger = 0.3;       ///< from here on the grip is commanded, 0..1
   int grasp_sensor_sets = 2;            ///< of one hand on the object
+  double hook_force_n = 20;             ///< what pulls with this holds on with one sensor set
+  double hook_slip_m_per_s = 0.3;       ///< unless it slips out of the hand
+  double opening_per_s = 1;             ///< a grip that opens as fast takes hold of nothing
 
   double idle_speed_m_per_s = 0.01;    ///< slower is standing still,
   double idle_excursion_m = 0.0025;    ///< and so is getting no farther than this
@@ -27,6 +30,7 @@ struct OracleSettings {
   double reach_dead_band_m = 0.025;  ///< moving away by less is not moving away
   double reach_idle_s = 0.5;         ///< standing still for longer ends a reach
   double reach_minimum_s = 0.1;
+  double reach_brush_s = 0.05;  ///< a shorter touch on the way does not end a reach
 
   double slide_speed_m_per_s = 0.01;  ///< along the support, where the two touch
   double slide_window_s = 0.1;        ///< it has to be faster than that on average over this, too
@@ -42,6 +46,9 @@ struct OracleSettings {
   double put_down_look_back_s = 3.3;
   double put_down_dead_band_m = 0.005;  ///< moving away by less is not moving away
   double put_down_window_s = 0.1;       ///< distances are medians over it
+  double put_down_slip_s = 0.02;        ///< what lands so soon after it is let go was put down
+
+  double carry_way_m = 0.005;  ///< what gets no farther until it stands again was not carried
 };
 
 }  // namespace prehend::truth

@@ -33,6 +33,32 @@ Spans WhereGripIsCommanded(const Recording& recording, const OracleSettings& set
   return WhereTrue(commanded);
 }
 
+/// Whether the grip opens, in the 10 ms around each frame.
+std::vector<bool> WhereGripOpens(const Recording& recording, const OracleSettings& settings,
+                                 int hand) {
+  constexpr double kWindow_s = 0.02;
+  std::vector<bool> opens(recording.size());
+  for (int frame = 0; frame < recording.size(); ++frame) {
+    int before = frame, after = frame;
+    while (before > 0 && recording.Seconds(before, frame) < kWindow_s / 2) --before;
+    while (after + 1 < recording.size() && recording.Seconds(frame, after) < kWindow_s / 2) ++after;
+    const double change =
+        recording.hand(hand, after).trigger - recording.hand(hand, before).trigger;
+    opens[frame] =
+        after > before && change <= -settings.opening_per_s * recording.Seconds(before, after);
+  }
+  return opens;
+}
+
+/// Held with one sensor set that bears force, without slipping out of the hand, as a bar in a hook.
+bool HangsOn(const Evidence& evidence, const OracleSettings& settings, Pair pair, int frame) {
+  if (evidence.forces_n.at(pair)[frame] < settings.hook_force_n) return false;
+  const physics::BodyState& body = evidence.recording.body(pair.second, frame);
+  const physics::BodyState& palm = evidence.recording.hand(pair.first, frame).palm;
+  const Eigen::Vector3d slip_m_per_s = body.v_WB_m_per_s - VelocityAt(palm, body.X_WB.p_m);
+  return slip_m_per_s.norm() <= settings.hook_slip_m_per_s;
+}
+
 void SayHowLongTheyTouched(const Recording& recording, Touches& touches) {
   const Grasp* before = nullptr;
   for (Grasp& grasp : touches.grasps) {
@@ -57,10 +83,16 @@ Touches FindTouches(const Evidence& evidence, const OracleSettings& settings) {
     touches.supports[pair] = SupportsOf(bearings, recording, settings);
   for (const auto& [pair, sets] : evidence.sensor_sets) {
     const auto& [hand, body] = pair;
-    std::vector<bool> gripped;
-    for (const std::uint8_t count : sets) gripped.push_back(count >= settings.grasp_sensor_sets);
+    const std::vector<bool> opens = WhereGripOpens(recording, settings, hand);
+    std::vector<bool> gripped, held;  // a grasp begins where it is gripped, and lasts while held
+    for (int frame = 0; frame < recording.size(); ++frame) {
+      const bool has_sets = sets[frame] >= settings.grasp_sensor_sets;
+      gripped.push_back(has_sets && !opens[frame]);
+      held.push_back(has_sets || (sets[frame] > 0 && !opens[frame] &&
+                                  HangsOn(evidence, settings, pair, frame)));
+    }
     const Spans tight =
-        Bridged(WhereTrue(gripped), recording.ticks, recording.Ticks(settings.grasp_bridge_s));
+        Bridged(WhereTrue(held), recording.ticks, recording.Ticks(settings.grasp_bridge_s));
     // Letting go ends a grasp at once, and none begins before the hand feels the object again.
     for (const Span& squeeze : WhereGripIsCommanded(recording, settings, hand)) {
       for (Span span : Within(tight, squeeze)) {
