@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/simulation.h"
@@ -31,6 +32,16 @@ Scene Boxes(int count) {
   return scene;
 }
 
+/// The tick at which all boxes sleep; -1 if they do not by then.
+int AsleepAt(Scene scene, int at_most) {
+  Simulation simulation(std::move(scene), Script{.stages = {}, .settle_s = 1});
+  for (int tick = 1; tick <= at_most && simulation.Step(); ++tick) {
+    const auto& bodies = simulation.snapshot().bodies;
+    if (std::ranges::all_of(bodies.begin() + 1, bodies.end(), &BodyState::asleep)) return tick;
+  }
+  return -1;
+}
+
 Snapshot Settled(const Scene& scene, double settle_s) {
   Simulation simulation(scene, Script{.stages = {}, .settle_s = settle_s});
   while (simulation.Step()) {
@@ -53,6 +64,47 @@ TEST(FirstRest, ACrowdThatStandsStillSleepsAtOnce) {
     EXPECT_LT((end.bodies[i].X_WB.p_m - scene.bodies[i].X_WB.p_m).norm(), 1e-5);
   ASSERT_TRUE(end.resting) << "what stands on the floor touches it";
   EXPECT_EQ(end.resting->size(), 4u * static_cast<std::size_t>(kCrowd));
+}
+
+/// Where the height of a floor and that of a box round to a gap, the box falls for a tick.
+TEST(FirstRest, ACrowdSleepsByTick30AtEveryHeightAndRate) {
+  for (int i = 0; i < 20; ++i) {
+    for (const int rate_hz : {240, 480, 960}) {
+      Scene scene = Boxes(kCrowd);
+      scene.world.rate_hz = rate_hz;
+      const double top_m = 0.04 + 0.0517 * i, thick_m = i % 2 == 0 ? 0.04 : 1;
+      scene.bodies[0].shapes.front().shape = Box{{6, 6, thick_m}};
+      scene.bodies[0].X_WB.p_m.z() = top_m - thick_m / 2;
+      for (std::size_t k = 1; k < scene.bodies.size(); ++k)
+        scene.bodies[k].X_WB.p_m.z() = top_m + kSize_m / 2;
+      EXPECT_NE(AsleepAt(scene, 30), -1) << top_m << " m, " << rate_hz << " Hz";
+    }
+  }
+}
+
+TEST(FirstRest, WhatStandsAMicrometreAboveSleepsByTick30) {
+  for (const double gap_m : {1e-7, 1e-6, 1e-5, -1e-6, -1e-5}) {
+    Scene scene = Boxes(kCrowd);
+    for (std::size_t k = 1; k < scene.bodies.size(); ++k) scene.bodies[k].X_WB.p_m.z() += gap_m;
+    EXPECT_NE(AsleepAt(scene, 30), -1) << gap_m;
+  }
+}
+
+/// They settle from below to above.
+TEST(FirstRest, StacksOfACrowdSleepByTick40) {
+  for (const double top_m : {0.0, 0.3, 0.76}) {
+    for (const int high : {2, 3, 4}) {
+      Scene scene = Boxes(kCrowd + 20);
+      scene.bodies[0].X_WB.p_m.z() = top_m - kSize_m / 2;
+      for (int i = 0; i < kCrowd + 20; ++i) {
+        const int column = i / high;
+        scene.bodies[static_cast<std::size_t>(1 + i)].X_WB.p_m = {
+            kSpacing_m * (column % kSide), kSpacing_m * (column / kSide),
+            top_m + kSize_m * (i % high + 0.5)};
+      }
+      EXPECT_NE(AsleepAt(scene, 40), -1) << top_m << " m, " << high << " high";
+    }
+  }
 }
 
 TEST(FirstRest, FewBodiesWaitForTwoSeconds) {
