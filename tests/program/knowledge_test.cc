@@ -191,6 +191,223 @@ TEST(Knowledge, AllensRelationsAreExclusive) {
   EXPECT_GT(relations.size(), 8u);
 }
 
+/// What one variable is bound to in each answer, as it is printed, in the order of the answers.
+std::vector<std::string> Answers(const std::string& kb, const std::string& query,
+                                 const std::string& variable) {
+  std::vector<std::string> said;
+  for (const Json& answer : Asked({"episode", "ask", kb, query, "--json"})) {
+    const Json& value = answer["bindings"][variable];
+    said.push_back(value.is_object()   ? value["text"].get<std::string>()
+                   : value.is_string() ? value.get<std::string>()
+                                       : value.dump());
+  }
+  return said;
+}
+
+using Words = std::vector<std::string>;
+
+TEST(Knowledge, OneAnswerComesOnce) {
+  const std::string& kb = ThreeDays().kb;
+  const std::string grasp =
+      "entity(A, [an, action, [type, 'Grasping'], [object, [an, object, [name, handle]]]])";
+  EXPECT_EQ(Answers(kb, "entity(O, [an, object, [name, handle]])", "O"), Words{"handle"});
+  EXPECT_EQ(Answers(kb, grasp, "A"), Words{"Grasping(right_hand, handle)"});
+  EXPECT_EQ(Answers(kb, "aggregate_all(count, " + grasp + ", C)", "C"), Words{"1"});
+  EXPECT_EQ(Answers(kb, "findall(A, " + grasp + ", As), length(As, N)", "N"), Words{"1"});
+  const Json once =
+                 Asked({"episode", "ask", kb, grasp + ", occurs(A, [S, E]), D is E - S", "--json"}),
+             sum = Asked({"episode", "ask", kb,
+                          "aggregate_all(sum(E - S), (" + grasp + ", occurs(A, [S, E])), D)",
+                          "--json"});
+  ASSERT_EQ(once.size(), 1u);
+  ASSERT_EQ(sum.size(), 1u);
+  EXPECT_EQ(sum[0]["bindings"]["D"], once[0]["bindings"]["D"]);
+  // Two names in one question; a way to a whole; one participant by two words; an alternative.
+  EXPECT_EQ(Answers(kb,
+                    "entity(H, [an, object, [name, handle]]), entity(D, [an, object, [name, "
+                    "door]]), holds(part_of(H, D))",
+                    "D"),
+            Words{"door"});
+  EXPECT_EQ(Answers(kb, "holds(part_of(handle, W))", "W"), (Words{"door", "fridge"}));
+  EXPECT_EQ(Answers(kb, "holds(type(O, 'Handle')), holds(label(O, L))", "L"), Words{"handle"});
+  EXPECT_EQ(Answers(kb, "entity(A, [an, action, [type, 'OpenedBy'], [agent, H], [hand, H]])", "H"),
+            Words{"right_hand"});
+  EXPECT_EQ(Answers(kb, "(G = 1 ; G = 1)", "G"), Words{"1"});
+  EXPECT_EQ(Answers(kb, "aggregate_all(count, entity(E, [an, episode]), C)", "C"), Words{"4"});
+}
+
+TEST(Knowledge, WhatIsPastedFromThePaperIsRead) {
+  const std::string& kb = ThreeDays().kb;
+  const std::vector<std::string> printed = BlocksOf("prolog");
+  for (const std::string& query : printed)
+    EXPECT_EQ(Asked({"episode", "ask", kb, "?- " + query, "--json"}),
+              Asked({"episode", "ask", kb, query, "--json"}));
+  std::string lacks = printed[2];
+  lacks.erase(lacks.find("]]])"), 1);
+  for (const auto& [query, why] : std::vector<std::pair<std::string, std::string>>{
+           {lacks, "but the '[' at 16 is open: ']' is missing"},
+           {"entity(O, [an, object", "but the '[' at its character 11 is open: ']' is missing"},
+           {"entity(O, [an, object]))", "found ')' at character 24 of the query, and no bracket"},
+           {"entity(O, [an, object, [name, 'a]])", "the quote ' at character 31"},
+           {"entity(O, [an, object, [name, '(']]", "but the '(' at its character 7 is open"},
+           {"true. shell(ls)", "more after the first full stop, at character 5"},
+           {"true. true.", "more after the first full stop, at character 5"},
+           {"true.\ntrue", "more after the first full stop, at character 5"}}) {
+    const Said said = Prehend({"episode", "ask", kb, query});
+    EXPECT_EQ(said.exit_code, 2) << query;
+    EXPECT_NE(said.err.find(why), std::string::npos) << query << ": " << said.err;
+  }
+  for (const char* query : {"true", "true.", "true. % nothing more", " ?- true.\n"})
+    EXPECT_EQ(Prehend({"episode", "ask", kb, query}).exit_code, 0) << query;
+}
+
+TEST(Knowledge, UnknownWordsAreNamedWithTheNearest) {
+  const std::string& kb = ThreeDays().kb;
+  for (const auto& [query, why] : std::vector<std::pair<std::string, std::string>>{
+           {"entity(A, [an, event]), allen(A, durng, B)",
+            "no relation of Allen's is called durng; did you mean 'during'? there are: after, "},
+           {"entity(A, [an, action, [objct, milk]])",
+            "no role or property is called objct; did you mean 'object'? there are: "},
+           {"entity(A, [an, action, [style, hok]])",
+            "no style is called hok; did you mean 'hook'? there are: hook, lateral, medium_wrap, "},
+           {"holds(graspType(A, 'HokStyle'))", "no style is called HokStyle"},
+           {"holds(partof(H, D))", "no role or property is called partof; did you mean 'part_of'"},
+           {"holds(prehend:gramar(E, G))", "did you mean 'grammar'?"},
+           {"holds(type(O, 'Handel'))", "no class is called Handel; did you mean 'Handle'?"},
+           {"entity(A, [an, action, [type, grasping]])", "did you mean 'Grasping'?"},
+           {"entity(A, [an, action, [type, soma:'Stat']])", "no class is called soma:Stat; did "},
+           {"entity(A, [an, acton, [type, 'Grasping']])",
+            "no kind of thing is called acton; did you mean 'action'? there are: action, episode, "
+            "event, map, object, task, thing"},
+           {"entity(A, [an, object, [name, knowrop:'Cup']])", "no namespace is called knowrop"},
+           // Words behind something that has no answer.
+           {"fail, entity(A, [an, action, [object, [an, object, [type, 'Handel']]]])", "Handel"},
+           {"findall(A, (fail, allen(A, durng, B)), L)", "durng"}}) {
+    const Said said = Prehend({"episode", "ask", kb, query});
+    EXPECT_EQ(said.exit_code, 2) << query << said.out;
+    EXPECT_NE(said.err.find(why), std::string::npos) << query << ": " << said.err;
+  }
+  // What nothing is called may be asked for; but it is said.
+  for (const char* query :
+       {"entity(O, [an, object, [name, handel]])", "entity(A, [an, action, [object, handel]])",
+        "holds(part_of(handel, D))"}) {
+    const Said said = Prehend({"episode", "ask", kb, query});
+    EXPECT_EQ(said.exit_code, 4) << query;
+    EXPECT_NE(said.err.find("nothing is called 'handel' in these episodes; did you mean 'handle'?"),
+              std::string::npos)
+        << query << ": " << said.err;
+  }
+}
+
+TEST(Knowledge, AllensOwnWordsAreKnown) {
+  const std::string& kb = ThreeDays().kb;
+  const auto pairs = [&](const std::string& relation) {
+    return Answers(
+        kb, "entity(A, [an, event]), entity(B, [an, event]), allen(A, " + relation + ", B)", "B");
+  };
+  EXPECT_FALSE(pairs("inside").empty());
+  EXPECT_EQ(pairs("during"), pairs("inside"));
+  EXPECT_FALSE(pairs("met_by").empty());
+  EXPECT_EQ(pairs("met-by"), pairs("met_by"));
+  EXPECT_EQ(pairs("equal"), pairs("equals"));
+  const std::string& file = ThreeDays().file;
+  EXPECT_EQ(Prehend({"episode", "query", file, "--relation", "during pick_and_place"}).out,
+            Prehend({"episode", "query", file, "--relation", "inside pick_and_place"}).out);
+}
+
+TEST(Knowledge, TypesAndStylesMayBeOpen) {
+  const std::string& kb = ThreeDays().kb;
+  const std::string mapping =
+      "entity(A, [an, action, [type, 'Grasping'], [style, S], [object, [an, object, [type, T]]]])";
+  Words styles = Answers(kb, mapping, "S"), things = Answers(kb, mapping, "T");
+  ASSERT_EQ(styles.size(), 4u);
+  ASSERT_EQ(things.size(), 4u);
+  std::multiset<std::string> pairs;
+  for (std::size_t i = 0; i < styles.size(); ++i) pairs.insert(styles[i] + " " + things[i]);
+  EXPECT_EQ(pairs, (std::multiset<std::string>{"medium_wrap Handle", "wrap CerealBox",
+                                               "wrap MilkCarton", "wrap MilkCarton"}));
+  EXPECT_EQ(Answers(kb, "entity(O, [an, object, [name, handle], [type, T]])", "T"),
+            Words{"Handle"});
+  for (const char* style : {"medium_wrap", "'MediumWrapStyle'", "knowrob:'MediumWrapStyle'"})
+    for (const char* query :
+         {"entity(A, [an, action, [style, STYLE]])", "entity(A, [an, action, [grasp_type, STYLE]])",
+          "holds(graspType(A, STYLE))"})
+      EXPECT_EQ(Answers(kb, Replaced(query, "STYLE", style), "A"),
+                Words{"Grasping(right_hand, handle)"})
+          << query << style;
+  EXPECT_EQ(Answers(kb, "entity(A, [an, action, [style, hook]])", "A"), Words{});
+  const Json types =
+      Asked({"episode", "ask", kb, "entity(O, [an, object, [name, handle]]), holds(type(O, T))",
+             "--json"});
+  EXPECT_EQ(types.size(), 4u) << "all its classes";
+}
+
+TEST(Knowledge, ImportedRecordingsCanBeAsked) {
+  const fs::path folder = FreshFolder("knowledge_of_recordings");
+  const std::string docs = PREHEND_SOURCE_DIR "/docs/motion_capture";
+  const std::string take = (folder / "milk.jsonl").string(), kb = (folder / "kb").string();
+  ASSERT_EQ(Prehend({"import", docs + "/poses.csv", "--map", docs + "/bodies.yaml", "-o", take})
+                .exit_code,
+            0);
+  // What is lost before its first pose has no place in the map.
+  const std::string lost = (folder / "lost.jsonl").string();
+  WriteFile(lost,
+            "{\"recording\": 1, \"episode\": \"late\", \"grammar\": \"contact\", "
+            "\"ticks_per_second\": 100, \"entities\": {\"right_hand\": {\"hand\": true, "
+            "\"size_m\": [0.1, 0.1, 0.1]}, \"cup\": {\"class\": \"Cup\", \"size_m\": [0.1, 0.1, "
+            "0.1]}}}\n{\"tick\": 0, \"samples\": {\"cup\": {\"at_m\": [0, 0, 1]}}}\n"
+            "{\"tick\": 50, \"samples\": {\"right_hand\": {\"at_m\": [0, 0, 1]}}}\n"
+            "{\"end_tick\": 100}\n");
+  const Said said = Prehend({"episode", "knowledge", take, lost, "-o", kb, "--also", "neem"});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.out.find("2 episodes of 2 tasks"), std::string::npos) << said.out;
+  const std::string carried =
+      "entity(A, [an, action, [type, T], [object, [an, object, [type, 'MilkCarton']]]]), "
+      "T == 'Transporting', occurs(A, [S, E])";
+  EXPECT_EQ(Answers(kb, carried, "A"), Words{"Transporting(right_hand, milk)"});
+  EXPECT_EQ(Answers(kb, carried, "S"), Words{"1.6958"});
+  EXPECT_EQ(Answers(kb, "entity(O, [an, object, [name, cup], [translation, P]])", "P"),
+            Words{"0 0 1"});
+  EXPECT_EQ(
+      Answers(kb, "entity(O, [an, object, [name, right_hand], [translation, P]])", "P").size(), 1u);
+  for (const auto& file : fs::recursive_directory_iterator(kb))
+    if (file.path().extension() == ".ttl") {
+      EXPECT_EQ(ReadFile(file.path()).find("nan"), std::string::npos) << file.path();
+    }
+}
+
+// A project is data: what lies in it is not run.
+TEST(Knowledge, AProjectsPrologIsNotRun) {
+  const fs::path folder = FreshFolder("knowledge_of_strangers"), project = folder / "evil";
+  ASSERT_EQ(Prehend({"new", "--project", project.string()}).exit_code, 0);
+  const std::string was_here = (folder / "ran").string();
+  for (const char* place : {"harness/exchange/knowledge", "harness/knowledge", "."})
+    WriteFile(project / place / "prehend.pl", ":- shell('touch " + was_here + "').\nask_main.\n");
+  WriteFile(project / "harness/exchange/knowledge/prehend.ttl", "no Turtle");
+  const std::string home = "PREHEND_HOME=" + project.string();
+  EXPECT_EQ(Prehend({"episode", "ask", ThreeDays().kb, "true"}, {home}).exit_code, 0);
+  EXPECT_EQ(
+      Prehend({"episode", "knowledge", ThreeDays().file, "-o", (folder / "kb").string()}, {home})
+          .exit_code,
+      0);
+  EXPECT_FALSE(fs::exists(was_here));
+  // Folders are names, never patterns.
+  const fs::path odd = folder / "kb {*} $HOME";
+  fs::copy(ThreeDays().kb, odd, fs::copy_options::recursive);
+  EXPECT_EQ(Answers(odd.string(), "entity(O, [an, object, [name, handle]])", "O"), Words{"handle"});
+}
+
+TEST(Knowledge, ALimitHoldsInTheMidstOfAGoal) {
+  for (const char* query : {"X is 3**1500000000, fail", "sum_list([7**900000000], X)",
+                            "aggregate_all(max(3**1500000000), true, X)"}) {
+    const auto begin = std::chrono::steady_clock::now();
+    const Said said = Prehend({"episode", "ask", ThreeDays().kb, query, "--time-limit-s", "1"});
+    EXPECT_EQ(said.exit_code, 2) << query << said.out;
+    EXPECT_NE(said.err.find("the query took more than 1 s"), std::string::npos) << said.err;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(8)) << query;
+  }
+}
+
 TEST(Knowledge, HostileQueriesAreRefusedOrStopped) {
   const Recorded& days = ThreeDays();
   for (const auto& [query, why] : std::vector<std::pair<std::string, std::string>>{
@@ -203,7 +420,7 @@ TEST(Knowledge, HostileQueriesAreRefusedOrStopped) {
            {"entity(A", "the query is no Prolog term"},
            {"X", "a goal is unknown"},
            {"entity(A, [an, action, [type, 'Graspng']])", "no class is called Graspng"},
-           {"entity(A, [an, deed])", "wanted a kind of thing"},
+           {"entity(A, [an, deed])", "no kind of thing is called deed"},
            {"between(1, inf, X), X < 0", "took more than"},
            {"findall(X, between(1, inf, X), L)", "too much"},
            {"length(L, N), N < 0", "the query"},

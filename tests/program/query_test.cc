@@ -81,6 +81,46 @@ TEST(Query, TimesRelationsAndFormsAreChosen) {
   EXPECT_TRUE(none.out.ends_with("0 answers\n")) << none.out;
 }
 
+TEST(Query, AnswersAreCountedByColumns) {
+  const std::string file = ThreeEpisodes("query_counts");
+  const Said said = Prehend(
+      {"episode", "query", file, "--event", "grasping", "--count-by", "style,object_class"});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(said.out,
+            "style  object_class  count\n"
+            "wrap   MilkCarton    2\n"
+            "hook   Handle        1\n"
+            "3 answers\n");
+  const auto json = Asked(file, {"--event", "grasping", "--count-by", "scenario,hand"});
+  ASSERT_EQ(json.size(), 3u);
+  EXPECT_EQ(json[0]["hand"], "right_hand");
+  EXPECT_EQ(json[0]["count"], 1);
+  // The sum is the number of answers, whatever an event lacks.
+  const auto all = Asked(file, {});
+  for (const char* columns : {"event", "style", "object_class,support", "episode,file"}) {
+    std::size_t sum = 0;
+    for (const auto& row : Asked(file, {"--count-by", columns}))
+      sum += row["count"].get<std::size_t>();
+    EXPECT_EQ(sum, all.size()) << columns;
+  }
+  EXPECT_EQ(
+      Prehend({"episode", "query", file, "--event", "contact", "--count-by", "style", "--csv"})
+          .out.substr(0, 13),
+      "style,count\n,");
+  const Said none = Prehend({"episode", "query", file, "--event", "fling", "--count-by", "style"});
+  EXPECT_EQ(none.exit_code, 4);
+  for (const auto& [columns, why] : std::vector<std::pair<std::string, std::string>>{
+           {"stile", "--count-by: there is no column 'stile'; did you mean 'style'? there are: "},
+           {"style,object_clas", "did you mean 'object_class'?"},
+           {"style,", ""}}) {
+    const Said wrong = Prehend({"episode", "query", file, "--count-by", columns});
+    EXPECT_EQ(wrong.exit_code, why.empty() ? 0 : 2) << columns;
+    EXPECT_NE(wrong.err.find(why), std::string::npos) << wrong.err;
+  }
+  const Said both = Prehend({"episode", "query", file, "--count-by", "style", "--parts"});
+  EXPECT_EQ(both.exit_code, 2);
+}
+
 TEST(Query, AWrongQuestionIsExplained) {
   const Said relation = Prehend({"episode", "query", "a.episodes", "--relation", "meet x"});
   EXPECT_EQ(relation.exit_code, 2);

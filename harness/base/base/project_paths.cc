@@ -143,13 +143,7 @@ std::vector<std::string> HandNames(const std::string& root) {
   return Names(HandFolders(root), kHandEnding);
 }
 
-std::string InProjectOrShipped(const std::string& root, const std::string& path) {
-  std::error_code error;
-  const fs::path own = fs::path(root) / path;
-  const std::string shipped = ShippedRoot();
-  return fs::exists(own, error) || shipped.empty() ? own.string()
-                                                   : (fs::path(shipped) / path).string();
-}
+std::string Shipped(const std::string& path) { return ShippedRoot() + "/" + path; }
 
 std::string GrammarPath(const std::string& root, const std::string& name) {
   return PathIn(GrammarFolders(root), name + kGrammarEnding);

@@ -51,8 +51,8 @@ std::vector<std::string> NamesIn(const std::string& folder, std::string_view end
 std::vector<std::string> GrammarNames(const std::string& root);
 std::vector<std::string> HandNames(const std::string& root);
 
-/// ROOT/PATH, or of a project without it what ships.
-std::string InProjectOrShipped(const std::string& root, const std::string& path);
+/// A file of what ships, never that of a project: it may be code that is run.
+std::string Shipped(const std::string& path);
 
 /// FOLDER/NAME.grammar and FOLDER/NAME.hand.yaml in the first folder that has the file; if none
 /// has, in the last one.

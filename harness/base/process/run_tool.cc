@@ -107,12 +107,14 @@ ToolResult RunTool(const std::vector<std::string>& words, const std::string& inp
   its_out.Close();
   its_err.Close();
 
-  const auto deadline = Clock::now() + std::chrono::duration<double>(limits.time_s);
+  double time_s = limits.time_s;
+  auto deadline = Clock::now() + std::chrono::duration<double>(time_s);
+  bool answers = limits.answering_s <= 0;
   std::size_t sent = 0;
   if (input.empty()) in.Close();
   while (out.IsOpen() || err.IsOpen()) {
     const double left_s = std::chrono::duration<double>(deadline - Clock::now()).count();
-    if (left_s <= 0) result.problem = fmt::format("took more than {:g} s", limits.time_s);
+    if (left_s <= 0) result.problem = fmt::format("took more than {:g} s", time_s);
     if (result.out.size() + result.err.size() > limits.output_bytes)
       result.problem = fmt::format("printed more than {} bytes", limits.output_bytes);
     if (!result.problem.empty()) break;
@@ -122,6 +124,11 @@ ToolResult RunTool(const std::vector<std::string>& words, const std::string& inp
     if (poll(watched.data(), watched.size(), static_cast<int>(left_s * 1000) + 1) < 0) continue;
     if (watched[0].revents != 0) Send(in, input, sent);
     if (watched[1].revents != 0) Receive(out, result.out);
+    if (!answers && result.out.find('\n') != std::string::npos) {
+      answers = true;
+      time_s = limits.answering_s;
+      deadline = Clock::now() + std::chrono::duration<double>(time_s);
+    }
     if (watched[2].revents != 0) Receive(err, result.err);
   }
   if (!result.problem.empty()) kill(process, SIGKILL);

@@ -10,6 +10,7 @@ namespace prehend {
 
 struct ToolLimits {
   double time_s = 60;
+  double answering_s = 0;  ///< from its first line on; 0: it has time_s for all
   std::size_t output_bytes = std::size_t{1} << 28;  ///< of standard output and error together
   std::size_t memory_bytes = 0;                     ///< of its address space; 0: any
 };

@@ -2,9 +2,11 @@
 // prehend episode ask: questions in the paper's language, answered by SWI-Prolog with
 // harness/exchange/knowledge/prehend.pl. Tested by tests/program/knowledge_test.cc
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
+#include "grammar/base/diagnostic.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/process/run_tool.h"
 #include "harness/cli/command/command.h"
@@ -19,27 +21,39 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kDefaultMost = 100, kMostAnswers = 1'000'000;
 constexpr double kDefaultAsk_s = 10, kMostAsk_s = 3600;
-/// Loading the folder is not part of the query's time.
-constexpr double kLoading_s = 120;
+/// Loading the folder is not part of the query's time. SWI-Prolog looks at the clock between goals
+/// only: in the midst of one it is killed a little later.
+constexpr double kLoading_s = 120, kLater_s = 0.5;
 constexpr double kMebibyte = 1 << 20;
 constexpr int kStack_MB = 512, kMemory_MB = 4096;
 
 struct Answered {
   std::vector<Json> answers;
   std::string problem;  ///< empty, or why it was refused or stopped; there may be answers before
+  std::vector<std::string> notes;
 };
 
-Answered AskSwipl(const std::string& root, const std::string& folder, const std::string& query,
-                  int most, double time_limit_s) {
-  const ToolResult said = RunTool(
-      {"swipl", "-q", "-f", "none", fmt::format("--stack-limit={}m", kStack_MB), "-g", "ask_main",
-       "-t", "halt", InProjectOrShipped(root, "harness/exchange/knowledge/prehend.pl"), "--",
-       folder, std::to_string(most), fmt::format("{}", time_limit_s)},
-      query,
-      {.time_s = time_limit_s + kLoading_s,
-       .memory_bytes = static_cast<std::size_t>(kMemory_MB * kMebibyte)});
+/// "; did you mean 'hook'? There are: hook, wrap" of {"word": .., "known": [..]}.
+std::string KnownWords(const Json& line) {
+  if (!line.contains("known")) return "";
+  const auto known = line["known"].get<std::vector<std::string>>();
+  const std::string near = grammar::NearestName(line["word"].get<std::string>(), known);
+  return (near.empty() ? "" : fmt::format("; did you mean '{}'?", near)) +
+         fmt::format("{} there are: {}", near.empty() ? ";" : "", fmt::join(known, ", "));
+}
+
+Answered AskSwipl(const std::string& folder, const std::string& query, int most,
+                  double time_limit_s) {
+  const ToolResult said =
+      RunTool({"swipl", "-q", "-f", "none", fmt::format("--stack-limit={}m", kStack_MB), "-g",
+               "ask_main", "-t", "halt", Shipped("harness/exchange/knowledge/prehend.pl"), "--",
+               folder, std::to_string(most), fmt::format("{}", time_limit_s)},
+              query,
+              {.time_s = kLoading_s,
+               .answering_s = time_limit_s + kLater_s,
+               .memory_bytes = static_cast<std::size_t>(kMemory_MB * kMebibyte)});
   Answered answered;
-  bool ended = false;
+  bool is_loaded = false, ended = false;
   for (std::size_t begin = 0; begin < said.out.size();) {
     const std::size_t end = std::min(said.out.find('\n', begin), said.out.size());
     const Json line =
@@ -51,11 +65,21 @@ Answered AskSwipl(const std::string& root, const std::string& folder, const std:
       answered.answers.push_back(line);
       continue;
     }
-    ended = true;
-    if (line["end"] == "refused") answered.problem = line["why"].get<std::string>();
+    const std::string end_word = line["end"];
+    if (end_word == "note") {
+      const std::string name = line["word"];
+      answered.notes.push_back(
+          fmt::format("nothing is called '{}' in these episodes{}", name, KnownWords(line)));
+    }
+    is_loaded = is_loaded || end_word == "loaded";
+    ended = ended || end_word == "done" || end_word == "refused";
+    if (end_word == "refused") answered.problem = line["why"].get<std::string>() + KnownWords(line);
   }
   if (ended) return answered;
   answered.problem = said.problem;
+  if (said.problem.starts_with("took more than"))
+    answered.problem = is_loaded ? fmt::format("the query took more than {:g} s", time_limit_s)
+                                 : "reading the folder " + said.problem;
   if (said.problem.ends_with("is not installed"))
     answered.problem += "; Debian's package swi-prolog-nox has it";
   if (said.problem.empty()) answered.problem = "SWI-Prolog ended without an answer: " + said.err;
@@ -118,9 +142,9 @@ ExitCode RunAsk(const ParsedOptions& options, const CommandContext& context) {
   const bool shows = options.Has("--show");
   if (shows && !show::CanDrawPictures())
     return Complain(context, ExitCode::kBadInput, "--show: this build draws no pictures");
-  Answered answered =
-      AskSwipl(context.root, folder, options.Text("query"), options.IntOr("--most", kDefaultMost),
-               options.NumberOr("--time-limit-s", kDefaultAsk_s));
+  Answered answered = AskSwipl(folder, options.Text("query"), options.IntOr("--most", kDefaultMost),
+                               options.NumberOr("--time-limit-s", kDefaultAsk_s));
+  for (const std::string& note : answered.notes) context.err << "prehend: " << note << "\n";
   show::MomentPictures drawn;
   if (shows) {
     std::vector<show::Moment> moments;

@@ -17,7 +17,7 @@ std::string FormProblem(const std::string& text) {
 }
 
 ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& context) {
-  auto episodes = FindEpisodesOrComplain("EPISODES", options, context, {episode::Need::kBodies});
+  auto episodes = FindEpisodesOrComplain("EPISODES", options, context, {});
   if (!episodes) return episodes.error();
   const std::vector<std::string> forms = options.All("--also");
   const auto asked = [&](const char* form) {

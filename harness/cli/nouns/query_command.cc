@@ -3,7 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "harness/base/base/csv_cells.h"
 #include "harness/cli/command/command.h"
@@ -57,6 +62,13 @@ void PrintQueryJson(const std::vector<EventAnswer>& answers,
   out << all.dump(2) << "\n";
 }
 
+void PrintCsv(const std::vector<std::vector<std::string>>& rows, std::ostream& out) {
+  for (const std::vector<std::string>& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) out << (i ? "," : "") << AsCsvCell(row[i]);
+    out << "\n";
+  }
+}
+
 void PrintQueryTable(const std::vector<EventAnswer>& answers,
                      const std::vector<std::string>& pictures, bool parts, bool csv,
                      std::ostream& out) {
@@ -78,15 +90,83 @@ void PrintQueryTable(const std::vector<EventAnswer>& answers,
       if (parts) add(i, part, true);
     }
   }
-  if (csv) {
-    for (const std::vector<std::string>& row : rows) {
-      for (std::size_t i = 0; i < row.size(); ++i) out << (i ? "," : "") << AsCsvCell(row[i]);
-      out << "\n";
-    }
-    return;
-  }
+  if (csv) return PrintCsv(rows, out);
   for (const std::string& line : truth::AlignColumns(rows)) out << line << "\n";
   out << answers.size() << (answers.size() == 1 ? " answer\n" : " answers\n");
+}
+
+/// Of --count-by: columns that every event has, and behind a role that of its class.
+constexpr std::array kColumns = {"event", "scenario", "episode", "file"};
+constexpr const char* kClassColumn = "_class";
+
+std::string ColumnOf(const EventAnswer& answer, const std::string& column) {
+  if (column == kColumns[0]) return answer.event.event;
+  if (column == kColumns[1]) return answer.scenario;
+  if (column == kColumns[2]) return std::to_string(answer.episode);
+  if (column == kColumns[3]) return answer.file;
+  for (std::size_t i = 0; i < answer.event.roles.size(); ++i) {
+    const grammar::Role& role = answer.event.roles[i];
+    if (role.name == column) return role.value;
+    if (role.name + kClassColumn == column) return answer.classes[i];
+  }
+  return "";
+}
+
+std::vector<std::string> ColumnsOf(const ParsedOptions& options) {
+  std::vector<std::string> columns;
+  std::istringstream text(options.Text("--count-by"));
+  for (std::string column; std::getline(text, column, ',');) columns.push_back(column);
+  return columns;
+}
+
+/// Why no answer can have one of the columns, or "".
+std::string UnknownColumn(const std::vector<std::string>& columns,
+                          const std::set<std::string>& roles) {
+  std::vector<std::string> names(kColumns.begin(), kColumns.end());
+  for (const std::string& role : roles) names.insert(names.end(), {role, role + kClassColumn});
+  for (const std::string& column : columns) {
+    if (roles.empty() || std::ranges::find(names, column) != names.end()) continue;
+    const std::string near = grammar::NearestName(column, names);
+    return fmt::format("--count-by: there is no column '{}'; {}there are: {}", column,
+                       near.empty() ? "" : fmt::format("did you mean '{}'? ", near),
+                       fmt::join(names, ", "));
+  }
+  return "";
+}
+
+/// How many answers have the same in these columns, the most first.
+void PrintCounts(const std::vector<EventAnswer>& answers, const std::vector<std::string>& columns,
+                 const ParsedOptions& options, std::ostream& out) {
+  std::map<std::vector<std::string>, std::size_t> counts;
+  for (const EventAnswer& answer : answers) {
+    std::vector<std::string> cells;
+    for (const std::string& column : columns) cells.push_back(ColumnOf(answer, column));
+    ++counts[cells];
+  }
+  std::vector<std::pair<std::vector<std::string>, std::size_t>> sorted(counts.begin(),
+                                                                       counts.end());
+  std::ranges::stable_sort(sorted, std::greater(), [](const auto& row) { return row.second; });
+  std::vector<std::vector<std::string>> rows = {columns};
+  rows[0].push_back("count");
+  Json all = Json::array();
+  for (const auto& [cells, count] : sorted) {
+    Json one;
+    for (std::size_t i = 0; i < columns.size(); ++i) one[columns[i]] = cells[i];
+    one["count"] = count;
+    all.push_back(std::move(one));
+    rows.push_back(cells);
+    rows.back().push_back(std::to_string(count));
+  }
+  if (options.Has("--json")) {
+    out << all.dump(2) << "\n";
+  } else if (options.Has("--csv")) {
+    PrintCsv(rows, out);
+  } else {
+    for (std::vector<std::string>& row : rows)
+      std::ranges::replace(row, std::string(), std::string("-"));
+    for (const std::string& line : truth::AlignColumns(rows)) out << line << "\n";
+    out << answers.size() << (answers.size() == 1 ? " answer\n" : " answers\n");
+  }
 }
 
 std::string RoleProblem(const std::string& text) {
@@ -142,6 +222,10 @@ std::string UnknownRole(const EventQuestion& question, const std::set<std::strin
 ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--json") && options.Has("--csv"))
     return Complain(context, ExitCode::kBadInput, "--json contradicts --csv; give one of them");
+  const std::vector<std::string> columns = ColumnsOf(options);
+  if (!columns.empty() && (options.Has("--show") || options.Has("--parts")))
+    return Complain(context, ExitCode::kBadInput,
+                    "--count-by contradicts --show and --parts; give one of them");
   if (options.Has("--show") && !show::CanDrawPictures())
     return Complain(context, ExitCode::kBadInput, "--show: this build draws no pictures");
   const EventQuestion question = EventQuestionOf(options);
@@ -162,6 +246,8 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
   }
   if (const std::string why = UnknownRole(question, known.roles); !why.empty())
     return Complain(context, ExitCode::kBadInput, why);
+  if (const std::string why = UnknownColumn(columns, known.roles); !why.empty())
+    return Complain(context, ExitCode::kBadInput, why);
   const std::vector<std::string> events(known.events.begin(), known.events.end());
   if (const std::string near = grammar::NearestName(question.event, events);
       answers.empty() && !known.events.contains(question.event) && !near.empty())
@@ -174,7 +260,9 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
     drawn = show::DrawMoments(moments, options.Text("--show"), context.root);
   }
   for (EventAnswer& answer : answers) answer.file = keeper.SourceOf(answer.file);
-  if (options.Has("--json"))
+  if (!columns.empty())
+    PrintCounts(answers, columns, options, context.out);
+  else if (options.Has("--json"))
     PrintQueryJson(answers, drawn.files, options.Has("--parts"), context.out);
   else
     PrintQueryTable(answers, drawn.files, options.Has("--parts"), options.Has("--csv"),
@@ -208,6 +296,7 @@ Command QueryCommand() {
            "object=Door",
            "episode query suite.episodes --event pick_and_place --parts --json",
            "episode query *.episodes --event sliding --relation 'meets transporting' --csv",
+           "episode query suite.episodes --event grasping --count-by style,object_class",
            "episode query suite.episodes --event grasping --class object=Handle --show shown"},
       .options = {EpisodesArgument(),
                   {.name = "--event", .help = "its name, or a glob", .placeholder = "NAME"},
@@ -236,6 +325,11 @@ Command QueryCommand() {
                   {.name = "--parts",
                    .help = "below each event also its parts: those that begin within it and have "
                            "no other participants"},
+                  {.name = "--count-by",
+                   .help = "instead of the answers how many have the same in these columns: event, "
+                           "scenario, episode, file, a role (style, object), a role's class "
+                           "(object_class)",
+                   .placeholder = "COLUMN,.."},
                   {.name = "--show",
                    .help = "draw each answer into this folder: the world when the event begins, "
                            "with the paths of its hand and its thing until it ends",

@@ -22,12 +22,6 @@ std::string Lacks(const EpisodeName& episode, Need need) {
       return episode.scenario +
              " was not simulated, so its physical truth is not known; score it against labels by "
              "people: --truth (docs/labels.md)";
-    case Need::kBodies:
-      if (!is_recording) return "";
-      return fmt::format(
-          "{} was not simulated, so the bodies that a knowledge base describes are not known; '{}' "
-          "writes its events",
-          episode.scenario, CommandText({"episode", "resegment", file, "--json"}));
     case Need::kRecordedEvents:
       if (episode.number) return "";
       return fmt::format("{} has no events that were recorded with it; '{}' keeps them", file,

@@ -14,7 +14,6 @@ namespace prehend::episode {
 enum class Need {
   kScenario,        ///< something that can be simulated
   kGroundTruth,     ///< what physically happened
-  kBodies,          ///< bodies with a mass, and contacts between them
   kRecordedEvents,  ///< what was recognised when it was recorded
   kEpisodeFile,     ///< to be kept in an episode file
   kGolden           ///< a place for a golden of its own

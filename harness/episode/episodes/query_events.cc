@@ -175,7 +175,8 @@ std::optional<RoleCondition> ParseRoleCondition(std::string_view text) {
 
 std::optional<EventQuestion::Relation> ParseRelation(std::string_view text, std::string& problem) {
   const std::size_t blank = text.find(' ');
-  const std::string name(text.substr(0, blank));
+  std::string name(text.substr(0, blank));
+  if (name == "during") name = "inside";  // Allen's own word
   const std::vector<std::string> known(grammar::kAllenNames.begin(), grammar::kAllenNames.end());
   if (std::ranges::find(known, name) == known.end()) {
     const std::string near = grammar::NearestName(name, known);
@@ -213,7 +214,11 @@ Result<std::vector<EventAnswer>> Ask(const std::string& path, const EventQuestio
       for (const grammar::Role& role : event.roles) known.roles.insert(role.name);
       if (!asker.Holds(event)) continue;
       EventAnswer& answer = answers.emplace_back();
-      answer = {path, row.id, row.scenario, row.ticks_per_second, event, {}};
+      answer = {path, row.id, row.scenario, row.ticks_per_second, event, {}, {}};
+      for (const grammar::Role& role : event.roles) {
+        const KeptEntity* entity = EntityNamed(role.value, *entities);
+        answer.classes.push_back(entity ? entity->classes.front() : "");
+      }
       for (const grammar::NamedEvent* part : PartsOf(event, *timeline, *entities))
         answer.parts.push_back(*part);
     }

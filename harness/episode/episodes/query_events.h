@@ -45,6 +45,7 @@ struct EventAnswer {
   std::string scenario;
   grammar::Tick ticks_per_second = 480;
   grammar::NamedEvent event;
+  std::vector<std::string> classes;        ///< by its roles; "" of what is no entity
   std::vector<grammar::NamedEvent> parts;  ///< PartsOf() it
 };
 

@@ -111,7 +111,7 @@ void AddEntity(const MapOfTask& map, std::size_t number, const std::string& map_
   for (std::size_t axis = 0; axis < entity.size_m.size(); ++axis)
     if (entity.size_m[axis] > 0) graph.Say(kSizes[axis], Number(entity.size_m[axis]));
   if (entity.mass_kg > 0) graph.Say("knowrob:massOfObject", Number(entity.mass_kg));
-  if (number >= map.poses.size()) return;
+  if (number >= map.poses.size() || !map.poses[number].p_m.allFinite()) return;
   const physics::Pose& X_WE = map.poses[number];
   graph.Say("knowrob:translation",
             Text(fmt::format("{} {} {}", X_WE.p_m.x(), X_WE.p_m.y(), X_WE.p_m.z())));
@@ -246,8 +246,8 @@ constexpr const char* kRootOfThings = "knowrob:Entity";
 
 }  // namespace
 
-Result<Vocabulary> Vocabulary::Load(const std::string& root) {
-  const std::string file = InProjectOrShipped(root, kTerminology);
+Result<Vocabulary> Vocabulary::Load() {
+  const std::string file = Shipped(kTerminology);
   Result<std::string> text = ReadTextFile(file);
   if (!text) return tl::unexpected(text.error());
   std::string problem;

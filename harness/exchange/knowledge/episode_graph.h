@@ -27,8 +27,8 @@ struct EventTerm {
 
 class Vocabulary {
  public:
-  /// Reads harness/exchange/knowledge/prehend.ttl of the project, or of what ships.
-  static Result<Vocabulary> Load(const std::string& root);
+  /// Reads harness/exchange/knowledge/prehend.ttl of what ships.
+  static Result<Vocabulary> Load();
 
   /// The terminology as it stands in its file.
   const std::string& text() const { return text_; }

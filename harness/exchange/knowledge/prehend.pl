@@ -22,6 +22,7 @@
 :- use_module(library(semweb/turtle)).
 :- use_module(library(lists)).
 :- use_module(library(apply)).
+:- use_module(library(filesex), [directory_file_path/3]).
 :- use_module(library(aggregate)).
 :- use_module(library(solution_sequences)).
 :- use_module(library(time)).
@@ -35,8 +36,23 @@ namespace(prehend, 'http://prehend.local/prehend.owl#').
 namespace(log, 'http://prehend.local/log.owl#').
 namespace(rdf, 'http://www.w3.org/1999/02/22-rdf-syntax-ns#').
 namespace(rdfs, 'http://www.w3.org/2000/01/rdf-schema#').
+namespace(owl, 'http://www.w3.org/2002/07/owl#').
 
 name(Prefix, Local, Iri) :- namespace(Prefix, Base), atom_concat(Base, Local, Iri).
+
+% A name that is written out: 'http://..', or knowrob:'Grasping'.
+written(Iri, Iri) :- is_iri(Iri), !.
+written(Word, Iri) :-
+    nonvar(Word), Word = Prefix:Local, atom(Prefix), atom(Local),
+    (   namespace(Prefix, _) -> name(Prefix, Local, Iri)
+    ;   findall(P, namespace(P, _), Known), throw(unknown(namespace, Prefix, Known))
+    ).
+is_iri(X) :- atom(X), sub_atom(X, 0, _, _, 'http').
+
+% As a question writes it: Grasping, or soma:State.
+short(Iri, Word) :-
+    namespace(Prefix, Base), atom_concat(Base, Local, Iri), !,
+    ( Prefix == knowrob -> Word = Local ; atomic_list_concat([Prefix, Local], ':', Word) ).
 
 % Statements. Objects that are literals are literal(type(Type, Text)) or literal(Text).
 said(S, Prefix:Local, O) :- name(Prefix, Local, P), rdf3(S, P, O).
@@ -60,8 +76,9 @@ load_knowledge(Folder) :-
     ;   throw(refused("~w has no prehend.ttl: 'prehend episode knowledge' writes such a folder"-[Folder]))
     ),
     load_file(Words, [silent(true)]),
-    forall(( member(Part, ['/maps/*.ttl', '/episodes/*.ttl']),
-             atom_concat(Folder, Part, Pattern), expand_file_name(Pattern, Files), member(File, Files) ),
+    forall(( member(Part, [maps, episodes]), directory_file_path(Folder, Part, Below), exists_directory(Below),
+             directory_files(Below, Names), msort(Names, Sorted), member(Name, Sorted),
+             file_name_extension(_, ttl, Name), directory_file_path(Below, Name, File) ),
            load_file(File, [silent(true)])).
 
 % --- descriptions ----------------------------------------------------------------------------------------------------
@@ -69,13 +86,15 @@ load_knowledge(Folder) :-
 '..'.
 ellipsis(X) :- nonvar(X), ( X == '..' -> true ; X == ['..'] ).
 
-%!  entity(?E, +[a|an, Kind, [Key, Value]..])
+%!  entity(?E, +[a|an, Kind, [Key, Value]..]) : each answer once.
 entity(E, Description) :-
-    (   is_list(Description), Description = [Article, Kind | Pairs0], memberchk(Article, [a, an]) -> true
-    ;   throw(refused("found ~q, wanted a description like [an, action, [type, 'Grasping']]"-[Description]))
-    ),
-    exclude(ellipsis, Pairs0, Pairs),
-    maplist(check_pair, Pairs),
+    term_variables(E-Description, Variables),
+    (   Variables == [] -> once(described(E, Description))
+    ;   distinct(Variables, described(E, Description))
+    ).
+
+described(E, Description) :-
+    pairs_of(Description, Kind, Pairs),
     partition(is_pair(type), Pairs, Types, Others0),
     partition(is_pair(name), Others0, Names, Others),
     partition(is_part, Others, Parts, Fields),
@@ -87,8 +106,14 @@ entity(E, Description) :-
         has_parts(E, Parts)
     ).
 
+pairs_of(Description, Kind, Pairs) :-
+    (   is_list(Description), Description = [Article, Kind | Pairs0], memberchk(Article, [a, an]) -> true
+    ;   throw(refused("found ~q, wanted a description like [an, action, [type, 'Grasping']]"-[Description]))
+    ),
+    exclude(ellipsis, Pairs0, Pairs),
+    maplist(check_pair, Pairs).
 check_pair(Pair) :-
-    (   Pair = [Key, _], nonvar(Key) -> true
+    (   nonvar(Pair), Pair = [Key, _], nonvar(Key) -> true
     ;   throw(refused("found ~q in a description, wanted [KEY, VALUE] or .."-[Pair]))
     ).
 is_pair(Key, [Key0, _]) :- Key == Key0.
@@ -97,15 +122,26 @@ is_part([Key, Value]) :- key_words(Key, [sub, action]), is_list(Value).
 % A key is written sub_action or sub-action.
 key_words(Key, Words) :- atom(Key), !, atomic_list_concat(Words, '_', Key).
 key_words(A-B, Words) :- key_words(A, As), key_words(B, Bs), append(As, Bs, Words).
+key_word(Key, Word) :-
+    (   key_words(Key, Words) -> atomic_list_concat(Words, '_', Word)
+    ;   throw(refused("found ~q, wanted a word like object or performed_by"-[Key]))
+    ).
 
 named(E, [name, Name]) :-
     (   var(Name) -> Name = E
-    ;   atom(Name), sub_atom(Name, 0, _, _, 'http') -> E = Name
-    ;   atom(Name) -> label_literal(Name, Label), said(E, rdfs:label, Label)
+    ;   written(Name, Iri) -> E = Iri
+    ;   atom(Name) -> label_known(Name), said(E, rdfs:label, literal(Name))
     ;   throw(refused("found ~q, wanted a name"-[Name]))
     ).
-label_literal(Name, literal(Name)).
-label_literal(Name, literal(type('http://www.w3.org/2001/XMLSchema#string', Name))).
+
+% A name that nothing has is no error, but nobody should wonder.
+label_known(Name) :- once(said(_, rdfs:label, literal(Name))), !.
+label_known(Name) :-
+    ( nb_current(prehend_notes, Notes) -> true ; Notes = [] ),
+    (   memberchk(Name-_, Notes) -> true
+    ;   findall(Label, ( said(E, rdfs:label, literal(Label)), said(E, knowrob:inMap, _) ), Labels0),
+        sort(Labels0, Labels), nb_setval(prehend_notes, [Name-Labels | Notes])
+    ).
 
 kind(action, dul, 'Action').
 kind(event, dul, 'Event').
@@ -113,27 +149,45 @@ kind(object, knowrob, 'Entity').
 kind(episode, knowrob, 'Episode').
 kind(task, knowrob, 'Task').
 kind(map, knowrob, 'SemanticEnvironmentMap').
-
-typed(E, Kind, []) :- !,
-    (   Kind == thing -> ( nonvar(E) -> true ; throw(refused("[a, thing] needs a type or a name"-[])) )
-    ;   kind(Kind, Prefix, Local) -> name(Prefix, Local, Class), instance(E, Class)
-    ;   findall(K, kind(K, _, _), Kinds),
-        throw(refused("found ~q, wanted a kind of thing: ~q"-[Kind, [thing | Kinds]]))
+kind(thing, dul, 'Entity').
+kind_class(Kind, Class) :-
+    (   kind(Kind, Prefix, Local) -> name(Prefix, Local, Class)
+    ;   findall(K, kind(K, _, _), Known), throw(unknown('kind of thing', Kind, Known))
     ).
-typed(E, _, Types) :- maplist(of_type(E), Types).
+
+typed(E, Kind, Types) :-
+    kind_class(Kind, Class),
+    partition(is_open, Types, Open, Known),
+    (   Known \== [] -> maplist(of_type(E), Known)
+    ;   Kind == thing, Open == []
+    ->  ( nonvar(E) -> true ; throw(refused("[a, thing] needs a type or a name"-[])) )
+    ;   instance(E, Class)
+    ),
+    maplist(own_type(E), Open).
+is_open([_, Value]) :- var(Value).
+own_type(E, [type, Type]) :- own_class(E, Class), short(Class, Type).
 of_type(E, [type, Type]) :- class_named(Type, Class), instance(E, Class).
 
+% The most special of its classes. That a thing can be moved is said of it besides.
+own_class(E, Class) :-
+    findall(C, a_class(E, C), Classes),
+    findall(C, ( member(C, Classes), \+ ( member(D, Classes), D \== C, below(C, D) ) ), Lowest),
+    name(knowrob, 'Thing', Thing),
+    findall(C, ( member(C, Lowest), \+ below(Thing, C) ), Named),
+    ( Named == [] -> member(Class, Lowest) ; member(Class, Named) ).
+a_class(E, Class) :- name(rdf, type, Type), related(Type, E, Class).
+
 class_named(Type, Class) :-
-    (   atom(Type), sub_atom(Type, 0, _, _, 'http') -> Class = Type
-    ;   nonvar(Type), Type = Prefix:Local, atom(Local), namespace(Prefix, _) -> name(Prefix, Local, Class)
+    (   written(Type, Class) -> true
     ;   atom(Type) -> name(knowrob, Type, Class)
     ;   throw(refused("found ~q, wanted the name of a class, as in [type, 'Grasping']"-[Type]))
     ),
-    (   once(said_class(Class)) -> true
-    ;   throw(refused("no class is called ~w in these episodes"-[Type]))
+    (   said_class(Class) -> true
+    ;   name(owl, 'Class', Classes),
+        findall(Word, ( said(C, rdf:type, Classes), once(instance(_, C)), short(C, Word) ), Known),
+        ( atom(Type) -> Word = Type ; short(Class, Word) ), throw(unknown(class, Word, Known))
     ).
-said_class(Class) :- said(Class, rdf:type, _).
-said_class(Class) :- said(Class, rdfs:subClassOf, _).
+said_class(Class) :- once(( said(Class, rdf:type, _) ; said(Class, rdfs:subClassOf, _) )).
 
 recorded(Type) :- name(knowrob, Type, Class), once(instance(_, Class)).
 
@@ -149,25 +203,71 @@ field(E, [Key, Value]) :-
     ->  (   nonvar(E) -> rdf3(E, Property, O), entity(O, Value)
         ;   entity(O, Value), rdf3(E, Property, O)
         )
-    ;   rdf3(E, Property, O0), ( O0 = literal(L) -> plain(L, O) ; O = O0 ),
-        (   atom(Value), \+ sub_atom(Value, 0, _, _, 'http'), label_of(O, Label) -> Value == Label
-        ;   Value = O
-        )
+    ;   value_known(Property, Value),
+        rdf3(E, Property, O),
+        ( Key == style, var(Value) -> style_word(O, Value) ; means(Value, O) )
     ).
 
-property(Prefix:Local, Property) :- !, name(Prefix, Local, Property).
-property(Key, Property) :-
-    (   key_words(Key, Words) -> true
-    ;   throw(refused("found ~q, wanted a key like object or performed_by"-[Key]))
-    ),
-    atomic_list_concat(Words, '_', Role),
-    (   label_literal(Role, Literal), said(Property0, prehend:roleName, Literal) -> Property = Property0
-    ;   Words = [First | Rest], maplist(capital, Rest, Capitals),
-        atomic_list_concat([First | Capitals], Local), name(knowrob, Local, Property)
+%!  means(?Given, +Said) : a name that is written out, a label, the word of a style or of a class, a number, a text.
+means(Given, literal(L)) :- !, plain(L, Value), ( number(Given), number(Value) -> Given =:= Value ; Given = Value ).
+means(Given, O) :- var(Given), !, Given = O.
+means(Given, O) :- written(Given, Iri), !, Iri == O.
+means(Given, O) :- once(( said(O, rdfs:label, literal(Given)) ; style_word(O, Given) ; short(O, Given) )).
+
+value_known(Property, Value) :-
+    (   ( var(Value) ; is_list(Value) ; is_iri(Value) ) -> true
+    ;   name(rdf, type, Property) -> class_named(Value, _)
+    ;   ( written(Value, _) ; \+ atom(Value) ) -> true
+    ;   name(knowrob, graspType, Property)
+    ->  (   style_word(_, Value) -> true
+        ;   name(knowrob, Value, Style), style(Style) -> true
+        ;   findall(Word, style_word(_, Word), Known), throw(unknown(style, Value, Known))
+        )
+    ;   name(owl, 'ObjectProperty', Kind), said(Property, rdf:type, Kind) -> label_known(Value)
+    ;   true
     ).
+style(Style) :- name(knowrob, 'GraspStyle', Class), said(Style, rdf:type, Class).
+style_word(Style, Word) :-
+    style(Style),
+    (   said(Style, prehend:styleName, literal(Named)) -> Word = Named
+    ;   short(Style, Local), atom_concat(Name, 'Style', Local), snake(Name, Word)
+    ).
+
+property(Key, Property) :-
+    (   written(Key, Property) -> true
+    ;   key_word(Key, Word),
+        (   also_called(Word, Prefix:Local) -> name(Prefix, Local, Property)
+        ;   said(Property0, prehend:roleName, literal(Word)) -> Property = Property0
+        ;   atomic_list_concat([First | Rest], '_', Word), maplist(capital, Rest, Capitals),
+            atomic_list_concat([First | Capitals], Local), member(Prefix, [knowrob, prehend]),
+            name(Prefix, Local, Property), is_property(Property)
+        )
+    ),
+    ( is_property(Property) ; also_called(_, Prefix:Local), name(Prefix, Local, Property) ), !.
+property(Key, _) :-
+    findall(W, property_word(W), Known),
+    ( Key = _:Local -> snake(Local, Word) ; key_word(Key, Word) ),
+    throw(unknown('role or property', Word, Known)).
+also_called(style, knowrob:graspType).
+also_called(type, rdf:type).
+also_called(name, rdfs:label).
+also_called(label, rdfs:label).
+is_property(P) :- member(K, ['ObjectProperty', 'DatatypeProperty']), name(owl, K, Kind), said(P, rdf:type, Kind), !.
+property_word(Word) :- also_called(Word, _).
+property_word(Word) :- said(P, prehend:roleName, literal(Word)), once(rdf3(_, P, _)).
+property_word(Word) :-
+    member(Prefix, [knowrob, prehend]), namespace(Prefix, Base),
+    member(K, ['ObjectProperty', 'DatatypeProperty']), name(owl, K, Kind), said(P, rdf:type, Kind),
+    atom_concat(Base, Local, P), once(rdf3(_, P, _)), snake(Local, Word).
+
 capital(Word, Capital) :-
     sub_atom(Word, 0, 1, _, First), sub_atom(Word, 1, _, 0, Rest), upcase_atom(First, Upper),
     atom_concat(Upper, Rest, Capital).
+% medium_wrap of MediumWrap, performed_by of performedBy.
+snake(Camel, Word) :-
+    atom_chars(Camel, Chars),
+    findall(C, ( nth1(N, Chars, C0), ( char_type(C0, upper(L)) -> ( N > 1, C = '_' ; C = L ) ; C = C0 ) ), Snake),
+    atom_chars(Word, Snake).
 
 % --- parts -----------------------------------------------------------------------------------------------------------
 
@@ -226,15 +326,28 @@ occurs(E, Times) :-
     Members = [First | _],
     once(episode_of(First, Episode)), b_setval(prehend_episode, Episode).
 
+episode_of(composed(_, [E | _]), Episode) :- !, episode_of(E, Episode).
 episode_of(E, Episode) :- said(E, knowrob:inEpisode, Episode).
 
 %!  allen(?A, ?Relation, ?B)
 %   Of two events of one episode; on ticks, the end excluded.
 allen(A, Relation, B) :-
+    ( var(Relation) -> Found = Relation ; relation_named(Relation, Found) ),
     episode_of(A, Episode), episode_of(B, Episode), A \== B,
-    tick(A, beginTick, BeginA), tick(A, endTick, EndA), BeginA < EndA,
-    tick(B, beginTick, BeginB), tick(B, endTick, EndB), BeginB < EndB,
-    relation(BeginA, EndA, BeginB, EndB, Found), Relation = Found.
+    ticks(A, BeginA, EndA), ticks(B, BeginB, EndB), BeginA < EndA, BeginB < EndB,
+    relation(BeginA, EndA, BeginB, EndB, Relation0), Found = Relation0.
+
+ticks(E, Begin, End) :-
+    members(E, Members), findall(T, ( member(M, Members), tick(M, beginTick, T) ), Begins),
+    findall(T, ( member(M, Members), tick(M, endTick, T) ), Ends), min_list(Begins, Begin), max_list(Ends, End).
+
+relation_named(Given, Relation) :-
+    key_word(Given, Word), ( also_allen(Word, Relation0) -> true ; Relation0 = Word ),
+    Known = [before, meets, overlaps, starts, inside, during, finishes, equals, finished_by, contains, started_by,
+             overlapped_by, met_by, after],
+    ( memberchk(Relation0, Known) -> Relation = Relation0 ; throw(unknown('relation of Allen\'s', Word, Known)) ).
+also_allen(during, inside).
+also_allen(equal, equals).
 
 relation(_, EndA, BeginB, _, before) :- EndA < BeginB, !.
 relation(_, EndA, BeginB, _, meets) :- EndA =:= BeginB, !.
@@ -254,17 +367,20 @@ overlapping(>, >, overlapped_by).
 
 % --- relations of things ---------------------------------------------------------------------------------------------
 
-%!  holds(part_of(X, Y)) : directly or not. Of other relations: as they are said.
+%!  holds(part_of(X, Y)) : directly or not. Of other relations: as they are said. Each answer once.
 holds(Relation) :-
-    (   compound(Relation), Relation = Prefix:Inner, compound(Inner) -> true
-    ;   compound(Relation) -> Inner = Relation, Prefix = none
-    ;   throw(refused("found ~q, wanted a relation like part_of(X, Y)"-[Relation]))
-    ),
-    (   Inner =.. [Key, S, O] -> true
-    ;   throw(refused("found ~q, wanted a relation of two, like part_of(X, Y)"-[Inner]))
-    ),
-    (   Prefix == none -> property(Key, Property) ; name(Prefix, Key, Property) ),
-    (   name(knowrob, partOf, Property) -> part_of(S, O, Property) ; rdf3(S, Property, O) ).
+    related(Relation, Key, S, O),
+    property(Key, Property), value_known(Property, S), value_known(Property, O),
+    distinct(S-O, ( subject(S, S0), related(Property, S0, O0), means(O, O0) )).
+subject(S, S0) :- ( var(S) -> S0 = S ; written(S, Iri) -> S0 = Iri ; said(S0, rdfs:label, literal(S)) ).
+related(Relation, Key, S, O) :-
+    (   nonvar(Relation), Relation = Prefix:Inner, atom(Prefix), compound(Inner), Inner =.. [Local, S, O]
+    ->  Key = Prefix:Local
+    ;   compound(Relation), Relation =.. [Key, S, O], Key \== (:) -> true
+    ;   throw(refused("found ~q, wanted a relation of two, like part_of(X, Y)"-[Relation]))
+    ).
+related(Property, S, O) :- name(knowrob, partOf, Property), !, part_of(S, O, Property).
+related(Property, S, O) :- rdf3(S, Property, O), O \== 'http://www.w3.org/2002/07/owl#NamedIndividual'.
 part_of(S, O, Property) :- rdf3(S, Property, O).
 part_of(S, O, Property) :- rdf3(S, Property, Between), part_of(Between, O, Property).
 
@@ -319,6 +435,22 @@ allowed(sum_list/2). allowed(max_list/2). allowed(min_list/2).
 allowed(entity/2). allowed(occurs/2). allowed(holds/1). allowed(allen/3). allowed(episode_of/2). allowed(label_of/2).
 allowed(show/1). allowed(show/2).
 
+% Words that are known before the question is asked.
+known_words(G) :- control(G, Inner), !, maplist(known_words, Inner).
+known_words(entity(_, D)) :- nonvar(D), !, known_description(D).
+known_words(allen(_, R, _)) :- nonvar(R), !, relation_named(R, _).
+known_words(holds(R)) :- nonvar(R), !, related(R, Key, S, O), property(Key, P), value_known(P, S), value_known(P, O).
+known_words(_).
+known_description(D) :-
+    pairs_of(D, Kind, Pairs), kind_class(Kind, _),
+    ( member(Part, Pairs), is_part(Part) -> Composed = true ; Composed = false ),
+    forall(member([Key, Value], Pairs), known_pair(Key, Value, Composed)).
+known_pair(Key, _, _) :- Key == name, !.
+known_pair(Key, Value, Composed) :- Key == type, !, ( ( var(Value) ; Composed == true ) -> true ; class_named(Value, _) ).
+known_pair(Key, Value, _) :-
+    ( key_words(Key, [sub, action]) -> true ; property(Key, P), value_known(P, Value) ),
+    ( is_list(Value) -> known_description(Value) ; true ).
+
 % Without the ellipses, which as goals would load a file of that name.
 without_ellipses(G, true) :- ellipsis(G), !.
 without_ellipses((A, B), (C, D)) :- !, without_ellipses(A, C), without_ellipses(B, D).
@@ -333,8 +465,15 @@ ask_main :-
     current_prolog_flag(argv, Arguments),
     append(_, [Folder, Most0, Seconds0], Arguments), !,
     atom_number(Most0, Most), atom_number(Seconds0, Seconds),
-    catch(ask_all(Folder, Most, Seconds, End), Error, ( why(Error, Why), End = _{end: refused, why: Why} )),
+    catch(ask_all(Folder, Most, Seconds, End), Error, refusal(Error, End)),
+    ( nb_current(prehend_notes, Notes) -> true ; Notes = [] ),
+    forall(member(Word-Known, Notes), put_line(_{end: note, word: Word, known: Known})),
     put_line(End).
+
+refusal(unknown(What, Word, Known0), End) :- !,
+    sort(Known0, Known), format(string(Why), "no ~w is called ~w", [What, Word]),
+    End = _{end: refused, why: Why, word: Word, known: Known}.
+refusal(Error, _{end: refused, why: Why}) :- why(Error, Why).
 
 ask_all(Folder, Most, Seconds, End) :-
     read_string(user_input, _, Text),
@@ -342,6 +481,8 @@ ask_all(Folder, Most, Seconds, End) :-
     safe_query(Goal0),
     without_ellipses(Goal0, Goal),
     load_knowledge(Folder),
+    known_words(Goal),
+    put_line(_{end: loaded}),
     State = count(0),
     catch(call_with_time_limit(Seconds, answers(Goal, Names, Most, State)), Error, true),
     (   var(Error) -> arg(1, State, Count), End = _{end: done, answers: Count}
@@ -351,31 +492,72 @@ ask_all(Folder, Most, Seconds, End) :-
     ).
 
 read_query(Text, Goal, Names) :-
-    catch(term_string(Goal, Text, [variable_names(Names), module(prehend), syntax_errors(error)]), Error, true),
-    (   var(Error) -> true
+    catch(read_goal(Text, Goal0, Names), Error, true),
+    (   var(Error) -> ( nonvar(Goal0), Goal0 = (?- Goal1) -> Goal = Goal1 ; Goal = Goal0 )
     ;   Error = error(syntax_error(What), Context)
-    ->  (   Context = string(_, At) -> true ; At = 0 ),
-        throw(refused("the query is no Prolog term: ~w, at its character ~w"-[What, At]))
+    ->  ( Context = stream(_, _, _, At) -> true ; At = 0 ),
+        (   string_chars(Text, Chars), bracket_fault(Chars, 1, [], Fault) -> throw(refused(Fault))
+        ;   throw(refused("the query is no Prolog term: ~w, at its character ~w"-[What, At]))
+        )
     ;   throw(Error)
     ).
+read_goal(Text, Goal, Names) :-
+    Options = [module(prehend), syntax_errors(error)],
+    open_string(Text, Stream),
+    catch(read_term(Stream, Goal0, [variable_names(Names0) | Options]), error(syntax_error(end_of_file), _), true),
+    (   nonvar(Names0) -> Goal = Goal0, Names = Names0
+    ;   string_concat(Text, " .", Ended), open_string(Ended, Again),
+        read_term(Again, Goal, [variable_names(Names) | Options])
+    ),
+    character_count(Stream, At),
+    catch(read_term(Stream, More, Options), error(syntax_error(_), _), true),
+    (   ( var(Names0) ; More == end_of_file ) -> true
+    ;   throw(refused("there is more after the first full stop, at character ~w: one question at a time"-[At]))
+    ).
 
+% Which bracket or quote is not closed.
+bracket_fault([], _, [Open-At | _], "the query is no Prolog term: it ends, but the '~w' at its character ~w is open: '~w' is missing"-[Open, At, Close]) :-
+    bracket(Open, Close).
+bracket_fault(['0', '\'', _ | Cs], N, Open, Why) :- !, M is N + 3, bracket_fault(Cs, M, Open, Why).
+bracket_fault(['%' | Cs], N, Open, Why) :- append(Comment, ['\n' | Rest], Cs), !,
+    length(Comment, Length), M is N + Length + 2, bracket_fault(Rest, M, Open, Why).
+bracket_fault([Q | Cs], N, Open, Why) :- memberchk(Q, ['\'', '"', '`']), !,
+    (   append(Inside, [Q | Rest], Cs) -> length(Inside, Length), M is N + Length + 2, bracket_fault(Rest, M, Open, Why)
+    ;   Why = "the quote ~w at character ~w of the query is not closed"-[Q, N]
+    ).
+bracket_fault([C | Cs], N, Open, Why) :- bracket(C, _), !, M is N + 1, bracket_fault(Cs, M, [C-N | Open], Why).
+bracket_fault([C | Cs], N, Open, Why) :- bracket(_, C), !,
+    (   Open = [O-_ | Rest], bracket(O, C) -> M is N + 1, bracket_fault(Cs, M, Rest, Why)
+    ;   Open = [O-At | _]
+    ->  bracket(O, Close),
+        Why = "found '~w' at character ~w of the query, but the '~w' at ~w is open: '~w' is missing"-[C, N, O, At, Close]
+    ;   Why = "found '~w' at character ~w of the query, and no bracket is open"-[C, N]
+    ).
+bracket_fault([_ | Cs], N, Open, Why) :- M is N + 1, bracket_fault(Cs, M, Open, Why).
+bracket('(', ')').
+bracket('[', ']').
+bracket('{', '}').
+
+% A variable that begins with _ is not told, and what is told is told once.
 answers(Goal, Names, Most, State) :-
     b_setval(prehend_episode, none), b_setval(prehend_shown, []),
-    (   call(prehend:Goal),
+    exclude(is_hidden, Names, Told),
+    (   distinct(Told-Shown, ( call(prehend:Goal), b_getval(prehend_shown, Shown) )),
         arg(1, State, Before), Count is Before + 1, nb_setarg(1, State, Count),
-        foldl(put_binding, Names, _{}, Bindings),
-        b_getval(prehend_shown, Shown), reverse(Shown, InOrder), maplist(with_episode, InOrder, Pictures),
+        foldl(put_binding, Told, _{}, Bindings),
+        reverse(Shown, InOrder), maplist(with_episode, InOrder, Pictures),
         put_line(_{bindings: Bindings, show: Pictures}),
         Count >= Most
     ->  true
     ;   true
     ).
 
+is_hidden(Name = _) :- sub_atom(Name, 0, 1, _, '_').
+
 with_episode(Shown, Shown.put(_{file: File, number: Number})) :-
     once(value(Shown.episode, prehend:recordedIn, File)),
     once(value(Shown.episode, prehend:recordNumber, Number)).
 
-put_binding(Name = _, Bindings, Bindings) :- sub_atom(Name, 0, 1, _, '_'), !.
 put_binding(Name = Value, Bindings, Bindings.put(Name, Said)) :- in_json(Value, Said).
 in_json(Value, '_') :- var(Value), !.
 in_json(Value, Value) :- number(Value), !.
@@ -394,13 +576,19 @@ text_of(Iri, Text) :-
     Start is Before + 12, sub_atom(Class, Start, _, 0, Name),
     findall(Label, ( rdf3(Iri, _, O), atom(O), said(O, knowrob:inMap, _), label_of(O, Label) ), Labels),
     atomic_list_concat(Labels, ', ', Participants), format(string(Text), "~w(~w)", [Name, Participants]).
+text_of(Iri, Text) :- style_word(Iri, Text), !.
+text_of(Iri, Text) :- short(Iri, Text), \+ sub_atom(Iri, _, _, _, 'log.owl#'), !.
 text_of(Iri, Text) :- atom_string(Iri, Text).
 
-why(refused(Format-Arguments), Why) :- !, format(string(Why), Format, Arguments).
+why(refused(Format-Arguments0), Why) :- !,
+    copy_term(Arguments0, Arguments), term_variables(Arguments, Variables), maplist(=('$VAR'('_')), Variables),
+    format(string(Why), Format, Arguments).
 why(error(resource_error(What), _), Why) :- !, format(string(Why), "the query needs too much ~w", [What]).
+why(error(type_error(evaluable, Found), _), Why) :- !, format(string(Why), "found ~q, wanted a number", [Found]).
 why(error(type_error(Type, Found), _), Why) :- !, format(string(Why), "found ~q, wanted a ~w", [Found, Type]).
 why(error(instantiation_error, _), Why) :- !, Why = "a variable has no value where one is needed".
 why(error(Formal, _), Why) :- !, format(string(Why), "~p", [Formal]).
 why(Error, Why) :- format(string(Why), "~p", [Error]).
 
-put_line(Dict) :- with_output_to(string(Line), json_write_dict(current_output, Dict, [width(0)])), writeln(Line).
+put_line(Dict) :-
+    with_output_to(string(Line), json_write_dict(current_output, Dict, [width(0)])), writeln(Line), flush_output.

@@ -21,6 +21,46 @@ namespace fs = std::filesystem;
 /// Of the transforms of a NEEM.
 constexpr grammar::Tick kTransforms_per_s = 30;
 
+/// By the numbers of the entities; of what is not tracked NaN.
+using Poses = std::vector<physics::Pose>;
+
+Poses PosesIn(const physics::Snapshot& now) {
+  Poses poses;
+  for (const physics::BodyState& body : now.bodies) poses.push_back(body.X_WB);
+  for (const physics::HandState& hand : now.hands) poses.push_back(hand.palm.X_WB);
+  return poses;
+}
+
+Poses PosesIn(const episode::EpisodeFrame& frame) {
+  Poses poses;
+  for (const grammar::EntitySample& look : frame.entities)
+    poses.push_back({look.p_WB_m, look.q_WB});
+  return poses;
+}
+
+/// Calls `look` with those of each moment that is `wanted`.
+Result<void> EachPoses(episode::Episode& episode,
+                       const std::function<void(std::int64_t tick, const Poses&)>& look,
+                       const std::function<bool(std::int64_t tick)>& wanted) {
+  if (const episode::Recording* recording = episode.recording()) {
+    for (const episode::EpisodeFrame& frame : recording->frames)
+      if (wanted(frame.tick)) look(frame.tick, PosesIn(frame));
+    return {};
+  }
+  return episode::EpisodeFrames(*episode.file(), *episode.row(),
+                                episode::LayoutOf(episode.loaded().scenario.scene))
+      .Play([&](const physics::Snapshot& now) { look(now.tick, PosesIn(now)); }, wanted, false);
+}
+
+Result<Poses> FirstPoses(episode::Episode& episode) {
+  if (episode.recording()) return PosesIn(episode.recording()->frames.front());
+  const auto first = episode::EpisodeFrames(*episode.file(), *episode.row(),
+                                            episode::LayoutOf(episode.loaded().scenario.scene))
+                         .At(1);
+  if (!first) return tl::unexpected(first.error());
+  return PosesIn(*first);
+}
+
 grammar::Diagnostics Problem(const std::string& file, const std::string& message) {
   return {{.file = file, .place = {}, .message = message, .source_line = {}, .hint = {}}};
 }
@@ -60,14 +100,13 @@ class KnowledgeWriter {
     for (const grammar::EventSignature& event : grammar::EventSignatures(*opened->program()))
       if (event.composed) episode.composed.insert(event.name);
 
-    episode::EpisodeFrames frames(*file_, *row, episode::LayoutOf(opened->loaded().scenario.scene));
-    auto map = MapOf(*row, frames);
+    auto map = MapOf(*row, *opened);
     if (!map) return map.error();
     const std::vector<Triple> triples = EpisodeTriples(episode, **map, vocabulary_);
     ++written_.episodes;
     written_.events += episode.timeline.events.size();
     grammar::Diagnostics bad = WriteTriples("episodes/" + row->uuid, triples);
-    if (bad.empty() && request_.neem) bad = WriteNeem(*row, **map, triples, frames);
+    if (bad.empty() && request_.neem) bad = WriteNeem(*row, **map, triples, *opened);
     return bad;
   }
 
@@ -80,7 +119,7 @@ class KnowledgeWriter {
   };
 
   /// The map of the episode's task, which is written when it is first asked for.
-  Result<const MapOfTask*> MapOf(const episode::EpisodeRow& row, episode::EpisodeFrames& frames) {
+  Result<const MapOfTask*> MapOf(const episode::EpisodeRow& row, episode::Episode& episode) {
     auto task = file_->DescribeTaskOf(row);
     if (!task) return tl::unexpected(task.error());
     const std::string uuid = task->uuid;
@@ -91,10 +130,9 @@ class KnowledgeWriter {
                   .scenario = row.scenario,
                   .entities = std::move(*entities),
                   .poses = {}};
-    const auto first = frames.At(1);
+    Result<Poses> first = FirstPoses(episode);
     if (!first) return tl::unexpected(first.error());
-    for (const physics::BodyState& body : first->bodies) map.poses.push_back(body.X_WB);
-    for (const physics::HandState& hand : first->hands) map.poses.push_back(hand.palm.X_WB);
+    map.poses = std::move(*first);
     std::vector<Triple> triples = MapTriples(map, vocabulary_);
     hierarchy_.Add(triples);
     ++written_.tasks;
@@ -126,19 +164,25 @@ class KnowledgeWriter {
   }
 
   grammar::Diagnostics WriteNeem(const episode::EpisodeRow& row, const MapOfTask& map,
-                                 const std::vector<Triple>& triples,
-                                 episode::EpisodeFrames& frames) {
+                                 const std::vector<Triple>& triples, episode::Episode& episode) {
     std::vector<Triple> all = maps_.at(map.task.uuid).triples;
     all.insert(all.end(), triples.begin(), triples.end());
     hierarchy_.Add(triples);
     std::vector<Transform> transforms;
     const std::int64_t day = MillisecondsOf(row.recorded_on);
     const std::int64_t ticks = std::max<std::int64_t>(row.ticks_per_second / kTransforms_per_s, 1);
-    const Result<void> played = frames.Play(
-        [&](const physics::Snapshot& now) {
-          AddTransforms(map, now, day + 1000 * now.tick / row.ticks_per_second, transforms);
+    std::int64_t next = 0;
+    last_.clear();
+    const Result<void> played = EachPoses(
+        episode,
+        [&](std::int64_t tick, const Poses& poses) {
+          AddTransforms(map, poses, day + 1000 * tick / row.ticks_per_second, transforms);
         },
-        [&](std::int64_t tick) { return tick % ticks == 0; }, false);
+        [&](std::int64_t tick) {
+          if (tick < next) return false;
+          next = tick - tick % ticks + ticks;
+          return true;
+        });
     if (!played) return played.error();
     const std::string folder = request_.folder + "/neem/" + row.uuid + "/";
     for (const auto& [name, bytes] : {std::pair{"triples", TriplesBson(all, hierarchy_)},
@@ -159,22 +203,18 @@ class KnowledgeWriter {
   }
 
   /// Of what has moved since its last transform, or has none.
-  void AddTransforms(const MapOfTask& map, const physics::Snapshot& now, std::int64_t milliseconds,
+  void AddTransforms(const MapOfTask& map, const Poses& poses, std::int64_t milliseconds,
                      std::vector<Transform>& transforms) {
-    if (now.tick == 0) last_.clear();
-    std::size_t number = 0;
-    const auto add = [&](const physics::Pose& X_WE) {
-      if (number >= map.entities.size()) return;
-      const std::string& uuid = map.entities[number++].uuid;
+    for (std::size_t i = 0; i < std::min(poses.size(), map.entities.size()); ++i) {
+      const physics::Pose& X_WE = poses[i];
+      const std::string& uuid = map.entities[i].uuid;
       const auto last = last_.find(uuid);
-      if (last != last_.end() && last->second.p_m == X_WE.p_m &&
-          last->second.q.coeffs() == X_WE.q.coeffs())
-        return;
+      const bool has_moved = last == last_.end() || last->second.p_m != X_WE.p_m ||
+                             last->second.q.coeffs() != X_WE.q.coeffs();
+      if (!X_WE.p_m.allFinite() || !has_moved) continue;
       last_[uuid] = X_WE;
       transforms.push_back({milliseconds, FullName("log:" + uuid), X_WE});
-    };
-    for (const physics::BodyState& body : now.bodies) add(body.X_WB);
-    for (const physics::HandState& hand : now.hands) add(hand.palm.X_WB);
+    }
   }
 
   const KnowledgeRequest& request_;
@@ -191,7 +231,7 @@ class KnowledgeWriter {
 
 Result<KnowledgeWritten> WriteKnowledge(const std::vector<episode::EpisodeName>& episodes,
                                         const KnowledgeRequest& request) {
-  Result<Vocabulary> vocabulary = Vocabulary::Load(request.root);
+  Result<Vocabulary> vocabulary = Vocabulary::Load();
   if (!vocabulary) return tl::unexpected(vocabulary.error());
   KnowledgeWriter writer(request, std::move(*vocabulary));
   if (const grammar::Diagnostics bad = writer.WriteTerminology(); !bad.empty())
