@@ -140,12 +140,9 @@ std::string Watched(const Program& program, const Rule& rule) {
   return guard.form() == Form::kTouching ? "pairs that touch" : "while " + guard.name;
 }
 
-// A composition remembers so many intervals of each part.
 std::size_t BytesPerBinding(const Rule& rule) {
-  const auto* composition = rule.If<ComposeRule>();
-  const std::size_t parts = composition != nullptr ? composition->parts.size() : 0;
   return sizeof(RuleInstance) + rule.references.size() * sizeof(int) +
-         rule.anchors.size() * 3 * sizeof(double) + parts * kRememberedSpans * sizeof(Span);
+         rule.anchors.size() * 3 * sizeof(double);
 }
 
 std::string Head(const Rule& rule) {
@@ -204,13 +201,15 @@ GrammarDescription Describe(const Program& program) {
                                             (approach != nullptr ? approach->looks_around_s() : 0) +
                                             rule.looks_around_s);
     if (rule.form() == Form::kTouching || rule.hidden) continue;
-    description.rules.push_back({.name = rule.name,
-                                 .head = Head(rule),
-                                 .printed = rule.printed,
-                                 .latency = waits.OfEnd(id),
-                                 .watched = Watched(program, rule),
-                                 .bytes_per_binding = BytesPerBinding(rule),
-                                 .bytes_per_interval = rule.referenced ? sizeof(Span) : 0});
+    description.rules.push_back(
+        {.name = rule.name,
+         .head = Head(rule),
+         .printed = rule.printed,
+         .latency = waits.OfEnd(id),
+         .watched = Watched(program, rule),
+         .bytes_per_binding = BytesPerBinding(rule),
+         .bytes_per_interval = rule.referenced ? sizeof(Span) : 0,
+         .bytes_per_part = rule.form() == Form::kCompose ? sizeof(Span) : 0});
   }
   for (const Law& law : program.laws) description.laws.push_back({law.Head(), law.says});
   return description;
@@ -225,6 +224,9 @@ std::string Text(const GrammarDescription& description) {
     if (rule.bytes_per_interval > 0)
       text +=
           ", and " + std::to_string(rule.bytes_per_interval) + " for each of its recent intervals";
+    if (rule.bytes_per_part > 0)
+      text += ", and " + std::to_string(rule.bytes_per_part) +
+              " for each interval of a part that waits for others";
     text += "\n";
   }
   for (const LawDescription& law : description.laws) text += law.head + "\n    " + law.says + "\n";

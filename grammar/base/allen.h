@@ -55,11 +55,63 @@ constexpr Allen Relate(const Interval& a, const Interval& b) {
   return a.end < b.end ? Allen::kDuring : Allen::kOverlappedBy;
 }
 
-/// From the end of the one to the begin of the other; 0 if they meet or overlap.
-constexpr Tick GapBetween(const Interval& a, const Interval& b) {
-  const Tick gap = a.begin < b.begin ? b.begin - a.end : a.begin - b.end;
-  return gap > 0 ? gap : 0;
+/// How `b` lies to `a`: they are listed so that before and after mirror each other, and so on.
+constexpr Allen Inverse(Allen relation) {
+  return static_cast<Allen>(kAllenNames.size() - 1 - static_cast<std::size_t>(relation));
 }
+
+/// What may be said with a time: before and after, whose gap is at most so long, and what wants
+/// boundaries to be equal, which are at most so far apart.
+inline constexpr AllenSet kBounded =
+    Bit(Allen::kBefore) | Bit(Allen::kMeets) | Bit(Allen::kStarts) | Bit(Allen::kFinishes) |
+    Bit(Allen::kEquals) | Bit(Allen::kFinishedBy) | Bit(Allen::kStartedBy) | Bit(Allen::kMetBy) |
+    Bit(Allen::kAfter);
+
+/// Whether the relation holds with such a time; negative: none was said.
+constexpr bool Holds(Allen relation, const Interval& a, const Interval& b, Tick within) {
+  if (relation > Allen::kEquals) return Holds(Inverse(relation), b, a, within);
+  if (within < 0) return Relate(a, b) == relation;
+  const auto near = [within](Tick x, Tick y) { return x - y <= within && y - x <= within; };
+  switch (relation) {
+    case Allen::kBefore:
+      return a.end < b.begin && near(a.end, b.begin);
+    case Allen::kMeets:
+      return near(a.end, b.begin) && a.begin < b.begin && a.end < b.end;
+    case Allen::kStarts:
+      return near(a.begin, b.begin) && a.end < b.end;
+    case Allen::kFinishes:
+      return near(a.end, b.end) && a.begin > b.begin;
+    case Allen::kEquals:
+      return near(a.begin, b.begin) && near(a.end, b.end);
+    default:
+      return Relate(a, b) == relation;
+  }
+}
+
+/// How two intervals that lie to each other as the relation says with a time may really lie.
+constexpr AllenSet MayBe(Allen relation) {
+  AllenSet set = 0;
+  constexpr Tick kMost = 5;
+  for (Tick i = 0; i < kMost * kMost * kMost * kMost; ++i) {
+    const Interval a{i % kMost, i / kMost % kMost + 1}, b{i / 25 % kMost, i / 125 + 1};
+    if (a.begin < a.end && b.begin < b.end && Holds(relation, a, b, kMost))
+      set |= Bit(Relate(a, b));
+  }
+  return set;
+}
+
+/// Relations of which one must hold, some with a time.
+struct Relations {
+  AllenSet any = 0;
+  std::array<Tick, kAllenNames.size()> within = {};  ///< negative: none was said
+
+  constexpr bool Fit(const Interval& a, const Interval& b) const {
+    for (std::size_t i = 0; i < within.size(); ++i) {
+      if ((any >> i & 1) != 0 && Holds(static_cast<Allen>(i), a, b, within[i])) return true;
+    }
+    return false;
+  }
+};
 
 constexpr std::optional<Allen> AllenNamed(std::string_view name) {
   for (std::size_t i = 0; i < kAllenNames.size(); ++i) {

@@ -25,7 +25,8 @@ struct Span {
   Moment begin;
   Moment end;
   bool open_end = false;
-  int owner = -1;         ///< of `one .. per`: the entity whose it is
+  bool judged = false;  ///< of a part: all compositions that were complete with it have been found
+  int owner = -1;       ///< of `one .. per`: the entity whose it is
   Moment completed = {};  ///< of a composition: where its last part ends, if that is later
 
   /// From here on it is known.

@@ -96,6 +96,9 @@ class Lowering {
   /// A constant time of more than 0 s.
   double Span(const ast::Expr& expr, std::string_view what);
   int HandRole(const ast::Expr& expr);
+  /// `while F until G@begin`, before it is bridged: what has ended has another begin afterwards, so
+  /// it becomes a hidden rule, whose gaps are bridged.
+  void HideIfAnchored();
   /// Makes what the rule, a `while`, says so far the candidates of `one .. per`.
   void LowerOnePer(const ast::OnePer& one_per);
   /// The body of a definition for itself: only for its mistakes.
@@ -146,6 +149,7 @@ class Lowering {
   Typed LowerKind(const ast::Expr& expr);
   void Note(const ast::Expr& expr, const Typed& typed);
   void NoteText(NodeId node, std::string text, Place place);
+  NodeId HideSoFar();
   std::vector<int> SharingRoles(const ast::OnePer& one_per, int one);
   std::string TextOf(const ast::Expr& expr);
   std::string Bracketed(const ast::Expr& expr);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The form of a definition first, then its modifiers; each is checked as soon as it is lowered.
 // Errors: forms of which no interval ever begins or counts, modifiers that a form does not take,
-// parts and relations of compositions, how an event is drawn, attributes.
+// how an event is drawn, attributes. Compositions are in grammar/compile/lower_composition.cc.
 #include "grammar/compile/lower_definition.h"
 
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
-#include "grammar/analysis/allen_network.h"
 #include "grammar/analysis/contradictions.h"
 #include "grammar/base/wording.h"
 
@@ -66,7 +65,7 @@ class DefinitionLowering {
         break;
       }
       case Form_::kCompose:
-        return LowerCompose();
+        return LowerComposition(program_, index_, d_, lowering_);
       case Form_::kRepeat:
         return LowerRepeat();
       case Form_::kOtherwise:
@@ -324,96 +323,6 @@ class DefinitionLowering {
     return kNone;
   }
 
-  void LowerCompose() {
-    const std::size_t before = lowering_.complaints();
-    std::vector<std::string> labels;
-    if (d_.parts.size() > kMaxParts) {
-      return lowering_.Complain(d_.parts[kMaxParts].place,
-                                "more than " + std::to_string(kMaxParts) + " parts",
-                                "compose some of them into an event of its own");
-    }
-    for (const ast::Part& part : d_.parts) {
-      if (std::find(labels.begin(), labels.end(), part.label) != labels.end()) {
-        lowering_.Complain(part.place, "the label '" + part.label + "' is used twice");
-      }
-      labels.push_back(part.label);
-      const int reference = lowering_.PartCall(part.call);
-      if (reference == kNone) continue;
-      As<ComposeRule>().parts.push_back(reference);
-    }
-    if (labels.size() != As<ComposeRule>().parts.size()) return;
-    const auto find = [&](const std::string& label, Place place) {
-      const auto found = std::find(labels.begin(), labels.end(), label);
-      if (found == labels.end()) {
-        const std::string near = NearestName(label, labels);
-        lowering_.Complain(place, "no part is labelled '" + label + "'",
-                           near.empty() ? "" : "did you mean '" + near + "'?");
-      }
-      return static_cast<int>(found - labels.begin());
-    };
-    for (const ast::Relation& relation : d_.relations) {
-      ComposeRule::Clause clause{.left = find(relation.left, relation.place),
-                                 .right = find(relation.right, relation.place)};
-      for (const std::string& name : relation.relations) {
-        const std::optional<Allen> allen = AllenNamed(name);
-        if (!allen) {
-          lowering_.Complain(relation.place, "'" + name + "' is none of Allen's relations",
-                             "they are " + AllenNames());
-          continue;
-        }
-        clause.relations |= Bit(*allen);
-      }
-      if (relation.within) LowerGap(*relation.within, clause);
-      As<ComposeRule>().clauses.push_back(clause);
-    }
-    if (lowering_.complaints() == before) CheckRelations();
-  }
-
-  void LowerGap(const ast::Expr& within, ComposeRule::Clause& clause) {
-    clause.within_s = lowering_.Constant(within, kSeconds, "'within'");
-    if ((clause.relations & (Bit(Allen::kBefore) | Bit(Allen::kAfter))) != 0) return;
-    lowering_.Complain(within.place, "'within' limits a gap, and these relations leave none",
-                       "only what is before or after leaves a gap: a before within 0.3 s b");
-  }
-
-  void CheckRelations() {
-    constexpr AllenSet kApart =
-        Bit(Allen::kBefore) | Bit(Allen::kMeets) | Bit(Allen::kMetBy) | Bit(Allen::kAfter);
-    constexpr AllenSet kAgainstTime = Bit(Allen::kAfter) | Bit(Allen::kMetBy);
-    const ComposeRule& composition = As<ComposeRule>();
-    const int parts = static_cast<int>(composition.parts.size());
-    AllenNetwork network(parts);
-    for (int left = 0; left < parts; ++left) {
-      for (int right = left + 1; right < parts; ++right) {  // intervals of one event do not overlap
-        if (composition.parts[left] == composition.parts[right])
-          network.Constrain(left, right, kApart | Bit(Allen::kEquals));
-      }
-    }
-    const AllenNetwork nothing_said = network;
-    for (std::size_t i = 0; i < composition.clauses.size(); ++i) {
-      const ComposeRule::Clause& clause = composition.clauses[i];
-      if (network.Constrain(clause.left, clause.right, clause.relations)) continue;
-      AllenNetwork alone = nothing_said;
-      if (!alone.Constrain(clause.left, clause.right, clause.relations)) {
-        const ast::Relation& relation = d_.relations[i];
-        return lowering_.Complain(relation.place, "this relation is never true",
-                                  clause.left == clause.right
-                                      ? "'" + relation.left + "' equals itself"
-                                      : "'" + relation.left + "' and '" + relation.right +
-                                            "' are the same event, whose intervals do not overlap");
-      }
-      return lowering_.Complain(d_.relations[i].place,
-                                "this relation is never true together with what stands before it",
-                                "draw the parts below each other; intervals of one event do not "
-                                "overlap, and a part equals itself");
-    }
-    if (parts == 1 || network.Constrain(0, parts - 1, kAnyRelation & ~kAgainstTime)) return;
-    lowering_.Complain(d_.parts.back().place,
-                       "this is never an event: the last part, '" + d_.parts.back().label +
-                           "', ends before the first one, '" + d_.parts.front().label + "', begins",
-                       "list the parts as they follow each other in time");
-  }
-
   void LowerModifiers() {
     if (d_.bridging) {
       if (d_.form != Definition::Form::kWhile) {
@@ -421,7 +330,10 @@ class DefinitionLowering {
                            "put the bridged part into a condition of its own");
       }
       const double bridging_s = lowering_.Constant(*d_.bridging, kSeconds, "'bridging'");
-      if (d_.form == Definition::Form::kWhile) As<WhileRule>().bridging_s = bridging_s;
+      if (d_.form == Definition::Form::kWhile) {
+        lowering_.HideIfAnchored();
+        As<WhileRule>().bridging_s = bridging_s;
+      }
     }
     if (d_.one_per) ShareOut(*d_.one_per);
     if (d_.lasting) {

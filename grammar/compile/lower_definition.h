@@ -12,4 +12,8 @@ namespace prehend::grammar {
 void LowerDefinitionInto(Program& program, RuleId index, const ast::Definition& definition,
                          Lowering& lowering);
 
+/// Likewise, the parts and relations of a composition.
+void LowerComposition(Program& program, RuleId index, const ast::Definition& definition,
+                      Lowering& lowering);
+
 }  // namespace prehend::grammar

@@ -27,6 +27,25 @@ std::vector<int> Lowering::SharingRoles(const ast::OnePer& one_per, int one) {
   return per;
 }
 
+// What the rule says so far becomes a hidden rule of its own; the node is true where that holds.
+NodeId Lowering::HideSoFar() {
+  Rule hidden = rule();
+  hidden.printed = false;
+  hidden.hidden = true;
+  Reference all;
+  for (std::size_t i = 0; i < hidden.roles.size(); ++i) all.roles[i] = static_cast<int>(i);
+  all.rule = symbols_.program.rules.push_back(std::move(hidden));
+  rule().references.clear();
+  rule().anchors.clear();
+  return Add({.op = Op::kHolds, .slot = AddReference(all)});
+}
+
+void Lowering::HideIfAnchored() {
+  if (rule().anchors.empty()) return;
+  const NodeId holds = HideSoFar();
+  rule().of_form = WhileRule{.condition = holds, .until = {}};
+}
+
 void Lowering::LowerOnePer(const ast::OnePer& one_per) {
   if (rule().symmetric) {
     return Complain(one_per.place, "the first two roles of a symmetric event are alike",
@@ -39,29 +58,21 @@ void Lowering::LowerOnePer(const ast::OnePer& one_per) {
       one_per.within ? Constant(*one_per.within, kSeconds, "'nearest within'") : 0;
 
   IdVector<RuleId, Rule>& rules = symbols_.program.rules;
-  Rule candidates = rule();
-  candidates.printed = false;
-  candidates.hidden = true;
-  Rule owners{.name = candidates.name,
-              .file = candidates.file,
-              .place = candidates.place,
+  Rule owners{.name = rule().name,
+              .file = rule().file,
+              .place = rule().place,
               .hidden = true,
               .of_form = AnyRule{.one = one, .within_s = within_s}};
-  Reference of_candidates{.rule = rules.end_id()}, all{.rule = rules.end_id()}, whose;
-  for (std::size_t i = 0; i < candidates.roles.size(); ++i) all.roles[i] = static_cast<int>(i);
+  Reference of_candidates{.rule = rules.end_id()}, whose;
   for (std::size_t i = 0; i < per.size(); ++i) {
-    owners.roles.push_back(candidates.roles[static_cast<std::size_t>(per[i])]);
+    owners.roles.push_back(rule().roles[static_cast<std::size_t>(per[i])]);
     of_candidates.roles[static_cast<std::size_t>(per[i])] = static_cast<int>(i);
     whose.roles[i] = per[i];
   }
   owners.references = {of_candidates};
   owners.guard = 0;
-  rules.push_back(std::move(candidates));
+  const NodeId holds = HideSoFar();
   whose.rule = rules.push_back(std::move(owners));
-
-  rule().references.clear();
-  rule().anchors.clear();
-  const NodeId holds = Add({.op = Op::kHolds, .slot = AddReference(all)});
   const NodeId owns = Add({.op = Op::kOwns, .roles = {one, kNone}, .slot = AddReference(whose)});
   std::string text = "one {" + std::to_string(one) + "} per ";
   for (const int role : per)

@@ -3,7 +3,7 @@
 #include "grammar/engine/combinations.h"
 
 #include <algorithm>
-#include <bit>
+#include <limits>
 
 #include "grammar/base/allen.h"
 #include "grammar/base/check.h"
@@ -11,146 +11,200 @@
 namespace prehend::grammar {
 namespace {
 
-/// Calls `visit` with the number of each bit that is set.
-template <typename Visit>
-void ForEachBit(std::uint64_t bits, Visit visit) {
-  for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(std::countr_zero(bits)));
-}
+constexpr Tick kEndless = std::numeric_limits<Tick>::max() / 4;
 
 }  // namespace
 
-Combinations::Combinations(const ComposeRule& composition, const ComposeState& state,
-                           const std::vector<Tick>& gaps, FrameNumber settled)
-    : state_(state), count_(state.parts.size()) {
-  for (std::size_t part = 0; part < count_; ++part) {
-    for (std::size_t i = 0; i < state.parts[part].size(); ++i)
-      if (state.parts[part][i].Complete().frame <= settled) choices_[part] |= Choices{1} << i;
-    if (choices_[part] == 0) return;
-  }
-  const std::vector<Span>& firsts = state.parts.front();
-  for (std::size_t i = 0; i < firsts.size(); ++i)
-    if (firsts[i].begin.frame < state.last_end) choices_.front() &= ~(Choices{1} << i);
-  Relate(0, count_ - 1,
-         [](const Span& first, const Span& last) { return first.begin.frame < last.end.frame; });
-  for (std::size_t i = 0; i < composition.clauses.size(); ++i) {
-    const ComposeRule::Clause& clause = composition.clauses[i];
-    Relate(static_cast<std::size_t>(clause.left), static_cast<std::size_t>(clause.right),
-           [&](const Span& left, const Span& right) {
-             const bool is_near =
-                 gaps[i] < 0 || GapBetween(TicksOf(left), TicksOf(right)) <= gaps[i];
-             return is_near &&
-                    (Bit(grammar::Relate(TicksOf(left), TicksOf(right))) & clause.relations) != 0;
-           });
+void Combinations::LookAt(const ComposeRule& composition, const ComposeState& state,
+                          const std::vector<Relations>& relations) {
+  state_ = &state;
+  count_ = state.parts.size();
+  links_.clear();
+  for (std::size_t i = 0; i < relations.size(); ++i) {
+    const auto left = static_cast<std::size_t>(composition.clauses[i].left);
+    const auto right = static_cast<std::size_t>(composition.clauses[i].right);
+    if (left == right) continue;  // it equals itself, or the grammar is refused
+    Add(left, right, false, relations[i]);
+    Add(right, left, true, relations[i]);
   }
 }
 
-/// Several relations between two parts must all hold.
-template <typename Fits>
-void Combinations::Relate(std::size_t left, std::size_t right, Fits fits) {
-  const bool again = (related_[left] >> right & 1) != 0;
-  Fitting there{}, back{};
-  ForEachBit(choices_[left], [&](std::size_t i) {
-    ForEachBit(choices_[right], [&](std::size_t k) {
-      if (left == right && i != k) return;
-      if (!fits(state_.parts[left][i], state_.parts[right][k])) return;
-      there[i] |= Choices{1} << k;
-      back[k] |= Choices{1} << i;
+void Combinations::Add(std::size_t part, std::size_t other, bool mirrored,
+                       const Relations& relations) {
+  Link link{.part = part, .other = other, .mirrored = mirrored, .relations = &relations};
+  for (std::size_t i = 0; i < relations.within.size(); ++i) {
+    if ((relations.any >> i & 1) == 0) continue;
+    const auto relation = static_cast<Allen>(i);
+    const Allen seen = mirrored ? Inverse(relation) : relation;
+    const bool is_gap = seen == Allen::kBefore || seen == Allen::kAfter;
+    const Tick reach = relations.within[i] >= 0 ? relations.within[i] : is_gap ? kEndless : 0;
+    if (seen != Allen::kAfter) link.ahead = std::max(link.ahead, reach);
+    if (seen != Allen::kBefore) link.behind = std::max(link.behind, reach);
+  }
+  links_.push_back(link);
+}
+
+/// What is to come begins and ends no earlier than is known of it; so only what limits its begin or
+/// its end from above can exclude it.
+bool Combinations::Link::MayFit(const Span& span, const ToCome& to_come) const {
+  for (std::size_t i = 0; i < relations->within.size(); ++i) {
+    if ((relations->any >> i & 1) == 0) continue;
+    const auto relation = static_cast<Allen>(i);
+    const Tick within = relations->within[i];
+    const Tick apart = std::max<Tick>(within, 0);
+    Tick begin = kEndless, end = kEndless;              // the latest that the other one can have
+    switch (mirrored ? Inverse(relation) : relation) {  // the interval lies to it
+      case Allen::kBefore:
+        begin = within < 0 ? kEndless : span.end.tick + within;
+        break;
+      case Allen::kMeets:
+        begin = span.end.tick + apart;
+        break;
+      case Allen::kOverlaps:
+        begin = span.end.tick - 1;
+        break;
+      case Allen::kStarts:
+        begin = span.begin.tick + apart;
+        break;
+      case Allen::kDuring:
+        begin = span.begin.tick - 1;
+        break;
+      case Allen::kFinishes:
+        begin = span.begin.tick - 1;
+        end = span.end.tick + apart;
+        break;
+      case Allen::kEquals:
+        begin = span.begin.tick + apart;
+        end = span.end.tick + apart;
+        break;
+      case Allen::kFinishedBy:
+        end = span.end.tick + apart;
+        break;
+      case Allen::kStartedBy:
+        begin = span.begin.tick + apart;
+        [[fallthrough]];
+      case Allen::kContains:
+      case Allen::kOverlappedBy:
+        end = span.end.tick - 1;
+        break;
+      case Allen::kMetBy:
+        end = span.begin.tick + apart;
+        break;
+      case Allen::kAfter:
+        end = span.begin.tick - 1;
+        break;
+    }
+    if (begin >= to_come.begins_from && end > to_come.ends_after) return true;
+  }
+  return false;
+}
+
+bool Combinations::HasPartner(const Span& span, const Link& link, const Choices& others) const {
+  auto other = std::ranges::lower_bound(others, span.begin.tick - link.behind, {},
+                                        [](const Span* one) { return one->end.tick; });
+  for (; other != others.end() && (*other)->begin.tick <= span.end.tick + link.ahead; ++other) {
+    const bool fits = std::ranges::all_of(links_, [&](const Link& all) {
+      return all.part != link.part || all.other != link.other || all.Fit(span, **other);
     });
+    if (fits) return true;
+  }
+  return false;
+}
+
+bool Combinations::IsHopeless(std::size_t part, const Span& span,
+                              const std::vector<ToCome>& to_come) const {
+  return std::ranges::any_of(links_, [&](const Link& link) {
+    if (link.part != part || link.MayFit(span, to_come[link.other])) return false;
+    const std::vector<Span>& others = state_->parts[link.other];
+    auto other = std::ranges::lower_bound(others, span.begin.tick - link.behind, {},
+                                          [](const Span& one) { return one.end.tick; });
+    for (; other != others.end() && other->begin.tick <= span.end.tick + link.ahead; ++other) {
+      if (link.Fit(span, *other)) return false;
+    }
+    return true;
   });
-  const auto join = [&](Fitting& fitting, const Fitting& more) {
-    for (std::size_t i = 0; i < fitting.size(); ++i)
-      fitting[i] = again ? fitting[i] & more[i] : more[i];
-  };
-  join(fitting_[left][right], there);
-  if (left != right) join(fitting_[right][left], back);
-  related_[left] |= static_cast<std::uint8_t>(1 << right);
-  related_[right] |= static_cast<std::uint8_t>(1 << left);
 }
 
 /// Removes what fits no choice of another part; false: some part has nothing left.
 bool Combinations::MakeConsistent(AllChoices& choices) const {
   for (bool changed = true; changed;) {
     changed = false;
-    for (std::size_t part = 0; part < count_; ++part) {
-      Choices kept = 0;
-      ForEachBit(choices[part], [&](std::size_t i) {
-        bool fits = true;
-        ForEachBit(related_[part], [&](std::size_t other) {
-          fits = fits && (fitting_[part][other][i] & choices[other]) != 0;
-        });
-        if (fits) kept |= Choices{1} << i;
-      });
-      changed |= kept != choices[part];
-      choices[part] = kept;
-      if (kept == 0) return false;
+    for (const Link& link : links_) {
+      changed |= std::erase_if(choices[link.part], [&](const Span* span) {
+                   return !HasPartner(*span, link, choices[link.other]);
+                 }) > 0;
     }
+    // It ends after it begins.
+    const auto keep = [&](Choices& some, const auto& fits) {
+      changed |= std::erase_if(some, [&](const Span* span) { return !fits(*span); }) > 0;
+    };
+    for (std::size_t part = 0; part < count_; ++part)
+      if (choices[part].empty()) return false;
+    const Tick first_begin = choices.front().front()->begin.tick;
+    keep(choices[count_ - 1], [&](const Span& span) { return span.end.tick > first_begin; });
+    if (choices[count_ - 1].empty()) return false;
+    const Tick last_end = choices[count_ - 1].back()->end.tick;
+    keep(choices.front(), [&](const Span& span) { return span.begin.tick < last_end; });
+    if (choices.front().empty()) return false;
   }
   return true;
 }
 
-bool Combinations::CanCompleteWith(AllChoices choices, std::size_t part, std::size_t choice) const {
-  choices[part] &= Choices{1} << choice;
-  return choices[part] != 0 && CanComplete(choices);
+bool Combinations::CanCompleteWith(const AllChoices& choices, std::size_t part, const Span* choice,
+                                   std::size_t depth) {
+  AllChoices& tried = tried_[depth];
+  tried = choices;
+  tried[part].assign(1, choice);
+  return CanComplete(tried, depth);
 }
 
-bool Combinations::CanComplete(AllChoices choices) const {
-  if (!MakeConsistent(choices)) return false;
+bool Combinations::CanComplete(const AllChoices& choices, std::size_t depth) {
+  AllChoices& left = tried_[depth];
+  if (&left != &choices) left = choices;
+  if (!MakeConsistent(left)) return false;
   std::size_t open = count_;  // the part with the fewest choices, of those that have several
   for (std::size_t part = 0; part < count_; ++part) {
-    const int left = std::popcount(choices[part]);
-    if (left > 1 && (open == count_ || left < std::popcount(choices[open]))) open = part;
+    const std::size_t some = left[part].size();
+    if (some > 1 && (open == count_ || some < left[open].size())) open = part;
   }
-  if (open == count_) return true;
-  bool found = false;
-  ForEachBit(choices[open],
-             [&](std::size_t choice) { found = found || CanCompleteWith(choices, open, choice); });
-  return found;
-}
-
-Combinations::AllChoices Combinations::CompleteBy(std::int64_t tick) const {
-  AllChoices choices{};
-  for (std::size_t part = 0; part < count_; ++part) {
-    ForEachBit(choices_[part], [&](std::size_t i) {
-      if (state_.parts[part][i].Complete().tick <= tick) choices[part] |= Choices{1} << i;
-    });
-  }
-  return choices;
+  return open == count_ || std::ranges::any_of(left[open], [&](const Span* choice) {
+           return CanCompleteWith(left, open, choice, depth + 1);
+         });
 }
 
 template <typename Key>
-const Span& Combinations::ChooseLeast(AllChoices& choices, std::size_t part, Key key) const {
-  const std::vector<Span>& spans = state_.parts[part];
-  for (Choices left = choices[part];;) {
-    std::size_t least = spans.size();
-    ForEachBit(left, [&](std::size_t i) {
-      if (least == spans.size() || key(spans[i]) < key(spans[least])) least = i;
-    });
-    PREHEND_CHECK(least < spans.size());
-    if (CanCompleteWith(choices, part, least)) {
-      choices[part] = Choices{1} << least;
-      return spans[least];
-    }
-    left &= ~(Choices{1} << least);
-  }
+const Span& Combinations::ChooseLeast(std::size_t part, Key key) {
+  sorted_ = choices_[part];
+  std::ranges::sort(sorted_, {}, [&](const Span* span) { return key(*span); });
+  const auto chosen = std::ranges::find_if(
+      sorted_, [&](const Span* span) { return CanCompleteWith(choices_, part, span, 0); });
+  PREHEND_CHECK(chosen != sorted_.end());
+  choices_[part].assign(1, *chosen);
+  return **chosen;
 }
 
-std::optional<Span> Combinations::Best() const {
-  if (!CanComplete(choices_)) return std::nullopt;
-  std::array<Moment, kMaxParts * kRememberedSpans> completes;
-  auto end = completes.begin();
-  for (std::size_t part = 0; part < count_; ++part)
-    ForEachBit(choices_[part], [&](std::size_t i) { *end++ = state_.parts[part][i].Complete(); });
-  std::sort(completes.begin(), end,
-            [](const Moment& a, const Moment& b) { return a.tick < b.tick; });
-  const Moment completed = *std::partition_point(completes.begin(), end, [&](const Moment& moment) {
-    return !CanComplete(CompleteBy(moment.tick));
-  });
-  AllChoices choices = CompleteBy(completed.tick);
-  const Span& last =
-      ChooseLeast(choices, count_ - 1, [](const Span& span) { return span.end.tick; });
-  const Span& first = ChooseLeast(choices, 0, [](const Span& span) { return -span.begin.tick; });
-  return Span{
-      .begin = first.begin, .end = last.end, .open_end = last.open_end, .completed = completed};
+std::optional<Span> Combinations::Best(std::size_t part, const Span& newest) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    const auto counts = [&](const Span& span) {
+      return span.Complete().tick <= newest.Complete().tick &&
+             (i > 0 || span.begin.frame >= state_->last_end);
+    };
+    choices_[i].clear();
+    if (i == part) {
+      if (counts(newest)) choices_[i].push_back(&newest);
+    } else {
+      for (const Span& span : state_->parts[i])
+        if (counts(span)) choices_[i].push_back(&span);
+    }
+    if (choices_[i].empty()) return std::nullopt;
+  }
+  if (!CanComplete(choices_, 0)) return std::nullopt;
+  const Span& last = ChooseLeast(count_ - 1, [](const Span& span) { return span.end.tick; });
+  const Span& first = ChooseLeast(0, [](const Span& span) { return -span.begin.tick; });
+  return Span{.begin = first.begin,
+              .end = last.end,
+              .open_end = last.open_end,
+              .completed = newest.Complete()};
 }
 
 }  // namespace prehend::grammar

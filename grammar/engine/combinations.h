@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chooses one interval of each part of a composition, so that all relations hold.
 //
-// Needs: of all combinations the one that is complete first, of those the one that ends first, then
-// the one that begins last. Parts: at most kMaxParts, with at most kRememberedSpans intervals each.
-// Algorithm: a constraint network. What a part can still choose is one machine word; choosing for
-// one part removes from the others what no longer fits anything (arc consistency: A. Mackworth,
-// "Consistency in networks of relations", Artificial Intelligence 8 (1977)). Where the relations
-// form no circle, no choice is ever taken back (E. Freuder, "A sufficient condition for
-// backtrack-free search", JACM 29 (1982)). Tested by tests/grammar/engine/compose_test.cc
+// Needs: of all combinations that are complete with a given interval, the one that ends first, then
+// the one that begins last; of any number of intervals per part. Algorithm: a constraint network.
+// What a part can still choose is a list; choosing for one part removes from the others what no
+// longer fits anything (arc consistency: A. Mackworth, "Consistency in networks of relations",
+// Artificial Intelligence 8 (1977)). Where the relations form no circle, no choice is ever taken
+// back (E. Freuder, "A sufficient condition for backtrack-free search", JACM 29 (1982)). Intervals
+// of one part do not overlap, so in a list by time those that can fit another one stand together.
+// Tested by tests/grammar/engine/compose_test.cc
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "grammar/base/span.h"
 #include "grammar/program/program.h"
@@ -24,38 +25,57 @@ inline Interval TicksOf(const Span& span) { return {span.begin.tick, span.end.ti
 
 class Combinations {
  public:
-  /// Intervals that are complete after the frame `settled` do not count yet. The arguments outlive
-  /// this object.
-  /// `gaps`: in ticks, by clause; negative: any gap.
-  Combinations(const ComposeRule& composition, const ComposeState& state,
-               const std::vector<Tick>& gaps, FrameNumber settled);
+  /// What is asked from now on is asked of these. `relations`: of each clause, in ticks. The
+  /// arguments outlive what is asked; memory is kept for the next ones.
+  void LookAt(const ComposeRule& composition, const ComposeState& state,
+              const std::vector<Relations>& relations);
 
-  /// From the begin of the first part to the end of the last; nullopt: no combination fits.
-  std::optional<Span> Best() const;
+  /// From the begin of the first part to the end of the last, where nothing is complete later than
+  /// this interval of the part; nullopt: no combination fits.
+  std::optional<Span> Best(std::size_t part, const Span& newest);
+
+  /// What is known of the intervals of a part that are still to come.
+  struct ToCome {
+    Tick begins_from = 0;  ///< none begins earlier
+    Tick ends_after = 0;   ///< none ends earlier, or then
+  };
+  /// Some relation of this interval to another part holds to none that is remembered, nor to one
+  /// that is still to come.
+  bool IsHopeless(std::size_t part, const Span& span, const std::vector<ToCome>& to_come) const;
 
  private:
-  /// A bit for each interval that a part may choose.
-  using Choices = std::uint64_t;
+  using Choices = std::vector<const Span*>;  ///< of one part, by time
   using AllChoices = std::array<Choices, kMaxParts>;
-  static_assert(kRememberedSpans <= 64);
+  /// A relation of a part to another one.
+  struct Link {
+    std::size_t part = 0, other = 0;
+    bool mirrored = false;  ///< `other` stands first in the clause
+    const Relations* relations = nullptr;
+    Tick ahead = 0;   ///< so long after an interval of the part the other one may begin
+    Tick behind = 0;  ///< so long before it the other one may end
+    bool Fit(const Span& span, const Span& of_other) const {
+      return mirrored ? relations->Fit(TicksOf(of_other), TicksOf(span))
+                      : relations->Fit(TicksOf(span), TicksOf(of_other));
+    }
+    bool MayFit(const Span& span, const ToCome& to_come) const;
+  };
 
-  /// By choice of one part: what fits it among the choices of another.
-  using Fitting = std::array<Choices, kRememberedSpans>;
-
-  template <typename Fits>
-  void Relate(std::size_t left, std::size_t right, Fits fits);
+  void Add(std::size_t part, std::size_t other, bool mirrored, const Relations& relations);
+  bool HasPartner(const Span& span, const Link& link, const Choices& others) const;
   bool MakeConsistent(AllChoices& choices) const;
-  bool CanComplete(AllChoices choices) const;
+  bool CanComplete(const AllChoices& choices, std::size_t depth);
+  bool CanCompleteWith(const AllChoices& choices, std::size_t part, const Span* choice,
+                       std::size_t depth);
   /// Chooses the interval with the least key that a combination has.
   template <typename Key>
-  const Span& ChooseLeast(AllChoices& choices, std::size_t part, Key key) const;
-  bool CanCompleteWith(AllChoices choices, std::size_t part, std::size_t choice) const;
-  AllChoices CompleteBy(std::int64_t tick) const;
-  const ComposeState& state_;
-  std::size_t count_;  ///< of parts
-  AllChoices choices_{};
-  std::array<std::uint8_t, kMaxParts> related_{};  ///< a bit per part to which it has a relation
-  std::array<std::array<Fitting, kMaxParts>, kMaxParts> fitting_;  ///< set where related
+  const Span& ChooseLeast(std::size_t part, Key key);
+
+  const ComposeState* state_ = nullptr;
+  std::size_t count_ = 0;  ///< of parts
+  std::vector<Link> links_;
+  AllChoices choices_;
+  Choices sorted_;
+  std::array<AllChoices, kMaxParts + 2> tried_;  ///< by depth: each step chooses for a part
 };
 
 }  // namespace prehend::grammar

@@ -21,11 +21,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "grammar/base/candidate_log.h"
 #include "grammar/base/event.h"
 #include "grammar/engine/alarms.h"
+#include "grammar/engine/combinations.h"
 #include "grammar/state/history.h"
 #include "grammar/state/idle_queue.h"
 #include "grammar/state/instances.h"
@@ -261,7 +263,13 @@ class Engine final {
   FrameNumber Settled(const RuleInstance& instance) const;
   FrameNumber PartsSettled(const RuleInstance& composition) const;
   static bool LacksAPart(const RuleInstance& composition);
+  static std::string WhyTooMany(const Rule& composition);
+  Tick BeginsFrom(const RuleInstance& instance) const;
+  Tick UnbornFrom(int slot, const RuleInstance& composition) const;
+  void NoteWhatIsToCome(const RuleInstance& composition, FrameNumber settled);
   void StepCompose(RuleInstance& instance);
+  std::optional<Span> NextComposed(RuleInstance& instance, FrameNumber settled);
+  void ForgetHopeless(RuleInstance& instance, FrameNumber settled);
 
   const Rule& RuleOf(const RuleInstance& instance) const { return program_->rules[instance.rule]; }
   const RuleTicks& TicksOf(const RuleInstance& instance) const {
@@ -299,8 +307,11 @@ class Engine final {
   Alarms alarms_;
   IdleQueue idle_;
   RememberedPast past_;
-  std::vector<InstanceId> scratch_;   // instances; kept for its memory
-  std::vector<InstanceId> notified_;  // likewise
+  Combinations combinations_;
+  std::vector<Combinations::ToCome> to_come_;          // of the parts of a composition
+  std::vector<std::pair<std::size_t, Span*>> newest_;  // likewise, with the numbers of the parts
+  std::vector<InstanceId> scratch_;                    // instances; kept for its memory
+  std::vector<InstanceId> notified_;                   // likewise
   bool finishing_ = false;
   Tick decided_ = 0;
   std::vector<Event>* out_ = nullptr;  // only during Advance and Finish

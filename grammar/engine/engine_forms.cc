@@ -84,10 +84,6 @@ bool Engine::StepWhile(RuleInstance& instance, FrameNumber frame) {
   if (until == kNone) return StepRun(instance, frame, evaluator_.Truth(condition, view));
   // Two thresholds: what has begun goes on until the second says so, which may speak of the begin.
   const bool is_anchored = !rule.anchors.empty();
-  if (is_anchored && instance.open && instance.in_gap &&
-      history_.At(frame).tick - instance.gap.tick > TicksOf(instance).bridging &&
-      !Close(instance, instance.gap))
-    return false;
   const bool on = instance.open && !instance.in_gap;
   Kleene truth = on ? Kleene::kTrue : evaluator_.Truth(condition, view);
   if (truth == Kleene::kFalse) return StepRun(instance, frame, truth);

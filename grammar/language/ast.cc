@@ -37,9 +37,10 @@ std::string DumpCompose(const Definition& d) {
   text += " where ";
   for (const Relation& relation : d.relations) {
     text += (&relation == &d.relations.front() ? "" : ", ") + relation.left + " ";
-    for (const std::string& name : relation.relations)
-      text += (&name == &relation.relations.front() ? "" : "|") + name;
-    if (relation.within) text += " within " + Dump(*relation.within);
+    for (const Relation::Alternative& one : relation.alternatives) {
+      text += (&one == &relation.alternatives.front() ? "" : "|") + one.name;
+      if (one.within) text += " within " + Dump(*one.within);
+    }
     text += " " + relation.right;
   }
   return text;

@@ -86,11 +86,14 @@ struct Part {
   Expr call;
 };
 
-/// `left relation|relation [within t] right` between two labels of a composition.
+/// `left relation [within t]|relation [within t] right` between two labels of a composition.
 struct Relation {
+  struct Alternative {
+    std::string name;
+    std::optional<Expr> within;
+  };
   std::string left;
-  std::vector<std::string> relations;
-  std::optional<Expr> within;
+  std::vector<Alternative> alternatives;
   std::string right;
   Place place;
 };

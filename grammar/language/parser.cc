@@ -275,9 +275,9 @@ class Parser : public LawParser {
         if (At("during"))
           Fail("expected one of Allen's relations, found 'during'",
                "'during' is called 'inside' here, for it begins a clause of 'from .. to'");
-        relation.relations.push_back(ExpectName("one of Allen's relations"));
+        relation.alternatives.push_back({ExpectName("one of Allen's relations"), {}});
+        if (Accept("within")) relation.alternatives.back().within = ParseSum();
       } while (Accept("|"));
-      if (Accept("within")) relation.within = ParseSum();
       relation.right = ExpectName("a label");
       definition.relations.push_back(std::move(relation));
     } while (Accept(","));

@@ -169,7 +169,16 @@ struct ComposeRule {
     int left = 0;
     int right = 0;
     AllenSet relations = 0;
-    double within_s = -1;  ///< the longest gap between the two; negative: any
+    std::array<double, kAllenNames.size()> within_s = {};  ///< by relation; negative: none was said
+
+    /// `at_most`: seconds in ticks, rounded down.
+    template <typename AtMost>
+    Relations In(const AtMost& at_most) const {
+      Relations in_ticks{.any = relations};
+      for (std::size_t i = 0; i < within_s.size(); ++i)
+        in_ticks.within[i] = within_s[i] < 0 ? -1 : at_most(within_s[i]);
+      return in_ticks;
+    }
   };
   std::vector<int> parts;  ///< references
   std::vector<Clause> clauses;

@@ -32,8 +32,8 @@
 
 namespace prehend::grammar {
 
-/// Of each part of a composition only the last ones are kept.
-inline constexpr std::size_t kRememberedSpans = 64;
+/// Intervals of its parts that may still become part of one composition; more end the run.
+inline constexpr std::size_t kMostRememberedSpans = 100'000;
 
 /// What one frame says about two entities that touch; `up` in the order of the instance's roles,
 /// the normal on the first of them.
@@ -115,8 +115,10 @@ struct UntilSinceState {
 /// An instance of a composition.
 struct ComposeState {
   FrameNumber last_end = 0;              ///< end of the previous one
-  std::vector<std::vector<Span>> parts;  ///< finished intervals of each part
-  void Reset() { last_end = 0; }
+  std::vector<std::vector<Span>> parts;  ///< finished intervals of each part, by time
+  std::size_t unjudged = 0;              ///< of them
+  std::size_t next_look = 0;  ///< when there are so many it is seen which are of no more use
+  void Reset() { last_end = unjudged = next_look = 0; }
 };
 
 /// The other forms need no more than the head.

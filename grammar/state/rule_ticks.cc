@@ -9,7 +9,8 @@ RuleTicks TicksOf(const Rule& rule, const History& history) {
   if (rule.lasting_most_s >= 0) ticks.lasting_most = history.AtMostTicks(rule.lasting_most_s);
   if (const auto* composition = rule.If<ComposeRule>()) {
     for (const ComposeRule::Clause& clause : composition->clauses)
-      ticks.gaps.push_back(clause.within_s < 0 ? -1 : history.AtMostTicks(clause.within_s));
+      ticks.clauses.push_back(
+          clause.In([&](double seconds) { return history.AtMostTicks(seconds); }));
   }
   if (const auto* any = rule.If<AnyRule>()) ticks.nearest = history.AtMostTicks(any->within_s);
   if (const auto* holds = rule.If<WhileRule>())

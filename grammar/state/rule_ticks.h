@@ -17,10 +17,10 @@ struct RuleTicks {
   Tick over = 0;   ///< half of Approach::over_s
   Tick still = 0;  ///< half of Approach::still_s
   Tick back = 0;
-  Tick within = -1;        ///< the deadline; negative: there is none
-  Tick nearest = 0;        ///< AnyRule::within_s
-  Tick in_time = 0;        ///< what comes at most so late is still in time
-  std::vector<Tick> gaps;  ///< of the clauses of a composition; negative: any
+  Tick within = -1;                ///< the deadline; negative: there is none
+  Tick nearest = 0;                ///< AnyRule::within_s
+  Tick in_time = 0;                ///< what comes at most so late is still in time
+  std::vector<Relations> clauses;  ///< of a composition
 
   bool IsTooLong(Tick ticks) const { return lasting_most >= 0 && ticks > lasting_most; }
 };

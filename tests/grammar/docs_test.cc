@@ -60,7 +60,7 @@ TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
   EXPECT_EQ(RunExamples("grammar-tutorial.md"), 23);
   EXPECT_EQ(RunExamples("cookbook.md"), 11);
   EXPECT_EQ(RunExamples("drawings.md"), 1);
-  EXPECT_EQ(RunExamples("grammar-language.md"), 6);
+  EXPECT_EQ(RunExamples("grammar-language.md"), 7);
 }
 
 }  // namespace

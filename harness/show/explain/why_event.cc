@@ -307,10 +307,8 @@ bool EventReasons::ChooseParts(InstanceId instance, const CandidateOutcome& whol
       const auto ticks = [&](int i) {
         return grammar::Interval{chosen[i]->span.begin.tick, chosen[i]->span.end.tick};
       };
-      const grammar::Tick gap = grammar::GapBetween(ticks(clause.left), ticks(clause.right));
-      if (clause.within_s >= 0 && clauses_.Seconds(gap) > clause.within_s) return false;
-      return (grammar::Bit(grammar::Relate(ticks(clause.left), ticks(clause.right))) &
-              clause.relations) != 0;
+      return clause.In([this](double seconds) { return past_.AtMostTicks(seconds); })
+          .Fit(ticks(clause.left), ticks(clause.right));
     };
     const bool fits = std::all_of(composition.clauses.begin(), composition.clauses.end(), holds);
     if (fits && ChooseParts(instance, whole, chosen)) return true;

@@ -406,6 +406,22 @@ MissingReasons::Cause MissingReasons::OfAny(InstanceId instance, const Window& w
   return best;
 }
 
+namespace {
+
+// "meets|before within 0.3 s"
+std::string Text(const grammar::ComposeRule::Clause& clause) {
+  std::string text;
+  for (std::size_t i = 0; i < grammar::kAllenNames.size(); ++i) {
+    if ((clause.relations >> i & 1U) == 0) continue;
+    text += (text.empty() ? "" : "|") + std::string(grammar::kAllenNames[i]);
+    if (clause.within_s[i] >= 0)
+      text += " within " + QuantityText(clause.within_s[i], grammar::kSeconds);
+  }
+  return text;
+}
+
+}  // namespace
+
 MissingReasons::Cause MissingReasons::OfCompose(InstanceId instance, const Window& window,
                                                 int depth) {
   const Rule& rule = past_.RuleOf(instance);
@@ -430,32 +446,26 @@ MissingReasons::Cause MissingReasons::OfCompose(InstanceId instance, const Windo
     const auto ticks = [](const CandidateOutcome& outcome) {
       return grammar::Interval{outcome.span.begin.tick, outcome.span.end.tick};
     };
+    const grammar::Relations wanted =
+        clause.In([this](double seconds) { return past_.AtMostTicks(seconds); });
     bool holds = false;
     std::string relation;
     for (const CandidateOutcome& left : past_.OutcomesOf(parts[clause.left])) {
       for (const CandidateOutcome& right : past_.OutcomesOf(parts[clause.right])) {
         if (!left.IsInterval() || !right.IsInterval()) continue;
+        holds |= wanted.Fit(ticks(left), ticks(right));
         const grammar::Allen is = grammar::Relate(ticks(left), ticks(right));
-        const grammar::Tick gap = grammar::GapBetween(ticks(left), ticks(right));
-        const bool fits = (grammar::Bit(is) & clause.relations) != 0;
-        const bool is_near = clause.within_s < 0 || clauses_.Seconds(gap) <= clause.within_s;
-        holds |= fits && is_near;
+        const grammar::Tick gap =
+            std::max(ticks(right).begin - ticks(left).end, ticks(left).begin - ticks(right).end);
         relation = grammar::kAllenNames[static_cast<std::size_t>(is)];
-        if (fits && !is_near)
+        if (gap > 0)
           relation += ", " + QuantityText(clauses_.Seconds(gap), grammar::kSeconds) + " apart";
       }
     }
     if (holds) continue;
-    std::string wanted;
-    for (std::size_t i = 0; i < grammar::kAllenNames.size(); ++i) {
-      if ((clause.relations >> i & 1U) != 0)
-        wanted += (wanted.empty() ? "" : "|") + std::string(grammar::kAllenNames[i]);
-    }
-    if (clause.within_s >= 0)
-      wanted += " within " + QuantityText(clause.within_s, grammar::kSeconds);
-    reason.because.push_back(Failed(
-        Label(past_, parts[clause.left]) + " " + wanted + " " + Label(past_, parts[clause.right]),
-        "it is " + relation));
+    reason.because.push_back(Failed(Label(past_, parts[clause.left]) + " " + Text(clause) + " " +
+                                        Label(past_, parts[clause.right]),
+                                    "it is " + relation));
   }
   return {{std::move(reason)}, complete ? 0.9 : 0.4};
 }

@@ -128,6 +128,95 @@ event all(hand: Hand, cup: Cup, tray: Movable)
             0);
 }
 
+// What is found of two rows of touches, of the cup and of the tray, one character per tick.
+std::string Found(const std::string& rule, const std::string& cup, const std::string& tray,
+                  Tick ticks_per_second = 1000) {
+  const auto program = testing::CompileText(
+      "grammar t\nevent a(h: Hand, c: Cup) while touching(h, c)\n"
+      "event b(h: Hand, t: Movable) while touching(h, t)\n"
+      "event e(h: Hand, c: Cup, t: Movable) " +
+      rule);
+  Scene scene;
+  scene.entity_table.ticks_per_second = ticks_per_second;
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  for (std::size_t t = 0; t < cup.size(); ++t) {
+    scene.touches.clear();
+    if (cup[t] == '#') scene.touches.push_back({.a = 0, .b = 1});
+    if (tray[t] == '#') scene.touches.push_back({.a = 0, .b = 2});
+    monitor.Advance(scene.At(static_cast<Tick>(t)), events);
+  }
+  monitor.Finish(static_cast<Tick>(cup.size()), events);
+  std::string text = monitor.error();
+  for (const Event& event : events) {
+    if (program->rules[event.rule].name == "e")
+      text += "[" + std::to_string(event.interval.begin) + "," +
+              std::to_string(event.interval.end) + ") ";
+  }
+  return text;
+}
+
+std::string Times(int count, const std::string& text) {
+  std::string all;
+  for (int i = 0; i < count; ++i) all += text;
+  return all;
+}
+
+// What is found does not depend on how many candidates there are.
+TEST(Compose, RemembersAsManyIntervalsAsThereAre) {
+  for (const int count : {1, 60, 63, 64, 65, 70, 1000, 10'000}) {
+    const std::string many = Times(count, "#."), whole(many.size(), '#');
+    EXPECT_EQ(Found("compose a: a(h, c), b: b(h, t) where a contains b", "##" + whole + "#.",
+                    "..." + many + "."),
+              "[0,4) ")
+        << count;
+    // Each of the many may be the one before the last; it is the latest.
+    EXPECT_EQ(Found("compose a: a(h, c), b: b(h, t) where a before b", many + ".....",
+                    std::string(many.size(), '.') + "..#.."),
+              "[" + std::to_string(2 * count - 2) + "," + std::to_string(2 * count + 3) + ") ")
+        << count;
+    // The first one is still there.
+    EXPECT_EQ(Found("compose a: a(h, c), b: b(h, t), d: a(h, c) where a before b, b overlaps d",
+                    many + "......####", std::string(many.size(), '.') + "....####.."),
+              "[" + std::to_string(2 * count - 2) + "," + std::to_string(2 * count + 10) + ") ")
+        << count;
+  }
+}
+
+TEST(Compose, OfMoreIntervalsThanAreRememberedEndsTheRun) {
+  const std::string many = Times(100'001, "#.");
+  EXPECT_EQ(
+      Found("compose a: a(h, c), b: b(h, t) where a before b", many, std::string(many.size(), '.')),
+      "more than 100000 intervals may still become part of 'e': say how far apart its parts "
+      "are at most: a before within 10 s b");
+  EXPECT_EQ(Found("compose a: a(h, c), b: b(h, t) where a before within 2 s b", many,
+                  std::string(many.size() - 1, '.') + "#"),
+            "[199998,200002) ");
+}
+
+// At 100 Hz, one frame too long or too short: two signals never end at the same instant.
+TEST(Compose, BoundariesMayBeEqualGiveOrTakeATime) {
+  const std::string rule = "compose a: a(h, c), b: b(h, t) where a ";
+  const auto found = [&](const std::string& relation, const std::string& a, const std::string& b) {
+    return Found(rule + relation + " b", a, b, 100);
+  };
+  EXPECT_EQ(found("meets", "..###.....", ".....###.."), "[2,8) ");
+  for (const std::string a : {"..###.....", "..####....", "..##......", "..#####...", "..#......."})
+    EXPECT_EQ(found("meets within 20 ms", a, ".....###.."), "[2,8) ") << a;
+  EXPECT_EQ(found("meets within 20 ms", ".#........", ".....###.."), "");
+  EXPECT_EQ(found("meets within 20 ms", "..######..", ".....####."), "");
+  EXPECT_EQ(found("meets within 20 ms|before", ".#........", ".....###.."), "[1,8) ");
+  EXPECT_EQ(found("before within 30 ms|meets within 10 ms", ".#........", ".....###.."), "[1,8) ");
+  EXPECT_EQ(found("equals", "..####....", "..#####..."), "");
+  EXPECT_EQ(found("equals within 10 ms", "..####....", "..#####..."), "[2,7) ");
+  EXPECT_EQ(found("equals within 10 ms", "..####....", "...####..."), "[2,7) ");
+  EXPECT_EQ(found("equals within 10 ms", "..####....", "....###..."), "");
+  EXPECT_EQ(found("starts within 20 ms", "..##......", "....#####."), "[2,9) ");
+  EXPECT_EQ(found("starts within 20 ms", "..##......", ".....####."), "");
+  EXPECT_EQ(found("finishes within 20 ms", ".....###..", "..####...."), "[5,6) ");
+  EXPECT_EQ(found("started_by within 10 ms", "...######.", "..##......"), "[3,4) ");
+}
+
 TEST(Compose, ClosesAtTheEndOfTheEpisode) { EXPECT_EQ(Served("##......", "....####"), "[0,8)@8 "); }
 
 }  // namespace

@@ -141,12 +141,21 @@ class Maker {
     for (Term& part : rule.calls) part.named = each_its_own ? rules_[part.which].roles : common;
     const unsigned clauses = 1 + Below(parts);
     for (unsigned i = 0; i < clauses; ++i) {
-      rule.clauses.push_back({.left = Below(parts),
-                              .right = Below(parts),
-                              .relations = 1 + Below((1U << kAllenNames.size()) - 1)});
-      const bool has_gap =
-          (rule.clauses.back().relations & (Bit(Allen::kBefore) | Bit(Allen::kAfter))) != 0;
-      if (has_gap && Sometimes()) rule.clauses.back().within = static_cast<Tick>(Below(9));
+      RandomRule::Clause clause{.left = Below(parts), .right = Below(parts), .relations = {}};
+      auto& [any, within] = clause.relations;
+      any = static_cast<AllenSet>(1 + Below((1U << kAllenNames.size()) - 1));
+      // Against time, from the first to the last part, is refused.
+      constexpr AllenSet kLater = Bit(Allen::kAfter) | Bit(Allen::kMetBy);
+      constexpr AllenSet kSooner = Bit(Allen::kBefore) | Bit(Allen::kMeets);
+      if (clause.left == 0 && clause.right == parts - 1) any &= ~kLater;
+      if (clause.right == 0 && clause.left == parts - 1) any &= ~kSooner;
+      if (any == 0) any = Bit(Allen::kEquals);
+      within.fill(-1);
+      for (std::size_t k = 0; k < within.size(); ++k) {
+        const bool can_be = (any & kBounded & Bit(static_cast<Allen>(k))) != 0;
+        if (can_be && Sometimes()) within[k] = static_cast<Tick>(Below(9));
+      }
+      rule.clauses.push_back(clause);
     }
   }
 
@@ -356,11 +365,14 @@ class Writer {
     for (const RandomRule::Clause& clause : rule.clauses) {
       text += (&clause == &rule.clauses.front() ? "a" : ", a") + std::to_string(clause.left) + " ";
       std::string names;
-      for (std::size_t i = 0; i < kAllenNames.size(); ++i) {
-        if (clause.relations >> i & 1)
+      for (const bool bounded : {true, false}) {
+        for (std::size_t i = 0; i < kAllenNames.size(); ++i) {
+          const Tick within = clause.relations.within[i];
+          if ((clause.relations.any >> i & 1) == 0 || (within >= 0) != bounded) continue;
           names += (names.empty() ? "" : "|") + std::string(kAllenNames[i]);
+          if (bounded) names += " within " + std::to_string(within) + ".5 ms";
+        }
       }
-      if (clause.within >= 0) names += " within " + std::to_string(clause.within) + ".5 ms";
       text += names + " a" + std::to_string(clause.right);
     }
     return text;

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "grammar/base/allen.h"
 #include "grammar/monitor.h"
 #include "tests/grammar/reference/reference.h"
 
@@ -81,8 +82,7 @@ struct RandomRule {
   enum class Form { kWhile, kFromTo, kWithout, kUntil, kRest, kCompose, kRepeat };
   struct Clause {
     std::size_t left = 0, right = 0;
-    unsigned relations = 0;
-    Tick within = -1;  ///< half a tick more in the text
+    Relations relations;  ///< half a tick more in the text, where there is a time
   };
   Form form = Form::kWhile;
   unsigned roles = 0;  ///< of p, q, r; x has a part in all

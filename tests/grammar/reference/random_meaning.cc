@@ -188,9 +188,7 @@ class Meaning {
         for (const Term& call : rule.calls) parts.push_back(Intervals(call, p));
         return reference::Compose(parts, [&](const std::vector<Interval>& chosen) {
           return std::ranges::all_of(rule.clauses, [&](const RandomRule::Clause& clause) {
-            const Tick gap = GapBetween(chosen[clause.left], chosen[clause.right]);
-            if (clause.within >= 0 && gap > clause.within) return false;
-            return (Bit(Relate(chosen[clause.left], chosen[clause.right])) & clause.relations) != 0;
+            return clause.relations.Fit(chosen[clause.left], chosen[clause.right]);
           });
         });
       }

@@ -60,17 +60,13 @@ Runs While(const Stream& f, const Ticks& ticks, Tick bridging) {
 }
 
 Runs Hold(const Stream& on, const Anchored& off, const Ticks& ticks, Tick bridging) {
-  Runs runs;
-  bool holds = false;
+  Stream held(on.size(), false);
+  int begin = -1;
   for (int i = 0; i < static_cast<int>(on.size()); ++i) {
-    const bool goes_on = !runs.empty() && (holds || ticks[i] - ticks[runs.back().end] <= bridging);
-    const int begin = goes_on ? runs.back().begin : i;
-    holds = (holds || on[i]) && !off.at(begin)[i];
-    if (!holds) continue;
-    if (!goes_on) runs.push_back({i, i});
-    runs.back().end = i + 1;
+    held[i] = (begin >= 0 || on[i]) && !off.at(begin >= 0 ? begin : i)[i];
+    begin = !held[i] ? -1 : begin >= 0 ? begin : i;
   }
-  return runs;
+  return While(held, ticks, bridging);
 }
 
 Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool or_drop,

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <random>
 
 #include "grammar/base/allen.h"
@@ -247,6 +249,56 @@ TEST(Reference, AgreesOnRandomStreams) {
     }
     episode.ticks.push_back(tick);
     if (!Agrees(program, episode)) return;
+  }
+}
+
+// The intervals of one are those of the other, or longer.
+bool Covers(const std::vector<Interval>& wide, const std::vector<Interval>& narrow) {
+  return std::ranges::all_of(narrow, [&](const Interval& one) {
+    return std::ranges::any_of(wide, [&](const Interval& other) {
+      return other.begin <= one.begin && one.end <= other.end;
+    });
+  });
+}
+
+// What is bridged lasts longer, never shorter, whatever ends it.
+TEST(Reference, BridgingOnlyAddsTime) {
+  constexpr std::array kRules = {
+      "(x: Hand, p: P) while touching(x, p)",
+      "(x: Hand, p: P, q: Q) while touching(x, p) or touching(x, q)",
+      "(x: Hand, p: P, q: R) while touching(x, p) until touching(x, q)",
+      "(x: Hand, p: P) while touching(x, p) until displacement(x) >= 2 m",
+      "(x: Hand, p: P) while touching(x, p) until height(x) < height(x)@begin",
+      "(x: Hand, p: P) while height(x) >= 1 m until touching(x, p) and height(x) > "
+      "height(x)@begin"};
+  std::string text = "grammar g\n";
+  for (std::size_t i = 0; i < kRules.size(); ++i) {
+    for (const int bridging : {0, 1, 4, 9}) {
+      text += "event e" + std::to_string(i) + "_" + std::to_string(bridging) + kRules[i] +
+              " bridging " + std::to_string(bridging) + " ms\n";
+    }
+  }
+  const CompileResult compiled = Compile({"g", text}, nullptr);
+  ASSERT_TRUE(compiled.program) << Format(compiled.diagnostics);
+  std::mt19937_64 random(20261126);
+  for (int round = 0; round < 500; ++round) {
+    const testing::RandomEpisode episode =
+        testing::MakeEpisode(random, 60, 1 + static_cast<unsigned>(random() % 8));
+    Monitor monitor(compiled.program, testing::RandomEntityTable());
+    testing::EpisodeFeed feed(episode, monitor);
+    std::vector<Event> events;
+    while (!feed.done()) feed.Step(testing::Shown::kWhole, events);
+    std::map<std::string, std::vector<Interval>> found;
+    for (const Event& event : events) {
+      if (event.roles[1] == 1)
+        found[compiled.program->rules[event.rule].name].push_back(event.interval);
+    }
+    for (std::size_t i = 0; i < kRules.size(); ++i) {
+      const std::string name = "e" + std::to_string(i) + "_";
+      ASSERT_TRUE(Covers(found[name + "1"], found[name + "0"])) << kRules[i];
+      ASSERT_TRUE(Covers(found[name + "4"], found[name + "1"])) << kRules[i];
+      ASSERT_TRUE(Covers(found[name + "9"], found[name + "4"])) << kRules[i];
+    }
   }
 }
 

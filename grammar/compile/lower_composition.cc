@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parts and relations of a composition. Errors: labels, relations that never hold, alone or
+// together, and orders in which it would end before it begins.
+#include <algorithm>
+#include <bit>
+#include <string>
+#include <vector>
+
+#include "grammar/analysis/allen_network.h"
+#include "grammar/base/wording.h"
+#include "grammar/compile/lower_definition.h"
+
+namespace prehend::grammar {
+namespace {
+
+class CompositionLowering {
+ public:
+  CompositionLowering(Program& program, RuleId index, const ast::Definition& definition,
+                      Lowering& lowering)
+      : program_(program), index_(index), d_(definition), lowering_(lowering) {}
+
+  void Run() {
+    const std::size_t before = lowering_.complaints();
+    std::vector<std::string> labels;
+    if (d_.parts.size() > kMaxParts) {
+      return lowering_.Complain(d_.parts[kMaxParts].place,
+                                "more than " + std::to_string(kMaxParts) + " parts",
+                                "compose some of them into an event of its own");
+    }
+    for (const ast::Part& part : d_.parts) {
+      if (std::find(labels.begin(), labels.end(), part.label) != labels.end()) {
+        lowering_.Complain(part.place, "the label '" + part.label + "' is used twice");
+      }
+      labels.push_back(part.label);
+      const int reference = lowering_.PartCall(part.call);
+      if (reference == kNone) continue;
+      Composition().parts.push_back(reference);
+    }
+    if (labels.size() != Composition().parts.size()) return;
+    const auto find = [&](const std::string& label, Place place) {
+      const auto found = std::find(labels.begin(), labels.end(), label);
+      if (found == labels.end()) {
+        const std::string near = NearestName(label, labels);
+        lowering_.Complain(place, "no part is labelled '" + label + "'",
+                           near.empty() ? "" : "did you mean '" + near + "'?");
+      }
+      return static_cast<int>(found - labels.begin());
+    };
+    for (const ast::Relation& relation : d_.relations) {
+      ComposeRule::Clause clause{.left = find(relation.left, relation.place),
+                                 .right = find(relation.right, relation.place)};
+      clause.within_s.fill(-1);
+      for (const ast::Relation::Alternative& one : relation.alternatives)
+        LowerAlternative(relation, one, clause);
+      Composition().clauses.push_back(clause);
+    }
+    if (lowering_.complaints() == before) CheckRelations();
+    if (lowering_.complaints() == before) CheckOrders();
+  }
+
+ private:
+  ComposeRule& Composition() { return program_.rules[index_].As<ComposeRule>(); }
+
+  void LowerAlternative(const ast::Relation& relation, const ast::Relation::Alternative& one,
+                        ComposeRule::Clause& clause) {
+    const std::optional<Allen> allen = AllenNamed(one.name);
+    if (!allen) {
+      return lowering_.Complain(relation.place, "'" + one.name + "' is none of Allen's relations",
+                                "they are " + AllenNames());
+    }
+    constexpr AllenSet kGap = Bit(Allen::kBefore) | Bit(Allen::kAfter);
+    const AllenSet gaps = clause.relations & kGap;
+    const auto is_endless = [&](Allen gap) {
+      return (gaps & Bit(gap)) != 0 && clause.within_s[static_cast<std::size_t>(gap)] < 0;
+    };
+    clause.relations |= Bit(*allen);
+    if (!one.within) return;
+    clause.within_s[static_cast<std::size_t>(*allen)] =
+        lowering_.Constant(*one.within, kSeconds, "'within'");
+    if ((Bit(*allen) & kBounded) == 0) {
+      lowering_.Complain(
+          one.within->place,
+          "'within' limits a gap, or how far apart two boundaries are that should be one, and '" +
+              one.name + "' has neither",
+          "boundaries that meet, give or take 20 ms: a meets within 20 ms b");
+    } else if (is_endless(Allen::kBefore) || is_endless(Allen::kAfter)) {
+      lowering_.Complain(one.within->place, "'within' belongs to '" + one.name + "' alone",
+                         "say it of each: before within 1 s|meets within 20 ms; or put first what "
+                         "has a limit");
+    }
+  }
+
+  // From the begin of the first part to the end of the last: what would end before it begins is
+  // none.
+  static constexpr AllenSet kAgainstTime = Bit(Allen::kAfter) | Bit(Allen::kMetBy);
+
+  // Of several orders each must be possible.
+  void CheckOrders() {
+    const ComposeRule& composition = Composition();
+    const int last = static_cast<int>(composition.parts.size()) - 1;
+    for (std::size_t i = 0; i < composition.clauses.size() && last > 0; ++i) {
+      const ComposeRule::Clause& clause = composition.clauses[i];
+      const bool as_listed = clause.left == 0 && clause.right == last;
+      if (!as_listed && (clause.left != last || clause.right != 0)) continue;
+      AllenSet never = 0;
+      for (AllenSet left = clause.relations; left != 0; left &= left - 1) {
+        const AllenSet one = left & ~(left - 1);
+        const AllenSet may_be = MayBe({.relations = one, .within_s = clause.within_s});
+        if (((as_listed ? may_be : Inverse(may_be)) & ~kAgainstTime) == 0) never |= one;
+      }
+      if (never == 0) continue;
+      const auto name = kAllenNames[static_cast<std::size_t>(std::countr_zero(never))];
+      lowering_.Complain(d_.relations[i].place,
+                         "'" + std::string(name) + "' never makes an event here: '" +
+                             d_.parts.back().label + "', the last part, would end before '" +
+                             d_.parts.front().label + "', the first one, begins",
+                         "a composition reaches from its first part to its last; write one for "
+                         "each order");
+    }
+  }
+
+  static AllenSet MayBe(const ComposeRule::Clause& clause) {
+    AllenSet set = 0;
+    for (std::size_t i = 0; i < clause.within_s.size(); ++i) {
+      const auto relation = static_cast<Allen>(i);
+      if ((clause.relations & Bit(relation)) == 0) continue;
+      set |= clause.within_s[i] < 0 ? Bit(relation) : grammar::MayBe(relation);
+    }
+    return set;
+  }
+
+  void CheckRelations() {
+    constexpr AllenSet kApart =
+        Bit(Allen::kBefore) | Bit(Allen::kMeets) | Bit(Allen::kMetBy) | Bit(Allen::kAfter);
+    const ComposeRule& composition = Composition();
+    const int parts = static_cast<int>(composition.parts.size());
+    AllenNetwork network(parts);
+    for (int left = 0; left < parts; ++left) {
+      for (int right = left + 1; right < parts; ++right) {  // intervals of one event do not overlap
+        if (composition.parts[left] == composition.parts[right])
+          network.Constrain(left, right, kApart | Bit(Allen::kEquals));
+      }
+    }
+    const AllenNetwork nothing_said = network;
+    for (std::size_t i = 0; i < composition.clauses.size(); ++i) {
+      const ComposeRule::Clause& clause = composition.clauses[i];
+      if (network.Constrain(clause.left, clause.right, MayBe(clause))) continue;
+      AllenNetwork alone = nothing_said;
+      if (!alone.Constrain(clause.left, clause.right, MayBe(clause))) {
+        const ast::Relation& relation = d_.relations[i];
+        return lowering_.Complain(relation.place, "this relation is never true",
+                                  clause.left == clause.right
+                                      ? "'" + relation.left + "' equals itself"
+                                      : "'" + relation.left + "' and '" + relation.right +
+                                            "' are the same event, whose intervals do not overlap");
+      }
+      return lowering_.Complain(d_.relations[i].place,
+                                "this relation is never true together with what stands before it",
+                                "draw the parts below each other; intervals of one event do not "
+                                "overlap, and a part equals itself");
+    }
+    if (parts == 1 || network.Constrain(0, parts - 1, kAnyRelation & ~kAgainstTime)) return;
+    lowering_.Complain(d_.parts.back().place,
+                       "this is never an event: the last part, '" + d_.parts.back().label +
+                           "', ends before the first one, '" + d_.parts.front().label + "', begins",
+                       "list the parts as they follow each other in time");
+  }
+
+  Program& program_;
+  RuleId index_;
+  const ast::Definition& d_;
+  Lowering& lowering_;
+};
+
+}  // namespace
+
+void LowerComposition(Program& program, RuleId index, const ast::Definition& definition,
+                      Lowering& lowering) {
+  CompositionLowering(program, index, definition, lowering).Run();
+}
+
+}  // namespace prehend::grammar
