@@ -14,6 +14,9 @@
 namespace prehend::physics {
 namespace {
 
+/// A contact whose friction is above this share of the limit slides.
+constexpr btScalar kSticks = 1 - 1e-6;
+
 using Two = btScalar __attribute__((vector_size(2 * sizeof(btScalar))));
 
 Two Load(const btScalar* two) {
@@ -78,7 +81,54 @@ btScalar BulletSolver::solveGroupCacheFriendlySetup(
   Flatten(m_multiBodySpinningFrictionContactConstraints, spinning_);
   ComputeResponses(frictions_, friction_responses_);
   ComputeResponses(rolling_, rolling_responses_);
+  HoldAnchors(info);
   return result;
+}
+
+void BulletSolver::HoldAnchors(const btContactSolverInfo& info) {
+  drifts_.clear();
+  first_anchor_ = anchors_.size();
+  const auto rigid = [&](const btMultiBody* multibody, int body) {
+    return multibody || body < 0 ? nullptr : m_tmpSolverBodyPool[body].m_originalBody;
+  };
+  for (const Row& row : normals_) {
+    const btMultiBodySolverConstraint& source = *row.source;
+    drifts_.push_back(anchors_.Add(source, rigid(source.m_multiBodyA, source.m_solverBodyIdA),
+                                   rigid(source.m_multiBodyB, source.m_solverBodyIdB)));
+  }
+  const btScalar rate = info.m_erp / info.m_timeStep;
+  const auto drift_of = [&](const Row& row) {
+    return drifts_[static_cast<std::size_t>(row.normal)];
+  };
+  for (Row& row : frictions_)
+    row.wanted -= rate * drift_of(row).way.dot(row.source->m_contactNormal1);
+  for (Rows* rows : {&rolling_, &spinning_})
+    for (Row& row : *rows)
+      row.wanted -= rate * drift_of(row).turn.dot(row.source->m_relpos1CrossNormal);
+}
+
+void BulletSolver::ForgetSlidingAnchors() {
+  const auto slides = [&](const Row& row, btScalar square) {
+    const btScalar limit = kSticks * row.friction * Pressure(row);
+    return square >= limit * limit;
+  };
+  const auto anchor_of = [&](const Row& row) {
+    return first_anchor_ + static_cast<std::size_t>(row.normal);
+  };
+  const auto square = [](const Row& row) { return row.impulse * row.impulse; };
+  for (std::size_t i = 0; i + 1 < frictions_.size(); i += 2)
+    if (slides(frictions_[i], square(frictions_[i]) + square(frictions_[i + 1])))
+      anchors_.Forget(anchor_of(frictions_[i]));
+  for (std::size_t i = 0; i + 1 < rolling_.size(); i += 2)
+    if (slides(rolling_[i], square(rolling_[i]) + square(rolling_[i + 1])))
+      anchors_.ForgetRoll(anchor_of(rolling_[i]));
+  for (const Row& row : spinning_)
+    if (slides(row, square(row))) anchors_.ForgetSpin(anchor_of(row));
+}
+
+void BulletSolver::allSolved(const btContactSolverInfo& info, btIDebugDraw* drawer) {
+  btMultiBodyConstraintSolver::allSolved(info, drawer);
+  anchors_.BeginTick();
 }
 
 void BulletSolver::convertContacts(btPersistentManifold** manifolds, int count,
@@ -332,6 +382,7 @@ btScalar BulletSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies,
                                                      const btContactSolverInfo& info) {
   for (const Rows* rows : {&joints_, &normals_, &frictions_, &rolling_, &spinning_})
     for (const Row& row : *rows) row.source->m_appliedImpulse = row.impulse;
+  ForgetSlidingAnchors();
   rigid_.WriteBack(RigidPools());
   grains_.WriteBack();
   for (const MultibodyUse& use : multibodies_) ApplySpeeds(use);

@@ -12,6 +12,7 @@
 #include <deque>
 #include <vector>
 
+#include "physics/bullet/core/friction_anchors.h"
 #include "physics/bullet/core/grain_rows.h"
 #include "physics/bullet/core/multibody_inertia.h"
 #include "physics/bullet/core/rigid_rows.h"
@@ -52,6 +53,7 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
                                 const btContactSolverInfo& info, btIDebugDraw* drawer) override;
   btScalar solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,
                                          const btContactSolverInfo& info) override;
+  void allSolved(const btContactSolverInfo& info, btIDebugDraw* drawer) override;
 
  private:
   /// One of the two bodies of a row: a rigid body, a multibody (its base, which feels all that it
@@ -81,6 +83,9 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   /// Rows with a common body keep their order, and with it every bit of the results.
   void Interleave(Rows& rows);
   void Flatten(btMultiBodyConstraintArray& sources, Rows& rows);
+  /// Friction also removes the way by which contacts that stick have drifted.
+  void HoldAnchors(const btContactSolverInfo& info);
+  void ForgetSlidingAnchors();
   Side MakeSide(btMultiBody* multibody, int solver_body, int jacobian, int speeds,
                 const btVector3& linear, const btVector3& angular,
                 const btVector3& angular_response);
@@ -119,6 +124,9 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   Rows interleaved_;
   Rows joints_, normals_, frictions_, rolling_, spinning_;
   Responses friction_responses_, rolling_responses_;  ///< by pair of rows
+  FrictionAnchors anchors_;
+  std::vector<FrictionAnchors::Drift> drifts_;  ///< by contact
+  std::size_t first_anchor_ = 0;                ///< of this group's contacts
   MultibodyInertias inertias_;
   std::deque<MultibodyUse> multibodies_;
   std::vector<btScalar> joint_speeds_, coefficients_;
