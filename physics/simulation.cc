@@ -6,6 +6,7 @@
 #include "physics/box2d/world.h"
 #include "physics/bullet/world.h"
 #include "physics/hand/script_player.h"
+#include "physics/limit_watch.h"
 #include "physics/motion/stage_clock.h"
 #include "physics/motion/tracker.h"
 #include "physics/person/person_player.h"
@@ -46,7 +47,8 @@ struct Simulation::State {
         too_long(DurationOf(t) > kMaxRun_s),
         world(MakeWorld(scene, t)),
         player(scene, std::move(t)),
-        watch(scene, player.script()) {
+        watch(scene, player.script()),
+        limits(scene) {
     AddTrackers();
     for (std::size_t i = 0; i < scene.persons.size(); ++i)
       persons.emplace_back(scene, player.script(), static_cast<int>(i));
@@ -62,6 +64,10 @@ struct Simulation::State {
               std::move(advice)};
   }
   bool Step();
+  /// At the end: what the engine got wrong.
+  void AddLimits() {
+    for (ScriptNote& note : limits.Notes()) player.AddNote(std::move(note));
+  }
   void AddTrackers();
   std::vector<HandCommand> Tracked(std::vector<HandCommand> commands);
   void MovePersons();
@@ -74,6 +80,7 @@ struct Simulation::State {
   std::vector<std::optional<Tracker>> trackers;  ///< per hand
   std::vector<PersonPlayer> persons;
   StepWatch watch;
+  LimitWatch limits;
   Snapshot snapshot;
   RunStatus status;
   StateHash hash;
@@ -121,6 +128,7 @@ bool Simulation::State::Step() {
   if (!commands) {
     status = {.kind = RunStatus::Kind::kCompleted, .tick = snapshot.tick};
     for (ScriptNote& note : watch.Notes()) player.AddNote(std::move(note));
+    AddLimits();
     return false;
   }
   watch.Begin(player.begun(), snapshot);
@@ -129,10 +137,13 @@ bool Simulation::State::Step() {
   world->Describe(snapshot);
   See();
   watch.See(snapshot, persons);
+  limits.See(snapshot);
   PREHEND_DCHECK(IsOf(scene, snapshot));
   hash.Add(snapshot);
-  if (auto problem = CheckSnapshot(scene, snapshot))
+  if (auto problem = CheckSnapshot(scene, snapshot)) {
     Fail(problem->entity, problem->reason, problem->advice);
+    AddLimits();
+  }
   return true;
 }
 

@@ -3,6 +3,7 @@
 // tests/physics/world/world_test.cc
 #include "physics/bullet/body.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/bullet/convert.h"
@@ -54,7 +55,9 @@ struct MakeShapeOf {
   template <class BulletShape>
   static Result WithMargin(const btVector3& half_m) {
     auto shape = std::make_unique<BulletShape>(half_m);
-    shape->setMargin(kMargin_m);
+    // Of a body that is no thicker than two margins nothing would be left to search for contacts.
+    const double thin_m = std::min({half_m.x(), half_m.y(), half_m.z()});
+    shape->setMargin(thin_m > kMargin_m ? kMargin_m : thin_m / 2);
     return shape;
   }
 };

@@ -38,42 +38,54 @@ std::optional<RunProblem> CheckState(const std::string& name, const BodyState& s
   return std::nullopt;
 }
 
-/// The iterative solver does not converge if one of two bodies pressed together is so many times
-/// heavier.
-constexpr double kMaxMassRatio = 1000;
-
 double MassOf(const Scene& scene, const ContactSide& side) {
   if (side.hand != kNone) return 0;
   const Body& body = scene.body(side.body);
   return body.fixed ? 0 : body.mass_kg;
 }
 
-/// The advice for two bodies that overlap deeply. A heavy body also presses a light one into a
-/// third.
+/// The advice for two bodies that overlap deeply.
 std::string AdviceFor(const Scene& scene, const Snapshot& snapshot, const ContactPoint& deep) {
+  if (const double ratio = MassRatioAt(scene, snapshot, deep); ratio > kMaxMassRatio)
+    return Say("a mass presses on one that is %.0f times smaller; make them more similar", ratio);
+  return scene.hands.empty() ? "start them apart, or let them meet more slowly"
+                             : "start them apart, or let the hand come more slowly";
+}
+
+}  // namespace
+
+double MassRatioAt(const Scene& scene, const Snapshot& snapshot, const ContactPoint& contact) {
   double least_kg = std::numeric_limits<double>::infinity(), most_kg = 0;
-  for (const ContactPoint& contact : snapshot.contacts) {
-    const bool is_near =
-        contact.a == deep.a || contact.a == deep.b || contact.b == deep.a || contact.b == deep.b;
-    for (const ContactSide& side : {contact.a, contact.b}) {
+  for (const ContactPoint& other : snapshot.contacts) {
+    const bool is_near = other.a == contact.a || other.a == contact.b || other.b == contact.a ||
+                         other.b == contact.b;
+    for (const ContactSide& side : {other.a, other.b}) {
       const double mass_kg = MassOf(scene, side);
       if (!is_near || mass_kg <= 0) continue;
       least_kg = std::min(least_kg, mass_kg);
       most_kg = std::max(most_kg, mass_kg);
     }
   }
-  if (most_kg > kMaxMassRatio * least_kg)
-    return Say("a mass presses on one that is %.0f times smaller; make them more similar",
-               most_kg / least_kg);
-  return scene.hands.empty() ? "start them apart, or let them meet more slowly"
-                             : "start them apart, or let the hand come more slowly";
+  return most_kg > 0 ? most_kg / least_kg : 1;
 }
 
 const std::string& NameOf(const Scene& scene, const ContactSide& side) {
   return side.hand != kNone ? scene.hand(side.hand).name : scene.body(side.body).name;
 }
 
-}  // namespace
+std::string LimitOf(const std::string& note) {
+  if (!note.starts_with(kLimitNote)) return "";
+  const std::string what =
+      note.substr(kLimitNote.size(), note.find(": ", kLimitNote.size()) - kLimitNote.size());
+  for (const auto& [words, name] :
+       {std::pair{kGoesThrough, "goes_through"}, std::pair{kSinksInto, "sinks_into"}}) {
+    const std::size_t at = what.find(words);
+    if (at == std::string::npos) continue;
+    return std::string(name) + "(" + what.substr(0, at) + ", " + what.substr(at + words.size()) +
+           ")";
+  }
+  return "";
+}
 
 std::optional<RunProblem> CheckSnapshot(const Scene& scene, const Snapshot& snapshot) {
   for (std::size_t i = 0; i < snapshot.bodies.size(); ++i) {

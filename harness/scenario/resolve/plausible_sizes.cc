@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "physics/scene/geometry.h"
+#include "physics/scene/run_limits.h"
 
 namespace prehend::scenario {
 namespace {
@@ -49,6 +50,27 @@ void JudgeSize(const Named<EntityYaml>& entity, const physics::Body& body, Diagn
           "sizes are in metres: 0.1 is 10 cm");
 }
 
+/// What stands on an entity, and on that, kilograms.
+double LoadOn(const ScenarioYaml& entry, const std::string& name) {
+  double load_kg = 0;
+  for (const auto& other : entry.entities)
+    if (other.value.on && other.value.on->value == name && other.value.mass_kg)
+      load_kg += other.value.mass_kg->value + LoadOn(entry, other.name);
+  return load_kg;
+}
+
+void JudgeLoad(const ScenarioYaml& entry, const Named<EntityYaml>& entity, DiagnosticList& odd) {
+  const auto& mass_kg = entity.value.mass_kg;
+  if (!mass_kg || mass_kg->value <= 0 || entity.value.fixed) return;
+  const double ratio = LoadOn(entry, entity.name) / mass_kg->value;
+  if (ratio <= physics::kMaxMassRatio) return;
+  odd.Add(mass_kg->where,
+          fmt::format("mass_kg: {:.0f} times as much as '{}' weighs stands on it, and from {:.0f} "
+                      "times on it may sink in",
+                      ratio, entity.name, physics::kMaxMassRatio),
+          "make it heavier, or what stands on it lighter; or raise 'world: {rate_hz: ..}'");
+}
+
 }  // namespace
 
 grammar::Diagnostics ImplausibleSizes(const ScenarioYaml& entry, const physics::Scene& scene,
@@ -57,6 +79,7 @@ grammar::Diagnostics ImplausibleSizes(const ScenarioYaml& entry, const physics::
   for (std::size_t i = 0; i < entry.entities.size(); ++i) {
     JudgeMass(entry.entities[i], scene.bodies[i], odd);
     JudgeSize(entry.entities[i], scene.bodies[i], odd);
+    JudgeLoad(entry, entry.entities[i], odd);
   }
   grammar::Diagnostics warnings = odd.Sorted();
   for (grammar::Diagnostic& warning : warnings) warning.is_warning = true;

@@ -197,7 +197,8 @@ void Acceptance::NothingToAccept() {
 
 /// What a scenario shows is decided before its events are.
 bool Acceptance::ClaimsFail() {
-  const std::string text = truth::TextOfContradicted(JudgeClaims(loaded_, run_.timeline));
+  std::string text = truth::TextOfContradicted(JudgeClaims(loaded_, run_.timeline));
+  for (const Finding& limit : JudgeLimits(loaded_.scenario, run_.notes)) text += limit.details;
   outcome_.text += text;
   return !text.empty() &&
          Refuse(ExitCode::kDiffers, std::string("the events contradict what the scenario expects "

@@ -85,6 +85,10 @@ Findings EndOfRun(CheckedEpisode& checked) {
 
 Findings Invariants(CheckedEpisode& checked) { return JudgeInvariants(checked.run); }
 
+Findings Limits(CheckedEpisode& checked) {
+  return JudgeLimits(checked.run.loaded.scenario, checked.run.result.notes);
+}
+
 Findings Laws(CheckedEpisode& checked) { return JudgeLaws(checked.run); }
 
 Findings Claims(CheckedEpisode& checked) {
@@ -158,8 +162,8 @@ Findings GoldenBesideRecording(CheckedEpisode& checked) {
   return findings;
 }
 
-constexpr Judge kOfRuns[] = {Pictures,    Invariants,         Laws, Claims, GoldenAndTruth,
-                             OtherEngine, UnrequestedPictures};
+constexpr Judge kOfRuns[] = {Pictures, Invariants,     Limits,      Laws,
+                             Claims,   GoldenAndTruth, OtherEngine, UnrequestedPictures};
 constexpr Judge kOfFailedRuns[] = {Pictures, EndOfRun};
 constexpr Judge kOfRecordings[] = {GoldenBesideRecording};
 

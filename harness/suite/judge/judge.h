@@ -47,6 +47,11 @@ inline constexpr const char* kUntilClaimsHold =
 std::vector<truth::ClaimVerdict> JudgeClaims(const episode::LoadedRun& loaded,
                                              const grammar::Timeline& timeline);
 
+/// One per note of a run that the physics got something wrong, which the scenario does not expect;
+/// one per such thing that it expects and that did not happen.
+Findings JudgeLimits(const scenario::Scenario& scenario,
+                     const std::vector<physics::ScriptNote>& notes);
+
 /// One per contradicted claim.
 Findings ClaimFindings(const std::vector<truth::ClaimVerdict>& verdicts);
 

@@ -59,6 +59,11 @@ struct Claim {
   bool on_one_line = true;                   ///< as in the file: an offset is a distance in columns
 };
 
+/// Events of this name are no grammar's: they are what the physics gets wrong, which notes of a run
+/// say (physics/scene/run_limits.h). A claim says that it may be.
+inline constexpr std::string_view kLimitEvents[] = {"goes_through", "sinks_into"};
+bool IsAboutLimit(const Claim& claim);
+
 /// Where the part of a claim at this offset was written; the claim's begin if that is not known.
 inline Where PlaceIn(const Claim& claim, std::size_t offset) {
   Where where = claim.where;

@@ -132,11 +132,18 @@ class ClaimJudge {
 
 }  // namespace
 
+bool IsAboutLimit(const Claim& claim) {
+  return std::ranges::any_of(claim.events, [](const ClaimedEvent& event) {
+    return std::ranges::count(kLimitEvents, std::string_view(event.name.text)) > 0;
+  });
+}
+
 std::vector<ClaimVerdict> JudgeClaims(const std::vector<Claim>& claims, const std::string& file,
                                       const ClaimableEvents& known,
                                       const grammar::Timeline& timeline) {
   std::vector<ClaimVerdict> verdicts;
   for (const Claim& claim : claims) {
+    if (IsAboutLimit(claim)) continue;
     const std::string place = claim.where.source == 0
                                   ? fmt::format("{}:{}", file, claim.where.place.line)
                                   : std::string("--set");
@@ -354,6 +361,7 @@ std::vector<ClaimProblem> UnknownNames(const Claim& claim, const ClaimableEvents
 
 std::vector<ClaimProblem> Mismatches(const Claim& claim, const ClaimableEvents& known) {
   std::vector<ClaimProblem> problems;
+  if (IsAboutLimit(claim)) return problems;
   for (const ClaimedEvent& claimed : claim.events) {
     if (const EventSignature* event = Find(known, claimed.name.text)) {
       for (ClaimProblem& problem : FittingEvent(*event, claimed, known).Problems())

@@ -97,11 +97,23 @@ class ClaimParser {
     if (claim.events.size() > kMaxClaimedEvents)
       Fail(0, fmt::format("a claim has at most {} events, found {}", kMaxClaimedEvents,
                           claim.events.size()));
+    if (!problem_ && IsAboutLimit(claim)) CheckLimit(claim);
     if (problem_) return tl::unexpected(std::move(*problem_));
     return claim;
   }
 
  private:
+  /// What the physics may get wrong is said alone, of two things.
+  void CheckLimit(const Claim& claim) {
+    const ClaimedEvent& event = claim.events.front();
+    const bool is_plain = claim.quantity == Quantity::kAtLeast && claim.number == 1 &&
+                          claim.events.size() == 1 && event.roles.size() == 2 &&
+                          event.roles[0].name.text.empty() && event.roles[1].name.text.empty();
+    if (!is_plain)
+      Fail(0, "what the physics may get wrong stands alone, with two things: " +
+                  std::string(kLimitEvents[0]) + "(knife, board)");
+  }
+
   void ParseQuantity(Claim& claim) {
     if (FailAtQuantity()) return;
     const std::size_t begin = next_.offset;

@@ -102,4 +102,10 @@ void BulletDynamics::solveConstraints(btContactSolverInfo& info) {
   }
 }
 
+void BulletDynamics::integrateTransforms(btScalar dt_s) {
+  swept_.Find(m_nonStaticRigidBodies, dt_s);
+  btMultiBodyDynamicsWorld::integrateTransforms(dt_s);
+  swept_.Hold();
+}
+
 }  // namespace prehend::physics

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "physics/bullet/core/grain_contacts.h"
+#include "physics/bullet/core/swept_motion.h"
 
 namespace prehend::physics {
 
@@ -35,12 +36,15 @@ class BulletDynamics final : public btMultiBodyDynamicsWorld {
  private:
   void internalSingleStepSimulation(btScalar dt_s) override;
   void solveConstraints(btContactSolverInfo& info) override;
+  /// Bodies stop where they would go through others.
+  void integrateTransforms(btScalar dt_s) override;
   /// Bullet enlarges the boxes of moving bodies by 20 mm: every grain would be paired with the
   /// whole vessel.
   void SetTightBox(btCollisionObject& object);
 
   GrainContacts& grains_;
   GrainFilter filter_;
+  SweptMotion swept_{*this};
   std::vector<btRigidBody*> moving_;  ///< all bodies that are not static, in order of insertion
   std::vector<char> stepped_;         ///< by index in moving_: in Bullet's list of this step
   bool any_awake_ = false;

@@ -36,5 +36,20 @@ TEST(PlausibleSizes, ASizeIsThatOfSomethingThatAHandDealsWith) {
   EXPECT_EQ(Warned("size_m: [1.2, 0.8, 0.04]", "size_m: [20, 0.8, 0.04]"), "");
 }
 
+/// Of a tower of three, each counts what stands on it and on that.
+TEST(PlausibleSizes, AHundredTimesItsMassStandsOnIt) {
+  const auto tower = [](const std::string& light_kg) {
+    return "mass_kg: " + light_kg +
+           ", on: table, at_m: [0.5, 0]}\n  pot: {box: {size_m: [0.1, 0.1, 0.1]}, mass_kg: 2, on: "
+           "milk, at_m: [0.5, 0]}\n  lid: {box: {size_m: [0.1, 0.1, 0.02]}, mass_kg: 1, on: pot, "
+           "at_m: [0.5, 0]}\n  spare: {box: {size_m: [0.07, 0.07, 0.2]}, mass_kg: 0.4";
+  };
+  EXPECT_EQ(Warned("mass_kg: 0.4", tower("0.031")), "");
+  EXPECT_EQ(Warned("mass_kg: 0.4", tower("0.025")),
+            "7:54: mass_kg: 120 times as much as 'milk' weighs stands on it, and from 100 times on "
+            "it may sink in | make it heavier, or what stands on it lighter; or raise 'world: "
+            "{rate_hz: ..}'\n");
+}
+
 }  // namespace
 }  // namespace prehend::scenario

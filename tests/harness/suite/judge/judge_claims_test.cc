@@ -34,5 +34,26 @@ TEST_F(JudgeClaimsOfARun, EachContradictionIsAFinding) {
   EXPECT_EQ(findings[1].details, findings[1].reason + "\n  no grasping\n");
 }
 
+/// What the physics gets wrong fails a check, unless it is expected; and so does what is expected
+/// and does not happen.
+TEST_F(JudgeClaimsOfARun, WhatThePhysicsGetsWrongIsExpectedOrAFinding) {
+  const std::vector<physics::ScriptNote> notes = {
+      {.tick = 3, .hand = {}, .text = "it is out of reach: .."},
+      {.tick = 4, .hand = {}, .text = "physics: carton sinks into table: 3.0 mm deep; .."}};
+  const std::string claim = "expects:\n  - sinks_into(carton, table)\n";
+  const CheckedRun silent = PlayedWith(""), expecting = PlayedWith(claim);
+  const Findings found = JudgeLimits(silent.loaded.scenario, notes);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].reason, notes[1].text);
+  EXPECT_NE(found[0].details.find("expects: ['sinks_into(carton, table)']"), std::string::npos);
+  EXPECT_TRUE(JudgeLimits(expecting.loaded.scenario, notes).empty());
+  EXPECT_TRUE(JudgeClaims(expecting.loaded, expecting.result.timeline).empty());
+  const Findings missing = JudgeLimits(expecting.loaded.scenario, {});
+  ASSERT_EQ(missing.size(), 1u);
+  EXPECT_EQ(missing[0].reason,
+            "expects: 'sinks_into(carton, table)' (" + Request().scenario_file + ":8): found none");
+  EXPECT_TRUE(JudgeLimits(silent.loaded.scenario, silent.result.notes).empty());
+}
+
 }  // namespace
 }  // namespace prehend::suite

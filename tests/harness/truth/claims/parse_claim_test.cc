@@ -27,6 +27,19 @@ std::string Problem(const std::string& text) {
          (problem.hint.empty() ? "" : " | " + problem.hint);
 }
 
+TEST(ParseClaim, WhatThePhysicsGetsWrongStandsAlone) {
+  EXPECT_TRUE(IsAboutLimit(Parsed("goes_through(knife, board)")));
+  EXPECT_TRUE(IsAboutLimit(Parsed("sinks_into(pot, coaster)")));
+  EXPECT_FALSE(IsAboutLimit(Parsed("contact(pot, coaster)")));
+  for (const char* wrong :
+       {"no sinks_into(a, b)", "sinks_into(a)", "sinks_into(a, b) before contact(a, b)",
+        "contact then goes_through(a, b)", "2 sinks_into(a, b)"})
+    EXPECT_EQ(Problem(wrong),
+              "0: what the physics may get wrong stands alone, with two things: "
+              "goes_through(knife, board)")
+        << wrong;
+}
+
 TEST(ParseClaim, ReadsQuantities) {
   const auto quantity = [](const std::string& text) {
     const Claim claim = Parsed(text);
