@@ -104,7 +104,7 @@ class Scene:
     def free(self, thing, top, x, y):
         """A place for it on this level, near this one."""
         for _ in range(200):
-            at = (x + self.rng.uniform(-0.4, 0.4), y + self.rng.uniform(-0.25, 0.25), top + self.sizes[thing][2] / 2)
+            at = (x + self.rng.uniform(-0.33, 0.33), y + self.rng.uniform(-0.25, 0.25), top + self.sizes[thing][2] / 2)
             if all(n == thing or n in self.hands or length(add(at[:2], p[:2], -1)) > 0.16 for n, (p, _) in self.bodies.items()):
                 break
         return at
@@ -277,9 +277,11 @@ class Take:
         rng = self.rng
         names = sorted(self.scene.bodies)
         if self.fault == "handedness":
+            across = 1 if self.axes == "x_up" else 0
             for _, row in rows:
                 for n, (p, q) in row.items():
-                    row[n] = ([-p[0], p[1], p[2]], [q[0], q[1], -q[2], -q[3]])
+                    row[n] = ([-x if k == across else x for k, x in enumerate(p)],
+                              [q[0]] + [x if k == across else -x for k, x in enumerate(q[1:])])
         if self.fault == "zero":
             name, begin = rng.choice(names), rng.randrange(len(rows) // 2)
             for _, row in rows[begin:begin + rng.randint(2, 20)]:
@@ -299,7 +301,7 @@ class Take:
             for _, row in rows[begin:begin + rng.randint(1, 20)]:
                 row[a], row[b] = row[b], row[a]
         if self.fault == "fractions":
-            self.has_q, self.unit = False, "m"
+            self.has_q, self.any_axes, self.unit = False, False, "m"
             points = [p for _, row in rows for p, _ in row.values()]
             low = [min(p[k] for p in points) for k in range(3)]
             side = 1.2 * max(max(p[k] for p in points) - low[k] for k in range(3))

@@ -64,11 +64,14 @@ def main():
                 print("right", 1000000 * seed + i, take.kind, code, said)
         for i in range(takes):
             fault = Take.FAULTS[i % len(Take.FAULTS)]
-            # Nobody sees what is not there: a table needs something that stands, handedness two hands with names.
-            kind = {"table": ("table", "shelf", "small"), "handedness": ("table", "shelf", "box")}.get(fault)
+            # Nobody sees what is not there: a table or an upright thing needs something that stands, a plane three things,
+            # handedness two hands with names.
+            kinds = {"table": ("table", "shelf", "small"), "upright": ("table", "shelf", "box"), "tilt": ("table", "shelf", "box"),
+                     "handedness": ("table", "shelf", "box"), "axes": ("table", "shelf", "box", "small")}.get(fault)
             for draw in range(50):
-                take = Take(1000000 * seed + 500000 + 50 * i + draw, fault, kind and kind[(i // 13) % len(kind)])
-                if fault != "handedness" or len(take.scene.hands) == 2:
+                take = Take(1000000 * seed + 500000 + 50 * i + draw, fault, kinds and kinds[(i // 13) % len(kinds)])
+                things = len(take.scene.bodies) - len(take.scene.hands)
+                if (fault != "handedness" or len(take.scene.hands) == 2) and (fault != "tilt" or things >= 3):
                     break
             code, said = said_of(prehend, take, folder)
             planted[fault] += 1

@@ -236,8 +236,6 @@ TEST_F(ImportMcap, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
          return Row{row.t_s, row.x, row.z, row.y};
        }),
        kMap, "map.yaml:4:7: error: nothing is lifted along z, but 'mug' rises 0.2"},
-      {"w first", good, Replaced(kMap, "axes: z_up", "axes: z_up\nquaternion_order: wxyz"),
-       "map.yaml:5:19: error: the first of four numbers, as w, is 0.00"},
       {"another rate", good, Replaced(kMap, "axes: z_up", "axes: z_up\nrate_hz: 120"),
        "map.yaml:5:10: error: rate_hz: 120, but poses are 0.01667 s apart"},
       {"a gap", spoiled([](int i, std::string data) {

@@ -145,7 +145,8 @@ TEST_F(ImportUp, CheckSaysWhereUpIsIfThingsRestOnATiltedPlane) {
   const Said said = Import(Csv(tilted, Jars()), "axes: z_up\n", tail, true);
   EXPECT_NE(said.err.find("warning: things rest on a plane that is tilted by 17.2 degrees: 6 of 6 "
                           "places of rest, of 5 things, are 0.0 mm off it (root mean square); in "
-                          "the map: up: [0, -0.296, 0.955]\n"),
+                          "the map: up: [0, -0.296, 0.955]; or, if they stand at several "
+                          "heights, what they stand on\n"),
             std::string::npos)
       << said.err;
   // With that line, nothing is to be said.

@@ -154,9 +154,10 @@ TEST(ImportWarnings, AUnitInWhichTheTableIsReachedIsNamed) {
       "  table: {at_m: [0, 0, 0.68], fixed: true, class: Table, size_m: [1, 1, 0.04]}\n";
   const Said said = ImportCsv(folder, SwingingCsv(30),
                               Replaced(SwingingMap("30"), "unit: m", "metres_per_unit: 3") + table);
-  EXPECT_EQ(ErrorsOf(said),
-            "nothing tracked comes nearer to 'table' than 1.60 m ('cup'); in m it would come to "
-            "it\n  hint: unit: m; or, if it is right, sure: [unit]\n");
+  EXPECT_EQ(
+      ErrorsOf(said),
+      "nothing tracked comes nearer to 'table' than 1.60 m ('cup'); no hand comes nearer to a "
+      "thing than 0.74 m\n  hint: unit: m; or, if it is right, sure: [unit]\n");
 }
 
 TEST(ImportWarnings, SizesThatNoHandMovesAreNamed) {
@@ -199,7 +200,7 @@ TEST(ImportWarnings, TimesThatCountFramesAreNamed) {
       "  hint: the times look like frame numbers: time_unit: frame; or, if it is right, sure: "
       "[time]\n");
   EXPECT_EQ(ErrorsOf(ImportCsv(folder, csv, map("s", ""))),
-            "poses are 1 s apart: 1 Hz\n"
+            "poses are 1 s apart: 1 Hz; they are whole numbers that grow by 1 each\n"
             "  hint: the times look like frame numbers: time_unit: frame and rate_hz; or, if it is "
             "right, sure: [time]\n");
 }

@@ -6,7 +6,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "grammar/base/diagnostic.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/process/run_tool.h"
 #include "harness/cli/command/command.h"

@@ -2,7 +2,7 @@
 // prehend scenario schema. Tested by tests/program/command_line_test.cc
 
 #include "harness/cli/command/command.h"
-#include "harness/exchange/import/import_map.h"
+#include "harness/exchange/poses/import_map.h"
 #include "harness/scenario/format/scenario_fields.h"
 
 namespace prehend::cli {

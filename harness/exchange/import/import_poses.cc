@@ -13,16 +13,16 @@
 #include "grammar/base/tracking.h"
 #include "grammar/base/wording.h"
 #include "harness/base/yaml/error_at.h"
-#include "harness/exchange/import/import_warnings.h"
+#include "harness/exchange/import/plausibility.h"
 #include "harness/exchange/import/rest_poses.h"
+#include "harness/exchange/import/track.h"
 
 namespace prehend::exchange {
 namespace {
 
-constexpr double kMostSpeed_m_per_s = 20;  ///< of a hand that throws; faster is a jump
-constexpr double kGap = 1.5;               ///< of the usual step: longer is a gap
-constexpr double kFarthest_m = 1e4;        ///< of the recording format
-constexpr double kTrembles_m = 0.0008;     ///< more than this hides how things move
+constexpr double kGap = 1.5;            ///< of the usual step: longer is a gap
+constexpr double kFarthest_m = 1e4;     ///< of the recording format
+constexpr double kTrembles_m = 0.0008;  ///< more than this hides how things move
 
 std::string EpisodeName(const ImportMap& map, const std::string& path) {
   if (!map.episode.empty()) return map.episode;
@@ -36,117 +36,29 @@ std::string EpisodeName(const ImportMap& map, const std::string& path) {
   return name;
 }
 
-struct Pose {
-  double t_s = 0;
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();
-  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
-  bool after_loss = false;  ///< how it came here is not known
-};
-
-/// An entity over time.
-struct Track {
-  std::vector<Pose> poses;
-  bool lost_before = false, lost_after = false;  ///< before its first and after its last pose
-  std::size_t next = 0;  ///< the first one that is later than the present time
-
-  Pose At(double t_s) {
-    while (next < poses.size() && poses[next].t_s <= t_s) ++next;
-    if (next == 0) return poses.front();
-    const Pose& before = poses[next - 1];
-    if (next == poses.size() || poses[next].after_loss) return before;
-    const Pose& after = poses[next];
-    const double part = (t_s - before.t_s) / (after.t_s - before.t_s);
-    if (part <= 0) return before;
-    return {.t_s = t_s,
-            .p = before.p + part * (after.p - before.p),
-            .q = before.q.slerp(part, after.q)};
-  }
-};
-
-/// The poses from `begin` on, up to where it is lost.
-std::size_t EndOfSight(const std::vector<Pose>& poses, std::size_t begin) {
-  std::size_t end = begin + 1;
-  while (end < poses.size() && !poses[end].after_loss) ++end;
-  return end;
-}
-
-/// The mean of the poses at most `half_s` before or after each; less at both ends, so that it is
-/// not drawn to one side.
-std::vector<Pose> Smoothed(const std::vector<Pose>& poses, double half_s) {
-  std::vector<Pose> smooth = poses;
-  for (std::size_t begin = 0; begin < poses.size(); begin = EndOfSight(poses, begin)) {
-    const std::size_t end = EndOfSight(poses, begin);
-    for (std::size_t i = begin, first = begin; i < end; ++i) {
-      const double t_s = poses[i].t_s;
-      const double to_end_s = std::min(t_s - poses[begin].t_s, poses[end - 1].t_s - t_s);
-      const double reach_s = std::min(half_s, to_end_s) + 1e-9;
-      while (poses[first].t_s < t_s - half_s - 1e-9) ++first;
-      Eigen::Vector3d p = Eigen::Vector3d::Zero();
-      Eigen::Vector4d q = Eigen::Vector4d::Zero();
-      double count = 0;
-      for (std::size_t k = first; k < end && poses[k].t_s <= t_s + reach_s; ++k) {
-        if (poses[k].t_s < t_s - reach_s) continue;
-        p += poses[k].p;
-        const double sign = poses[k].q.dot(poses[i].q) < 0 ? -1 : 1;
-        q += sign * poses[k].q.coeffs();
-        ++count;
-      }
-      smooth[i].p = p / count;
-      smooth[i].q = Eigen::Quaterniond(q.normalized());
-    }
-  }
-  return smooth;
-}
-
-/// How far a pose is off the polynomial of degree `order` - 1 through as many of its neighbours, as
-/// the standard deviation that noise on each axis would have: half of all are below that times the
-/// median of a chi distribution of three axes.
-double OffNeighbours_m(const std::vector<Pose>& poses, std::size_t order) {
-  constexpr double kMedianOfThree = 1.538;
-  std::vector<double> off;
-  for (std::size_t last = order; last < poses.size(); ++last) {
-    const std::span<const Pose> some(&poses[last - order], order + 1);
-    if (std::ranges::any_of(some.subspan(1), &Pose::after_loss)) continue;
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    double squares = 0;
-    for (const Pose& pose : some) {
-      double weight = 1;
-      for (const Pose& other : some) {
-        if (&other != &pose)
-          weight *= (some.back().t_s - some.front().t_s) / (pose.t_s - other.t_s);
-      }
-      sum += weight * pose.p;
-      squares += weight * weight;
-    }
-    off.push_back(sum.norm() / std::sqrt(squares));
-  }
-  return Median(std::move(off)) / kMedianOfThree;
-}
-
-/// The standard deviation of its position on each axis, as far as it is noise. A smooth path bends
-/// from frame to frame, but a polynomial through six neighbours follows it; what repeats faster
-/// than every four frames is off both.
-double Trembling_m(const std::vector<Pose>& poses) {
-  constexpr double kOfTrembling = 3.2;  // largest share of both that such repetition has
-  const double bends_m = OffNeighbours_m(poses, 2), rough_m = OffNeighbours_m(poses, 6);
-  return bends_m < kOfTrembling * rough_m ? bends_m : rough_m;
-}
-
-/// Whether nobody knows where it was at the time of the last At().
-bool IsLost(const Track& track, double t_s) {
-  if (track.next == 0) return track.lost_before;
-  if (track.poses[track.next - 1].t_s >= t_s) return false;
-  return track.next == track.poses.size() ? track.lost_after : track.poses[track.next].after_loss;
-}
-
 class Importer {
  public:
-  Importer(const PoseFile& file, const MapFile& map)
-      : file_(file), map_(map.map), document_(map.document), errors_(map.document) {}
+  Importer(const PoseFile& file, const MapFile& map, Implausible implausible)
+      : file_(file),
+        map_(map.map),
+        document_(map.document),
+        errors_(map.document),
+        unit_is_doubtful_(implausible.unit),
+        world_is_doubtful_(implausible.world) {
+    imported_.warnings = std::move(implausible.warnings);
+  }
 
   Result<Imported> Import() {
     Describe();
-    for (const Named<MappedEntity>& entity : map_.entities) AddTrack(entity);
+    for (const Named<MappedEntity>& entity : map_.entities) {
+      Track& track = tracks_.emplace_back();
+      if (entity.value.at_m)
+        track.poses.push_back({0, *entity.value.at_m, Quaternion(entity.value.quat_wxyz)});
+      else
+        track.poses = Converted(BodyOf(entity.value), entity.value);
+    }
+    JudgeJumps();
+    for (std::size_t i = 0; i < tracks_.size(); ++i) AddTrack(map_.entities[i], tracks_[i]);
     WarnOfTrembling();
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
     if (const std::string problem = SetTicks(); !problem.empty())
@@ -154,6 +66,7 @@ class Importer {
           {.file = file_.file, .place = {}, .message = problem, .source_line = {}, .hint = {}}});
     AddFrames();
     WarnOfRestPoses();
+    if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
     WarnOfNoOrientations();
     for (const std::string& body : file_.unused)
       Warn(fmt::format("the file has '{}', which the map does not mention", body));
@@ -166,9 +79,7 @@ class Importer {
 
   void WarnOfRestPoses() {
     DoubtfulThings turned;
-    if (const auto range = RangeTooSmall(file_, map_); range && !map_.IsSure(Warning::kUnit))
-      return Warn(
-          fmt::format("{}: {}; or, if it is right, sure: [unit]", range->text, range->remedy));
+    if (unit_is_doubtful_) return;
     if (!map_.IsSure(Warning::kUpright)) turned = FindNotUpright(imported_.episode, map_);
     for (std::string& text : turned.warnings) Warn(std::move(text));
     DoubtfulThings large = ThingsTooLarge(map_);
@@ -176,9 +87,15 @@ class Importer {
     turned.things.merge(large.things);
     if (std::string text = RestOnNothing(imported_.episode, turned.things); !text.empty())
       Warn(std::move(text));
-    if (std::string text = TiltOfRestPlane(imported_.episode, map_.WorldTurn(), turned.things);
-        !text.empty())
-      Warn(std::move(text));
+    std::string tilt = TiltOfRestPlane(imported_.episode, map_, turned.things);
+    const Guess place = GuessPlace(file_, map_);
+    const bool says_place =
+        !world_is_doubtful_ && !place.signs.empty() && !map_.IsSure(Warning::kPlace);
+    if (says_place && place.signs.size() > 1 && tilt.empty() && turned.things.empty())
+      errors_.Add(place.where, place.Text(), place.Remedy());
+    else if (says_place)
+      Warn(place.Text() + ": " + place.Remedy());
+    if (!tilt.empty()) Warn(std::move(tilt));
   }
 
   void Describe() {
@@ -204,30 +121,80 @@ class Importer {
     }
   }
 
-  void AddTrack(const Named<MappedEntity>& entity) {
+  const PoseBody& BodyOf(const MappedEntity& entity) const {
+    return *std::ranges::find(file_.bodies, entity.from->value, &PoseBody::name);
+  }
+
+  /// Where a pose stands in the file.
+  std::string PlaceOf(const MappedEntity& entity, double t_s) const {
+    const PoseBody& body = BodyOf(entity);
+    const auto sample = std::ranges::lower_bound(body.samples, t_s, {}, &PoseSample::t_s);
+    return sample != body.samples.end() && sample->line > 0
+               ? fmt::format("{}:{}", file_.file, sample->line)
+               : fmt::format("{}, {:.3f} s", file_.file, t_s);
+  }
+
+  /// Poses that leave and come back, those of bodies that were taken for each other, and jumps.
+  void JudgeJumps() {
+    std::vector<const std::vector<TimedPose>*> poses;
+    std::vector<JumpsOfTrack> found;
+    for (const Track& track : tracks_) {
+      poses.push_back(&track.poses);
+      found.push_back(FindJumps(track.poses));
+    }
+    const auto name = [&](std::size_t i) { return map_.entities[i].value.from->value; };
+    const bool drops = map_.outlier == OutlierRule::kLost;
+    const char* remedy =
+        drops ? ": they count as lost" : "; in the map, outlier: lost makes gaps of these";
+    for (const Exchange& exchange : FindExchanges(poses, found))
+      Warn(fmt::format("{}: '{}' and '{}' look exchanged from {:.3f} to {:.3f} s",
+                       PlaceOf(map_.entities[exchange.a].value, exchange.begin_s), name(exchange.a),
+                       name(exchange.b), exchange.begin_s, exchange.end_s));
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+      const MappedEntity& e = map_.entities[i].value;
+      std::vector<TimedPose>& track = tracks_[i].poses;
+      if (!found[i].jumps.empty()) {
+        const Jump& jump = *std::ranges::max_element(found[i].jumps, {}, &Jump::way_m);
+        const double step_s = track[jump.at].t_s - track[jump.at - 1].t_s;
+        Warn(fmt::format("{}: '{}' jumps {}, here {:.3f} m and {:.0f} degrees in {:.4f} s",
+                         PlaceOf(e, track[jump.at].t_s), name(i),
+                         grammar::CountOf(found[i].jumps.size(), "time"), jump.way_m, jump.turn_deg,
+                         step_s));
+      }
+      if (found[i].outliers.empty()) continue;
+      const Outlier& worst = *std::ranges::max_element(
+          found[i].outliers, {}, [](const Outlier& o) { return o.off_m + o.off_deg / 180; });
+      Warn(
+          fmt::format("{}: '{}' goes out and back {}, here {:.3f} m and {:.0f} degrees off in {}{}",
+                      PlaceOf(e, track[worst.begin].t_s), name(i),
+                      grammar::CountOf(found[i].outliers.size(), "time"), worst.off_m,
+                      worst.off_deg, grammar::CountOf(worst.end - worst.begin, "pose"), remedy));
+      for (std::size_t k = found[i].outliers.size(); drops && k-- > 0;)
+        track.erase(track.begin() + static_cast<std::ptrdiff_t>(found[i].outliers[k].begin),
+                    track.begin() + static_cast<std::ptrdiff_t>(found[i].outliers[k].end));
+    }
+  }
+
+  void AddTrack(const Named<MappedEntity>& entity, Track& track) {
     const MappedEntity& e = entity.value;
-    EntityReport report{.name = entity.name, .from = {}, .extent = {}};
-    Track track;
-    if (e.at_m) {
-      track.poses.push_back({.t_s = 0, .p = *e.at_m, .q = Quaternion(e.quat_wxyz)});
-    } else {
+    EntityReport report;
+    report.name = entity.name;
+    if (!e.at_m) {
       report.from = e.from->value;
-      const PoseBody& body = *std::ranges::find(file_.bodies, report.from, &PoseBody::name);
-      track.poses = Converted(body, e);
+      const PoseBody& body = BodyOf(e);
       if (e.upright_at_s) report.axes = (map_.WorldTurn() * OrientationThen(body, e)).conjugate();
       MarkGaps(body, e, track, report);
-      WarnOfMotion(body, entity, track.poses, report);
+      WarnOfMotion(entity, track.poses, report);
       const double trembling_m = Trembling_m(track.poses);
       if (map_.smooth_s > 0) track.poses = Smoothed(track.poses, map_.smooth_s / 2);
       NoteTrembling(trembling_m, track.poses, report);
     }
-    for (const Pose& pose : track.poses) report.extent.extend(pose.p);
+    for (const TimedPose& pose : track.poses) report.extent.extend(pose.p);
     if (report.extent.min().minCoeff() < -kFarthest_m ||
         report.extent.max().maxCoeff() > kFarthest_m)
       errors_.Add(entity.name_where, fmt::format("'{}' is farther than {:g} m from the origin",
                                                  entity.name, kFarthest_m));
     imported_.entities.push_back(std::move(report));
-    tracks_.push_back(std::move(track));
   }
 
   static Eigen::Quaterniond Quaternion(const Eigen::Vector4d& wxyz) {
@@ -242,13 +209,13 @@ class Importer {
     return then->q;
   }
 
-  std::vector<Pose> Converted(const PoseBody& body, const MappedEntity& entity) const {
+  std::vector<TimedPose> Converted(const PoseBody& body, const MappedEntity& entity) const {
     const Eigen::Quaterniond turn = map_.WorldTurn(), axes = map_.AxesTurn();
     const double scale = map_.MetresPerUnit();
     const auto upright = [&](const Eigen::Quaterniond& q) { return turn * q * axes.conjugate(); };
     Eigen::Quaterniond rest = Eigen::Quaterniond::Identity();
     if (entity.upright_at_s) rest = upright(OrientationThen(body, entity)).conjugate();
-    std::vector<Pose> poses;
+    std::vector<TimedPose> poses;
     for (const PoseSample& sample : body.samples) {
       const Eigen::Quaterniond q =
           entity.axes_quat_wxyz
@@ -262,7 +229,7 @@ class Importer {
 
   void MarkGaps(const PoseBody& body, const MappedEntity& entity, Track& track,
                 EntityReport& report) {
-    std::vector<Pose>& poses = track.poses;
+    std::vector<TimedPose>& poses = track.poses;
     const double usual_s = UsualStep_s(body);
     report.poses = poses.size();
     report.rate_hz = usual_s > 0 ? 1 / usual_s : 0;
@@ -299,42 +266,25 @@ class Importer {
                                          : ""));
   }
 
-  void WarnOfMotion(const PoseBody& body, const Named<MappedEntity>& entity,
-                    const std::vector<Pose>& poses, const EntityReport& report) {
-    std::size_t jumps = 0, uneven = 0, worst = 0;
-    double fastest = 0;
-    const double usual_s = 1 / report.rate_hz;
+  void WarnOfMotion(const Named<MappedEntity>& entity, const std::vector<TimedPose>& poses,
+                    const EntityReport& report) {
+    std::size_t uneven = 0;
     Eigen::AlignedBox3d extent;
     for (std::size_t i = 0; i < poses.size(); ++i) {
       extent.extend(poses[i].p);
-      if (i == 0) continue;
-      const double step_s = poses[i].t_s - poses[i - 1].t_s;
-      uneven += std::abs(step_s / usual_s - 1) > 0.2;
-      const double speed = (poses[i].p - poses[i - 1].p).norm() / step_s;
-      if (poses[i].after_loss || speed < kMostSpeed_m_per_s) continue;
-      ++jumps;
-      if (speed <= fastest) continue;
-      fastest = speed;
-      worst = i;
+      uneven += i > 0 && std::abs((poses[i].t_s - poses[i - 1].t_s) * report.rate_hz - 1) > 0.2;
     }
-    if (jumps > 0)
-      Warn(fmt::format("{}: '{}' jumps {}, here {:.3f} m in {:.4f} s ({:.0f} m/s)",
-                       body.samples[worst].line > 0
-                           ? fmt::format("{}:{}", file_.file, body.samples[worst].line)
-                           : fmt::format("{}, {:.3f} s", file_.file, poses[worst].t_s),
-                       report.from, grammar::CountOf(jumps, "time"),
-                       (poses[worst].p - poses[worst - 1].p).norm(),
-                       poses[worst].t_s - poses[worst - 1].t_s, fastest));
     if (uneven * 10 > poses.size())
       Warn(fmt::format("'{}': {} of {} steps are more than 20 % off the usual {:.4f} s",
-                       report.from, uneven, poses.size() - 1, usual_s));
+                       report.from, uneven, poses.size() - 1, 1 / report.rate_hz));
     if (entity.value.hand && extent.diagonal().norm() < 0.01)
       Warn(fmt::format("the hand '{}' never leaves {:.1f} mm", entity.name,
                        extent.diagonal().norm() * 1e3));
   }
 
   /// `as_read_m`: how much it trembles in the file, which decides over how long to take means.
-  void NoteTrembling(double as_read_m, const std::vector<Pose>& poses, const EntityReport& report) {
+  void NoteTrembling(double as_read_m, const std::vector<TimedPose>& poses,
+                     const EntityReport& report) {
     const double trembling_m = map_.smooth_s > 0 ? Trembling_m(poses) : as_read_m;
     if (trembling_m <= kTrembles_m) return;
     trembling_.push_back("'" + report.from + "'");
@@ -399,7 +349,7 @@ class Importer {
       frame.tick = tick;
       for (std::size_t i = 0; i < tracks_.size(); ++i) {
         const std::size_t passed = tracks_[i].next;
-        const Pose pose = tracks_[i].At(t_s);
+        const TimedPose pose = tracks_[i].At(t_s);
         grammar::EntitySample& sample = frame.entities.emplace_back();
         sample.p_WB_m = pose.p;
         sample.q_WB = pose.q;
@@ -446,6 +396,7 @@ class Importer {
   const ImportMap& map_;
   const YamlDocument& document_;
   DiagnosticList errors_;
+  bool unit_is_doubtful_ = false, world_is_doubtful_ = false;
   Imported imported_;
   std::vector<Track> tracks_;
   std::map<std::int64_t, double> times_;
@@ -462,11 +413,12 @@ Result<Imported> ImportPoses(const std::string& poses_path, const std::string& m
   const Result<MapFile> map = ReadImportMap(map_path, *format);
   if (!map) return tl::unexpected(map.error());
   constexpr std::array kReaders = {ReadCsvPoses, ReadBvhPoses, ReadMcapPoses};
-  const Result<PoseFile> poses = kReaders[static_cast<std::size_t>(*format)](poses_path, *map);
+  Result<PoseFile> poses = kReaders[static_cast<std::size_t>(*format)](poses_path, *map);
   if (!poses) return tl::unexpected(poses.error());
-  if (grammar::Diagnostics warnings = FindImportWarnings(*poses, *map); !warnings.empty())
-    return tl::unexpected(std::move(warnings));
-  return Importer(*poses, *map).Import();
+  if (map->map.is_left_handed) MirrorPoses(map->map, *poses);
+  Implausible implausible = FindImplausible(*poses, *map);
+  if (!implausible.errors.empty()) return tl::unexpected(std::move(implausible.errors));
+  return Importer(*poses, *map, std::move(implausible)).Import();
 }
 
 }  // namespace prehend::exchange

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "harness/episode/sense/episode_file.h"
-#include "harness/exchange/import/pose_file.h"
+#include "harness/exchange/poses/pose_file.h"
 
 namespace prehend::exchange {
 

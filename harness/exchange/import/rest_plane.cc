@@ -14,17 +14,18 @@
 #include <vector>
 
 #include "grammar/base/tracking.h"
-#include "harness/exchange/import/import_warnings.h"
+#include "harness/exchange/import/motion_seen.h"
 #include "harness/exchange/import/rest_poses.h"
 
 namespace prehend::exchange {
 namespace {
 
-constexpr double kApart_m = 0.05;  ///< of two places
-constexpr double kOff_m = 0.02;    ///< what is farther from the plane does not lie on it
-constexpr double kWide_m = 0.08;   ///< standard deviation of the places, across both ways
+constexpr double kApart_m = 0.05;   ///< of two places
+constexpr double kOff_m = 0.02;     ///< what is farther from the plane does not lie on it
+constexpr double kLevel_m = 0.015;  ///< between places of one level
+constexpr double kWide_m = 0.08;    ///< standard deviation of the places, across both ways
 constexpr double kTilt_deg = 5;
-constexpr double kMostShare = 0.6;  ///< of all places at least so many must lie on it
+constexpr double kMostShare = 0.5;  ///< of all places at least so many must lie on it
 constexpr std::size_t kLeastPlaces = 5, kLeastThings = 3, kMostPlaces = 300;
 constexpr int kRounds = 8;
 
@@ -104,11 +105,40 @@ double OffPlane(const RestPlane& plane, const RestPoint& place) {
   return std::abs(plane.normal.dot(place.p_m - plane.middle) - place.half_height_m);
 }
 
+/// As the frame is, most things stand on one or two levels, or on what the map places.
+bool IsLevel(const SeenRestPoses& seen, const ImportMap& map) {
+  std::vector<double> tops, bottoms;
+  for (const Named<MappedEntity>& entity : map.entities)
+    if (entity.value.at_m) tops.push_back(entity.value.at_m->z() + entity.value.size_m.z() / 2);
+  std::size_t on_tops = 0;
+  for (const RestPoint& place : seen.places) {
+    const double bottom = place.p_m.z() - place.half_height_m;
+    bottoms.push_back(bottom);
+    on_tops +=
+        std::ranges::any_of(tops, [&](double top) { return std::abs(bottom - top) < kOff_m; });
+  }
+  const auto most =
+      static_cast<std::ptrdiff_t>(std::ceil(kMostShare * static_cast<double>(seen.places.size())));
+  if (static_cast<std::ptrdiff_t>(on_tops) >= most) return true;
+  // Each level has two places or more.
+  std::ptrdiff_t on_levels = 0;
+  std::ranges::sort(bottoms);
+  int levels = 0;
+  for (auto begin = bottoms.begin(); begin != bottoms.end();) {
+    const auto end = std::upper_bound(begin, bottoms.end(), *begin + kLevel_m);
+    if (end - begin >= 2 && ++levels <= 2) on_levels += end - begin;
+    begin = end;
+  }
+  return on_levels >=
+         std::max<std::ptrdiff_t>(most, static_cast<std::ptrdiff_t>(bottoms.size()) - 1);
+}
+
 }  // namespace
 
-std::string TiltOfRestPlane(const episode::Recording& episode, const Eigen::Quaterniond& turn,
+std::string TiltOfRestPlane(const episode::Recording& episode, const ImportMap& map,
                             const std::set<std::size_t>& untrue) {
   SeenRestPoses seen = RestPosesIn(episode, untrue);
+  if (IsLevel(seen, map)) return "";
   const std::size_t all = seen.places.size();
   RestPlane plane;
   while (true) {
@@ -127,11 +157,13 @@ std::string TiltOfRestPlane(const episode::Recording& episode, const Eigen::Quat
     if (plane.width_m < kWide_m) return "";
     const double degrees = std::acos(std::clamp(plane.normal.z(), -1.0, 1.0)) * 180 / EIGEN_PI;
     if (degrees <= kTilt_deg) return "";
-    const Eigen::Vector3d up = turn.conjugate() * plane.normal;
+    const Eigen::Vector3d up = map.Mirrored(map.WorldTurn().conjugate() * plane.normal);
     const auto number = [](double x) { return std::round(1000 * x) / 1000 + 0.0; };
     return fmt::format(
         "things rest on a plane that is tilted by {:.1f} degrees: {} of {} places of rest, of {} "
-        "things, are {:.1f} mm off it (root mean square); in the map: up: [{:g}, {:g}, {:g}]",
+        "things, are {:.1f} mm off it (root mean square); in the map: up: [{:g}, {:g}, {:g}]; or, "
+        "if "
+        "they stand at several heights, what they stand on",
         degrees, seen.places.size(), all, things.size(), 1e3 * plane.off_m, number(up.x()),
         number(up.y()), number(up.z()));
   }

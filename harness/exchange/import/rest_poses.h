@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "harness/episode/sense/episode_file.h"
-#include "harness/exchange/import/import_map.h"
+#include "harness/exchange/poses/import_map.h"
 
 namespace prehend::exchange {
 
@@ -34,13 +34,14 @@ struct DoubtfulThings {
 DoubtfulThings FindNotUpright(const episode::Recording& episode, const ImportMap& map);
 
 /// Says by how much the plane is tilted on which most things rest, how well it is known, and what
-/// the map could say; "" where that is less than 5 degrees, or too few places tell. `turn`: from
-/// the file's axes to the recording's. Not of `untrue`, whose heights mean nothing.
-std::string TiltOfRestPlane(const episode::Recording& episode, const Eigen::Quaterniond& turn,
+/// the map could say; "" where that is less than 5 degrees, where two levels or what the map places
+/// explain as much, or too few places tell. Not of `untrue`, whose heights mean nothing.
+std::string TiltOfRestPlane(const episode::Recording& episode, const ImportMap& map,
                             const std::set<std::size_t>& untrue);
 
-/// Names the things that rest mostly where nothing is below them, at which height, and what the map
-/// could say; "" if there are none. Not of `untrue`, whose boxes mean nothing.
+/// Names the things that rest mostly where nothing is below them and no hand could hold them, at
+/// which height, and what the map could say; "" if there are none. Not of `untrue`, whose boxes
+/// mean nothing.
 std::string RestOnNothing(const episode::Recording& episode, const std::set<std::size_t>& untrue);
 
 }  // namespace prehend::exchange

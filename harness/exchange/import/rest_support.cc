@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "grammar/base/tracking.h"
-#include "harness/exchange/import/import_warnings.h"
+#include "harness/exchange/import/motion_seen.h"
 #include "harness/exchange/import/rest_poses.h"
 
 namespace prehend::exchange {
@@ -42,6 +42,17 @@ struct RestPoses {
   Eigen::AlignedBox2d place;
 };
 
+/// A hand could hold it there; of a hand that is lost nobody knows.
+bool IsInReach(const std::vector<grammar::EntityInfo>& entities, const episode::EpisodeFrame& frame,
+               const Eigen::AlignedBox3d& box) {
+  for (std::size_t i = 0; i < entities.size(); ++i) {
+    if (entities[i].classes.front() == "Hand" &&
+        !(box.exteriorDistance(frame.entities[i].p_WB_m) > kHandReach_m))
+      return true;
+  }
+  return false;
+}
+
 RestPoses RestPosesOf(const episode::Recording& episode, std::size_t thing) {
   RestPoses rests;
   const auto& entities = episode.header.entity_table.entities;
@@ -51,6 +62,7 @@ RestPoses RestPosesOf(const episode::Recording& episode, std::size_t thing) {
         !((look.p_WB_m - last.entities[thing].p_WB_m).norm() < kSamePlace_m))
       return;
     const Eigen::AlignedBox3d box = BoxOf(entities[thing], look);
+    if (IsInReach(entities, frame, box)) return;
     rests.bottoms_m.push_back(box.min().z());
     rests.place.extend(Eigen::AlignedBox2d(box.min().head<2>(), box.max().head<2>()));
     for (std::size_t other = 0; other < entities.size(); ++other) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/pose_file.h. Tested by tests/program/import_test.cc
-#include "harness/exchange/import/pose_file.h"
+// See harness/exchange/poses/pose_file.h. Tested by tests/program/import_test.cc
+#include "harness/exchange/poses/pose_file.h"
 
 #include <fmt/format.h>
 
@@ -33,6 +33,17 @@ void RefuseAbsentBodies(const PoseFile& poses, const ImportMap& map, DiagnosticL
         fmt::format("'{}' has {} poses in the file; at least 2 are needed", from.value, count),
         from.value, poses.unused);
   }
+}
+
+void MirrorPoses(const ImportMap& map, PoseFile& poses) {
+  for (PoseBody& body : poses.bodies) {
+    for (PoseSample& sample : body.samples) {
+      sample.p = map.Mirrored(sample.p);
+      // Turns are the other way round, but for the part about the mirror's own axis.
+      sample.q.vec() = -map.Mirrored(sample.q.vec());
+    }
+  }
+  if (poses.stature) poses.stature = map.Mirrored(*poses.stature);
 }
 
 }  // namespace prehend::exchange

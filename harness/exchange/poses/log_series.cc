@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/log_series.h. Tested by tests/program/import_messages_test.cc
-#include "harness/exchange/import/log_series.h"
+// See harness/exchange/poses/log_series.h. Tested by tests/program/import_messages_test.cc
+#include "harness/exchange/poses/log_series.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "harness/base/base/text_file.h"
-#include "harness/exchange/import/pose_file.h"
+#include "harness/exchange/poses/pose_file.h"
 
 namespace prehend::exchange {
 namespace {

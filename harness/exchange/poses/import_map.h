@@ -21,12 +21,13 @@ enum class TimeUnit { kSecond, kMillisecond, kMicrosecond, kNanosecond, kFrame }
 enum class QuaternionOrder { kWxyz, kXyzw };
 enum class Separator { kComma, kSemicolon, kTab };
 enum class Lost { kRefuse, kHold, kUnknown };
+enum class OutlierRule { kKeep, kLost };
 enum class Clock { kHeader, kLog, kPublish };
 /// What looks wrong, and is accepted because the map says that it is right.
-enum class Warning { kUnit, kAxes, kQuaternionOrder, kTime, kPlace, kZero, kUpright };
+enum class Warning { kUnit, kAxes, kQuaternionOrder, kTime, kPlace, kZero, kUpright, kHanded };
 
 inline constexpr std::array kWarningNames = {"unit",  "axes", "quaternion_order", "time",
-                                             "place", "zero", "upright"};
+                                             "place", "zero", "upright",          "handed"};
 
 /// The names of columns. `{}` in a name stands for the body's name: then a row has all bodies.
 struct Columns {
@@ -73,6 +74,7 @@ struct ImportMap {
   std::optional<Located<double>> metres_per_unit;  ///< this
   std::optional<Located<int>> axes;  ///< which axis of the file is up: 0 x, 1 y, 2 z; this or
   std::optional<Located<Eigen::Vector3d>> up;  ///< the direction of up in the file's axes, or both
+  bool is_left_handed = false;  ///< the file's axes; positions and orientations are mirrored
   std::optional<Located<QuaternionOrder>> quaternion_order;
   std::optional<Located<TimeUnit>> time_unit;  ///< of CSV only
   std::optional<Located<double>> rate_hz;
@@ -82,6 +84,7 @@ struct ImportMap {
   bool zero_is_missing = false;
   double bridge_s = 0.1;  ///< the longest gap that is filled with a straight line
   Lost lost = Lost::kRefuse;
+  OutlierRule outlier = OutlierRule::kKeep;  ///< of poses that leave and come back too fast
   double smooth_s = 0;  ///< poses are means over so long, where nothing was lost
   std::vector<Warning> sure;
   std::int64_t ticks_per_second = 10'000;
@@ -98,6 +101,8 @@ struct ImportMap {
   Eigen::Quaterniond WorldTurn() const;
   /// In the file's axes.
   Eigen::Vector3d Up() const;
+  /// Of left-handed axes, seen in a mirror across the way up: they are right-handed then.
+  Eigen::Vector3d Mirrored(Eigen::Vector3d v) const;
   /// Where the map says what is up.
   const Where& UpWhere() const { return up ? up->where : axes->where; }
   /// Where the map says it.

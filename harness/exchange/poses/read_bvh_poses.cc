@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include "harness/exchange/import/pose_file.h"
+#include "harness/exchange/poses/pose_file.h"
 #include "harness/scenario/motion/read_bvh.h"
 
 namespace prehend::exchange {

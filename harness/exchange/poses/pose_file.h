@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/exchange/import/import_map.h"
+#include "harness/exchange/poses/import_map.h"
 
 namespace prehend::exchange {
 
@@ -46,6 +46,9 @@ struct PoseFile {
 std::vector<PoseBody> BodiesOf(const ImportMap& map, DiagnosticList& errors);
 /// Bodies with less than two poses are errors.
 void RefuseAbsentBodies(const PoseFile& poses, const ImportMap& map, DiagnosticList& errors);
+
+/// Left-handed positions and orientations, seen in a mirror.
+void MirrorPoses(const ImportMap& map, PoseFile& poses);
 
 /// Errors name the place, in the map or in the file of poses; at most a dozen.
 Result<PoseFile> ReadCsvPoses(const std::string& path, const MapFile& map);

@@ -13,9 +13,9 @@
 
 #include "grammar/base/wording.h"
 #include "harness/base/base/text_file.h"
-#include "harness/exchange/import/log_series.h"
-#include "harness/exchange/import/pose_file.h"
 #include "harness/exchange/messages/log_file.h"
+#include "harness/exchange/poses/log_series.h"
+#include "harness/exchange/poses/pose_file.h"
 
 namespace prehend::exchange {
 

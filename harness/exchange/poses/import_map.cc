@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/import_map.h. Tested by tests/program/import_test.cc
-#include "harness/exchange/import/import_map.h"
+// See harness/exchange/poses/import_map.h. Tested by tests/program/import_test.cc
+#include "harness/exchange/poses/import_map.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -96,6 +96,8 @@ ValueFormat<ImportMap> MapFormat() {
                 "Which axis of the file points up. This, or up, or both.")
       .Optional("up", &M::up, Vector<3>(-1e6, 1e6),
                 "The direction of up in the file's axes, of any length, where no axis points up.")
+      .Optional("handed", &M::is_left_handed, Choice<bool>({{"right", false}, {"left", true}}),
+                "Whether the file's axes are right-handed, or left-handed as in Unity and Unreal.")
       .Optional(
           "quaternion_order", &M::quaternion_order,
           Choice<QuaternionOrder>(
@@ -129,6 +131,9 @@ ValueFormat<ImportMap> MapFormat() {
               {{"refuse", Lost::kRefuse}, {"hold", Lost::kHold}, {"unknown", Lost::kUnknown}}),
           "What is done where a body is not tracked for longer: nothing is imported, it "
           "stays where it was, or nobody knows where it is.")
+      .Optional("outlier", &M::outlier,
+                Choice<OutlierRule>({{"keep", OutlierRule::kKeep}, {"lost", OutlierRule::kLost}}),
+                "Poses that leave and come back faster than hands do: as they are, or not tracked.")
       .Optional("smooth_s", &M::smooth_s, Number(0, 2),
                 "Each pose is the mean of those at most half of this before or after it.")
       .Optional("sure", &M::sure, ListOf(Choice<Warning>(warnings), 0, kWarningNames.size()),
@@ -277,13 +282,17 @@ Eigen::Quaterniond ImportMap::AxesTurn() const {
 Eigen::Quaterniond ImportMap::WorldTurn() const {
   const Eigen::Quaterniond turn = AxesTurn();
   if (!up) return turn;
-  return Eigen::Quaterniond::FromTwoVectors(turn * up->value.normalized(),
-                                            Eigen::Vector3d::UnitZ()) *
-         turn;
+  return Eigen::Quaterniond::FromTwoVectors(turn * Up(), Eigen::Vector3d::UnitZ()) * turn;
 }
 
 Eigen::Vector3d ImportMap::Up() const {
-  return up ? Eigen::Vector3d(up->value.normalized()) : Eigen::Vector3d::Unit(axes->value);
+  return up ? Mirrored(up->value.normalized()) : Eigen::Vector3d::Unit(axes->value);
+}
+
+Eigen::Vector3d ImportMap::Mirrored(Eigen::Vector3d v) const {
+  const int across = axes && axes->value == 0 ? 1 : 0;
+  if (is_left_handed) v[across] = -v[across];
+  return v;
 }
 
 bool IsBag(const std::string& poses_path) { return EndingOf(poses_path) == ".bag"; }

@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "harness/exchange/import/import_map.h"
 #include "harness/exchange/messages/message_reader.h"
 #include "harness/exchange/messages/pose_fields.h"
+#include "harness/exchange/poses/import_map.h"
 
 namespace prehend::exchange {
 

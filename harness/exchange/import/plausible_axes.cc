@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/import/plausibility.h.
+//
+// Which way is up is told by four signs: what is carried from rest to rest is lifted on the way;
+// what stands has the map's tables below; things that are set down anew have turned about up; heads
+// are above feet. Turns, and how a thing lies in the hand that carries it, tell the order of
+// quaternions, too.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "harness/exchange/import/plausibility.h"
+
+namespace prehend::exchange {
+namespace {
+
+constexpr double kLift_m = 0.05,
+                 kDip_m = 0.02;  ///< what is lifted does not get lower than it stood
+constexpr double kWay_m = 0.1;   ///< what got so far was moved
+constexpr double kNearTop_m = 0.05;
+constexpr double kTurned_deg = 15, kAbout_deg = 20;
+constexpr double kInHand_m = 0.015;  ///< in the hand that carries it, root mean square
+constexpr double kWaits_m = 0.005;
+constexpr double kBeside_m = 0.05;  ///< a right hand from a left one
+
+double DegreesFrom(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::acos(std::clamp(std::abs(a.normalized().dot(b)), 0.0, 1.0)) *
+         (180 / static_cast<double>(EIGEN_PI));
+}
+
+/// Of all that could tell, how much speaks for it and how much against it.
+struct Votes {
+  int yes = 0, no = 0;
+  bool Agree() const { return yes > 0 && yes >= 4 * no; }
+  bool Deny() const { return no > 0 && no >= 4 * yes; }
+};
+
+/// Components of the other order, read as w, x, y, z.
+Eigen::Quaterniond Reordered(const Eigen::Quaterniond& q, bool was_wxyz) {
+  return was_wxyz ? Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y())
+                  : Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w());
+}
+
+class WayUp {
+ public:
+  WayUp(const MotionSeen& seen, const ImportMap& map) : seen_(seen), map_(map) {}
+
+  /// What stood, was carried, and stands again, is lifted along `up`.
+  Votes Lifts(const Eigen::Vector3d& up, double& highest_m, std::string& example) const {
+    Votes votes;
+    for (std::size_t i = 1; i < seen_.rests.size(); ++i) {
+      const Rest &from = seen_.rests[i - 1], &to = seen_.rests[i];
+      if (from.body != to.body || !from.stands || !to.stands) continue;
+      Eigen::AlignedBox1d heights;
+      Eigen::AlignedBox3d extent;
+      for (std::size_t k = from.begin; k < to.end; ++k) {
+        const Eigen::Vector3d& p = seen_.looks[from.body][k].p_m;
+        if (!p.allFinite()) continue;
+        heights.extend(Eigen::Matrix<double, 1, 1>(p.dot(up)));
+        extent.extend(p);
+      }
+      if (extent.diagonal().norm() < kWay_m) continue;
+      const double begin = from.p_m.dot(up), end = to.p_m.dot(up);
+      const double rise_m = heights.max().x() - std::max(begin, end);
+      const bool is_lifted =
+          rise_m >= kLift_m && std::min(begin, end) - heights.min().x() <= kDip_m;
+      ++(is_lifted ? votes.yes : votes.no);
+      if (!is_lifted || rise_m <= highest_m) continue;
+      highest_m = rise_m;
+      example = seen_.entities[from.body]->from->value;
+    }
+    return votes;
+  }
+
+  /// What stands is on top of what the map places, were `turn` the way to the recording.
+  Votes OnTops(const Eigen::Quaterniond& turn) const {
+    Votes votes;
+    for (const Rest& rest : seen_.rests) {
+      if (!rest.stands) continue;
+      const Eigen::Vector3d p = turn * rest.p_m;
+      const Eigen::Vector3d half = seen_.entities[rest.body]->size_m / 2;
+      bool is_on = false;
+      for (const Named<MappedEntity>& place : map_.entities) {
+        const MappedEntity& e = place.value;
+        if (!e.at_m) continue;
+        const Eigen::Vector3d off = p - *e.at_m;
+        // Wherever in it the markers are.
+        is_on = is_on || (std::abs(off.x()) < e.size_m.x() / 2 + kNearTop_m &&
+                          std::abs(off.y()) < e.size_m.y() / 2 + kNearTop_m &&
+                          off.z() > e.size_m.z() / 2 - kNearTop_m &&
+                          off.z() < e.size_m.z() / 2 + 2 * half.z() + kNearTop_m);
+      }
+      ++(is_on ? votes.yes : votes.no);
+    }
+    return votes;
+  }
+
+  /// Between two rests things turn about `up`.
+  Votes Turns(const Eigen::Vector3d& up, std::optional<bool> reorder_wxyz = {}) const {
+    Votes votes;
+    for (std::size_t i = 0; i < seen_.rests.size(); ++i) {
+      for (std::size_t k = i + 1; k < seen_.rests.size(); ++k) {
+        const Rest &a = seen_.rests[i], &b = seen_.rests[k];
+        if (a.body != b.body || !a.stands || !b.stands) continue;
+        const auto as_read = [&](const Eigen::Quaterniond& q) {
+          return reorder_wxyz ? Reordered(q, *reorder_wxyz) : q;
+        };
+        const Eigen::AngleAxisd turn(as_read(b.q) * as_read(a.q).conjugate());
+        const double degrees = turn.angle() * (180 / static_cast<double>(EIGEN_PI));
+        if (degrees < kTurned_deg || degrees > 360 - kTurned_deg) continue;
+        ++(DegreesFrom(turn.axis(), up) < kAbout_deg ? votes.yes : votes.no);
+      }
+    }
+    return votes;
+  }
+
+ private:
+  const MotionSeen& seen_;
+  const ImportMap& map_;
+};
+
+}  // namespace
+
+Guess GuessAxes(const PoseFile& poses, const ImportMap& map) {
+  Guess guess{map.UpWhere(), Warning::kAxes, {}, {}};
+  const Eigen::Vector3d up = map.Up();
+  int nearest = 0;  // of the file's axes to up
+  up.cwiseAbs().maxCoeff(&nearest);
+  const std::string stated = map.up ? "up" : std::string(1, "xyz"[nearest]);
+  const MotionSeen seen = MotionIn(poses, map, map.MetresPerUnit());
+  const WayUp way(seen, map);
+  const Votes tops = way.OnTops(map.WorldTurn());
+  if (tops.Agree()) return guess;  // what stands is where the map says
+  double unused = 0;
+  std::string nothing;
+  const Votes lifts = way.Lifts(up, unused, nothing), turns = way.Turns(up);
+  for (const int axis : {1, 2, 0}) {
+    if (axis == nearest) continue;
+    const Eigen::Vector3d other = Eigen::Vector3d::Unit(axis);
+    std::vector<std::string> signs;
+    double highest_m = 0;
+    std::string example;
+    int told = 0;
+    if (poses.stature && poses.stature->dot(up) < 0.7 * poses.stature->norm() &&
+        (*poses.stature)[axis] > 0.9 * poses.stature->norm())
+      signs.push_back(
+          fmt::format("the head is {:.2f} m from the feet along {}, and {:.2f} m along "
+                      "{}: {} looks up",
+                      (*poses.stature)[axis] * map.MetresPerUnit(), "xyz"[axis],
+                      poses.stature->dot(up) * map.MetresPerUnit(), stated, "xyz"[axis]));
+    const Votes other_lifts = way.Lifts(other, highest_m, example);
+    if (lifts.yes == 0 && lifts.no > 0 && other_lifts.no == 0) {
+      told += other_lifts.yes;
+      signs.push_back(
+          fmt::format("nothing is lifted along {}, but '{}' rises {:.2f} m along {} and "
+                      "comes down again: {} looks up",
+                      stated, example, highest_m, "xyz"[axis], "xyz"[axis]));
+    }
+    ImportMap upright = map;
+    upright.up.reset();
+    upright.axes = Located<int>{axis, {}};
+    if (const Votes other_tops = way.OnTops(upright.WorldTurn());
+        tops.Deny() && other_tops.Agree()) {
+      told += 2 * other_tops.yes;
+      signs.push_back(fmt::format("with {} up, what stands would have what the map places below it",
+                                  "xyz"[axis]));
+    }
+    const Votes other_turns = way.Turns(other);
+    if (turns.Deny() && other_turns.Agree()) {
+      told += other_turns.yes;
+      signs.push_back(fmt::format("what is set down anew has turned about {}", "xyz"[axis]));
+    }
+    // One alone is worth a word if it is told again and again.
+    if (signs.size() < guess.signs.size() || signs.size() < (poses.stature || told >= 3 ? 1U : 2U))
+      continue;
+    guess.signs = std::move(signs);
+    guess.remedy = fmt::format("axes: {}_up", "xyz"[axis]);
+  }
+  return guess;
+}
+
+namespace {
+
+/// How far things slip in the hands that carry them, as seen from hands that turn, m.
+std::optional<double> Slips_m(const MotionSeen& seen, std::optional<bool> reorder_wxyz) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const Carry& carry : seen.carries) {
+    std::vector<Eigen::Vector3d> seen_from;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (std::size_t k = carry.begin; k < carry.end; ++k) {
+      const BodyLook &hand = seen.looks[carry.hand][k], &thing = seen.looks[carry.thing][k];
+      const Eigen::Quaterniond q = reorder_wxyz ? Reordered(hand.q, *reorder_wxyz) : hand.q;
+      seen_from.push_back(q.conjugate() * (thing.p_m - hand.p_m));
+      middle += seen_from.back();
+    }
+    middle /= static_cast<double>(seen_from.size());
+    for (const Eigen::Vector3d& p : seen_from) sum += (p - middle).squaredNorm();
+    count += seen_from.size();
+  }
+  if (count < 10) return std::nullopt;
+  return std::sqrt(sum / static_cast<double>(count));
+}
+
+}  // namespace
+
+Guess GuessOrder(const PoseFile& poses, const ImportMap& map) {
+  const bool is_wxyz = poses.quaternion_order == QuaternionOrder::kWxyz;
+  Guess guess{map.quaternion_order ? map.quaternion_order->where : FirstBodyWhere(map),
+              Warning::kQuaternionOrder,
+              {},
+              fmt::format("quaternion_order: {}", is_wxyz ? "xyzw" : "wxyz")};
+  // A body that stands as when it was defined has w near 1.
+  std::vector<double> as_read, other;
+  for (const PoseBody& body : poses.bodies) {
+    for (const PoseSample& sample : body.samples) {
+      as_read.push_back(std::abs(sample.q.w()));
+      other.push_back(std::abs(is_wxyz ? sample.q.z() : sample.q.x()));
+    }
+  }
+  const double w = Median(std::move(as_read)), other_w = Median(std::move(other));
+  const bool looks_so = w <= 0.5 && other_w >= 0.85;
+  if (looks_so)
+    guess.signs.push_back(
+        fmt::format("the {} of four numbers, as w, is {:.2f} (median, without its sign), the {} is "
+                    "{:.2f}: this looks like {}",
+                    is_wxyz ? "first" : "last", w, is_wxyz ? "last" : "first", other_w,
+                    is_wxyz ? "xyzw" : "wxyz"));
+  const MotionSeen seen = MotionIn(poses, map, map.MetresPerUnit());
+  const WayUp way(seen, map);
+  const Votes turns = way.Turns(map.Up()), other_turns = way.Turns(map.Up(), is_wxyz);
+  if (turns.Deny() && other_turns.Agree())
+    guess.signs.push_back(
+        "what is set down anew would have turned about up in the other order only");
+  const auto slips_m = Slips_m(seen, {}), other_m = Slips_m(seen, is_wxyz);
+  const bool slips = slips_m && *slips_m > kInHand_m && *other_m < *slips_m / 3;
+  if (slips)
+    guess.signs.push_back(
+        fmt::format("things slip by {:.0f} mm in the hands that carry them, in the other order by "
+                    "{:.0f} mm",
+                    1e3 * *slips_m, 1e3 * *other_m));
+  // Turns alone are few.
+  if (!looks_so && !slips && guess.signs.size() == 1) guess.signs.clear();
+  return guess;
+}
+
+/// A right hand is to the right of a left one, as both see what they work with.
+Guess GuessHandedness(const PoseFile& poses, const ImportMap& map) {
+  Guess guess{FirstBodyWhere(map), Warning::kHanded, {}, "handed: left"};
+  if (map.is_left_handed) return guess;
+  const MotionSeen seen = MotionIn(poses, map, map.MetresPerUnit());
+  std::array<std::size_t, 2> hands{};  // left, right
+  std::array<int, 2> named{};
+  std::size_t body = 0;
+  for (const Named<MappedEntity>& entity : map.entities) {
+    if (!entity.value.from) continue;
+    if (entity.value.hand)
+      for (const std::size_t side : {0U, 1U})
+        if (entity.name.find(side ? "right" : "left") != std::string::npos) {
+          hands[side] = body;
+          ++named[side];
+        }
+    ++body;
+  }
+  if (named != std::array{1, 1}) return guess;
+  std::vector<double> beside_m;
+  for (const Rest& rest : seen.rests) {
+    if (!rest.stands) continue;
+    for (std::size_t k = rest.begin + 1; k < rest.end; ++k) {
+      // Hands that work may cross; where they wait they do not.
+      const auto waits = [&](std::size_t hand) {
+        const Eigen::Vector3d& p = seen.looks[hand][k].p_m;
+        return (p - seen.looks[hand][k - 1].p_m).norm() < kWaits_m &&
+               (p - rest.p_m).norm() > 2 * kHandReach_m;
+      };
+      if (!waits(hands[0]) || !waits(hands[1])) continue;
+      const Eigen::Vector3d &left = seen.looks[hands[0]][k].p_m,
+                            &right = seen.looks[hands[1]][k].p_m;
+      const Eigen::Vector3d ahead = rest.p_m - (left + right) / 2;
+      const Eigen::Vector3d aside = ahead.cross(map.Up());
+      const double m = (right - left).dot(aside.normalized());
+      if (!std::isnan(m)) beside_m.push_back(m);
+    }
+  }
+  const auto left_of = static_cast<std::size_t>(
+      std::ranges::count_if(beside_m, [](double m) { return m < -kBeside_m; }));
+  if (beside_m.size() < 20 || 10 * left_of < 7 * beside_m.size()) return guess;
+  guess.signs.push_back(fmt::format(
+      "the right hand is {:.2f} m to the left of the left hand, as they see what stands "
+      "before them: the file's axes look left-handed, or the hands are exchanged",
+      -Median(std::move(beside_m))));
+  return guess;
+}
+
+}  // namespace prehend::exchange
