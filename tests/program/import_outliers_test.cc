@@ -74,6 +74,7 @@ class ImportOutliers : public testing::Test {
     EXPECT_EQ(said.exit_code, 0) << said.err;
     const Said events = Prehend({"episode", "resegment", (folder_ / "take.jsonl").string()});
     grasps_.clear();
+    assumed_ = events.err;
     std::istringstream lines(events.out);
     for (std::string line; std::getline(lines, line);) {
       std::istringstream words(line);
@@ -89,6 +90,7 @@ class ImportOutliers : public testing::Test {
 
   const std::filesystem::path folder_ = FreshFolder("import_outliers");
   std::vector<std::string> grasps_;
+  std::string assumed_;
 };
 
 TEST_F(ImportOutliers, WhatGoesOutAndBackIsNamedAndMayBeLost) {
@@ -157,6 +159,46 @@ TEST_F(ImportOutliers, ExchangedBodiesAreNamed) {
     EXPECT_TRUE(Has(said, "'cup' and 'can' look exchanged from 2.833 to ")) << frames << said;
     EXPECT_FALSE(Has(said, "jumps")) << frames << said;
   }
+}
+
+// A hand that is lost holds what it held until it was seen last, unless it is found there again.
+TEST_F(ImportOutliers, ALostHandEndsItsGrasp) {
+  const auto lost = [](double from_s, double until_s, Pose found) {
+    return [=](double t_s, int, Pose& hand, Pose& cup, Pose&) {
+      if (t_s < from_s) return;
+      hand.is_seen = t_s >= until_s;
+      hand.x = cup.x + found.x;
+      hand.y = cup.y + found.y;
+      hand.z = cup.z + 0.06;
+    };
+  };
+  Import(CsvOf(60, 5, lost(1.5, 3, {0, -0.5, 0})));
+  ASSERT_EQ(grasps_.size(), 1u);
+  EXPECT_TRUE(Has(grasps_[0], "..1.6000")) << grasps_[0];
+  EXPECT_TRUE(Has(assumed_, "assumed: in grasping(right_hand, cup), ")) << assumed_;
+  EXPECT_TRUE(Has(assumed_, "'right_hand' is not seen for 0.1")) << assumed_;
+  Import(CsvOf(60, 5, lost(1.5, 9, {})));
+  ASSERT_EQ(grasps_.size(), 1u);
+  EXPECT_TRUE(Has(grasps_[0], "..1.6000")) << grasps_[0];
+  Import(CsvOf(60, 5, lost(1.5, 2, {})));
+  ASSERT_EQ(grasps_.size(), 1u);
+  EXPECT_FALSE(Has(grasps_[0], "..1.6")) << grasps_[0];
+  // What only rests at a thing, and is found elsewhere.
+  const auto resting = [](double until_s, double y_m) {
+    return [=](double t_s, int, Pose& hand, Pose& cup, Pose&) {
+      cup = {0, 0, 0.79};
+      hand = {0, -0.3 * (1 - Smooth(t_s / 0.8)), 0.85};
+      if (t_s >= 3) hand = {0, y_m, 0.85, 0, t_s >= until_s};
+    };
+  };
+  for (const double until_s : {4.0, 9.0}) {
+    Import(CsvOf(60, 6, resting(until_s, -0.5)));
+    ASSERT_EQ(grasps_.size(), 1u);
+    EXPECT_TRUE(Has(grasps_[0], "..3.1000")) << grasps_[0];
+  }
+  Import(CsvOf(60, 6, resting(4, 0)));
+  ASSERT_EQ(grasps_.size(), 1u);
+  EXPECT_TRUE(Has(grasps_[0], "..6.0")) << grasps_[0];
 }
 
 }  // namespace

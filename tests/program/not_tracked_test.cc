@@ -96,7 +96,9 @@ TEST_F(NotTracked, WhatALongGapLeavesUnknownEndsAndNeitherDoesItsOppositeHold) {
             "completed: 1.9990 s, 1999 ticks\n");
   EXPECT_EQ(
       said.err,
-      "warning: 'cup' is not tracked in 1 gap: 0.100 s are bridged, in 0.300 s it is unknown\n");
+      "warning: 'cup' is not tracked in 1 gap: 0.100 s are bridged, in 0.300 s it is unknown\n"
+      "assumed: in near(hand, cup), 0.0000..0.9000 s, 'cup' is not seen for 0.100 s\n"
+      "assumed: in moving(cup), 0.0200..0.9000 s, 'cup' is not seen for 0.100 s\n");
   const Said longer = Segment(Recording(40, 60, "\"bridge_s\": 0.5, "));
   EXPECT_EQ(longer.out, Segment(Recording(0, 0)).out);
   const Said never = Segment(Recording(40, 44, "\"bridge_s\": 0, "));
