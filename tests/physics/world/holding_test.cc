@@ -53,7 +53,7 @@ TEST(Holding, WhatIsHeldInTheAirNeitherTurnsNorCreeps) {
                {Cylinder{0.033, 0.12}, 0.35, "wrap", Approach::kSide},
                {Sphere{0.035}, 0.2, "wrap", Approach::kAbove}};
   for (const auto& [shape, mass_kg, style, approach] : cases) {
-    Simulation simulation(MakeScene({.shape = shape, .mass_kg = mass_kg}),
+    Simulation simulation(MakeScene(Tabletop{.shape = shape, .mass_kg = mass_kg}),
                           Hold(style, approach, 0.15));
     const Way way = WayOf(simulation, /*in_the_hand=*/true, 3, 10);
     EXPECT_LT(way.turned_deg, 0.1) << style << " " << mass_kg << " kg";
@@ -64,7 +64,7 @@ TEST(Holding, WhatIsHeldInTheAirNeitherTurnsNorCreeps) {
 
 TEST(Holding, FrictionBearsNoMoreThanItsLimit) {
   // Thumb and fingers press with some 30 N: 6 kg are too heavy.
-  Simulation simulation(MakeScene({.mass_kg = 6}), Hold("wrap", Approach::kSide, 0.15));
+  Simulation simulation(MakeScene(Tabletop{.mass_kg = 6}), Hold("wrap", Approach::kSide, 0.15));
   while (simulation.Step()) {
   }
   EXPECT_LT(simulation.snapshot().bodies[kObject].X_WB.p_m.z(), kTop_m + 0.105);
