@@ -21,6 +21,12 @@ TEST(RunTool, TextGoesThroughAnotherProgram) {
 TEST(RunTool, WhatDoesNotEndByItselfSaysWhy) {
   EXPECT_EQ(RunTool({"no-such-tool"}, "").problem, "'no-such-tool' is not installed");
   EXPECT_EQ(RunTool({"sleep", "60"}, "", {.time_s = 0.1}).problem, "took more than 0.1 s");
+  // What takes long to begin has its time from its first line on.
+  EXPECT_EQ(
+      RunTool({"sh", "-c", "echo on; sleep 60"}, "", {.time_s = 60, .answering_s = 0.1}).problem,
+      "took more than 0.1 s");
+  EXPECT_EQ(RunTool({"sh", "-c", "sleep 60"}, "", {.time_s = 0.1, .answering_s = 60}).problem,
+            "took more than 0.1 s");
   EXPECT_EQ(RunTool({"yes"}, "", {.output_bytes = 1000}).problem, "printed more than 1000 bytes");
   EXPECT_EQ(RunTool({"sh", "-c", "kill -9 $$"}, "").problem, "was ended by signal 9");
   EXPECT_TRUE(RunTool({"true"}, std::string(1'000'000, 'x')).Succeeded())
