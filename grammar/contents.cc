@@ -10,6 +10,10 @@ namespace prehend::grammar {
 
 const std::string& GrammarName(const Program& program) { return program.name; }
 
+bool SameTexts(const Program& a, const Program& b) {
+  return a.name == b.name && a.text_hash == b.text_hash;
+}
+
 std::vector<std::string> EventNames(const Program& program) {
   std::vector<std::string> names;
   for (const Rule& rule : program.rules) {

@@ -18,6 +18,8 @@ struct Program;  // grammar/program/program.h
 
 /// As in the text: "grammar pick_and_place".
 const std::string& GrammarName(const Program& program);
+/// Whether both were compiled from the same texts; parameters may have other values.
+bool SameTexts(const Program& a, const Program& b);
 
 /// Names of the events, in the order of the files. Conditions are not among them.
 std::vector<std::string> EventNames(const Program& program);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -106,6 +107,7 @@ class Compiler {
         ReadFile(*used, seen);
       }
     }
+    program_.text_hash = 31 * program_.text_hash + std::hash<std::string>()(source.text.text);
     sources_.push_back(std::move(source));
   }
 

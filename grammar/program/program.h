@@ -300,6 +300,7 @@ struct TimeWindow {
 /// output.
 struct Program {
   std::string name;
+  std::size_t text_hash = 0;  ///< of all texts that it was compiled from
   IdVector<RuleId, Rule> rules;
   std::vector<RuleId> schedule;  ///< rules so that each comes after those it refers to
   IdVector<NodeId, Node> nodes;

@@ -141,7 +141,8 @@ TEST_F(Labelled, EpisodesAndScenariosOfASuiteTakeLabelsToo) {
   const Said swept = Prehend({"grammar", "sweep", file, "--over", "reach_radius=10cm..30cm:2",
                               "--truth", PREHEND_SOURCE_DIR "/golden"});
   ASSERT_EQ(swept.exit_code, 0) << swept.err;
-  EXPECT_TRUE(Has(swept.out, "2 settings on 2 episodes; the best F1 is 100.00 %\nF1@50: "))
+  EXPECT_TRUE(
+      Has(swept.out, "pick_and_place: 2 settings on 2 episodes; the best F1 is 100.00 %\nF1@50: "))
       << swept.out;
   const Said of_lines =
       Prehend({"grammar", "sweep", Take("a.jsonl"), "--over", "reach_radius=1cm..3cm:2"});
@@ -241,14 +242,15 @@ TEST_F(Labelled, ASweepMeasuresLabelsAsScoreDoes) {
   // Two are right; reach, lift and put-down have labels in the map, and nobody marked them.
   const Said by_overlap = sweep({});
   EXPECT_TRUE(by_overlap.out.starts_with(
-      "2 settings on 1 episode; the best F1 is 57.14 %\n"
+      "pick_and_place_from_motion: 2 settings on 1 episode; the best F1 is 57.14 %\n"
       "F1@50: an event is right if it and its label have half of their union in common; "
       "--collar-ms asks for both boundaries instead\n"))
       << by_overlap.out << by_overlap.err;
   const Said by_collar = sweep({"--collar-ms", "50"});
   EXPECT_EQ(by_collar.exit_code, 0);
   EXPECT_EQ(by_collar.out,
-            "2 settings on 1 episode; every one scores 0: no event is right with any of them, so "
+            "pick_and_place_from_motion: 2 settings on 1 episode; every one scores 0: no event is "
+            "right with any of them, so "
             "none is the best\nF1: an event is right if both boundaries are within 50 ms\n");
   const Said svg = sweep({"--collar-ms", "50", "--picture", Path("sweep.svg")});
   EXPECT_EQ(svg.exit_code, 0) << svg.err;

@@ -9,8 +9,8 @@
 #include "harness/base/base/atomic_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/typed_episode.h"
+#include "harness/episode/episode/open_episode.h"
 #include "harness/exchange/labels/read_labels.h"
-#include "harness/exchange/labels/read_truths.h"
 #include "harness/measure/sweep/margins.h"
 #include "harness/measure/sweep/robust_settings.h"
 #include "harness/measure/sweep/sweep.h"
@@ -62,16 +62,16 @@ std::optional<measure::SweepRequest> RequestFrom(const ParsedOptions& options,
   return request;
 }
 
-/// The recordings, or the exit code after a complaint. Where no grammar was named, `request` gets
-/// theirs.
+/// The recordings, or the exit code after a complaint. Where no grammar was named, all have the
+/// same.
 tl::expected<std::vector<episode::EpisodeName>, ExitCode> EpisodesFrom(
-    const ParsedOptions& options, measure::SweepRequest& request, const CommandContext& context) {
+    const ParsedOptions& options, const measure::SweepRequest& request,
+    const CommandContext& context) {
   auto episodes = FindEpisodesOrComplain("EPISODES", options, context);
   if (!episodes) return episodes;
   if (request.grammar.empty()) {
-    Result<std::string> own = exchange::OwnGrammar(*episodes);
-    if (!own) return tl::unexpected(Complain(context, own.error()));
-    request.grammar = std::move(*own);
+    const auto why = episode::WhyNotOneGrammar(*episodes, context.root);
+    if (!why.empty()) return tl::unexpected(Complain(context, why));
   }
   return *episodes;
 }

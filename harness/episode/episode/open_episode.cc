@@ -2,15 +2,34 @@
 // See harness/episode/episode/open_episode.h. Tested by tests/program/episode_kinds_test.cc
 #include "harness/episode/episode/open_episode.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <fstream>
 
 #include "grammar/contents.h"
 #include "harness/episode/episodes/placeholder_scene.h"
 #include "harness/episode/episodes/recordings.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/load_run.h"
+#include "harness/episode/sense/episode_stream.h"
 
 namespace prehend::episode {
+namespace {
+
+/// Of JSON Lines. What is wrong with it is said by who reads all of it.
+Result<EpisodeHeader> HeaderOf(const std::string& file) {
+  std::ifstream in(file);
+  std::string line;
+  EpisodeStream stream(file);
+  if (std::getline(in, line) && stream.Take(line).empty() && stream.has_header())
+    return stream.header();
+  Result<Recording> whole = ReadRecording(file);
+  if (!whole) return tl::unexpected(std::move(whole.error()));
+  return std::move(whole->header);
+}
+
+}  // namespace
 
 Result<Episode> EpisodeOpener::OpenLines(const EpisodeName& name, const GrammarChoice& choice) {
   Result<Recording> recording = ReadRecording(name.file);
@@ -34,7 +53,7 @@ Result<Episode> EpisodeOpener::Open(Recording recording, const EpisodeName& name
   return episode;
 }
 
-Result<Episode> EpisodeOpener::OpenKept(const EpisodeName& name, const GrammarChoice& choice) {
+Result<EpisodeRow> EpisodeOpener::FindKept(const EpisodeName& name) {
   if (!file_ || file_->path() != name.file) {
     auto opened = EpisodeFile::Open(name.file);
     if (!opened) return tl::unexpected(std::move(opened.error()));
@@ -44,6 +63,12 @@ Result<Episode> EpisodeOpener::OpenKept(const EpisodeName& name, const GrammarCh
   if (row == file_->episodes().end())
     return tl::unexpected(
         grammar::Diagnostics{{.file = name.file, .place = {}, .message = "the episode is gone"}});
+  return *row;
+}
+
+Result<Episode> EpisodeOpener::OpenKept(const EpisodeName& name, const GrammarChoice& choice) {
+  const Result<EpisodeRow> row = FindKept(name);
+  if (!row) return tl::unexpected(row.error());
   Result<LoadedRun> loaded = loader_.Load(*file_, *row, choice);
   if (!loaded) return tl::unexpected(std::move(loaded.error()));
   const Origin origin = row->simulated ? Origin::kRecordedRun : Origin::kRecording;
@@ -64,6 +89,56 @@ Result<Episode> EpisodeOpener::Open(const EpisodeName& name, const GrammarChoice
   Result<LoadedRun> loaded = LoadRun({name.file, choice.grammar, choice.settings}, root_, files);
   if (!loaded) return tl::unexpected(std::move(loaded.error()));
   return Episode(name, std::move(*loaded));
+}
+
+grammar::CompileResult EpisodeOpener::Compile(const EpisodeName& name, const std::string& asked,
+                                              const grammar::Overrides& parameters) {
+  if (!asked.empty()) return LoadGrammar(root_, asked, parameters);
+  if (compiled_ != name) {
+    compiled_.reset();
+    own_ = {};
+    if (name.number) {
+      const Result<EpisodeRow> row = FindKept(name);
+      Result<LoadedRun> loaded = row ? loader_.Load(*file_, *row) : tl::unexpected(row.error());
+      if (!loaded) return {nullptr, std::move(loaded.error())};
+      own_ = std::move(*loaded);
+    } else if (name.origin == Origin::kRecording) {
+      Result<EpisodeHeader> header = HeaderOf(name.file);
+      if (!header) return {nullptr, std::move(header.error())};
+      return LoadGrammarOf(*header, "", root_, parameters);
+    } else {
+      Result<LoadedRun> loaded = LoadRun({name.file, "", {}}, root_);
+      if (!loaded) return {nullptr, std::move(loaded.error())};
+      own_ = std::move(*loaded);
+    }
+    compiled_ = name;
+  }
+  return name.number ? loader_.CompileOwn(own_.grammar, parameters)
+                     : LoadGrammar(root_, own_.grammar, parameters);
+}
+
+grammar::Diagnostics WhyNotOneGrammar(std::span<const EpisodeName> episodes,
+                                      const std::string& root) {
+  EpisodeOpener opener(root);
+  std::shared_ptr<const grammar::Program> first;
+  for (const EpisodeName& episode : episodes) {
+    if (episodes.size() == 1) break;
+    grammar::CompileResult own = opener.Compile(episode, "", {});
+    if (!own.program) return std::move(own.diagnostics);
+    if (!first) first = own.program;
+    if (SameTexts(*first, *own.program)) continue;
+    const std::string &name = GrammarName(*own.program), &other = GrammarName(*first);
+    return {{.file = episode.scenario,
+             .place = {},
+             .message = name == other
+                            ? fmt::format("its grammar {} is not the same as that of {}, which has "
+                                          "the same name",
+                                          name, episodes.front().scenario)
+                            : fmt::format("it names the grammar {}, and {} the grammar {}", name,
+                                          episodes.front().scenario, other),
+             .hint = fmt::format("one of them for all: --grammar {}", name)}};
+  }
+  return {};
 }
 
 Result<Episode> OpenEpisode(const EpisodeName& name, const GrammarChoice& choice,

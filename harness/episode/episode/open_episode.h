@@ -3,6 +3,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "harness/episode/episode/episode.h"
@@ -22,14 +24,25 @@ class EpisodeOpener {
   /// A recording that is no file.
   Result<Episode> Open(Recording recording, const EpisodeName& name, const GrammarChoice& choice);
 
+  /// The grammar alone, with other values of its parameters; no frames are read.
+  grammar::CompileResult Compile(const EpisodeName& name, const std::string& asked,
+                                 const grammar::Overrides& parameters);
+
  private:
   Result<Episode> OpenLines(const EpisodeName& name, const GrammarChoice& choice);
   Result<Episode> OpenKept(const EpisodeName& name, const GrammarChoice& choice);
+  Result<EpisodeRow> FindKept(const EpisodeName& name);
 
   std::string root_;
   EpisodeLoader loader_;
   std::shared_ptr<const EpisodeFile> file_;
+  std::optional<EpisodeName> compiled_;  ///< whose own grammar is `own_`
+  LoadedRun own_;
 };
+
+/// Empty if all were played or recorded with the same grammar.
+grammar::Diagnostics WhyNotOneGrammar(std::span<const EpisodeName> episodes,
+                                      const std::string& root);
 
 /// A single one.
 Result<Episode> OpenEpisode(const EpisodeName& name, const GrammarChoice& choice,

@@ -78,9 +78,11 @@ Result<LoadedRun> EpisodeLoader::LoadRecording(const EpisodeFile& file, const Ep
   const bool is_own = choice.grammar.empty();
   const std::string asked = tasks_.RequestOf(task).grammar;
   const std::string own = asked.empty() ? header->grammar : asked;
-  grammar::CompileResult compiled = Compile(is_own, is_own ? own : choice.grammar, *overrides);
+  const std::string name = is_own ? own : choice.grammar;
+  grammar::CompileResult compiled = Compile(is_own, name, *overrides);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
-  LoadedRun loaded{.scenario = PlaceholderFor(*header), .program = std::move(compiled.program)};
+  LoadedRun loaded{
+      .scenario = PlaceholderFor(*header), .program = std::move(compiled.program), .grammar = name};
   loaded.scenario.file = task.run.scenario_file;
   loaded.scenario.grammar = GrammarName(*loaded.program);
   if (!is_own || !choice.settings.empty())
@@ -114,8 +116,8 @@ Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow&
   Result<grammar::Overrides> overrides = ParameterSettings(choice.settings);
   if (!overrides) return tl::unexpected(std::move(overrides.error()));
   const bool is_own = choice.grammar.empty();
-  const std::string name = is_own ? loaded->scenario.grammar : choice.grammar;
-  grammar::CompileResult compiled = Compile(is_own, name, *overrides);
+  if (!is_own) loaded->grammar = choice.grammar;
+  grammar::CompileResult compiled = Compile(is_own, loaded->grammar, *overrides);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
   loaded->program = std::move(compiled.program);
   loaded->scenario.grammar = GrammarName(*loaded->program);

@@ -32,6 +32,12 @@ class EpisodeLoader {
   Result<LoadedRun> Load(const EpisodeFile& file, const EpisodeRow& episode,
                          const GrammarChoice& choice = {});
 
+  /// A grammar of the episode that was loaded last.
+  grammar::CompileResult CompileOwn(const std::string& name_or_path,
+                                    const grammar::Overrides& overrides) {
+    return Compile(true, name_or_path, overrides);
+  }
+
  private:
   Result<LoadedRun> LoadRecording(const EpisodeFile& file, const EpisodeRow& episode,
                                   const TaskFiles& task, const GrammarChoice& choice);

@@ -125,7 +125,7 @@ Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
   std::ranges::move(Warnings(*compiled.program, MakeEntityTable(*scenario)),
                     std::back_inserter(warnings));
   return LoadedRun{std::move(*scenario), std::move(compiled.program), std::move(warnings),
-                   std::move(*document)};
+                   std::move(*document), grammar};
 }
 
 Result<grammar::Overrides> ParameterSettings(const std::vector<std::string>& settings) {

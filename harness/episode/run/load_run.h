@@ -29,6 +29,7 @@ struct LoadedRun {
   grammar::Diagnostics
       warnings;  ///< of scenario and grammar: what is allowed but is probably a mistake
   YamlDocument document = {};  ///< the scenario's file, without `settings`; empty of a recording
+  std::string grammar = {};    ///< the name or path that `program` was compiled from
 };
 
 /// `files` receives every path that was tried, also if there is no result.

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <optional>
 
-#include "harness/base/base/default_grammar.h"
 #include "harness/exchange/labels/read_labels.h"
 
 namespace prehend::exchange {
@@ -98,26 +97,6 @@ std::string BackwardWarning(const LabelReading& reading) {
              ? fmt::format("warning: a label ends before it begins, and is left out: {}\n", files)
              : fmt::format("warning: {} labels end before they begin, and are left out: {}\n",
                            count, files);
-}
-
-Result<std::string> OwnGrammar(const std::vector<episode::EpisodeName>& episodes) {
-  std::string grammar;
-  const episode::EpisodeName* named_by = nullptr;
-  for (const episode::EpisodeName& episode : episodes) {
-    const std::string own =
-        episode.origin == episode::Origin::kRecording ? episode.grammar : kDefaultGrammar;
-    if (own.empty()) continue;
-    if (named_by && own != grammar)
-      return tl::unexpected(grammar::Diagnostics{
-          {.file = episode.scenario,
-           .place = {},
-           .message = fmt::format("it names the grammar {}, and {} the grammar {}", own,
-                                  named_by->scenario, grammar),
-           .hint = fmt::format("one of them for all: --grammar {}", own)}});
-    grammar = own;
-    named_by = &episode;
-  }
-  return grammar.empty() ? kDefaultGrammar : grammar;
 }
 
 }  // namespace prehend::exchange

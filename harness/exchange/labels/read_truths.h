@@ -22,8 +22,4 @@ Result<LabelReading> ReadTruths(const std::vector<episode::EpisodeName>& episode
 /// What a reading left out, as a line of warning; "" if it left out nothing.
 std::string BackwardWarning(const LabelReading& reading);
 
-/// The grammar that the recordings name for themselves, for commands without --grammar; of what was
-/// simulated the default one. Reports recordings that name different grammars.
-Result<std::string> OwnGrammar(const std::vector<episode::EpisodeName>& episodes);
-
 }  // namespace prehend::exchange

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "grammar/contents.h"
 #include "harness/episode/episode/open_episode.h"
-#include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/missing_facts.h"
 #include "harness/exchange/labels/clock_offset.h"
@@ -115,9 +115,9 @@ Result<LabelScores> ScoreLabels(const LabelsRequest& request, std::string& warni
   if (!settings) return tl::unexpected(settings.error());
   std::vector<std::string> grammars = request.grammars;
   if (grammars.empty()) {
-    Result<std::string> own = exchange::OwnGrammar(request.episodes);
-    if (!own) return tl::unexpected(std::move(own.error()));
-    grammars.push_back(std::move(*own));
+    grammar::Diagnostics why = episode::WhyNotOneGrammar(request.episodes, request.root);
+    if (!why.empty()) return tl::unexpected(std::move(why));
+    grammars.emplace_back();
   }
   std::vector<episode::Episode> episodes;
   episode::EpisodeOpener opener(request.root);
@@ -128,7 +128,8 @@ Result<LabelScores> ScoreLabels(const LabelsRequest& request, std::string& warni
   }
   LabelScores scores;
   for (const std::string& grammar : grammars) {
-    const grammar::CompileResult compiled = episode::LoadGrammar(request.root, grammar, *settings);
+    const grammar::CompileResult compiled =
+        opener.Compile(request.episodes.front(), grammar, *settings);
     if (!compiled.program) return tl::unexpected(compiled.diagnostics);
     const auto truths =
         exchange::ReadTruths(request.episodes, request.label_files, request.label_map,
@@ -138,8 +139,9 @@ Result<LabelScores> ScoreLabels(const LabelsRequest& request, std::string& warni
     warnings += MissingFactsOf(episodes, *compiled.program);
     auto labelled = AllLabelled(episodes, *truths, compiled.program);
     if (!labelled) return tl::unexpected(std::move(labelled.error()));
-    warnings += ClockWarning(grammar, *labelled, *truths);
-    AddScores(grammar, std::move(*labelled), request.collar_s, scores);
+    const std::string& name = grammar.empty() ? GrammarName(*compiled.program) : grammar;
+    warnings += ClockWarning(name, *labelled, *truths);
+    AddScores(name, std::move(*labelled), request.collar_s, scores);
   }
   return scores;
 }

@@ -12,7 +12,7 @@
 #include "grammar/base/quantity.h"
 #include "grammar/base/wording.h"
 #include "grammar/describe.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/episode/open_episode.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/truth/timeline/event_text.h"
 
@@ -22,9 +22,11 @@ namespace {
 constexpr std::array kFactors = {0.125, 0.177, 0.25, 0.354, 0.5, 0.707, 0.841, 1.0,
                                  1.19,  1.414, 2.0,  2.83,  4.0, 5.66,  8.0};
 
+using CompileWith = std::function<grammar::CompileResult(const grammar::Overrides&)>;
+
 /// The values that the grammar accepts; `own` becomes the index of the parameter's own one.
-Axis AxisOf(const grammar::ProgramParam& param, const SweepRequest& request,
-            const grammar::Overrides& fixed, std::size_t& own) {
+Axis AxisOf(const grammar::ProgramParam& param, const grammar::Overrides& fixed,
+            const CompileWith& compile, std::size_t& own) {
   Axis axis{.parameter = param.name, .unit = {}, .values = {}};
   const std::string text = grammar::QuantityText(param.value);
   if (const std::size_t blank = text.find(' '); blank != std::string::npos)
@@ -37,7 +39,7 @@ Axis AxisOf(const grammar::ProgramParam& param, const SweepRequest& request,
     const bool is_own = factor == 1.0;
     if (is_own)
       own = axis.values.size() - 1;
-    else if (!episode::LoadGrammar(request.root, request.grammar, overrides).program)
+    else if (!compile(overrides).program)
       axis.values.pop_back();
   }
   return axis;
@@ -103,8 +105,11 @@ Result<Margins> FindMargins(const std::vector<episode::EpisodeName>& episodes, S
                             const std::function<void(const Margins&)>& so_far) {
   const Result<grammar::Overrides> fixed = episode::ParameterSettings(request.settings);
   if (!fixed) return tl::unexpected(fixed.error());
-  const grammar::CompileResult compiled =
-      episode::LoadGrammar(request.root, request.grammar, *fixed);
+  episode::EpisodeOpener opener(request.root);
+  const CompileWith compile = [&](const grammar::Overrides& overrides) {
+    return opener.Compile(episodes.front(), request.grammar, overrides);
+  };
+  const grammar::CompileResult compiled = compile(*fixed);
   if (!compiled.program) return tl::unexpected(compiled.diagnostics);
   const std::vector<grammar::ProgramParam> params = grammar::Describe(*compiled.program).params;
   if (auto unknown = UnknownAmong(only, params)) return tl::unexpected(std::move(*unknown));
@@ -118,7 +123,7 @@ Result<Margins> FindMargins(const std::vector<episode::EpisodeName>& episodes, S
       continue;
     }
     tried.emplace_back();
-    tried.back().axis = AxisOf(param, request, *fixed, tried.back().own);
+    tried.back().axis = AxisOf(param, *fixed, compile, tried.back().own);
     settings += tried.back().axis.values.size();
   }
   // What is told is about all of them.
@@ -159,13 +164,13 @@ std::string MarginsText(const Margins& margins, double within) {
                     : margin.near_edge  ? "warning: at an edge"
                                         : ""});
   }
-  std::string text;
+  std::string text = fmt::format("{}, {}\n", margins.sweep.grammar,
+                                 grammar::CountOf(margins.sweep.episodes, "recording"));
   for (const std::string& line : truth::AlignColumns(rows)) text += line + "\n";
   text += fmt::format(
-      "{} recording{}; each parameter from an eighth to eight times its value, the others as they "
-      "are;\na score stays if it is within {:g} percent of the best of its row\n{}\n",
-      margins.sweep.episodes, margins.sweep.episodes == 1 ? "" : "s", 100 * within,
-      margins.sweep.measure);
+      "each parameter from an eighth to eight times its value, the others as they are;\n"
+      "a score stays if it is within {:g} percent of the best of its row\n{}\n",
+      100 * within, margins.sweep.measure);
   if (std::ranges::all_of(margins.margins, [](const Margin& margin) { return margin.best == 0; }))
     return text + "every score is 0: no event is right with any value of any parameter\n";
   if (!idle.empty())

@@ -124,7 +124,8 @@ std::string RobustSettingsText(const std::vector<Axis>& axes, const SweepResult&
   const SweepPoint& chosen = result.points[robust.chosen];
   const std::string measure = result.measure.empty() ? "" : result.measure + "\n";
   const std::string tried =
-      fmt::format("{} on {}", grammar::CountOf(result.points.size(), "setting"),
+      fmt::format("{}{}{} on {}", result.grammar, result.grammar.empty() ? "" : ": ",
+                  grammar::CountOf(result.points.size(), "setting"),
                   grammar::CountOf(result.episodes, "episode"));
   if (robust.members.empty())
     return fmt::format(

@@ -18,7 +18,6 @@
 #include "harness/base/process/worker_pool.h"
 #include "harness/episode/episode/lacks.h"
 #include "harness/episode/episode/open_episode.h"
-#include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/exchange/labels/read_labels.h"
 #include "harness/exchange/labels/read_truths.h"
@@ -72,7 +71,8 @@ std::vector<std::size_t> IndicesOf(std::size_t point, const std::vector<Axis>& a
   return at;
 }
 
-Result<Programs> CompileAll(const SweepRequest& request) {
+Result<Programs> CompileAll(const SweepRequest& request, const episode::EpisodeName& first) {
+  episode::EpisodeOpener opener(request.root);
   const Result<grammar::Overrides> fixed = episode::ParameterSettings(request.settings);
   if (!fixed) return tl::unexpected(fixed.error());
   std::size_t count = 1;
@@ -83,8 +83,7 @@ Result<Programs> CompileAll(const SweepRequest& request) {
     const std::vector<std::size_t> at = IndicesOf(point, request.axes);
     for (std::size_t i = 0; i < at.size(); ++i)
       overrides[request.axes[i].parameter] = request.axes[i].ValueText(at[i]);
-    grammar::CompileResult compiled =
-        episode::LoadGrammar(request.root, request.grammar, overrides);
+    grammar::CompileResult compiled = opener.Compile(first, request.grammar, overrides);
     if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
     programs.push_back(std::move(compiled.program));
   }
@@ -282,7 +281,7 @@ std::string MeasureText(const SweepRequest& request) {
 
 Result<SweepResult> Sweep(const std::vector<episode::EpisodeName>& episodes,
                           const SweepRequest& request) {
-  const Result<Programs> programs = CompileAll(request);
+  const Result<Programs> programs = CompileAll(request, episodes.front());
   if (!programs) return tl::unexpected(programs.error());
   std::optional<exchange::LabelReading> labels;
   if (request.truth == Truth::kLabels) {
@@ -314,6 +313,7 @@ Result<SweepResult> Sweep(const std::vector<episode::EpisodeName>& episodes,
                                  nullptr, request.progress ? tell : std::function<void()>());
 
   SweepResult result;
+  result.grammar = GrammarName(*programs->front());
   result.measure = MeasureText(request);
   if (labels) result.label_warning = exchange::BackwardWarning(*labels);
   result.points.resize(programs->size());

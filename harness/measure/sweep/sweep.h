@@ -40,7 +40,8 @@ enum class Truth {
 };
 
 struct SweepRequest {
-  std::string root, grammar;
+  std::string root;
+  std::string grammar;                ///< "": what the episodes were played or recorded with
   std::vector<std::string> settings;  ///< of parameters that stay as they are
   std::vector<Axis> axes;
   Truth truth = Truth::kGolden;
@@ -74,6 +75,7 @@ struct SweepPoint {
 struct SweepResult {
   std::vector<SweepPoint> points;  ///< the last axis is the fastest
   int episodes = 0;
+  std::string grammar;                ///< its name
   std::string measure;                ///< "F1@50: .." for people
   std::string label_warning;          ///< of labels that were left out, or ""
   std::vector<std::string> left_out;  ///< "SCENARIO: why"
