@@ -52,25 +52,6 @@ int LargestMatching(int left, int right, const std::function<bool(int, int)>& fi
   return size;
 }
 
-/// Area under the precision-recall curve, with precision made monotonic (VOC 2011).
-double AveragePrecision(const std::vector<bool>& correct, std::size_t truths) {
-  std::vector<double> recall = {0}, precision = {0};
-  double hits = 0;
-  for (std::size_t i = 0; i < correct.size(); ++i) {
-    hits += correct[i];
-    recall.push_back(hits / static_cast<double>(truths));
-    precision.push_back(hits / static_cast<double>(i + 1));
-  }
-  recall.push_back(1);
-  precision.push_back(0);
-  double area = 0;
-  for (std::size_t i = precision.size() - 1; i-- > 0;) {
-    precision[i] = std::max(precision[i], precision[i + 1]);
-    area += (recall[i + 1] - recall[i]) * precision[i + 1];
-  }
-  return area;
-}
-
 const std::string* LabelAt(const Segments& segments, Tick tick) {
   for (const Segment& segment : segments) {
     if (segment.interval.begin <= tick && tick < segment.interval.end) return &segment.label;
@@ -130,27 +111,24 @@ double EditScore(const Segments& truth, const Segments& prediction) {
 
 double MeanAveragePrecision(const Segments& truth, const Segments& prediction,
                             double least_overlap) {
-  std::map<std::string, std::vector<Interval>> truths;
-  for (const Segment& segment : truth) truths[segment.label].push_back(segment.interval);
+  std::map<std::string, std::pair<Segments, Segments>> by_label;
+  for (const Segment& segment : truth) by_label[segment.label].first.push_back(segment);
+  const auto labels = static_cast<double>(by_label.size());
+  for (const Segment& segment : prediction) by_label[segment.label].second.push_back(segment);
   double sum = 0;
-  for (const auto& [label, wanted] : truths) {
-    std::vector<bool> taken(wanted.size(), false), correct;
-    for (const Segment& predicted : prediction) {
-      if (predicted.label != label) continue;
-      std::size_t best = wanted.size();
-      for (std::size_t i = 0; i < wanted.size(); ++i) {
-        if (taken[i] || Closeness(wanted[i], predicted.interval) < least_overlap) continue;
-        const bool closer =
-            best == wanted.size() ||
-            Closeness(wanted[i], predicted.interval) > Closeness(wanted[best], predicted.interval);
-        if (closer) best = i;
-      }
-      correct.push_back(best < wanted.size());
-      if (correct.back()) taken[best] = true;
-    }
-    sum += AveragePrecision(correct, wanted.size());
+  for (const auto& [label, sides] : by_label) {
+    const auto& [wanted, found] = sides;
+    std::vector<int> partner;
+    const double hits = LargestMatching(
+        static_cast<int>(wanted.size()), static_cast<int>(found.size()),
+        [&, &wanted = wanted, &found = found](int i, int j) {
+          return Closeness(wanted[i].interval, found[j].interval) >= least_overlap;
+        },
+        partner);
+    if (hits > 0)
+      sum += hits / static_cast<double>(wanted.size()) * hits / static_cast<double>(found.size());
   }
-  return Ratio(sum, static_cast<double>(truths.size()), prediction.empty() ? 1 : 0);
+  return Ratio(sum, labels, prediction.empty() ? 1 : 0);
 }
 
 FrameCounts& FrameCounts::operator+=(const FrameCounts& other) {
@@ -179,6 +157,15 @@ double FrameCounts::DetectionErrorRate() const {
 double FrameCounts::F1() const {
   const auto wrong = static_cast<double>(2 * confused + missed + false_alarm);
   return Ratio(2 * static_cast<double>(correct), 2 * static_cast<double>(correct) + wrong, 1);
+}
+
+double FrameCounts::Kappa() const {
+  if (all == 0) return 1;
+  const auto frames = static_cast<double>(all);
+  const double one = static_cast<double>(InTruth()) / frames,
+               other = static_cast<double>(correct + confused + false_alarm) / frames;
+  const double by_chance = one * other + (1 - one) * (1 - other);
+  return by_chance < 1 ? (Accuracy() - by_chance) / (1 - by_chance) : 1;
 }
 
 FrameCounts CountFrames(const Episode& episode, Tick collar) {
@@ -276,29 +263,84 @@ bool SharesPartner(const Segment& one, const Segments& others, const Segments& o
 
 }  // namespace
 
-Ward& Ward::operator+=(const Ward& other) {
+void WardFrames::Add(const WardFrames& more, double share) {
+  alone += share * more.alone;
+  between += share * more.between;
+  before += share * more.before;
+  after += share * more.after;
+}
+
+void Ward::Add(const Ward& other, double ticks_per_second) {
   correct += other.correct;
   deleted += other.deleted;
   fragmented += other.fragmented;
   merged += other.merged;
   fragmented_and_merged += other.fragmented_and_merged;
   inserted += other.inserted;
-  return *this;
+  found_correct += other.found_correct;
+  fragmenting += other.fragmenting;
+  merging += other.merging;
+  fragmenting_and_merging += other.fragmenting_and_merging;
+  missed.Add(other.missed, 1 / ticks_per_second);
+  false_alarm.Add(other.false_alarm, 1 / ticks_per_second);
 }
 
-Ward CompareByWard(const Segments& truth, const Segments& said) {
-  Ward ward;
-  for (const Segment& one : truth) {
-    const auto pieces = Meeting(one, said);
-    const bool merged = SharesPartner(one, said, truth);
-    ++(pieces == 0            ? ward.deleted
-       : pieces > 1 && merged ? ward.fragmented_and_merged
-       : pieces > 1           ? ward.fragmented
-       : merged               ? ward.merged
-                              : ward.correct);
+namespace {
+
+/// Of `own` what `others` do not cover.
+WardFrames UncoveredOf(const Segments& own, const Segments& others) {
+  WardFrames frames;
+  for (const Segment& one : own) {
+    const Segment* last = nullptr;
+    for (const Segment& other : others) {
+      if (Overlap(one.interval, other.interval) <= 0) continue;
+      const Tick from = last ? last->interval.end : one.interval.begin;
+      (last ? frames.between : frames.before) +=
+          static_cast<double>(std::max<Tick>(0, other.interval.begin - from));
+      last = &other;
+    }
+    if (last)
+      frames.after += static_cast<double>(std::max<Tick>(0, one.interval.end - last->interval.end));
+    else
+      frames.alone += static_cast<double>(Length(one.interval));
   }
-  for (const Segment& one : said) ward.inserted += Meeting(one, truth) == 0 ? 1 : 0;
-  return ward;
+  return frames;
+}
+
+/// How many of `own` meet none of `others`, one that meets no other one, ..
+struct WardSide {
+  int alone = 0, plain = 0, several = 0, shares = 0, both = 0;
+};
+WardSide SideOf(const Segments& own, const Segments& others) {
+  WardSide side;
+  for (const Segment& one : own) {
+    const auto pieces = Meeting(one, others);
+    const bool shares = SharesPartner(one, others, own);
+    ++(pieces == 0            ? side.alone
+       : pieces > 1 && shares ? side.both
+       : pieces > 1           ? side.several
+       : shares               ? side.shares
+                              : side.plain);
+  }
+  return side;
+}
+
+}  // namespace
+
+Ward CompareByWard(const Segments& truth, const Segments& said) {
+  const WardSide of_truth = SideOf(truth, said), of_said = SideOf(said, truth);
+  return {.correct = of_truth.plain,
+          .deleted = of_truth.alone,
+          .fragmented = of_truth.several,
+          .merged = of_truth.shares,
+          .fragmented_and_merged = of_truth.both,
+          .inserted = of_said.alone,
+          .found_correct = of_said.plain,
+          .fragmenting = of_said.shares,
+          .merging = of_said.several,
+          .fragmenting_and_merging = of_said.both,
+          .missed = UncoveredOf(truth, said),
+          .false_alarm = UncoveredOf(said, truth)};
 }
 
 namespace {

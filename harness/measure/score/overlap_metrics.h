@@ -67,8 +67,9 @@ Hits HitsByOverlap(const Segments& truth, const Segments& prediction, double lea
 /// labels. Both empty: 100.
 double EditScore(const Segments& truth, const Segments& prediction);
 
-/// Mean over the labels of the truth of the average precision at this temporal IoU (ActivityNet,
-/// VOC-2011 interpolation). Predictions come with falling confidence.
+/// Mean over the labels of the truth of the average precision at this temporal IoU (ActivityNet).
+/// Events have no confidence, so that none comes before another: precision times recall, the area
+/// below a curve of one point.
 double MeanAveragePrecision(const Segments& truth, const Segments& prediction,
                             double least_overlap);
 
@@ -92,6 +93,8 @@ struct FrameCounts {
   double DetectionErrorRate() const;
   /// F1 of labelled frames.
   double F1() const;
+  /// Cohen's kappa of frames with one label or none: agreement beyond chance, at most 1.
+  double Kappa() const;
 };
 /// `collar`: frames nearer than this to a boundary of the truth do not count.
 FrameCounts CountFrames(const Episode& episode, grammar::Tick collar = 0);
@@ -115,12 +118,26 @@ EventErrors MatchWithCollar(const Segments& truth, const Segments& prediction, d
 /// (<=): the largest matching. As mir_eval.segment.detection, trimmed.
 Hits BoundaryHits(const Episode& episode, double window);
 
-/// True segments by their class; and of what was recognised, what belongs to no true one.
+/// Frames of one side that the other has not, by why: of a segment that meets none, between two
+/// that it meets, before the first and after the last of these.
+struct WardFrames {
+  double alone = 0, between = 0, before = 0, after = 0;
+
+  void Add(const WardFrames& more, double share);
+};
+
+/// True segments by their class; and of what was recognised, what belongs to no true one. The found
+/// side has classes, too: a fragmenting one shares its true one with others, a merging one meets
+/// several.
 struct Ward {
   int correct = 0, deleted = 0, fragmented = 0, merged = 0, fragmented_and_merged = 0;
   int inserted = 0;
+  int found_correct = 0, fragmenting = 0, merging = 0, fragmenting_and_merging = 0;
+  /// In ticks, after Add() in seconds. Missed: deletion, fragmentation, underfill at begin and end.
+  /// False: insertion, merge, overfill at begin and end.
+  WardFrames missed, false_alarm;
 
-  Ward& operator+=(const Ward& other);
+  void Add(const Ward& other, double ticks_per_second);
 };
 
 /// Of one label. Both sides in the order of time, without overlaps within a side.

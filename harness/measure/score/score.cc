@@ -53,7 +53,7 @@ void AddEpisode(const EpisodeToScore& judged, const LabelledEpisode& episode,
   score.within_collar += MatchWithCollar(truth, found, collar_s * per_s, 0);
   // Frames and Ward's classes are per label, because events of different labels overlap.
   for (const Episode& label : episode.by_label) {
-    score.ward += CompareByWard(label.truth, label.prediction);
+    score.ward.Add(CompareByWard(label.truth, label.prediction), per_s);
     score.frames += CountFrames(label);
   }
   const grammar::Timeline true_events = OfKind(judged.truth, event),
@@ -76,18 +76,51 @@ EventScore ScoreKind(const std::vector<EpisodeToScore>& episodes, const std::str
                      double collar_s) {
   EventScore score{.event = event.empty() ? "all" : event};
   std::vector<LabelledEpisode> labelled;
-  double edits = 0;
+  EditOfTracks edit;
   for (const EpisodeToScore& judged : episodes) {
-    LabelledEpisode episode =
-        Labelled(OfKind(judged.truth, event), OfKind(judged.found, event), judged.ticks);
+    const grammar::Timeline truth = OfKind(judged.truth, event),
+                            found = OfKind(judged.found, event);
+    LabelledEpisode episode = Labelled(truth, found, judged.ticks);
     AddEpisode(judged, episode, event, collar_s, score);
     if (episode.by_label.empty()) continue;  // neither true nor found
-    edits += EditScore(episode.whole.truth, episode.whole.prediction);
+    edit.Add(TracksOf(truth, found, judged.ticks));
     labelled.push_back(std::move(episode));
   }
-  if (!labelled.empty()) score.edit = edits / static_cast<double>(labelled.size());
+  score.edit = edit.Mean();
   score.further = ScoreFurther(labelled, collar_s, SecondsOf(episodes));
   return score;
+}
+
+MeanOfKinds MeanOf(const std::vector<EventScore>& kinds) {
+  MeanOfKinds mean;
+  if (kinds.empty()) return mean;
+  mean = {0, 0, 0, 0, 0, 0};
+  const double share = 1 / static_cast<double>(kinds.size());
+  for (const EventScore& kind : kinds) {
+    mean.f1_10 += share * kind.overlap_10.F1();
+    mean.f1_25 += share * kind.overlap_25.F1();
+    mean.f1_50 += share * kind.overlap_50.F1();
+    mean.edit += share * kind.edit;
+    mean.frame_accuracy += share * kind.frames.Accuracy();
+    mean.collar_f += share * kind.within_collar.AsHits().F1();
+  }
+  return mean;
+}
+
+EpisodeRow RowOf(const EpisodeToScore& judged, const std::set<std::string>& kinds,
+                 double collar_s) {
+  EpisodeRow row{.episode = judged.scenario, .total = {}, .hits = {}};
+  const LabelledEpisode all = Labelled(judged.truth, judged.found, judged.ticks);
+  AddEpisode(judged, all, "", collar_s, row.total);
+  EditOfTracks edit;
+  edit.Add(TracksOf(judged.truth, judged.found, judged.ticks));
+  row.total.edit = edit.Mean();
+  for (const std::string& kind : kinds) {
+    const LabelledEpisode of_kind =
+        Labelled(OfKind(judged.truth, kind), OfKind(judged.found, kind), judged.ticks);
+    row.hits[kind] = HitsByOverlap(of_kind.whole.truth, of_kind.whole.prediction, 0.50);
+  }
+  return row;
 }
 
 }  // namespace
@@ -101,7 +134,7 @@ double BoundaryErrors::QuantileByMagnitude(double share) const {
 double EventScore::LatencyQuantile(double share) const { return Quantile(latency_s, share); }
 
 Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
-              double collar_s) {
+              double collar_s, const Collars& collars) {
   std::set<std::string> kinds;
   for (const EpisodeToScore& episode : episodes) {
     for (const auto* side : {&episode.truth, &episode.found}) {
@@ -111,13 +144,26 @@ Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& epi
   Score score{.grammar = grammar,
               .events = {},
               .total = ScoreKind(episodes, "", collar_s),
+              .mean = {},
+              .rows = {},
               .episodes = static_cast<int>(episodes.size()),
               .not_covered = {},
               .ignored = {}};
   for (const EpisodeToScore& episode : episodes) {
     for (const auto& [event, times] : episode.ignored) score.ignored[event] += times;
   }
-  for (const std::string& kind : kinds) score.events.push_back(ScoreKind(episodes, kind, collar_s));
+  for (const std::string& kind : kinds) {
+    const auto own = collars.find(kind.substr(0, kind.find(" of ")));
+    score.events.push_back(
+        ScoreKind(episodes, kind, own == collars.end() ? collar_s : own->second));
+  }
+  score.mean = MeanOf(score.events);
+  if (!collars.empty()) {
+    score.total.within_collar = {};
+    for (const EventScore& kind : score.events) score.total.within_collar += kind.within_collar;
+  }
+  for (const EpisodeToScore& episode : episodes)
+    score.rows.push_back(RowOf(episode, kinds, collar_s));
   return score;
 }
 

@@ -12,6 +12,7 @@
 #include "harness/measure/score/evaluators.h"
 #include "harness/measure/score/further_scores.h"
 #include "harness/measure/score/overlap_metrics.h"
+#include "harness/measure/score/tracks.h"
 
 namespace prehend::measure {
 
@@ -24,6 +25,8 @@ struct EpisodeToScore {
   std::map<std::string, int>
       ignored;  ///< count of recognised events for which there is no ground truth
   Evaluation by_definitions, by_claims;
+};                      ///< of a file of takes
+  std::map<std::string, exchange::Moments> moments = {};  ///< by event
 };
 
 /// Signed offsets (found - true) of the boundaries of matched events, in seconds.
@@ -44,17 +47,31 @@ struct EventScore {
   Hits overlap_10, overlap_25, overlap_50;
   EventErrors within_collar;
   FrameCounts frames;
-  double edit = 100;  ///< mean over the episodes that have such an event, true or found
+  double edit = 100;  ///< mean over the tracks of the episodes (harness/measure/score/tracks.h)
   FurtherScores further;
   std::vector<double> latency_s;  ///< from an event's end to its decision
 
   double LatencyQuantile(double share) const;
 };
 
+/// Means over the kinds of events, each of which counts as much as any other.
+struct MeanOfKinds {
+  double f1_10 = 1, f1_25 = 1, f1_50 = 1, edit = 100, frame_accuracy = 1, collar_f = 1;
+};
+
+/// One episode of those that are pooled.
+struct EpisodeRow {
+  std::string episode;
+  EventScore total;                  ///< as far as it has single numbers
+  std::map<std::string, Hits> hits;  ///< by event, at half of the union
+};
+
 struct Score {
   std::string grammar;
   std::vector<EventScore> events;  ///< sorted by name
   EventScore total;
+  MeanOfKinds mean;
+  std::vector<EpisodeRow> rows;
   int episodes = 0;
   std::vector<std::string>
       not_covered;  ///< events that are scored, but that no rule of the grammar prints
@@ -62,9 +79,13 @@ struct Score {
   std::string ignored_because = "docs/events.md does not define them";
 };
 
-/// Labels are events with their roles. `collar_s` is for the collar-based scores.
+/// Tolerances of boundaries, in seconds, of single kinds of events.
+using Collars = std::map<std::string, double>;
+
+/// Labels are events with their roles. `collar_s` is for the collar-based scores of the kinds that
+/// `collars` does not have.
 Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
-              double collar_s);
+              double collar_s, const Collars& collars = {});
 
 /// A table for people: Ward's event errors, boundary errors, F1@{10,25,50}, edit, frames, F at the
 /// collar, latency. Below it, the events that the grammar does not cover, and those that are

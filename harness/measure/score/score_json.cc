@@ -44,7 +44,22 @@ Json EventScoreJson(const EventScore& s) {
             {"fragmented", ward.fragmented},
             {"merged", ward.merged},
             {"fragmented_and_merged", ward.fragmented_and_merged},
-            {"inserted", ward.inserted}}},
+            {"inserted", ward.inserted},
+            {"found",
+             {{"correct", ward.found_correct},
+              {"fragmenting", ward.fragmenting},
+              {"merging", ward.merging},
+              {"fragmenting_and_merging", ward.fragmenting_and_merging}}},
+            {"missed_s",
+             {{"deletion", ward.missed.alone},
+              {"fragmentation", ward.missed.between},
+              {"underfill_begin", ward.missed.before},
+              {"underfill_end", ward.missed.after}}},
+            {"false_s",
+             {{"insertion", ward.false_alarm.alone},
+              {"merge", ward.false_alarm.between},
+              {"overfill_begin", ward.false_alarm.before},
+              {"overfill_end", ward.false_alarm.after}}}}},
           {"begin_s", BoundaryJson(s.begin)},
           {"end_s", BoundaryJson(s.end)},
           {"f1_10", s.overlap_10.F1()},
@@ -52,6 +67,7 @@ Json EventScoreJson(const EventScore& s) {
           {"f1_50", s.overlap_50.F1()},
           {"edit", s.edit},
           {"frame_accuracy", s.frames.Accuracy()},
+          {"kappa", s.frames.Kappa()},
           {"collar_f", s.within_collar.AsHits().F1()},
           {"collar_error_rate", s.within_collar.ErrorRate()},
           {"latency_s",
@@ -59,6 +75,40 @@ Json EventScoreJson(const EventScore& s) {
             {"p95", s.LatencyQuantile(0.95)},
             {"max", s.LatencyQuantile(1)}}},
           {"further", FurtherJson(s)}};
+}
+
+Json HitsJson(const Hits& hits) {
+  return {{"correct", hits.correct}, {"extra", hits.extra}, {"missed", hits.missed}};
+}
+
+Json RowsJson(const std::vector<EpisodeRow>& episodes) {
+  Json rows = Json::array();
+  for (const EpisodeRow& row : episodes) {
+    const EventScore& s = row.total;
+    Json by_event = Json::object();
+    for (const auto& [event, hits] : row.hits) by_event[event] = HitsJson(hits);
+    rows.push_back({{"episode", row.episode},
+                    {"true", s.truths},
+                    {"found", s.found},
+                    {"f1_10", s.overlap_10.F1()},
+                    {"f1_25", s.overlap_25.F1()},
+                    {"f1_50", s.overlap_50.F1()},
+                    {"edit", s.edit},
+                    {"frame_accuracy", s.frames.Accuracy()},
+                    {"collar_f", s.within_collar.AsHits().F1()},
+                    {"hits_50", HitsJson(s.overlap_50)},
+                    {"hits_50_of", std::move(by_event)}});
+  }
+  return rows;
+}
+
+Json MeanJson(const MeanOfKinds& mean) {
+  return {{"f1_10", mean.f1_10},
+          {"f1_25", mean.f1_25},
+          {"f1_50", mean.f1_50},
+          {"edit", mean.edit},
+          {"frame_accuracy", mean.frame_accuracy},
+          {"collar_f", mean.collar_f}};
 }
 
 }  // namespace
@@ -73,7 +123,9 @@ Json ScoresJson(const std::vector<Score>& scores, double collar_s) {
                         {"not_covered", s.not_covered},
                         {"ignored", s.ignored},
                         {"total", EventScoreJson(s.total)},
-                        {"events", std::move(events)}});
+                        {"mean_of_events", MeanJson(s.mean)},
+                        {"events", std::move(events)},
+                        {"rows", RowsJson(s.rows)}});
   }
   return {{"collar_s", collar_s}, {"grammars", std::move(grammars)}};
 }

@@ -79,6 +79,20 @@ Row RowOf(const EventScore& s) {
                             kMsPerS * s.LatencyQuantile(0.95), kMsPerS * s.LatencyQuantile(1))};
 }
 
+/// "mean": of the kinds of events above it.
+Row RowOf(const MeanOfKinds& mean, std::size_t width) {
+  Row row(width, "");
+  row.front() = "mean";
+  const std::size_t first = width - 7;  // F1@10
+  row[first] = Percent(mean.f1_10);
+  row[first + 1] = Percent(mean.f1_25);
+  row[first + 2] = Percent(mean.f1_50);
+  row[first + 3] = fmt::format("{:.1f}", mean.edit);
+  row[first + 4] = Percent(mean.frame_accuracy);
+  row[first + 5] = Percent(mean.collar_f);
+  return row;
+}
+
 /// Columns two spaces apart; the first is aligned left, the others right.
 std::string Aligned(const std::vector<Row>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
@@ -91,6 +105,7 @@ std::string Aligned(const std::vector<Row>& rows) {
       text += i == 0 ? fmt::format("{:<{}}", row[i], widths[i])
                      : fmt::format("  {:>{}}", row[i], widths[i]);
     }
+    text.erase(text.find_last_not_of(' ') + 1);
     text += "\n";
   }
   return text;
@@ -125,6 +140,7 @@ std::string ScoreTable(const Score& score, double collar_s) {
   std::vector<Row> rows = {Header(collar_s)};
   for (const EventScore& event : score.events) rows.push_back(RowOf(event));
   rows.push_back(RowOf(score.total));
+  if (score.events.size() > 1) rows.push_back(RowOf(score.mean, rows.front().size()));
   return fmt::format("{}, {}\n{}{}{}", score.grammar, grammar::CountOf(score.episodes, "episode"),
                      Aligned(rows), NotCoveredText(score), IgnoredText(score));
 }
@@ -134,8 +150,8 @@ std::string SideBySide(const std::vector<Score>& scores, double collar_s) {
       "| grammar | true events | not covered by the grammar | correct | deleted | fragmented | "
       "merged | inserted | "
       "begin, ms | end, ms | F1@10 | F1@25 | F1@50 "
-      "| edit | frames % | F at {:.0f} ms "
-      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+      "| F1@50, mean of types | edit | frames % | F at {:.0f} ms "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       kMsPerS * collar_s);
   for (const Score& score : scores) {
     const EventScore& s = score.total;
@@ -143,11 +159,12 @@ std::string SideBySide(const std::vector<Score>& scores, double collar_s) {
     int not_covered = 0;
     for (const std::string& event : score.not_covered) not_covered += TruthsOf(score, event);
     text += fmt::format(
-        "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.1f} | {} | {} |\n",
+        "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.1f} | {} | {} "
+        "|\n",
         score.grammar, s.truths, not_covered, ward.correct, ward.deleted,
         ward.fragmented + ward.fragmented_and_merged, ward.merged, ward.inserted,
         Milliseconds(s.begin), Milliseconds(s.end), Percent(s.overlap_10.F1()),
-        Percent(s.overlap_25.F1()), Percent(s.overlap_50.F1()), s.edit,
+        Percent(s.overlap_25.F1()), Percent(s.overlap_50.F1()), Percent(score.mean.f1_50), s.edit,
         Percent(s.frames.Accuracy()), Percent(s.within_collar.AsHits().F1()));
   }
   return text;
@@ -162,8 +179,9 @@ std::string ScoresText(const std::vector<Score>& scores, double collar_s) {
          "boundary errors are\n"
          "found - true: median / 95th percentile / largest, the last two by magnitude; late: from "
          "an event's end to its\n"
-         "decision, median / 95th percentile / largest. Every grammar is scored on the same true "
-         "events.\n";
+         "decision, median / 95th percentile / largest; all: pooled, mean: of the kinds above. "
+         "Every "
+         "grammar is scored on\nthe same true events.\n";
 }
 
 }  // namespace prehend::measure

@@ -5,8 +5,10 @@
 // reference prints nothing (NaN), ours is defined: see the comments.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "harness/measure/score/further_scores.h"
@@ -90,8 +92,12 @@ TEST_P(ScoreMetrics, F1ByOverlap) {
 TEST_P(ScoreMetrics, MeanAveragePrecision) {
   const std::vector<double> overlaps = {0.3, 0.5, 0.75, 0.95};
   for (std::size_t i = 0; i < overlaps.size(); ++i) {
+    // The reference ranks predictions by time; of two for one event only the second is false then.
+    // Ours have no confidence: both halves of a reach, and of a transport, share a precision of
+    // 0.5.
+    const bool is_ranked = GetParam() == "C_flicker" && i == 0;
     EXPECT_NEAR(MeanAveragePrecision(episode_.truth, episode_.prediction, overlaps[i]),
-                printed_["map@.3,.5,.75,.95"][i], kPrinted)
+                is_ranked ? 0.625 : printed_["map@.3,.5,.75,.95"][i].get<double>(), kPrinted)
         << overlaps[i];
   }
 }
@@ -244,6 +250,47 @@ TEST(WardMetrics, AsTheReferencePrintsThem) {
     EXPECT_EQ(WardOf("C_flicker", label).fragmented, 1) << label;
   EXPECT_EQ(WardOf("D_missing_sub", "reach").correct, 1);
   EXPECT_EQ(WardOf("E_repeat_merge", "reach").merged, 2);
+}
+
+// "I": insertion, "Us": underfill at the start, ..
+TEST_P(ScoreMetrics, WardOfFrames) {
+  const auto& printed = printed_["ward"];
+  if (!printed.contains("frames")) return;
+  std::map<std::string, Episode> by_label;
+  for (const Segment& one : episode_.truth) by_label[one.label].truth.push_back(one);
+  for (const Segment& one : episode_.prediction) by_label[one.label].prediction.push_back(one);
+  for (const auto& [label, sides] : by_label) {
+    if (sides.truth.empty() || sides.prediction.empty()) continue;  // the reference raises
+    const auto frames = printed["frames"].value(label, nlohmann::json::object());
+    const Ward ward = CompareByWard(sides.truth, sides.prediction);
+    EXPECT_EQ(ward.false_alarm.alone, frames.value("I", 0)) << label;
+    EXPECT_EQ(ward.false_alarm.between, frames.value("M", 0)) << label;
+    EXPECT_EQ(ward.false_alarm.before, frames.value("Os", 0)) << label;
+    EXPECT_EQ(ward.false_alarm.after, frames.value("Oe", 0)) << label;
+    EXPECT_EQ(ward.missed.alone, frames.value("D", 0)) << label;
+    EXPECT_EQ(ward.missed.between, frames.value("F", 0)) << label;
+    EXPECT_EQ(ward.missed.before, frames.value("Us", 0)) << label;
+    EXPECT_EQ(ward.missed.after, frames.value("Ue", 0)) << label;
+  }
+}
+
+TEST_P(ScoreMetrics, WardOfTheFoundSide) {
+  const auto& printed = printed_["ward"];
+  if (!printed.contains("det")) return;
+  for (const auto& [label, classes] : printed["det"].items()) {
+    Segments truth = episode_.truth, found = episode_.prediction;
+    const auto is_other = [&, &label = label](const Segment& one) { return one.label != label; };
+    std::erase_if(truth, is_other);
+    std::erase_if(found, is_other);
+    const Ward ward = CompareByWard(truth, found);
+    const auto of = [&, &classes = classes](const char* name) {
+      return std::ranges::count(classes, nlohmann::json(name));
+    };
+    EXPECT_EQ(ward.found_correct, of("C")) << label;
+    EXPECT_EQ(ward.fragmenting, of("F'")) << label;
+    EXPECT_EQ(ward.merging, of("M'")) << label;
+    EXPECT_EQ(ward.inserted, of("I'")) << label;
+  }
 }
 
 TEST(WardMetrics, EveryTrueEventHasOneClass) {

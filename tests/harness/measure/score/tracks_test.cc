@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Edit scores are of sequences: hands at the same time are two of them.
+#include "harness/measure/score/tracks.h"
+
+#include <gtest/gtest.h>
+
+#include "harness/measure/score/score.h"
+
+namespace prehend::measure {
+namespace {
+
+grammar::NamedEvent Of(const std::string& event, std::vector<grammar::Role> roles,
+                       grammar::Tick begin, grammar::Tick end) {
+  return {.event = event, .roles = std::move(roles), .interval = {begin, end}, .decided = end};
+}
+using Events = std::vector<grammar::NamedEvent>;
+
+double Edit(Events truth, Events found) {
+  const EpisodeToScore episode{"s/x", 1000, {100, std::move(truth)}, {100, std::move(found)}, {}};
+  return ScoreOf("g", {episode}, 0.05).total.edit;
+}
+
+Events Hands(grammar::Tick left, grammar::Tick right, const char* role) {
+  Events events = {Of("contact", {{"a", "cup"}, {role, "left"}}, left, 100),
+                   Of("contact", {{"a", "cup"}, {role, "right"}}, right, 100)};
+  if (right < left) std::swap(events[0], events[1]);
+  return events;
+}
+
+TEST(Tracks, TwoHandsAFrameApartAreTwoSequences) {
+  EXPECT_EQ(Edit(Hands(51, 50, "b"), Hands(50, 51, "b")), 100);
+  EXPECT_EQ(Edit(Hands(51, 50, "hand"), Hands(50, 51, "hand")), 100);
+}
+
+// What lasts while others happen is no part of their sequence.
+TEST(Tracks, WhatOverlapsIsNoSequence) {
+  const std::vector<grammar::Role> roles = {{"hand", "right"}, {"object", "cup"}};
+  const auto actions = [&](grammar::Tick grasp, grammar::Tick lift) {
+    return Events{Of("grasping", roles, grasp, 400), Of("picking_up", roles, lift, 170),
+                  Of("transporting", roles, 170, 300)};
+  };
+  EXPECT_EQ(Edit(actions(110, 150), actions(148, 147)), 100);
+  const auto tracks = TracksOf({100, actions(110, 150)}, {100, actions(148, 147)}, 1000);
+  ASSERT_EQ(tracks.size(), 2u);
+  EXPECT_EQ(tracks[0].truth.size(), 1u);
+  EXPECT_EQ(tracks[1].prediction.size(), 2u);
+}
+
+TEST(Tracks, AnOrderThatDiffersCosts) {
+  const std::vector<grammar::Role> roles = {{"hand", "right"}};
+  const Events truth = {Of("reach", roles, 0, 10), Of("grasp", roles, 10, 20),
+                        Of("carry", roles, 20, 30)};
+  EXPECT_NEAR(Edit(truth, {truth[0], Of("carry", roles, 10, 20), Of("grasp", roles, 20, 30)}),
+              100.0 / 3, 1e-9);
+  EXPECT_NEAR(Edit(truth, {truth[0], truth[1]}), 200.0 / 3, 1e-9);
+  // The mean of a track that is right and of one that is not there.
+  Events both = truth;
+  both.push_back(Of("reach", {{"hand", "left"}}, 0, 10));
+  EXPECT_EQ(Edit(both, truth), 50);
+  EXPECT_EQ(Edit({}, {}), 100);
+}
+
+// Whether a false event comes first or last says nothing of how sure anybody was.
+TEST(MeanAveragePrecision, DoesNotDependOnWhenAFalseEventHappens) {
+  const Segments truth = {{"a", {10, 20}}, {"a", {40, 50}}};
+  for (const grammar::Tick begin : {0, 25, 90}) {
+    Segments found = truth;
+    found.push_back({"a", {begin, begin + 5}});
+    std::ranges::sort(found, {}, [](const Segment& one) { return one.interval.begin; });
+    EXPECT_NEAR(MeanAveragePrecision(truth, found, 0.5), 2.0 / 3, 1e-12) << begin;
+  }
+}
+
+TEST(MeanOfKinds, CountsEachKindOnce) {
+  const auto slide = [](grammar::Tick begin) { return Of("slide", {}, begin, begin + 10); };
+  Events truth = {slide(0), slide(20), slide(40), Of("hold", {}, 0, 100)};
+  const EpisodeToScore episode{
+      "s/x", 1000, {100, truth}, {100, {truth[0], truth[1], truth[2]}}, {}};
+  const Score score = ScoreOf("g", {episode}, 0.05);
+  EXPECT_NEAR(score.total.overlap_50.F1(), 6.0 / 7, 1e-12);
+  EXPECT_EQ(score.mean.f1_50, 0.5);
+  EXPECT_EQ(score.mean.edit, 50);
+  ASSERT_EQ(score.rows.size(), 1u);
+  EXPECT_EQ(score.rows[0].hits.at("hold").missed, 1);
+}
+
+}  // namespace
+}  // namespace prehend::measure
