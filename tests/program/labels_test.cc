@@ -250,8 +250,9 @@ TEST_F(Labelled, ASweepMeasuresLabelsAsScoreDoes) {
   EXPECT_EQ(by_collar.exit_code, 0);
   EXPECT_EQ(by_collar.out,
             "pick_and_place_from_motion: 2 settings on 1 episode; every one scores 0: no event is "
-            "right with any of them, so "
-            "none is the best\nF1: an event is right if both boundaries are within 50 ms\n");
+            "right with any of them, so none is the best\n"
+            "F1: an event is right if both boundaries are within 50 ms\n"
+            "counted: 2 labels of 1 take\n");
   const Said svg = sweep({"--collar-ms", "50", "--picture", Path("sweep.svg")});
   EXPECT_EQ(svg.exit_code, 0) << svg.err;
   EXPECT_FALSE(Has(ReadFile(Path("sweep.svg")), "#d00"));

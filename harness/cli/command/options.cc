@@ -102,7 +102,8 @@ Option EpisodeArgument() {
 Option EpisodesArgument() {
   return {.name = "EPISODES",
           .help =
-              "episode files (docs/episodes.md), recordings (docs/recording-format.md) or "
+              "episode files (docs/episodes.md), recordings (docs/recording-format.md), files of "
+              "takes (docs/labels.md) or "
               "scenarios, which are played first",
           .required = true,
           .repeatable = true};

@@ -7,6 +7,12 @@
 
 namespace prehend::cli {
 
+tl::expected<std::vector<episode::Take>, ExitCode> FindTakesOrComplain(
+    const std::string& argument, const ParsedOptions& options, const CommandContext& context) {
+  return episode::FindTakes(options.All(argument), options.Text("--episode"), context.root)
+      .map_error([&](const episode::NotFound& none) { return Complain(context, none); });
+}
+
 tl::expected<std::vector<episode::EpisodeName>, ExitCode> FindEpisodesOrComplain(
     const std::string& argument, const ParsedOptions& options, const CommandContext& context,
     const std::vector<episode::Need>& needs) {

@@ -14,7 +14,11 @@
 
 namespace prehend::cli {
 
-/// All that was typed for an argument, with --episode. What lacks one of `needs` is refused.
+/// All that was typed for an argument, with --episode.
+tl::expected<std::vector<episode::Take>, ExitCode> FindTakesOrComplain(
+    const std::string& argument, const ParsedOptions& options, const CommandContext& context);
+
+/// The same without what is known beside. What lacks one of `needs` is refused.
 tl::expected<std::vector<episode::EpisodeName>, ExitCode> FindEpisodesOrComplain(
     const std::string& argument, const ParsedOptions& options, const CommandContext& context,
     const std::vector<episode::Need>& needs = {});

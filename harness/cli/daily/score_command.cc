@@ -2,6 +2,7 @@
 // prehend score: grammars against the physical oracle. Tested by tests/program/score_test.cc
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "harness/base/base/default_grammar.h"
@@ -14,6 +15,54 @@
 namespace prehend::cli {
 namespace {
 
+ExitCode PrintScores(const Result<measure::LabelScores>& scores, double collar_s,
+                     const std::string& warnings, const ParsedOptions& options,
+                     const CommandContext& context) {
+  context.err << warnings;
+  if (!scores) return Complain(context, scores.error());
+  if (options.Has("--json")) {
+    nlohmann::ordered_json json = measure::ScoresJson(scores->of_grammars, collar_s);
+    json["by_hand"] = measure::ScoresJson(scores->by_hand, collar_s);
+    const exchange::Counted& counted = scores->counted;
+    json["counted"] = {{"takes", counted.takes},
+                       {"labels", counted.labels},
+                       {"of_a_moment", counted.moments},
+                       {"left_out",
+                        {{"of_other_takes", counted.OfOtherTakes()},
+                         {"ignored", counted.ignored},
+                         {"without_text", counted.without_text},
+                         {"backward", counted.Backward()}}}};
+    context.out << json.dump(2) << "\n";
+  } else {
+    context.out << measure::LabelScoresText(*scores, collar_s, options.Has("--verbose"));
+  }
+  return ExitCode::kAgrees;
+}
+
+double CollarFrom(const ParsedOptions& options) {
+  return options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
+}
+
+exchange::Backward BackwardFrom(const ParsedOptions& options) {
+  return options.Has("--skip-bad-labels") ? exchange::Backward::kSkip : exchange::Backward::kRefuse;
+}
+
+/// `score LABELS --truth LABELS`: how two people agree.
+ExitCode RunLabelFiles(const ParsedOptions& options, const CommandContext& context) {
+  std::string warnings;
+  const double collar_s = CollarFrom(options);
+  const auto scores = measure::ScoreLabelFiles({.root = context.root,
+                                                .files = options.All("names"),
+                                                .truth = options.All("--truth"),
+                                                .grammar = options.Text("--grammar"),
+                                                .label_map = options.Text("--map"),
+                                                .backward = BackwardFrom(options),
+                                                .collar_s = collar_s,
+                                                .is_collar_asked = options.Has("--collar-ms")},
+                                               warnings);
+  return PrintScores(scores, collar_s, warnings, options, context);
+}
+
 /// `score TAKES --truth LABELS`: against what people marked.
 ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) {
   for (const char* other : {"--filter", "--event"}) {
@@ -25,31 +74,23 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
   if (!options.Has("names"))
     return Complain(context, ExitCode::kBadInput,
                     "--truth: which recordings? score take1.jsonl --truth take1.csv");
-  auto episodes = FindEpisodesOrComplain("names", options, context);
-  if (!episodes) return episodes.error();
-  const double collar_s = options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
+  if (std::ranges::all_of(options.All("names"), exchange::IsLabelFile))
+    return RunLabelFiles(options, context);
+  auto takes = FindTakesOrComplain("names", options, context);
+  if (!takes) return takes.error();
+  const double collar_s = CollarFrom(options);
   std::string warnings;
-  const auto scores = measure::ScoreLabels(
-      {.root = context.root,
-       .episodes = std::move(*episodes),
-       .grammars = options.All("--grammar"),
-       .settings = options.All("--set"),
-       .label_files = options.All("--truth"),
-       .label_map = options.Text("--map"),
-       .backward = options.Has("--skip-bad-labels") ? exchange::Backward::kSkip
-                                                    : exchange::Backward::kRefuse,
-       .collar_s = collar_s},
-      warnings);
-  context.err << warnings;
-  if (!scores) return Complain(context, scores.error());
-  if (options.Has("--json")) {
-    nlohmann::ordered_json json = measure::ScoresJson(scores->of_grammars, collar_s);
-    json["by_hand"] = measure::ScoresJson(scores->by_hand, collar_s);
-    context.out << json.dump(2) << "\n";
-  } else {
-    context.out << measure::LabelScoresText(*scores, collar_s, options.Has("--verbose"));
-  }
-  return ExitCode::kAgrees;
+  const auto scores = measure::ScoreLabels({.root = context.root,
+                                            .takes = std::move(*takes),
+                                            .grammars = options.All("--grammar"),
+                                            .settings = options.All("--set"),
+                                            .label_files = options.All("--truth"),
+                                            .label_map = options.Text("--map"),
+                                            .backward = BackwardFrom(options),
+                                            .collar_s = collar_s,
+                                            .is_collar_asked = options.Has("--collar-ms")},
+                                           warnings);
+  return PrintScores(scores, collar_s, warnings, options, context);
 }
 
 /// `score`: against what physically happened, in scenarios.
@@ -67,7 +108,7 @@ ExitCode RunScenarios(const measure::ScoredGrammars& grammars,
     requests.push_back(
         {NameOf(file), episode::IdOf(file), context.root, grammars.names, events, settings});
   }
-  const double collar_s = options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
+  const double collar_s = CollarFrom(options);
   const auto scores = measure::ScoreScenarios(requests, grammars, collar_s, CoreCount());
   ExitCode worst = ExitCode::kAgrees;
   for (const measure::NotScored& one : scores.not_scored) {
@@ -87,7 +128,10 @@ ExitCode RunScenarios(const measure::ScoredGrammars& grammars,
 }
 
 ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
-  if (options.Has("--truth")) return RunLabels(options, context);
+  const bool has_takes = std::ranges::any_of(options.All("names"), [](const std::string& typed) {
+    return episode::IsTakesFile(typed) || episode::IsTakesFile(typed + "/takes.yaml");
+  });
+  if (options.Has("--truth") || has_takes) return RunLabels(options, context);
   std::vector<std::string> names = options.All("--grammar");
   // The baseline keeps the authors' numbers.
   if (names.empty())
@@ -117,7 +161,8 @@ Command ScoreCommand() {
           .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
                        "score --grammar my/rules.grammar --event grasping,sliding",
                        "score 'slide/*' --collar-ms 20 --json",
-                       "score take1.jsonl take2.jsonl --truth labels --map labels.yaml"},
+                       "score take1.jsonl take2.jsonl --truth labels --map labels.yaml",
+                       "score takes.yaml", "score anna.csv --truth ben.csv"},
           .options = Joined(
               {{.name = "names",
                 .help = "names, skill/name, globs or files; default: all scenarios",
@@ -141,7 +186,8 @@ Command ScoreCommand() {
                JsonOption()},
               TruthOptions(
                   "labels by people (.csv, .eaf, .TextGrid) of the recordings or episode files "
-                  "that are named, one file for each or a folder (docs/labels.md); may be repeated",
+                  "that are named: one file for each, one table of all, or a folder "
+                  "(docs/labels.md); may be repeated",
                   "FILE|FOLDER")),
           .run = RunScore};
 }

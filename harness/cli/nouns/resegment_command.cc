@@ -10,7 +10,6 @@
 #include "harness/episode/episode/open_episode.h"
 #include "harness/episode/episode/resegment_many.h"
 #include "harness/episode/run/run_text.h"
-#include "harness/exchange/labels/read_labels.h"
 #include "harness/exchange/labels/write_labels.h"
 
 namespace prehend::cli {
@@ -100,7 +99,7 @@ ExitCode ResegmentEpisodes(const std::vector<episode::EpisodeName>& selected,
 }
 
 std::string LabelsProblem(const std::string& file) {
-  return exchange::IsLabelFile(file) && !file.ends_with(".timeline")
+  return exchange::CanWriteLabels(file)
              ? ""
              : "found '" + file + "', wanted a file .csv, .eaf or .TextGrid";
 }

@@ -42,12 +42,6 @@ std::optional<measure::SweepRequest> RequestFrom(const ParsedOptions& options,
     return std::nullopt;
   }
   request.label_map = options.Text("--map");
-  for (const char* of_labels : {"--map", "--skip-bad-labels"}) {
-    if (request.truth == measure::Truth::kLabels || !options.Has(of_labels)) continue;
-    Complain(context, ExitCode::kBadInput,
-             fmt::format("{} needs labels: --truth FILE or FOLDER", of_labels));
-    return std::nullopt;
-  }
   request.collar_s = options.NumberOr("--collar-ms", kDefaultCollar_ms) / 1000;
   // People agree to a few tenths of a second; goldens are exact.
   request.by_overlap = request.truth == measure::Truth::kLabels && !options.Has("--collar-ms");
@@ -62,18 +56,35 @@ std::optional<measure::SweepRequest> RequestFrom(const ParsedOptions& options,
   return request;
 }
 
-/// The recordings, or the exit code after a complaint. Where no grammar was named, all have the
-/// same.
-tl::expected<std::vector<episode::EpisodeName>, ExitCode> EpisodesFrom(
-    const ParsedOptions& options, const measure::SweepRequest& request,
-    const CommandContext& context) {
-  auto episodes = FindEpisodesOrComplain("EPISODES", options, context);
-  if (!episodes) return episodes;
+/// The takes to be tried, or the exit code after a complaint: without those of the set `test`, and
+/// all of the same grammar where none was named. If they have labels, these are the truth.
+tl::expected<std::vector<episode::Take>, ExitCode> TakesFrom(const ParsedOptions& options,
+                                                             measure::SweepRequest& request,
+                                                             const CommandContext& context) {
+  auto takes = FindTakesOrComplain("EPISODES", options, context);
+  if (!takes) return takes;
+  const auto of_test = std::erase_if(*takes, [](const auto& take) { return take.set == "test"; });
+  if (takes->empty())
+    return tl::unexpected(Complain(context, ExitCode::kBadInput,
+                                   "all takes are of the set 'test', which nothing is tuned on"));
+  if (of_test > 0)
+    context.err << fmt::format("prehend: left out: {} take{} of the set test\n", of_test,
+                               of_test == 1 ? "" : "s");
+  if (!options.Has("--truth") && !takes->front().labels.empty()) {
+    request.truth = measure::Truth::kLabels;
+    request.by_overlap = !options.Has("--collar-ms");
+  }
+  for (const char* of_labels : {"--map", "--skip-bad-labels"}) {
+    if (request.truth == measure::Truth::kLabels || !options.Has(of_labels)) continue;
+    return tl::unexpected(
+        Complain(context, ExitCode::kBadInput,
+                 fmt::format("{} needs labels: --truth FILE or FOLDER", of_labels)));
+  }
   if (request.grammar.empty()) {
-    const auto why = episode::WhyNotOneGrammar(*episodes, context.root);
+    const auto why = episode::WhyNotOneGrammar(EpisodesOf(*takes), context.root);
     if (!why.empty()) return tl::unexpected(Complain(context, why));
   }
-  return *episodes;
+  return takes;
 }
 
 /// Nothing if there is something to print. Labels that do not fit are bad input; of other truths
@@ -103,8 +114,8 @@ auto WithProgress(measure::SweepRequest& request, std::size_t episodes,
 ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context) {
   auto request = RequestFrom(options, {"--output"}, context);
   if (!request) return ExitCode::kBadInput;
-  const auto episodes = EpisodesFrom(options, *request, context);
-  if (!episodes) return episodes.error();
+  const auto takes = TakesFrom(options, *request, context);
+  if (!takes) return takes.error();
   const double within = options.NumberOr("--within", kDefaultMargin_percent) / 100;
   std::string problem;
   // After each parameter, so that it is there if somebody ends it.
@@ -112,8 +123,8 @@ ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context)
     if (options.Has("--output") && !margins.sweep.IsRefused(*request))
       problem = WriteTextFile(options.Text("--output"), MarginsCsv(margins));
   };
-  const auto margins = WithProgress(*request, episodes->size(), context, [&] {
-    return measure::FindMargins(*episodes, *request, within, options.All("--over"), write);
+  const auto margins = WithProgress(*request, takes->size(), context, [&] {
+    return measure::FindMargins(*takes, *request, within, options.All("--over"), write);
   });
   if (!margins) return Complain(context, margins.error());
   if (const auto refused = ComplainOf(margins->sweep, *request, context)) return *refused;
@@ -126,10 +137,10 @@ ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
   if (!request) return ExitCode::kBadInput;
   if (const std::string why = measure::SetAxes(options.All("--over"), *request); !why.empty())
     return Complain(context, ExitCode::kBadInput, why);
-  const auto episodes = EpisodesFrom(options, *request, context);
-  if (!episodes) return episodes.error();
-  const auto result = WithProgress(*request, episodes->size(), context,
-                                   [&] { return measure::Sweep(*episodes, *request); });
+  const auto takes = TakesFrom(options, *request, context);
+  if (!takes) return takes.error();
+  const auto result = WithProgress(*request, takes->size(), context,
+                                   [&] { return measure::Sweep(*takes, *request); });
   if (!result) return Complain(context, result.error());
   if (const auto problem = ComplainOf(*result, *request, context)) return *problem;
 

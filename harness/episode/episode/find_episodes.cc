@@ -61,6 +61,7 @@ tl::expected<EpisodeName, NotFound> ScenarioNamed(const std::string& typed,
 }  // namespace
 
 EpisodeKind EpisodeKindOf(const std::string& typed) {
+  if (IsTakesFile(typed)) return EpisodeKind::kTakes;
   if (IsEpisodeFile(typed)) return EpisodeKind::kEpisodeFile;
   return IsJsonLines(typed) ? EpisodeKind::kJsonLines : EpisodeKind::kScenario;
 }
@@ -82,42 +83,116 @@ Result<std::vector<EpisodeName>> EpisodesOf(const std::string& path) {
   return names;
 }
 
-tl::expected<std::vector<EpisodeName>, NotFound> FindEpisodes(std::span<const std::string> typed,
-                                                              const std::string& which,
-                                                              const std::string& root) {
-  std::vector<EpisodeName> names;
+namespace {
+
+/// The recordings in a folder, or its file of takes; empty if it has neither.
+std::vector<std::string> RecordingsIn(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) return {};
+  if (const std::string takes = (fs::path(folder) / "takes.yaml").string(); IsTakesFile(takes))
+    return {takes};
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string ending = entry.path().extension().string();
+    if (ending == ".jsonl" || ending == ".episodes") files.push_back(entry.path().string());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+/// Looks for one thing that was typed after another.
+class TakeFinder {
+ public:
+  TakeFinder(const std::string& which, const std::string& root) : which_(which), root_(root) {}
+
+  std::optional<NotFound> Add(const std::string& typed, const TakeEntry& entry = {}) {
+    switch (EpisodeKindOf(typed)) {
+      case EpisodeKind::kTakes:
+        return AddFile(typed);
+      case EpisodeKind::kJsonLines:
+        Add({typed,
+             {},
+             std::filesystem::path(typed).stem().string(),
+             Origin::kRecording,
+             GrammarNamedIn(typed)},
+            entry);
+        return std::nullopt;
+      case EpisodeKind::kEpisodeFile:
+        if (const auto kept = EpisodesOf(typed)) {
+          for (const EpisodeName& episode : *kept)
+            if (IsSelected(episode, which_)) Add(episode, entry);
+        } else {
+          std::ranges::copy(kept.error(), std::back_inserter(unread.diagnostics));
+        }
+        return std::nullopt;
+      case EpisodeKind::kScenario:
+        break;
+    }
+    const std::vector<std::string> in_folder = RecordingsIn(typed);
+    for (const std::string& file : in_folder)
+      if (auto none = Add(file, entry)) return none;
+    if (!in_folder.empty()) return std::nullopt;
+    auto scenario = ScenarioNamed(typed, root_);
+    if (!scenario) return std::move(scenario.error());
+    Add(std::move(*scenario), entry);
+    return std::nullopt;
+  }
+
+  std::vector<Take> takes;
   NotFound unread;
+
+ private:
+  void Add(EpisodeName episode, const TakeEntry& entry) {
+    episode.asked = entry.grammar;
+    takes.push_back(entry.take);
+    takes.back().episode = std::move(episode);
+  }
+
+  std::optional<NotFound> AddFile(const std::string& path) {
+    const auto entries = ReadTakes(path);
+    if (!entries) return NotFound{.message = {}, .diagnostics = entries.error()};
+    for (const TakeEntry& entry : *entries) {
+      if (IsTakesFile(entry.recording))
+        return NotFound{.message = path + ": " + entry.recording + " is a file of takes itself"};
+      if (auto none = Add(entry.recording, entry)) return none;
+    }
+    return std::nullopt;
+  }
+
+  const std::string& which_;
+  const std::string& root_;
+};
+
+}  // namespace
+
+tl::expected<std::vector<Take>, NotFound> FindTakes(std::span<const std::string> typed,
+                                                    const std::string& which,
+                                                    const std::string& root) {
   const auto is_kept = [](const std::string& one) {
-    return EpisodeKindOf(one) == EpisodeKind::kEpisodeFile;
+    return EpisodeKindOf(one) != EpisodeKind::kScenario &&
+           EpisodeKindOf(one) != EpisodeKind::kJsonLines;
   };
   if (!which.empty() && std::ranges::none_of(typed, is_kept))
     return tl::unexpected(
         NotFound{ExitCode::kBadInput,
                  fmt::format("--episode needs episode files; {} is none", typed.front())});
-  for (const std::string& one : typed) {
-    const EpisodeKind kind = EpisodeKindOf(one);
-    if (kind == EpisodeKind::kJsonLines) {
-      names.push_back({one,
-                       {},
-                       std::filesystem::path(one).stem().string(),
-                       Origin::kRecording,
-                       GrammarNamedIn(one)});
-    } else if (kind == EpisodeKind::kScenario) {
-      auto scenario = ScenarioNamed(one, root);
-      if (!scenario) return tl::unexpected(std::move(scenario.error()));
-      names.push_back(std::move(*scenario));
-    } else if (const auto kept = EpisodesOf(one)) {
-      std::ranges::copy_if(*kept, std::back_inserter(names),
-                           [&](const EpisodeName& episode) { return IsSelected(episode, which); });
-    } else {
-      std::ranges::copy(kept.error(), std::back_inserter(unread.diagnostics));
-    }
-  }
-  if (!unread.diagnostics.empty()) return tl::unexpected(std::move(unread));
-  if (names.empty())
+  TakeFinder finder(which, root);
+  for (const std::string& one : typed)
+    if (auto none = finder.Add(one)) return tl::unexpected(std::move(*none));
+  if (!finder.unread.diagnostics.empty()) return tl::unexpected(std::move(finder.unread));
+  if (finder.takes.empty())
     return tl::unexpected(
         NotFound{ExitCode::kNothing, fmt::format("--episode: no episode matches '{}'", which)});
-  return names;
+  return std::move(finder.takes);
+}
+
+tl::expected<std::vector<EpisodeName>, NotFound> FindEpisodes(std::span<const std::string> typed,
+                                                              const std::string& which,
+                                                              const std::string& root) {
+  auto takes = FindTakes(typed, which, root);
+  if (!takes) return tl::unexpected(std::move(takes.error()));
+  return EpisodesOf(*takes);
 }
 
 tl::expected<EpisodeName, NotFound> FindEpisode(const std::string& typed, const std::string& which,

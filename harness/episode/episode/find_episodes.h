@@ -10,11 +10,11 @@
 
 #include "harness/base/base/exit_code.h"
 #include "harness/base/base/result.h"
-#include "harness/episode/run/episode_name.h"
+#include "harness/episode/episode/take.h"
 
 namespace prehend::episode {
 
-enum class EpisodeKind { kScenario, kJsonLines, kEpisodeFile };
+enum class EpisodeKind { kScenario, kJsonLines, kEpisodeFile, kTakes };
 
 /// By its first bytes, or its ending if it does not exist; what is neither is a scenario's name.
 EpisodeKind EpisodeKindOf(const std::string& typed);
@@ -28,8 +28,12 @@ struct NotFound {
 };
 
 /// The episodes of all that was typed, in its order: scenarios (name, skill/name or file),
-/// recordings, and of episode files those that `which` selects: a number, a scenario (name,
-/// skill/name) or a glob; "": all. Never empty. `root`: the project's.
+/// recordings, folders of recordings, files of takes; and of episode files those that `which`
+/// selects: a number, a scenario (name, skill/name) or a glob; "": all. Never empty. `root`: the
+/// project's.
+tl::expected<std::vector<Take>, NotFound> FindTakes(std::span<const std::string> typed,
+                                                    const std::string& which,
+                                                    const std::string& root);
 tl::expected<std::vector<EpisodeName>, NotFound> FindEpisodes(std::span<const std::string> typed,
                                                               const std::string& which,
                                                               const std::string& root);

@@ -82,8 +82,10 @@ Result<Episode> EpisodeOpener::OpenKept(const EpisodeName& name, const GrammarCh
   return episode;
 }
 
-Result<Episode> EpisodeOpener::Open(const EpisodeName& name, const GrammarChoice& choice,
+Result<Episode> EpisodeOpener::Open(const EpisodeName& name, const GrammarChoice& asked,
                                     std::vector<std::string>* files) {
+  GrammarChoice choice = asked;
+  if (choice.grammar.empty()) choice.grammar = name.asked;
   if (name.number) return OpenKept(name, choice);
   if (name.origin == Origin::kRecording) return OpenLines(name, choice);
   Result<LoadedRun> loaded = LoadRun({name.file, choice.grammar, choice.settings}, root_, files);
@@ -93,7 +95,8 @@ Result<Episode> EpisodeOpener::Open(const EpisodeName& name, const GrammarChoice
 
 grammar::CompileResult EpisodeOpener::Compile(const EpisodeName& name, const std::string& asked,
                                               const grammar::Overrides& parameters) {
-  if (!asked.empty()) return LoadGrammar(root_, asked, parameters);
+  if (const std::string& other = asked.empty() ? name.asked : asked; !other.empty())
+    return LoadGrammar(root_, other, parameters);
   if (compiled_ != name) {
     compiled_.reset();
     own_ = {};

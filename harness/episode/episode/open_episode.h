@@ -17,9 +17,9 @@ class EpisodeOpener {
   /// `root`: the project's.
   explicit EpisodeOpener(std::string root) : root_(std::move(root)), loader_(root_) {}
 
-  /// Reads the scenario and the grammar, of a recording its frames, too. `choice`: settings of a
+  /// Reads the scenario and the grammar, of a recording its frames, too. `asked`: settings of a
   /// scenario may be fields of it. `files` receives what a scenario was read from.
-  Result<Episode> Open(const EpisodeName& name, const GrammarChoice& choice = {},
+  Result<Episode> Open(const EpisodeName& name, const GrammarChoice& asked = {},
                        std::vector<std::string>* files = nullptr);
   /// A recording that is no file.
   Result<Episode> Open(Recording recording, const EpisodeName& name, const GrammarChoice& choice);

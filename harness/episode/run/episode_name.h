@@ -19,7 +19,8 @@ struct EpisodeName {
   std::optional<std::int64_t> number;  ///< in an episode file
   std::string scenario;                ///< skill/name; of JSON Lines the name of the file
   Origin origin = Origin::kScenario;
-  std::string grammar;  ///< that a recording names for itself, or a run was recorded with; or ""
+  std::string grammar;     ///< that a recording names for itself, or a run was recorded with; or ""
+  std::string asked = {};  ///< a grammar that a file of takes names instead of its own
 
   bool operator==(const EpisodeName&) const = default;
 };

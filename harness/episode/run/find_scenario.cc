@@ -118,12 +118,13 @@ std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const st
 }
 
 EpisodeName NameOf(const ScenarioFile& file) {
-  return {file.path, file.episode, IdOf(file), file.origin, ""};
+  return {file.path, file.episode, IdOf(file), file.origin, "", file.asked};
 }
 
 ScenarioFile ScenarioOf(const EpisodeName& episode, const std::vector<ScenarioFile>& all) {
   ScenarioFile file = ScenarioAt(all, episode.file);
   file.origin = episode.origin;
+  file.asked = episode.asked;
   if (!episode.number) return file;
   const std::size_t slash = std::min(episode.scenario.rfind('/'), episode.scenario.size());
   const bool has_skill = slash < episode.scenario.size();

@@ -25,6 +25,7 @@ struct ScenarioFile {
   /// In the episode file at `path`: already played, or a recording.
   std::optional<std::int64_t> episode = {};
   Origin origin = Origin::kScenario;
+  std::string asked = {};  ///< EpisodeName::asked
 };
 
 /// As an episode.

@@ -10,9 +10,7 @@
 #include <set>
 
 #include "grammar/base/wording.h"
-#include "harness/base/yaml/diagnostic_list.h"
 #include "harness/base/yaml/error_at.h"
-#include "harness/base/yaml/yaml_scalar.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::exchange {
@@ -24,6 +22,8 @@ using Events = std::vector<EventSignature>;
 
 /// A label may end so long after its recording; people stop marking later than cameras stop.
 constexpr double kMostBeyondEnd_s = 1;
+/// Times after this are hardly counted from the begin of a recording.
+constexpr double kDates_s = 1e8;
 
 const EventSignature* FindEvent(const Events& events, const std::string& name) {
   const auto found = std::ranges::find(events, name, &EventSignature::name);
@@ -46,196 +46,6 @@ void PutInOrder(const EventSignature& event, std::vector<grammar::Role>& roles) 
     std::swap(roles[0].value, roles[1].value);
 }
 
-class MapReader {
- public:
-  MapReader(LabelMap& map, const Events& events)
-      : map_(map), events_(events), errors_(map.document) {}
-
-  Diagnostics Read() {
-    const YamlNode& root = map_.document.root;
-    if (root.kind != YamlNode::Kind::kMapping) {
-      errors_.Add(root.where, "expected a map of labels, found " + Describe(root), kExample);
-      return errors_.Sorted();
-    }
-    for (const YamlNode& node : root.children) {
-      if (node.key == "version")
-        ReadVersion(node);
-      else if (node.key == "offset_s")
-        ReadNumber(node, map_.offset_s, "seconds", false);
-      else if (node.key == "join_s")
-        ReadNumber(node, map_.join_s, "seconds", true);
-      else if (node.key == "rate_hz")
-        ReadNumber(node, map_.csv.rate_hz, "frames per second", true);
-      else if (node.key == "time_unit")
-        ReadTimeUnit(node);
-      else if (node.key == "columns")
-        ReadColumns(node);
-      else if (node.key == "entities")
-        ReadEntities(node);
-      else if (node.key == "tiers")
-        ReadTiers(node);
-      else if (node.key != "labels")
-        errors_.AddUnknownName(node.key_where, "unknown key '" + node.key + "'", node.key,
-                               {"version", "labels", "tiers", "offset_s", "join_s", "time_unit",
-                                "rate_hz", "columns", "entities"});
-    }
-    if (const YamlNode* labels = root.Find("labels"))
-      ReadLabelNodes(*labels);
-    else
-      errors_.Add(root.where, "'labels' is missing", kExample);
-    return errors_.Sorted();
-  }
-
- private:
-  static constexpr const char* kExample =
-      "labels:\n    hold: {event: EVENT, object: cup}\n    idle: ignore";
-
-  void ReadNumber(const YamlNode& node, double& into, const char* what, bool positive) {
-    const std::optional<double> number = NumberOf(node);
-    if (number && (!positive || *number > 0))
-      into = *number;
-    else
-      errors_.Add(node.where, fmt::format("{}: expected {}{}, found {}", node.key, what,
-                                          positive ? ", more than 0" : "", Describe(node)));
-  }
-
-  /// 1 where no line says it.
-  void ReadVersion(const YamlNode& node) {
-    if (NumberOf(node) != 1)
-      errors_.Add(node.where,
-                  "version: expected 1, the version of this format, found " + Describe(node));
-  }
-
-  void ReadTimeUnit(const YamlNode& node) {
-    static const std::map<std::string, double> units = {
-        {"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}, {"frame", 0}};
-    const auto unit = node.kind == YamlNode::Kind::kScalar ? units.find(node.text) : units.end();
-    if (unit == units.end())
-      return errors_.Add(node.where,
-                         "time_unit: expected s, ms, us, ns or frame, found " + Describe(node));
-    map_.csv.unit_s = unit->second;
-    map_.csv.in_frames = node.text == "frame";
-  }
-
-  /// Every role of an event.
-  std::set<std::string> Roles() const {
-    std::set<std::string> known;
-    for (const EventSignature& event : events_)
-      known.insert(event.roles.begin(), event.roles.end());
-    return known;
-  }
-
-  void ReadColumns(const YamlNode& columns) {
-    if (!IsMapping(columns)) return;
-    std::set<std::string> known = Roles();
-    for (const YamlNode& node : columns.children) {
-      if (node.kind != YamlNode::Kind::kScalar || node.text.empty()) {
-        errors_.Add(node.where,
-                    node.key + ": expected the name of a column, found " + Describe(node));
-      } else if (node.key == "begin") {
-        map_.csv.begin = node.text;
-      } else if (node.key == "end") {
-        map_.csv.end = node.text;
-      } else if (node.key == "label") {
-        map_.csv.label = node.text;
-      } else if (node.key == "tier") {
-        map_.csv.tier = node.text;
-      } else if (known.contains(node.key)) {
-        map_.csv.roles.push_back({node.key, node.text});
-      } else {
-        known.insert({"begin", "end", "label", "tier"});
-        errors_.AddUnknownName(
-            node.key_where,
-            "'" + node.key + "' is no column of labels: begin, end, label, tier or a role",
-            node.key, {known.begin(), known.end()});
-      }
-    }
-  }
-
-  void ReadEntities(const YamlNode& entities) {
-    if (!IsMapping(entities)) return;
-    for (const YamlNode& node : entities.children) {
-      if (node.kind != YamlNode::Kind::kScalar || node.text.empty())
-        errors_.Add(node.where, node.key + ": expected the name of an entity, or 'ignore', found " +
-                                    Describe(node));
-      else
-        map_.entities[node.key] = {SaysIgnore(node) ? "" : node.text, node.where};
-    }
-  }
-
-  bool IsMapping(const YamlNode& node) {
-    if (node.kind == YamlNode::Kind::kMapping && !node.children.empty()) return true;
-    errors_.Add(node.where, node.key + ": expected a mapping, found " + Describe(node), kExample);
-    return false;
-  }
-
-  static bool SaysIgnore(const YamlNode& node) {
-    return node.kind == YamlNode::Kind::kScalar && node.text == "ignore";
-  }
-
-  void ReadTiers(const YamlNode& tiers) {
-    if (!IsMapping(tiers)) return;
-    const std::set<std::string> known = Roles();
-    for (const YamlNode& node : tiers.children) {
-      Meaning& tier = map_.tiers[node.key];
-      tier.where = node.key_where;
-      tier.ignored = SaysIgnore(node);
-      if (tier.ignored || !IsMapping(node)) continue;
-      for (const YamlNode& role : node.children) {
-        if (!known.contains(role.key))
-          errors_.AddUnknownName(role.key_where, "no event has a role '" + role.key + "'", role.key,
-                                 {known.begin(), known.end()});
-        ReadRole(role, tier);
-      }
-    }
-  }
-
-  void ReadRole(const YamlNode& node, Meaning& meaning) {
-    if (node.kind != YamlNode::Kind::kScalar || node.text.empty())
-      errors_.Add(node.where,
-                  node.key + ": expected the name of an entity, found " + Describe(node));
-    else
-      meaning.roles.push_back({node.key, node.text}), meaning.entities[node.text] = node.where;
-  }
-
-  void ReadLabelNodes(const YamlNode& labels) {
-    if (!IsMapping(labels)) return;
-    for (const YamlNode& node : labels.children) {
-      Meaning& label = map_.labels[node.key];
-      label.where = node.key_where;
-      label.ignored = SaysIgnore(node);
-      if (label.ignored) continue;
-      const YamlNode* name = node.kind == YamlNode::Kind::kMapping ? node.Find("event") : nullptr;
-      if (!name) {
-        errors_.Add(
-            node.where,
-            fmt::format("'{}': expected an event or 'ignore', found {}", node.key, Describe(node)),
-            kExample);
-        continue;
-      }
-      label.event = name->text;
-      const EventSignature* event = FindEvent(events_, label.event);
-      if (!event) {
-        errors_.AddUnknownName(name->where, "the grammar has no event '" + label.event + "'",
-                               label.event, NamesOf(events_));
-        continue;
-      }
-      for (const YamlNode& role : node.children) {
-        if (role.key == "event") continue;
-        if (std::ranges::find(event->roles, role.key) == event->roles.end())
-          errors_.AddUnknownName(role.key_where,
-                                 fmt::format("'{}' has no role '{}'", event->name, role.key),
-                                 role.key, event->roles);
-        ReadRole(role, label);
-      }
-    }
-  }
-
-  LabelMap& map_;
-  const Events& events_;
-  DiagnosticList errors_;
-};
-
 /// Between double quotes.
 std::string AsYaml(const std::string& text) {
   std::string quoted = "\"";
@@ -244,11 +54,6 @@ std::string AsYaml(const std::string& text) {
     quoted += c;
   }
   return quoted + "\"";
-}
-
-std::string Trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t\n"), end = text.find_last_not_of(" \t\n");
-  return begin == std::string_view::npos ? "" : std::string(text.substr(begin, end - begin + 1));
 }
 
 /// "grasping(right_hand, cup)", or the name alone. Nothing, and `problem`, if it is no
@@ -370,38 +175,97 @@ void Compare(const std::string& event, const std::vector<grammar::Role>& roles,
 
 }  // namespace
 
-Result<LabelMap> ReadLabelMap(const std::string& path, const Events& events) {
-  Result<YamlDocument> document = ReadYamlFile(path);
-  if (!document) return tl::unexpected(std::move(document.error()));
-  LabelMap map{.document = std::move(*document)};
-  Diagnostics problems = MapReader(map, events).Read();
-  if (!problems.empty()) return tl::unexpected(std::move(problems));
-  return map;
-}
-
 Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelMap* map,
                                       const Events& events) {
+  std::vector<TakeRows> takes;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    TakeRows& take =
+        takes.emplace_back(TakeRows{.file = i, .labels = {}, .offset_s = map ? map->offset_s : 0});
+    for (std::size_t k = 0; k < files[i].labels.size(); ++k) take.labels.push_back(k);
+  }
+  return Of(std::move(files), map, events, std::move(takes));
+}
+
+namespace {
+
+const Meaning* TierOf(const Label& label, const LabelMap* map) {
+  if (!map) return nullptr;
+  const auto tier = map->tiers.find(label.tier);
+  return tier == map->tiers.end() ? nullptr : &tier->second;
+}
+
+/// The labels of a take; those of tiers that are roles of others are in these.
+std::vector<Label> LabelsOf(const LabelFile& file, const TakeRows& take, const LabelMap* map,
+                            Diagnostics& problems) {
+  std::vector<Label> labels, children;
+  for (const std::size_t index : take.labels) {
+    const Label& label = file.labels[index];
+    const Meaning* tier = TierOf(label, map);
+    (tier && !tier->role.empty() ? children : labels).push_back(label);
+  }
+  for (const Label& child : children) {
+    const Meaning& tier = *TierOf(child, map);
+    const double middle_s = (child.begin_s + child.end_s) / 2;
+    const auto parent = std::ranges::find_if(labels, [&](const Label& label) {
+      return label.tier == tier.of && label.begin_s <= middle_s && middle_s <= label.end_s;
+    });
+    if (parent != labels.end())
+      parent->roles.push_back({tier.role, Trimmed(child.text)});
+    else if (problems.size() < kMostComplaints)
+      problems.push_back(file.At(child.place, fmt::format("the tier '{}' has no label here whose "
+                                                          "{} '{}' could be",
+                                                          tier.of, tier.role, child.text)));
+  }
+  return labels;
+}
+
+}  // namespace
+
+Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelMap* map,
+                                      const Events& events, std::vector<TakeRows> takes) {
   LabelReading reading;
   if (map) {
     reading.join_s_ = map->join_s;
-    reading.offset_s_ = map->offset_s;
+    reading.collars_s_ = map->collars_s;
     reading.map_ = map->document;
   }
   Diagnostics problems;
   std::set<std::string> complained;
-  for (const LabelFile& file : files) {
-    std::vector<LabelledEvent>& of_file = reading.events_.emplace_back();
-    for (const Label& label : file.labels) {
+  reading.counted_.takes = takes.size();
+  for (const TakeRows& take : takes) {
+    const LabelFile& file = files[take.file];
+    std::vector<LabelledEvent>& of_take = reading.events_.emplace_back();
+    for (const Label& label : LabelsOf(file, take, map, problems)) {
       const std::string text = Trimmed(label.text);
       Meant meant = map ? ByMap(label, text, *map, events) : WithoutMap(text, events);
-      if (!meant.problem.empty() && problems.size() < kMostComplaints &&
+      const bool is_problem = !meant.problem.empty();
+      if (is_problem && problems.size() < kMostComplaints &&
           complained.insert(meant.problem).second)
         problems.push_back(file.At(label.place, std::move(meant.problem), std::move(meant.hint)));
+      if (!meant.event && !is_problem) ++reading.counted_.ignored[text];
       if (!meant.event) continue;
+      ++(label.IsMoment() ? reading.counted_.moments : reading.counted_.labels);
       Compare(meant.event->event, meant.event->roles, reading.compared_);
-      of_file.push_back({label.begin_s + reading.offset_s_, label.end_s + reading.offset_s_,
+      of_take.push_back({label.begin_s + take.offset_s, label.end_s + take.offset_s,
                          std::move(*meant.event), label.place, std::move(meant.in_map)});
     }
+    reading.WarnOfOverlaps(file, of_take);
+  }
+  for (const LabelFile& file : files) {
+    if (file.backward > 0) reading.counted_.backward[file.file] = file.backward;
+    reading.warnings_ += grammar::Format(file.warnings);
+    reading.counted_.without_text += file.empty.size();
+    if (file.empty.empty()) continue;
+    const Label& first = file.empty.front();
+    grammar::Diagnostic warning = file.At(
+        first.place,
+        fmt::format(
+            "{} without text, and left out; the first {}at {:g} to {:g} s",
+            file.empty.size() == 1 ? "a label is" : fmt::format("{} labels are", file.empty.size()),
+            first.tier.empty() ? "" : "of the tier '" + first.tier + "' ", first.begin_s,
+            first.end_s));
+    warning.is_warning = true;
+    reading.warnings_ += grammar::Format(warning);
   }
   // What labels could name: without one of them, what is recognised of it is too much.
   if (map) {
@@ -418,7 +282,40 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
   for (const auto& [name, _] : reading.compared_)
     reading.signatures_.emplace(name, *FindEvent(events, name));
   reading.files_ = std::move(files);
+  reading.takes_ = std::move(takes);
   return reading;
+}
+
+std::optional<double> LabelReading::offset_s() const {
+  for (const TakeRows& take : takes_)
+    if (take.offset_s != takes_.front().offset_s) return std::nullopt;
+  return takes_.front().offset_s;
+}
+
+void LabelReading::WarnOfOverlaps(const LabelFile& file, const std::vector<LabelledEvent>& events) {
+  constexpr double kRounding_s = 1e-3;
+  if (join_s_ > 0) return;  // they are to become one
+  std::map<std::string, std::vector<const LabelledEvent*>> by_label;
+  for (const LabelledEvent& event : events) by_label[event.event.Label()].push_back(&event);
+  std::size_t count = 0;
+  const LabelledEvent* first = nullptr;
+  for (auto& [label, same] : by_label) {
+    std::ranges::sort(same, {}, &LabelledEvent::begin_s);
+    double end_s = -1e300;
+    for (const LabelledEvent* one : same) {
+      if (!one->IsMoment() && one->begin_s < end_s - kRounding_s && ++count == 1) first = one;
+      end_s = std::max(end_s, one->end_s);
+    }
+  }
+  if (count == 0) return;
+  grammar::Diagnostic warning =
+      file.At(first->place,
+              fmt::format("{} another one of the same event and roles, and {} one with it",
+                          count == 1 ? "a label overlaps" : fmt::format("{} labels overlap", count),
+                          count == 1 ? "is" : "are"),
+              "did two people mark them? rows: {COLUMN: NAME} in a file of takes tells them apart");
+  warning.is_warning = true;
+  warnings_ += grammar::Format(warning);
 }
 
 grammar::Diagnostic LabelReading::At(const LabelFile& labels, const LabelledEvent& label,
@@ -433,15 +330,14 @@ grammar::Diagnostic LabelReading::At(const LabelFile& labels, const LabelledEven
   return in_map;
 }
 
-Result<grammar::Timeline> LabelReading::Truth(std::size_t file,
+Result<grammar::Timeline> LabelReading::Truth(std::size_t take,
                                               const std::vector<grammar::EntityInfo>& entities,
                                               grammar::Tick ticks_per_second,
                                               grammar::Tick end) const {
-  const LabelFile& labels = files_[file];
-  grammar::Timeline truth{.ticks_per_second = ticks_per_second, .events = {}};
+  const LabelFile& labels = files_[takes_[take].file];
   Diagnostics problems;
   const double end_s = static_cast<double>(end) / static_cast<double>(ticks_per_second);
-  for (const LabelledEvent& label : events_[file]) {
+  for (const LabelledEvent& label : events_[take]) {
     if (problems.size() >= kMostComplaints) break;
     for (const grammar::Role& role : label.event.roles) {
       const EventSignature& event = signatures_.at(label.event.event);
@@ -477,63 +373,37 @@ Result<grammar::Timeline> LabelReading::Truth(std::size_t file,
           label.place,
           fmt::format("the label lies at {:g} to {:g} s, the recording ends after {:g} s",
                       label.begin_s, label.end_s, end_s),
-          "is it of another recording, in another unit, or by another clock? offset_s in the map "
-          "moves all labels"));
-      continue;
+          std::abs(label.begin_s) < kDates_s
+              ? "is it of another recording, in another unit, or by another clock? offset_s in the "
+                "map moves all labels"
+              : "is it a time of day? When did the recording begin? In the map or in a file of "
+                "takes: starts_at: 2026-10-25T01:59:50"));
     }
+  }
+  if (!problems.empty()) return tl::unexpected(std::move(problems));
+  return Marked(take, ticks_per_second, end, false);
+}
+
+grammar::Timeline LabelReading::Marked(std::size_t take, grammar::Tick ticks_per_second,
+                                       grammar::Tick end, bool moments) const {
+  grammar::Timeline marked{.ticks_per_second = ticks_per_second, .events = {}};
+  for (const LabelledEvent& label : events_[take]) {
+    if (label.IsMoment() && !moments) continue;
     grammar::NamedEvent event = label.event;
     event.interval.begin =
         std::clamp<grammar::Tick>(truth::TickAt(label.begin_s, ticks_per_second), 0, end - 1);
     event.interval.end = std::clamp<grammar::Tick>(truth::TickAt(label.end_s, ticks_per_second),
                                                    event.interval.begin + 1, end);
     event.decided = event.interval.end;
-    truth.events.push_back(std::move(event));
+    marked.events.push_back(std::move(event));
   }
-  if (!problems.empty()) return tl::unexpected(std::move(problems));
-  return Compared(truth, compared_, truth::TickAt(join_s_, ticks_per_second));
+  return Compared(marked, compared_, truth::TickAt(join_s_, ticks_per_second));
 }
 
-grammar::Timeline Compared(const grammar::Timeline& timeline, const ComparedRoles& roles,
-                           grammar::Tick join) {
-  std::map<std::string, std::vector<grammar::NamedEvent>> by_label;
-  for (grammar::NamedEvent event : timeline.events) {
-    const auto compared = roles.find(event.event);
-    if (compared == roles.end()) continue;
-    std::erase_if(event.roles, [&](const grammar::Role& role) {
-      return std::ranges::find(compared->second, role.name) == compared->second.end();
-    });
-    event.values.clear();
-    by_label[event.Label()].push_back(std::move(event));
-  }
-  grammar::Timeline all{.ticks_per_second = timeline.ticks_per_second, .events = {}};
-  for (auto& [label, events] : by_label) {
-    std::ranges::sort(events, {}, [](const grammar::NamedEvent& event) {
-      return std::pair(event.interval.begin, event.interval.end);
-    });
-    const std::size_t first = all.events.size();
-    for (grammar::NamedEvent& event : events) {
-      const bool follows = all.events.size() > first;
-      if (follows &&
-          (event.interval.begin < all.events.back().interval.end ||
-           (join > 0 && event.interval.begin <= all.events.back().interval.end + join))) {
-        grammar::NamedEvent& before = all.events.back();
-        before.interval.end = std::max(before.interval.end, event.interval.end);
-        before.decided = std::max(before.decided, event.decided);
-      } else {
-        all.events.push_back(std::move(event));
-      }
-    }
-  }
-  Sort(all);
-  return all;
-}
-
-grammar::Timeline ByHand(grammar::Timeline timeline) {
-  for (grammar::NamedEvent& event : timeline.events) {
-    const std::string& hand = truth::RoleValue(event, "hand");
-    if (!hand.empty()) event.event += " of " + hand;
-  }
-  return timeline;
+double LabelReading::EndOf(std::size_t take) const {
+  double end_s = 0;
+  for (const LabelledEvent& label : events_[take]) end_s = std::max(end_s, label.end_s);
+  return end_s;
 }
 
 }  // namespace prehend::exchange

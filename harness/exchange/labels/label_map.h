@@ -18,25 +18,38 @@
 
 namespace prehend::exchange {
 
+/// Without blanks around it.
+std::string Trimmed(std::string_view text);
+
+/// The error of a table whose LabelFile::several are not told apart.
+grammar::Diagnostic SeveralTakes(const LabelFile& file, const std::string& take);
+
 /// A label, or what a tier adds to its labels.
 struct Meaning {
   bool ignored = false;
   std::string event;
   std::vector<grammar::Role> roles;
   std::map<std::string, Where> entities;  ///< where its roles' values stand
+  /// Of a tier whose labels are no events: they are this role of those of another tier.
+  std::string role, of;
   Where where;
 };
 
 struct LabelMap {
   YamlDocument document;
-  double offset_s = 0;  ///< added to all times of labels
-  double join_s = 0;    ///< labels of one event with no longer pause between them are one
+  double offset_s = 0;                      ///< added to all times of labels
+  std::map<std::string, double> offsets_s;  ///< the same of single takes, by their names
+  double join_s = 0;  ///< labels of one event with no longer pause between them are one
+  std::map<std::string, double> collars_s;  ///< of boundaries, by event
   CsvReading csv;
   /// What the columns of roles hold, as entities; "": labels of it are left out.
   std::map<std::string, Located<std::string>> entities;
   std::map<std::string, Meaning> labels;
   std::map<std::string, Meaning> tiers;  ///< empty: tiers mean nothing
 };
+
+/// What a map says should be added to the times of a take; nothing if that is nowhere.
+std::optional<double> OffsetOf(const LabelMap& map, const std::vector<std::string>& names);
 
 /// Errors have their places. Events and roles must be those of `events`.
 Result<LabelMap> ReadLabelMap(const std::string& path,
@@ -45,24 +58,73 @@ Result<LabelMap> ReadLabelMap(const std::string& path,
 /// Of each event that labels name the roles that they name with it: what is compared.
 using ComparedRoles = std::map<std::string, std::vector<std::string>>;
 
+/// Labels of a file that are those of a take.
+struct TakeRows {
+  std::size_t file = 0;
+  std::vector<std::size_t> labels;  ///< their indices
+  double offset_s = 0;
+};
+
+/// What was counted, and what was not and why.
+struct Counted {
+  std::size_t takes = 0, labels = 0, moments = 0;
+  std::map<std::string, std::size_t> ignored;  ///< by the text of the label
+  std::size_t without_text = 0;
+  std::map<std::string, std::size_t> backward;  ///< by file
+  /// By file and take.
+  std::map<std::string, std::map<std::string, std::size_t>> of_other_takes;
+
+  /// "counted: 5 labels of 1 take\nleft out: ..\n"
+  std::string Text() const;
+  /// Files that both have read are not counted twice.
+  Counted& operator+=(const Counted& more);
+  std::size_t Backward() const;
+  std::map<std::string, std::size_t> OfOtherTakes() const;
+};
+
+/// Labels of a moment, and how many lie in what was recognised of the same name and roles.
+struct Moments {
+  int marked = 0, found = 0;
+};
+
 /// Labels as events. One without roles in common with other labels of its event is compared without
 /// them.
 class LabelReading {
  public:
   /// `map` may be null. Errors are labels that the map does not have, or that are no events.
   static Result<LabelReading> Of(std::vector<LabelFile> files, const LabelMap* map,
+                                 const std::vector<grammar::EventSignature>& events,
+                                 std::vector<TakeRows> takes);
+  /// A file for each take.
+  static Result<LabelReading> Of(std::vector<LabelFile> files, const LabelMap* map,
                                  const std::vector<grammar::EventSignature>& events);
 
   const std::vector<LabelFile>& files() const { return files_; }
   const ComparedRoles& compared() const { return compared_; }
-  /// What the map adds to all times.
-  double offset_s() const { return offset_s_; }
+  /// What is added to all times of labels; nothing if that differs between takes.
+  std::optional<double> offset_s() const;
+  /// What the map says of the tolerances of boundaries, in seconds, by event.
+  const std::map<std::string, double>& collars_s() const { return collars_s_; }
+  const Counted& counted() const { return counted_; }
+  Counted& counted() { return counted_; }
+  /// Of what is strange, lines.
+  const std::string& warnings() const { return warnings_; }
 
-  /// The events of the file with this index in a recording of these entities and this length.
-  /// Errors are entities that are missing or cannot have such a role, and labels beyond its end.
-  Result<grammar::Timeline> Truth(std::size_t file,
+  /// The events of the take with this index, in a recording of these entities and this length; not
+  /// those of a moment. Errors are entities that are missing or cannot have such a role, and labels
+  /// beyond its end.
+  Result<grammar::Timeline> Truth(std::size_t take,
                                   const std::vector<grammar::EntityInfo>& entities,
                                   grammar::Tick ticks_per_second, grammar::Tick end) const;
+  /// The same without a recording; with those of a moment or not, which then last a tick.
+  grammar::Timeline Marked(std::size_t take, grammar::Tick ticks_per_second, grammar::Tick end,
+                           bool moments) const;
+  /// Where the last label of the take ends, in seconds.
+  double EndOf(std::size_t take) const;
+  /// Of those of a moment how many lie in what is found, by event, give or take `before` ticks from
+  /// its begin. What contains one, and no true event is there, is taken out of `found`.
+  std::map<std::string, Moments> TakeMoments(std::size_t take, const grammar::Timeline& truth,
+                                             grammar::Tick before, grammar::Timeline& found) const;
 
  private:
   struct LabelledEvent {
@@ -70,16 +132,23 @@ class LabelReading {
     grammar::NamedEvent event;
     grammar::Place place;
     std::map<std::string, Where> in_map;  ///< of the entities that the map names, not the label
+    bool IsMoment() const { return begin_s == end_s; }
   };
   /// What is wrong with a role of a label, in the file that says it.
   grammar::Diagnostic At(const LabelFile& labels, const LabelledEvent& label,
                          const std::string& entity, std::string message, std::string hint) const;
+  void WarnOfOverlaps(const LabelFile& file, const std::vector<LabelledEvent>& events);
+
   std::vector<LabelFile> files_;
-  std::vector<std::vector<LabelledEvent>> events_;  ///< per file
+  std::vector<TakeRows> takes_;
+  std::vector<std::vector<LabelledEvent>> events_;  ///< per take
   ComparedRoles compared_;
   std::map<std::string, grammar::EventSignature> signatures_;  ///< of the compared events
   std::optional<YamlDocument> map_;
-  double join_s_ = 0, offset_s_ = 0;
+  double join_s_ = 0;
+  std::map<std::string, double> collars_s_;
+  Counted counted_;
+  std::string warnings_;
 };
 
 /// Only the compared events, each with its compared roles; those of the same label that overlap

@@ -45,6 +45,8 @@ class EafReader {
     if (unit != "milliseconds")
       Complain(root.child("HEADER"), "TIME_UNITS: found '" + unit + "', wanted milliseconds",
                "ELAN saves it so after Options > Propagate time offset is not set to frames");
+    for (const pugi::xml_node media : root.child("HEADER").children("MEDIA_DESCRIPTOR"))
+      WarnOfOrigin(media);
     ReadSlots(root.child("TIME_ORDER"));
     for (const pugi::xml_node tier : root.children("TIER")) ReadAligned(tier);
     for (const pugi::xml_node tier : root.children("TIER")) ReadReferring(tier);
@@ -60,6 +62,18 @@ class EafReader {
     if (problems_.size() < kMostComplaints)
       problems_.push_back(
           file_.At(PlaceAt(file_.text, node.offset_debug()), std::move(message), std::move(hint)));
+  }
+
+  /// ELAN shows the video from there on; its annotations count from there, too.
+  void WarnOfOrigin(pugi::xml_node media) {
+    const double origin_ms = media.attribute("TIME_ORIGIN").as_double(0);
+    if (origin_ms == 0) return;
+    file_.warnings.push_back(file_.At(
+        PlaceAt(file_.text, media.offset_debug()),
+        fmt::format("TIME_ORIGIN: 0 s of the labels is {:g} s of the video", origin_ms / 1000),
+        "if the recording began with the video: offset_s of this take in the map or in a file of "
+        "takes, 0 if it did not"));
+    file_.warnings.back().is_warning = true;
   }
 
   void ReadSlots(pugi::xml_node order) {
@@ -107,12 +121,13 @@ class EafReader {
 
   void Add(pugi::xml_node annotation, pugi::xml_node tier, const Times& times) {
     const std::string text = annotation.child_value("ANNOTATION_VALUE");
-    if (text.find_first_not_of(" \t\n") == std::string::npos) return;
-    file_.labels.push_back({.begin_s = times.begin_s,
-                            .end_s = times.end_s,
-                            .text = text,
-                            .tier = tier.attribute("TIER_ID").as_string(),
-                            .place = PlaceAt(file_.text, annotation.offset_debug())});
+    const bool is_empty = text.find_first_not_of(" \t\n") == std::string::npos;
+    (is_empty ? file_.empty : file_.labels)
+        .push_back({.begin_s = times.begin_s,
+                    .end_s = times.end_s,
+                    .text = text,
+                    .tier = tier.attribute("TIER_ID").as_string(),
+                    .place = PlaceAt(file_.text, annotation.offset_debug())});
   }
 
   void ReadAligned(pugi::xml_node tier) {

@@ -6,15 +6,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <optional>
 #include <pugixml.hpp>
 
-#include "harness/base/base/csv_cells.h"
 #include "harness/base/base/text_file.h"
 #include "harness/truth/golden/golden.h"
 
@@ -67,156 +63,11 @@ Result<std::string> ReadAnyUtf(const std::string& path) {
   return text;
 }
 
-std::optional<double> NumberIn(std::string_view text) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number))
-    return std::nullopt;
-  return number;
-}
-
-std::string Lower(std::string_view text) {
-  std::string lower(text);
-  std::ranges::transform(lower, lower.begin(),
+std::string LowerEnding(const std::string& path) {
+  std::string ending = fs::path(path).extension().string();
+  std::ranges::transform(ending, ending.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
-
-/// A number, or seconds after minutes and hours: 1:02:03.5, 02:03.5.
-struct TimeCell {
-  double number = 0;
-  bool is_clock = false;  ///< then in seconds
-};
-std::optional<TimeCell> TimeIn(std::string_view text) {
-  TimeCell time;
-  int parts = 0;
-  for (std::size_t colon = text.find(':'); colon != std::string_view::npos;
-       colon = text.find(':'), ++parts) {
-    const std::optional<double> part = NumberIn(text.substr(0, colon));
-    if (!part || *part < 0 || *part != std::floor(*part) || parts == 2) return std::nullopt;
-    time.number = 60 * (time.number + *part);
-    text.remove_prefix(colon + 1);
-  }
-  time.is_clock = parts > 0;
-  const std::optional<double> rest = NumberIn(text);
-  if (!rest || (time.is_clock && (*rest < 0 || *rest >= 60))) return std::nullopt;
-  time.number += *rest;
-  return time;
-}
-
-/// A column of times.
-struct TimeColumn {
-  std::size_t seat = 0;
-  double unit_s = 1;
-  bool in_frames = false;
-};
-
-/// "Start Time" and "start_time" are one name.
-std::string Plain(std::string_view word) {
-  std::string plain = Lower(word);
-  std::ranges::replace(plain, ' ', '_');
-  return plain;
-}
-
-TimeColumn TimeColumnAt(std::size_t seat, std::string_view word) {
-  const std::string plain = Plain(word);
-  return {.seat = seat,
-          .unit_s = plain.ends_with("_ms") ? 1e-3 : 1,
-          .in_frames = plain.ends_with("_frame")};
-}
-
-/// The columns of a file by the words in its first line.
-struct CsvColumns {
-  std::optional<TimeColumn> begin, end;
-  std::optional<std::size_t> label, tier;
-  std::vector<std::pair<std::string, std::size_t>> roles;
-
-  void Take(std::string_view word, std::size_t seat) {
-    const std::string whole = Plain(word);
-    std::string_view plain = whole;
-    for (const std::string_view unit :
-         {"_s", "_sec", "_seconds", "_ms", "_time", "_timestamp", "_frame"}) {
-      if (!plain.ends_with(unit)) continue;
-      plain.remove_suffix(unit.size());
-      break;
-    }
-    const auto is_one_of = [&](std::initializer_list<const char*> words) {
-      return std::ranges::find(words, plain) != words.end();
-    };
-    const TimeColumn time = TimeColumnAt(seat, word);
-    // Of seconds and frames the seconds.
-    const auto take = [&](std::optional<TimeColumn>& into) {
-      if (!into || into->in_frames || !time.in_frames) into = time;
-    };
-    if (is_one_of({"begin", "start", "onset"}))
-      take(begin);
-    else if (is_one_of({"end", "stop", "offset"}))
-      take(end);
-    else if (is_one_of(
-                 {"label", "event", "annotation", "text", "action", "activity", "verb", "value"}))
-      label = seat;
-    else if (is_one_of({"tier", "hand", "track", "layer"}))
-      tier = seat;
-  }
-
-  bool IsComplete() const { return begin && end && label; }
-  /// Of all columns that are read.
-  std::vector<std::size_t> Seats() const {
-    std::vector<std::size_t> seats = {begin->seat, end->seat, *label};
-    if (tier) seats.push_back(*tier);
-    for (const auto& [_, seat] : roles) seats.push_back(seat);
-    return seats;
-  }
-};
-
-/// The columns, or why they cannot be read.
-Result<CsvColumns> ColumnsOf(const LabelFile& file, const std::vector<std::string>& words,
-                             const CsvReading& how) {
-  const auto problem = [&](std::string message, std::string hint) {
-    return tl::unexpected(Diagnostics{file.At({1, 1}, std::move(message), std::move(hint))});
-  };
-  const std::string found = fmt::format("found the columns {}", fmt::join(words, ", "));
-  CsvColumns columns;
-  for (std::size_t seat = 0; seat < words.size(); ++seat) columns.Take(words[seat], seat);
-  std::string missing;
-  const auto seat_of = [&](const std::string& name) -> std::optional<std::size_t> {
-    const auto at = std::ranges::find(words, name);
-    if (at == words.end()) missing = name;
-    return at == words.end() ? std::nullopt
-                             : std::optional(static_cast<std::size_t>(at - words.begin()));
-  };
-  const auto name_time = [&](std::optional<TimeColumn>& column, const std::string& name) {
-    if (name.empty()) return;
-    if (const auto seat = seat_of(name)) column = TimeColumnAt(*seat, name);
-  };
-  name_time(columns.begin, how.begin);
-  name_time(columns.end, how.end);
-  if (!how.label.empty()) columns.label = seat_of(how.label);
-  if (!how.tier.empty()) columns.tier = seat_of(how.tier);
-  for (const grammar::Role& role : how.roles)
-    if (const auto seat = seat_of(role.value)) columns.roles.emplace_back(role.name, *seat);
-  if (!missing.empty()) {
-    const std::string near = grammar::NearestName(missing, words);
-    return problem(fmt::format("{}; the map wants a column '{}'", found, missing),
-                   near.empty() ? "" : "did you mean '" + near + "'?");
-  }
-  if (!columns.IsComplete())
-    return problem(found + "; wanted one for the begin, the end and the label of each row",
-                   "begin_s,end_s,label or begin_ms,end_ms,label, and 'tier' if you like; or name "
-                   "yours in the map: columns: {begin: t0, end: t1, label: what}");
-  for (const std::size_t seat : columns.Seats())
-    if (std::ranges::count(words, words[seat]) > 1)
-      return problem(fmt::format("{}: two columns are called '{}'", found, words[seat]), "");
-  for (std::optional<TimeColumn>* column : {&columns.begin, &columns.end}) {
-    if (how.unit_s > 0 || how.in_frames)
-      **column = {.seat = (*column)->seat, .unit_s = how.unit_s, .in_frames = how.in_frames};
-    if (!(*column)->in_frames) continue;
-    if (how.rate_hz <= 0)
-      return problem(fmt::format("'{}' is counted in frames", words[(*column)->seat]),
-                     "how many has the video per second? In the map: rate_hz: 30");
-    (*column)->unit_s = 1 / how.rate_hz;
-  }
-  return columns;
+  return ending;
 }
 
 /// Leaves them out, or says what is wrong with each.
@@ -247,24 +98,32 @@ grammar::Diagnostic LabelFile::At(Place place, std::string message, std::string 
 }
 
 const std::vector<std::string>& LabelEndings() {
-  static const std::vector<std::string> endings = {".csv", ".eaf", ".TextGrid", ".timeline"};
+  static const std::vector<std::string> endings = {".csv",      ".tsv",      ".eaf",
+                                                   ".TextGrid", ".timeline", ".txt"};
   return endings;
 }
 
 bool IsLabelFile(const std::string& path) {
   return std::ranges::any_of(LabelEndings(), [&](const std::string& ending) {
-    return Lower(path).ends_with(Lower(ending));
+    return LowerEnding(path) == LowerEnding("x" + ending);
   });
+}
+
+bool IsTable(const std::string& path) {
+  const std::string ending = LowerEnding(path);
+  return ending == ".csv" || ending == ".tsv";
 }
 
 Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv, Backward backward) {
   Result<std::string> text = ReadAnyUtf(path);
   if (!text) return tl::unexpected(std::move(text.error()));
   LabelFile file{.file = path, .text = std::move(*text), .labels = {}};
-  const std::string ending = Lower(fs::path(path).extension().string());
+  const std::string ending = LowerEnding(path);
   Diagnostics problems;
-  if (ending == ".csv") {
+  if (IsTable(path)) {
     problems = ReadCsvLabels(file, csv);
+  } else if (ending == ".txt") {
+    problems = ReadFrameLabels(file, csv.rate_hz);
   } else if (ending == ".eaf") {
     problems = ReadEafLabels(file);
   } else if (ending == ".textgrid") {
@@ -281,68 +140,6 @@ Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv, Bac
   return file;
 }
 
-Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
-  Diagnostics problems;
-  CsvColumns columns;
-  std::vector<std::string> words;
-  char separator = ',';
-  const std::string_view text = file.text;
-  int line_number = 0;
-  for (std::size_t begin = 0; begin < text.size() && problems.size() < kMostComplaints;) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
-    begin = end + 1;
-    if (++line_number == 1) {
-      for (const char other : {';', '\t'})
-        if (line.find(',') == std::string_view::npos && line.find(other) != std::string_view::npos)
-          separator = other;
-      for (const CsvCell& cell : CsvCellsOf(line, separator)) words.emplace_back(cell.text);
-      Result<CsvColumns> known = ColumnsOf(file, words, how);
-      if (!known) return known.error();
-      columns = std::move(*known);
-      continue;
-    }
-    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
-    const std::vector<CsvCell> cells = CsvCellsOf(line, separator);
-    const auto faulty =
-        std::ranges::find_if(cells, [](const CsvCell& cell) { return !cell.fault.empty(); });
-    if (faulty != cells.end()) {
-      problems.push_back(file.At({line_number, faulty->column},
-                                 fmt::format("the cell '{}': {}", faulty->text, faulty->fault)));
-      continue;
-    }
-    if (cells.size() != words.size()) {
-      problems.push_back(file.At(
-          {line_number, 1}, fmt::format("found {} cells, wanted {}", cells.size(), words.size())));
-      continue;
-    }
-    const auto seconds = [&](const TimeColumn& column) -> std::optional<double> {
-      const CsvCell& cell = cells[column.seat];
-      const std::optional<TimeCell> time = TimeIn(cell.text);
-      if (!time)
-        problems.push_back(file.At({line_number, cell.column},
-                                   fmt::format("{}: found '{}', wanted a number or a time like "
-                                               "0:01:02.5",
-                                               words[column.seat], cell.text)));
-      return time ? std::optional(time->number * (time->is_clock ? 1 : column.unit_s))
-                  : std::nullopt;
-    };
-    const auto from_s = seconds(*columns.begin), to_s = seconds(*columns.end);
-    const CsvCell& label = cells[*columns.label];
-    if (!from_s || !to_s || label.text.empty()) continue;
-    file.labels.push_back({.begin_s = *from_s,
-                           .end_s = *to_s,
-                           .text = std::string(label.text),
-                           .tier = columns.tier ? std::string(cells[*columns.tier].text) : "",
-                           .place = {line_number, label.column},
-                           .roles = {}});
-    for (const auto& [role, seat] : columns.roles)
-      if (!cells[seat].text.empty())
-        file.labels.back().roles.push_back({role, std::string(cells[seat].text)});
-  }
-  return problems;
-}
-
 Diagnostics ReadGoldenLabels(LabelFile& file) {
   const Result<truth::Golden> golden = truth::ReadGolden(file.file, file.text);
   if (!golden) return golden.error();
@@ -353,7 +150,8 @@ Diagnostics ReadGoldenLabels(LabelFile& file) {
                            .text = line.event.Label(),
                            .tier = {},
                            .place = {},
-                           .roles = {}});
+                           .roles = {},
+                           .keys = {}});
   }
   return {};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What people marked in a recording, as annotation programs write it: comma-separated values, ELAN
-// (EAF), Praat (TextGrid), and our own goldens. Tested by
+// What people marked in a recording, as annotation programs write it: tables (comma-separated
+// values), a label for each frame, ELAN (EAF), Praat (TextGrid), and our own goldens. Tested by
 // tests/harness/exchange/labels/labels_test.cc
 #pragma once
 
@@ -22,13 +22,20 @@ struct Label {
   double begin_s = 0, end_s = 0;
   std::string text, tier;  ///< "" where the file has no tiers
   grammar::Place place;
-  std::vector<grammar::Role> roles;  ///< of CSV: what the columns of roles hold
+  std::vector<grammar::Role> roles;  ///< of a table: what the columns of roles hold
+  std::vector<std::string> keys;     ///< of a table: what the columns CsvReading::keys hold
+
+  bool IsMoment() const { return begin_s == end_s; }
 };
 
-/// What a map says of the columns of comma-separated values. "": found by their usual names.
+/// What a map says of the columns of a table. "": found by their usual names.
 struct CsvReading {
-  std::string begin, end, label, tier;
+  std::string begin, end, duration, label, tier;
+  std::string time, kind;            ///< of tables with a row for START and one for STOP
+  std::string frame;                 ///< of tables with a row for each frame
+  std::string take;                  ///< whose take a row is of; "ignore": no column says that
   std::vector<grammar::Role> roles;  ///< a role, and the name of its column
+  std::vector<std::string> keys;     ///< names of columns that rows are told apart by
   double unit_s = 0;   ///< of the times; 0: as the names of the columns say, otherwise seconds
   double rate_hz = 0;  ///< of the video, for times in frames; 0: not known
   bool in_frames = false;
@@ -39,11 +46,15 @@ struct LabelFile {
   std::string text;           ///< of the file as UTF-8, for messages
   std::vector<Label> labels;  ///< without empty ones, in the order of the file
   std::size_t backward = 0;   ///< labels that end before they begin, which were left out
+  std::vector<Label> empty;   ///< those without text, which were left out
+  grammar::Diagnostics warnings;
+  /// Of a table: columns that seem to say whose take a row is of, and hold several values.
+  std::vector<std::string> several;
 
   grammar::Diagnostic At(grammar::Place place, std::string message, std::string hint = {}) const;
 };
 
-/// ".csv", ".eaf", ".TextGrid", ".timeline": a file of labels by its ending.
+/// ".csv", ".tsv", ".eaf", ".TextGrid", ".timeline", ".txt": a file of labels by its ending.
 bool IsLabelFile(const std::string& path);
 /// The endings above.
 const std::vector<std::string>& LabelEndings();
@@ -51,14 +62,18 @@ const std::vector<std::string>& LabelEndings();
 /// What is done with labels that end before they begin.
 enum class Backward { kRefuse, kSkip };
 
+bool IsTable(const std::string& path);
+
 /// Errors have file, line and column; at most a dozen, and twenty labels that end before they
-/// begin. `csv`: of comma-separated values only.
+/// begin. `csv`: of tables only.
 Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv = {},
                              Backward backward = Backward::kRefuse);
 
 // The readers of one format each; `text` is that of the file. They fill `file.labels`.
-/// Times are numbers, or 1:02:03.5 and 02:03.5.
+/// Times are numbers, 1:02:03.5 and 02:03.5, or 2026-10-25T01:59:57.010, which is seconds of 1970.
 grammar::Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how = {});
+/// A line for each frame, with nothing but its label (MS-TCN).
+grammar::Diagnostics ReadFrameLabels(LabelFile& file, double rate_hz);
 /// EAF 2.7 to 3.0 (Max Planck Institute for Psycholinguistics): time slots in milliseconds,
 /// annotations that are aligned or refer to an aligned one. Slots without a time are spaced evenly
 /// between their neighbours, as ELAN shows them.

@@ -23,7 +23,8 @@ class Reader {
 
   Diagnostics Read() {
     const std::string type = Text("the word ooTextFile"), kind = Text("the word TextGrid");
-    if (problem_.empty() && (type != "ooTextFile" || kind != "TextGrid"))
+    if (problem_.empty() &&
+        ((type != "ooTextFile" && type != "ooTextFile short") || kind != "TextGrid"))
       Fail({1, 1},
            fmt::format("found a file of type '{}', '{}'; wanted ooTextFile, TextGrid", type, kind));
     Number("its begin");
@@ -81,6 +82,7 @@ class Reader {
       word = Word();
       if (word.empty()) break;
       double number = 0;
+      if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
       const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
       if (error == std::errc() && end == word.data() + word.size() && std::isfinite(number))
         return number;

@@ -5,9 +5,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <set>
 
+#include "grammar/base/diagnostic.h"
 #include "harness/exchange/labels/read_labels.h"
 
 namespace prehend::exchange {
@@ -20,71 +24,246 @@ std::vector<fs::path> StemsOf(const episode::EpisodeName& episode, const fs::pat
   return {folder / episode.scenario, folder / fs::path(episode.scenario).filename()};
 }
 
-/// The file of labels of each episode: as many as there are episodes, in their order; or, where
-/// `given` is one folder, the file there with its name: of take1.jsonl take1.csv, take1.eaf, ..; of
-/// an episode SKILL/NAME.csv or NAME.csv. "" and `problem` where one is missing.
-std::vector<std::string> LabelFilesOf(const std::vector<episode::EpisodeName>& episodes,
-                                      const std::vector<std::string>& given, std::string& problem) {
+/// By these a take is called in tables: skill/name, name.
+std::vector<std::string> NamesOf(const episode::Take& take) {
+  const std::string& name = take.episode.scenario;
+  std::vector<std::string> names = {name};
+  if (name.find('/') != std::string::npos) names.push_back(name.substr(name.rfind('/') + 1));
+  return names;
+}
+
+/// The file there with the name of the episode: of take1.jsonl take1.csv, take1.eaf, ..; of an
+/// episode SKILL/NAME.csv or NAME.csv. "" and `problem` if there is none.
+std::string FileIn(const std::string& folder, const episode::EpisodeName& episode,
+                   std::string& problem) {
   std::error_code error;
-  if (given.size() != 1 || !fs::is_directory(given.front(), error)) {
-    if (given.size() != episodes.size())
+  for (const fs::path& stem : StemsOf(episode, folder)) {
+    for (const std::string& ending : LabelEndings())
+      if (fs::exists(stem.string() + ending, error)) return stem.string() + ending;
+  }
+  problem = fmt::format("{} has no labels of '{}': no {} with one of the endings {}", folder,
+                        episode.scenario, StemsOf(episode, folder).back().filename().string(),
+                        fmt::join(LabelEndings(), ", "));
+  return "";
+}
+
+/// Which rows of a table are of a take: those that have one of these values in the column.
+struct WantedRows {
+  std::string column;
+  std::vector<std::string> values;
+};
+
+/// Reads the labels of takes, each file once.
+class TruthReader {
+ public:
+  TruthReader(const std::vector<episode::Take>& takes, const LabelMap* map, Backward backward)
+      : takes_(takes), map_(map), csv_(map ? map->csv : CsvReading{}), backward_(backward) {
+    if (csv_.take == "ignore") says_nothing_of_takes_ = true;
+    if (says_nothing_of_takes_) csv_.take.clear();
+  }
+
+  Result<LabelReading> Read(const std::vector<std::string>& given,
+                            const std::vector<grammar::EventSignature>& events,
+                            std::vector<std::size_t> only) {
+    if (only.empty())
+      for (std::size_t i = 0; i < takes_.size(); ++i) only.push_back(i);
+    std::string problem;
+    const std::vector<std::string> paths = PathsFrom(given, problem);
+    if (!problem.empty())
+      return tl::unexpected(
+          grammar::Diagnostics{{.file = "--truth", .place = {}, .message = problem}});
+    for (std::size_t i = 0; i < takes_.size(); ++i)
+      if (IsTable(paths[i]))
+        for (const WantedRows& wanted : WantedOf(takes_[i])) keys_[paths[i]].insert(wanted.column);
+    for (const std::size_t i : only)
+      if (problems_.size() < kMostBackward) AddTake(takes_[i], paths[i]);
+    if (!problems_.empty()) return tl::unexpected(std::move(problems_));
+    for (std::size_t i = 0; i < takes_.size(); ++i) MarkRows(takes_[i], paths[i]);
+    Counted others;
+    CountOthers(others);
+    auto reading = LabelReading::Of(std::move(files_), map_, events, std::move(rows_));
+    if (reading) reading->counted().of_other_takes = std::move(others.of_other_takes);
+    return reading;
+  }
+
+ private:
+  std::vector<WantedRows> WantedOf(const episode::Take& take) const {
+    std::vector<WantedRows> wanted;
+    for (const auto& [column, value] : take.rows) wanted.push_back({column, {value}});
+    if (take.rows.empty() && !csv_.take.empty()) wanted.push_back({csv_.take, NamesOf(take)});
+    return wanted;
+  }
+
+  std::vector<std::string> PathsFrom(const std::vector<std::string>& given, std::string& problem) {
+    std::vector<std::string> paths;
+    std::error_code error;
+    const bool is_folder = given.size() == 1 && fs::is_directory(given.front(), error);
+    const auto without =
+        static_cast<std::size_t>(std::ranges::count(takes_, "", &episode::Take::labels));
+    if (!given.empty() && without < takes_.size()) {
+      problem = "the labels are named in the file of takes";
+    } else if (given.empty() && without > 0) {
+      problem = "which labels? --truth FILE or FOLDER, or 'labels' in the file of takes";
+    } else if (!given.empty() && !is_folder && given.size() != takes_.size() &&
+               (given.size() != 1 || !AllHaveRows())) {
       problem = fmt::format(
           "{} recordings and {} files of labels; wanted one file for each recording, in the same "
-          "order, or a folder",
-          episodes.size(), given.size());
-    return given;
-  }
-  std::vector<std::string> files;
-  for (const episode::EpisodeName& episode : episodes) {
-    std::string found;
-    for (const fs::path& stem : StemsOf(episode, given.front())) {
-      for (const std::string& ending : LabelEndings()) {
-        const std::string file = stem.string() + ending;
-        if (found.empty() && fs::exists(file, error)) found = file;
-      }
+          "order, or a folder, or one table of all whose column says the recording: in the map "
+          "columns: {{take: COLUMN}}",
+          takes_.size(), given.size());
     }
-    if (found.empty() && problem.empty())
-      problem =
-          fmt::format("{} has no labels of '{}': no {} with one of the endings {}", given.front(),
-                      episode.scenario, StemsOf(episode, given.front()).back().filename().string(),
-                      fmt::join(LabelEndings(), ", "));
-    files.push_back(found);
+    if (!problem.empty()) return paths;
+    for (std::size_t i = 0; i < takes_.size(); ++i) {
+      std::string why;
+      paths.push_back(given.empty()       ? takes_[i].labels
+                      : is_folder         ? FileIn(given.front(), takes_[i].episode, why)
+                      : given.size() == 1 ? given.front()
+                                          : given[i]);
+      if (problem.empty()) problem = why;
+    }
+    return paths;
   }
-  return files;
-}
+
+  bool AllHaveRows() const {
+    return std::ranges::none_of(takes_, [&](const auto& take) { return WantedOf(take).empty(); });
+  }
+
+  /// The index of a file that has been read; nothing if it cannot be.
+  std::optional<std::size_t> FileOf(const std::string& path) {
+    const auto [known, is_new] = index_.try_emplace(path);
+    if (!is_new) return known->second;
+    CsvReading csv = csv_;
+    csv.keys = {keys_[path].begin(), keys_[path].end()};
+    Result<LabelFile> file = ReadLabels(path, csv, backward_);
+    if (!file) {
+      problems_.insert(problems_.end(), file.error().begin(), file.error().end());
+      return std::nullopt;
+    }
+    known->second = files_.size();
+    files_.push_back(std::move(*file));
+    without_text_.emplace_back();
+    return known->second;
+  }
+
+  void AddTake(const episode::Take& take, const std::string& path) {
+    const std::vector<std::string> names = NamesOf(take);
+    const auto index = FileOf(path);
+    if (!index) return;
+    LabelFile& file = files_[*index];
+    std::optional<double> offset_s = take.offset_s;
+    if (!offset_s) offset_s = map_ ? OffsetOf(*map_, names) : std::optional(0.0);
+    if (!offset_s)
+      problems_.push_back({.file = map_->document.sources.front().name,
+                           .place = {},
+                           .message = "offset_s: the map has none of " + names.front()});
+    if (take.offset_s) file.warnings.clear();  // by its clock
+    const std::vector<WantedRows> wanted = WantedOf(take);
+    if (wanted.empty() && !file.several.empty() && !says_nothing_of_takes_) {
+      problems_.push_back(SeveralTakes(file, names.front()));
+      return;
+    }
+    TakeRows& rows = rows_.emplace_back(
+        TakeRows{.file = *index, .labels = {}, .offset_s = offset_s.value_or(0)});
+    const bool is_table = IsTable(path);
+    for (std::size_t i = 0; i < file.empty.size(); ++i)
+      if (!is_table || IsWanted(file.empty[i], wanted, path)) without_text_[*index].insert(i);
+    if (!is_table && !take.rows.empty())
+      problems_.push_back(file.At({}, "it has no columns, and 'rows' names some"));
+    for (std::size_t i = 0; i < file.labels.size(); ++i) {
+      if (is_table && !IsWanted(file.labels[i], wanted, path)) continue;
+      rows.labels.push_back(i);
+    }
+    if (rows.labels.empty()) ComplainOfNone(file, wanted, path);
+  }
+
+  /// Which labels of the files that were read are of some take, also one that is read apart.
+  void MarkRows(const episode::Take& take, const std::string& path) {
+    const auto index = index_.find(path);
+    if (index == index_.end() || !index->second) return;
+    const LabelFile& file = files_[*index->second];
+    const std::vector<WantedRows> wanted = WantedOf(take);
+    const auto is_of = [&](const Label& label) {
+      return !IsTable(path) || IsWanted(label, wanted, path);
+    };
+    for (const auto* labels : {&file.labels, &file.empty})
+      for (const Label& label : *labels)
+        if (is_of(label)) of_takes_.insert(&label);
+  }
+
+  std::size_t KeyOf(const std::string& path, const std::string& column) const {
+    const std::set<std::string>& keys = keys_.at(path);
+    return static_cast<std::size_t>(std::distance(keys.begin(), keys.find(column)));
+  }
+
+  bool IsWanted(const Label& label, const std::vector<WantedRows>& wanted,
+                const std::string& path) const {
+    return std::ranges::all_of(wanted, [&](const WantedRows& one) {
+      return std::ranges::count(one.values, label.keys[KeyOf(path, one.column)]) > 0;
+    });
+  }
+
+  void ComplainOfNone(const LabelFile& file, const std::vector<WantedRows>& wanted,
+                      const std::string& path) {
+    std::string asked;
+    for (const WantedRows& one : wanted)
+      asked += fmt::format("{}'{}' in the column '{}'", asked.empty() ? "" : " and ",
+                           one.values.front(), one.column);
+    std::set<std::string> known;
+    for (const Label& label : file.labels) known.insert(label.keys[KeyOf(path, wanted[0].column)]);
+    const std::string near =
+        grammar::NearestName(wanted[0].values.front(), {known.begin(), known.end()});
+    problems_.push_back(file.At(
+        {}, "no row has " + asked,
+        fmt::format("{}rows: {{{}: VALUE}} in a file of takes says which are of a recording",
+                    near.empty() ? "" : "it has '" + near + "'; ", wanted[0].column)));
+  }
+
+  /// Rows that are of none of the takes; of those without text only those of these takes stay.
+  void CountOthers(Counted& counted) {
+    for (std::size_t f = 0; f < files_.size(); ++f) {
+      LabelFile& file = files_[f];
+      for (const auto* labels : {&file.labels, &file.empty})
+        for (const Label& label : *labels)
+          if (!of_takes_.contains(&label))
+            ++counted.of_other_takes[file.file][fmt::format("{}", fmt::join(label.keys, " "))];
+      std::vector<Label> empty;
+      for (const std::size_t i : without_text_[f]) empty.push_back(std::move(file.empty[i]));
+      file.empty = std::move(empty);
+    }
+  }
+
+  const std::vector<episode::Take>& takes_;
+  const LabelMap* map_;
+  CsvReading csv_;
+  const Backward backward_;
+  bool says_nothing_of_takes_ = false;
+  std::map<std::string, std::set<std::string>> keys_;  ///< by path: columns that tell rows apart
+  std::map<std::string, std::optional<std::size_t>> index_;  ///< by path: in `files_`
+  std::vector<LabelFile> files_;
+  std::vector<std::set<std::size_t>> without_text_;  ///< of each file, such labels of these takes
+  std::set<const Label*> of_takes_;                  ///< of any take
+  std::vector<TakeRows> rows_;
+  grammar::Diagnostics problems_;
+};
 
 }  // namespace
 
-Result<LabelReading> ReadTruths(const std::vector<episode::EpisodeName>& episodes,
+Result<LabelReading> ReadTruths(const std::vector<episode::Take>& takes,
                                 const std::vector<std::string>& given, const std::string& map,
-                                const grammar::Program& program, Backward backward) {
-  std::string problem;
-  const std::vector<std::string> paths = LabelFilesOf(episodes, given, problem);
-  if (!problem.empty())
-    return tl::unexpected(
-        grammar::Diagnostics{{.file = "--truth", .place = {}, .message = problem}});
+                                const grammar::Program& program, Backward backward,
+                                std::vector<std::size_t> only) {
   const std::vector<grammar::EventSignature> events = grammar::EventSignatures(program);
+  const std::string& path = map.empty() ? takes.front().map : map;
   std::optional<LabelMap> read;
-  if (!map.empty()) {
-    Result<LabelMap> meaning = ReadLabelMap(map, events);
+  if (!path.empty()) {
+    Result<LabelMap> meaning = ReadLabelMap(path, events);
     if (!meaning) return tl::unexpected(std::move(meaning.error()));
     read = std::move(*meaning);
   }
-  std::vector<LabelFile> files;
-  grammar::Diagnostics problems;
-  for (const std::string& path : paths) {
-    Result<LabelFile> file = ReadLabels(path, read ? read->csv : CsvReading{}, backward);
-    if (file)
-      files.push_back(std::move(*file));
-    else
-      problems.insert(problems.end(), file.error().begin(), file.error().end());
-    if (problems.size() >= kMostBackward) break;
-  }
-  if (!problems.empty()) return tl::unexpected(std::move(problems));
-  return LabelReading::Of(std::move(files), read ? &*read : nullptr, events);
+  return TruthReader(takes, read ? &*read : nullptr, backward).Read(given, events, std::move(only));
 }
 
-std::string BackwardWarning(const LabelReading& reading) {
+std::string WarningsOf(const LabelReading& reading) {
   std::size_t count = 0;
   std::string files;
   for (const LabelFile& file : reading.files()) {
@@ -92,11 +271,13 @@ std::string BackwardWarning(const LabelReading& reading) {
     count += file.backward;
     files += fmt::format("{}{} of {}", files.empty() ? "" : ", ", file.backward, file.file);
   }
-  if (count == 0) return "";
-  return count == 1
-             ? fmt::format("warning: a label ends before it begins, and is left out: {}\n", files)
-             : fmt::format("warning: {} labels end before they begin, and are left out: {}\n",
-                           count, files);
+  const std::string backward =
+      count == 0 ? ""
+      : count == 1
+          ? fmt::format("warning: a label ends before it begins, and is left out: {}\n", files)
+          : fmt::format("warning: {} labels end before they begin, and are left out: {}\n", count,
+                        files);
+  return reading.warnings() + backward;
 }
 
 }  // namespace prehend::exchange

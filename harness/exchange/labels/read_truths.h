@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the options of a command to the labels of its recordings. Tested by
-// tests/program/labels_test.cc
+// From takes and the options of a command to their labels. Tested by tests/program/labels_test.cc
+// and tests/program/takes_test.cc
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "harness/base/base/result.h"
-#include "harness/episode/run/episode_name.h"
+#include "harness/episode/episode/take.h"
 #include "harness/exchange/labels/label_map.h"
 
 namespace prehend::exchange {
 
-/// `given`: files of labels or a folder; `map`: a file, or "" for none. What is read has one file
-/// per episode. Errors of all files are told together.
-Result<LabelReading> ReadTruths(const std::vector<episode::EpisodeName>& episodes,
+/// `given`: files of labels, one of all takes, or a folder, for takes that name none; `map`: a
+/// file, or "" for that of the takes; `only`: of the takes with these indices, all if there are
+/// none. Errors of all files are told together.
+Result<LabelReading> ReadTruths(const std::vector<episode::Take>& takes,
                                 const std::vector<std::string>& given, const std::string& map,
                                 const grammar::Program& program,
-                                Backward backward = Backward::kRefuse);
+                                Backward backward = Backward::kRefuse,
+                                std::vector<std::size_t> only = {});
 
-/// What a reading left out, as a line of warning; "" if it left out nothing.
-std::string BackwardWarning(const LabelReading& reading);
+/// What is strange, and what a reading left out that ends before it begins: lines, or "".
+std::string WarningsOf(const LabelReading& reading);
 
 }  // namespace prehend::exchange

@@ -141,6 +141,10 @@ std::string TextGridText(const grammar::Timeline& timeline, grammar::Tick end) {
 
 }  // namespace
 
+bool CanWriteLabels(const std::string& path) {
+  return path.ends_with(".csv") || path.ends_with(".eaf") || path.ends_with(".TextGrid");
+}
+
 std::string LabelsText(const std::string& ending, const grammar::Timeline& timeline,
                        grammar::Tick end, const std::string& date) {
   if (ending == ".eaf") return EafText(timeline, date);

@@ -13,6 +13,9 @@
 
 namespace prehend::exchange {
 
+/// Whether it ends with .csv, .eaf or .TextGrid.
+bool CanWriteLabels(const std::string& path);
+
 /// A tier per event and hand; one more where events of a tier would overlap. Times of EAF are
 /// whole milliseconds. `end`: of the recording, in ticks; `date`: YYYY-MM-DD, which EAF asks for;
 /// `ending`: .csv, .eaf or .TextGrid.

@@ -13,7 +13,6 @@
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/run_text.h"
-#include "harness/exchange/labels/read_labels.h"
 #include "harness/exchange/labels/write_labels.h"
 
 namespace prehend {
@@ -133,7 +132,7 @@ void Episode::WriteFrames(const std::string& file) const {
 void Episode::WriteLabels(const grammar::Timeline& timeline, const std::string& file) const {
   const std::size_t dot = file.rfind('.');
   const std::string ending = dot == std::string::npos ? "" : file.substr(dot);
-  if (!exchange::IsLabelFile(file) || ending == ".timeline")
+  if (!exchange::CanWriteLabels(file))
     Refuse(file, "found the ending '" + ending + "', wanted .csv, .eaf or .TextGrid");
   char date[sizeof "YYYY-MM-DD"];
   const std::time_t now = std::time(nullptr);

@@ -112,8 +112,10 @@ grammar::Timeline ReadLabels(const Episode& episode, const Grammar* grammar,
                              const std::string& file, const std::string& map) {
   return episode.impl().With(grammar, [&](episode::Episode& opened) {
     const grammar::EntityTable table = opened.entities();
-    return Unwrap(Unwrap(exchange::ReadTruths({opened.name()}, {file}, map, *opened.program()))
-                      .Truth(0, table.entities, table.ticks_per_second, episode.end()));
+    const auto reading = Unwrap(
+        exchange::ReadTruths(episode::TakesOf({opened.name()}), {file}, map, *opened.program()));
+    Unwrap(reading.Truth(0, table.entities, table.ticks_per_second, episode.end()));
+    return reading.Marked(0, table.ticks_per_second, episode.end(), true);
   });
 }
 
@@ -147,7 +149,8 @@ std::string MarginsCsv(const std::vector<std::string>& files, const Grammar& gra
   request.jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::vector<episode::EpisodeName> names;
   for (const Episode& episode : OpenEpisodes(files)) names.push_back(episode.impl().name);
-  const measure::Margins margins = Unwrap(measure::FindMargins(names, request, within, over));
+  const measure::Margins margins =
+      Unwrap(measure::FindMargins(episode::TakesOf(names), request, within, over));
   const std::vector<std::string>& left_out = margins.sweep.left_out;
   if (margins.sweep.IsRefused(request) || margins.sweep.episodes == 0)
     Refuse("", left_out.empty() ? "no episode has events to compare with" : left_out.front());

@@ -109,7 +109,11 @@ MeanOfKinds MeanOf(const std::vector<EventScore>& kinds) {
 
 EpisodeRow RowOf(const EpisodeToScore& judged, const std::set<std::string>& kinds,
                  double collar_s) {
-  EpisodeRow row{.episode = judged.scenario, .total = {}, .hits = {}};
+  EpisodeRow row{.episode = judged.scenario,
+                 .person = judged.person,
+                 .set = judged.set,
+                 .total = {},
+                 .hits = {}};
   const LabelledEpisode all = Labelled(judged.truth, judged.found, judged.ticks);
   AddEpisode(judged, all, "", collar_s, row.total);
   EditOfTracks edit;
@@ -151,6 +155,10 @@ Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& epi
               .ignored = {}};
   for (const EpisodeToScore& episode : episodes) {
     for (const auto& [event, times] : episode.ignored) score.ignored[event] += times;
+    for (const auto& [event, moments] : episode.moments) {
+      score.moments[event].marked += moments.marked;
+      score.moments[event].found += moments.found;
+    }
   }
   for (const std::string& kind : kinds) {
     const auto own = collars.find(kind.substr(0, kind.find(" of ")));

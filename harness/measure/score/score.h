@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "grammar/base/timeline.h"
+#include "harness/exchange/labels/label_map.h"
 #include "harness/measure/score/evaluators.h"
 #include "harness/measure/score/further_scores.h"
 #include "harness/measure/score/overlap_metrics.h"
@@ -25,7 +26,7 @@ struct EpisodeToScore {
   std::map<std::string, int>
       ignored;  ///< count of recognised events for which there is no ground truth
   Evaluation by_definitions, by_claims;
-};                      ///< of a file of takes
+  std::string person = {}, set = {};                      ///< of a file of takes
   std::map<std::string, exchange::Moments> moments = {};  ///< by event
 };
 
@@ -61,7 +62,7 @@ struct MeanOfKinds {
 
 /// One episode of those that are pooled.
 struct EpisodeRow {
-  std::string episode;
+  std::string episode, person, set;
   EventScore total;                  ///< as far as it has single numbers
   std::map<std::string, Hits> hits;  ///< by event, at half of the union
 };
@@ -76,6 +77,8 @@ struct Score {
   std::vector<std::string>
       not_covered;  ///< events that are scored, but that no rule of the grammar prints
   std::map<std::string, int> ignored;  ///< of all episodes
+  std::map<std::string, exchange::Moments> moments = {};
+  std::string set = {};  ///< the one that all takes are of, or ""
   std::string ignored_because = "docs/events.md does not define them";
 };
 

@@ -77,6 +77,13 @@ Json EventScoreJson(const EventScore& s) {
           {"further", FurtherJson(s)}};
 }
 
+Json MomentsJson(const Score& score) {
+  Json moments = Json::object();
+  for (const auto& [event, one] : score.moments)
+    moments[event] = {{"true", one.marked}, {"found", one.found}};
+  return moments;
+}
+
 Json HitsJson(const Hits& hits) {
   return {{"correct", hits.correct}, {"extra", hits.extra}, {"missed", hits.missed}};
 }
@@ -88,6 +95,8 @@ Json RowsJson(const std::vector<EpisodeRow>& episodes) {
     Json by_event = Json::object();
     for (const auto& [event, hits] : row.hits) by_event[event] = HitsJson(hits);
     rows.push_back({{"episode", row.episode},
+                    {"person", row.person},
+                    {"set", row.set},
                     {"true", s.truths},
                     {"found", s.found},
                     {"f1_10", s.overlap_10.F1()},
@@ -119,9 +128,11 @@ Json ScoresJson(const std::vector<Score>& scores, double collar_s) {
     Json events = Json::array();
     for (const EventScore& event : s.events) events.push_back(EventScoreJson(event));
     grammars.push_back({{"grammar", s.grammar},
+                        {"set", s.set},
                         {"episodes", s.episodes},
                         {"not_covered", s.not_covered},
                         {"ignored", s.ignored},
+                        {"moments", MomentsJson(s)},
                         {"total", EventScoreJson(s.total)},
                         {"mean_of_events", MeanJson(s.mean)},
                         {"events", std::move(events)},

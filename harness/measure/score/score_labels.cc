@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <memory>
 #include <set>
 
 #include "grammar/contents.h"
@@ -28,20 +29,6 @@ std::string DifferencesOf(const EpisodeToScore& episode, double collar_s) {
   return lines.empty() ? "" : episode.scenario + ":\n" + lines;
 }
 
-/// Each event that is never recognised, once for all episodes.
-std::string MissingFactsOf(std::vector<episode::Episode>& episodes,
-                           const grammar::Program& program) {
-  std::set<std::string> said;
-  std::string warnings;
-  for (episode::Episode& episode : episodes) {
-    if (!episode.recording()) continue;
-    for (const std::string& warning :
-         episode::FindMissingFacts(*episode.recording(), program).never)
-      if (said.insert(warning).second) warnings += warning;
-  }
-  return warnings;
-}
-
 std::string ClockWarning(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
                          const exchange::LabelReading& truths) {
   std::vector<std::pair<grammar::Timeline, grammar::Timeline>> compared;
@@ -49,17 +36,20 @@ std::string ClockWarning(const std::string& grammar, const std::vector<EpisodeTo
     compared.emplace_back(episode.truth, episode.found);
   const auto clock = exchange::FindClockOffset(compared);
   if (!clock) return "";
+  const std::optional<double> offset_s = truths.offset_s();
   return fmt::format(
       "warning: {}: of {} labels {} are found, and {} if all of them were moved by {:+.2f} s; "
-      "does the video begin when the tracker does?\n  hint: offset_s: {:.2f} in the map\n",
+      "does the video begin when the tracker does?\n  hint: {}\n",
       grammar, clock->all, clock->found_now, clock->found_then, clock->offset_s,
-      truths.offset_s() + clock->offset_s);
+      offset_s ? fmt::format("offset_s: {:.2f} in the map", *offset_s + clock->offset_s)
+               : fmt::format("add {:.2f} to each offset_s", clock->offset_s));
 }
 
-/// The labels of one episode beside what the grammar recognises.
-Result<EpisodeToScore> Labelled(episode::Episode& episode, std::size_t index,
-                                const exchange::LabelReading& truths,
-                                const std::shared_ptr<const grammar::Program>& program) {
+/// The labels of one take beside what the grammar recognises.
+Result<EpisodeToScore> Labelled(episode::Episode& episode, const episode::Take& take,
+                                std::size_t index, const exchange::LabelReading& truths,
+                                const std::shared_ptr<const grammar::Program>& program,
+                                double collar_s) {
   const Result<grammar::Timeline> found = episode.Segment(program);
   if (!found) return tl::unexpected(found.error());
   const grammar::EntityTable table = episode.entities();
@@ -70,39 +60,33 @@ Result<EpisodeToScore> Labelled(episode::Episode& episode, std::size_t index,
   EpisodeToScore labelled{.scenario = episode.name().scenario,
                           .ticks = end,
                           .truth = std::move(*truth),
-                          .found = exchange::Compared(*found, truths.compared())};
+                          .found = exchange::Compared(*found, truths.compared()),
+                          .person = take.person,
+                          .set = take.set};
+  labelled.moments = truths.TakeMoments(
+      index, labelled.truth,
+      static_cast<grammar::Tick>(collar_s * static_cast<double>(table.ticks_per_second)),
+      labelled.found);
   for (const grammar::NamedEvent& event : found->events)
     if (!truths.compared().contains(event.event)) ++labelled.ignored[event.event];
   return labelled;
 }
 
-Result<std::vector<EpisodeToScore>> AllLabelled(
-    std::vector<episode::Episode>& episodes, const exchange::LabelReading& truths,
-    const std::shared_ptr<const grammar::Program>& program) {
-  std::vector<EpisodeToScore> all;
-  for (std::size_t i = 0; i < episodes.size(); ++i) {
-    Result<EpisodeToScore> labelled = Labelled(episodes[i], i, truths, program);
-    if (!labelled) return tl::unexpected(std::move(labelled.error()));
-    all.push_back(std::move(*labelled));
-  }
-  return all;
-}
+}  // namespace
 
 void AddScores(const std::string& grammar, std::vector<EpisodeToScore> episodes, double collar_s,
-               LabelScores& scores) {
+               const Collars& collars, LabelScores& scores) {
   std::string& differences = scores.differences.emplace_back();
   for (const EpisodeToScore& episode : episodes) differences += DifferencesOf(episode, collar_s);
-  scores.of_grammars.push_back(ScoreOf(grammar, episodes, collar_s));
+  scores.of_grammars.push_back(ScoreOf(grammar, episodes, collar_s, collars));
   scores.of_grammars.back().ignored_because = "no label means them";
   for (EpisodeToScore& episode : episodes) {
     episode.truth = exchange::ByHand(std::move(episode.truth));
     episode.found = exchange::ByHand(std::move(episode.found));
   }
-  scores.by_hand.push_back(ScoreOf(grammar, episodes, collar_s));
+  scores.by_hand.push_back(ScoreOf(grammar, episodes, collar_s, collars));
   scores.by_hand.back().ignored.clear();
 }
-
-}  // namespace
 
 bool LabelScores::HasHands() const {
   for (std::size_t g = 0; g < by_hand.size(); ++g)
@@ -110,44 +94,126 @@ bool LabelScores::HasHands() const {
   return false;
 }
 
-Result<LabelScores> ScoreLabels(const LabelsRequest& request, std::string& warnings) {
-  const Result<grammar::Overrides> settings = episode::ParameterSettings(request.settings);
-  if (!settings) return tl::unexpected(settings.error());
-  std::vector<std::string> grammars = request.grammars;
-  if (grammars.empty()) {
-    grammar::Diagnostics why = episode::WhyNotOneGrammar(request.episodes, request.root);
-    if (!why.empty()) return tl::unexpected(std::move(why));
-    grammars.emplace_back();
+namespace {
+
+/// Takes that are scored together: of one set, and by one grammar.
+struct Together {
+  std::string set;
+  std::string asked;               ///< a grammar; "": their own
+  std::vector<std::size_t> takes;  ///< indices
+};
+
+std::vector<Together> Grouped(const std::vector<episode::Take>& takes, const std::string& grammar) {
+  std::vector<Together> groups;
+  for (std::size_t i = 0; i < takes.size(); ++i) {
+    const episode::Take& take = takes[i];
+    const std::string& asked = grammar.empty() ? take.episode.asked : grammar;
+    auto group = std::ranges::find_if(groups, [&](const Together& other) {
+      return other.set == take.set && other.asked == asked;
+    });
+    if (group == groups.end()) group = groups.insert(group, {take.set, asked, {}});
+    group->takes.push_back(i);
   }
-  std::vector<episode::Episode> episodes;
-  episode::EpisodeOpener opener(request.root);
-  for (const episode::EpisodeName& name : request.episodes) {
-    Result<episode::Episode> episode = opener.Open(name, {grammars.front(), request.settings});
-    if (!episode) return tl::unexpected(std::move(episode.error()));
-    episodes.push_back(std::move(*episode));
+  return groups;
+}
+
+/// Scores one grammar after another.
+class LabelScorer {
+ public:
+  LabelScorer(const LabelsRequest& request, std::string& warnings)
+      : request_(request), warnings_(warnings), opener_(request.root) {}
+
+  Result<LabelScores> Score() {
+    std::vector<std::string> grammars = request_.grammars;
+    if (grammars.empty()) grammars.emplace_back();
+    for (const std::string& grammar : grammars) {
+      for (const Together& group : Grouped(request_.takes, grammar)) {
+        const auto added = Add(group, grammar == grammars.front());
+        if (!added) return tl::unexpected(added.error());
+      }
+    }
+    return std::move(scores_);
   }
-  LabelScores scores;
-  for (const std::string& grammar : grammars) {
-    const grammar::CompileResult compiled =
-        opener.Compile(request.episodes.front(), grammar, *settings);
+
+ private:
+  Result<void> Add(const Together& group, bool is_first) {
+    std::vector<episode::EpisodeName> names;
+    for (const std::size_t i : group.takes) names.push_back(request_.takes[i].episode);
+    if (group.asked.empty()) {
+      auto why = episode::WhyNotOneGrammar(names, request_.root);
+      if (!why.empty()) return tl::unexpected(std::move(why));
+    }
+    const auto settings = episode::ParameterSettings(request_.settings);
+    if (!settings) return tl::unexpected(settings.error());
+    const grammar::CompileResult compiled = opener_.Compile(names.front(), group.asked, *settings);
     if (!compiled.program) return tl::unexpected(compiled.diagnostics);
     const auto truths =
-        exchange::ReadTruths(request.episodes, request.label_files, request.label_map,
-                             *compiled.program, request.backward);
+        exchange::ReadTruths(request_.takes, request_.label_files, request_.label_map,
+                             *compiled.program, request_.backward, group.takes);
     if (!truths) return tl::unexpected(truths.error());
-    if (scores.of_grammars.empty()) warnings += exchange::BackwardWarning(*truths);
-    warnings += MissingFactsOf(episodes, *compiled.program);
-    auto labelled = AllLabelled(episodes, *truths, compiled.program);
-    if (!labelled) return tl::unexpected(std::move(labelled.error()));
-    const std::string& name = grammar.empty() ? GrammarName(*compiled.program) : grammar;
-    warnings += ClockWarning(name, *labelled, *truths);
-    AddScores(name, std::move(*labelled), request.collar_s, scores);
+    if (const std::string strange = exchange::WarningsOf(*truths);
+        is_first && said_.insert(strange).second)
+      warnings_ += strange;
+    if (is_first) scores_.counted += truths->counted();
+    std::vector<EpisodeToScore> all;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto episode = Open(names[i], group.asked);
+      if (!episode) return tl::unexpected(episode.error());
+      if ((*episode)->recording())
+        AddMissing(episode::FindMissingFacts(*(*episode)->recording(), *compiled.program));
+      Result<EpisodeToScore> labelled = Labelled(**episode, request_.takes[group.takes[i]], i,
+                                                 *truths, compiled.program, request_.collar_s);
+      if (!labelled) return tl::unexpected(std::move(labelled.error()));
+      all.push_back(std::move(*labelled));
+    }
+    const std::string& name = group.asked.empty() ? GrammarName(*compiled.program) : group.asked;
+    warnings_ += ClockWarning(name, all, *truths);
+    AddScores(name, std::move(all), request_.collar_s,
+              request_.is_collar_asked ? Collars{} : truths->collars_s(), scores_);
+    scores_.of_grammars.back().set = scores_.by_hand.back().set = group.set;
+    return {};
   }
-  return scores;
+
+  /// Each is opened once, also for several grammars.
+  Result<episode::Episode*> Open(const episode::EpisodeName& name, const std::string& grammar) {
+    for (const auto& known : episodes_)
+      if (known->name() == name) return known.get();
+    Result<episode::Episode> episode = opener_.Open(name, {grammar, request_.settings});
+    if (!episode) return tl::unexpected(std::move(episode.error()));
+    episodes_.push_back(std::make_unique<episode::Episode>(std::move(*episode)));
+    return episodes_.back().get();
+  }
+
+  /// Each event that is never recognised, once for all episodes.
+  void AddMissing(const episode::MissingFacts& missing) {
+    for (const std::string& warning : missing.never)
+      if (said_.insert(warning).second) warnings_ += warning;
+  }
+
+  const LabelsRequest& request_;
+  std::string& warnings_;
+  episode::EpisodeOpener opener_;
+  std::vector<std::unique_ptr<episode::Episode>> episodes_;
+  std::set<std::string> said_;
+  LabelScores scores_;
+};
+
+}  // namespace
+
+Result<LabelScores> ScoreLabels(const LabelsRequest& request, std::string& warnings) {
+  return LabelScorer(request, warnings).Score();
 }
 
 std::string LabelScoresText(const LabelScores& scores, double collar_s, bool differences) {
   std::string text = ScoresText(scores.of_grammars, collar_s);
+  if (scores.of_people) {
+    const Score& score = scores.of_grammars.front();
+    text += "kappa of frames:";
+    for (const EventScore& event : score.events)
+      text += fmt::format(" {} {:.2f},", event.event, event.frames.Kappa());
+    text += fmt::format(" all {:.2f}\n", score.total.frames.Kappa());
+  }
+  text += scores.counted.Text();
   if (scores.HasHands()) {
     text += "\nEach hand for itself:\n\n";
     for (const Score& one : scores.by_hand) text += ScoreTable(one, collar_s) + "\n";

@@ -12,25 +12,44 @@ namespace prehend::measure {
 
 struct LabelsRequest {
   std::string root;
-  std::vector<episode::EpisodeName> episodes;
-  std::vector<std::string> grammars;     ///< names or paths; empty: the one that the episodes name
+  std::vector<episode::Take> takes;
+  std::vector<std::string> grammars;     ///< names or paths; empty: those of the episodes
   std::vector<std::string> settings;     ///< "name=value", of parameters of all grammars
-  std::vector<std::string> label_files;  ///< one per episode, or one folder
+  std::vector<std::string> label_files;  ///< one per take, one of all, or one folder
   std::string label_map;                 ///< "": labels are events
   exchange::Backward backward = exchange::Backward::kRefuse;
   double collar_s = 0.05;
+  bool is_collar_asked = false;  ///< instead of those of the map
 };
 
 struct LabelScores {
-  std::vector<Score> of_grammars;
+  std::vector<Score> of_grammars;        ///< of several sets of takes one for each
   std::vector<Score> by_hand;            ///< each hand for itself, in the same order
   std::vector<std::string> differences;  ///< from the labels, in the same order; lines or ""
+  exchange::Counted counted;
+  bool of_people = false;  ///< what was found is labels, too
 
   bool HasHands() const;
 };
 
 /// `warnings`: of labels and episodes, also if there is no result.
 Result<LabelScores> ScoreLabels(const LabelsRequest& request, std::string& warnings);
+
+/// Files of labels against others, without a recording.
+struct LabelFilesRequest {
+  std::string root;
+  std::vector<std::string> files, truth;  ///< in the same order
+  std::string grammar;                    ///< name or path; "": labels mean themselves
+  std::string label_map;
+  exchange::Backward backward = exchange::Backward::kRefuse;
+  double collar_s = 0.05;
+  bool is_collar_asked = false;
+};
+Result<LabelScores> ScoreLabelFiles(const LabelFilesRequest& request, std::string& warnings);
+
+/// Adds the scores of one grammar, for all and for each hand.
+void AddScores(const std::string& grammar, std::vector<EpisodeToScore> episodes, double collar_s,
+               const Collars& collars, LabelScores& scores);
 
 /// Tables for people; with `differences` these, too.
 std::string LabelScoresText(const LabelScores& scores, double collar_s, bool differences);

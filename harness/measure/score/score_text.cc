@@ -134,6 +134,16 @@ std::string IgnoredText(const Score& score) {
   return fmt::format("ignored: {}; {}\n", fmt::join(kinds, ", "), score.ignored_because);
 }
 
+std::string MomentsText(const Score& score) {
+  std::vector<std::string> kinds;
+  for (const auto& [event, moments] : score.moments)
+    kinds.push_back(fmt::format("{} {} of {}", event, moments.found, moments.marked));
+  if (kinds.empty()) return "";
+  return fmt::format(
+      "labels of a moment, and so many lie in such an event; they are in no other figure: {}\n",
+      fmt::join(kinds, ", "));
+}
+
 }  // namespace
 
 std::string ScoreTable(const Score& score, double collar_s) {
@@ -141,8 +151,10 @@ std::string ScoreTable(const Score& score, double collar_s) {
   for (const EventScore& event : score.events) rows.push_back(RowOf(event));
   rows.push_back(RowOf(score.total));
   if (score.events.size() > 1) rows.push_back(RowOf(score.mean, rows.front().size()));
-  return fmt::format("{}, {}\n{}{}{}", score.grammar, grammar::CountOf(score.episodes, "episode"),
-                     Aligned(rows), NotCoveredText(score), IgnoredText(score));
+  return fmt::format("{}, {}{}\n{}{}{}{}", score.grammar,
+                     score.set.empty() ? "" : "set " + score.set + ", ",
+                     grammar::CountOf(score.episodes, "episode"), Aligned(rows), MomentsText(score),
+                     NotCoveredText(score), IgnoredText(score));
 }
 
 std::string SideBySide(const std::vector<Score>& scores, double collar_s) {

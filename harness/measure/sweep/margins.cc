@@ -100,14 +100,14 @@ double Width(const Margin& margin) {
 
 }  // namespace
 
-Result<Margins> FindMargins(const std::vector<episode::EpisodeName>& episodes, SweepRequest request,
+Result<Margins> FindMargins(const std::vector<episode::Take>& takes, SweepRequest request,
                             double within, const std::vector<std::string>& only,
                             const std::function<void(const Margins&)>& so_far) {
   const Result<grammar::Overrides> fixed = episode::ParameterSettings(request.settings);
   if (!fixed) return tl::unexpected(fixed.error());
   episode::EpisodeOpener opener(request.root);
   const CompileWith compile = [&](const grammar::Overrides& overrides) {
-    return opener.Compile(episodes.front(), request.grammar, overrides);
+    return opener.Compile(takes.front().episode, request.grammar, overrides);
   };
   const grammar::CompileResult compiled = compile(*fixed);
   if (!compiled.program) return tl::unexpected(compiled.diagnostics);
@@ -130,12 +130,12 @@ Result<Margins> FindMargins(const std::vector<episode::EpisodeName>& episodes, S
   const auto progress = request.progress;
   if (progress) {
     request.progress = [&](std::size_t done, std::size_t) {
-      progress(before * episodes.size() + done, settings * episodes.size());
+      progress(before * takes.size() + done, settings * takes.size());
     };
   }
   for (const TriedAxis& one : tried) {
     request.axes = {one.axis};
-    Result<SweepResult> swept = Sweep(episodes, request);
+    Result<SweepResult> swept = Sweep(takes, request);
     if (!swept) return tl::unexpected(std::move(swept.error()));
     all.margins.push_back(MarginOf(one.axis, swept->points, one.own, within));
     std::ranges::stable_sort(all.margins, {}, Width);
@@ -171,6 +171,7 @@ std::string MarginsText(const Margins& margins, double within) {
       "each parameter from an eighth to eight times its value, the others as they are;\n"
       "a score stays if it is within {:g} percent of the best of its row\n{}\n",
       100 * within, margins.sweep.measure);
+  text += margins.sweep.counted;
   if (std::ranges::all_of(margins.margins, [](const Margin& margin) { return margin.best == 0; }))
     return text + "every score is 0: no event is right with any value of any parameter\n";
   if (!idle.empty())

@@ -122,7 +122,8 @@ std::string RobustSettingsText(const std::vector<Axis>& axes, const SweepResult&
                                double within) {
   const RobustSettings robust = FindRobustSettings(axes, result.points, within);
   const SweepPoint& chosen = result.points[robust.chosen];
-  const std::string measure = result.measure.empty() ? "" : result.measure + "\n";
+  const std::string measure =
+      (result.measure.empty() ? "" : result.measure + "\n") + result.counted;
   const std::string tried =
       fmt::format("{}{}{} on {}", result.grammar, result.grammar.empty() ? "" : ": ",
                   grammar::CountOf(result.points.size(), "setting"),

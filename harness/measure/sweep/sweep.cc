@@ -186,7 +186,10 @@ JudgedSettings JudgedEpisode(const episode::EpisodeName& name, std::size_t index
   for (const auto& program : programs) {
     Result<grammar::Timeline> found = episode->Segment(program);
     if (!found) return LeftOut(grammar::Format(found.error().front()), true);
-    if (labels) found = exchange::Compared(*found, labels->compared());
+    if (labels) {
+      found = exchange::Compared(*found, labels->compared());
+      (void)labels->TakeMoments(index, *truth, 0, *found);
+    }
     judged.settings.push_back(Judged(*truth, std::move(*found), request, *end));
     ++measured;
   }
@@ -279,14 +282,14 @@ std::string MeasureText(const SweepRequest& request) {
                      1000 * request.collar_s);
 }
 
-Result<SweepResult> Sweep(const std::vector<episode::EpisodeName>& episodes,
-                          const SweepRequest& request) {
+Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRequest& request) {
+  const std::vector<episode::EpisodeName> episodes = EpisodesOf(takes);
   const Result<Programs> programs = CompileAll(request, episodes.front());
   if (!programs) return tl::unexpected(programs.error());
   std::optional<exchange::LabelReading> labels;
   if (request.truth == Truth::kLabels) {
     Result<exchange::LabelReading> read = exchange::ReadTruths(
-        episodes, request.label_files, request.label_map, *programs->front(),
+        takes, request.label_files, request.label_map, *programs->front(),
         request.skip_bad_labels ? exchange::Backward::kSkip : exchange::Backward::kRefuse);
     if (!read) return tl::unexpected(std::move(read.error()));
     labels = std::move(*read);
@@ -315,7 +318,8 @@ Result<SweepResult> Sweep(const std::vector<episode::EpisodeName>& episodes,
   SweepResult result;
   result.grammar = GrammarName(*programs->front());
   result.measure = MeasureText(request);
-  if (labels) result.label_warning = exchange::BackwardWarning(*labels);
+  if (labels) result.label_warning = exchange::WarningsOf(*labels);
+  if (labels) result.counted = labels->counted().Text();
   result.points.resize(programs->size());
   std::vector<std::vector<std::int64_t>> begins(programs->size()), ends(begins), latencies(begins);
   for (std::size_t slice = 0; slice < slices; ++slice) {

@@ -14,7 +14,7 @@
 
 #include "grammar/monitor.h"
 #include "harness/base/base/result.h"
-#include "harness/episode/run/episode_name.h"
+#include "harness/episode/episode/take.h"
 
 namespace prehend::measure {
 
@@ -45,7 +45,7 @@ struct SweepRequest {
   std::vector<std::string> settings;  ///< of parameters that stay as they are
   std::vector<Axis> axes;
   Truth truth = Truth::kGolden;
-  std::vector<std::string> label_files;  ///< one per episode, or one folder
+  std::vector<std::string> label_files;  ///< one per episode, one of all, or one folder
   std::string label_map;                 ///< "": labels are events
   double collar_s = 0.05;
   bool by_overlap = false;  ///< right is not what lies within the collar, but what has half of the
@@ -78,6 +78,7 @@ struct SweepResult {
   std::string grammar;                ///< its name
   std::string measure;                ///< "F1@50: .." for people
   std::string label_warning;          ///< of labels that were left out, or ""
+  std::string counted;                ///< labels: lines for people, or ""
   std::vector<std::string> left_out;  ///< "SCENARIO: why"
   std::vector<std::string> unread;    ///< of these, what cannot be read
 
@@ -91,8 +92,7 @@ struct SweepResult {
 std::string MeasureText(const SweepRequest& request);
 
 /// One point per setting, or why the grammar cannot be compiled with one.
-Result<SweepResult> Sweep(const std::vector<episode::EpisodeName>& episodes,
-                          const SweepRequest& request);
+Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRequest& request);
 
 /// Says once, after the first settings, how long all will take, unless that is soon.
 class SweepProgress {

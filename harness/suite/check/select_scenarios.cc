@@ -120,6 +120,17 @@ tl::expected<ScenarioSelection, NoSelection> SelectScenarios(
       return tl::unexpected(NoSelection{.why = WhyNoMatch(pattern, all)});
     }
     const episode::EpisodeKind kind = episode::EpisodeKindOf(pattern);
+    if (kind == episode::EpisodeKind::kTakes) {
+      const auto takes = episode::FindTakes({&pattern, 1}, "", root);
+      if (!takes)
+        return tl::unexpected(
+            NoSelection{takes.error().exit_code, takes.error().message.empty()
+                                                     ? grammar::Format(takes.error().diagnostics)
+                                                     : takes.error().message});
+      for (const episode::Take& take : *takes)
+        named.push_back(episode::ScenarioOf(take.episode, all));
+      continue;
+    }
     if (kind != episode::EpisodeKind::kEpisodeFile) {
       named.push_back(episode::ScenarioAt(all, pattern));
       if (kind == episode::EpisodeKind::kJsonLines)

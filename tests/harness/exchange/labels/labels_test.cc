@@ -136,7 +136,8 @@ TEST_F(Labels, AMapNamesTheColumnsOfCsv) {
             "a.csv:1:1: error: found the columns t0, t1, what, who; the map wants a column 't00'");
   EXPECT_EQ(
       MapProblem("columns: {objekt: noun}\nlabels:\n  hold: {event: grasping}\n"),
-      "map.yaml:1:11: error: 'objekt' is no column of labels: begin, end, label, tier or a role");
+      "map.yaml:1:11: error: 'objekt' is no column of labels: begin, end, duration, time, kind, "
+      "frame, label, tier, take or a role");
   EXPECT_EQ(MapProblem("time_unit: min\nlabels:\n  hold: {event: grasping}\n"),
             "map.yaml:1:12: error: time_unit: expected s, ms, us, ns or frame, found 'min'");
   EXPECT_EQ(MapProblem("rate_hz: 0\nlabels:\n  hold: {event: grasping}\n"),
@@ -207,9 +208,9 @@ TEST_F(Labels, FaultyCsvIsNamed) {
   EXPECT_EQ(Problem("a.csv", head), "a.csv: error: it has no labels");
   EXPECT_EQ(Problem("a.csv", head + "0,1,h\xe9\n"), "a.csv:2:6: error: byte 0xe9 is not UTF-8");
   EXPECT_NE(Problem("a.csv", "").find("a.csv"), std::string::npos);
-  EXPECT_EQ(Problem("a.txt", head),
-            "a.txt: error: no file of labels, which end in .csv, .eaf, "
-            ".TextGrid, .timeline");
+  EXPECT_EQ(Problem("a.doc", head),
+            "a.doc: error: no file of labels, which end in .csv, .tsv, .eaf, .TextGrid, .timeline, "
+            ".txt");
 }
 
 const std::string kEaf = R"(<?xml version="1.0" encoding="UTF-8"?>

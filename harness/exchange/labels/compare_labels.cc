@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/labels/label_map.h: what is compared, and what was counted. Tested by
+// tests/harness/exchange/labels/labels_test.cc
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+#include "grammar/base/wording.h"
+#include "harness/exchange/labels/label_map.h"
+#include "harness/truth/timeline/event_text.h"
+
+namespace prehend::exchange {
+
+std::string Trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t\n"), end = text.find_last_not_of(" \t\n");
+  return begin == std::string_view::npos ? "" : std::string(text.substr(begin, end - begin + 1));
+}
+
+grammar::Diagnostic SeveralTakes(const LabelFile& file, const std::string& take) {
+  return file.At(
+      {1, 1},
+      fmt::format("the column '{}' has several values, and nothing says which rows are "
+                  "of '{}'",
+                  fmt::join(file.several, "' and '"), take),
+      fmt::format("in the map columns: {{take: {0}}}, if recordings are called as in it; "
+                  "or rows: {{{0}: VALUE}} in a file of takes; or columns: {{take: "
+                  "ignore}}",
+                  file.several.front()));
+}
+
+std::map<std::string, Moments> LabelReading::TakeMoments(std::size_t take,
+                                                         const grammar::Timeline& truth,
+                                                         grammar::Tick before,
+                                                         grammar::Timeline& found) const {
+  std::map<std::string, Moments> moments;
+  std::set<std::size_t> explained;
+  for (const LabelledEvent& label : events_[take]) {
+    if (!label.IsMoment()) continue;
+    grammar::NamedEvent one = label.event;
+    std::erase_if(one.roles, [&](const grammar::Role& role) {
+      return std::ranges::count(compared_.at(one.event), role.name) == 0;
+    });
+    const grammar::Tick at = truth::TickAt(label.begin_s, truth.ticks_per_second);
+    Moments& counted = moments[one.event];
+    ++counted.marked;
+    bool is_found = false;
+    for (std::size_t i = 0; i < found.events.size(); ++i) {
+      const grammar::NamedEvent& event = found.events[i];
+      if (at < event.interval.begin - before || at >= event.interval.end ||
+          event.Label() != one.Label())
+        continue;
+      is_found = true;
+      const bool is_marked = std::ranges::any_of(truth.events, [&](const auto& other) {
+        return other.Label() == event.Label() && other.interval.begin < event.interval.end &&
+               event.interval.begin < other.interval.end;
+      });
+      if (!is_marked) explained.insert(i);
+    }
+    counted.found += is_found ? 1 : 0;
+  }
+  for (auto at = explained.rbegin(); at != explained.rend(); ++at)
+    found.events.erase(found.events.begin() + static_cast<std::ptrdiff_t>(*at));
+  return moments;
+}
+
+namespace {
+
+/// "7 rows of 2 other takes (P2, P3)"
+std::string CountedText(const std::map<std::string, std::size_t>& counts, const char* row,
+                        const std::string& what) {
+  constexpr std::size_t kMostNamed = 8;
+  std::size_t all = 0;
+  std::vector<std::string> names;
+  for (const auto& [name, count] : counts) {
+    all += count;
+    if (names.size() < kMostNamed) names.push_back(name);
+  }
+  if (counts.size() > kMostNamed) names.emplace_back("..");
+  return all == 0
+             ? ""
+             : fmt::format("{} {} ({})", grammar::CountOf(all, row), what, fmt::join(names, ", "));
+}
+
+}  // namespace
+
+Counted& Counted::operator+=(const Counted& more) {
+  takes += more.takes;
+  labels += more.labels;
+  moments += more.moments;
+  without_text += more.without_text;
+  for (const auto& [label, count] : more.ignored) ignored[label] += count;
+  backward.insert(more.backward.begin(), more.backward.end());
+  of_other_takes.insert(more.of_other_takes.begin(), more.of_other_takes.end());
+  return *this;
+}
+
+std::size_t Counted::Backward() const {
+  std::size_t all = 0;
+  for (const auto& [file, count] : backward) all += count;
+  return all;
+}
+
+std::map<std::string, std::size_t> Counted::OfOtherTakes() const {
+  std::map<std::string, std::size_t> all;
+  for (const auto& [file, by_take] : of_other_takes)
+    for (const auto& [take, count] : by_take) all[take] += count;
+  return all;
+}
+
+std::string Counted::Text() const {
+  std::string text = fmt::format("counted: {} of {}", grammar::CountOf(labels, "label"),
+                                 grammar::CountOf(takes, "take"));
+  if (moments > 0) text += fmt::format(", and {} of a moment", moments);
+  std::vector<std::string> left_out = {
+      CountedText(OfOtherTakes(), "row", "of other takes"),
+      CountedText(ignored, "label", "that the map ignores"),
+      without_text > 0 ? grammar::CountOf(without_text, "label") + " without text" : "",
+      Backward() > 0 ? grammar::CountOf(Backward(), "label") + " with an end before the begin"
+                     : ""};
+  std::erase(left_out, "");
+  return text + "\n" +
+         (left_out.empty() ? "" : fmt::format("left out: {}\n", fmt::join(left_out, "; ")));
+}
+
+grammar::Timeline Compared(const grammar::Timeline& timeline, const ComparedRoles& roles,
+                           grammar::Tick join) {
+  std::map<std::string, std::vector<grammar::NamedEvent>> by_label;
+  for (grammar::NamedEvent event : timeline.events) {
+    const auto compared = roles.find(event.event);
+    if (compared == roles.end()) continue;
+    std::erase_if(event.roles, [&](const grammar::Role& role) {
+      return std::ranges::find(compared->second, role.name) == compared->second.end();
+    });
+    event.values.clear();
+    by_label[event.Label()].push_back(std::move(event));
+  }
+  grammar::Timeline all{.ticks_per_second = timeline.ticks_per_second, .events = {}};
+  for (auto& [label, events] : by_label) {
+    std::ranges::sort(events, {}, [](const grammar::NamedEvent& event) {
+      return std::pair(event.interval.begin, event.interval.end);
+    });
+    const std::size_t first = all.events.size();
+    for (grammar::NamedEvent& event : events) {
+      const bool follows = all.events.size() > first;
+      if (follows &&
+          (event.interval.begin < all.events.back().interval.end ||
+           (join > 0 && event.interval.begin <= all.events.back().interval.end + join))) {
+        grammar::NamedEvent& before = all.events.back();
+        before.interval.end = std::max(before.interval.end, event.interval.end);
+        before.decided = std::max(before.decided, event.decided);
+      } else {
+        all.events.push_back(std::move(event));
+      }
+    }
+  }
+  Sort(all);
+  return all;
+}
+
+grammar::Timeline ByHand(grammar::Timeline timeline) {
+  for (grammar::NamedEvent& event : timeline.events) {
+    const std::string& hand = truth::RoleValue(event, "hand");
+    if (!hand.empty()) event.event += " of " + hand;
+  }
+  return timeline;
+}
+
+}  // namespace prehend::exchange

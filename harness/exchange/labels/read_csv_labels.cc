@@ -1,0 +1,472 @@
+// SPDX-License-Identifier: Apache-2.0
+// Labels from tables: a row for each label, for each of its two ends, or for each frame. Tested by
+// tests/harness/exchange/labels/label_tables_test.cc
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "harness/base/base/csv_cells.h"
+#include "harness/episode/episode/take.h"
+#include "harness/exchange/labels/read_labels.h"
+
+namespace prehend::exchange {
+namespace {
+
+using grammar::Diagnostics;
+using grammar::Place;
+
+std::optional<double> NumberIn(std::string_view text) {
+  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number))
+    return std::nullopt;
+  return number;
+}
+
+std::string Lower(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+/// A number, or seconds after minutes and hours: 1:02:03.5, 02:03.5; or a date.
+struct TimeCell {
+  double number = 0;
+  bool is_clock = false;  ///< then in seconds
+};
+std::optional<TimeCell> TimeIn(std::string_view text) {
+  if (const std::optional<double> date_s = episode::SecondsOfDate(text))
+    return TimeCell{*date_s, true};
+  TimeCell time;
+  int parts = 0;
+  for (std::size_t colon = text.find(':'); colon != std::string_view::npos;
+       colon = text.find(':'), ++parts) {
+    const std::optional<double> part = NumberIn(text.substr(0, colon));
+    if (!part || *part < 0 || *part != std::floor(*part) || parts == 2) return std::nullopt;
+    time.number = 60 * (time.number + *part);
+    text.remove_prefix(colon + 1);
+  }
+  time.is_clock = parts > 0;
+  const std::optional<double> rest = NumberIn(text);
+  if (!rest || (time.is_clock && (*rest < 0 || *rest >= 60))) return std::nullopt;
+  time.number += *rest;
+  return time;
+}
+
+/// A column of times.
+struct TimeColumn {
+  std::size_t seat = 0;
+  double unit_s = 1;
+  bool in_frames = false;
+};
+
+/// "Start Time" and "start_time" are one name.
+std::string Plain(std::string_view word) {
+  std::string plain = Lower(word);
+  std::ranges::replace(plain, ' ', '_');
+  return plain;
+}
+
+bool IsOneOf(std::string_view word, std::initializer_list<const char*> words) {
+  return std::ranges::find(words, word) != words.end();
+}
+
+/// "start_ms" without its unit.
+std::string_view WithoutUnit(std::string_view plain) {
+  for (const std::string_view unit :
+       {"_s", "_sec", "_seconds", "_ms", "_time", "_timestamp", "_frame"}) {
+    if (plain.ends_with(unit)) return plain.substr(0, plain.size() - unit.size());
+  }
+  return plain;
+}
+
+/// Columns that say whose rows these are, or who marked them.
+bool SeemsToTellTakes(std::string_view word) {
+  const std::string whole = Plain(word);
+  std::string_view plain = whole;
+  for (const std::string_view more : {"_id", "_name"})
+    if (plain.ends_with(more)) plain.remove_suffix(more.size());
+  return IsOneOf(
+      plain, {"take", "video", "videoid", "file", "filename", "recording", "episode", "observation",
+              "session", "participant", "clip", "annotator", "coder", "rater", "observer"});
+}
+
+TimeColumn TimeColumnAt(std::size_t seat, std::string_view word) {
+  const std::string plain = Plain(word);
+  return {.seat = seat,
+          .unit_s = plain.ends_with("_ms") ? 1e-3 : 1,
+          .in_frames = plain.ends_with("_frame") || plain == "frame"};
+}
+
+/// The columns of a file by the words in its first line.
+struct CsvColumns {
+  std::optional<TimeColumn> begin, end, duration, time, frame;
+  std::optional<std::size_t> label, tier, kind;
+  std::vector<std::pair<std::string, std::size_t>> roles;
+  std::vector<std::size_t> keys;
+
+  void Take(std::string_view word, std::size_t seat) {
+    const std::string whole = Plain(word);
+    const std::string_view plain = WithoutUnit(whole);
+    const TimeColumn column = TimeColumnAt(seat, word);
+    // Of seconds and frames the seconds.
+    const auto take = [&](std::optional<TimeColumn>& into) {
+      if (!into || into->in_frames || !column.in_frames) into = column;
+    };
+    if (IsOneOf(plain, {"begin", "start", "onset"}))
+      take(begin);
+    else if (IsOneOf(plain, {"end", "stop", "offset"}))
+      take(end);
+    else if (plain == "duration")
+      take(duration);
+    else if (whole == "frame")
+      frame = column;
+    else if (IsOneOf(plain, {"label", "event", "annotation", "text", "action", "activity", "verb",
+                             "value", "behavior", "behaviour", "trial_type"}))
+      label = seat;
+    else if (IsOneOf(plain, {"tier", "hand", "track", "layer"}))
+      tier = seat;
+  }
+
+  bool HasTimes() const {
+    return (begin && (end || duration)) || (time && kind) || (!begin && !end && frame);
+  }
+  bool InFrames() const { return !time && !begin && frame; }
+  std::vector<std::optional<TimeColumn>*> Times() {
+    std::vector<std::optional<TimeColumn>*> used;
+    if (time && kind)
+      used = {&time};
+    else if (InFrames())
+      used = {&frame};
+    else
+      used = {&begin, end ? &end : &duration};
+    return used;
+  }
+  /// Of all columns that are read.
+  std::vector<std::size_t> Seats() {
+    std::vector<std::size_t> seats = {*label};
+    for (const auto* column : Times()) seats.push_back((*column)->seat);
+    if (tier) seats.push_back(*tier);
+    if (time && kind) seats.push_back(*kind);
+    for (const auto& [_, seat] : roles) seats.push_back(seat);
+    seats.insert(seats.end(), keys.begin(), keys.end());
+    return seats;
+  }
+};
+
+/// Finds the columns that the map names and those that have usual names.
+class ColumnFinder {
+ public:
+  ColumnFinder(const LabelFile& file, const std::vector<std::string>& words, const CsvReading& how)
+      : file_(file), words_(words), how_(how), found_("found the columns " + Joined(words)) {}
+
+  Result<CsvColumns> Find() {
+    for (std::size_t seat = 0; seat < words_.size(); ++seat) columns_.Take(words_[seat], seat);
+    Named(columns_.begin, how_.begin);
+    if (Named(columns_.end, how_.end)) columns_.duration.reset();
+    if (Named(columns_.duration, how_.duration)) columns_.end.reset();
+    Named(columns_.frame, how_.frame);
+    if (Named(columns_.time, how_.time) || !how_.frame.empty())
+      columns_.begin = columns_.end = columns_.duration = std::nullopt;
+    Named(columns_.label, how_.label);
+    Named(columns_.tier, how_.tier);
+    Named(columns_.kind, how_.kind);
+    for (const grammar::Role& role : how_.roles)
+      if (const auto seat = SeatOf(role.value)) columns_.roles.emplace_back(role.name, *seat);
+    for (const std::string& key : how_.keys)
+      if (const auto seat = SeatOf(key)) columns_.keys.push_back(*seat);
+    if (!missing_.empty()) {
+      const std::string near = grammar::NearestName(missing_, words_);
+      return Problem(fmt::format("{}; the map wants a column '{}'", found_, missing_),
+                     near.empty() ? "" : "did you mean '" + near + "'?");
+    }
+    return Checked();
+  }
+
+ private:
+  static std::string Joined(const std::vector<std::string>& words) {
+    return fmt::format("{}", fmt::join(words, ", "));
+  }
+  tl::unexpected<Diagnostics> Problem(std::string message, std::string hint) const {
+    return tl::unexpected(Diagnostics{file_.At({1, 1}, std::move(message), std::move(hint))});
+  }
+  std::optional<std::size_t> SeatOf(const std::string& name) {
+    const auto at = std::ranges::find(words_, name);
+    if (at != words_.end()) return static_cast<std::size_t>(at - words_.begin());
+    missing_ = name;
+    return std::nullopt;
+  }
+  bool Named(std::optional<TimeColumn>& column, const std::string& name) {
+    if (name.empty()) return false;
+    if (const auto seat = SeatOf(name)) column = TimeColumnAt(*seat, name);
+    return true;
+  }
+  void Named(std::optional<std::size_t>& column, const std::string& name) {
+    if (!name.empty()) column = SeatOf(name);
+  }
+
+  Result<CsvColumns> Checked() {
+    if (!how_.end.empty() && std::string(WithoutUnit(Plain(how_.end))) == "duration")
+      return Problem(
+          fmt::format("{}; the map says that '{}' is the end of a label", found_, how_.end),
+          fmt::format("a length is no end: columns: {{duration: {}}}", how_.end));
+    if (!how_.begin.empty() && how_.begin == how_.end)
+      return Problem(
+          fmt::format("{}; the map says that '{}' is both the begin and the end", found_, how_.end),
+          fmt::format("are there rows for START and for STOP? columns: {{time: {}, kind: COLUMN}}",
+                      how_.end));
+    if (!columns_.HasTimes() || !columns_.label)
+      return Problem(
+          found_ + "; wanted one for the begin, the end and the label of each row",
+          "begin_s,end_s,label or begin_ms,end_ms,label, and 'tier' if you like; or name "
+          "yours in the map: columns: {begin: t0, end: t1, label: what}; also {begin, duration}, "
+          "{time, kind} of rows for START and STOP, and {frame} of a row for each frame");
+    for (const std::size_t seat : columns_.Seats())
+      if (std::ranges::count(words_, words_[seat]) > 1)
+        return Problem(fmt::format("{}: two columns are called '{}'", found_, words_[seat]), "");
+    for (std::optional<TimeColumn>* column : columns_.Times()) {
+      if (how_.unit_s > 0 || how_.in_frames)
+        **column = {.seat = (*column)->seat, .unit_s = how_.unit_s, .in_frames = how_.in_frames};
+      if (columns_.InFrames()) (*column)->in_frames = true;
+      if (!(*column)->in_frames) continue;
+      if (how_.rate_hz <= 0)
+        return Problem(fmt::format("'{}' is counted in frames", words_[(*column)->seat]),
+                       "how many has the video per second? In the map: rate_hz: 30");
+      (*column)->unit_s = 1 / how_.rate_hz;
+    }
+    return columns_;
+  }
+
+  const LabelFile& file_;
+  const std::vector<std::string>& words_;
+  const CsvReading& how_;
+  const std::string found_;
+  CsvColumns columns_;
+  std::string missing_;
+};
+
+/// What must be equal of two rows that are one label.
+auto Same(const Label& label) {
+  std::vector<std::string> roles;
+  for (const grammar::Role& role : label.roles) roles.push_back(role.value);
+  return std::tuple(label.text, label.tier, roles, label.keys);
+}
+using SameLabel = decltype(Same(Label{}));
+
+/// Rows one after another become labels.
+class RowTaker {
+ public:
+  RowTaker(LabelFile& file, CsvColumns columns, std::vector<std::string> words)
+      : file_(file),
+        columns_(std::move(columns)),
+        words_(std::move(words)),
+        cells_of_(words_.size()) {}
+
+  void Take(const std::vector<CsvCell>& cells, int line) {
+    line_ = line;
+    for (std::size_t seat = 0; seat < words_.size(); ++seat)
+      if (cells_of_[seat].size() < 2 && SeemsToTellTakes(words_[seat]))
+        cells_of_[seat].insert(std::string(cells[seat].text));
+    Label label = Row(cells);
+    if (columns_.time)
+      TakeEnd(std::move(label), cells);
+    else if (columns_.InFrames())
+      TakeFrame(std::move(label), cells);
+    else
+      TakeWhole(std::move(label), cells);
+  }
+
+  Diagnostics Finish() {
+    for (const auto& [_, begun] : begun_)
+      Complain(begun.place.column, fmt::format("'{}' begins and never ends", begun.text),
+               begun.place.line);
+    const std::vector<std::size_t> read = columns_.Seats();
+    for (std::size_t seat = 0; seat < words_.size(); ++seat)
+      if (cells_of_[seat].size() > 1 && std::ranges::count(read, seat) == 0)
+        file_.several.push_back(words_[seat]);
+    return std::move(problems_);
+  }
+
+  bool IsFull() const { return problems_.size() >= kMostComplaints; }
+  void Complain(int column, std::string message, int line) {
+    if (!IsFull()) problems_.push_back(file_.At({line, column}, std::move(message)));
+  }
+
+ private:
+  Label Row(const std::vector<CsvCell>& cells) const {
+    const CsvCell& text = cells[*columns_.label];
+    Label label{.text = std::string(text.text),
+                .tier = columns_.tier ? std::string(cells[*columns_.tier].text) : "",
+                .place = {line_, text.column}};
+    for (const auto& [role, seat] : columns_.roles)
+      if (!cells[seat].text.empty()) label.roles.push_back({role, std::string(cells[seat].text)});
+    for (const std::size_t seat : columns_.keys) label.keys.emplace_back(cells[seat].text);
+    return label;
+  }
+
+  std::optional<double> Seconds(const TimeColumn& column, const std::vector<CsvCell>& cells) {
+    const CsvCell& cell = cells[column.seat];
+    const std::optional<TimeCell> time = TimeIn(cell.text);
+    if (time) return time->number * (time->is_clock ? 1 : column.unit_s);
+    Complain(cell.column,
+             fmt::format("{}: found '{}', wanted a number or a time like 0:01:02.5",
+                         words_[column.seat], cell.text),
+             line_);
+    return std::nullopt;
+  }
+
+  void Keep(Label label) {
+    (label.text.empty() ? file_.empty : file_.labels).push_back(std::move(label));
+  }
+
+  void TakeWhole(Label label, const std::vector<CsvCell>& cells) {
+    const auto from_s = Seconds(*columns_.begin, cells),
+               to_s = Seconds(columns_.end ? *columns_.end : *columns_.duration, cells);
+    if (!from_s || !to_s) return;
+    label.begin_s = *from_s;
+    label.end_s = columns_.end ? *to_s : *from_s + *to_s;
+    Keep(std::move(label));
+  }
+
+  void TakeEnd(Label label, const std::vector<CsvCell>& cells) {
+    const auto at_s = Seconds(*columns_.time, cells);
+    if (!at_s) return;
+    label.begin_s = label.end_s = *at_s;
+    const CsvCell& kind = cells[*columns_.kind];
+    const std::string plain = Lower(kind.text);
+    if (plain == "point") return Keep(std::move(label));
+    const auto begun = begun_.find(Same(label));
+    if (IsOneOf(plain, {"start", "begin"})) {
+      if (begun != begun_.end())
+        return Complain(label.place.column,
+                        fmt::format("'{}' begins again; it began in line {} and has not ended",
+                                    label.text, begun->second.place.line),
+                        line_);
+      begun_.emplace(Same(label), std::move(label));
+    } else if (IsOneOf(plain, {"stop", "end"})) {
+      if (begun == begun_.end())
+        return Complain(label.place.column,
+                        fmt::format("'{}' ends, and no row before it begins it", label.text),
+                        line_);
+      begun->second.end_s = *at_s;
+      Keep(std::move(begun->second));
+      begun_.erase(begun);
+    } else {
+      Complain(kind.column,
+               fmt::format("{}: found '{}', wanted START, STOP or POINT", words_[*columns_.kind],
+                           kind.text),
+               line_);
+    }
+  }
+
+  void TakeFrame(Label label, const std::vector<CsvCell>& cells) {
+    const CsvCell& cell = cells[columns_.frame->seat];
+    const std::optional<double> frame = NumberIn(cell.text);
+    if (!frame || *frame < 0 || *frame != std::floor(*frame))
+      return Complain(cell.column,
+                      fmt::format("{}: found '{}', wanted the number of a frame",
+                                  words_[columns_.frame->seat], cell.text),
+                      line_);
+    if (label.text.empty()) return;  // nothing happens in this frame
+    label.begin_s = *frame * columns_.frame->unit_s;
+    label.end_s = (*frame + 1) * columns_.frame->unit_s;
+    const auto [at, is_new] = last_.try_emplace(Same(label), *frame, file_.labels.size());
+    auto& [last, index] = at->second;
+    if (!is_new && *frame >= last && *frame <= last + 1) {
+      file_.labels[index].end_s = label.end_s;
+    } else {
+      index = file_.labels.size();
+      file_.labels.push_back(std::move(label));
+    }
+    last = *frame;
+  }
+
+  LabelFile& file_;
+  CsvColumns columns_;
+  const std::vector<std::string> words_;
+  std::vector<std::set<std::string>> cells_of_;  ///< per column, of those that may tell takes: two
+  std::map<SameLabel, Label> begun_;
+  std::map<SameLabel, std::pair<double, std::size_t>> last_;  ///< frame, and index of its label
+  Diagnostics problems_;
+  int line_ = 1;
+};
+
+char SeparatorOf(std::string_view line) {
+  for (const char other : {';', '\t'})
+    if (line.find(',') == std::string_view::npos && line.find(other) != std::string_view::npos)
+      return other;
+  return ',';
+}
+
+}  // namespace
+
+Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
+  std::optional<RowTaker> rows;
+  std::size_t width = 0;
+  char separator = ',';
+  const std::string_view text = file.text;
+  int line_number = 0;
+  for (std::size_t begin = 0; begin < text.size() && !(rows && rows->IsFull());) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    begin = end + 1;
+    if (++line_number == 1) {
+      separator = Lower(file.file).ends_with(".tsv") ? '\t' : SeparatorOf(line);
+      std::vector<std::string> words;
+      for (const CsvCell& cell : CsvCellsOf(line, separator)) words.emplace_back(cell.text);
+      Result<CsvColumns> known = ColumnFinder(file, words, how).Find();
+      if (!known) return known.error();
+      width = words.size();
+      rows.emplace(file, std::move(*known), std::move(words));
+      continue;
+    }
+    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+    const std::vector<CsvCell> cells = CsvCellsOf(line, separator);
+    const auto faulty =
+        std::ranges::find_if(cells, [](const CsvCell& cell) { return !cell.fault.empty(); });
+    if (faulty != cells.end())
+      rows->Complain(faulty->column, fmt::format("the cell '{}': {}", faulty->text, faulty->fault),
+                     line_number);
+    else if (cells.size() != width)
+      rows->Complain(1, fmt::format("found {} cells, wanted {}", cells.size(), width), line_number);
+    else
+      rows->Take(cells, line_number);
+  }
+  return rows ? rows->Finish() : Diagnostics{};
+}
+
+Diagnostics ReadFrameLabels(LabelFile& file, double rate_hz) {
+  if (rate_hz <= 0)
+    return {file.At({}, "it has a line for each frame",
+                    "how many has the video per second? In the map: rate_hz: 30")};
+  const std::string_view text = file.text;
+  double frame = 0;
+  for (std::size_t begin = 0; begin < text.size(); ++frame) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    begin = end + 1;
+    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+    const double from_s = frame / rate_hz, to_s = (frame + 1) / rate_hz;
+    if (!file.labels.empty() && file.labels.back().text == line &&
+        file.labels.back().end_s == from_s)
+      file.labels.back().end_s = to_s;
+    else
+      file.labels.push_back({.begin_s = from_s,
+                             .end_s = to_s,
+                             .text = std::string(line),
+                             .tier = {},
+                             .place = {static_cast<int>(frame) + 1, 1}});
+  }
+  return {};
+}
+
+}  // namespace prehend::exchange
