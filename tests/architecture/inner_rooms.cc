@@ -179,7 +179,7 @@ const Arrows& ProjectArrows() {
         "harness/episode/sense", "harness/exchange/poses", "harness/exchange/knowledge",
         "harness/exchange/labels", "harness/measure/speed", "harness/measure/sweep",
         "harness/scenario/format", "harness/show/explain", "harness/show/figures",
-        "harness/show/pictures", "harness/truth/timeline"}},
+        "harness/show/pictures", "harness/truth/golden", "harness/truth/timeline"}},
       {"harness/cli/cli", {"harness/base/base", "harness/cli/command"}},
   };
   return arrows;

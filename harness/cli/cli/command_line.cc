@@ -161,7 +161,8 @@ std::vector<Command> AllCommands() {
           WatchCommand(),
           BenchCommand(),
           Limited(PosesCommand(), kOne_s),
-          SchemaCommand()};
+          SchemaCommand(),
+          RenameCommand()};
 }
 
 ProgramDescription DescribeProgram(const std::string& version) {

@@ -2,12 +2,15 @@
 // What commands share. Tested by tests/program/command_line_test.cc
 #include "harness/cli/command/command.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <thread>
 #include <utility>
 
 #include "harness/base/base/shell_quote.h"
+#include "harness/base/base/text_file.h"
 #include "harness/base/process/worker_pool.h"
 #include "harness/episode/episode/lacks.h"
 
@@ -117,6 +120,16 @@ ExitCode Complain(const CommandContext& context, const grammar::Diagnostics& dia
   });
   if (can_be_fixed) context.err << "  again: " << CommandText(context.words) << "\n";
   return ExitCode::kBadInput;
+}
+
+ExitCode WarnOfScenariosNotRun(const CommandContext& context) {
+  const std::vector<std::string> files = episode::ScenariosNotRun(context.root);
+  for (const std::string& file : files)
+    context.err << fmt::format(
+        "{}: {}: it is not run: scenarios end in .yaml, and lie in scenarios/ or "
+        "scenarios/SKILL/\n",
+        ReadableName(file), context.in_ci ? "error" : "warning");
+  return files.empty() || !context.in_ci ? ExitCode::kAgrees : ExitCode::kBadInput;
 }
 
 void Warn(const CommandContext& context, const grammar::Diagnostics& warnings) {

@@ -54,6 +54,7 @@ Command NewCommand();
 Command ImportCommand();
 Command ResegmentCommand();
 Command SchemaCommand();
+Command RenameCommand();
 Command BenchCommand();
 Command ScoreCommand();
 Command ExplainCommand();
@@ -100,6 +101,10 @@ ExitCode ComplainWithCorrection(const CommandContext& context, ExitCode code,
 /// Prints what is wrong with files or with values of options. The command is printed again when
 /// there is a file to fix.
 ExitCode Complain(const CommandContext& context, const grammar::Diagnostics& diagnostics);
+
+/// Names files of the project that look like scenarios and are not run: a warning, and an error
+/// where nobody reads warnings (CI).
+ExitCode WarnOfScenariosNotRun(const CommandContext& context);
 
 /// Prints warnings to `err`; nothing when there are none.
 void Warn(const CommandContext& context, const grammar::Diagnostics& warnings);

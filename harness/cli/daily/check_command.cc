@@ -318,6 +318,8 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
     return Complain(context, ExitCode::kBadInput,
                     "--junit - contradicts --json: both would be printed");
   }
+  const ExitCode strays = options.Has("names") ? ExitCode::kAgrees : WarnOfScenariosNotRun(context);
+  if (strays != ExitCode::kAgrees) return strays;
   auto selection =
       suite::SelectScenarios(options.All("names"), options.All("--filter"), context.root);
   if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);

@@ -29,6 +29,7 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
   std::string text;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   grammar::Diagnostics diagnostics;
+  const ExitCode strays = options.Has("names") ? ExitCode::kAgrees : WarnOfScenariosNotRun(context);
   const scenario::ScenarioLibrary library = episode::ProjectLibrary(context.root);
   const auto selection =
       suite::SelectScenarios(options.All("names"), options.All("--filter"), context.root);
@@ -62,7 +63,7 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
   } else {
     context.out << text;
   }
-  return diagnostics.empty() ? ExitCode::kAgrees : Complain(context, diagnostics);
+  return diagnostics.empty() ? strays : Complain(context, diagnostics);
 }
 
 }  // namespace

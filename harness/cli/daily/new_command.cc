@@ -102,19 +102,13 @@ ExitCode MakeProject(const std::string& typed, const CommandContext& context) {
   return ExitCode::kAgrees;
 }
 
-/// A small letter, then small letters, digits and '_', at most 64 in all.
-bool IsName(std::string_view word) {
-  return !word.empty() && word.size() <= 64 && word.front() >= 'a' && word.front() <= 'z' &&
-         word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == word.npos;
-}
-
 /// `word` as a name, if it becomes one by small letters and '_'; else "".
 std::string AsName(std::string word) {
   for (char& letter : word) {
     if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
     if (letter == '-' || letter == ' ') letter = '_';
   }
-  return IsName(word) ? word : "";
+  return episode::IsScenarioName(word) ? word : "";
 }
 
 /// "SKILL/NAME" or "NAME" as typed.
@@ -127,7 +121,9 @@ tl::expected<TypedName, ExitCode> ReadName(const std::string& typed,
   const std::size_t slash = typed.find('/');
   TypedName words{.skill = slash == typed.npos ? "" : typed.substr(0, slash),
                   .name = slash == typed.npos ? typed : typed.substr(slash + 1)};
-  if (IsName(words.name) && (slash == typed.npos || IsName(words.skill))) return words;
+  if (episode::IsScenarioName(words.name) &&
+      (slash == typed.npos || episode::IsScenarioName(words.skill)))
+    return words;
   const std::string fitting = slash == typed.npos ? AsName(words.name) : "";
   return tl::unexpected(Complain(
       context, ExitCode::kBadInput,

@@ -162,6 +162,7 @@ ExitCode RunValidate(const ParsedOptions& options, const CommandContext& context
     all.push_back(std::move(*validated));
   }
   const bool everything = options.All("files").empty() && !options.Has("--grammar");
+  const ExitCode strays = everything ? WarnOfScenariosNotRun(context) : ExitCode::kAgrees;
   for (const suite::UnreferencedGolden& orphan :
        everything
            ? suite::FindUnreferencedGoldens(episode::ListScenarios(context.root), context.root)
@@ -179,7 +180,7 @@ ExitCode RunValidate(const ParsedOptions& options, const CommandContext& context
       context.out << "ok: " << validated.file << "\n" << validated.description;
   }
   if (options.Has("--json")) context.out << nlohmann::ordered_json{{"files", json}}.dump(2) << "\n";
-  return diagnostics.empty() ? ExitCode::kAgrees : Complain(context, diagnostics);
+  return diagnostics.empty() ? strays : Complain(context, diagnostics);
 }
 
 }  // namespace

@@ -6,7 +6,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <fstream>
+#include <set>
 #include <tuple>
 
 #include "grammar/base/diagnostic.h"
@@ -45,6 +48,11 @@ std::vector<const ScenarioFile*> Matching(const std::vector<ScenarioFile>& scena
 
 }  // namespace
 
+bool IsScenarioName(std::string_view word) {
+  return !word.empty() && word.size() <= 64 && word.front() >= 'a' && word.front() <= 'z' &&
+         word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == word.npos;
+}
+
 std::vector<ScenarioFile> ListScenarios(const std::string& root) {
   const fs::path folder = fs::path(root) / "scenarios";
   std::vector<ScenarioFile> scenarios;
@@ -67,6 +75,43 @@ std::vector<ScenarioFile> ListScenarios(const std::string& root) {
     return std::tie(a.skill, a.name) < std::tie(b.skill, b.name);
   });
   return scenarios;
+}
+
+namespace {
+
+/// A YAML file, whatever the case of its ending, with a line `scenario: ..`.
+bool LooksLikeScenario(const fs::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::error_code error;
+  if ((ending != ".yaml" && ending != ".yml") || !fs::is_regular_file(file, error)) return false;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("scenario:")) return true;
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::string> ScenariosNotRun(const std::string& root) {
+  std::set<fs::path> run;
+  for (const ScenarioFile& file : ListScenarios(root)) run.insert(fs::path(file.path));
+  std::vector<std::string> strays;
+  std::error_code error;
+  for (const char* folder : {"scenarios", "scenario", "Scenarios"}) {
+    for (fs::recursive_directory_iterator at(fs::path(root) / folder, error), end;
+         !error && at != end; at.increment(error)) {
+      const std::string name = at->path().filename().string();
+      if (at.depth() == 0 && at->is_directory(error) &&
+          (name == kShowsErrors || name == kTemplates))
+        at.disable_recursion_pending();
+      else if (!run.contains(at->path()) && LooksLikeScenario(at->path()))
+        strays.push_back(at->path().lexically_relative(root).string());
+    }
+  }
+  std::ranges::sort(strays);
+  return strays;
 }
 
 std::vector<ScenarioFile> ShippedScenarios(const std::string& root) {

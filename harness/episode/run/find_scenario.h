@@ -33,8 +33,16 @@ EpisodeName NameOf(const ScenarioFile& file);
 /// An episode as the scenario that it is or was; only those of the project, `all`, have goldens.
 ScenarioFile ScenarioOf(const EpisodeName& episode, const std::vector<ScenarioFile>& all);
 
+/// A small letter, then small letters, digits and '_', at most 64 in all: what new ones may be
+/// called, and their folders.
+bool IsScenarioName(std::string_view word);
+
 /// All below root/scenarios, sorted by skill and name, without the two folders above.
 std::vector<ScenarioFile> ListScenarios(const std::string& root);
+
+/// Files that look like scenarios and are not among these: with another ending (.yml, .YAML), a
+/// folder deeper, in a folder scenario/. Paths from `root`, sorted.
+std::vector<std::string> ScenariosNotRun(const std::string& root);
 
 /// For a project of one's own the scenarios that ship with the program, which are found by name
 /// when the project has none of this name. They are no part of the project.
