@@ -133,8 +133,10 @@ void LimitWatch::SeeOverlaps(const Snapshot& now) {
     const double thin_m = a.hand != kNone || b.hand != kNone
                               ? HUGE_VAL
                               : std::min(At(half_m_, a.body), At(half_m_, b.body));
+    const bool are_bodies = a.hand == kNone && b.hand == kNone;
+    if (are_bodies && !MayCollide(a.body, b.body)) continue;
     // The centre of a thin body may go slowly through another one, too.
-    if (-contact.distance_m > thin_m / 2 && MayCollide(a.body, b.body)) {
+    if (are_bodies && -contact.distance_m > thin_m / 2) {
       SeeEntry(a.body, b.body);
       SeeEntry(b.body, a.body);
     }

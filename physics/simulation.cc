@@ -135,6 +135,8 @@ bool Simulation::State::Step() {
   MovePersons();
   world->Step(Tracked(*commands));
   world->Describe(snapshot);
+  for (std::size_t i = 0; i < persons.size(); ++i)
+    AddContacts(scene.persons[i], persons[i].touches(), snapshot);
   See();
   watch.See(snapshot, persons);
   limits.See(snapshot);

@@ -23,6 +23,11 @@ constexpr double kNotedSlider_m = 0.005, kNotedHinge_rad = 0.05;
 /// A thing that an arm moves by less stays where it is, as notes round lengths to millimetres.
 constexpr double kMoved_m = 0.001;
 
+/// A part that goes deeper into a fixed thing is noted;
+constexpr double kInto_m = 0.01;
+/// it has come out behind it if the way out is so far from the one where it entered (a cosine).
+constexpr double kBehind = -0.5;
+
 const char* NameOf(LimbEnd end) {
   switch (end) {
     case LimbEnd::kRightElbow:
@@ -82,6 +87,41 @@ void StepWatch::Begin(const std::vector<BegunSteps>& begun, const Snapshot& now)
 void StepWatch::See(const Snapshot& now, const std::vector<PersonPlayer>& persons) {
   SeeJoints(now);
   SeeArms(now, persons);
+  for (std::size_t i = 0; i < persons.size(); ++i) SeeFixed(i, persons[i].touches(), now.tick);
+}
+
+void StepWatch::SeeFixed(std::size_t person, const std::vector<FixedTouch>& touches,
+                         std::int64_t tick) {
+  for (const FixedTouch& touch : touches) {
+    Entered& entered = entered_[{person, touch.thing}];
+    const Eigen::Vector3d& first_W =
+        entered.first_W.try_emplace(touch.part, touch.nhat_W).first->second;
+    entered.is_through |= first_W.dot(touch.nhat_W) < kBehind && entered.deepest.depth_m > kInto_m;
+    if (touch.depth_m <= entered.deepest.depth_m) continue;
+    entered.deepest = touch;
+    entered.tick = tick;
+  }
+}
+
+void StepWatch::NoteFixed(std::vector<ScriptNote>& notes) const {
+  for (const auto& [who, entered] : entered_) {
+    if (entered.deepest.depth_m <= kInto_m) continue;
+    const Person& person = scene_.persons[who.first];
+    const int part = entered.deepest.part;
+    bool follows_hand = false;
+    for (int limb = 0; limb < 4; ++limb) {
+      const PartRange parts = PartsOfLimb(person, limb);
+      follows_hand |= part >= parts.begin && part < parts.end && HandAt(limb, person) != kNone;
+    }
+    notes.push_back(
+        {entered.tick, kNone,
+         scene_.body(person.head + part).name + " goes " + Millimetres(entered.deepest.depth_m) +
+             " into " + scene_.body(who.second).name + ", which is fixed" +
+             (entered.is_through ? ", and comes out on another side of it" : "") +
+             (follows_hand ? "; lead its hand another way, or let her stand elsewhere"
+                           : "; give the step 'max_force_n', and she stops before it, or lead her "
+                             "around it")});
+  }
 }
 
 void StepWatch::SeeJoints(const Snapshot& now) {
@@ -178,6 +218,7 @@ std::vector<ScriptNote> StepWatch::Notes() const {
              (met.moved_m < kMoved_m ? "" : " and moves it by " + Millimetres(met.moved_m)) +
              "; let her stand elsewhere, go another way, or make room"});
   }
+  NoteFixed(notes);
   std::ranges::stable_sort(notes, {}, &ScriptNote::tick);
   return notes;
 }

@@ -48,6 +48,16 @@ class StepWatch {
     double moved_m = 0;  ///< while the arm touched it and its hand did not
   };
 
+  /// A fixed thing that a person has gone into.
+  struct Entered {
+    std::int64_t tick = 0;  ///< of the deepest part
+    FixedTouch deepest;
+    std::map<int, Eigen::Vector3d> first_W;  ///< by part, which way was out when it entered
+    bool is_through = false;                 ///< a part has come out elsewhere
+  };
+
+  void SeeFixed(std::size_t person, const std::vector<FixedTouch>& touches, std::int64_t tick);
+  void NoteFixed(std::vector<ScriptNote>& notes) const;
   void SeeJoints(const Snapshot& now);
   void SeeArms(const Snapshot& now, const std::vector<PersonPlayer>& persons);
   /// Of the arm that follows `hand`: its parts are the bodies from `begin` to before `end`.
@@ -58,7 +68,8 @@ class StepWatch {
   std::vector<Leading> leading_;
   std::vector<std::array<Short, 4>> limbs_;  ///< by person and limb
   std::map<std::tuple<HandIndex, BodyIndex, BodyIndex>, Met>
-      met_;  ///< hand, part of the arm, thing
+      met_;                                                       ///< hand, part of the arm, thing
+  std::map<std::pair<std::size_t, BodyIndex>, Entered> entered_;  ///< person, thing
   std::vector<ScriptNote> notes_;
 };
 

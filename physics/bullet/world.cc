@@ -51,7 +51,7 @@ constexpr int kNoGroup = 0;  // abstract bodies touch nothing and are not seen
 constexpr int kFixedGroup = 1;
 constexpr int kMovingGroup = 2;
 constexpr int kFirstHandGroup = 4;
-// Persons push moving bodies only: they pass through fixed bodies and hands.
+// Persons push moving bodies only. What they do with fixed ones: physics/person/fixed_things.h.
 constexpr int kPersonGroup = 1 << 30;
 
 class BulletWorld final : public World {

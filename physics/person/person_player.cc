@@ -3,6 +3,7 @@
 // poses. Tested by tests/physics/person/person_player_test.cc
 #include "physics/person/person_player.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/motion/trajectory.h"
@@ -11,6 +12,13 @@
 namespace prehend::physics {
 
 using Eigen::Vector3d;
+
+namespace {
+
+/// What would go deeper into a fixed thing within a tick is stopped.
+constexpr double kDeeper_m = 1e-7;
+
+}  // namespace
 
 double PersonPlayer::Motion::At(double t_s) const {
   if (duration_s <= 0) return to;
@@ -86,6 +94,7 @@ PersonPlayer::PersonPlayer(const Scene& scene, const Script& script, int person)
     : scene_(scene),
       script_(script),
       person_(scene.persons[static_cast<std::size_t>(person)]),
+      fixed_(scene),
       index_(person),
       targets_(Standing(scene, person_)),
       places_(PlacesOf(person_, targets_, {})),
@@ -228,23 +237,69 @@ void PersonPlayer::TurnHead(const Snapshot& now) {
   targets_.X_WHead = HeadToward(person_, neck, gaze_.head_W());
 }
 
-void PersonPlayer::Advance(const Snapshot& now, World& world) {
-  t_s_ = static_cast<double>(++tick_) / scene_.world.rate_hz;
-  targets_.posture.reset();
-  if (walk_.max_force_n) Yield(walk_, ResistanceToWalk(now));
+void PersonPlayer::AimStance() {
   const double walk_s = t_s_ - walk_.behind_s;
   targets_.X_WS = {{x_.At(walk_s), y_.At(walk_s), person_.X_WS.p_m.z()},
                    Eigen::Quaterniond(Eigen::AngleAxisd(yaw_.At(t_s_), Vector3d::UnitZ()))};
   targets_.lean_rad = lean_.At(t_s_);
   targets_.sway_m = {sway_ahead_.At(t_s_), sway_left_.At(t_s_)};
+}
+
+void PersonPlayer::AimLimbs(const Snapshot& now) {
+  for (int limb = 0; limb < 4; ++limb)
+    targets_.limbs[static_cast<std::size_t>(limb)] = LimbAt(limb, now);
+}
+
+bool PersonPlayer::StopBeforeFixed() {
+  const auto stop = [&](Yielding& motion) {
+    motion.behind_s += motion.pace / scene_.world.rate_hz;
+    motion.pace = 0;
+  };
+  const auto yields = [](const LimbMotion& limb) { return limb.yielding.max_force_n.has_value(); };
+  if (body_ || leaving_ || (!walk_.max_force_n && std::ranges::none_of(limbs_, yields)))
+    return false;
+  bool stops = false;
+  for (const FixedTouch& touch : fixed_.TouchedBy(person_, PlacesOf(person_, targets_, places_))) {
+    const auto before = std::ranges::find_if(touches_, [&](const FixedTouch& old) {
+      return old.part == touch.part && old.thing == touch.thing;
+    });
+    const double before_m = before == touches_.end() ? 0 : std::max(before->depth_m, 0.0);
+    if (touch.depth_m <= before_m + kDeeper_m) continue;
+    bool follows_hand = false;
+    for (int i = 0; i < 4; ++i) {
+      const PartRange parts = PartsOfLimb(person_, i);
+      if (touch.part < parts.begin || touch.part >= parts.end) continue;
+      follows_hand = HandAt(i, person_) != kNone;
+      LimbMotion& limb = limbs_[static_cast<std::size_t>(i)];
+      if (!yields(limb)) continue;
+      stop(limb.yielding);
+      stops = true;
+    }
+    if (!walk_.max_force_n || follows_hand) continue;
+    stop(walk_);
+    stops = true;
+  }
+  return stops;
+}
+
+void PersonPlayer::Advance(const Snapshot& now, World& world) {
+  t_s_ = static_cast<double>(++tick_) / scene_.world.rate_hz;
+  targets_.posture.reset();
+  if (walk_.max_force_n) Yield(walk_, ResistanceToWalk(now));
+  AimStance();
   for (int limb = 0; limb < 4; ++limb) {
     Yielding& yielding = limbs_[static_cast<std::size_t>(limb)].yielding;
     if (yielding.max_force_n) Yield(yielding, ResistanceTo(limb, now));
-    targets_.limbs[static_cast<std::size_t>(limb)] = LimbAt(limb, now);
+  }
+  AimLimbs(now);
+  if (StopBeforeFixed()) {
+    AimStance();
+    AimLimbs(now);
   }
   HoldPosture();
   TurnHead(now);
   places_ = PlacesOf(person_, targets_, places_);
+  touches_ = fixed_.TouchedBy(person_, places_);
   for (std::size_t i = 0; i < places_.size(); ++i)
     world.MoveKinematic(person_.head + static_cast<int>(i), places_[i]);
 }

@@ -9,6 +9,7 @@
 
 #include "physics/motion/posture.h"
 #include "physics/motion/trajectory.h"
+#include "physics/person/fixed_things.h"
 #include "physics/person/gaze.h"
 #include "physics/person/skeleton.h"
 #include "physics/world/world.h"
@@ -30,6 +31,8 @@ class PersonPlayer {
   GazeState See(const World& world) const;
 
   const BodyTargets& targets() const { return targets_; }
+  /// The fixed things that she has touched since her last Advance().
+  const std::vector<FixedTouch>& touches() const { return touches_; }
   /// Distance by which a limb ends before the hand of the scene that it follows, or before where
   /// its step wants it, metres; 0 if it does neither. `limb`: index into BodyTargets::limbs.
   double LimbIsShortBy(int limb) const;
@@ -67,6 +70,11 @@ class PersonPlayer {
   class Resolver;
 
   BodyTargets::Limb LimbAt(int limb, const Snapshot& now) const;
+  /// Where she stands and how she leans; where her limbs go.
+  void AimStance();
+  void AimLimbs(const Snapshot& now);
+  /// Stops what yields for this tick where it would go into a fixed thing, or deeper into it.
+  bool StopBeforeFixed();
   /// Slows a motion down that meets too much resistance, and speeds it up again afterwards.
   void Yield(Yielding& motion, double resistance_n) const;
   /// Force of contacts against the motion of a limb, or of her walk, newtons.
@@ -81,6 +89,7 @@ class PersonPlayer {
   const Scene& scene_;
   const Script& script_;
   const Person& person_;
+  FixedThings fixed_;
   int index_ = 0;
   double t_s_ = 0;  ///< since the first tick
   std::int64_t tick_ = 0;
@@ -89,6 +98,7 @@ class PersonPlayer {
   std::array<LimbMotion, 4> limbs_;
   BodyTargets targets_;
   std::vector<Pose> places_;
+  std::vector<FixedTouch> touches_;
   GazeLeader leader_;
   Eyes eyes_;
   std::optional<GazeTarget> told_;                     ///< the script's target; overrides her own

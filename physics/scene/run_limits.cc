@@ -44,6 +44,14 @@ double MassOf(const Scene& scene, const ContactSide& side) {
   return body.fixed ? 0 : body.mass_kg;
 }
 
+/// Between a person and what is fixed: she goes where her script says.
+bool IsOfFixed(const Scene& scene, const ContactPoint& contact) {
+  const auto stays = [&](const ContactSide& side) {
+    return side.hand == kNone && (scene.body(side.body).fixed || scene.body(side.body).kinematic);
+  };
+  return stays(contact.a) && stays(contact.b);
+}
+
 /// The advice for two bodies that overlap deeply.
 std::string AdviceFor(const Scene& scene, const Snapshot& snapshot, const ContactPoint& deep) {
   if (const double ratio = MassRatioAt(scene, snapshot, deep); ratio > kMaxMassRatio)
@@ -97,7 +105,7 @@ std::optional<RunProblem> CheckSnapshot(const Scene& scene, const Snapshot& snap
     if (auto problem = CheckState(scene.hands[i].name, snapshot.hands[i].palm)) return problem;
   }
   for (const ContactPoint& contact : snapshot.contacts) {
-    if (contact.distance_m > -kMaxPenetration_m) continue;
+    if (contact.distance_m > -kMaxPenetration_m || IsOfFixed(scene, contact)) continue;
     return RunProblem{
         NameOf(scene, contact.a),
         Say("it is %.0f mm deep", -1000 * contact.distance_m) + " in " + NameOf(scene, contact.b),

@@ -152,8 +152,10 @@ TEST(PersonPlayerTest, ALimbThatMayYieldStillPushesWhatIsLight) {
 }
 
 TEST(PersonPlayerTest, AWalkYieldsToWhatResistsMoreThanItMayPush) {
-  // A block as high as her hips, in front of them.
-  Scene scene = Before({0.4, 0, 0.9});
+  // A block as high as her hips, in front of them, on the floor.
+  Scene scene = Before({0.4, 0, 0.1});
+  scene.bodies[kBlock].shapes.front().shape = Box{{0.2, 0.4, 1}};
+  scene.bodies[kBlock].X_WB.p_m.z() = 0.5;
   scene.bodies[kBlock].mass_kg = 60;
   scene.bodies[kBlock].friction = 2;
   const auto walk = [&](std::optional<double> max_force_n) {
