@@ -69,11 +69,31 @@ class Waits {
     if (settling) Include(truth, WaitOf(rule, std::nullopt));
     truth.seconds += rule.lasting_s + (looks_back != nullptr ? looks_back->back_s : 0) +
                      (from_to != nullptr ? std::max(from_to->within_s, 0.0) : 0);
+    const auto* composition = rule.If<ComposeRule>();
+    if (composition != nullptr) IncludeWaiting(*composition, truth);
     const bool decided_at_its_end = (from_to != nullptr && from_to->or_drop) ||
                                     (rule.requirement != kNone && looks_back == nullptr);
     const auto* holds = rule.If<WhileRule>();
     if (decided_at_its_end || rule.lasting_most_s >= 0 || (holds != nullptr && holds->at_least > 1))
       truth.until_end_of.insert(rule.name);
+  }
+
+  // Where a composition holds is not known as long as an interval that may become its first part
+  // waits for the others.
+  static void IncludeWaiting(const ComposeRule& composition, Wait& truth) {
+    truth.seconds += composition.within_s;
+    for (const ComposeRule::Clause& clause : composition.clauses) {
+      double longest_s = 0;
+      for (std::size_t i = 0; i < clause.within_s.size(); ++i) {
+        const auto relation = static_cast<Allen>(i);
+        const bool is_gap = relation == Allen::kBefore || relation == Allen::kAfter;
+        if ((clause.relations & Bit(relation)) == 0) continue;
+        longest_s = std::max(longest_s, clause.within_s[i]);
+        if (is_gap && clause.within_s[i] < 0 && composition.within_s == 0)
+          truth.until_end_of.insert("the episode");
+      }
+      if (composition.within_s == 0) truth.seconds += longest_s;
+    }
   }
 
   // `until A since F` is not known before an A comes, or the time to look back is over; where an A
@@ -117,6 +137,8 @@ class Waits {
     }
     const auto* holds = rule.If<WhileRule>();
     const auto* any = rule.If<AnyRule>();
+    const auto* composition = rule.If<ComposeRule>();
+    if (composition != nullptr && composition->at_least > 0) wait.seconds += composition->within_s;
     wait.seconds += (holds != nullptr ? holds->bridging_s : 0) +
                     (any != nullptr ? any->within_s : 0) + rule.looks_around_s;
     return wait;

@@ -67,10 +67,22 @@ class Judge {
       case Form::kRestOf:
         return NeverOfReference(rule, rule.As<RestOfRule>().whole);
       case Form::kCompose:
-        for (const int part : rule.As<ComposeRule>().parts) ask(NeverOfReference(rule, part));
-        return why;
+        return NeverOfParts(rule);
     }
     return why;
+  }
+
+  // All parts must be there, or of a repetition one of them.
+  std::string_view NeverOfParts(const Rule& rule) const {
+    const auto& composition = rule.As<ComposeRule>();
+    std::string_view some;
+    for (int part = 0; part < composition.count; ++part) {
+      const std::string_view why =
+          NeverOfReference(rule, composition.parts[static_cast<std::size_t>(part)]);
+      if (why.empty() == (composition.at_least > 0)) return why;
+      if (some.empty()) some = why;
+    }
+    return some;
   }
 
   std::string_view NeverOfReference(const Rule& rule, int slot) const {

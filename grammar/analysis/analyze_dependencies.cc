@@ -292,6 +292,17 @@ void MarkReferenced(Program& program, RuleId index) {
   }
 }
 
+// Where a composition holds, for those who ask, is known when it is known where its first part
+// does.
+void MarkFirstParts(Program& program, RuleId index) {
+  const auto* composition = program.rules[index].If<ComposeRule>();
+  if (composition == nullptr || !program.rules[index].referenced) return;
+  for (std::size_t part = 0; part < composition->may_begin(); ++part) {
+    const auto slot = static_cast<std::size_t>(composition->parts[part]);
+    program.rules[program.rules[index].references[slot].rule].referenced = true;
+  }
+}
+
 // Where something of the rule begins, if that can be the moment of an event.
 void FindOpening(const Program& program, Rule& rule) {
   if (const auto* from_to = rule.If<FromToRule>()) FindOpening(program, rule, from_to->from);
@@ -326,6 +337,8 @@ void ChooseGuards(Program& program) {
   ShareValues(program);
   for (Node& node : program.nodes) FindThreshold(program, node);
   for (const RuleId rule : IdsOf(program.rules)) MarkReferenced(program, rule);
+  for (auto rule = program.schedule.rbegin(); rule != program.schedule.rend(); ++rule)
+    MarkFirstParts(program, *rule);
   for (Rule& rule : program.rules) {
     rule.guard = ChooseGuard(program, rule);
     rule.guarded_begin = GuardsBegin(program, rule);

@@ -251,8 +251,9 @@ class Compiler {
     Rule rule{.name = definition.name, .file = source.text.file, .place = definition.place};
     rule.printed = definition.is_event;
     rule.symmetric = definition.symmetric;
-    rule.of_form = FormOf(definition.form);  // others must know before it is lowered
-    if (definition.form == Definition::Form::kRepeat) rule.As<WhileRule>().at_least = 1;
+    rule.of_form = FormOf(definition);  // others must know before it is lowered
+    if (definition.form == Definition::Form::kRepeat && definition.gap)
+      rule.As<WhileRule>().at_least = 1;
     CheckRoles(source, definition.roles);
     CheckSymmetry(source, definition);
     for (const ast::Role& role : definition.roles)
@@ -262,10 +263,12 @@ class Compiler {
     if (definition.form == Definition::Form::kOtherwise) symbols_.otherwise.insert(index);
   }
 
-  static RuleForm FormOf(Definition::Form form) {
-    switch (form) {
-      case Definition::Form::kWhile:
+  static RuleForm FormOf(const Definition& definition) {
+    switch (definition.form) {
       case Definition::Form::kRepeat:
+        if (!definition.gap) break;
+        return WhileRule();
+      case Definition::Form::kWhile:
       case Definition::Form::kOtherwise:
         return WhileRule();
       case Definition::Form::kFromTo:

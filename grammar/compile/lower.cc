@@ -117,13 +117,6 @@ int Lowering::RuleCall(const Expr& expr) {
   return kNone;
 }
 
-int Lowering::PartCall(const Expr& expr) {
-  part_ = true;
-  const int reference = RuleCall(expr);
-  part_ = false;
-  return reference;
-}
-
 NodeId Lowering::Signal(const Expr& expr, Anchors anchors, Dimension& dimension) {
   anchors_ = anchors;
   const Typed typed = Number(expr);

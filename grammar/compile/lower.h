@@ -84,8 +84,6 @@ class Lowering {
   NodeId Instant(const ast::Expr& expr, Anchors anchors);
   /// A call of an event or condition, as a reference of the rule.
   int RuleCall(const ast::Expr& expr);
-  /// Likewise, of a part of a composition: that may be a composition, too.
-  int PartCall(const ast::Expr& expr);
   /// A number; its dimension is written to `dimension`.
   NodeId Signal(const ast::Expr& expr, Anchors anchors, Dimension& dimension);
   /// A number to be asked for where the interval ends: signals as they were at its begin, `x@end`
@@ -215,7 +213,6 @@ class Lowering {
   const GrammarText* source_;
   Diagnostics& diagnostics_;
   Anchors anchors_;
-  bool part_ = false;          ///< a part of a composition is lowered
   bool attribute_ = false;     ///< signals are taken where the interval begins
   bool full_ = false;          ///< the grammar has too many expressions
   bool checking_ = false;      ///< numbers of parameters are placeholders

@@ -125,15 +125,6 @@ Lowering::Typed Lowering::LowerRuleCall(RuleId rule, const Expr& expr) {
     reference.roles[count++] = *role;
   }
   if (kept.empty()) return Bad(expr.place, "at least one role must be named; all are 'any'");
-  // It may begin long before it is complete, so its truth at a frame is not known in time.
-  const bool composed = symbols_.program.rules[rule].form() == Form::kCompose;
-  if (composed && (!part_ || narrowed || kept.size() < wanted.size())) {
-    return Bad(
-        expr.place,
-        Quoted(expr.text) +
-            " is a composition; only another composition can use it, with all its roles named",
-        "use its parts instead");
-  }
   if (narrowed) reference.rule = MakeNarrowedRule(rule, classes);
   if (kept.size() < wanted.size()) reference.rule = MakeAnyRule(reference.rule, kept);
   return {.node = Add({.op = Op::kHolds, .slot = AddReference(reference)}), .type = Type::kTruth};

@@ -28,17 +28,19 @@ class CompositionLowering {
                                 "compose some of them into an event of its own");
     }
     for (const ast::Part& part : d_.parts) {
-      if (std::find(labels.begin(), labels.end(), part.label) != labels.end()) {
+      if (!part.label.empty() && std::ranges::find(labels, part.label) != labels.end()) {
         lowering_.Complain(part.place, "the label '" + part.label + "' is used twice");
       }
       labels.push_back(part.label);
-      const int reference = lowering_.PartCall(part.call);
+      const int reference = lowering_.RuleCall(part.call);
       if (reference == kNone) continue;
       Composition().parts.push_back(reference);
     }
     if (labels.size() != Composition().parts.size()) return;
+    Composition().count = static_cast<int>(labels.size());
+    Composition().hull = d_.all_of;
     const auto find = [&](const std::string& label, Place place) {
-      const auto found = std::find(labels.begin(), labels.end(), label);
+      const auto found = std::ranges::find(labels, label);
       if (found == labels.end()) {
         const std::string near = NearestName(label, labels);
         lowering_.Complain(place, "no part is labelled '" + label + "'",
@@ -54,12 +56,41 @@ class CompositionLowering {
         LowerAlternative(relation, one, clause);
       Composition().clauses.push_back(clause);
     }
+    for (const ast::Absence& absence : d_.absences) {
+      const int left = find(absence.left, absence.place),
+                right = find(absence.right, absence.place);
+      const int reference = lowering_.RuleCall(absence.call);
+      if (reference == kNone || lowering_.complaints() != before) return;
+      Composition().absences.push_back(
+          {.part = static_cast<int>(Composition().parts.size()), .left = left, .right = right});
+      Composition().parts.push_back(reference);
+    }
+    if (d_.all_of) LowerAllOf();
     if (lowering_.complaints() == before) CheckRelations();
-    if (lowering_.complaints() == before) CheckOrders();
+    if (lowering_.complaints() == before && !d_.all_of) CheckOrders();
   }
 
  private:
   ComposeRule& Composition() { return program_.rules[index_].As<ComposeRule>(); }
+
+  // What is named twice happens twice.
+  void LowerAllOf() {
+    if (d_.within) {
+      const double within_s = lowering_.Span(*d_.within, "'within'");
+      Composition().within_s = within_s;
+    }
+    for (int left = 0; left < Composition().count; ++left) {
+      for (int right = left + 1; right < Composition().count; ++right) {
+        if (Composition().parts[left] != Composition().parts[right]) continue;
+        ComposeRule::Clause other{
+            .left = left,
+            .right = right,
+            .relations = kAnyRelation & static_cast<AllenSet>(~Bit(Allen::kEquals))};
+        other.within_s.fill(-1);
+        Composition().clauses.push_back(other);
+      }
+    }
+  }
 
   void LowerAlternative(const ast::Relation& relation, const ast::Relation::Alternative& one,
                         ComposeRule::Clause& clause) {
@@ -97,7 +128,7 @@ class CompositionLowering {
   // Of several orders each must be possible.
   void CheckOrders() {
     const ComposeRule& composition = Composition();
-    const int last = static_cast<int>(composition.parts.size()) - 1;
+    const int last = composition.count - 1;
     for (std::size_t i = 0; i < composition.clauses.size() && last > 0; ++i) {
       const ComposeRule::Clause& clause = composition.clauses[i];
       const bool as_listed = clause.left == 0 && clause.right == last;
@@ -114,8 +145,10 @@ class CompositionLowering {
                          "'" + std::string(name) + "' never makes an event here: '" +
                              d_.parts.back().label + "', the last part, would end before '" +
                              d_.parts.front().label + "', the first one, begins",
-                         "a composition reaches from its first part to its last; write one for "
-                         "each order");
+                         "from the first part to the last; in any order: all of " +
+                             d_.parts.front().label + ": .., " + d_.parts.back().label +
+                             ": .. where " + d_.relations[i].left + " before|after " +
+                             d_.relations[i].right + " within 60 s");
     }
   }
 
@@ -129,11 +162,18 @@ class CompositionLowering {
     return set;
   }
 
+  // Of a clause: where it is written, or what is named twice.
+  Place PlaceOf(std::size_t clause) {
+    return clause < d_.relations.size()
+               ? d_.relations[clause].place
+               : d_.parts[static_cast<std::size_t>(Composition().clauses[clause].right)].place;
+  }
+
   void CheckRelations() {
     constexpr AllenSet kApart =
         Bit(Allen::kBefore) | Bit(Allen::kMeets) | Bit(Allen::kMetBy) | Bit(Allen::kAfter);
     const ComposeRule& composition = Composition();
-    const int parts = static_cast<int>(composition.parts.size());
+    const int parts = composition.count;
     AllenNetwork network(parts);
     for (int left = 0; left < parts; ++left) {
       for (int right = left + 1; right < parts; ++right) {  // intervals of one event do not overlap
@@ -154,12 +194,13 @@ class CompositionLowering {
                                       : "'" + relation.left + "' and '" + relation.right +
                                             "' are the same event, whose intervals do not overlap");
       }
-      return lowering_.Complain(d_.relations[i].place,
+      return lowering_.Complain(PlaceOf(i),
                                 "this relation is never true together with what stands before it",
                                 "draw the parts below each other; intervals of one event do not "
                                 "overlap, and a part equals itself");
     }
-    if (parts == 1 || network.Constrain(0, parts - 1, kAnyRelation & ~kAgainstTime)) return;
+    if (parts == 1 || d_.all_of || network.Constrain(0, parts - 1, kAnyRelation & ~kAgainstTime))
+      return;
     lowering_.Complain(d_.parts.back().place,
                        "this is never an event: the last part, '" + d_.parts.back().label +
                            "', ends before the first one, '" + d_.parts.front().label + "', begins",

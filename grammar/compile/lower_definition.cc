@@ -141,19 +141,31 @@ class DefinitionLowering {
     std::vector<int> counted;
     for (const ast::Expr& call : d_.repeated) counted.push_back(lowering_.RuleCall(call));
     const bool all_calls = std::ranges::find(counted, kNone) == counted.end();
-    const NodeId condition = all_calls ? lowering_.Truth(AnyOf(d_.repeated), {}) : NodeId();
     const double at_least = lowering_.Constant(d_.at_least, kPlain, "'at least'");
-    const double gap_s = lowering_.Constant(d_.gap, kSeconds, "'gap at most'");
-    As<WhileRule>() = {
-        .condition = condition, .bridging_s = gap_s, .at_least = 1, .counted = std::move(counted)};
+    const double gap_s = d_.gap ? lowering_.Constant(*d_.gap, kSeconds, "'gap at most'") : 0;
+    int whole = 1;
     if (at_least >= 1 && at_least <= kMostRepetitions && at_least == std::floor(at_least)) {
-      As<WhileRule>().at_least = static_cast<int>(at_least);
+      whole = static_cast<int>(at_least);
     } else {
       lowering_.Complain(
           d_.at_least.place,
           "'at least' takes a whole number from 1 to " + std::to_string(kMostRepetitions),
           "for example: at least 3");
     }
+    if (!d_.gap) {
+      const double within_s = lowering_.Span(*d_.within, "'within'");
+      if (!all_calls) return;
+      As<ComposeRule>() = {.parts = counted,
+                           .count = static_cast<int>(counted.size()),
+                           .at_least = whole,
+                           .within_s = within_s};
+      return;
+    }
+    const NodeId condition = all_calls ? lowering_.Truth(AnyOf(d_.repeated), {}) : NodeId();
+    As<WhileRule>() = {.condition = condition,
+                       .bridging_s = gap_s,
+                       .at_least = whole,
+                       .counted = std::move(counted)};
   }
 
   void LowerFromTo() {
@@ -349,12 +361,12 @@ class DefinitionLowering {
                                  "no interval lasts that long and no longer than this",
                                  "the shorter time stands first: lasting 1 s to 2 s");
     }
-    if (d_.form == Definition::Form::kCompose &&
+    if (Here().form() == Form::kCompose &&
         (d_.requirement || d_.confirmed || d_.style || !d_.attributes.empty())) {
       lowering_.Complain(
           d_.place,
           "a composition takes no 'requires', no 'confirmed by' and no attributes of its own",
-          "put it into one of the parts");
+          "put it into one of the parts, or into a rule that uses this one: while C(hand, cup)");
     }
     if (d_.requirement) {
       const NodeId requirement = lowering_.Truth(*d_.requirement, {.begin = true, .end = true});
@@ -404,9 +416,11 @@ class DefinitionLowering {
     const Rule& rule = Here();
     const bool looks_back = d_.form == Definition::Form::kUntilSince;
     const FromToRule* const from_to = rule.If<FromToRule>();
-    const double most_s = looks_back           ? As<UntilSinceRule>().back_s
-                          : from_to != nullptr ? from_to->within_s
-                                               : 0;
+    const ComposeRule* const composition = rule.If<ComposeRule>();
+    const double most_s = looks_back               ? As<UntilSinceRule>().back_s
+                          : from_to != nullptr     ? from_to->within_s
+                          : composition != nullptr ? composition->within_s
+                                                   : 0;
     if (most_s <= 0 || rule.lasting_s <= most_s) return;
     lowering_.ComplainOrWarn(
         lasting.place,

@@ -3,7 +3,9 @@
 #include "grammar/engine/combinations.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <utility>
 
 #include "grammar/base/allen.h"
 #include "grammar/base/check.h"
@@ -16,37 +18,73 @@ constexpr Tick kEndless = std::numeric_limits<Tick>::max() / 4;
 }  // namespace
 
 void Combinations::LookAt(const ComposeRule& composition, const ComposeState& state,
-                          const std::vector<Relations>& relations) {
+                          const RuleTicks& ticks) {
+  rule_ = &composition;
   state_ = &state;
-  count_ = state.parts.size();
+  within_ = ticks.within;
+  count_ = static_cast<std::size_t>(composition.count);
   links_.clear();
-  for (std::size_t i = 0; i < relations.size(); ++i) {
-    const auto left = static_cast<std::size_t>(composition.clauses[i].left);
-    const auto right = static_cast<std::size_t>(composition.clauses[i].right);
-    if (left == right) continue;  // it equals itself, or the grammar is refused
-    Add(left, right, false, relations[i]);
-    Add(right, left, true, relations[i]);
+  for (std::size_t i = 0; i < composition.clauses.size(); ++i) {
+    const ComposeRule::Clause& clause = composition.clauses[i];
+    Add({.part = static_cast<std::size_t>(clause.left),
+         .other = static_cast<std::size_t>(clause.right),
+         .relations = &ticks.clauses[i]});
+  }
+  for (const ComposeRule::Absence& absence : composition.absences) {
+    Add({.part = static_cast<std::size_t>(absence.left),
+         .other = static_cast<std::size_t>(absence.right),
+         .absent = &state.parts[static_cast<std::size_t>(absence.part)]});
   }
 }
 
-void Combinations::Add(std::size_t part, std::size_t other, bool mirrored,
-                       const Relations& relations) {
-  Link link{.part = part, .other = other, .mirrored = mirrored, .relations = &relations};
-  for (std::size_t i = 0; i < relations.within.size(); ++i) {
-    if ((relations.any >> i & 1) == 0) continue;
+// There and back.
+void Combinations::Add(Link link) {
+  if (link.part == link.other) return;  // it equals itself, or the grammar is refused
+  for (int way = 0; way < 2; ++way) {
+    AddReach(link);
+    links_.push_back(link);
+    std::swap(link.part, link.other);
+    link.mirrored = true;
+  }
+}
+
+void Combinations::AddReach(Link& link) const {
+  link.ahead = link.behind = link.relations == nullptr ? kEndless : 0;
+  for (std::size_t i = 0; link.relations != nullptr && i < kAllenNames.size(); ++i) {
+    if ((link.relations->any >> i & 1) == 0) continue;
     const auto relation = static_cast<Allen>(i);
-    const Allen seen = mirrored ? Inverse(relation) : relation;
+    const Allen seen = link.mirrored ? Inverse(relation) : relation;
     const bool is_gap = seen == Allen::kBefore || seen == Allen::kAfter;
-    const Tick reach = relations.within[i] >= 0 ? relations.within[i] : is_gap ? kEndless : 0;
+    const Tick said = link.relations->within[i];
+    const Tick reach = said >= 0 ? said : is_gap ? kEndless : 0;
     if (seen != Allen::kAfter) link.ahead = std::max(link.ahead, reach);
     if (seen != Allen::kBefore) link.behind = std::max(link.behind, reach);
   }
-  links_.push_back(link);
+}
+
+namespace {
+
+// Some of these intervals holds somewhere from one tick to another.
+bool SomeHolds(const std::vector<Span>& spans, Tick from, Tick to) {
+  const auto first =
+      std::ranges::upper_bound(spans, from, {}, [](const Span& span) { return span.end.tick; });
+  return from < to && first != spans.end() && first->begin.tick < to;
+}
+
+}  // namespace
+
+bool Combinations::Link::Fit(const Span& span, const Span& of_other) const {
+  const Interval left = TicksOf(mirrored ? of_other : span);
+  const Interval right = TicksOf(mirrored ? span : of_other);
+  return relations != nullptr ? relations->Fit(left, right)
+                              : !SomeHolds(*absent, left.end, right.begin);
 }
 
 /// What is to come begins and ends no earlier than is known of it; so only what limits its begin or
 /// its end from above can exclude it.
 bool Combinations::Link::MayFit(const Span& span, const ToCome& to_come) const {
+  if (relations == nullptr)
+    return mirrored || !SomeHolds(*absent, span.end.tick, to_come.begins_from);
   for (std::size_t i = 0; i < relations->within.size(); ++i) {
     if ((relations->any >> i & 1) == 0) continue;
     const auto relation = static_cast<Allen>(i);
@@ -111,8 +149,30 @@ bool Combinations::HasPartner(const Span& span, const Link& link, const Choices&
   return false;
 }
 
+// What must be absent matters as long as some interval may end before it.
+bool Combinations::IsAbsenceOver(std::size_t part, const Span& span,
+                                 const std::vector<ToCome>& to_come) const {
+  return std::ranges::all_of(rule_->absences, [&](const ComposeRule::Absence& absence) {
+    const auto left = static_cast<std::size_t>(absence.left);
+    const std::vector<Span>& before = state_->parts[left];
+    return static_cast<std::size_t>(absence.part) != part ||
+           (span.end.tick <= to_come[left].last_tick_before_end() &&
+            (before.empty() || before.front().end.tick >= span.end.tick));
+  });
+}
+
 bool Combinations::IsHopeless(std::size_t part, const Span& span,
                               const std::vector<ToCome>& to_come) const {
+  if (part >= count_) return IsAbsenceOver(part, span, to_come);
+  if (rule_->hull) {  // whatever completes it ends too late
+    bool is_too_late = true;
+    for (std::size_t other = 0; other < count_; ++other) {
+      const Tick after =
+          state_->unjudged > 0 ? to_come[other].ends_after : to_come[other].last_tick_before_end();
+      is_too_late = is_too_late && (other == part || after >= span.begin.tick + within_);
+    }
+    if (is_too_late) return true;
+  }
   return std::ranges::any_of(links_, [&](const Link& link) {
     if (link.part != part || link.MayFit(span, to_come[link.other])) return false;
     const std::vector<Span>& others = state_->parts[link.other];
@@ -125,6 +185,11 @@ bool Combinations::IsHopeless(std::size_t part, const Span& span,
   });
 }
 
+bool Combinations::IsSomeEmpty(const AllChoices& choices) const {
+  return std::any_of(choices.begin(), choices.begin() + static_cast<std::ptrdiff_t>(count_),
+                     [](const Choices& some) { return some.empty(); });
+}
+
 /// Removes what fits no choice of another part; false: some part has nothing left.
 bool Combinations::MakeConsistent(AllChoices& choices) const {
   for (bool changed = true; changed;) {
@@ -134,12 +199,12 @@ bool Combinations::MakeConsistent(AllChoices& choices) const {
                    return !HasPartner(*span, link, choices[link.other]);
                  }) > 0;
     }
+    if (IsSomeEmpty(choices)) return false;
+    if (rule_->hull) continue;
     // It ends after it begins.
     const auto keep = [&](Choices& some, const auto& fits) {
       changed |= std::erase_if(some, [&](const Span* span) { return !fits(*span); }) > 0;
     };
-    for (std::size_t part = 0; part < count_; ++part)
-      if (choices[part].empty()) return false;
     const Tick first_begin = choices.front().front()->begin.tick;
     keep(choices[count_ - 1], [&](const Span& span) { return span.end.tick > first_begin; });
     if (choices[count_ - 1].empty()) return false;
@@ -183,11 +248,48 @@ const Span& Combinations::ChooseLeast(std::size_t part, Key key) {
   return **chosen;
 }
 
+// The last begin such that all can begin there or later, and end in time; then the first end.
+std::optional<Span> Combinations::BestHull(const Span& newest) {
+  begins_.clear();
+  ends_.clear();
+  for (std::size_t part = 0; part < count_; ++part) {
+    for (const Span* span : choices_[part]) {
+      begins_.push_back(span->begin);
+      ends_.push_back(span->end);
+    }
+  }
+  std::ranges::sort(begins_, std::greater(), &Moment::tick);
+  std::ranges::sort(ends_, {}, &Moment::tick);
+  const auto inside = [&](Tick from, Tick to) {
+    inside_ = choices_;
+    for (std::size_t part = 0; part < count_; ++part) {
+      std::erase_if(inside_[part], [&](const Span* span) {
+        return span->begin.tick < from || span->end.tick > to;
+      });
+      if (inside_[part].empty()) return false;
+    }
+    return CanComplete(inside_, 0);
+  };
+  const auto begin = std::ranges::find_if(begins_, [&](const Moment& from) {
+    return from.tick <= newest.begin.tick && inside(from.tick, from.tick + within_);
+  });
+  if (begin == begins_.end()) return std::nullopt;
+  const auto end = std::ranges::find_if(ends_, [&](const Moment& to) {
+    return to.tick >= newest.end.tick &&
+           inside(begin->tick, std::min(to.tick, begin->tick + within_));
+  });
+  return Span{.begin = *begin,
+              .end = *end,
+              .open_end = newest.open_end && newest.end.tick == end->tick,
+              .completed = newest.Complete()};
+}
+
 std::optional<Span> Combinations::Best(std::size_t part, const Span& newest) {
   for (std::size_t i = 0; i < count_; ++i) {
     const auto counts = [&](const Span& span) {
       return span.Complete().tick <= newest.Complete().tick &&
-             (i > 0 || span.begin.frame >= state_->last_end);
+             (i >= rule_->may_begin() || span.begin.frame >= state_->last_end) &&
+             (!rule_->hull || span.begin.tick >= newest.end.tick - within_);
     };
     choices_[i].clear();
     if (i == part) {
@@ -199,6 +301,7 @@ std::optional<Span> Combinations::Best(std::size_t part, const Span& newest) {
     if (choices_[i].empty()) return std::nullopt;
   }
   if (!CanComplete(choices_, 0)) return std::nullopt;
+  if (rule_->hull) return BestHull(newest);
   const Span& last = ChooseLeast(count_ - 1, [](const Span& span) { return span.end.tick; });
   const Span& first = ChooseLeast(0, [](const Span& span) { return -span.begin.tick; });
   return Span{.begin = first.begin,

@@ -204,7 +204,8 @@ bool Engine::MayRest(const RuleInstance& instance) {
     return rule.form() == Form::kCompose && !rule.referenced && LacksAPart(instance);
   switch (rule.form()) {
     case Form::kCompose:
-      return true;
+      // Nobody would tell that a part goes on, so that it may still begin there.
+      return !rule.referenced || instance.known > history_.now();
     case Form::kFromTo:
       // What must not come may still come at the deadline; what should have come is too late after
       // it.

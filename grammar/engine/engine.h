@@ -262,13 +262,18 @@ class Engine final {
   void NotifyCompositions(const RuleInstance& part, const Span& span);
   FrameNumber Settled(const RuleInstance& instance) const;
   FrameNumber PartsSettled(const RuleInstance& composition) const;
-  static bool LacksAPart(const RuleInstance& composition);
+  bool LacksAPart(const RuleInstance& composition) const;
   static std::string WhyTooMany(const Rule& composition);
-  Tick BeginsFrom(const RuleInstance& instance) const;
-  Tick UnbornFrom(int slot, const RuleInstance& composition) const;
+  static Moment Earlier(Moment a, Moment b) { return b.tick < a.tick ? b : a; }
+  Moment NextFrame() const { return {history_.now() + 1, history_.At(history_.now()).tick + 1}; }
+  Moment BeginsFrom(const RuleInstance& instance) const;
+  Moment BeginsFrom(const Reference& reference, const Binding& whole) const;
+  Moment PartsBeginFrom(RuleId rule, const Binding& entities) const;
+  Moment BackFrom(RuleId rule) const;
   void NoteWhatIsToCome(const RuleInstance& composition, FrameNumber settled);
   void StepCompose(RuleInstance& instance);
   std::optional<Span> NextComposed(RuleInstance& instance, FrameNumber settled);
+  std::optional<Span> NextRepeated(RuleInstance& instance, FrameNumber settled);
   void ForgetHopeless(RuleInstance& instance, FrameNumber settled);
 
   const Rule& RuleOf(const RuleInstance& instance) const { return program_->rules[instance.rule]; }

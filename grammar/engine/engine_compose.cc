@@ -49,7 +49,7 @@ void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
         const auto later = std::ranges::upper_bound(
             spans, span.end.tick, {}, [](const Span& other) { return other.end.tick; });
         spans.insert(later, span)->judged = false;
-        ++state.unjudged;
+        if (part_of.part < whole.As<ComposeRule>().count) ++state.unjudged;
         if (Remembered(state) > kMostRememberedSpans) error_ = WhyTooMany(whole);
         Wake(index);
       }
@@ -63,27 +63,57 @@ std::string Engine::WhyTooMany(const Rule& composition) {
          "': say how far apart its parts are at most: a before within 10 s b";
 }
 
-// No interval of the instance that is still to come begins before this tick.
-Tick Engine::BeginsFrom(const RuleInstance& instance) const {
-  if (finishing_) return kLatestTick + 1;
-  const Tick now = history_.At(history_.now()).tick;
-  Tick from = now + 1;
-  const Rule& rule = RuleOf(instance);
-  if (rule.form() == Form::kCompose) {
-    const InstanceId first = instances_.Find(instance, rule.As<ComposeRule>().parts.front());
-    if (first != kNone) from = BeginsFrom(instances_[first]);
-    for (const Span& span : instance.As<ComposeState>().parts.front())
-      from = std::min(from, span.begin.tick);
+// No interval of the instance that is still to come begins before this.
+Moment Engine::BeginsFrom(const RuleInstance& instance) const {
+  constexpr Tick kForgotten = 0;
+  if (finishing_) return {kNever, kLatestTick + 1};
+  if (RuleOf(instance).form() == Form::kCompose) {
+    Moment from = PartsBeginFrom(instance.rule, instance.entities);
+    for (std::size_t part = 0; part < RuleOf(instance).As<ComposeRule>().may_begin(); ++part) {
+      const std::vector<Span>& spans = instance.As<ComposeState>().parts[part];
+      if (!spans.empty()) from = Earlier(from, spans.front().begin);
+    }
     return from;
   }
-  if (instance.open) return instance.begin.tick;
+  if (instance.open) return instance.begin;
+  Moment from = NextFrame();
   const FrameNumber known = instances_.KnownOf(instance);
-  if (known <= history_.now()) from = known < history_.first() ? 0 : history_.At(known).tick;
-  for (const Pending& pending : instance.pending) from = std::min(from, pending.span.begin.tick);
+  if (known <= history_.now())
+    from = known < history_.first() ? Moment{known, kForgotten} : history_.At(known);
+  for (const Pending& pending : instance.pending) from = Earlier(from, pending.span.begin);
   // Nobody asks how far back the next one may reach.
-  if (rule.form() == Form::kUntilSince && !rule.referenced)
-    from = std::min(from, now + 1 - TicksOf(instance).back);
+  const bool reaches_back =
+      RuleOf(instance).form() == Form::kUntilSince && !RuleOf(instance).referenced;
+  return reaches_back ? Earlier(from, BackFrom(instance.rule)) : from;
+}
+
+// Likewise, of what a composition refers to, for these entities.
+Moment Engine::BeginsFrom(const Reference& reference, const Binding& whole) const {
+  Binding entities = kUnbound;
+  for (std::size_t i = 0; i < program_->rules[reference.rule].roles.size(); ++i)
+    entities[i] = whole[static_cast<std::size_t>(reference.roles[i])];
+  const InstanceId index = instances_.Find(reference.rule, entities);
+  if (index != kNone) return BeginsFrom(instances_[index]);
+  // Nobody has looked at it yet.
+  if (finishing_) return {kNever, kLatestTick + 1};
+  const bool composed = program_->rules[reference.rule].form() == Form::kCompose;
+  return composed ? PartsBeginFrom(reference.rule, entities) : BackFrom(reference.rule);
+}
+
+Moment Engine::PartsBeginFrom(RuleId rule, const Binding& entities) const {
+  const auto& composition = program_->rules[rule].As<ComposeRule>();
+  Moment from = NextFrame();
+  for (std::size_t part = 0; part < composition.may_begin(); ++part) {
+    const auto slot = static_cast<std::size_t>(composition.parts[part]);
+    from = Earlier(from, BeginsFrom(program_->rules[rule].references[slot], entities));
+  }
   return from;
+}
+
+// As far back as the next interval of the rule may begin.
+Moment Engine::BackFrom(RuleId rule) const {
+  const Tick tick = history_.At(history_.now()).tick + 1 - rule_ticks_[rule].back;
+  return {history_.FirstNotBefore(tick), tick};
 }
 
 // Of each part what is known of its intervals that are still to come. Those of a composition come
@@ -92,21 +122,12 @@ void Engine::NoteWhatIsToCome(const RuleInstance& composition, FrameNumber settl
   to_come_.clear();
   const FrameNumber last = std::min(settled, history_.now());
   for (const int slot : RuleOf(composition).As<ComposeRule>().parts) {
-    const InstanceId index = instances_.Find(composition, slot);
-    const bool composed =
-        program_->rules[RuleOf(composition).references[slot].rule].form() == Form::kCompose;
+    const Reference& reference = RuleOf(composition).references[static_cast<std::size_t>(slot)];
+    const bool composed = program_->rules[reference.rule].form() == Form::kCompose;
     to_come_.push_back(
-        {.begins_from =
-             index != kNone ? BeginsFrom(instances_[index]) : UnbornFrom(slot, composition),
+        {.begins_from = BeginsFrom(reference, composition.entities).tick,
          .ends_after = composed || last < history_.first() ? -1 : history_.At(last).tick});
   }
-}
-
-// Likewise, of one that nobody has looked at yet.
-Tick Engine::UnbornFrom(int slot, const RuleInstance& composition) const {
-  const RuleId rule = RuleOf(composition).references[slot].rule;
-  return finishing_ ? kLatestTick + 1
-                    : history_.At(history_.now()).tick + 1 - rule_ticks_[rule].back;
 }
 
 // All intervals of the instance that end at or before this frame are out; of a composition, all
@@ -124,54 +145,118 @@ FrameNumber Engine::Settled(const RuleInstance& instance) const {
 
 FrameNumber Engine::PartsSettled(const RuleInstance& composition) const {
   FrameNumber settled = finishing_ ? kNever : history_.now();
-  for (const int part : RuleOf(composition).As<ComposeRule>().parts) {
+  const auto& rule = RuleOf(composition).As<ComposeRule>();
+  for (const int part : rule.parts) {
     const InstanceId index = instances_.Find(composition, part);
     if (index != kNone) settled = std::min(settled, Settled(instances_[index]));
+  }
+  // What must be absent may have begun long before it is out.
+  for (const ComposeRule::Absence& absence : rule.absences) {
+    const auto slot = static_cast<std::size_t>(rule.parts[static_cast<std::size_t>(absence.part)]);
+    const Moment from = BeginsFrom(RuleOf(composition).references[slot], composition.entities);
+    settled = std::min(settled, from.frame == kNever ? kNever : from.frame - 1);
   }
   return settled;
 }
 
 // Of some part there is no interval, and of the others none that may be forgotten later: each new
 // one wakes it.
-bool Engine::LacksAPart(const RuleInstance& composition) {
+bool Engine::LacksAPart(const RuleInstance& composition) const {
+  const auto& rule = RuleOf(composition).As<ComposeRule>();
+  if (rule.at_least > 0) return false;
   const auto& parts = composition.As<ComposeState>().parts;
   const auto is_settled = [&](const Span& span) {
     return span.Complete().frame < composition.next;
   };
-  return std::ranges::any_of(parts, [](const auto& spans) { return spans.empty(); }) &&
+  const auto count = static_cast<std::ptrdiff_t>(rule.count);
+  return std::any_of(parts.begin(), parts.begin() + count,
+                     [](const auto& spans) { return spans.empty(); }) &&
          std::ranges::all_of(
              parts, [&](const auto& spans) { return std::ranges::all_of(spans, is_settled); });
 }
 
 void Engine::StepCompose(RuleInstance& instance) {
   auto& state = instance.As<ComposeState>();
+  const auto& rule = RuleOf(instance).As<ComposeRule>();
   instance.by_itself = false;
   const FrameNumber settled = PartsSettled(instance);
-  while (const std::optional<Span> whole = NextComposed(instance, settled)) {
+  const auto next = [&] {
+    return rule.at_least > 0 ? NextRepeated(instance, settled) : NextComposed(instance, settled);
+  };
+  while (const std::optional<Span> whole = next()) {
     state.last_end = whole->end.frame;
     // The next one begins with a first part that begins, and ends with a last part that ends, later
     // than this ends.
-    const auto drop = [&](std::vector<Span>& spans, const auto& is_over) {
-      state.unjudged -= static_cast<std::size_t>(std::ranges::count_if(
-          spans, [&](const Span& span) { return is_over(span) && !span.judged; }));
-      std::erase_if(spans, is_over);
-    };
-    drop(state.parts.front(), [&](const Span& span) { return span.begin.frame < state.last_end; });
-    drop(state.parts.back(), [&](const Span& span) { return span.end.frame <= state.last_end; });
+    for (std::size_t part = 0; part < rule.may_begin(); ++part)
+      state.Drop(part, [&](const Span& span) { return span.begin.frame < state.last_end; });
+    if (!rule.hull && rule.at_least == 0)
+      state.Drop(static_cast<std::size_t>(rule.count) - 1,
+                 [&](const Span& span) { return span.end.frame <= state.last_end; });
     Conclude(instance, *whole);
   }
-  if (Remembered(state) >= state.next_look) ForgetHopeless(instance, settled);
+  const bool looks = RuleOf(instance).referenced || Remembered(state) >= state.next_look;
+  if (looks && rule.at_least == 0) ForgetHopeless(instance, settled);
   instance.next = instance.known = std::min(settled, history_.now()) + 1;
+  if ((!RuleOf(instance).referenced && rule.at_least == 0) || finishing_) return;
+  instance.known = std::min(instance.known, BeginsFrom(instance).frame);
+  // What is decided when the time is over is out later than what ends then.
+  if (rule.at_least > 0) instance.next = instance.known;
+}
+
+// `repeat .. within`: the first interval with which so many last no longer than the rule says, and
+// as many as do.
+std::optional<Span> Engine::NextRepeated(RuleInstance& instance, FrameNumber settled) {
+  auto& state = instance.As<ComposeState>();
+  const auto& rule = RuleOf(instance).As<ComposeRule>();
+  const Tick known = finishing_                   ? kLatestTick + 1
+                     : settled < history_.first() ? -1
+                                                  : history_.At(settled).tick;
+  for (std::size_t part = 0; part < state.parts.size(); ++part)
+    state.Drop(part, [&](const Span& span) { return span.begin.frame < state.last_end; });
+  for (;;) {
+    const Span* first = nullptr;
+    for (const std::vector<Span>& spans : state.parts) {
+      if (!spans.empty() && (first == nullptr || spans.front().begin.tick < first->begin.tick))
+        first = &spans.front();
+    }
+    if (first == nullptr) return std::nullopt;
+    const Moment begin = first->begin;
+    const Tick last = begin.tick + TicksOf(instance).within;
+    // Some that begin or end sooner may be out later: what reaches back, and what is composed.
+    NoteWhatIsToCome(instance, settled);
+    const bool may_come = std::ranges::any_of(to_come_, [&](const Combinations::ToCome& part) {
+      return part.begins_from < (part.ends_after < 0 ? last : begin.tick);
+    });
+    if (known < last || may_come) return std::nullopt;
+    Span whole{.begin = begin, .end = begin};
+    int count = 0;
+    bool has_first = false;
+    for (const std::vector<Span>& spans : state.parts) {
+      for (const Span& span : spans) {
+        if (span.end.tick > last) break;
+        ++count;
+        has_first = has_first || span.begin.tick == begin.tick;
+        if (span.end.tick <= whole.end.tick) continue;
+        whole.end = span.end;
+        whole.open_end = span.open_end;
+      }
+    }
+    if (count >= rule.at_least && has_first) return whole;
+    const auto is_first = [&](const Span& span) { return span.begin.tick == begin.tick; };
+    for (std::size_t part = 0; part < state.parts.size(); ++part) state.Drop(part, is_first);
+  }
 }
 
 // The composition that is complete first, of those that no interval to come can complete sooner.
 std::optional<Span> Engine::NextComposed(RuleInstance& instance, FrameNumber settled) {
   auto& state = instance.As<ComposeState>();
+  const auto& rule = RuleOf(instance).As<ComposeRule>();
   while (state.unjudged > 0) {
     // Of the intervals that are new: those that are complete first.
     auto& newest = newest_;
     newest.clear();
     for (std::size_t part = 0; part < state.parts.size(); ++part) {
+      if (part >= static_cast<std::size_t>(rule.count)) break;
       std::vector<Span>& spans = state.parts[part];
       for (auto one = spans.rbegin(); one != spans.rend() && !one->judged; ++one) {
         Span& span = *one;
@@ -183,12 +268,13 @@ std::optional<Span> Engine::NextComposed(RuleInstance& instance, FrameNumber set
       }
     }
     if (newest.empty()) return std::nullopt;
-    combinations_.LookAt(RuleOf(instance).As<ComposeRule>(), state, TicksOf(instance).clauses);
+    combinations_.LookAt(rule, state, TicksOf(instance));
     std::optional<Span> best;
     for (const auto& [part, span] : newest) {
       const std::optional<Span> one = combinations_.Best(part, *span);
-      const auto key = [](const Span& whole) {
-        return std::pair(whole.end.tick, -whole.begin.tick);
+      const auto key = [&](const Span& whole) {
+        return rule.hull ? std::pair(-whole.begin.tick, whole.end.tick)
+                         : std::pair(whole.end.tick, -whole.begin.tick);
       };
       if (one && (!best || key(*one) < key(*best))) best = one;
     }
@@ -202,13 +288,15 @@ std::optional<Span> Engine::NextComposed(RuleInstance& instance, FrameNumber set
 void Engine::ForgetHopeless(RuleInstance& instance, FrameNumber settled) {
   auto& state = instance.As<ComposeState>();
   NoteWhatIsToCome(instance, settled);
-  combinations_.LookAt(RuleOf(instance).As<ComposeRule>(), state, TicksOf(instance).clauses);
+  combinations_.LookAt(RuleOf(instance).As<ComposeRule>(), state, TicksOf(instance));
+  const auto count = static_cast<std::size_t>(RuleOf(instance).As<ComposeRule>().count);
   for (bool again = true; again;) {
     again = false;
     for (std::size_t part = 0; part < state.parts.size(); ++part) {
-      again |= std::erase_if(state.parts[part], [&](const Span& span) {
-                 return span.judged && combinations_.IsHopeless(part, span, to_come_);
-               }) > 0;
+      again |=
+          std::erase_if(state.parts[part], [&](const Span& span) {
+            return (span.judged || part >= count) && combinations_.IsHopeless(part, span, to_come_);
+          }) > 0;
     }
   }
   constexpr std::size_t kFew = 64;

@@ -310,7 +310,9 @@ void Engine::Part(InstanceId touching) {
 }
 
 void Engine::CloseTouch(RuleInstance& instance, Moment end) {
-  Keep(instance, {instance.begin, end});
+  const Span span{.begin = instance.begin, .end = end, .open_end = finishing_};
+  Keep(instance, span);
+  if (!RuleOf(instance).part_of.empty()) NotifyCompositions(instance, span);
   instance.open = false;
 }
 

@@ -3,6 +3,7 @@
 #include "grammar/language/ast.h"
 
 #include <string_view>
+#include <utility>
 
 namespace prehend::grammar::ast {
 namespace {
@@ -31,19 +32,24 @@ std::string DumpUntil(const Definition& d) {
 }
 
 std::string DumpCompose(const Definition& d) {
-  std::string text = "compose ";
-  for (const Part& part : d.parts)
-    text += (&part == &d.parts.front() ? "" : ", ") + part.label + ": " + Dump(part.call);
-  text += " where ";
+  std::string text = d.all_of ? "all of " : "compose ";
+  for (const Part& part : d.parts) {
+    text += (&part == &d.parts.front() ? "" : ", ") + part.label +
+            (part.label.empty() ? "" : ": ") + Dump(part.call);
+  }
+  std::string comma = " where ";
   for (const Relation& relation : d.relations) {
-    text += (&relation == &d.relations.front() ? "" : ", ") + relation.left + " ";
+    text += std::exchange(comma, ", ") + relation.left + " ";
     for (const Relation::Alternative& one : relation.alternatives) {
       text += (&one == &relation.alternatives.front() ? "" : "|") + one.name;
       if (one.within) text += " within " + Dump(*one.within);
     }
     text += " " + relation.right;
   }
-  return text;
+  for (const Absence& absence : d.absences)
+    text += std::exchange(comma, ", ") + "without " + Dump(absence.call) + " between " +
+            absence.left + " and " + absence.right;
+  return text + (d.within ? " within " + Dump(*d.within) : "");
 }
 
 std::string DumpForm(const Definition& d) {
@@ -67,7 +73,7 @@ std::string DumpForm(const Definition& d) {
       return "otherwise";
     case Definition::Form::kRepeat:
       return "repeat " + Joined(d.repeated, " or ") + " at least " + Dump(d.at_least) +
-             ", gap at most " + Dump(d.gap);
+             (d.gap ? ", gap at most " + Dump(*d.gap) : " within " + Dump(*d.within));
   }
   return {};
 }

@@ -79,7 +79,7 @@ struct Confirmation {
   Expr within;
 };
 
-/// `label: event(roles)` of a composition.
+/// `label: event(roles)` of a composition; of `all of`, the label may be left out.
 struct Part {
   std::string label;
   Place place;
@@ -98,6 +98,14 @@ struct Relation {
   Place place;
 };
 
+/// `without event(roles) between left and right`, likewise.
+struct Absence {
+  Expr call;
+  std::string left;
+  std::string right;
+  Place place;
+};
+
 struct Definition {
   enum class Form { kWhile, kFromTo, kUntilSince, kRestOf, kCompose, kRepeat, kOtherwise };
   bool is_event = true;
@@ -111,17 +119,19 @@ struct Definition {
   Expr second;                 ///< to B, without B, since F
   std::optional<Expr> until;   ///< while A until B
   bool absence = false;        ///< from A without B
-  std::optional<Expr> within;  ///< from .. within t
+  std::optional<Expr> within;  ///< from .. within t, all of .. within t, repeat .. within t
   std::optional<Expr> during;
   bool or_drop = false;  ///< `during G or drop`
   std::optional<Approach> approach;
   Expr at_most_back;
   std::vector<Expr> repeated;  ///< repeat E or F
   Expr at_least;               ///< repeat E at least n
-  Expr gap;                    ///< repeat E .. gap at most t
+  std::optional<Expr> gap;     ///< repeat E .. gap at most t
   std::vector<Expr> outside;
   std::vector<Part> parts;
   std::vector<Relation> relations;
+  std::vector<Absence> absences;
+  bool all_of = false;  ///< kCompose: all of E, F
 
   std::optional<Expr> bridging;
   std::optional<OnePer> one_per;

@@ -175,14 +175,21 @@ class Parser : public LawParser {
       } while (Accept(","));
     } else if (Accept("compose")) {
       ParseCompose(definition);
+    } else if (At("all") && At("of", 1)) {
+      SkipOne();
+      SkipOne();
+      ParseAllOf(definition);
     } else if (Accept("repeat")) {
       ParseRepeat(definition);
     } else if (Accept("otherwise")) {
       definition.form = Definition::Form::kOtherwise;
     } else {
-      Fail("expected 'while', 'from', 'until', 'rest', 'compose', 'repeat' or 'otherwise', found " +
-               Found(),
-           WordHint());
+      Fail(
+          "expected 'while', 'from', 'until', 'rest', 'compose', 'all of', 'repeat' or "
+          "'otherwise', "
+          "found " +
+              Found(),
+          WordHint());
     }
   }
 
@@ -267,9 +274,40 @@ class Parser : public LawParser {
       definition.parts.push_back({std::move(label), place, ParsePostfix()});
     } while (Accept(","));
     Expect("where", "say how the parts follow each other: where reach before|meets grasp, ...");
+    ParseRelations(definition);
+  }
+
+  // all of moved(hand, plate), moved(hand, cup) within 60 s
+  void ParseAllOf(Definition& definition) {
+    definition.form = Definition::Form::kCompose;
+    definition.all_of = true;
     do {
-      ast::Relation relation;
-      relation.place = Peek().place;
+      const Place place = Peek().place;
+      std::string label;
+      if (At(":", 1)) {
+        label = ExpectName("a label");
+        SkipOne();
+      }
+      definition.parts.push_back({std::move(label), place, ParsePostfix()});
+    } while (Accept(","));
+    if (Accept("where")) ParseRelations(definition);
+    Expect("within", "say how long all of it lasts at most: all of E, F within 60 s");
+    definition.within = ParseSum();
+  }
+
+  void ParseRelations(Definition& definition) {
+    do {
+      const Place place = Peek().place;
+      if (Accept("without")) {
+        ast::Absence absence{.call = ParsePostfix(), .left = {}, .right = {}, .place = place};
+        Expect("between", "without touching(hand, cup) between a and b");
+        absence.left = ExpectName("a label");
+        Expect("and");
+        absence.right = ExpectName("a label");
+        definition.absences.push_back(std::move(absence));
+        continue;
+      }
+      ast::Relation relation{.left = {}, .alternatives = {}, .right = {}, .place = place};
       relation.left = ExpectName("a label");
       do {
         if (At("during"))
@@ -293,6 +331,10 @@ class Parser : public LawParser {
     Expect("at", kExample);
     Expect("least", kExample);
     definition.at_least = ParseSumBefore("gap");
+    if (Accept("within")) {
+      definition.within = ParseSum();
+      return;
+    }
     Expect(",", kExample);
     Expect("gap", kExample);
     ExpectAtMost();

@@ -163,7 +163,7 @@ struct RestOfRule {
 /// More parts than this are better composed in steps.
 inline constexpr int kMaxParts = 8;
 
-/// `compose`: its parts and how they must lie to each other.
+/// `compose` or `all of`: its parts and how they must lie to each other. Or `repeat .. within`.
 struct ComposeRule {
   struct Clause {
     int left = 0;
@@ -180,8 +180,23 @@ struct ComposeRule {
       return in_ticks;
     }
   };
-  std::vector<int> parts;  ///< references
+  /// No interval of part `part` may lie between `left` and `right`, not even in part.
+  struct Absence {
+    int part = 0;
+    int left = 0;
+    int right = 0;
+  };
+  std::vector<int> parts;  ///< references; behind them those of `absences`
+  int count = 0;           ///< of the parts that must be there
   std::vector<Clause> clauses;
+  std::vector<Absence> absences;
+  bool hull = false;  ///< `all of`: from where the first of them begins to where the last one ends
+  int at_least = 0;   ///< `repeat .. within`: so many intervals of the parts; 0: one of each
+  double within_s = 0;  ///< `hull` or `at_least`: all of it lasts at most so long
+  /// The parts with which it may begin.
+  std::size_t may_begin() const {
+    return hull || at_least > 0 ? static_cast<std::size_t>(count) : 1;
+  }
 };
 
 /// What a rule of one form has and the others have not.

@@ -43,15 +43,19 @@ bool IdleQueue::CanBeFreed(const RuleInstance& instance) const {
   return std::ranges::none_of(composition->parts, remembers) && !MayOverlap(instance);
 }
 
-// A first part is on its way that may begin before the end of the last composition; so that end has
-// to be remembered.
+// A part is on its way that may begin before the end of the last composition; so that end has to be
+// remembered.
 bool IdleQueue::MayOverlap(const RuleInstance& instance) const {
-  const int first_part = RuleOf(instance).As<ComposeRule>().parts.front();
-  const InstanceId index = instances_.Find(instance, first_part);
-  if (index == kNone) return false;
-  const RuleInstance& first = instances_[index];
-  return first.open || first.awake || !first.pending.empty() ||
-         RuleOf(first).form() == Form::kCompose;
+  const auto& composition = RuleOf(instance).As<ComposeRule>();
+  for (std::size_t part = 0; part < composition.may_begin(); ++part) {
+    const InstanceId index = instances_.Find(instance, composition.parts[part]);
+    if (index == kNone) continue;
+    const RuleInstance& first = instances_[index];
+    if (first.open || first.awake || !first.pending.empty() ||
+        RuleOf(first).form() == Form::kCompose)
+      return true;
+  }
+  return false;
 }
 
 }  // namespace prehend::grammar

@@ -60,9 +60,15 @@ RuleInstances::RuleInstances(const Program& program, const EntityTable& entity_t
       name_rank_(entity_table.entities.size()) {
   for (const RuleId index : program.schedule) {
     const Rule& rule = program.rules[index];
-    // Compositions are made when a part has an interval for them.
-    if (rule.guard != kNone && rule.form() != Form::kCompose)
-      guarded_[rule.references[rule.guard].rule].push_back(index);
+    // Compositions that nobody asks for are made when a part has an interval for them.
+    const auto* composition = rule.If<ComposeRule>();
+    if (composition != nullptr && rule.referenced) {
+      for (std::size_t part = 0; part < composition->may_begin(); ++part)
+        guarded_[rule.references[composition->parts[part]].rule].push_back(
+            {index, composition->parts[part]});
+    } else if (rule.guard != kNone && composition == nullptr) {
+      guarded_[rule.references[rule.guard].rule].push_back({index, rule.guard});
+    }
   }
   for (const Rule& rule : program.rules) {
     symmetric_.push_back(rule.symmetric ? 1 : 0);
@@ -104,7 +110,7 @@ void RuleInstances::BindUnguarded() {
       return;
     }
     Binding entities = kUnbound;
-    BindRest(rule, entities, 0, kNone, nullptr);
+    BindRest(rule, entities, 0, {}, nullptr);
   }
 }
 
@@ -124,11 +130,11 @@ std::string RuleInstances::WhyTooMany() const {
 }
 
 void RuleInstances::EnsureAll(RuleId rule, Binding entities, std::vector<InstanceId>& made) {
-  BindRest(rule, entities, 0, kNone, &made);
+  BindRest(rule, entities, 0, {}, &made);
 }
 
 // Fills in the roles from `role` on that are still free, in all ways that fit.
-void RuleInstances::BindRest(RuleId rule, Binding& entities, std::size_t role, InstanceId guard,
+void RuleInstances::BindRest(RuleId rule, Binding& entities, std::size_t role, Guard guard,
                              std::vector<InstanceId>* made) {
   if (TooMany()) return;
   if (role == program_.rules[rule].roles.size()) {
@@ -136,7 +142,7 @@ void RuleInstances::BindRest(RuleId rule, Binding& entities, std::size_t role, I
       return;  // of a symmetric pair, the other order is what counts
     const InstanceId instance = Ensure(rule, entities);
     if (instance == kNone || made == nullptr) return;
-    if (guard != kNone) LinkToGuard(instance, guard);
+    if (guard.instance != kNone) LinkToGuard(instance, guard);
     made->push_back(instance);
     return;
   }
@@ -209,9 +215,8 @@ InstanceId RuleInstances::Make(const InstanceKey& key) {
 void RuleInstances::MakeDependents(InstanceId instance, std::vector<InstanceId>& made) {
   const RuleId guard_rule = instances_[instance].rule;
   const bool both_orders = program_.rules[guard_rule].symmetric;
-  for (const RuleId rule : guarded_[guard_rule]) {
-    const Rule& r = program_.rules[rule];
-    const Binding& mapping = r.references[r.guard].roles;
+  for (const auto& [rule, slot] : guarded_[guard_rule]) {
+    const Binding& mapping = program_.rules[rule].references[slot].roles;
     for (int order = 0; order < (both_orders ? 2 : 1); ++order) {
       Binding guard_entities = instances_[instance].entities;
       if (order == 1) std::swap(guard_entities[0], guard_entities[1]);
@@ -222,22 +227,23 @@ void RuleInstances::MakeDependents(InstanceId instance, std::vector<InstanceId>&
         entities[mapping[i]] = guard_entities[i];
         fits = fits && fits_[rule][mapping[i]][guard_entities[i]];
       }
-      if (fits) BindRest(rule, entities, 0, instance, &made);
+      if (fits) BindRest(rule, entities, 0, {.instance = instance, .slot = slot}, &made);
     }
   }
   instances_[instance].dependents_made = true;
 }
 
-void RuleInstances::LinkToGuard(InstanceId index, InstanceId guard) {
+void RuleInstances::LinkToGuard(InstanceId index, Guard guard) {
   RuleInstance& instance = instances_[index];
   const Rule& rule = program_.rules[instance.rule];
   if (rule.form() == Form::kAny) {
     std::vector<InstanceId>& members = instance.As<AnyState>().members;
-    if (std::find(members.begin(), members.end(), guard) != members.end()) return;
-    members.push_back(guard);
-    instances_[guard].watchers.push_back({.instance = index, .kind = Watcher::Kind::kGuard});
-  } else if (instance.references[rule.guard] == kNone) {
-    Refer(instance, rule.guard, guard);
+    if (std::find(members.begin(), members.end(), guard.instance) != members.end()) return;
+    members.push_back(guard.instance);
+    instances_[guard.instance].watchers.push_back(
+        {.instance = index, .kind = Watcher::Kind::kGuard});
+  } else if (instance.references[guard.slot] == kNone) {
+    Refer(instance, guard.slot, guard.instance);
   }
 }
 
@@ -340,8 +346,17 @@ bool RuleInstances::GuardRests(const RuleInstance& instance) const {
   };
   if (rule.form() == Form::kAny) return std::ranges::all_of(instance.As<AnyState>().members, rests);
   if (rule.guard == kNone) return false;
-  const InstanceId guard = instance.references[rule.guard];
-  return guard == kNone || rests(guard);
+  const auto guard_rests = [&](int slot) {
+    const InstanceId guard = instance.references[slot];
+    return guard == kNone || rests(guard);
+  };
+  if (const auto* composition = rule.If<ComposeRule>()) {
+    return std::all_of(
+        composition->parts.begin(),
+        composition->parts.begin() + static_cast<std::ptrdiff_t>(composition->may_begin()),
+        guard_rests);
+  }
+  return guard_rests(rule.guard);
 }
 
 InstanceKey RuleInstances::Referred(const RuleInstance& instance, int slot) const {

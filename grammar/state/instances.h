@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -119,6 +120,14 @@ struct ComposeState {
   std::size_t unjudged = 0;              ///< of them
   std::size_t next_look = 0;  ///< when there are so many it is seen which are of no more use
   void Reset() { last_end = unjudged = next_look = 0; }
+  /// Forgets intervals of a part.
+  template <typename Which>
+  void Drop(std::size_t part, const Which& which) {
+    std::erase_if(parts[part], [&](const Span& span) {
+      if (which(span) && !span.judged) --unjudged;
+      return which(span);
+    });
+  }
 };
 
 /// The other forms need no more than the head.
@@ -364,9 +373,13 @@ class RuleInstances {
   InstanceId MakeReferred(RuleInstance& instance, int slot);
   InstanceKey Referred(const RuleInstance& instance, int slot) const;
   bool Fits(RuleId rule, const Binding& entities) const;
-  void BindRest(RuleId rule, Binding& entities, std::size_t role, InstanceId guard,
+  struct Guard {
+    InstanceId instance = kNone;
+    int slot = kNone;  // the reference that means it
+  };
+  void BindRest(RuleId rule, Binding& entities, std::size_t role, Guard guard,
                 std::vector<InstanceId>* made);
-  void LinkToGuard(InstanceId instance, InstanceId guard);
+  void LinkToGuard(InstanceId instance, Guard guard);
   void WatchEntities(RuleInstance& instance);
   void UnwatchEntities(const RuleInstance& instance);
   template <typename Which>
@@ -386,8 +399,9 @@ class RuleInstances {
   std::array<std::vector<InstanceId>, std::variant_size_v<FormState>> free_;  // by kind of state
   int free_count_ = 0;
   InstanceIndex<InstanceKey> index_;
-  InstanceIndex<PairKey> touches_;                 // the instances of kTouchingRule
-  IdVector<RuleId, std::vector<RuleId>> guarded_;  // the rules that a rule guards
+  InstanceIndex<PairKey> touches_;  // the instances of kTouchingRule
+  IdVector<RuleId, std::vector<std::pair<RuleId, int>>>
+      guarded_;  // the rules that a rule guards, and by which of their references
   IdVector<RuleId, std::vector<int>>
       needs_;  // `while`: references that must be true for it to begin
   IdVector<RuleId, std::vector<std::vector<bool>>> fits_;  // by role and entity

@@ -8,6 +8,7 @@ RuleTicks TicksOf(const Rule& rule, const History& history) {
   RuleTicks ticks{.lasting = history.AtLeastTicks(rule.lasting_s)};
   if (rule.lasting_most_s >= 0) ticks.lasting_most = history.AtMostTicks(rule.lasting_most_s);
   if (const auto* composition = rule.If<ComposeRule>()) {
+    if (composition->within_s > 0) ticks.within = history.AtMostTicks(composition->within_s);
     for (const ComposeRule::Clause& clause : composition->clauses)
       ticks.clauses.push_back(
           clause.In([&](double seconds) { return history.AtMostTicks(seconds); }));

@@ -134,9 +134,12 @@ Reasons EventReasons::End(InstanceId instance, const CandidateOutcome& outcome, 
     case Form::kCompose: {
       std::vector<const CandidateOutcome*> parts;
       if (!ChooseParts(instance, outcome, parts)) return {};
-      Reason last = Remark(Label(past_, parts.back()->instance), "ended");
+      const auto ends = [&](const CandidateOutcome* part) { return part->span.end.frame == end; };
+      const CandidateOutcome& final =
+          ends(parts.back()) ? *parts.back() : **std::ranges::find_if(parts, ends);
+      Reason last = Remark(Label(past_, final.instance), "ended");
       last.mark = Mark::kTurned;
-      if (depth < kMaxDepth) last.because = End(parts.back()->instance, *parts.back(), depth + 1);
+      if (depth < kMaxDepth) last.because = End(final.instance, final, depth + 1);
       return {std::move(last)};
     }
   }
@@ -293,28 +296,71 @@ Reasons EventReasons::BeginOrEndOfAny(InstanceId instance, FrameNumber frame, bo
 bool EventReasons::ChooseParts(InstanceId instance, const CandidateOutcome& whole,
                                std::vector<const CandidateOutcome*>& chosen) {
   const auto& composition = past_.RuleOf(instance).As<grammar::ComposeRule>();
-  const std::size_t part = chosen.size();
-  if (part == composition.parts.size()) return true;
+  if (composition.at_least > 0) return AllInside(instance, whole, chosen);
+  const std::size_t part = chosen.size(), count = static_cast<std::size_t>(composition.count);
+  if (part == count) return !composition.hull || Spans(chosen, whole);
   const InstanceId target = past_.Referred(instance, composition.parts[part]);
   for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
-    if (!outcome.IsInterval()) continue;
-    if (part == 0 && outcome.span.begin.frame != whole.span.begin.frame) continue;
-    if (part + 1 == composition.parts.size() && outcome.span.end.frame != whole.span.end.frame)
-      continue;
+    const bool begins = composition.hull
+                            ? outcome.span.begin.frame >= whole.span.begin.frame
+                            : part > 0 || outcome.span.begin.frame == whole.span.begin.frame;
+    const bool ends = composition.hull
+                          ? outcome.span.end.frame <= whole.span.end.frame
+                          : part + 1 < count || outcome.span.end.frame == whole.span.end.frame;
+    if (!outcome.IsInterval() || !begins || !ends) continue;
     chosen.push_back(&outcome);
-    const auto holds = [&](const grammar::ComposeRule::Clause& clause) {
-      if (std::max(clause.left, clause.right) != static_cast<int>(part)) return true;
-      const auto ticks = [&](int i) {
-        return grammar::Interval{chosen[i]->span.begin.tick, chosen[i]->span.end.tick};
-      };
-      return clause.In([this](double seconds) { return past_.AtMostTicks(seconds); })
-          .Fit(ticks(clause.left), ticks(clause.right));
+    const auto ticks = [&](int i) {
+      return grammar::Interval{chosen[i]->span.begin.tick, chosen[i]->span.end.tick};
     };
-    const bool fits = std::all_of(composition.clauses.begin(), composition.clauses.end(), holds);
+    const auto is_later = [part](int left, int right) {
+      return std::max(left, right) != static_cast<int>(part);
+    };
+    const auto holds = [&](const grammar::ComposeRule::Clause& clause) {
+      return is_later(clause.left, clause.right) ||
+             clause.In([this](double seconds) { return past_.AtMostTicks(seconds); })
+                 .Fit(ticks(clause.left), ticks(clause.right));
+    };
+    const auto is_absent = [&](const grammar::ComposeRule::Absence& absence) {
+      if (is_later(absence.left, absence.right)) return true;
+      const InstanceId absent = past_.Referred(instance, composition.parts[absence.part]);
+      return std::ranges::none_of(past_.OutcomesOf(absent), [&](const CandidateOutcome& one) {
+        return one.IsInterval() && std::max(one.span.begin.tick, ticks(absence.left).end) <
+                                       std::min(one.span.end.tick, ticks(absence.right).begin);
+      });
+    };
+    const bool fits = std::ranges::all_of(composition.clauses, holds) &&
+                      std::ranges::all_of(composition.absences, is_absent);
     if (fits && ChooseParts(instance, whole, chosen)) return true;
     chosen.pop_back();
   }
   return false;
+}
+
+// From where the first of them begins to where the last one ends.
+bool EventReasons::Spans(const std::vector<const CandidateOutcome*>& chosen,
+                         const CandidateOutcome& whole) {
+  return std::ranges::any_of(chosen,
+                             [&](const CandidateOutcome* one) {
+                               return one->span.begin.frame == whole.span.begin.frame;
+                             }) &&
+         std::ranges::any_of(chosen, [&](const CandidateOutcome* one) {
+           return one->span.end.frame == whole.span.end.frame;
+         });
+}
+
+// All intervals of a repetition, in their order.
+bool EventReasons::AllInside(InstanceId instance, const CandidateOutcome& whole,
+                             std::vector<const CandidateOutcome*>& chosen) {
+  for (const int slot : past_.RuleOf(instance).As<grammar::ComposeRule>().parts) {
+    for (const CandidateOutcome& outcome : past_.OutcomesOf(past_.Referred(instance, slot))) {
+      if (outcome.IsInterval() && outcome.span.begin.frame >= whole.span.begin.frame &&
+          outcome.span.end.frame <= whole.span.end.frame)
+        chosen.push_back(&outcome);
+    }
+  }
+  std::ranges::stable_sort(chosen, {},
+                           [](const CandidateOutcome* one) { return one->span.begin.frame; });
+  return !chosen.empty();
 }
 
 Reasons EventReasons::Parts(InstanceId instance, const CandidateOutcome& outcome, int depth) {
@@ -325,9 +371,12 @@ Reasons EventReasons::Parts(InstanceId instance, const CandidateOutcome& outcome
     Reason reason = Remark("part " + Label(past_, part->instance),
                            truth::IntervalText({part->span.begin.tick, part->span.end.tick},
                                                past_.entity_table().ticks_per_second));
-    if (part == chosen.front()) reason.mark = Mark::kTurned;
-    if (part == chosen.front() && depth < kMaxDepth)
-      reason.because = Begin(part->instance, *part, depth + 1);
+    const bool begins = part->span.begin.frame == outcome.span.begin.frame &&
+                        std::ranges::none_of(reasons, [](const Reason& other) {
+                          return other.mark == Mark::kTurned;
+                        });
+    if (begins) reason.mark = Mark::kTurned;
+    if (begins && depth < kMaxDepth) reason.because = Begin(part->instance, *part, depth + 1);
     reasons.push_back(std::move(reason));
   }
   return reasons;

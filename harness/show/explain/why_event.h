@@ -39,6 +39,10 @@ class EventReasons {
   std::string PauseText(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome);
   bool ChooseParts(grammar::InstanceId instance, const grammar::CandidateOutcome& whole,
                    std::vector<const grammar::CandidateOutcome*>& chosen);
+  static bool Spans(const std::vector<const grammar::CandidateOutcome*>& chosen,
+                    const grammar::CandidateOutcome& whole);
+  bool AllInside(grammar::InstanceId instance, const grammar::CandidateOutcome& whole,
+                 std::vector<const grammar::CandidateOutcome*>& chosen);
   Reasons Counted(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome);
   Reasons Waited(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome, int depth);
   Reasons WaitedFor(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome,

@@ -426,15 +426,24 @@ MissingReasons::Cause MissingReasons::OfCompose(InstanceId instance, const Windo
                                                 int depth) {
   const Rule& rule = past_.RuleOf(instance);
   const auto& composition = rule.As<grammar::ComposeRule>();
-  Reason reason = Failed(Label(past_, instance), "needs all its parts", {});
+  const bool repeats = composition.at_least > 0;
+  const std::string within =
+      composition.within_s > 0 ? " within " + QuantityText(composition.within_s, grammar::kSeconds)
+                               : "";
+  Reason reason = Failed(Label(past_, instance),
+                         (repeats ? "needs " + std::to_string(composition.at_least) + " intervals"
+                                  : "needs all its parts") +
+                             within,
+                         {});
   reason.where = Source(rule.file, rule.place);
   std::vector<InstanceId> parts;
   bool complete = true;
   for (const int slot : composition.parts) {
     parts.push_back(past_.Referred(instance, slot));
     if (parts.back() == kNone) return {{std::move(reason)}, 0};
-    Reason part = Intervals(parts.back(), "was there");
-    if (past_.LastBegun(parts.back(), past_.frames()) == nullptr) {
+    const bool is_absent = static_cast<int>(parts.size()) > composition.count;
+    Reason part = Intervals(parts.back(), is_absent ? "must not lie between" : "was there");
+    if (!is_absent && past_.LastBegun(parts.back(), past_.frames()) == nullptr) {
       part.mark = Mark::kFailed;
       if (complete) part.because = OfInstance(parts.back(), window, depth + 1).reasons;
       complete = false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compositions on drawn facts: which combinations are taken and when they are certain.
 #include <algorithm>
+#include <array>
 
 #include "tests/grammar/scene.h"
 
@@ -215,6 +216,46 @@ TEST(Compose, BoundariesMayBeEqualGiveOrTakeATime) {
   EXPECT_EQ(found("starts within 20 ms", "..##......", ".....####."), "");
   EXPECT_EQ(found("finishes within 20 ms", ".....###..", "..####...."), "[5,6) ");
   EXPECT_EQ(found("started_by within 10 ms", "...######.", "..##......"), "[3,4) ");
+}
+
+// One rule finds plate, cup and knife in each of the six orders, and reaches over all three.
+TEST(Compose, FindsAllOfThemInAnyOrder) {
+  const auto program = testing::CompileText(R"(
+grammar t
+event moved(hand: Hand, thing: Thing) while touching(hand, thing)
+event table_set(hand: Hand, plate: Plate, cup: Cup, knife: Knife)
+  all of moved(hand, plate), moved(hand, cup), moved(hand, knife) within 40 ms
+)");
+  EntityTable entity_table{.ticks_per_second = 1000,
+                           .entities = {{.name = "hand", .classes = {"Hand", "Entity"}}}};
+  for (const char* name : {"Plate", "Cup", "Knife"})
+    entity_table.entities.push_back({.name = name, .classes = {name, "Thing", "Entity"}});
+  std::array order = {1, 2, 3};
+  int found = 0;
+  do {
+    for (const Tick pause : {5, 20}) {
+      Monitor monitor(program, entity_table);
+      const std::vector<EntitySample> looks(entity_table.entities.size());
+      std::vector<Event> events;
+      for (Tick t = 0; t < 100; ++t) {
+        std::vector<Touch> touches;
+        for (std::size_t i = 0; i < order.size(); ++i) {
+          const Tick begin = 3 + static_cast<Tick>(i) * pause;
+          if (t >= begin && t < begin + 3) touches.push_back({.a = 0, .b = order[i]});
+        }
+        monitor.Advance({.tick = t, .entities = looks, .hands = {}, .touches = touches}, events);
+      }
+      monitor.Finish(100, events);
+      const auto one = std::ranges::find_if(
+          events, [&](const Event& e) { return program->rules[e.rule].name == "table_set"; });
+      EXPECT_EQ(one != events.end(), pause == 5) << "longer than it may be";
+      if (one == events.end()) continue;
+      EXPECT_EQ(one->interval, (Interval{3, 16}));
+      EXPECT_EQ(one->decided, 16);
+      ++found;
+    }
+  } while (std::ranges::next_permutation(order).found);
+  EXPECT_EQ(found, 6);
 }
 
 TEST(Compose, ClosesAtTheEndOfTheEpisode) { EXPECT_EQ(Served("##......", "....####"), "[0,8)@8 "); }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "grammar/base/allen.h"
 #include "tests/grammar/reference/random_meaning.h"
@@ -42,10 +43,10 @@ class Maker {
 
   void Add() {
     RandomRule rule;
-    const unsigned form = Below(rules_.size() < 2 ? 4 : 7);
+    const unsigned form = Below(rules_.size() < 2 ? 4 : 8);
     rule.form = static_cast<Form>(form);
     if (rule.form == Form::kRest) MakeRest(rule);
-    if (rule.form == Form::kCompose) MakeCompose(rule);
+    if (rule.form == Form::kCompose || rule.form == Form::kAllOf) MakeCompose(rule);
     if (rule.form == Form::kRepeat) MakeRepeat(rule);
     if (form < 4) MakeConditions(rule);
     if (Below(3) == 0) rule.lasting = static_cast<Tick>(Below(6));
@@ -54,7 +55,9 @@ class Maker {
     if (rule.within >= 0) rule.lasting = std::min(rule.lasting, rule.within);
     if (rule.form == Form::kUntil) rule.lasting = std::min(rule.lasting, rule.back);
     rule.halves = Sometimes();
-    if (rule.form != Form::kCompose) MakeConditionsOfTheWhole(rule);
+    const bool is_composed = rule.form == Form::kCompose || rule.form == Form::kAllOf ||
+                             (rule.form == Form::kRepeat && rule.within >= 0);
+    if (!is_composed) MakeConditionsOfTheWhole(rule);
     rule.roles = RolesOf(rule.first) | RolesOf(rule.second) | RolesOf(rule.during) |
                  RolesOf(rule.requirement) | RolesOf(rule.by) | RolesOf(rule.episode);
     for (const Term& call : rule.calls) rule.roles |= RolesOf(call);
@@ -117,28 +120,26 @@ class Maker {
     rule.calls.push_back(Below(4) == 0 ? Touch() : Call());
     if (Sometimes()) rule.calls.push_back(Call());
     rule.at_least = 1 + static_cast<int>(Below(4));
-    rule.bridging = static_cast<Tick>(Below(6));
+    if (Sometimes()) {
+      rule.within = 1 + static_cast<Tick>(Below(30));
+    } else {
+      rule.bridging = static_cast<Tick>(Below(6));
+    }
   }
 
   int AnyRule() { return static_cast<int>(Below(rules_.size())); }
 
   void MakeCompose(RandomRule& rule) {
     const unsigned parts = 1 + Below(3);
-    unsigned common = 0;
-    const bool each_its_own = Sometimes();
-    const auto loses_roles = [&](const Term& part) {  // a composition's roles are all named
-      return !each_its_own && rules_[part.which].form == Form::kCompose &&
-             rules_[part.which].roles != common;
-    };
-    do {
-      rule.calls.clear();
-      common = ~0U;
-      for (unsigned i = 0; i < parts; ++i) {
-        rule.calls.push_back({.kind = Kind::kRule, .which = AnyRule()});
-        common &= rules_[rule.calls.back().which].roles;
-      }
-    } while (std::ranges::any_of(rule.calls, loses_roles));
-    for (Term& part : rule.calls) part.named = each_its_own ? rules_[part.which].roles : common;
+    for (unsigned i = 0; i < parts; ++i) rule.calls.push_back(Call());
+    if (rule.form == Form::kAllOf) rule.within = 1 + static_cast<Tick>(Below(30));
+    rule.has_absence = parts > 1 && Sometimes();
+    if (rule.has_absence) {
+      rule.during = Below(4) == 0 ? Touch() : Call();
+      rule.left = Below(parts);
+      rule.right = (rule.left + 1 + Below(parts - 1)) % parts;
+    }
+    if (rule.form == Form::kAllOf && Sometimes()) return;
     const unsigned clauses = 1 + Below(parts);
     for (unsigned i = 0; i < clauses; ++i) {
       RandomRule::Clause clause{.left = Below(parts), .right = Below(parts), .relations = {}};
@@ -147,8 +148,9 @@ class Maker {
       // Against time, from the first to the last part, is refused.
       constexpr AllenSet kLater = Bit(Allen::kAfter) | Bit(Allen::kMetBy);
       constexpr AllenSet kSooner = Bit(Allen::kBefore) | Bit(Allen::kMeets);
-      if (clause.left == 0 && clause.right == parts - 1) any &= ~kLater;
-      if (clause.right == 0 && clause.left == parts - 1) any &= ~kSooner;
+      const bool is_ordered = rule.form == Form::kCompose;
+      if (is_ordered && clause.left == 0 && clause.right == parts - 1) any &= ~kLater;
+      if (is_ordered && clause.right == 0 && clause.left == parts - 1) any &= ~kSooner;
       if (any == 0) any = Bit(Allen::kEquals);
       within.fill(-1);
       for (std::size_t k = 0; k < within.size(); ++k) {
@@ -231,8 +233,6 @@ class Maker {
 
   Term Call() {
     Term call{.kind = Kind::kRule, .which = AnyRule()};
-    while (rules_[call.which].form == Form::kCompose)
-      call.which = AnyRule();  // the first rule is none
     const unsigned roles = rules_[call.which].roles;
     call.named = Below(3) == 0 ? roles & Below(8) : roles;
     return call;
@@ -321,12 +321,17 @@ class Writer {
         for (std::size_t i = 2; i < rule.calls.size(); ++i) text += ", " + TermText(rule.calls[i]);
         break;
       case Form::kCompose:
-        text += ComposeText(rule);
+        text += " compose " + ComposeText(rule);
+        break;
+      case Form::kAllOf:
+        text += " all of " + ComposeText(rule) + " within " + at_most(rule.within);
         break;
       case Form::kRepeat:
         text += " repeat " + TermText(rule.calls[0]) +
                 (rule.calls.size() > 1 ? " or " + TermText(rule.calls[1]) : "") + " at least " +
-                std::to_string(rule.at_least) + ", gap at most " + at_most(rule.bridging);
+                std::to_string(rule.at_least) +
+                (rule.within >= 0 ? " within " + at_most(rule.within)
+                                  : ", gap at most " + at_most(rule.bridging));
         break;
     }
     if (rule.bridging > 0 && rule.form != Form::kRepeat)
@@ -357,13 +362,17 @@ class Writer {
   }
 
   std::string ComposeText(const RandomRule& rule) const {
-    std::string text = " compose ";
+    std::string text;
     for (std::size_t i = 0; i < rule.calls.size(); ++i) {
       text += (i == 0 ? "a" : ", a") + std::to_string(i) + ": " + TermText(rule.calls[i]);
     }
-    text += " where ";
+    std::string comma = " where ";
+    const auto label = [](std::size_t part) { return "a" + std::to_string(part); };
+    if (rule.has_absence)
+      text += std::exchange(comma, ", ") + "without " + TermText(rule.during) + " between " +
+              label(rule.left) + " and " + label(rule.right);
     for (const RandomRule::Clause& clause : rule.clauses) {
-      text += (&clause == &rule.clauses.front() ? "a" : ", a") + std::to_string(clause.left) + " ";
+      text += std::exchange(comma, ", ") + label(clause.left) + " ";
       std::string names;
       for (const bool bounded : {true, false}) {
         for (std::size_t i = 0; i < kAllenNames.size(); ++i) {

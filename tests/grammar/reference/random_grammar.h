@@ -79,7 +79,7 @@ struct Term {
 
 /// One rule; which members count depends on the form.
 struct RandomRule {
-  enum class Form { kWhile, kFromTo, kWithout, kUntil, kRest, kCompose, kRepeat };
+  enum class Form { kWhile, kFromTo, kWithout, kUntil, kRest, kCompose, kRepeat, kAllOf };
   struct Clause {
     std::size_t left = 0, right = 0;
     Relations relations;  ///< half a tick more in the text, where there is a time
@@ -93,13 +93,16 @@ struct RandomRule {
   Tick still_over = 0;  ///< for how long x stays within 1.5 m; 0: that does not count
   double speed_m_per_s = 0;
   double onset_m_per_s = 0;  ///< 120 where the text says it, a tenth of the speed where it does not
-  int at_least = 0;          ///< kRepeat, whose gap is `bridging`
+  int at_least = 0;          ///< kRepeat, whose gap is `bridging`, or where it is said `within`
   bool one_per = false;  ///< kWhile: one p per x, of which p1 is on the floor and p2 is 3 m high
   Tick nearest_within = 0;
   Tick bridging = 0, lasting = 0, lasting_most = 0, within = -1, back = 0, idle = 0;
-  bool halves = false;      ///< its durations are half a tick off what they are in whole ticks
-  std::vector<Term> calls;  ///< kRest: the whole and the others; kCompose: the parts; kRepeat: whom
+  bool halves = false;  ///< its durations are half a tick off what they are in whole ticks
+  std::vector<Term>
+      calls;  ///< kRest: the whole and the others; kCompose, kAllOf: the parts; kRepeat: whom
   std::vector<Clause> clauses;
+  bool has_absence = false;  ///< kCompose, kAllOf: nothing of `during` between two of the parts
+  std::size_t left = 0, right = 0;
   bool has_requirement = false, requires_at_end = false, is_confirmed = false;
   Term requirement, by, episode;
 };

@@ -181,19 +181,42 @@ class Meaning {
         for (const Term& call : rule.calls) {
           for (const reference::Run& run : CallRuns(call, p)) runs.push_back(run);
         }
-        return InTicks(reference::Repeat(runs, e_.ticks, rule.at_least, rule.bridging));
+        if (rule.within < 0)
+          return InTicks(reference::Repeat(runs, e_.ticks, rule.at_least, rule.bridging));
+        Found intervals;
+        for (const Term& call : rule.calls) {
+          for (const reference::Timed& one : Intervals(call, p)) intervals.push_back(one);
+        }
+        return reference::RepeatWithin(intervals, rule.at_least, rule.within);
       }
-      case Form::kCompose: {
-        std::vector<Found> parts;
-        for (const Term& call : rule.calls) parts.push_back(Intervals(call, p));
-        return reference::Compose(parts, [&](const std::vector<Interval>& chosen) {
-          return std::ranges::all_of(rule.clauses, [&](const RandomRule::Clause& clause) {
-            return clause.relations.Fit(chosen[clause.left], chosen[clause.right]);
-          });
-        });
-      }
+      case Form::kCompose:
+      case Form::kAllOf:
+        return FindComposed(rule, p);
     }
     return {};
+  }
+
+  Found FindComposed(const RandomRule& rule, int p) const {
+    std::vector<Found> parts;
+    for (const Term& call : rule.calls) parts.push_back(Intervals(call, p));
+    const bool all_of = rule.form == Form::kAllOf;
+    const Found absent = rule.has_absence ? Intervals(rule.during, p) : Found();
+    const auto fits = [&](const std::vector<Interval>& chosen) {
+      for (std::size_t i = 0; all_of && i < chosen.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k) {
+          const bool same_event = rule.calls[i].which == rule.calls[k].which &&
+                                  rule.calls[i].named == rule.calls[k].named;
+          if (same_event && chosen[i] == chosen[k]) return false;
+        }
+      }
+      return std::ranges::all_of(rule.clauses,
+                                 [&](const RandomRule::Clause& clause) {
+                                   return clause.relations.Fit(chosen[clause.left],
+                                                               chosen[clause.right]);
+                                 }) &&
+             reference::NothingBetween(absent, chosen[rule.left], chosen[rule.right]);
+    };
+    return all_of ? reference::AllOf(parts, fits, rule.within) : reference::Compose(parts, fits);
   }
 
   Found Find(const RandomRule& rule, int p) const {

@@ -300,38 +300,112 @@ Runs ConfirmedBy(const Runs& runs, const Runs& by, const Stream& within) {
   return kept;
 }
 
-std::vector<Timed> Compose(const std::vector<std::vector<Timed>>& parts,
-                           const std::function<bool(const std::vector<Interval>&)>& fits) {
-  std::vector<Timed> all;
+namespace {
+
+// Visits each choice of one interval of each part.
+void ForEachChoice(const std::vector<std::vector<Timed>>& parts,
+                   const std::function<void(const std::vector<Timed>&)>& visit) {
   std::vector<Timed> chosen(parts.size());
   const std::function<void(std::size_t)> choose = [&](std::size_t part) {
-    if (part < parts.size()) {
-      for (const Timed& one : parts[part]) {
-        chosen[part] = one;
-        choose(part + 1);
-      }
-      return;
+    if (part == parts.size()) return visit(chosen);
+    for (const Timed& one : parts[part]) {
+      chosen[part] = one;
+      choose(part + 1);
     }
-    const Timed& first = chosen.front();
-    const Timed& last = chosen.back();
-    Timed whole{{first.run.begin, last.run.end}, {first.ticks.begin, last.ticks.end}};
-    std::vector<Interval> intervals;
-    for (const Timed& one : chosen) {
-      intervals.push_back(one.ticks);
-      whole.completed = std::max(whole.completed, one.Complete());
-    }
-    if (first.ticks.begin < last.ticks.end && fits(intervals)) all.push_back(whole);
   };
   choose(0);
-  std::sort(all.begin(), all.end(), [](const Timed& a, const Timed& b) {
-    return std::tuple(a.completed, a.ticks.end, -a.ticks.begin) <
-           std::tuple(b.completed, b.ticks.end, -b.ticks.begin);
-  });
+}
+
+std::vector<Interval> IntervalsOf(const std::vector<Timed>& timed) {
+  std::vector<Interval> intervals;
+  for (const Timed& one : timed) intervals.push_back(one.ticks);
+  return intervals;
+}
+
+Tick CompletedAt(const std::vector<Timed>& chosen) {
+  Tick completed = 0;
+  for (const Timed& one : chosen) completed = std::max(completed, one.Complete());
+  return completed;
+}
+
+// Those that come first in the order and do not overlap.
+template <typename Key>
+std::vector<Timed> TakeInOrder(std::vector<Timed> all, const Key& key) {
+  std::ranges::sort(all, {}, key);
   std::vector<Timed> kept;
   for (const Timed& one : all) {
     if (kept.empty() || one.ticks.begin >= kept.back().ticks.end) kept.push_back(one);
   }
   return kept;
+}
+
+}  // namespace
+
+std::vector<Timed> Compose(const std::vector<std::vector<Timed>>& parts,
+                           const std::function<bool(const std::vector<Interval>&)>& fits) {
+  std::vector<Timed> all;
+  ForEachChoice(parts, [&](const std::vector<Timed>& chosen) {
+    const Timed& first = chosen.front();
+    const Timed& last = chosen.back();
+    if (first.ticks.begin >= last.ticks.end || !fits(IntervalsOf(chosen))) return;
+    all.push_back({{first.run.begin, last.run.end},
+                   {first.ticks.begin, last.ticks.end},
+                   CompletedAt(chosen)});
+  });
+  return TakeInOrder(std::move(all), [](const Timed& one) {
+    return std::tuple(one.completed, one.ticks.end, -one.ticks.begin);
+  });
+}
+
+std::vector<Timed> AllOf(const std::vector<std::vector<Timed>>& parts,
+                         const std::function<bool(const std::vector<Interval>&)>& fits,
+                         Tick within) {
+  std::vector<Timed> all;
+  ForEachChoice(parts, [&](const std::vector<Timed>& chosen) {
+    Timed whole = chosen.front();
+    for (const Timed& one : chosen) {
+      whole.run = {std::min(whole.run.begin, one.run.begin), std::max(whole.run.end, one.run.end)};
+      whole.ticks = {std::min(whole.ticks.begin, one.ticks.begin),
+                     std::max(whole.ticks.end, one.ticks.end)};
+    }
+    whole.completed = CompletedAt(chosen);
+    if (whole.ticks.end - whole.ticks.begin <= within && fits(IntervalsOf(chosen)))
+      all.push_back(whole);
+  });
+  return TakeInOrder(std::move(all), [](const Timed& one) {
+    return std::tuple(one.completed, -one.ticks.begin, one.ticks.end);
+  });
+}
+
+std::vector<Timed> RepeatWithin(std::vector<Timed> intervals, int at_least, Tick within) {
+  std::ranges::sort(intervals, {}, [](const Timed& one) { return one.ticks.begin; });
+  std::vector<Timed> found;
+  for (const Timed& first : intervals) {
+    const bool is_too_long = first.ticks.end > first.ticks.begin + within;
+    if (is_too_long || (!found.empty() && first.ticks.begin < found.back().ticks.end)) continue;
+    Timed whole = first;
+    int count = 0;
+    for (const Timed& one : intervals) {
+      const bool is_inside =
+          one.ticks.begin >= first.ticks.begin && one.ticks.end <= first.ticks.begin + within;
+      if (!is_inside) continue;
+      ++count;
+      if (one.ticks.end > whole.ticks.end) {
+        whole.ticks.end = one.ticks.end;
+        whole.run.end = one.run.end;
+      }
+    }
+    whole.completed = 0;
+    if (count >= at_least) found.push_back(whole);
+  }
+  return found;
+}
+
+bool NothingBetween(const std::vector<Timed>& intervals, const Interval& left,
+                    const Interval& right) {
+  return std::ranges::none_of(intervals, [&](const Timed& one) {
+    return std::max(one.ticks.begin, left.end) < std::min(one.ticks.end, right.begin);
+  });
 }
 
 }  // namespace prehend::grammar::reference

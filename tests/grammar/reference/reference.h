@@ -88,6 +88,16 @@ Runs UntilSince(const Stream& until, const Anchored& since, const Ticks& ticks, 
 /// `compose`: `fits` judges one interval of each part.
 std::vector<Timed> Compose(const std::vector<std::vector<Timed>>& parts,
                            const std::function<bool(const std::vector<Interval>&)>& fits);
+/// `all of`: at most `within` ticks long.
+std::vector<Timed> AllOf(const std::vector<std::vector<Timed>>& parts,
+                         const std::function<bool(const std::vector<Interval>&)>& fits,
+                         Tick within);
+/// `repeat .. within`: from the first interval on that has at least so many in so many ticks, all
+/// that are in them.
+std::vector<Timed> RepeatWithin(std::vector<Timed> intervals, int at_least, Tick within);
+/// None of the intervals has a moment between the two.
+bool NothingBetween(const std::vector<Timed>& intervals, const Interval& left,
+                    const Interval& right);
 Runs RestOf(const Runs& whole, const std::vector<Stream>& outside);
 
 /// `repeat`: the longest series of at least so many runs with gaps of at most `gap` ticks; runs of
