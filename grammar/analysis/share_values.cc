@@ -24,7 +24,8 @@ bool LooksAtPosesOnly(const Node& node) {
 bool Describe(const Program& program, NodeId index, std::vector<int>& roles, std::string& text) {
   const Node& node = program.nodes[index];
   if (!LooksAtPosesOnly(node)) return false;
-  text += std::to_string(static_cast<int>(node.op)) + "," + std::to_string(node.number) + "(";
+  text += std::to_string(static_cast<int>(node.op)) + "," + std::to_string(node.number) +
+          (node.name == kNone ? "" : "," + std::to_string(node.name)) + "(";
   for (const int role : node.roles) {
     if (role == kNone) continue;
     const auto found = std::ranges::find(roles, role);

@@ -185,6 +185,7 @@ class Lowering {
   bool LiesOnItself(const Node& node);
   bool LowerArgument(const ast::Expr& arg, Argument wanted, const Operator& builtin, Node& node,
                      int& next_node, int& next_role, Typed& result);
+  static int AxisNamed(const ast::Expr& expr);
   bool LowerSet(const ast::Expr& arg, Node& node);
 
   std::optional<double> ConstantOf(const ast::Expr& expr, const Dimension& dimension,

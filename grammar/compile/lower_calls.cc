@@ -334,23 +334,32 @@ Lowering::Typed Lowering::LowerOverInterval(const Expr& expr) {
   }
   const OverInterval* signal = nullptr;
   std::string counts;
+  std::size_t count = expr.args.size();
+  const bool may_have_axis = std::ranges::any_of(
+      SignalsOverIntervals(),
+      [&](const OverInterval& one) { return one.name == expr.text && one.about_axis; });
+  const int axis = may_have_axis && count > 1 && FindRole(expr.args.back().text) == kNone
+                       ? AxisNamed(expr.args.back())
+                       : kNone;
+  if (axis != kNone) --count;
   for (const OverInterval& one : SignalsOverIntervals()) {
-    if (one.name != expr.text) continue;
+    if (one.name != expr.text || one.about_axis != (axis != kNone)) continue;
     counts += std::string(counts.empty() ? " takes " : " or ") + (one.roles == 1 ? "one" : "two");
-    if (one.roles == expr.args.size()) signal = &one;
+    if (one.roles == count) signal = &one;
   }
   if (signal == nullptr) {
-    return Bad(expr.place,
-               Quoted(expr.text) + counts + (counts == " takes one" ? " role" : " roles"));
+    return Bad(expr.place, Quoted(expr.text) + counts +
+                               (counts == " takes one" ? " role" : " roles") +
+                               (may_have_axis ? ", and perhaps an axis, x, y or z" : ""));
   }
   std::array<int, 2> roles = {kNone, kNone};
-  for (std::size_t i = 0; i < expr.args.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const std::optional<int> role = RoleArgument(expr.args[i], "Entity", expr.text);
     if (!role) return {.bad = true};
     if (i == 1 && roles[0] == *role) return TwiceTheSame(expr.args[i], expr.text);
     roles[i] = *role;
   }
-  Node node{.op = signal->op};
+  Node node{.op = signal->op, .name = axis};
   if (signal->looks) node.roles = roles;
   NodeId here;
   for (std::size_t i = 0; i < signal->parts.size() && signal->parts[i]; ++i) {
@@ -399,6 +408,15 @@ Lowering::Typed Lowering::LowerBuiltin(const Operator& builtin, const Expr& expr
   return result;
 }
 
+// 0, 1 or 2; kNone: it is something else.
+int Lowering::AxisNamed(const Expr& expr) {
+  const bool is_name = expr.kind == Expr::Kind::kName && expr.args.empty();
+  constexpr std::string_view kAxes = "xyz";
+  return is_name && expr.text.size() == 1 && kAxes.find(expr.text[0]) != std::string_view::npos
+             ? static_cast<int>(kAxes.find(expr.text[0]))
+             : kNone;
+}
+
 // sensor_set(hand, thumb, object), or the number of the set, from 1.
 bool Lowering::LowerSet(const Expr& arg, Node& node) {
   constexpr int kMaxSets = 32;
@@ -426,6 +444,16 @@ bool Lowering::LowerSet(const Expr& arg, Node& node) {
 bool Lowering::LowerArgument(const Expr& arg, Argument wanted, const Operator& builtin, Node& node,
                              int& next_node, int& next_role, Typed& result) {
   switch (wanted) {
+    case Argument::kAxis: {
+      const int axis = AxisNamed(arg);
+      if (axis == kNone) {
+        Complain(arg.place, "an axis is x, y or z, of the entity before it",
+                 "for example: aligned(peg, z, hole, z)");
+        return false;
+      }
+      node.name = node.name == kNone ? axis : node.name + 3 * axis;
+      return true;
+    }
     case Argument::kPosition: {
       if (node.op == Op::kInSphere && next_node == 0 && arg.kind == Expr::Kind::kName &&
           FindRole(arg.text) != kNone) {

@@ -52,6 +52,7 @@ std::vector<DrawnFact> FactsOf(const EntityInfo& entity) {
       {.name = "joint", .most = 20, .says_all_along = true},
       {.name = "percent", .most = kMostNumber, .says_all_along = true},
       {.name = "tilt", .most = kMostNumber, .says_all_along = true},
+      {.name = "turn", .most = kMostNumber, .says_all_along = true},
       {.name = "on", .of_two = true, .marks = true},
       {.name = "beside", .of_two = true, .marks = true},
       {.name = "holds", .of_two = true, .most = std::min(sets, kMostNumber)},

@@ -105,7 +105,10 @@ void DrawnFrames::Apply(const DrawnRow& row, Tick tick) {
     looks_[Id(who)].joint_fraction = Interpolate(row.cells, tick) / 100;
   } else if (what == "tilt") {
     const double rad = Interpolate(row.cells, tick) * 5 * std::numbers::pi / 180;
-    looks_[Id(who)].q_WB = Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitX());
+    looks_[Id(who)].q_WB = looks_[Id(who)].q_WB * Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitX());
+  } else if (what == "turn") {
+    const double rad = Interpolate(row.cells, tick) * 10 * std::numbers::pi / 180;
+    looks_[Id(who)].q_WB = Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitZ()) * looks_[Id(who)].q_WB;
   } else if (what == "circles") {
     Circle(looks_[Id(who)], looks_[Id(whom)].p_WB_m, row.cells, tick);
   } else if (cell != '.') {

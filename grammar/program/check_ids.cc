@@ -17,7 +17,12 @@ void CheckNode(const Program& program, NodeId id) {
   const Node& node = program.nodes[id];
   for (const NodeId arg : node.args) PREHEND_CHECK(arg == kNone || program.nodes.has(arg));
   for (const NodeId arg : node.args) PREHEND_CHECK(arg < id);
-  PREHEND_CHECK(IsNoneOrBelow(node.name, program.sensor_sets.size()));
+  constexpr std::size_t kAxes = 9;  // of one entity and of another
+  if (node.op == Op::kSensorSet) {
+    PREHEND_CHECK(IsNoneOrBelow(node.name, program.sensor_sets.size()));
+  } else {
+    PREHEND_CHECK(IsNoneOrBelow(node.name, kAxes));
+  }
   const ByThreshold& by = node.by_threshold;
   if (by.value == kNone) return;
   PREHEND_CHECK(program.nodes.has(by.value));

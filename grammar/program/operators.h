@@ -29,6 +29,9 @@ namespace prehend::grammar {
 //                        args[1] in roles[1], where args[2] is the normal
 //   kDriftAlong ..       over `number` seconds around the frame, as all to kMedian; kRate and from
 //                        kMean on of args[0]
+//   kRotation, kTwist    from args[1] to args[0], orientations; kTwist: about the axis `name`
+//   kAligned             axis `name` % 3 of roles[0] against axis `name` / 3 of roles[1]
+//   kSpin                about the axis `name` of roles[0], as seen from roles[1] or the world
 //   kCount               how many intervals `repeat` has found
 //   kAtBegin, kAtEnd     a number or a position: that of anchor `slot` where the interval begins,
 //                        of args[0] where it ends
@@ -41,15 +44,15 @@ namespace prehend::grammar {
   X(kInside) X(kNearest) X(kOwns) X(kPartOf) X(kIsA) X(kGazed) X(kSensorSet)
 #define PREHEND_MADE_NUMBERS(X)                                                                   \
   X(kNumber) X(kAdd) X(kSubtract) X(kMultiply) X(kDivide) X(kNegate) X(kAbs) X(kDistance)         \
-  X(kDistanceAlong) X(kHeight) X(kDriftAlong) X(kTurnRate) X(kRate) X(kSpeedOver)                 \
+  X(kDistanceAlong) X(kRotation) X(kTwist) X(kSpin) X(kHeight) X(kDriftAlong) X(kTurnRate) X(kRate) X(kSpeedOver)                 \
   X(kRelativeSpeedOver) X(kMean) X(kMinimum) X(kMaximum) X(kMedian) X(kCount)
 #define PREHEND_ANCHORED(X) X(kAtBegin) X(kAtEnd)
 #define PREHEND_MEASURED_NUMBERS(X)                                                               \
   X(kTrigger) X(kSensorSets) X(kUp) X(kForceBetween) X(kTouchSpeed) X(kGap) X(kClearance)         \
   X(kClosingSpeed) X(kSurfaceSpeed) X(kSpeed) X(kVerticalSpeed) X(kRelativeVerticalSpeed)         \
-  X(kRelativeSpeed) X(kSpeedAlong) X(kTilt) X(kJointFraction) X(kJointAngle) X(kJointTravel)      \
+  X(kRelativeSpeed) X(kSpeedAlong) X(kTilt) X(kAligned) X(kJointFraction) X(kJointAngle) X(kJointTravel)      \
   X(kWeight) X(kStrength)
-#define PREHEND_POSITIONS(X) X(kPosition) X(kPositionOn) X(kAhead) X(kTouchIn) X(kNormalIn)
+#define PREHEND_POSITIONS(X) X(kPosition) X(kPositionOn) X(kOrientationOn) X(kAhead) X(kTouchIn) X(kNormalIn)
 #define PREHEND_OPERATORS(X)                                                                      \
   PREHEND_TRUTHS(X) PREHEND_MADE_NUMBERS(X) PREHEND_ANCHORED(X) PREHEND_MEASURED_NUMBERS(X)       \
   PREHEND_POSITIONS(X)
@@ -92,7 +95,8 @@ enum class Argument : std::uint8_t {
   kLength,
   kNumber,
   kWindow,
-  kSet
+  kSet,
+  kAxis  ///< of the role before it: x, y or z
 };
 
 /// At most four, so that a table of them is a constant.
@@ -219,7 +223,8 @@ struct OverInterval {
   Op op = Op::kDistance;
   std::array<std::optional<Part>, 3> parts;
   Dimension dimension;
-  bool looks = false;  ///< the operator looks at the roles itself, too
+  bool looks = false;       ///< the operator looks at the roles itself, too
+  bool about_axis = false;  ///< of the first role, named last
 };
 /// The same name may stand for several, with one role and with two.
 std::span<const OverInterval> SignalsOverIntervals();

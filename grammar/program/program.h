@@ -38,7 +38,7 @@ struct Node {
   std::array<NodeId, 4> args = {};
   std::array<int, 2> roles = {kNone, kNone};  ///< roles of the rule
   int slot = kNone;                           ///< reference, anchor or class name
-  int name = kNone;                           ///< kSensorSet: index into Program::sensor_sets
+  int name = kNone;        ///< kSensorSet: index into Program::sensor_sets; or axes, see Op
   double number = 0;       ///< kNumber, kSensorSet, kTouchIn, kNormalIn, and windows in seconds
   int window = kNone;      ///< index into Program::windows, of a node with a window
   bool needs_end = false;  ///< a value or a comparison of values that is not known before the

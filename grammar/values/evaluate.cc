@@ -302,6 +302,11 @@ std::optional<double> Evaluator::Compute(const Node& node, const View& view) con
       return Arithmetic(node, view);
     case Op::kDriftAlong:
       return DriftAlong(node, view);
+    case Op::kRotation:
+    case Op::kTwist:
+      return Rotation(node, view);
+    case Op::kSpin:
+      return Spin(node, view);
     case Op::kTurnRate:
       return TurnRate(node, view);
     case Op::kRate:
@@ -380,6 +385,12 @@ double Evaluator::SignalOf(const Node& node, const View& view) const {
     case Op::kTilt: {
       const double up = (history_.Look(a, frame).q_WB * Vector3d::UnitZ()).z();
       return std::acos(std::clamp(up, -1.0, 1.0));
+    }
+    case Op::kAligned: {
+      const auto axis = [&](int entity, int which) -> Vector3d {
+        return history_.Look(entity, frame).q_WB * Vector3d::Unit(which);
+      };
+      return std::acos(std::clamp(axis(a, node.name % 3).dot(axis(b, node.name / 3)), -1.0, 1.0));
     }
     case Op::kJointFraction:
       return history_.Look(a, frame).joint_fraction;
@@ -500,6 +511,8 @@ std::optional<Vector3d> Evaluator::Position(NodeId index, const View& view) cons
       return Position(node.args[0], view.At(*view.end));
     case Op::kPositionOn:
       return PositionOn(Entity(node, view, 0), Entity(node, view, 1), view.frame);
+    case Op::kOrientationOn:
+      return OrientationOn(node, view, view.frame);
     case Op::kTouchIn:
     case Op::kNormalIn:
       return OfTouch(node, view);

@@ -146,6 +146,9 @@ class Evaluator {
   std::optional<double> OfWindow(const Node& node, const View& view) const;
   std::optional<double> DriftAlong(const Node& node, const View& view) const;
   std::optional<double> TurnRate(const Node& node, const View& view) const;
+  Eigen::Vector3d OrientationOn(const Node& node, const View& view, FrameNumber frame) const;
+  std::optional<double> Rotation(const Node& node, const View& view) const;
+  std::optional<double> Spin(const Node& node, const View& view) const;
   Eigen::Vector3d PositionOn(int a, int b, FrameNumber frame) const;
   Eigen::Vector3d RelativeVelocity(int a, int b, const Eigen::Vector3d& p_W_m,
                                    FrameNumber frame) const;

@@ -187,6 +187,53 @@ std::optional<double> Evaluator::TurnRate(const Node& node, const View& view) co
   return left_rad / (SecondsBetween(window->early, window->late) / 2);
 }
 
+namespace {
+
+// A unit quaternion is the same as its opposite, so that the part of it that is no vector need not
+// be kept.
+Vector3d VectorOf(const Eigen::Quaterniond& q) { return (q.w() < 0 ? -1.0 : 1.0) * q.vec(); }
+Eigen::Quaterniond FromVector(const Vector3d& vec) {
+  const double squared = 1 - vec.squaredNorm();
+  Eigen::Quaterniond q;
+  q.w() = std::sqrt(squared < 0 ? 0 : squared);
+  q.vec() = vec;
+  return q;
+}
+
+// By how much it turns about an axis of what turns, between half a turn to the right and half a
+// turn to the left.
+double Twist(const Eigen::Quaterniond& turn, int axis) {
+  const double sign = turn.w() < 0 ? -1 : 1;
+  return 2 * std::atan2(sign * turn.vec()[axis], sign * turn.w());
+}
+
+}  // namespace
+
+// Of the first role, as seen from the second or in the world.
+Vector3d Evaluator::OrientationOn(const Node& node, const View& view, FrameNumber frame) const {
+  const Eigen::Quaterniond& q_WA = history_.Look(Entity(node, view, 0), frame).q_WB;
+  if (node.roles[1] == kNone) return VectorOf(q_WA);
+  return VectorOf(history_.Look(Entity(node, view, 1), frame).q_WB.conjugate() * q_WA);
+}
+
+std::optional<double> Evaluator::Rotation(const Node& node, const View& view) const {
+  const std::optional<Vector3d> now = Position(node.args[0], view);
+  const std::optional<Vector3d> begun = Position(node.args[1], view);
+  if (!now || !begun) return std::nullopt;
+  const Eigen::Quaterniond turn = FromVector(*begun).conjugate() * FromVector(*now);
+  if (node.op == Op::kTwist) return Twist(turn, node.name);
+  return 2 * std::atan2(turn.vec().norm(), std::abs(turn.w()));
+}
+
+std::optional<double> Evaluator::Spin(const Node& node, const View& view) const {
+  const std::optional<Window> window = WindowAround(node, view.frame);
+  if (!window) return std::nullopt;
+  if (window->early == window->late) return 0;
+  const Eigen::Quaterniond turn = FromVector(OrientationOn(node, view, window->early)).conjugate() *
+                                  FromVector(OrientationOn(node, view, window->late));
+  return Twist(turn, node.name) / SecondsBetween(window->early, window->late);
+}
+
 Vector3d Evaluator::PositionOn(int a, int b, FrameNumber frame) const {
   return InFrameOf(history_.Look(b, frame), history_.Look(a, frame).p_WB_m);
 }

@@ -40,8 +40,12 @@ TEST(CheckIds, EveryNumberThatNamesNothingIsFound) {
       {"arg == kNone || program.nodes.has(arg)",
        [](Program& p) { p.nodes[NodeId(0)].args[0] = p.nodes.end_id(); }},
       {"arg < id", [](Program& p) { p.nodes[NodeId(0)].args[0] = NodeId(0); }},
+      {"IsNoneOrBelow(node.name, kAxes)", [](Program& p) { p.nodes[NodeId(0)].name = 9; }},
       {"IsNoneOrBelow(node.name, program.sensor_sets.size())",
-       [](Program& p) { p.nodes[NodeId(0)].name = 7; }},
+       [](Program& p) {
+         p.nodes[NodeId(0)].op = Op::kSensorSet;
+         p.nodes[NodeId(0)].name = 7;
+       }},
       {"IsNoneOrBelow(node.slot, SlotsOf(node.op))",
        [&](Program& p) { p.nodes[p.rules[held].As<WhileRule>().condition].slot = 7; }},
       {"IsNoneOrBelow(role, rule_.roles.size())",

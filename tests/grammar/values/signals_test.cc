@@ -115,6 +115,43 @@ TEST(Signals, HaveTheirDocumentedValues) {
   }
 }
 
+// The cup turns about its own axis, which leans, by 10 rad/s to the left; the tray by 6 rad/s.
+// Where an interval that begins at 0 ends, a frame every 10 ms; 1000: nowhere.
+Tick EndsWhenTurning(const std::string& until) {
+  const auto program = testing::CompileText(
+      "grammar t\nevent e(cup: Cup, tray: Movable) while part_of(cup, tray) until " + until);
+  Scene scene;
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  const Eigen::Quaterniond leaning(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX()));
+  const auto turned = [&](double rad) {
+    return leaning * Eigen::AngleAxisd(rad, Eigen::Vector3d::UnitZ());
+  };
+  for (Tick t = 0; t < 1000; t += 10) {
+    scene.looks[Scene::kCup].q_WB = turned(0.01 * static_cast<double>(t));
+    scene.looks[Scene::kTray].q_WB = turned(0.006 * static_cast<double>(t));
+    monitor.Advance(scene.At(t), events);
+  }
+  monitor.Finish(1000, events);
+  return events.empty() ? -1 : events.front().interval.end;
+}
+
+TEST(Signals, RotationIsMeasuredFromTheBeginAndSpinOverAWindow) {
+  EXPECT_EQ(EndsWhenTurning("rotation(cup) > 0.495 rad"), 50);
+  EXPECT_EQ(EndsWhenTurning("rotation(cup, z) > 0.495 rad"), 50);
+  EXPECT_EQ(EndsWhenTurning("rotation(cup, tray) > 0.495 rad"), 130);
+  EXPECT_EQ(EndsWhenTurning("rotation(cup, tray, z) > 0.495 rad"), 130);
+  EXPECT_EQ(EndsWhenTurning("rotation(tray, cup, z) < -0.495 rad"), 130);
+  EXPECT_EQ(EndsWhenTurning("rotation(cup, z) < -0.1 rad"), 320) << "half a turn is the most";
+  EXPECT_EQ(EndsWhenTurning("abs(rotation(cup, x)) > 0.1 rad"), 1000);
+  EXPECT_EQ(EndsWhenTurning("aligned(cup, x, tray, x) > 0.495 rad"), 130);
+  EXPECT_EQ(EndsWhenTurning("aligned(cup, y, tray, x) < 1.2 rad"), 880) << "past the half turn";
+  EXPECT_EQ(EndsWhenTurning("aligned(cup, z, tray, z) > 0.001 rad"), 1000);
+  EXPECT_EQ(EndsWhenTurning("spin(cup, z, 100 ms) < 9.999 rad/s"), 1000);
+  EXPECT_EQ(EndsWhenTurning("spin(cup, z, 100 ms) < 10.001 rad/s"), -1);
+  EXPECT_EQ(EndsWhenTurning("abs(spin(cup, y, 100 ms)) > 0.001 rad/s"), 1000);
+}
+
 // Where `drift_along` of the cup on the tray is above 1 cm/s, when the cup is at x_m(t) and a frame
 // comes every step ms.
 template <typename Where>
