@@ -93,10 +93,12 @@ void Box2dHand::Drive(const HandCommand& command, double dt_s) {
   palm_.body->ApplyTorque(static_cast<float>(-wrench.torque_nm.y() * kTorqueScale), true);
 
   const GraspStyle& style = model_.styles[static_cast<std::size_t>(command.style)];
-  const std::vector<double> targets = JointTargets(style, command.target.trigger);
+  std::vector<double> joints;
+  for (const Motor& motor : motors_) joints.push_back(Joint(motor));
+  const std::vector<double>& targets = grip_.Targets(model_, style, command.target.trigger, joints);
   for (std::size_t i = 0; i < motors_.size(); ++i) {
     const HandLink& link = model_.links[i];
-    Drive(motors_[i], WantedSpeed(model_.driver, link, targets[i], Joint(motors_[i]), dt_s),
+    Drive(motors_[i], WantedSpeed(model_.driver, link, targets[i], joints[i], dt_s),
           link.strength * style.effort[i]);
   }
 }

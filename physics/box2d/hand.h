@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "physics/box2d/body.h"
+#include "physics/hand/grip.h"
 #include "physics/hand/pid.h"
 #include "physics/world/world.h"
 
@@ -43,6 +44,7 @@ class Box2dHand {
   HandModel model_;
   HandIndex index_ = {};
   PalmPids pids_;
+  Grip grip_;
   HandCommand command_;
   Part palm_;
   std::vector<Part> links_;

@@ -138,11 +138,13 @@ void BulletHand::DrivePalm(const TargetState& target, double dt_s, double gravit
 
 void BulletHand::DriveJoints(const GraspStyle& style, double trigger, double dt_s) {
   const JointDriver& driver = model_.driver;
-  const std::vector<double> targets = JointTargets(style, trigger);
+  std::vector<double> joints;
+  for (std::size_t i = 0; i < motors_.size(); ++i)
+    joints.push_back(multibody_->getJointPos(static_cast<int>(i)));
+  const std::vector<double>& targets = grip_.Targets(model_, style, trigger, joints);
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    const double joint = multibody_->getJointPos(static_cast<int>(i));
     motors_[i]->setPositionTarget(0, 0);
-    motors_[i]->setVelocityTarget(WantedSpeed(driver, model_.links[i], targets[i], joint, dt_s),
+    motors_[i]->setVelocityTarget(WantedSpeed(driver, model_.links[i], targets[i], joints[i], dt_s),
                                   driver.damping);
     motors_[i]->setMaxAppliedImpulse(model_.links[i].strength * style.effort[i] * dt_s);
   }

@@ -13,6 +13,7 @@
 #include <memory>
 #include <vector>
 
+#include "physics/hand/grip.h"
 #include "physics/hand/pid.h"
 #include "physics/scene/link_places.h"
 #include "physics/scene/scene.h"
@@ -57,6 +58,7 @@ class BulletHand {
   std::vector<std::unique_ptr<btMultiBodyJointMotor>> motors_;
   std::vector<std::unique_ptr<btMultiBodyConstraint>> limits_;
   PalmPids pids_;
+  Grip grip_;
   HandCommand command_;
 };
 

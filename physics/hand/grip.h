@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the joints of a hand go while its trigger rises and falls. A hand that opens lets go with
+// all joints at once: as long as one presses still, held back by what the hand holds, the others
+// stay where they are, because a post that gave way early would be followed by what it holds. When
+// the trigger stops half-way, only the digits on the other side (another sensor set) still wait.
+// Tested by tests/physics/hand/grip_test.cc
+#pragma once
+
+#include <vector>
+
+#include "physics/scene/hand_model.h"
+
+namespace prehend::physics {
+
+class Grip {
+ public:
+  /// Of the coming tick, one per joint. `joints`: where they are.
+  const std::vector<double>& Targets(const HandModel& model, const GraspStyle& style,
+                                     double trigger, const std::vector<double>& joints);
+
+ private:
+  std::vector<double> targets_;
+  double trigger_ = 0;
+  bool opens_ = false;
+};
+
+}  // namespace prehend::physics
