@@ -3,6 +3,7 @@
 // something happens, and steps that press. Tested by tests/physics/hand/guarded_motion_test.cc
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "physics/hand/hand_clearance.h"
 #include "physics/hand/hand_contacts.h"
@@ -26,12 +27,24 @@ constexpr double kBraking_m_per_s2 = 2;
 constexpr double kCreep_m_per_s = 0.04;
 /// The rate at which the gap shrinks is that of the target within this time.
 constexpr double kAhead_s = 0.01;
+/// A hand that closes around what stands does not push it aside: its target comes to the palm with
+/// this time constant. When it has closed it stays there.
+constexpr double kSoft_s = 0.05;
 /// A grip from here on is meant to hold something.
 constexpr double kClosed = 0.5;
 /// A hand that reaches less than this share of the force is noted.
 constexpr double kNotedForceShare = 0.8;
 
 }  // namespace
+
+int HandsOn(BodyIndex body, const Snapshot& now) {
+  std::set<HandIndex> hands;
+  for (const ContactPoint& contact : now.contacts) {
+    if (contact.a.body == body && contact.b.hand != kNone) hands.insert(contact.b.hand);
+    if (contact.b.body == body && contact.a.hand != kNone) hands.insert(contact.a.hand);
+  }
+  return static_cast<int>(hands.size());
+}
 
 bool Touches(HandIndex hand, BodyIndex body, const Snapshot& now) {
   return std::ranges::any_of(now.contacts, [&](const ContactPoint& contact) {
@@ -74,6 +87,7 @@ void ScriptPlayer::WatchGuards(const Snapshot& now) {
     }
     // It stays where it is: the target is ahead of the hand, which would go on to it.
     hand.target = TargetOf(hand);
+    hand.yielded.reset();
     if (const Eigen::Vector3d ahead_W = hand.target.v_m_per_s.normalized(); !ahead_W.isZero()) {
       const double ahead_m = ahead_W.dot(hand.target.X_WH.p_m - now.hands[h].palm.X_WB.p_m);
       hand.target.X_WH.p_m -= std::max(ahead_m, 0.0) * ahead_W;
@@ -148,6 +162,72 @@ void ScriptPlayer::WithdrawNotes(const Snapshot& now) {
       });
       grip_note.reset();
     }
+  }
+}
+
+/// Whether what a hand touches is fixed, hangs on something fixed, or touches it, directly or not.
+/// What a hand lifts together is not.
+bool IsHeldBack(const Scene& scene, const Snapshot& now, HandIndex hand) {
+  std::vector<bool> reached(scene.bodies.size());
+  bool fixed = false, more = false;
+  const auto reach = [&](BodyIndex body) {
+    if (reached[body.index()]) return;
+    reached[body.index()] = more = true;
+    fixed |= scene.body(body).fixed;
+  };
+  for (const ContactPoint& contact : now.contacts) {
+    if (contact.a.hand == hand && contact.b.hand == kNone) reach(contact.b.body);
+    if (contact.b.hand == hand && contact.a.hand == kNone) reach(contact.a.body);
+  }
+  const auto pass = [&](BodyIndex a, BodyIndex b) {
+    if (reached[a.index()]) reach(b);
+    if (reached[b.index()]) reach(a);
+  };
+  while (more && !fixed) {
+    more = false;
+    for (const Joint& joint : scene.joints) pass(joint.base, joint.body);
+    for (const auto& points : now.AllContacts())
+      for (const ContactPoint& contact : points)
+        if (contact.a.hand == kNone && contact.b.hand == kNone)
+          pass(contact.a.body, contact.b.body);
+  }
+  return fixed;
+}
+
+bool ScriptPlayer::Rests(const HandState& hand) const {
+  if (hand.placing || hand.pressing) return false;
+  const Pose now = hand.motion.At(MotionTime(hand)).X_WH, &end = hand.target.X_WH;
+  return now.p_m == end.p_m && now.q.coeffs() == end.q.coeffs();
+}
+
+bool ScriptPlayer::Grips(const HandState& hand) const {
+  if (!hand.step || settling_) return false;
+  return std::holds_alternative<TriggerStep>(script_.stages[stage_ - 1].steps[*hand.step].action);
+}
+
+void ScriptPlayer::GiveWay(const Snapshot& now) {
+  for (std::size_t h = 0; h < hands_.size(); ++h) {
+    HandState& hand = hands_[h];
+    hand.yields_m_per_s.setZero();
+    hand.yields_rad_per_s.setZero();
+    if (!Rests(hand)) continue;
+    if (hand.took && hand.closes) KeepStanding(h, now);
+    if (!IsHeldBack(scene_, now, HandIndex(h))) continue;
+    const HandModel& model = scene_.hands[h].model;
+    const Pose &target = TargetOf(hand).X_WH, &palm = now.hands[h].palm.X_WB;
+    const auto share = [&](const PidGains& gains) {
+      return gains.integral / (gains.proportional * scene_.world.rate_hz);
+    };
+    Pose by = hand.yielded.value_or(Pose{});
+    Eigen::Vector3d shares = Eigen::Vector3d::Constant(share(model.translation));
+    if (hand.took && hand.closes)
+      shares.head<2>().setConstant(Grips(hand) ? 1 / (kSoft_s * scene_.world.rate_hz) : 0);
+    by.p_m += shares.cwiseProduct(palm.p_m - target.p_m);
+    const Eigen::Vector3d turn =
+        share(model.rotation) * RotationVector(palm.q * target.q.conjugate());
+    const Eigen::Vector3d half = turn / 2;
+    by.q = (Eigen::Quaterniond(1, half.x(), half.y(), half.z()) * by.q).normalized();
+    hand.yielded = by;
   }
 }
 

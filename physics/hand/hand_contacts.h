@@ -26,6 +26,13 @@ void ForEachContact(HandIndex hand, BodyIndex held, BodyIndex body, const Snapsh
   }
 }
 
+/// A thing that leans by more than 20 degrees is meant to: a hand that keeps it upright does not
+/// turn it. The cosine.
+inline constexpr double kCosMostLean = 0.94;
+
+/// Number of hands that touch a body.
+int HandsOn(BodyIndex body, const Snapshot& now);
+
 bool Touches(HandIndex hand, BodyIndex body, const Snapshot& now);
 
 /// "12 mm".

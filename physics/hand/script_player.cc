@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "physics/hand/hand_contacts.h"
 #include "physics/hand/reach_planner.h"
@@ -27,53 +26,24 @@ constexpr double kPress_m = 0.002;
 constexpr double kMaxSpring_m = 0.01;
 /// Share of a put-down's time after which the motion ends; the object settles in the rest.
 constexpr double kLoweringShare = 0.85;
-/// A thing stands when others than hands bear this share of its weight, on average over kBearing_s.
-constexpr double kBorneShare = 0.5;
-constexpr double kBearing_s = 0.02;
-/// If it does not stand when the stage should be over, the target goes on down at this speed,
-constexpr double kSeek_m_per_s = 0.02;
-/// and the stage lasts at most so much longer.
-constexpr double kSeek_s = 1;
+constexpr double kLevel_m = 1e-6;
 /// Number of way-points on the arc of a joint: between two of them the arc deviates from a straight
 /// line by 0.1 mm at most.
 constexpr int kJointWaypoints = 40;
 /// Likewise of an orbit or a turn, per whole turn.
 constexpr int kTurnWaypoints = 160;
 
-/// Number of hands that touch a body.
-int HandsOn(BodyIndex body, const Snapshot& now) {
-  std::set<HandIndex> hands;
-  for (const ContactPoint& contact : now.contacts) {
-    if (contact.a.body == body && contact.b.hand != kNone) hands.insert(contact.b.hand);
-    if (contact.b.body == body && contact.a.hand != kNone) hands.insert(contact.a.hand);
-  }
-  return static_cast<int>(hands.size());
+/// Whether a part of the body ends at this height: what lands there lands on a level face.
+bool IsLevelAt(double height_m, const Body& body, const Pose& X_WB) {
+  return std::ranges::any_of(body.shapes, [&](const PlacedShape& part) {
+    const double top_m = WorldBounds(part.shape, X_WB * part.X_BS).max().z();
+    return std::abs(top_m - height_m) < kLevel_m;
+  });
 }
 
-/// Upward force on a body from others than hands, newtons.
-double BorneBy(BodyIndex body, const Snapshot& now, double rate_hz) {
-  double impulse_n_s = 0;
-  for (const auto& points : now.AllContacts()) {
-    for (const ContactPoint& contact : points) {
-      if (contact.a.hand != kNone || contact.b.hand != kNone) continue;
-      const double up = contact.nhat_BA_W.z() * contact.normal_impulse_n_s;
-      if (contact.a.body == body) impulse_n_s += std::max(up, 0.0);
-      if (contact.b.body == body) impulse_n_s += std::max(-up, 0.0);
-    }
-  }
-  return impulse_n_s * rate_hz;
-}
-
-/// Whether the body touches others than hands.
-bool TouchesAnything(BodyIndex body, const Snapshot& now) {
-  for (const auto& points : now.AllContacts()) {
-    for (const ContactPoint& contact : points) {
-      if (contact.a.hand == kNone && contact.b.hand == kNone &&
-          (contact.a.body == body || contact.b.body == body))
-        return true;
-    }
-  }
-  return false;
+/// A target that has given way, in the world's axes.
+Pose Yielded(const Pose& X_WH, const Pose& by) {
+  return {X_WH.p_m + by.p_m, (by.q * X_WH.q).normalized()};
 }
 
 }  // namespace
@@ -81,8 +51,9 @@ bool TouchesAnything(BodyIndex body, const Snapshot& now) {
 /// Turns one step into a motion. An empty `problem` afterwards means success.
 class ScriptPlayer::Resolver {
  public:
-  Resolver(const Scene& scene, const Snapshot& now, const Step& step, HandState& hand)
-      : scene_(scene), now_(now), step_(step), hand_(hand) {}
+  Resolver(const Scene& scene, const Snapshot& now, const Step& step, const Standings& stood,
+           HandState& hand)
+      : scene_(scene), now_(now), step_(step), stood_(stood), hand_(hand) {}
 
   std::string Resolve() {
     std::visit(*this, step_.action);
@@ -94,7 +65,10 @@ class ScriptPlayer::Resolver {
   void operator()(const WaitStep&) {}
   void operator()(const ReachStep& reach);
   void operator()(const TriggerStep& trigger);
-  void operator()(const MoveStep& move) { MoveBy(move.by_m, step_.over_s); }
+  void operator()(const MoveStep& move) {
+    if (step_.keep_upright.value_or(false)) TurnUpright(HeldBody());
+    MoveBy(move.by_m, step_.over_s);
+  }
   void operator()(const CarryStep& carry);
   void operator()(const PlaceStep& place);
   void operator()(const RetreatStep& retreat);
@@ -106,6 +80,8 @@ class ScriptPlayer::Resolver {
 
  private:
   void MoveBy(const Eigen::Vector3d& by_m, double duration_s);
+  /// The next MoveBy() turns the hand about the body's centre until the body stands as it stood.
+  void TurnUpright(BodyIndex body);
   void Follow(const Segment& segment);
   void Follow(const std::vector<TimedPose>& poses);
   BodyIndex HeldBody() const;
@@ -116,7 +92,9 @@ class ScriptPlayer::Resolver {
   const Scene& scene_;
   const Snapshot& now_;
   const Step& step_;
+  const Standings& stood_;
   HandState& hand_;
+  Pose turn_ = {};  ///< of what MoveBy() moves, in the world
   std::string problem_, note_;
 };
 
@@ -133,8 +111,19 @@ void ScriptPlayer::Resolver::Follow(const std::vector<TimedPose>& poses) {
 
 void ScriptPlayer::Resolver::MoveBy(const Eigen::Vector3d& by_m, double duration_s) {
   Pose to = hand_.target.X_WH;
+  if (turn_.q.w() != 1) to = turn_ * to;
   to.p_m += by_m;
   Follow(StraightSegment(hand_.target, to, duration_s));
+}
+
+void ScriptPlayer::Resolver::TurnUpright(BodyIndex body) {
+  if (body == kNone || !At(stood_, body)) return;
+  const Pose& X_WB = now_.body(body).X_WB;
+  const Eigen::Vector3d up_W = X_WB.q * At(stood_, body)->up_B;
+  if (up_W.z() < kCosMostLean) return;
+  const Eigen::Vector3d centre_W = X_WB * BoundingBox(scene_.body(body)).p_BC_m;
+  const Eigen::Quaterniond turn = RotationBetween(up_W, Eigen::Vector3d::UnitZ());
+  turn_ = {centre_W - turn * centre_W, turn};
 }
 
 void ScriptPlayer::Resolver::operator()(const ReachStep& reach) {
@@ -188,6 +177,7 @@ void ScriptPlayer::Resolver::operator()(const CarryStep& carry) {
   Eigen::Vector3d centre = hand_.target.X_WH.p_m;
   if (const BodyIndex held = HeldBody(); held != kNone)
     centre = now_.body(held).X_WB * BoundingBox(scene_.body(held)).p_BC_m;
+  if (step_.keep_upright.value_or(false)) TurnUpright(HeldBody());
   MoveBy({carry.to_m.x() - centre.x(), carry.to_m.y() - centre.y(), 0}, step_.over_s);
 }
 
@@ -199,8 +189,15 @@ void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
     problem_ = "place_on: the hand holds nothing and has not reached for anything";
   } else {
     const Body &below = scene_.body(support), &thing = scene_.body(held);
-    const std::optional<double> landing_m =
-        LandingHeight(below, now_.body(support).X_WB, thing, now_.body(held).X_WB);
+    const Pose& X_WBelow = now_.body(support).X_WB;
+    if (step_.keep_upright.value_or(true)) TurnUpright(held);
+    Pose X_WThing = turn_ * now_.body(held).X_WB;
+    std::optional<double> landing_m = LandingHeight(below, X_WBelow, thing, X_WThing);
+    if (!step_.keep_upright && landing_m && !IsLevelAt(*landing_m, below, X_WBelow)) {
+      turn_ = {};
+      X_WThing = now_.body(held).X_WB;
+      landing_m = LandingHeight(below, X_WBelow, thing, X_WThing);
+    }
     if (!landing_m) {
       problem_ = "place_on: no part of '" + place.support + "' is below '" + thing.name + "'";
       problem_ += HandsOn(held, now_) > 0
@@ -209,8 +206,7 @@ void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
                         "it is at each moment";
       return;
     }
-    const Eigen::AlignedBox3d object = WorldBounds(thing, now_.body(held).X_WB);
-    const double drop = object.min().z() - *landing_m;
+    const double drop = WorldBounds(thing, X_WThing).min().z() - *landing_m;
     const double stiffness = scene_.hand(step_.hand).model.translation.proportional;
     const double weight_n =
         thing.mass_kg * scene_.world.gravity_m_per_s2 / std::max(HandsOn(held, now_), 1);
@@ -339,7 +335,7 @@ void ScriptPlayer::Resolver::operator()(const PressStep& press) {
 }
 
 ScriptPlayer::ScriptPlayer(const Scene& scene, Script script)
-    : scene_(scene), script_(std::move(script)) {
+    : scene_(scene), script_(std::move(script)), stood_(scene.bodies.size()) {
   const std::vector<int> styles = FirstStyles(scene_, script_);
   for (std::size_t i = 0; i < scene_.hands.size(); ++i) {
     HandState hand{.target = {.X_WH = scene_.hands[i].X_WH}, .style = styles[i]};
@@ -367,6 +363,10 @@ void ScriptPlayer::Settle(HandState& hand) {
   double& height_m = hand.target.X_WH.p_m.z();
   if (hand.placing) height_m = hand.placing->HeightOf(height_m);
   hand.placing.reset();
+  if (hand.yielded) hand.target.X_WH = Yielded(hand.target.X_WH, *hand.yielded);
+  hand.yielded.reset();
+  hand.yields_m_per_s.setZero();
+  hand.yields_rad_per_s.setZero();
   hand.waiting.reset();
   if (hand.pressing) hand.target.X_WH.p_m += hand.pressing->depth_m * hand.pressing->along_W;
   hand.pressing.reset();
@@ -465,6 +465,7 @@ std::int64_t ScriptPlayer::PlannedEnd(const HandState& hand) const {
 void ScriptPlayer::StartStep(std::size_t index, const Snapshot& now) {
   const Step& step = script_.stages[stage_ - 1].steps[index];
   HandState& hand = At(hands_, step.hand);
+  Settle(hand);
   hand.step = index;
   hand.begin_tick = clock_.BeginOf(index);
   hand.written_at = step.written_at;
@@ -473,8 +474,11 @@ void ScriptPlayer::StartStep(std::size_t index, const Snapshot& now) {
     if (hand.waiting->thing == kNone)
       return Fail(step.hand, "until: there is no entity '" + step.until->thing + "'");
   }
-  Resolver resolver(scene_, now, step, hand);
+  Resolver resolver(scene_, now, step, stood_, hand);
   problem_ = resolver.Resolve();
+  const bool grips = std::holds_alternative<TriggerStep>(step.action);
+  hand.took = hand.took && (grips || std::holds_alternative<WaitStep>(step.action));
+  if (grips && hand.closes) RememberHowItStands(hand, now);
   if (!resolver.note().empty()) notes_.push_back({now.tick, step.hand, resolver.note()});
   if (!problem_.empty()) Fail(step.hand, std::string(problem_));
 }
@@ -486,8 +490,9 @@ double ScriptPlayer::MotionTime(const HandState& hand) const {
 
 TargetState ScriptPlayer::TargetOf(const HandState& hand) const {
   TargetState target = hand.motion.At(MotionTime(hand));
-  target.v_m_per_s *= hand.pace;
-  target.w_rad_per_s *= hand.pace;
+  if (hand.yielded) target.X_WH = Yielded(target.X_WH, *hand.yielded);
+  target.v_m_per_s = target.v_m_per_s * hand.pace + hand.yields_m_per_s;
+  target.w_rad_per_s = target.w_rad_per_s * hand.pace + hand.yields_rad_per_s;
   return target;
 }
 
@@ -497,56 +502,13 @@ void ScriptPlayer::Fail(HandIndex hand, const std::string& problem) {
   problem_hand_ = hand;
 }
 
-bool ScriptPlayer::Placing::Stands() const { return touches && borne_n >= kBorneShare * weight_n; }
-
-/// Looks whether what is put down stands, and lowers it if not.
-void ScriptPlayer::Watch(const Snapshot& now) {
-  const double rate_hz = scene_.world.rate_hz;
-  for (std::size_t h = 0; h < hands_.size(); ++h) {
-    if (!hands_[h].placing) continue;
-    Placing& placing = *hands_[h].placing;
-    const double share = std::min(1 / (kBearing_s * rate_hz), 1.0);
-    // A blow counts as no more than standing.
-    const double borne_n = std::min(BorneBy(placing.body, now, rate_hz), placing.weight_n);
-    placing.borne_n += share * (borne_n - placing.borne_n);
-    placing.touches = borne_n > 0;
-    if (placing.touches)
-      placing.lowest_m = std::min(placing.lowest_m, now.hands[h].palm.X_WB.p_m.z());
-    else
-      placing.lifted_off |= placing.lowest_m < HUGE_VAL && !TouchesAnything(placing.body, now);
-    if (tick_in_stage_ >= PlannedEnd(hands_[h]) && !placing.Stands())
-      placing.lowered_m += kSeek_m_per_s / rate_hz;
-  }
-}
-
-bool ScriptPlayer::Waits(std::size_t hand, std::int64_t late_ticks) const {
-  const std::optional<TrackerSettings>& tracking = scene_.hands[hand].tracking;
-  const double late_s = static_cast<double>(late_ticks) / scene_.world.rate_hz;
-  const std::optional<Placing>& placing = hands_[hand].placing;
-  return placing && !placing->Stands() && late_s < kSeek_s + (tracking ? tracking->latency_s : 0);
-}
-
-/// What the hand has lost is not its problem.
-void ScriptPlayer::CheckThatItStands(std::size_t hand, const Snapshot& now) {
-  const std::optional<Placing>& placing = hands_[hand].placing;
-  const HandIndex index(hand);
-  if (!placing || placing->Stands() || !Touches(index, placing->body, now)) return;
-  const Body &held = scene_.body(placing->body), &below = scene_.body(placing->support);
-  const Pose& X_WHeld = now.body(placing->body).X_WB;
-  std::string problem = "place_on: '" + held.name + "' does not stand on '" + below.name + "'";
-  if (const auto landing_m = LandingHeight(below, now.body(placing->support).X_WB, held, X_WHeld)) {
-    const double low_m = WorldBounds(held, X_WHeld).min().z();
-    problem += ", but is held " + Millimetres(low_m - *landing_m) + " above it";
-  }
-  Fail(index, problem);
-}
-
 const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
   commands_.clear();
   begun_.clear();
   Watch(now);
   WatchGuards(now);
   Press(now);
+  GiveWay(now);
   WithdrawNotes(now);
   Progress(now);
   while (problem_.empty() && EndStage(now)) {

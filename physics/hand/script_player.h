@@ -108,12 +108,18 @@ class ScriptPlayer {
     std::optional<Pressing> pressing = std::nullopt;
     /// The present step of its stage; none before the first.
     std::optional<std::size_t> step = std::nullopt;
+    /// How far the target has given way since the step began: the hand rests at what holds it back.
+    std::optional<Pose> yielded = std::nullopt;
+    /// How fast it does so, where the palm has to keep up.
+    Eigen::Vector3d yields_m_per_s = Eigen::Vector3d::Zero(),
+                    yields_rad_per_s = Eigen::Vector3d::Zero();
     std::int64_t begin_tick = 0;  ///< when its motion began, after its stage began
     double pace = 1;              ///< share of its full speed; less where a guarded step brakes
     double behind_s = 0;          ///< delay that braking has caused
     std::int64_t late_ticks = 0;  ///< by which it lasts longer than planned
     std::string written_at = {};  ///< the present step
     bool closes = false;          ///< with the present step the trigger rises
+    bool took = false;            ///< what stands, and it has not moved on since
     std::optional<GripNote> grip_note = std::nullopt;
   };
   class Resolver;
@@ -146,6 +152,16 @@ class ScriptPlayer {
   /// Fingers follow late: a hand that takes hold after all, before it opens, needs no note.
   void WithdrawNotes(const Snapshot& now);
   void Press(const Snapshot& now);
+  /// A hand that is to rest, and cannot get to its target because of what it touches or holds, does
+  /// not go on pushing: its target comes to it, as fast as the palm's integral term takes over.
+  void GiveWay(const Snapshot& now);
+  bool Rests(const HandState& hand) const;
+  /// Whether its present step is one of the trigger.
+  bool Grips(const HandState& hand) const;
+  /// A hand that closes around what stands moves so that it goes on standing.
+  void KeepStanding(std::size_t hand, const Snapshot& now);
+  /// What a hand is about to take stands so.
+  void RememberHowItStands(HandState& hand, const Snapshot& now);
   bool IsTouched(HandIndex hand, BodyIndex thing, const Snapshot& now) const;
   double GapTo(HandIndex hand, BodyIndex thing, const Snapshot& now) const;
   /// Where the hand's target is and how it moves.
@@ -155,6 +171,13 @@ class ScriptPlayer {
   const Scene& scene_;
   Script script_;
   std::vector<HandState> hands_;
+  /// How a body stood when a hand closed around it.
+  struct Standing {
+    Eigen::Vector3d up_B;  ///< the direction in it that was up
+    double low_m = 0;      ///< height of its lowest point
+  };
+  using Standings = std::vector<std::optional<Standing>>;
+  Standings stood_;  ///< by body
   std::vector<HandCommand> commands_;
   std::size_t stage_ = 0;  ///< the next stage to start
   StageClock clock_;       ///< of the present one

@@ -105,6 +105,9 @@ struct Step {
   double delay_s = 0;           ///< after its turn has come; what it says is resolved then
   std::string written_at = {};  ///< "FILE:LINE:COLUMN", for what is said about it; may be empty
   StepOrder order = {};
+  /// Of a MoveStep, CarryStep or PlaceStep: the hand turns so that what it holds stands as it stood
+  /// when the hand closed. None: only in a PlaceStep, where the support is level.
+  std::optional<bool> keep_upright = {};
 };
 
 struct LookAtStep {

@@ -178,20 +178,24 @@ struct OpenYaml : StepTimingYaml {
 };
 struct LiftYaml : StepTimingYaml {
   double lift_by_m = 0;
+  std::optional<bool> keep_upright;
   double over_s = 0.6;
 };
 struct MoveYaml : StepTimingYaml {
   Located<Eigen::Vector3d> move_by_m{Eigen::Vector3d::Zero(), {}};
+  std::optional<bool> keep_upright;
   double over_s = 0.8;
 };
 struct CarryYaml : StepTimingYaml {
   Where where;
   Located<Eigen::Vector2d> carry_to_m{Eigen::Vector2d::Zero(), {}};
+  std::optional<bool> keep_upright;
   double over_s = 1.0;
 };
 struct PlaceYaml : StepTimingYaml {
   Where where;
   Located<std::string> place_on;
+  std::optional<bool> keep_upright;
   double over_s = 0.6;
 };
 struct RetreatYaml : StepTimingYaml {

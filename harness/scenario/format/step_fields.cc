@@ -24,6 +24,9 @@ const std::string kDelayDoc = "Seconds to wait first, while others in this stage
 const std::string kUntilDoc =
     "Ends the step before its time: 'touching(milk)' or 'gap(milk) < 5 mm'. If that never happens "
     "the run fails; with ', or go on' it goes on.";
+const std::string kUprightDoc =
+    "Whether the hand turns so that what it holds stands as it stood when the hand took it; "
+    "default: in 'place_on', where the support is level.";
 const std::string kForceDoc =
     "Yields: slows down so that it pushes with no more than this, newtons.";
 const std::string kRelativeDoc =
@@ -40,6 +43,8 @@ ValueFormat<StepYaml> Step(StructFormat<Entry>& format, MayEnd may_end = MayEnd:
   if constexpr (requires { &Entry::over_s; })
     format.Optional("over_s", &Entry::over_s, Number(kMinStep_s, kMaxStep_s),
                     "Duration in seconds.");
+  if constexpr (requires { &Entry::keep_upright; })
+    format.Optional("keep_upright", &Entry::keep_upright, Flag(), kUprightDoc);
   if (may_end == MayEnd::kBefore) format.Optional("until", &T::until, UntilFormat(), kUntilDoc);
   format.Optional("delay_s", &T::delay_s, Number(0, kMaxStep_s), kDelayDoc)
       .Optional("name", &T::name, Identifier(), "What other steps of this stage call it.")

@@ -341,6 +341,12 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
       const StepMaker maker{entities, scene, hand >= 0, model, named, errors};
       physics::Step step = std::visit(maker, named.value);
       step.until = maker.UntilOf();
+      step.keep_upright = std::visit(
+          [](const auto& e) -> std::optional<bool> {
+            if constexpr (requires { e.keep_upright; }) return e.keep_upright;
+            return std::nullopt;
+          },
+          named.value);
       step.delay_s = TimingOf(named.value).delay_s;
       step.order = OrderOf(named.value);
       step.hand = index;

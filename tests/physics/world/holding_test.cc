@@ -62,12 +62,47 @@ TEST(Holding, WhatIsHeldInTheAirNeitherTurnsNorCreeps) {
   }
 }
 
+TEST(Holding, WhatIsHeldOnATableStaysThere) {
+  for (const double mass_kg : {0.1, 0.3, 1.0, 1.5}) {
+    Simulation simulation(MakeScene(Tabletop{.shape = Box{{0.06, 0.06, 0.14}}, .mass_kg = mass_kg}),
+                          Hold("wrap", Approach::kSide, 0));
+    const Way way = WayOf(simulation, /*in_the_hand=*/false, 2, 9.4);
+    EXPECT_LT(way.moved_m, 0.00005) << mass_kg << " kg";
+  }
+}
+
 TEST(Holding, FrictionBearsNoMoreThanItsLimit) {
   // Thumb and fingers press with some 30 N: 6 kg are too heavy.
   Simulation simulation(MakeScene(Tabletop{.mass_kg = 6}), Hold("wrap", Approach::kSide, 0.15));
   while (simulation.Step()) {
   }
   EXPECT_LT(simulation.snapshot().bodies[kObject].X_WB.p_m.z(), kTop_m + 0.105);
+}
+
+TEST(Holding, WhatIsPutDownLandsFlatAndIsNotPushed) {
+  for (const double mass_kg : {0.05, 0.3, 0.8}) {
+    Script script = MakeScript({.style = "wrap", .approach = Approach::kSide});
+    Simulation simulation(MakeScene(Tabletop{.shape = Cylinder{0.033, 0.12}, .mass_kg = mass_kg}),
+                          script);
+    std::optional<Eigen::Vector3d> landed_m;
+    double tilt_deg = 0, pushed_m = 0;
+    while (simulation.Step()) {
+      const Snapshot& now = simulation.snapshot();
+      const Pose& X_WB = now.bodies[kObject].X_WB;
+      const bool stands = std::ranges::any_of(now.contacts, [](const ContactPoint& contact) {
+        return contact.a.body == BodyIndex(kTable) && contact.b.body == BodyIndex(kObject);
+      });
+      if (now.tick < 3 * 480 || !(stands || landed_m)) continue;
+      if (!landed_m) {
+        landed_m = X_WB.p_m;
+        tilt_deg = std::acos(std::min((X_WB.q * Eigen::Vector3d::UnitZ()).z(), 1.0)) / kRadPerDeg;
+      }
+      pushed_m = std::max(pushed_m, (X_WB.p_m - *landed_m).head<2>().norm());
+    }
+    ASSERT_TRUE(landed_m) << mass_kg << " kg";
+    EXPECT_LT(tilt_deg, 1) << mass_kg << " kg";
+    EXPECT_LT(pushed_m, 0.003) << mass_kg << " kg";
+  }
 }
 
 }  // namespace
