@@ -14,7 +14,8 @@ import subprocess
 import sys
 import tempfile
 
-from guessed_takes import Take
+from guessed_takes import AXES, Take
+from made_takes import add, length, rotate
 
 # What names a fault, and says something that is not so where there is none.
 SAYS = {
@@ -44,6 +45,10 @@ def names(take, fault, said):
         return bool(re.search(r"unit: %s\b" % take.unit, said))
     if fault == "axes":
         return bool(re.search(r"axes: %s\b" % take.axes, said))
+    if fault == "tilt":
+        up = re.search(r"up: \[([-\d.e]+), ([-\d.e]+), ([-\d.e]+)\]", said)
+        true = AXES[take.axes](rotate(take.turn, [0, 0, 1]))
+        return bool(up) and length(add([float(x) for x in up.groups()], true, -1)) < 0.07  # 4 degrees
     if fault == "order":
         return "quaternion_order: " + take.order in said
     return any(re.search(SAYS[word], said) for word in (fault, *ALSO.get(fault, ())))
@@ -64,9 +69,9 @@ def main():
                 print("right", 1000000 * seed + i, take.kind, code, said)
         for i in range(takes):
             fault = Take.FAULTS[i % len(Take.FAULTS)]
-            # Nobody sees what is not there: a table or an upright thing needs something that stands, a plane three things,
-            # handedness two hands with names.
-            kinds = {"table": ("table", "shelf", "small"), "upright": ("table", "shelf", "box"), "tilt": ("table", "shelf", "box"),
+            # Nobody sees what is not there: a table or an upright thing needs something that stands, a tilt three things on one
+            # level, handedness two hands with names.
+            kinds = {"table": ("table", "shelf", "small"), "upright": ("table", "shelf", "box"), "tilt": ("table",),
                      "handedness": ("table", "shelf", "box"), "axes": ("table", "shelf", "box", "small")}.get(fault)
             for draw in range(50):
                 take = Take(1000000 * seed + 500000 + 50 * i + draw, fault, kinds and kinds[(i // 13) % len(kinds)])
