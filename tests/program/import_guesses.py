@@ -88,7 +88,8 @@ def main():
     for word in SAYS:
         print("| %s | %d | %d of %d |" % (word, wrong[word], missed[word], planted[word]))
     print("refused though right: %d of %d" % (refused, takes))
-    bad = refused or any(100 * n > max(takes, 100) for n in wrong.values()) or 20 * sum(missed.values()) > takes
+    # A small sample tells little: one guess may be wrong, and three faults missed.
+    bad = refused or any(n > max(takes / 100, 1) for n in wrong.values()) or sum(missed.values()) > max(takes / 20, 3)
     sys.exit(1 if bad else 0)
 
 
