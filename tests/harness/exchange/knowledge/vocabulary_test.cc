@@ -7,7 +7,7 @@ namespace prehend::exchange {
 namespace {
 
 const Vocabulary& Shipped() {
-  static const Vocabulary vocabulary = *Vocabulary::Load(PREHEND_SOURCE_DIR);
+  static const Vocabulary vocabulary = *Vocabulary::Load();
   return vocabulary;
 }
 
@@ -36,12 +36,6 @@ TEST(Vocabulary, AWordNeverMeansTwoThings) {
   EXPECT_EQ(Shipped().ClassOf("Grasping"), "knowrob:GraspingObject");
   EXPECT_EQ(Shipped().TermOf("task").name, "knowrob:TaskEvent");
   EXPECT_EQ(Shipped().ClassOf("Movable"), "knowrob:Movable");
-}
-
-TEST(Vocabulary, OfAProjectWithoutATerminologyIsTheShippedOne) {
-  const auto shipped = Vocabulary::Load("/nowhere");
-  ASSERT_TRUE(shipped);
-  EXPECT_EQ(shipped->ClassOf("MilkCarton"), "knowrob:MilkCarton");
 }
 
 }  // namespace
