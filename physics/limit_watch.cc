@@ -142,10 +142,10 @@ void LimitWatch::SeeOverlaps(const Snapshot& now) {
     }
     if (contact.distance_m > -kDeepOfUnequal_m || IsGrains(scene_, a) || IsGrains(scene_, b))
       continue;
-    const double mass_ratio = MassRatioAt(scene_, now, contact);
-    const double deep_m = mass_ratio > kMaxMassRatio           ? kDeepOfUnequal_m
-                          : a.hand != kNone || b.hand != kNone ? kDeepInHand_m
-                                                               : std::min(kDeep_m, thin_m);
+    const double mass_ratio = are_bodies ? MassRatioAt(scene_, now, contact) : 1;
+    const double deep_m = !are_bodies                  ? kDeepInHand_m
+                          : mass_ratio > kMaxMassRatio ? kDeepOfUnequal_m
+                                                       : std::min(kDeep_m, thin_m);
     if (contact.distance_m > -deep_m) continue;
     const bool swap = WeightOf(scene_, a) < WeightOf(scene_, b);
     Overlap& overlap = overlaps_[swap ? SidePair{b, a} : SidePair{a, b}];
