@@ -122,7 +122,8 @@ bool Simulation::State::Step() {
   if (status.kind != RunStatus::Kind::kRunning) return false;
   const std::vector<HandCommand>* commands = player.Advance(snapshot);
   if (!player.problem().empty()) {
-    Fail(scene.hand(player.problem_hand()).name, player.problem(), "");
+    const HandIndex hand = player.problem_hand();
+    Fail(hand == kNone ? "" : scene.hand(hand).name, player.problem(), "");
     return false;
   }
   if (!commands) {

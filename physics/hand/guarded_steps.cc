@@ -9,6 +9,7 @@
 #include "physics/hand/hand_contacts.h"
 #include "physics/hand/script_player.h"
 #include "physics/hand/step_notes.h"
+#include "physics/scene/geometry.h"
 
 namespace prehend::physics {
 namespace {
@@ -78,11 +79,10 @@ void ScriptPlayer::WatchGuards(const Snapshot& now) {
     HandState& hand = hands_[h];
     if (!hand.waiting || hand.waiting->met || tick_in_stage_ >= clock_.EndOf(*hand.step)) continue;
     const HandIndex index(h);
-    const BodyIndex thing = hand.waiting->thing;
-    const std::optional<double>& gap_m = hand.waiting->until.gap_m;
-    hand.waiting->met = gap_m ? GapTo(index, thing, now) < *gap_m : IsTouched(index, thing, now);
+    const Until& until = hand.waiting->until;
+    hand.waiting->met = Happens(until, index, now);
     if (!hand.waiting->met) {
-      if (gap_m) Brake(h, now);
+      if (until.gap_m && until.who.empty()) Brake(h, now);
       continue;
     }
     // It stays where it is: the target is ahead of the hand, which would go on to it.
@@ -99,6 +99,43 @@ void ScriptPlayer::WatchGuards(const Snapshot& now) {
     hand.pace = 1;
     hand.behind_s = 0;
     clock_.SetEnd(*hand.step, tick_in_stage_);
+  }
+}
+
+bool ScriptPlayer::Happens(const Until& until, HandIndex own, const Snapshot& now) const {
+  const BodyIndex thing = FindBody(scene_, until.thing);
+  const auto named = std::ranges::find(scene_.hands, until.who, &Hand::name);
+  const HandIndex hand =
+      named == scene_.hands.end() ? own : HandIndex(named - scene_.hands.begin());
+  if (until.gap_m) return GapTo(hand, thing, now) < *until.gap_m;
+  if (until.who.empty() || named != scene_.hands.end()) return IsTouched(hand, thing, now);
+  const BodyIndex body = FindBody(scene_, until.who);
+  const auto is_of = [&](const ContactSide& side, BodyIndex of) {
+    return side.hand == kNone && side.body == of;
+  };
+  return std::ranges::any_of(now.AllContacts(), [&](const auto& points) {
+    return std::ranges::any_of(points, [&](const ContactPoint& contact) {
+      return (is_of(contact.a, body) && is_of(contact.b, thing)) ||
+             (is_of(contact.b, body) && is_of(contact.a, thing));
+    });
+  });
+}
+
+void ScriptPlayer::WatchPersons(const Snapshot& now) {
+  if (settling_ || stage_ == 0) return;
+  const ScriptStage& stage = script_.stages[stage_ - 1];
+  for (std::size_t i = 0; i < stage.person_steps.size(); ++i) {
+    const std::optional<Until>& until = stage.person_steps[i].until;
+    const std::size_t step = stage.steps.size() + i;
+    if (!until || !clock_.Plays(step) || tick_in_stage_ > clock_.EndOf(step)) continue;
+    const bool is_over = tick_in_stage_ == clock_.EndOf(step);
+    if (Happens(*until, kNone, now))
+      clock_.SetEnd(step, tick_in_stage_);
+    else if (is_over && !until->or_go_on)
+      Fail(kNone, "until: the step of " +
+                      scene_.persons[static_cast<std::size_t>(stage.person_steps[i].person)].name +
+                      " is over, and '" + until->who + "' has not " +
+                      (until->gap_m ? "come so near to" : "touched") + " '" + until->thing + "'");
   }
 }
 
@@ -125,6 +162,10 @@ void ScriptPlayer::CheckGuard(std::size_t hand, const Snapshot& now) {
   const std::optional<Waiting>& waiting = hands_[hand].waiting;
   if (!waiting || waiting->met || waiting->until.or_go_on) return;
   const HandIndex index(hand);
+  if (const std::string& who = waiting->until.who; !who.empty())
+    return Fail(index, "until: the step is over, and '" + who + "' has not " +
+                           (waiting->until.gap_m ? "come so near to" : "touched") + " '" +
+                           waiting->until.thing + "'");
   const double gap_m = GapTo(index, waiting->thing, now);
   const std::string away = gap_m >= HandClearance::kFar_m
                                ? "more than " + Millimetres(HandClearance::kFar_m)

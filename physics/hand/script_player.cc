@@ -497,7 +497,7 @@ TargetState ScriptPlayer::TargetOf(const HandState& hand) const {
 }
 
 void ScriptPlayer::Fail(HandIndex hand, const std::string& problem) {
-  const std::string& written_at = At(hands_, hand).written_at;
+  const std::string written_at = hand == kNone ? "" : At(hands_, hand).written_at;
   problem_ = written_at.empty() ? problem : written_at + ": " + problem;
   problem_hand_ = hand;
 }
@@ -507,6 +507,7 @@ const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
   begun_.clear();
   Watch(now);
   WatchGuards(now);
+  WatchPersons(now);
   Press(now);
   GiveWay(now);
   WithdrawNotes(now);

@@ -147,6 +147,10 @@ class ScriptPlayer {
   /// Slows a hand down that could not stop at its gap otherwise.
   void Brake(std::size_t hand, const Snapshot& now);
   void CheckGuard(std::size_t hand, const Snapshot& now);
+  /// Ends steps of persons that wait for something.
+  void WatchPersons(const Snapshot& now);
+  /// Whether what a step of `own` (or of a person) waits for happens.
+  bool Happens(const Until& until, HandIndex own, const Snapshot& now) const;
   /// Notes that a hand has closed beside what it reached for.
   void NoteTheGrip(std::size_t hand, const Snapshot& now);
   /// Fingers follow late: a hand that takes hold after all, before it opens, needs no note.

@@ -22,8 +22,9 @@ constexpr double kMaxStep_s = 600;
 
 const std::string kDelayDoc = "Seconds to wait first, while others in this stage already act.";
 const std::string kUntilDoc =
-    "Ends the step before its time: 'touching(milk)' or 'gap(milk) < 5 mm'. If that never happens "
-    "the run fails; with ', or go on' it goes on.";
+    "Ends the step before its time: 'touching(milk)' or 'gap(milk) < 5 mm', of this hand; or of "
+    "another one, 'touching(left_hand, milk)', or of two things. If that never happens the run "
+    "fails; with ', or go on' it goes on.";
 const std::string kUprightDoc =
     "Whether the hand turns so that what it holds stands as it stood when the hand took it; "
     "default: in 'place_on', where the support is level.";
@@ -155,7 +156,8 @@ ValueFormat<StepYaml> FollowJointFormat() {
 ValueFormat<StepYaml> WaitFormat() {
   return Step(StructFormat<WaitYaml>("a wait step")
                   .Required("wait_s", &WaitYaml::wait_s, Number(kMinStep_s, kMaxStep_s),
-                            "Hold still for this long."));
+                            "Hold still for this long."),
+              MayEnd::kBefore);
 }
 
 ValueFormat<PoseYaml> PoseFormat() {

@@ -16,7 +16,7 @@ constexpr const char* kConditions =
 
 /// What a condition says, as far as it says it.
 struct SaidUntil {
-  std::string word, thing;
+  std::string word, who, thing;
   std::optional<double> number;  ///< of "< 5 mm"
   std::string_view rest;         ///< what follows the number
 };
@@ -27,6 +27,10 @@ SaidUntil SaidBy(std::string_view text) {
   if (open == std::string::npos || close == std::string::npos || close < open) return said;
   said.word = text.substr(0, open);
   said.thing = text.substr(open + 1, close - open - 1);
+  if (const std::size_t comma = said.thing.find(", "); comma != std::string::npos) {
+    said.who = said.thing.substr(0, comma);
+    said.thing.erase(0, comma + 2);
+  }
   const std::size_t digits = text.find_first_of("0123456789", text.find('<', close));
   if (digits == std::string::npos) return said;
   const char* const end = text.data() + text.size();
@@ -50,9 +54,9 @@ std::string Remedy(const SaidUntil& said) {
 
 ValueFormat<physics::Until> UntilFormat() {
   const auto condition = Word(
-      "(touching\\([a-z][a-z0-9_]*\\)|gap\\([a-z][a-z0-9_]*\\) < [0-9]+(\\.[0-9]+)? (mm|cm|m))(, "
-      "or go "
-      "on)?",
+      "(touching\\(([a-z][a-z0-9_]*, )?[a-z][a-z0-9_]*\\)|gap\\(([a-z][a-z0-9_]*, "
+      ")?[a-z][a-z0-9_]*\\) "
+      "< [0-9]+(\\.[0-9]+)? (mm|cm|m))(, or go on)?",
       kConditions, 120);
   const auto read = [condition](const YamlNode& node, DiagnosticList& errors,
                                 physics::Until& until) {
@@ -65,7 +69,8 @@ ValueFormat<physics::Until> UntilFormat() {
     }
     std::string text;
     if (!condition.Read(node, errors, text)) return false;
-    until = {.thing = said.thing, .gap_m = {}, .or_go_on = text.ends_with("or go on")};
+    until = {
+        .thing = said.thing, .gap_m = {}, .or_go_on = text.ends_with("or go on"), .who = said.who};
     if (said.number)
       until.gap_m = *said.number * (said.rest.starts_with(" mm")   ? 0.001
                                     : said.rest.starts_with(" cm") ? 0.01

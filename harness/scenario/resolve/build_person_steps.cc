@@ -116,6 +116,7 @@ physics::PersonStep MakePersonStep(const Named<StepYaml>& step, int person,
   made.person = person;
   made.delay_s = TimingOf(step.value).delay_s;
   made.order = OrderOf(step.value);
+  made.until = UntilOf(step.value, scene, true, errors);
   return made;
 }
 

@@ -20,8 +20,6 @@
 namespace prehend::scenario {
 namespace {
 
-/// Hands look no farther for what they come near to (physics/hand/hand_clearance.h).
-constexpr double kMaxGap_m = 0.09;
 /// The words of relative_to.
 constexpr const char* kWorldFrame = "world";
 constexpr const char* kHandFrame = "hand";
@@ -132,18 +130,6 @@ struct StepMaker {
                  fmt::format("'{}' is a hand; this step is for persons", written.name),
                  "hands reach, close, move; persons look, walk, lean");
     return {};
-  }
-
-  /// What ends the step before its time; most steps have no such key.
-  std::optional<physics::Until> UntilOf() const {
-    const std::optional<Located<physics::Until>>& until = TimingOf(written.value).until;
-    if (!until) return {};
-    CheckEntity("until", {until->value.thing, until->where});
-    const double gap_m = until->value.gap_m.value_or(0);
-    if (gap_m > kMaxGap_m)
-      errors.Add(until->where, fmt::format("until: a gap of {:g} mm is too far, at most {:g} mm",
-                                           1000 * gap_m, 1000 * kMaxGap_m));
-    return until->value;
   }
 
  private:
@@ -340,7 +326,7 @@ physics::Script BuildScript(const ScenarioYaml& entry, const physics::Scene& sce
       const physics::HandModel* model = known ? &scene.hand(index).model : nullptr;
       const StepMaker maker{entities, scene, hand >= 0, model, named, errors};
       physics::Step step = std::visit(maker, named.value);
-      step.until = maker.UntilOf();
+      step.until = UntilOf(named.value, scene, false, errors);
       step.keep_upright = std::visit(
           [](const auto& e) -> std::optional<bool> {
             if constexpr (requires { e.keep_upright; }) return e.keep_upright;

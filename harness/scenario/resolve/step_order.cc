@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 
+#include "harness/scenario/resolve/build_abstract.h"
 #include "physics/motion/stage_clock.h"
 
 namespace prehend::scenario {
@@ -123,6 +124,38 @@ void CheckCircles(const StageYaml& stage, const physics::ScriptStage& built,
 }
 
 }  // namespace
+
+std::optional<physics::Until> UntilOf(const StepYaml& step, const physics::Scene& scene,
+                                      bool is_person, DiagnosticList& errors) {
+  /// Hands look no farther for what they come near to (physics/hand/hand_clearance.h).
+  constexpr double kMaxGap_m = 0.09;
+  const std::optional<Located<physics::Until>>& written = TimingOf(step).until;
+  if (!written) return {};
+  const physics::Until& until = written->value;
+  std::vector<std::string> bodies, hands;
+  for (const physics::Body& body : scene.bodies) bodies.push_back(body.name);
+  for (const physics::Hand& hand : scene.hands) hands.push_back(hand.name);
+  const auto thing = errors.Find({until.thing, written->where}, "until", bodies);
+  const std::string what = thing ? WhyNoThing(scene.bodies[*thing]) : "";
+  if (!what.empty())
+    errors.Add(written->where,
+               fmt::format("until: '{}' is {}, not a physical object", until.thing, what),
+               what == "grains" ? "name the vessel that holds them" : "hands cannot touch it");
+  if (is_person && until.who.empty())
+    errors.Add(written->where, "until: a person waits for somebody or something else",
+               fmt::format("write who: touching({}, {})", hands.empty() ? "can" : hands.front(),
+                           until.thing));
+  std::vector<std::string>& known = hands;
+  if (!until.gap_m) known.insert(known.end(), bodies.begin(), bodies.end());
+  if (!until.who.empty())
+    errors.Find({until.who, written->where}, "until", known, until.gap_m ? "hand" : "entity");
+  if (until.who == until.thing)
+    errors.Add(written->where, fmt::format("until: '{}' is itself", until.who));
+  if (const double gap_m = until.gap_m.value_or(0); gap_m > kMaxGap_m)
+    errors.Add(written->where, fmt::format("until: a gap of {:g} mm is too far, at most {:g} mm",
+                                           1000 * gap_m, 1000 * kMaxGap_m));
+  return until;
+}
 
 const StepTimingYaml& TimingOf(const StepYaml& step) {
   return std::visit([](const StepTimingYaml& timing) -> const StepTimingYaml& { return timing; },

@@ -13,6 +13,10 @@ namespace prehend::scenario {
 const StepTimingYaml& TimingOf(const StepYaml& step);
 physics::StepOrder OrderOf(const StepYaml& step);
 
+/// What ends a step before its time, checked. `is_person`: the step is one of a person.
+std::optional<physics::Until> UntilOf(const StepYaml& step, const physics::Scene& scene,
+                                      bool is_person, DiagnosticList& errors);
+
 /// Reports names that a stage has twice or not at all, and steps that wait for each other. `script`
 /// is what was built of `stages`; `actors` are the names of all, `persons` those of persons.
 void CheckStepOrder(const std::vector<StageYaml>& stages, const std::vector<std::string>& actors,

@@ -56,6 +56,69 @@ TEST(GuardedMotion, WhatNeverHappensFailsOrGoesOn) {
   EXPECT_EQ(Played(scene, script).simulation.status().kind, RunStatus::Kind::kCompleted);
 }
 
+/// The object falls onto the table from a height.
+Scene Falling(double height_m) {
+  Scene scene = MakeScene({.hand_at_m = {-0.3, -0.2, 1.2}});
+  scene.bodies[kObject].X_WB.p_m.z() += height_m;
+  return scene;
+}
+
+TEST(GuardedMotion, AHandOrAPersonWaitsForOthers) {
+  for (const double height_m : {0.1, 0.5, 1.2}) {
+    const Scene scene = Falling(height_m);
+    const Until until{.thing = "table", .gap_m = {}, .or_go_on = false, .who = "object"};
+    Script of_hand{.stages = {{{Guarded(WaitStep{}, 3, until)}}}, .settle_s = 0};
+    const double falls_s = std::sqrt(2 * height_m / 9.81);
+    EXPECT_NEAR(static_cast<double>(Played(scene, of_hand).simulation.snapshot().tick) / 480,
+                falls_s, 0.005)
+        << height_m;
+    Scene with_anna = scene;
+    Person anna{.name = "anna", .head = BodyIndex(scene.bodies.size()), .X_WS = {{-2, 0, 0}}};
+    Body head{.name = "anna", .kinematic = true};
+    head.shapes.push_back({Capsule{0.05, 0.03}, {}});
+    head.X_WB.p_m = {-2, 0, 1.6};
+    with_anna.bodies.push_back(head);
+    with_anna.persons.push_back(anna);
+    PersonStep wait{.person = 0, .action = WaitStep{}, .over_s = 3, .until = until};
+    Script of_anna{.stages = {{.steps = {}, .person_steps = {wait}}}, .settle_s = 0};
+    EXPECT_NEAR(static_cast<double>(Played(with_anna, of_anna).simulation.snapshot().tick) / 480,
+                falls_s, 0.005);
+    // Too short a time for it.
+    of_anna.stages[0].person_steps[0].over_s = falls_s / 2;
+    const Played failed(with_anna, of_anna);
+    EXPECT_EQ(failed.simulation.status().reason,
+              "until: the step of anna is over, and 'object' has not touched 'table'");
+    EXPECT_NEAR(static_cast<double>(failed.simulation.snapshot().tick) / 480, falls_s / 2, 0.005);
+    of_anna.stages[0].person_steps[0].until->or_go_on = true;
+    EXPECT_EQ(Played(with_anna, of_anna).simulation.status().kind, RunStatus::Kind::kCompleted);
+    of_hand.stages[0].steps[0].over_s = falls_s / 2;
+    EXPECT_EQ(Played(scene, of_hand).simulation.status().reason,
+              "until: the step is over, and 'object' has not touched 'table'");
+  }
+}
+
+TEST(GuardedMotion, AHandWaitsForAnotherHand) {
+  for (const bool by_gap : {true, false}) {
+    Scene scene = MakeScene({.hand_at_m = {-0.3, -0.2, 1.0}});
+    scene.hands.push_back({"other", LibraryHand("human_right"), {{-0.3, 0.3, 1.4}}});
+    Until until{.thing = "table", .gap_m = {}, .or_go_on = false, .who = "hand"};
+    if (by_gap) until.gap_m = 0.03;
+    Step wait = Guarded(WaitStep{}, 5, until);
+    wait.hand = HandIndex(1);
+    Step down{HandIndex(0), MoveStep{{0, 0, -0.35}}, 4};
+    Step up{HandIndex(1), MoveStep{{0, 0, 0.1}}, 0.1};
+    Script script{.stages = {{{down, wait, up}}}, .settle_s = 0};
+    Simulation simulation(scene, script);
+    while (simulation.Step() && simulation.snapshot().hands[1].X_WTarget.p_m.z() < 1.41) {
+    }
+    const Snapshot& now = simulation.snapshot();
+    const HandClearance clearance(scene, HandIndex(0), now.hands[0].joints);
+    EXPECT_NEAR(clearance.To(BodyIndex(kTable), now.hands[0].palm.X_WB, now), by_gap ? 0.03 : 0,
+                0.01)
+        << "the other goes up when it is there";
+  }
+}
+
 TEST(GuardedMotion, StopsAtAGap) {
   const Scene scene = MakeScene({.hand_at_m = {-0.3, -0.2, 1.0}});
   Script script;
