@@ -12,15 +12,14 @@ struct Way {
   double turned_deg = 0, moved_m = 0;
 };
 
-/// How far the object turns and moves, against the palm or in the world, between two times.
-Way WayOf(Simulation& simulation, bool in_the_hand, double from_s, double to_s) {
+/// How far the object turns and moves in the hand between two times.
+Way WayInTheHand(Simulation& simulation, double from_s, double to_s) {
   std::optional<Pose> begin;
   Way way;
   while (simulation.Step() && simulation.snapshot().tick < to_s * 480) {
     const Snapshot& now = simulation.snapshot();
     if (now.tick < from_s * 480) continue;
-    const Pose& X_WB = now.bodies[kObject].X_WB;
-    const Pose pose = in_the_hand ? now.hands[0].palm.X_WB.inverse() * X_WB : X_WB;
+    const Pose pose = now.hands[0].palm.X_WB.inverse() * now.bodies[kObject].X_WB;
     if (!begin) begin = pose;
     way.turned_deg =
         std::max(way.turned_deg, RotationVector(pose.q * begin->q.conjugate()).norm() / kRadPerDeg);
@@ -55,19 +54,28 @@ TEST(Holding, WhatIsHeldInTheAirNeitherTurnsNorCreeps) {
   for (const auto& [shape, mass_kg, style, approach] : cases) {
     Simulation simulation(MakeScene(Tabletop{.shape = shape, .mass_kg = mass_kg}),
                           Hold(style, approach, 0.15));
-    const Way way = WayOf(simulation, /*in_the_hand=*/true, 3, 10);
+    const Way way = WayInTheHand(simulation, 3, 10);
     EXPECT_LT(way.turned_deg, 0.1) << style << " " << mass_kg << " kg";
     EXPECT_LT(way.moved_m, 0.0001) << style << " " << mass_kg << " kg";
     EXPECT_GT(simulation.snapshot().bodies[kObject].X_WB.p_m.z(), kTop_m + 0.12) << "it is held";
   }
 }
 
-TEST(Holding, WhatIsHeldOnATableStaysThere) {
+TEST(Holding, WhatIsHeldOnATableIsNotLifted) {
   for (const double mass_kg : {0.1, 0.3, 1.0, 1.5}) {
     Simulation simulation(MakeScene(Tabletop{.shape = Box{{0.06, 0.06, 0.14}}, .mass_kg = mass_kg}),
                           Hold("wrap", Approach::kSide, 0));
-    const Way way = WayOf(simulation, /*in_the_hand=*/false, 2, 9.4);
-    EXPECT_LT(way.moved_m, 0.00005) << mass_kg << " kg";
+    double highest_m = 0;
+    std::optional<Eigen::Vector3d> held_at_m;
+    Eigen::Vector3d at_m;
+    while (simulation.Step() && simulation.snapshot().tick < 9.4 * 480) {
+      at_m = simulation.snapshot().bodies[kObject].X_WB.p_m;
+      if (simulation.snapshot().tick < 1.65 * 480) continue;
+      highest_m = std::max(highest_m, at_m.z() - (kTop_m + 0.07));
+      if (!held_at_m) held_at_m = at_m;
+    }
+    EXPECT_LT(highest_m, 0.00005) << mass_kg << " kg";
+    EXPECT_LT((at_m - *held_at_m).norm(), 0.005) << mass_kg << " kg: hand and thing settle";
   }
 }
 
@@ -103,6 +111,37 @@ TEST(Holding, WhatIsPutDownLandsFlatAndIsNotPushed) {
     EXPECT_LT(tilt_deg, 1) << mass_kg << " kg";
     EXPECT_LT(pushed_m, 0.003) << mass_kg << " kg";
   }
+}
+
+/// Tilt of a carton, degrees, when it is put down after the hand has turned it by 6 degrees.
+double TiltAtTheLanding(std::optional<bool> keep_upright) {
+  Script script;
+  const auto add = [&](StepAction action, double over_s) -> Step& {
+    script.stages.push_back({{{HandIndex(0), std::move(action), over_s}}});
+    return script.stages.back().steps.back();
+  };
+  add(ReachStep{"object", "wrap", Approach::kSide}, 0.8);
+  add(TriggerStep{1}, 0.6);
+  add(MoveStep{{0, 0, 0.15}}, 0.6);
+  add(TurnHandStep{{6 * kRadPerDeg, 0, 0}}, 0.6);
+  add(PlaceStep{"table"}, 0.8).keep_upright = keep_upright;
+  Simulation simulation(MakeScene(Tabletop{}), script);
+  while (simulation.Step()) {
+    const Snapshot& now = simulation.snapshot();
+    const bool lands = std::ranges::any_of(now.contacts, [](const ContactPoint& contact) {
+      return contact.a.body == BodyIndex(kTable) && contact.b.body == BodyIndex(kObject);
+    });
+    if (now.tick < 2.6 * 480 || !lands) continue;
+    const Pose& X_WB = now.bodies[kObject].X_WB;
+    return std::acos(std::min((X_WB.q * Eigen::Vector3d::UnitZ()).z(), 1.0)) / kRadPerDeg;
+  }
+  return -1;
+}
+
+TEST(Holding, APutDownLevelsWhatLeansUnlessTheScriptSaysNo) {
+  EXPECT_NEAR(TiltAtTheLanding({}), 0, 0.5);
+  EXPECT_NEAR(TiltAtTheLanding(true), 0, 0.5);
+  EXPECT_NEAR(TiltAtTheLanding(false), 6, 1.5);
 }
 
 }  // namespace
