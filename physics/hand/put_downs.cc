@@ -26,6 +26,8 @@ constexpr double kMostRise_m = 0.01;
 /// It goes down, at most so fast, if less than this share of the weight is left to others to bear.
 constexpr double kMostLowering_m_per_s = 0.06;
 constexpr double kLeftToBear = 0.7;
+/// What is faster does not stand.
+constexpr double kStill_rad_per_s = 0.1, kStill_m_per_s = 0.02;
 
 /// Upward force on a body from others than hands, newtons.
 double BorneBy(BodyIndex body, const Snapshot& now, double rate_hz) {
@@ -131,10 +133,15 @@ void ScriptPlayer::KeepStanding(std::size_t hand, const Snapshot& now) {
 void ScriptPlayer::RememberHowItStands(HandState& hand, const Snapshot& now) {
   hand.took = hand.object != kNone && TouchesAnything(hand.object, now);
   if (!hand.took) return;
-  const Pose& X_WB = now.body(hand.object).X_WB;
-  At(stood_, hand.object) =
-      Standing{.up_B = X_WB.q.conjugate() * Eigen::Vector3d::UnitZ(),
-               .low_m = WorldBounds(scene_.body(hand.object), X_WB).min().z()};
+  const BodyState& state = now.body(hand.object);
+  const bool falls =
+      state.w_WB_rad_per_s.norm() > kStill_rad_per_s || state.v_WB_m_per_s.norm() > kStill_m_per_s;
+  // What the hand has knocked over on its way stood before.
+  if (!falls)
+    At(stood_, hand.object) =
+        Standing{.up_B = state.X_WB.q.conjugate() * Eigen::Vector3d::UnitZ(),
+                 .low_m = WorldBounds(scene_.body(hand.object), state.X_WB).min().z()};
+  hand.took = At(stood_, hand.object).has_value();
 }
 
 }  // namespace prehend::physics

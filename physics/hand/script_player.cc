@@ -478,7 +478,9 @@ void ScriptPlayer::StartStep(std::size_t index, const Snapshot& now) {
   problem_ = resolver.Resolve();
   const bool grips = std::holds_alternative<TriggerStep>(step.action);
   hand.took = hand.took && (grips || std::holds_alternative<WaitStep>(step.action));
-  if (grips && hand.closes) RememberHowItStands(hand, now);
+  const bool reaches = std::holds_alternative<ReachStep>(step.action);
+  if ((grips && hand.closes) || reaches) RememberHowItStands(hand, now);
+  hand.took = hand.took && !reaches;
   if (!resolver.note().empty()) notes_.push_back({now.tick, step.hand, resolver.note()});
   if (!problem_.empty()) Fail(step.hand, std::string(problem_));
 }
