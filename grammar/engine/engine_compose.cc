@@ -27,6 +27,12 @@ std::size_t Remembered(const ComposeState& state) {
   return count;
 }
 
+// Of some part there is no interval.
+bool LacksOne(const ComposeRule& rule, const ComposeState& state) {
+  return std::any_of(state.parts.begin(), state.parts.begin() + rule.count,
+                     [](const std::vector<Span>& spans) { return spans.empty(); });
+}
+
 }  // namespace
 
 // Roles of the composition that the part does not name are free: its interval counts for every
@@ -168,9 +174,7 @@ bool Engine::LacksAPart(const RuleInstance& composition) const {
   const auto is_settled = [&](const Span& span) {
     return span.Complete().frame < composition.next;
   };
-  const auto count = static_cast<std::ptrdiff_t>(rule.count);
-  return std::any_of(parts.begin(), parts.begin() + count,
-                     [](const auto& spans) { return spans.empty(); }) &&
+  return LacksOne(rule, composition.As<ComposeState>()) &&
          std::ranges::all_of(
              parts, [&](const auto& spans) { return std::ranges::all_of(spans, is_settled); });
 }
@@ -268,9 +272,11 @@ std::optional<Span> Engine::NextComposed(RuleInstance& instance, FrameNumber set
       }
     }
     if (newest.empty()) return std::nullopt;
-    combinations_.LookAt(rule, state, TicksOf(instance));
     std::optional<Span> best;
+    const bool has_all = !LacksOne(rule, state);
+    if (has_all) combinations_.LookAt(rule, state, TicksOf(instance));
     for (const auto& [part, span] : newest) {
+      if (!has_all) break;
       const std::optional<Span> one = combinations_.Best(part, *span);
       const auto key = [&](const Span& whole) {
         return rule.hull ? std::pair(-whole.begin.tick, whole.end.tick)
@@ -287,6 +293,8 @@ std::optional<Span> Engine::NextComposed(RuleInstance& instance, FrameNumber set
 
 void Engine::ForgetHopeless(RuleInstance& instance, FrameNumber settled) {
   auto& state = instance.As<ComposeState>();
+  state.next_look = 0;
+  if (Remembered(state) == 0) return;
   NoteWhatIsToCome(instance, settled);
   combinations_.LookAt(RuleOf(instance).As<ComposeRule>(), state, TicksOf(instance));
   const auto count = static_cast<std::size_t>(RuleOf(instance).As<ComposeRule>().count);

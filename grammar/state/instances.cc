@@ -346,17 +346,18 @@ bool RuleInstances::GuardRests(const RuleInstance& instance) const {
   };
   if (rule.form() == Form::kAny) return std::ranges::all_of(instance.As<AnyState>().members, rests);
   if (rule.guard == kNone) return false;
-  const auto guard_rests = [&](int slot) {
-    const InstanceId guard = instance.references[slot];
-    return guard == kNone || rests(guard);
-  };
-  if (const auto* composition = rule.If<ComposeRule>()) {
+  if (rule.form() == Form::kCompose) {
+    const auto& composition = rule.As<ComposeRule>();
     return std::all_of(
-        composition->parts.begin(),
-        composition->parts.begin() + static_cast<std::ptrdiff_t>(composition->may_begin()),
-        guard_rests);
+        composition.parts.begin(),
+        composition.parts.begin() + static_cast<std::ptrdiff_t>(composition.may_begin()),
+        [&](int slot) {
+          const InstanceId part = instance.references[slot];
+          return part == kNone || rests(part);
+        });
   }
-  return guard_rests(rule.guard);
+  const InstanceId guard = instance.references[rule.guard];
+  return guard == kNone || rests(guard);
 }
 
 InstanceKey RuleInstances::Referred(const RuleInstance& instance, int slot) const {
