@@ -247,6 +247,8 @@ bool ScriptPlayer::Grips(const HandState& hand) const {
 }
 
 void ScriptPlayer::GiveWay(const Snapshot& now) {
+  // The two engines of the plane hold by different contacts, and would no longer lift alike.
+  if (scene_.world.planar) return;
   for (std::size_t h = 0; h < hands_.size(); ++h) {
     HandState& hand = hands_[h];
     hand.yields_m_per_s.setZero();
