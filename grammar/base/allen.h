@@ -83,9 +83,17 @@ constexpr bool Holds(Allen relation, const Interval& a, const Interval& b, Tick 
       return near(a.end, b.end) && a.begin > b.begin;
     case Allen::kEquals:
       return near(a.begin, b.begin) && near(a.end, b.end);
-    default:
-      return Relate(a, b) == relation;
+    case Allen::kOverlaps:
+    case Allen::kDuring:
+    case Allen::kFinishedBy:
+    case Allen::kContains:
+    case Allen::kStartedBy:
+    case Allen::kOverlappedBy:
+    case Allen::kMetBy:
+    case Allen::kAfter:
+      break;
   }
+  return Relate(a, b) == relation;
 }
 
 /// How two intervals that lie to each other as the relation says with a time may really lie.

@@ -87,7 +87,7 @@ struct Until {
   /// the hand's surface is nearer to it than this.
   std::optional<double> gap_m;
   bool or_go_on = false;  ///< the script continues also if it never happens
-  std::string who = {};   ///< instead of the hand: another one, or a body that is to touch the thing
+  std::string who = {};  ///< instead of the hand: another one, or a body that is to touch the thing
 };
 
 /// When it is a step's turn: at the begin of its stage, but after the step before it of the same
@@ -154,7 +154,7 @@ struct PersonStep {
   PersonAction action;
   double over_s = 0.5;
   std::optional<Until> until = {};  ///< of somebody or something else
-  double delay_s = 0;  ///< after its turn has come
+  double delay_s = 0;               ///< after its turn has come
   StepOrder order = {};
 };
 

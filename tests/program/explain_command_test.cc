@@ -18,7 +18,7 @@ TEST(ExplainCommand, AScenarioAndItsRecordingAreExplainedAlike) {
   EXPECT_EQ(played.out, recorded.out);
   EXPECT_NE(played.out.find("reaching(right_hand, milk)"), std::string::npos) << played.out;
 
-  const Said one = Prehend({"explain", file, "--event", "grasping right_hand milk", "--json"});
+  const Said one = Prehend({"explain", file, "--event", "contact milk right_hand", "--json"});
   ASSERT_EQ(one.exit_code, 0) << one.err;
   const auto json = nlohmann::json::parse(one.out);
   EXPECT_EQ(json["episode"], "milk_carton_wrap");

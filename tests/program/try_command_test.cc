@@ -126,7 +126,7 @@ TEST_F(TryCommand, TheCookbookIsRight) {
     EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
     EXPECT_EQ(said.err, "");
   }
-  EXPECT_EQ(tried, 11);
+  EXPECT_EQ(tried, 13);
 }
 
 }  // namespace

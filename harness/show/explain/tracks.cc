@@ -190,8 +190,6 @@ const char* Name(Track::Kind kind) {
   return "";
 }
 
-// Names hold commas; they hold no quotes but those of texts.
-
 }  // namespace
 
 std::vector<std::string> TrackNames(const Program& program) {
