@@ -459,11 +459,14 @@ Reasons EventReasons::WaitedFor(InstanceId instance, const CandidateOutcome& out
   for (const InstanceId target : targets) {
     const std::vector<CandidateOutcome>& outcomes = past_.OutcomesOf(target);
     const auto only_then = [&](const CandidateOutcome& other) {
-      return other.decided == outcome.decided && other.span.end.tick < other.decided;
+      return other.decided == outcome.decided &&
+             (other.span.end.tick < other.decided || other.span.end.tick > outcome.span.end.tick);
     };
     const auto other = std::find_if(outcomes.begin(), outcomes.end(), only_then);
     if (other == outcomes.end()) continue;
-    Reason reason = Remark(Label(past_, target), "was decided only then");
+    const bool ends_then = other->span.end.tick == other->decided;
+    Reason reason =
+        Remark(Label(past_, target), ends_then ? "ended only then" : "was decided only then");
     reason.because = Waited(target, *other, depth + 1);
     reasons.push_back(std::move(reason));
   }

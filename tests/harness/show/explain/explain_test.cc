@@ -79,8 +79,8 @@ TEST(Explain, ACompositionBeginsAndEndsWithItsParts) {
   EXPECT_EQ(why.began.front().what, "part reaching(right_hand, milk)");
   EXPECT_EQ(why.began.back().what, "part putting_down(right_hand, milk)");
   ExpectReason(why.ended, "touching(milk, table)", Mark::kTurned);
-  EXPECT_NE(Find(why.waited, "reaching(right_hand, milk)"), nullptr)
-      << "it is known only when the touch is over";
+  EXPECT_NE(Find(why.waited, "first_hold(right_hand, milk)"), nullptr)
+      << "it could not be known before the grasp was over";
 }
 
 // 55 ms are over five milliseconds before the frame in which the touch begins again.
