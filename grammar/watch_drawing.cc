@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See grammar/watch_drawing.h
 #include "grammar/watch_drawing.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See physics/limit_watch.h. Tested by tests/physics/limit_watch_test.cc
 #include "physics/limit_watch.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See physics/step_watch.h. Tested by tests/physics/step_watch_test.cc
 #include "physics/step_watch.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See grammar/base/interval_set.h. Tested by tests/grammar/base/interval_set_test.cc
 #include "grammar/base/interval_set.h"
 
 #include <algorithm>

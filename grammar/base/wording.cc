@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See grammar/base/wording.h
 #include "grammar/base/wording.h"
 
 #include <algorithm>

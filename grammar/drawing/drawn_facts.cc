@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See grammar/drawing/drawn_facts.h
 #include "grammar/drawing/drawn_facts.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See grammar/engine/combinations.h. Tested by tests/grammar/engine/compose_test.cc
 #include "grammar/engine/combinations.h"
 
 #include <algorithm>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See grammar/values/backward_walk.h.
-//
 // Needs: the frame `end` at which `until` is true; `since`, and with `approaching` a signal and its
 // speed, at every frame before it.
 // Assumptions: all frames from limits.first on are remembered. A value may be unknown, as it may

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See physics/motion/stage_clock.h. Tested by tests/physics/motion/stage_clock_test.cc
 #include "physics/motion/stage_clock.h"
 
 #include <algorithm>

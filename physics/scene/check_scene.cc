@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See physics/scene/check_scene.h. Tested by tests/physics/scene/check_scene_test.cc
 #include "physics/scene/check_scene.h"
 
 #include <algorithm>

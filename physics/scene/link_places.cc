@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See physics/scene/link_places.h. Tested by tests/physics/scene/link_places_test.cc
 #include "physics/scene/link_places.h"
 
 #include <cmath>

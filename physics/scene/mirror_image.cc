@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See physics/scene/mirror_image.h. Tested by tests/physics/world/mirrored_world_test.cc
 #include "physics/scene/mirror_image.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/base/build_text.h. harness/CMakeLists.txt knows the compiler.
+// The compiler and its flags come from harness/CMakeLists.txt.
 #include "harness/base/base/build_text.h"
 
 namespace prehend {

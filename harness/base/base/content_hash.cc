@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/base/content_hash.h. Tested by tests/harness/base/base/content_hash_test.cc
 #include "harness/base/base/content_hash.h"
 
 #include <fmt/format.h>

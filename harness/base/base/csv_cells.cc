@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/base/csv_cells.h. Tested by tests/harness/base/base/csv_cells_test.cc
 #include "harness/base/base/csv_cells.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/base/markup.h. Tested by tests/harness/base/base/markup_test.cc
 #include "harness/base/base/markup.h"
 
 #include <sstream>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/base/project_paths.h. Tested by tests/harness/episode/run/find_scenario_test.cc
-// and tests/program/project_test.cc
 #include "harness/base/base/project_paths.h"
 
 #include <dlfcn.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/base/shell_quote.h. Tested by tests/harness/base/base/shell_quote_test.cc
 #include "harness/base/base/shell_quote.h"
 
 #include <cstdlib>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/base/temporary_folder.h
 #include "harness/base/base/temporary_folder.h"
 
 #include <cerrno>

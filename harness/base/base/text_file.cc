@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/base/text_file.h. Tested by tests/harness/base/base/text_file_test.cc
 #include "harness/base/base/text_file.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/base/visible_stream.h. Tested by
-// tests/harness/base/base/visible_stream_test.cc
 #include "harness/base/base/visible_stream.h"
 
 #include "harness/base/base/text_file.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/base/wrap_text.h. Tested by tests/harness/base/base/wrap_text_test.cc
 #include "harness/base/base/wrap_text.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/process/interrupt.h. Tested by tests/program/interrupt_test.cc
 #include "harness/base/process/interrupt.h"
 
 #include <sys/signalfd.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/process/progress_counters.h. Tested by
-// tests/harness/base/process/worker_pool_test.cc
 #include "harness/base/process/progress_counters.h"
 
 #include <sys/mman.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/process/run_tool.h. Tested by tests/harness/base/process/run_tool_test.cc
 #include "harness/base/process/run_tool.h"
 
 #include <fcntl.h>

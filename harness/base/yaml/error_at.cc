@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/base/yaml/error_at.h. Tested by tests/program/import_test.cc
 #include "harness/base/yaml/error_at.h"
 
 #include "harness/base/yaml/diagnostic_list.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/cli/cli/command_line.h. Tested by tests/program/command_line_test.cc
 #include "harness/cli/cli/command_line.h"
 
 #include <fmt/format.h>

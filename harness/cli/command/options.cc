@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/cli/command/options.h. Tested by tests/harness/cli/command/parse_arguments_test.cc
 #include "harness/cli/command/options.h"
 
 #include <fmt/format.h>

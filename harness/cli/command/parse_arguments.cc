@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/cli/command/parse_arguments.h. CLI11 splits the words and prints the help; what is
-// wrong with them is worded here. Tested by tests/harness/cli/command/parse_arguments_test.cc
+// CLI11 splits the words and prints the help; what is wrong with them is worded here.
 #include "harness/cli/command/parse_arguments.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/cli/command/picture_options.h. Tested by tests/program/render_test.cc
 #include "harness/cli/command/picture_options.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/cli/command/preconditions.h. Tested by tests/program/preconditions_test.cc
 #include "harness/cli/command/preconditions.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/cli/command/typed_episode.h. Tested by tests/program/episode_kinds_test.cc
 #include "harness/cli/command/typed_episode.h"
 
 #include "harness/episode/episode/open_episode.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/episode/keep_episodes.h. Tested by tests/program/episode_kinds_test.cc
 #include "harness/episode/episode/keep_episodes.h"
 
 #include <algorithm>

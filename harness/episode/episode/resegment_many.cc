@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/episode/resegment_many.h. Tested by tests/program/episodes_test.cc
 #include "harness/episode/episode/resegment_many.h"
 
 #include <fmt/format.h>

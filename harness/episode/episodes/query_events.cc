@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/episodes/query_events.h. Tested by tests/program/query_test.cc
 #include "harness/episode/episodes/query_events.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/episodes/record_run.h. Tested by tests/program/recording_test.cc and
-// tests/program/episodes_test.cc
 #include "harness/episode/episodes/record_run.h"
 
 #include "harness/episode/episodes/schema.h"

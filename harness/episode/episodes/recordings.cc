@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/episodes/recordings.h. Tested by
-// tests/harness/episode/episodes/recordings_test.cc
 #include "harness/episode/episodes/recordings.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/episodes/schema.h. Tested by
-// tests/harness/episode/episodes/episode_file_test.cc
 #include "harness/episode/episodes/schema.h"
 
 #include <fmt/format.h>

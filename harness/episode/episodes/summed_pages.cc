@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/episodes/summed_pages.h. Tested by tests/program/damaged_episodes_test.cc
 #include "harness/episode/episodes/summed_pages.h"
 
 #include <sqlite3.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/episodes/task_files.h. Tested by
-// tests/harness/episode/episodes/task_files_test.cc
 #include "harness/episode/episodes/task_files.h"
 
 #include <filesystem>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/frames/columns.h. Tested by tests/harness/episode/frames/columns_test.cc
 #include "harness/episode/frames/columns.h"
 
 #include <zstd.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/frames/frame_layout.h. Tested by tests/harness/episode/frames/frames_test.cc
 #include "harness/episode/frames/frame_layout.h"
 
 #include <algorithm>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/frames/recorded_frames.h. Tested by
-// tests/harness/episode/frames/recorded_frames_test.cc
 #include "harness/episode/frames/recorded_frames.h"
 
 #include <algorithm>

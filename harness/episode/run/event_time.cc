@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/run/event_time.h. Tested by tests/harness/episode/run/event_time_test.cc
 #include "harness/episode/run/event_time.h"
 
 #include <fmt/format.h>

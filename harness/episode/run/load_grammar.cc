@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/run/load_grammar.h. Tested by tests/program/command_line_test.cc
 #include "harness/episode/run/load_grammar.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/run/load_run.h. Tested by tests/harness/episode/run/load_run_test.cc
 #include "harness/episode/run/load_run.h"
 
 #include <algorithm>

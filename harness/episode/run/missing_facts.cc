@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/run/missing_facts.h. Tested by tests/program/missing_facts_test.cc
 #include "harness/episode/run/missing_facts.h"
 
 #include <fmt/format.h>

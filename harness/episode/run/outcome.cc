@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/run/outcome.h. Tested by tests/harness/episode/run/outcome_test.cc
 #include "harness/episode/run/outcome.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/run/run_trials.h. Tested by tests/harness/episode/run/run_trials_test.cc
 #include "harness/episode/run/run_trials.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/run/segment.h. Tested by tests/harness/episode/run/run_scenario_test.cc
 #include "harness/episode/run/segment.h"
 
 #include <vector>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/run/segment_recording.h. Tested by tests/program/recording_test.cc
 #include "harness/episode/run/segment_recording.h"
 
 #include <fmt/format.h>

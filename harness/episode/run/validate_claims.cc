@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/run/validate_claims.h. Tested by
-// tests/harness/episode/run/validate_claims_test.cc
 #include "harness/episode/run/validate_claims.h"
 
 #include <utility>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/sense/episode_format.h. Tested by
-// tests/harness/episode/sense/episode_file_test.cc
 #include "harness/episode/sense/episode_format.h"
 
 namespace prehend::episode {

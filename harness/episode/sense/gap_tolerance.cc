@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/sense/gap_tolerance.h. Tested by tests/program/not_tracked_test.cc
 #include "harness/episode/sense/gap_tolerance.h"
 
 #include <fmt/format.h>

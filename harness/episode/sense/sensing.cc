@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/sense/sensing.h. Tested by tests/harness/episode/sense/sensing_test.cc
 #include "harness/episode/sense/sensing.h"
 
 #include <algorithm>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/sense/sensor_noise.h. Tested by
-// tests/harness/episode/sense/sensor_noise_test.cc
 #include "harness/episode/sense/sensor_noise.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/import_poses.h. Tested by tests/program/import_test.cc
 #include "harness/exchange/import/import_poses.h"
 
 #include <fmt/format.h>

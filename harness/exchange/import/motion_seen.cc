@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/motion_seen.h. Tested by tests/program/import_warnings_test.cc
 #include "harness/exchange/import/motion_seen.h"
 
 #include <algorithm>

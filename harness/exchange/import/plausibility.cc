@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/plausibility.h. Tested by tests/program/import_test.cc and
-// tests/program/import_warnings_test.cc
 #include "harness/exchange/import/plausibility.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/rest_poses.h.
-//
 // A thing rests where it gets less than a centimetre far in half a second, hardly turns, is as low
 // as it ever rests, and no hand is at it. If it never rests upright, it is not turned as the map
 // says; unless it lies or is upside down, which things do. Whether it really lies is told by what

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/track.h. Tested by tests/program/import_test.cc
 #include "harness/exchange/import/track.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/knowledge/episode_graph.h. Tested by tests/program/knowledge_test.cc
 #include "harness/exchange/knowledge/episode_graph.h"
 
 #include <fmt/format.h>

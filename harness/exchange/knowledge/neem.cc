@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/knowledge/neem.h. Tested by tests/harness/exchange/knowledge/neem_test.cc
 #include "harness/exchange/knowledge/neem.h"
 
 #include <bson/bson.h>

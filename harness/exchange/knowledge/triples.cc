@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/knowledge/triples.h. Tested by
-// tests/harness/exchange/knowledge/triples_test.cc
 #include "harness/exchange/knowledge/triples.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/knowledge/write_knowledge.h. Tested by tests/program/knowledge_test.cc
 #include "harness/exchange/knowledge/write_knowledge.h"
 
 #include <chrono>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/labels/read_labels.h. Tested by tests/harness/exchange/labels/labels_test.cc
 #include "harness/exchange/labels/read_labels.h"
 
 #include <fmt/format.h>

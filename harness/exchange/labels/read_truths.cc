@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/labels/read_truths.h. Tested by tests/program/labels_test.cc
 #include "harness/exchange/labels/read_truths.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/messages/log_file.h
 #include "harness/exchange/messages/log_file.h"
 
 #include <fmt/format.h>

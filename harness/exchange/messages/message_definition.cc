@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/messages/message_definition.h. Tested by
-// tests/harness/exchange/messages/message_definition_test.cc
 #include "harness/exchange/messages/message_definition.h"
 
 #include <fmt/format.h>

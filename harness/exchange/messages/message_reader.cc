@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/messages/message_reader.h. Tested by tests/program/import_messages_test.cc
 #include "harness/exchange/messages/message_reader.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/messages/pose_fields.h. Tested by
-// tests/harness/exchange/messages/pose_fields_test.cc
 #include "harness/exchange/messages/pose_fields.h"
 
 #include <algorithm>

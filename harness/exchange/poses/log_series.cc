@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/poses/log_series.h. Tested by tests/program/import_messages_test.cc
 #include "harness/exchange/poses/log_series.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/poses/pose_file.h. Tested by tests/program/import_test.cc
 #include "harness/exchange/poses/pose_file.h"
 
 #include <fmt/format.h>

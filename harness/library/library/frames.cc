@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/library/library/frames.h. Tested by tests/python/test_events.py
 #include "harness/library/library/frames.h"
 
 #include <fmt/format.h>

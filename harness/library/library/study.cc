@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/library/library/study.h. Tested by tests/python/test_study.py
 #include "harness/library/library/study.h"
 
 #include <algorithm>

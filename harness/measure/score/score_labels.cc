@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/measure/score/score_labels.h. Tested by tests/program/labels_test.cc
 #include "harness/measure/score/score_labels.h"
 
 #include <fmt/format.h>

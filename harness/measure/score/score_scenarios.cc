@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/measure/score/score_scenarios.h. Tested by tests/program/score_test.cc
 #include "harness/measure/score/score_scenarios.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/measure/score/tracks.h. Tested by tests/harness/measure/score/tracks_test.cc
 #include "harness/measure/score/tracks.h"
 
 #include <algorithm>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/measure/sweep/robust_settings.h. Tested by
-// tests/harness/measure/sweep/robust_settings_test.cc
 #include "harness/measure/sweep/robust_settings.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/measure/sweep/sweep.h. Tested by tests/program/sweep_test.cc
 #include "harness/measure/sweep/sweep.h"
 
 #include <fmt/format.h>

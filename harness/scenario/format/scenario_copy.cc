@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/scenario/format/scenario_copy.h. Only the values that change are written anew, at the
-// places where they stand. Tested by tests/program/command_line_test.cc
+// Only the values that change are written anew, at the places where they stand.
 #include "harness/scenario/format/scenario_copy.h"
 
 #include <functional>

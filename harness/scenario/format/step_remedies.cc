@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/scenario/format/step_remedies.h. Tested by
-// tests/harness/scenario/format/scenario_errors_test.cc
 #include "harness/scenario/format/step_remedies.h"
 
 #include <sstream>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/scenario/format/until_format.h. Tested by
-// tests/harness/scenario/format/scenario_errors_test.cc
 #include "harness/scenario/format/until_format.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/scenario/read/read_claims.h. Tested by
-// tests/harness/scenario/read/read_claims_test.cc
 #include "harness/scenario/read/read_claims.h"
 
 #include <algorithm>

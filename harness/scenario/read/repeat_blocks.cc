@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/scenario/read/repeat_blocks.h. Tested by
-// tests/harness/scenario/read/repeat_blocks_test.cc
 #include "harness/scenario/read/repeat_blocks.h"
 
 #include <fmt/format.h>

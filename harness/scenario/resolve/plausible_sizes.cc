@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/scenario/resolve/plausible_sizes.h. Tested by
-// tests/harness/scenario/resolve/plausible_sizes_test.cc
 #include "harness/scenario/resolve/plausible_sizes.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/scenario/resolve/step_order.h. Tested by
-// tests/harness/scenario/resolve/step_order_test.cc
 #include "harness/scenario/resolve/step_order.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/scenario/scenario/own_camera.h. Tested by
-// tests/harness/scenario/scenario/own_camera_test.cc
 #include "harness/scenario/scenario/own_camera.h"
 
 #include <charconv>

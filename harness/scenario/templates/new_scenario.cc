@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/scenario/templates/new_scenario.h
 #include "harness/scenario/templates/new_scenario.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/scenario/templates/templates.h
 #include "harness/scenario/templates/templates.h"
 
 #include <fmt/format.h>

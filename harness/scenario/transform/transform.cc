@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/scenario/transform/transform.h. Tested by
-// tests/harness/scenario/transform/transform_test.cc
 #include "harness/scenario/transform/transform.h"
 
 #include <algorithm>

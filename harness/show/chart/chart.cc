@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/chart/chart.h. Tested by tests/harness/show/chart/chart_test.cc
 #include "harness/show/chart/chart.h"
 
 #include <fmt/format.h>

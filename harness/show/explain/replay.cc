@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/explain/replay.h. Tested by tests/harness/show/explain/explain_test.cc
 #include "harness/show/explain/replay.h"
 
 #include <fmt/format.h>

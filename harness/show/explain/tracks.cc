@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/explain/tracks.h. Tested by tests/harness/show/explain/tracks_test.cc
 #include "harness/show/explain/tracks.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/explain/why_missing.h. Runs that were given up, and the choice of what an event
-// is missing for. Tested by tests/harness/show/explain/why_missing_test.cc
+// Runs that were given up, and the choice of what an event is missing for.
 #include "harness/show/explain/why_missing.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/figures/comparison_sheet.h. Tested by
-// tests/harness/show/figures/comparison_sheet_test.cc
 #include "harness/show/figures/comparison_sheet.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/figures/figures.h. Tested by tests/harness/show/figures/figures_test.cc
 #include "harness/show/figures/figures.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/figures/moment_pictures.h. Tested by tests/program/query_test.cc
 #include "harness/show/figures/moment_pictures.h"
 
 #include <fmt/format.h>

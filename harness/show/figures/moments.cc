@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/figures/moments.h. Tested by tests/harness/show/figures/moments_test.cc
 #include "harness/show/figures/moments.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/figures/scene_tiles.h. Tested by tests/harness/show/figures/scene_tiles_test.cc
 #include "harness/show/figures/scene_tiles.h"
 
 #include <fmt/format.h>

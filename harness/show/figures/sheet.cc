@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/figures/sheet.h. Tested by tests/harness/show/figures/sheet_test.cc
 #include "harness/show/figures/sheet.h"
 
 #include <fmt/format.h>

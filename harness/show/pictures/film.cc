@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/pictures/film.h. Tested by tests/harness/show/pictures/film_test.cc
 #include "harness/show/pictures/film.h"
 
 #include <fmt/format.h>

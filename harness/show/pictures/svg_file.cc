@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/show/pictures/svg_file.h. Tested by tests/harness/show/pictures/svg_file_test.cc
 #include "harness/show/pictures/svg_file.h"
 
 #include "harness/base/base/atomic_file.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/accept/accept.h. Tested by tests/program/golden_workflow_test.cc
 #include "harness/suite/accept/accept.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/check/attribute.h. Tested by tests/harness/suite/check/attribute_test.cc
 #include "harness/suite/check/attribute.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/check/attribute_run.h. Tested by
-// tests/harness/suite/check/attribute_run_test.cc
 #include "harness/suite/check/attribute_run.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/check/causes.h. Tested by tests/harness/suite/check/causes_test.cc
 #include "harness/suite/check/causes.h"
 
 #include <fmt/format.h>

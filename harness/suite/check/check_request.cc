@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/check/check_request.h. Tested by
-// tests/harness/suite/check/check_scenario_test.cc
 #include "harness/suite/check/check_request.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/check/check_scenario.h. Judges are functions of values; files are written in
-// Store() only. Tested by tests/harness/suite/check/check_scenario_test.cc
+// Judges are functions of values; files are written in Store() only.
 #include "harness/suite/check/check_scenario.h"
 
 #include <algorithm>

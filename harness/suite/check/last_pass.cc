@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/check/last_pass.h. A record that is damaged or of another version is ignored.
-// Tested by tests/harness/suite/check/last_pass_test.cc
+// A record that is damaged or of another version is ignored.
 #include "harness/suite/check/last_pass.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/check/run_suite.h. Tested by tests/program/runner_test.cc
 #include "harness/suite/check/run_suite.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/check/select_scenarios.h. Tested by
-// tests/harness/suite/check/select_scenarios_test.cc
 #include "harness/suite/check/select_scenarios.h"
 
 #include <fnmatch.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/check/settings.h. Tested by tests/harness/suite/check/settings_test.cc
 #include "harness/suite/check/settings.h"
 
 #include <fmt/format.h>

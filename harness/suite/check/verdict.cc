@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/check/verdict.h. Tested by tests/harness/suite/check/verdict_test.cc
 #include "harness/suite/check/verdict.h"
 
 #include <fmt/format.h>

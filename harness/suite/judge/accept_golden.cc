@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/judge/accept_golden.h. Tested by
-// tests/harness/suite/judge/accept_golden_test.cc
 #include "harness/suite/judge/accept_golden.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/judge/compare_with_oracle.h. Tested by
-// tests/harness/suite/judge/compare_with_oracle_test.cc
 #include "harness/suite/judge/compare_with_oracle.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/judge/ensemble.h. Tested by tests/harness/suite/judge/ensemble_test.cc
 #include "harness/suite/judge/ensemble.h"
 
 #include <fmt/format.h>

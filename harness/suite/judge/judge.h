@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the judges of a check are given, and what they return: a run with what it was played from,
-// and findings. Tested by tests/harness/suite/judge/judge_golden_test.cc
+// and findings. Tested by tests/harness/suite/judge/judge_golden_test.cc and
+// tests/harness/suite/judge/judge_claims_test.cc
 #pragma once
 
 #include <iterator>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/judge/judge_golden.h. Tested by tests/harness/suite/judge/judge_golden_test.cc
 #include "harness/suite/judge/judge_golden.h"
 
 #include <fmt/format.h>

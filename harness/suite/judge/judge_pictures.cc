@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/judge/judge_pictures.h. Tested by
-// tests/harness/suite/judge/judge_pictures_test.cc
 #include "harness/suite/judge/judge_pictures.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/judge/judge_recording.h. Tested by tests/program/golden_of_recording_test.cc
 #include "harness/suite/judge/judge_recording.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/judge/other_view.h. Tested by tests/program/render_test.cc
 #include "harness/suite/judge/other_view.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/report/charts.h. Tested by tests/harness/suite/report/charts_test.cc
 #include "harness/suite/report/charts.h"
 
 #include <fmt/format.h>

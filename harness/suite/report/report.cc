@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/suite/report/report.h. Tested by tests/harness/suite/report/report_test.cc
 #include "harness/suite/report/report.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/truth/claims/judge_claims.h. Tested by
-// tests/harness/truth/claims/judge_claims_test.cc
 #include "harness/truth/claims/judge_claims.h"
 
 #include <fmt/format.h>

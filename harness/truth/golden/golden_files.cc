@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/truth/golden/golden_files.h. Tested by
-// tests/harness/truth/golden/golden_files_test.cc
 #include "harness/truth/golden/golden_files.h"
 
 #include <algorithm>

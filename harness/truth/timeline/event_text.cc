@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/truth/timeline/event_text.h. Tested by tests/harness/truth/golden/golden_test.cc
 #include "harness/truth/timeline/event_text.h"
 
 #include <fmt/format.h>
