@@ -2,6 +2,8 @@
 // Looks up names of rules, roles and attributes in the program, of entities in the entity_table.
 #include "grammar/name_events.h"
 
+#include <cmath>
+
 #include "grammar/program/program.h"
 
 namespace prehend::grammar {
@@ -25,6 +27,7 @@ Timeline NameEvents(const Program& program, const EntityTable& entity_table,
     }
     for (std::size_t i = 0; i < rule.attributes.size(); ++i) {
       const RuleAttribute& attribute = rule.attributes[i];
+      if (std::isnan(event.attributes[i])) continue;  // nobody knows it
       const std::string unit =
           attribute.dimension == kPlain ? "" : DimensionText(attribute.dimension);
       named.values.push_back({attribute.name, event.attributes[i], unit});

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "grammar/analysis/analyze_dependencies.h"
+#include "grammar/analysis/require_sight.h"
 #include "grammar/compile/lower.h"
 #include "grammar/compile/lower_definition.h"
 #include "grammar/compile/lower_law.h"
@@ -50,6 +51,7 @@ class Compiler {
     if (diagnostics_.empty()) Order();
     if (!diagnostics_.empty())
       return {.program = nullptr, .diagnostics = std::move(diagnostics_), .warnings = {}};
+    RequireSight(program_);
     ChooseGuards(program_);
     warnings_ = std::move(symbols_.warnings);
     WarnOfUnused();

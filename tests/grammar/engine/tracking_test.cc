@@ -3,6 +3,7 @@
 #include "grammar/base/tracking.h"
 
 #include "grammar/base/solid.h"
+#include "grammar/name_events.h"
 #include "tests/grammar/scene.h"
 
 namespace prehend::grammar {
@@ -104,6 +105,70 @@ TEST(NotTracked, AShortGapMayBeBridgedByARuleAndItsBeginIsAnEnd) {
                  "begins\n",
                  {Scene::kCup}),
             "300..500; ");
+}
+
+// From when the hand is low, which it always is, nobody sees whether the cup rises while it is
+// lost.
+TEST(NotTracked, AbsenceNeedsSight) {
+  const std::string high = "grammar t\ncondition high(cup: Cup) while height(cup) > 5 m\n";
+  const std::string roles = "event e(hand: Hand, cup: Cup) from height(hand) < 1 m begins without ";
+  for (const std::string comes : {"high(cup) begins", "height(cup) > 5 m begins",
+                                  "(height(cup) > height(cup)@begin + 5 m or high(cup)) begins"}) {
+    const std::string rule = high + roles + comes;
+    EXPECT_EQ(Held(rule + " within 250 ms\n", {Scene::kCup}), "0..250; ") << comes;
+    EXPECT_EQ(Held(rule + " within 300 ms\n", {Scene::kCup}), "0..300; ") << comes;
+    EXPECT_EQ(Held(rule + " within 310 ms\n", {Scene::kCup}), "") << comes;
+    EXPECT_EQ(Held(rule + " within 310 ms\n", {}), "0..310; ") << comes;
+    EXPECT_EQ(Held(rule + " within 310 ms\n", {Scene::kTray}), "0..310; ") << comes;
+  }
+  // Touches are facts of their own.
+  EXPECT_EQ(Held(high + roles + "touching(hand, cup) begins within 310 ms\n", {Scene::kCup}),
+            "0..310; ");
+}
+
+TEST(NotTracked, NothingIsBetweenOnlyIfItIsSeen) {
+  const std::string rules =
+      "grammar t\ncondition high(cup: Cup) while height(cup) > 5 m\n"
+      "condition low(hand: Hand) from height(hand) < 1 m begins without height(hand) > 5 m begins "
+      "within 50 ms\n"
+      "condition seen(tray: Movable) from height(tray) < 1 m begins without height(tray) > 5 m "
+      "begins "
+      "within 50 ms\n"
+      "event e(hand: Hand, cup: Cup, tray: Movable)\n"
+      "  compose a: low(hand), b: seen(tray), c: seen(cup) where a before b, ";
+  const std::string equal = "b equals c";
+  EXPECT_EQ(Held(rules + equal + "\n", {Scene::kTray, Scene::kCup}), "0..550; ");
+  EXPECT_EQ(
+      Held(rules + equal + ", without high(cup) between a and b\n", {Scene::kTray, Scene::kCup}),
+      "");
+  // What is there all the time ends with its first interval.
+  const std::string seen =
+      "grammar t\ncondition high(cup: Cup) while height(cup) > 5 m\n"
+      "condition seen(tray: Movable) from height(tray) < 1 m begins without height(tray) > 5 m "
+      "begins "
+      "within 50 ms\n"
+      "event e(cup: Cup, tray: Movable)\n"
+      "  all of a: seen(tray), b: seen(tray) where a before b, without high(cup) between a and b "
+      "within 2 s\n";
+  EXPECT_EQ(Held(seen, {Scene::kTray}), "0..550; ");
+  EXPECT_EQ(Held(seen, {Scene::kTray, Scene::kCup}), "");
+}
+
+TEST(NotTracked, AValueThatNobodyKnowsIsLeftOut) {
+  const auto program = CompileText(
+      "grammar t\nevent e(hand: Hand, cup: Cup) while touching(hand, cup) or height(hand) < 1 m "
+      "with low = height(hand) with up = height(cup)\n");
+  ASSERT_TRUE(program);
+  Scene scene;
+  Monitor monitor(program, scene.entity_table);
+  scene.looks[Scene::kCup] = NotTracked();
+  std::vector<Event> events;
+  monitor.Advance(scene.At(0), events);
+  monitor.Finish(10, events);
+  const Timeline timeline = NameEvents(*program, scene.entity_table, events);
+  ASSERT_EQ(timeline.events.size(), 1U);
+  ASSERT_EQ(timeline.events[0].values.size(), 1U);
+  EXPECT_EQ(timeline.events[0].values[0].name, "low");
 }
 
 TEST(NotTracked, OnlyWhatIsTrackedIsNearest) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "grammar/base/allen.h"
+#include "grammar/base/tracking.h"
 #include "tests/grammar/reference/random_meaning.h"
 
 namespace prehend::grammar::testing {
@@ -398,7 +399,11 @@ RandomEpisode MakeEpisode(std::mt19937_64& random, int frames, unsigned calm) {
   int height = 0;
   Tick tick = static_cast<Tick>(random() % 5);
   const bool uneven = random() % 2 == 0;
+  bool is_lost = false;
+  const unsigned lost_each = random() % 2 == 0 ? 2 * calm : 0;
   for (int i = 0; i < frames; ++i) {
+    if (lost_each > 0 && random() % (is_lost ? calm : lost_each) == 0) is_lost = !is_lost;
+    episode.lost.push_back(is_lost);
     for (std::size_t k = 0; k < touches.size(); ++k) {
       if (random() % calm == 0) touches[k] = !touches[k];
       episode.touches[k].push_back(touches[k]);
@@ -421,7 +426,8 @@ std::string Drawn(const RandomEpisode& episode) {
     text += '\n';
   }
   text += "z  ";
-  for (const int height : episode.height_m) text += std::to_string(height);
+  for (int i = 0; i < episode.frames(); ++i)
+    text += episode.lost[i] ? "?" : std::to_string(episode.height_m[i]);
   text += "\nticks";
   for (const Tick tick : episode.ticks) text += " " + std::to_string(tick);
   return text + "\n";
@@ -449,13 +455,19 @@ void EpisodeFeed::Step(Shown shown, std::vector<Event>& events) {
     if (touches && (!touched || shown != Shown::kNew)) touches_.push_back({.a = 0, .b = whom});
     if (!touches && touched) contact_ends.push_back({whom, 0});
   }
-  looks_[0].p_WB_m.z() = episode_.height_m[frame];
+  if (episode_.lost[frame]) {
+    looks_[0] = NotTracked();
+  } else {
+    looks_[0] = {};
+    looks_[0].p_WB_m.z() = episode_.height_m[frame];
+  }
   looks_[2].p_WB_m.z() = kHeightOfP2_m;
   const std::array changes = {EntityChange{.entity = 2, .look = looks_[2]},
                               EntityChange{.entity = 0, .look = looks_[0]}};
   const CollisionSphere surface{.p_W_m = looks_[0].p_WB_m};
   const HandSample hand{.entity = 0, .collision_spheres = {&surface, 1}};
-  const bool moves = frame == 0 || episode_.height_m[frame] != episode_.height_m[frame - 1];
+  const bool moves = frame == 0 || episode_.height_m[frame] != episode_.height_m[frame - 1] ||
+                     episode_.lost[frame] != episode_.lost[frame - 1];
   const std::size_t shows_pose = moves || shown != Shown::kNew ? 1 : 0;
   if (shown == Shown::kWhole)
     return monitor_.Advance({.tick = episode_.ticks[frame],

@@ -17,10 +17,12 @@
 
 namespace prehend::grammar::testing {
 
-/// What happens to x: whom it touches (p1, p2, q, r) and how high it is. One tick is 1 ms.
+/// What happens to x: whom it touches (p1, p2, q, r), how high it is, and where nobody knows that.
+/// One tick is 1 ms.
 struct RandomEpisode {
   std::array<reference::Stream, 4> touches;
   std::vector<int> height_m;
+  reference::Stream lost;
   reference::Ticks ticks;  ///< and the end
 
   int frames() const { return static_cast<int>(height_m.size()); }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "grammar/base/allen.h"
 
@@ -42,55 +43,82 @@ class Meaning {
   Runs CallRuns(const Term& term, int p) const { return reference::RunsOf(Intervals(term, p)); }
   Runs While(const Stream& stream) const { return reference::While(stream, e_.ticks, 0); }
 
-  Stream Truth(const Term& term, int p, int anchor) const {
+  // Where it is true; neither unknown nor false is enough.
+  Stream Truth(const Term& term, int p, int anchor) const { return Truths(term, p, anchor).is; }
+
+  reference::Truths Truths(const Term& term, int p, int anchor) const {
+    const auto compared = [&](double more, bool strictly, const auto& value) {
+      const double base = term.anchor.empty() ? 0 : value(std::min(anchor, n_ - 1));
+      reference::Truths truths{Stream(n_), Stream(n_)};
+      for (int i = 0; i < n_; ++i) {
+        const double most = base + more;
+        truths.is[i] = value(i) > most || (!strictly && value(i) == most);
+        truths.may[i] = truths.is[i] || std::isnan(value(i)) || std::isnan(most);
+      }
+      return truths;
+    };
+    const auto known = [](Stream stream) { return reference::Truths{stream, stream}; };
     switch (term.kind) {
       case Kind::kTouch:
-        return e_.touches[term.which == 0 ? p : term.which + 1];
-      case Kind::kHigh: {
-        const int base = term.anchor.empty() ? 0 : e_.height_m[std::min(anchor, n_ - 1)];
-        Stream high(n_);
-        for (int i = 0; i < n_; ++i) high[i] = e_.height_m[i] >= base + term.value;
-        return high;
-      }
-      case Kind::kRising: {
-        Stream rising(n_);
-        for (int i = 0; i < n_; ++i) {
-          const double base = term.anchor.empty() ? 0 : Rate(std::min(anchor, n_ - 1), term.window);
-          rising[i] = Rate(i, term.window) >= base + 250 * term.value;
-        }
-        return rising;
-      }
-      case Kind::kOfWindow: {
-        const bool speed = term.which == kSpeed;
-        Stream above(n_);
-        for (int i = 0; i < n_; ++i) {
-          const double base = term.anchor.empty() ? 0 : OfWindow(std::min(anchor, n_ - 1), term);
-          above[i] = OfWindow(i, term) > base + (speed ? 250 * term.value : term.value + 0.5);
-        }
-        return above;
-      }
+        return known(e_.touches[term.which == 0 ? p : term.which + 1]);
+      case Kind::kHigh:
+        return compared(term.value, false, [&](int i) { return Height(i); });
+      case Kind::kRising:
+        return compared(250 * term.value, false, [&](int i) { return Rate(i, term.window); });
+      case Kind::kOfWindow:
+        return compared(term.which == kSpeed ? 250 * term.value : term.value + 0.5, true,
+                        [&](int i) { return OfWindow(i, term); });
       case Kind::kRule: {
         const bool anybody = (rules_[term.which].roles & kP & ~term.named) != 0;
         const Stream own =
             reference::Truth(reference::RunsOf(found_[term.which][anybody ? 0 : p]), n_);
-        return anybody ? reference::Or(
-                             own, reference::Truth(reference::RunsOf(found_[term.which][1]), n_))
-                       : own;
+        return known(anybody ? reference::Or(own, reference::Truth(
+                                                      reference::RunsOf(found_[term.which][1]), n_))
+                             : own);
       }
       case Kind::kAnd:
-        return reference::And(Truth(term.args[0], p, anchor), Truth(term.args[1], p, anchor));
+        return reference::And(Truths(term.args[0], p, anchor), Truths(term.args[1], p, anchor));
       case Kind::kOr:
-        return reference::Or(Truth(term.args[0], p, anchor), Truth(term.args[1], p, anchor));
+        return reference::Or(Truths(term.args[0], p, anchor), Truths(term.args[1], p, anchor));
       case Kind::kNot:
-        return reference::Not(Truth(term.args[0], p, anchor));
+        return reference::Not(Truths(term.args[0], p, anchor));
       case Kind::kEdge: {
         const Term& arg = term.args[0];
         const bool has_intervals = arg.kind == Kind::kRule || arg.kind == Kind::kTouch;
         const Runs runs = has_intervals ? CallRuns(arg, p) : While(Truth(arg, p, anchor));
-        return term.begins ? reference::Begins(runs, n_) : reference::Ends(runs, n_);
+        return known(term.begins ? reference::Begins(runs, n_) : reference::Ends(runs, n_));
       }
     }
     return {};
+  }
+
+  // Whether x must be tracked to see it.
+  bool NeedsSight(const Term& term) const {
+    const bool by_pose = term.kind == Kind::kHigh || term.kind == Kind::kRising ||
+                         term.kind == Kind::kOfWindow ||
+                         (term.kind == Kind::kRule && NeedsSight(rules_[term.which]));
+    return by_pose ||
+           std::ranges::any_of(term.args, [&](const Term& arg) { return NeedsSight(arg); });
+  }
+  bool NeedsSight(const RandomRule& rule) const {
+    const auto needs = [&](bool has, const Term& term) { return has && NeedsSight(term); };
+    const bool is_form = rule.calls.empty();
+    return needs(is_form, rule.first) || needs(is_form && HasSecond(rule), rule.second) ||
+           needs(rule.has_during || rule.has_absence, rule.during) ||
+           needs(rule.has_requirement, rule.requirement) || needs(rule.is_confirmed, rule.by) ||
+           needs(rule.is_confirmed, rule.episode) || rule.approaches || rule.one_per ||
+           std::ranges::any_of(rule.calls, [&](const Term& call) { return NeedsSight(call); });
+  }
+  static bool HasSecond(const RandomRule& rule) {
+    return rule.has_second || rule.form != Form::kWhile;
+  }
+  // Frames in which that is not so.
+  Stream OutOfSight(const Term& term) const {
+    return NeedsSight(term) ? e_.lost : Stream(n_, false);
+  }
+
+  double Height(int frame) const {
+    return e_.lost[frame] ? std::numeric_limits<double>::quiet_NaN() : e_.height_m[frame];
   }
 
   // From the last frame at least half the window earlier to the first one so much later, in m/s.
@@ -100,7 +128,7 @@ class Meaning {
     while (early > 0 && e_.ticks[early] > e_.ticks[frame] - half) --early;
     while (late + 1 < n_ && e_.ticks[late] < e_.ticks[frame] + half) ++late;
     if (early == late) return 0;
-    return (e_.height_m[late] - e_.height_m[early]) /
+    return (Height(late) - Height(early)) /
            (static_cast<double>(e_.ticks[late] - e_.ticks[early]) / 1000);
   }
 
@@ -108,14 +136,14 @@ class Meaning {
   // a speed.
   double OfWindow(int frame, const Term& term) const {
     if (term.which == kSpeed) return std::abs(Rate(frame, term.window));
-    std::vector<int> heights;
+    std::vector<double> heights;
     for (int i = 0; i < n_; ++i) {
-      if (2 * std::abs(e_.ticks[i] - e_.ticks[frame]) <= term.window)
-        heights.push_back(e_.height_m[i]);
+      if (2 * std::abs(e_.ticks[i] - e_.ticks[frame]) <= term.window) heights.push_back(Height(i));
     }
+    double sum = 0;
+    for (const double height : heights) sum += height;
+    if (std::isnan(sum)) return sum;
     std::sort(heights.begin(), heights.end());
-    int sum = 0;
-    for (const int height : heights) sum += height;
     if (term.which == 0) return sum / static_cast<double>(heights.size());
     return term.which == 1   ? heights.front()
            : term.which == 2 ? heights.back()
@@ -134,8 +162,8 @@ class Meaning {
     std::vector<std::vector<double>> away(2);
     for (int candidate = 0; candidate < 2; ++candidate) {
       candidates.push_back(reference::RunsOf(FindAnyForm(rule, candidate)));
-      for (const int height : e_.height_m)
-        away[candidate].push_back(std::abs(height - candidate * kHeightOfP2_m));
+      for (int i = 0; i < n_; ++i)
+        away[candidate].push_back(std::abs(Height(i) - candidate * kHeightOfP2_m));
     }
     return InTicks(reference::OnePer(candidates, away, e_.ticks, rule.nearest_within)[p]);
   }
@@ -154,11 +182,16 @@ class Meaning {
         return InTicks(reference::FromTo(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
                                          during, rule.or_drop, e_.ticks, rule.within));
       case Form::kWithout:
-        return reference::FromWithout(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
-                                      during, e_.ticks,
-                                      static_cast<double>(rule.within) - (rule.halves ? 0.5 : 0));
+        return reference::FromWithout(
+            Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
+            Anchored(std::function<Stream(int)>([&](int frame) {
+              return reference::And(during.at(frame), reference::Not(OutOfSight(rule.second)));
+            })),
+            e_.ticks, static_cast<double>(rule.within) - (rule.halves ? 0.5 : 0));
       case Form::kUntil: {
-        reference::Approach approach{.signal = {e_.height_m.begin(), e_.height_m.end()},
+        std::vector<double> heights;
+        for (int i = 0; i < n_; ++i) heights.push_back(Height(i));
+        reference::Approach approach{.signal = heights,
                                      .slack = rule.slack_m + 0.5,
                                      .over = static_cast<double>(rule.over),
                                      .still = rule.still_over > 0 ? 1.5 : -1,
@@ -201,6 +234,7 @@ class Meaning {
     for (const Term& call : rule.calls) parts.push_back(Intervals(call, p));
     const bool all_of = rule.form == Form::kAllOf;
     const Found absent = rule.has_absence ? Intervals(rule.during, p) : Found();
+    const Found unseen = rule.has_absence ? InTicks(While(OutOfSight(rule.during))) : Found();
     const auto fits = [&](const std::vector<Interval>& chosen) {
       for (std::size_t i = 0; all_of && i < chosen.size(); ++i) {
         for (std::size_t k = 0; k < i; ++k) {
@@ -214,7 +248,8 @@ class Meaning {
                                    return clause.relations.Fit(chosen[clause.left],
                                                                chosen[clause.right]);
                                  }) &&
-             reference::NothingBetween(absent, chosen[rule.left], chosen[rule.right]);
+             reference::NothingBetween(absent, chosen[rule.left], chosen[rule.right]) &&
+             reference::NothingBetween(unseen, chosen[rule.left], chosen[rule.right]);
     };
     return all_of ? reference::AllOf(parts, fits, rule.within) : reference::Compose(parts, fits);
   }

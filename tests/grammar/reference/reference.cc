@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 namespace prehend::grammar::reference {
@@ -24,6 +25,12 @@ Stream Not(const Stream& a) {
   for (std::size_t i = 0; i < a.size(); ++i) other[i] = !a[i];
   return other;
 }
+
+Truths And(const Truths& a, const Truths& b) { return {And(a.is, b.is), And(a.may, b.may)}; }
+
+Truths Or(const Truths& a, const Truths& b) { return {Or(a.is, b.is), Or(a.may, b.may)}; }
+
+Truths Not(const Truths& a) { return {Not(a.may), Not(a.is)}; }
 
 Stream Truth(const Runs& runs, int frames) {
   Stream truth(frames, false);
@@ -127,8 +134,11 @@ std::vector<double> Levels(const Approach& a, const Ticks& ticks, int end) {
   for (int i = 0; i <= end; ++i) {
     std::vector<double> values;
     for (const int k : Around(i, a.over, ticks, end)) values.push_back(a.signal[k]);
-    std::sort(values.begin(), values.end());
-    levels.push_back(a.over > 0 ? values[values.size() / 2] : a.signal[i]);
+    const bool all_known = std::ranges::none_of(values, [](double v) { return std::isnan(v); });
+    if (all_known) std::sort(values.begin(), values.end());
+    levels.push_back(!all_known   ? std::numeric_limits<double>::quiet_NaN()
+                     : a.over > 0 ? values[values.size() / 2]
+                                  : a.signal[i]);
   }
   return levels;
 }
@@ -136,6 +146,10 @@ std::vector<double> Levels(const Approach& a, const Ticks& ticks, int end) {
 // Where an approach that reaches `end` begins; `earliest` is as far back as anything else allows.
 int ApproachBegin(const Approach& a, const Ticks& ticks, int earliest, int end) {
   const std::vector<double> levels = Levels(a, ticks, end);
+  for (int i = end; i >= earliest; --i) {  // nothing leads back over what nobody knows
+    if (std::isnan(levels[i]) || std::isnan(a.signal[i])) earliest = std::min(i + 1, end);
+  }
+  if (std::isnan(levels[end])) return end;
   const bool by_hand = a.still >= 0;
   const auto speed = [&](int i) {
     const double way = a.signal[i] - a.signal[i + 1];
@@ -253,7 +267,7 @@ std::vector<Runs> OnePer(const std::vector<Runs>& candidates,
       int first = free;
       while (first < frames && ticks[first] - ticks[free] <= within && !hold[c][first]) ++first;
       const bool in_time = first < frames && ticks[first] - ticks[free] <= within;
-      if (!in_time || (best < candidates.size() && away[c][first] >= away[best][from])) continue;
+      if (!in_time || (best < candidates.size() && !(away[c][first] < away[best][from]))) continue;
       best = c;
       from = first;
     }

@@ -14,6 +14,10 @@ namespace prehend::grammar::reference {
 
 /// Truth per frame.
 using Stream = std::vector<bool>;
+/// In three values: where it is true, and where it is not false. Unknown is one of them.
+struct Truths {
+  Stream is, may;
+};
 
 /// Frames [begin, end); end == number of frames: it lasts until the end of the episode.
 struct Run {
@@ -29,6 +33,10 @@ using Ticks = std::vector<Tick>;
 Stream And(const Stream& a, const Stream& b);
 Stream Or(const Stream& a, const Stream& b);
 Stream Not(const Stream& a);
+/// Kleene's.
+Truths And(const Truths& a, const Truths& b);
+Truths Or(const Truths& a, const Truths& b);
+Truths Not(const Truths& a);
 /// True inside the runs.
 Stream Truth(const Runs& runs, int frames);
 /// True where a run begins; where one ends.
