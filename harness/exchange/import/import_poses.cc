@@ -12,6 +12,7 @@
 #include "grammar/base/tracking.h"
 #include "grammar/base/wording.h"
 #include "harness/base/yaml/error_at.h"
+#include "harness/exchange/import/openings.h"
 #include "harness/exchange/import/plausibility.h"
 #include "harness/exchange/import/rest_poses.h"
 #include "harness/exchange/import/track.h"
@@ -58,6 +59,7 @@ class Importer {
     }
     JudgeJumps();
     for (std::size_t i = 0; i < tracks_.size(); ++i) AddTrack(map_.entities[i], tracks_[i]);
+    for (const OpeningSeries& opening : file_.openings) AddOpening(opening);
     WarnOfTrembling();
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
     if (const std::string problem = SetTicks(); !problem.empty())
@@ -115,7 +117,11 @@ class Importer {
         info.classes = {"Hand", "Entity"};
         info.sensor_sets = {"fingers", "thumb", "palm"};
       } else {
-        info.classes = {e.class_name, e.fixed ? "Fixed" : "Movable", "Thing", "Entity"};
+        info.classes = {e.class_name,
+                        e.joint   ? "Jointed"
+                        : e.fixed ? "Fixed"
+                                  : "Movable",
+                        "Thing", "Entity"};
       }
     }
   }
@@ -182,7 +188,7 @@ class Importer {
       report.from = e.from->value;
       const PoseBody& body = BodyOf(e);
       if (e.upright_at_s) report.axes = (map_.WorldTurn() * OrientationThen(body, e)).conjugate();
-      MarkGaps(body, e, track, report);
+      MarkGaps(UsualStep_s(body.samples), e.from->where, /*of_opening=*/false, track, report);
       WarnOfMotion(entity, track.poses, report);
       const double trembling_m = Trembling_m(track.poses);
       if (map_.smooth_s > 0) track.poses = Smoothed(track.poses, map_.smooth_s / 2);
@@ -194,6 +200,48 @@ class Importer {
       errors_.Add(entity.name_where, fmt::format("'{}' is farther than {:g} m from the origin",
                                                  entity.name, kFarthest_m));
     imported_.entities.push_back(std::move(report));
+  }
+
+  /// As a track whose x is how far it is open.
+  void AddOpening(const OpeningSeries& series) {
+    const Named<MappedEntity>& entity = map_.entities[series.entity];
+    const Opening& said = series.Of(map_);
+    Track& track = openings_.emplace_back();
+    for (const OpeningSeries::Sample& sample : series.samples)
+      track.poses.push_back({.t_s = sample.t_s, .p = {sample.open, 0, 0}});
+    if (track.poses.empty())
+      return errors_.Add(said.where, fmt::format("'{}' has no value in the file", said.Names()));
+    EntityReport report;
+    report.name = entity.name;
+    report.from = said.Names();
+    MarkGaps(UsualStep_s(track.poses), said.where, /*of_opening=*/true, track, report);
+    if (OpeningDoubt doubt = JudgeOpening(series, said, file_.file); doubt.is_error)
+      errors_.Add(said.where, entity.name + ": " + doubt.text, doubt.hint);
+    else if (!doubt.text.empty())
+      Warn(fmt::format("'{}': {}", entity.name, doubt.text));
+    const auto [least, most] =
+        std::ranges::minmax(series.samples, {}, &OpeningSeries::Sample::open);
+    imported_.openings +=
+        fmt::format("{}: {} '{}': {} values at {:.1f} Hz, {:.0f} to {:.0f} % open\n", entity.name,
+                    series.is_grip ? "grip" : "joint", said.Names(), series.samples.size(),
+                    report.rate_hz, 100 * least.open, 100 * most.open);
+  }
+
+  void SetOpenings(double t_s, episode::EpisodeFrame& frame) {
+    for (std::size_t i = 0; i < openings_.size(); ++i) {
+      const OpeningSeries& series = file_.openings[i];
+      const double open = openings_[i].At(t_s).p.x(), within = std::clamp(open, 0.0, 1.0);
+      if (series.is_grip) {
+        std::ranges::find(frame.hands, static_cast<int>(series.entity),
+                          &grammar::HandSample::entity)
+            ->trigger = 1 - within;
+        continue;
+      }
+      const Opening& said = series.Of(map_);
+      grammar::EntitySample& part = frame.entities[series.entity];
+      part.joint_fraction = within;
+      part.joint_position = said.closed + open * (said.open - said.closed);
+    }
   }
 
   static Eigen::Quaterniond Quaternion(const Eigen::Vector4d& wxyz) {
@@ -226,10 +274,9 @@ class Importer {
     return poses;
   }
 
-  void MarkGaps(const PoseBody& body, const MappedEntity& entity, Track& track,
+  void MarkGaps(double usual_s, const Where& where, bool of_opening, Track& track,
                 EntityReport& report) {
     std::vector<TimedPose>& poses = track.poses;
-    const double usual_s = UsualStep_s(body);
     report.poses = poses.size();
     report.rate_hz = usual_s > 0 ? 1 / usual_s : 0;
     double longest_s = 0, longest_from_s = 0, bridge_s = 0;
@@ -251,12 +298,14 @@ class Importer {
       poses[i].after_loss = take(poses[i - 1].t_s, poses[i].t_s, true);
     track.lost_after = take(poses.back().t_s, file_.last_s, false);
     if (report.lost == 0) return;
-    const std::string text = fmt::format(
-        "'{}' is not tracked for {:.3f} s from {:.3f} s on; in all {}, {:.3f} s", report.from,
-        longest_s, longest_from_s, grammar::CountOf(report.lost, "such time"), report.lost_s);
+    const std::string text =
+        fmt::format("'{}' {} for {:.3f} s from {:.3f} s on; in all {}, {:.3f} s", report.from,
+                    of_opening ? "has no value" : "is not tracked", longest_s, longest_from_s,
+                    grammar::CountOf(report.lost, "such time"), report.lost_s);
+    if (of_opening && map_.lost != Lost::kRefuse) return Warn(text + ": it stays as it was");
     if (map_.lost == Lost::kHold) return Warn(text + ": it is held where it was, at rest");
     if (map_.lost == Lost::kUnknown) return Warn(text + ": nobody knows where it is");
-    errors_.Add(entity.from->where, text,
+    errors_.Add(where, text,
                 fmt::format("in the map: lost: unknown (nobody knows where it is meanwhile){}, or "
                             "lost: hold (it stays where it was)",
                             bridge_s > 0 ? fmt::format(", or bridge_s: {:g} (a straight line over "
@@ -321,14 +370,18 @@ class Importer {
 
   /// The times of all poses. Returns what is wrong, or "".
   std::string SetTicks() {
-    for (const Track& track : tracks_) {
-      for (std::size_t i = 0; i < track.poses.size(); ++i) {
-        if (i > 0 && TickOf(track.poses[i].t_s) == TickOf(track.poses[i - 1].t_s))
+    std::vector<const Track*> tracks;
+    for (const auto* all : {&tracks_, &openings_})
+      for (const Track& track : *all) tracks.push_back(&track);
+    for (const Track* const track : tracks) {
+      const std::vector<TimedPose>& poses = track->poses;
+      for (std::size_t i = 0; i < poses.size(); ++i) {
+        if (i > 0 && TickOf(poses[i].t_s) == TickOf(poses[i - 1].t_s))
           return fmt::format(
               "two poses are {:.3g} s apart, and a second has {} ticks; give the "
               "map more ticks_per_second",
-              track.poses[i].t_s - track.poses[i - 1].t_s, map_.ticks_per_second);
-        times_.emplace(TickOf(track.poses[i].t_s), track.poses[i].t_s);
+              poses[i].t_s - poses[i - 1].t_s, map_.ticks_per_second);
+        times_.emplace(TickOf(poses[i].t_s), poses[i].t_s);
       }
     }
     times_.emplace(0, 0.0);
@@ -363,6 +416,7 @@ class Importer {
           frame.collision_spheres.push_back({{pose.p, 0}});
         }
       }
+      SetOpenings(t_s, frame);
       episode.frames.push_back(frame);
       before = std::move(frame);
       before_s = t_s;
@@ -398,6 +452,7 @@ class Importer {
   bool unit_is_doubtful_ = false, world_is_doubtful_ = false;
   Imported imported_;
   std::vector<Track> tracks_;
+  std::vector<Track> openings_;  ///< of those of the file
   std::map<std::int64_t, double> times_;
   std::vector<std::string> trembling_;
   double trembles_m_ = 0;  ///< the most

@@ -26,6 +26,7 @@ std::string ImportTable(const Imported& imported) {
         one.from.empty() ? "(the map)" : one.from, width, one.poses, one.rate_hz, one.bridged,
         one.bridged_s, one.lost, one.lost_s, range(0), range(1), range(2));
   }
+  table += imported.openings;
   for (const EntityReport& one : imported.entities) {
     if (!one.axes) continue;
     const double sign = one.axes->w() < 0 ? -1 : 1;

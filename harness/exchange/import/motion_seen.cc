@@ -104,7 +104,7 @@ MotionSeen MotionIn(const PoseFile& poses, const ImportMap& map, double metres_p
   MotionSeen seen;
   constexpr double kMostLooks = 36'000;  ///< an hour tells enough
   for (const PoseBody& body : poses.bodies)
-    seen.look_s = std::max(seen.look_s, 1.01 * UsualStep_s(body));
+    seen.look_s = std::max(seen.look_s, 1.01 * UsualStep_s(body.samples));
   for (const Named<MappedEntity>& entity : map.entities) {
     if (!entity.value.from) continue;
     const auto body = std::ranges::find(poses.bodies, entity.value.from->value, &PoseBody::name);
@@ -121,13 +121,6 @@ double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
   return *middle;
-}
-
-double UsualStep_s(const PoseBody& body) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < body.samples.size(); ++i)
-    steps.push_back(body.samples[i].t_s - body.samples[i - 1].t_s);
-  return Median(std::move(steps));
 }
 
 }  // namespace prehend::exchange

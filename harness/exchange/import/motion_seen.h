@@ -47,7 +47,13 @@ MotionSeen MotionIn(const PoseFile& poses, const ImportMap& map, double metres_p
 /// The middle one, of an even number the upper; 0 of none.
 double Median(std::vector<double> values);
 
-/// The usual time between two poses of a body, s.
-double UsualStep_s(const PoseBody& body);
+/// The usual time between two of them, s.
+template <class Sample>
+double UsualStep_s(const std::vector<Sample>& samples) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    steps.push_back(samples[i].t_s - samples[i - 1].t_s);
+  return Median(std::move(steps));
+}
 
 }  // namespace prehend::exchange

@@ -91,7 +91,7 @@ class Judge {
 
   Guess GuessTimes() const {
     std::vector<double> steps;
-    for (const PoseBody& body : poses_.bodies) steps.push_back(UsualStep_s(body));
+    for (const PoseBody& body : poses_.bodies) steps.push_back(UsualStep_s(body.samples));
     const double step_s = *std::ranges::min_element(steps), rate_hz = 1 / step_s;
     Guess guess{map_.time_unit ? map_.time_unit->where
                 : map_.rate_hz ? map_.rate_hz->where

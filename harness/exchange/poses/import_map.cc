@@ -45,6 +45,30 @@ ValueFormat<McapKeys> McapFormat() {
       .format();
 }
 
+/// One name, or a list of names.
+ValueFormat<std::vector<Located<std::string>>> NamesFormat() {
+  using Names = std::vector<Located<std::string>>;
+  const auto one = WithPlace(Text(200));
+  const auto list = ListOf(one, 1, 16);
+  return ValueFormat<Names>(
+      {.schema = AnyOf({one.schema(), list.schema()}),
+       .read = [one, list](const YamlNode& node, DiagnosticList& errors, void* value) {
+         Names& names = *static_cast<Names*>(value);
+         if (node.kind == YamlNode::Kind::kSequence) return list.Read(node, errors, names);
+         return one.Read(node, errors, names.emplace_back());
+       }});
+}
+
+ValueFormat<Opening> OpeningFormat(const char* noun) {
+  return StructFormat<Opening>(noun)
+      .Required("from", &Opening::from, NamesFormat(),
+                "The column or field with the value; of several, their sum.")
+      .Optional("sum_abs", &Opening::sum_abs, Flag(), "They are added without their signs.")
+      .Required("open", &Opening::open, Number(-1e9, 1e9), "The value when it is open.")
+      .Required("closed", &Opening::closed, Number(-1e9, 1e9), "The value when it is closed.")
+      .format();
+}
+
 ValueFormat<MappedEntity> EntityFormat() {
   using E = MappedEntity;
   return StructFormat<E>("entity")
@@ -67,6 +91,9 @@ ValueFormat<MappedEntity> EntityFormat() {
                 "How it is turned, as it stands upright, in the axes of its markers.")
       .Optional("ahead", &E::ahead, Vector<3>(-1, 1),
                 "Where a hand reaches, in its own frame, z up.")
+      .Optional("grip", &E::grip, OpeningFormat("a grip"), "How far its gripper is open.")
+      .Optional("joint", &E::joint, OpeningFormat("a joint"),
+                "How far it is open, of what is on a slider or a hinge.")
       .ExactlyOneOf({"from", "at_m"})
       .AtMostOneOf({"upright_at_s", "axes_quat_wxyz"})
       .format();
@@ -216,6 +243,25 @@ void CheckUp(const ImportMap& map, const YamlNode& root, DiagnosticList& errors)
                "leave out 'axes', or correct one of the two");
 }
 
+void CheckOpenings(const Named<MappedEntity>& entity, PoseFormat format, DiagnosticList& errors) {
+  const MappedEntity& e = entity.value;
+  for (const auto* opening : {&e.grip, &e.joint}) {
+    if (!*opening) continue;
+    const Where& where = (*opening)->where;
+    if (format != PoseFormat::kCsv)
+      errors.Add(where, "files of this kind have poses only: grip and joint are read from CSV");
+    if ((*opening)->open == (*opening)->closed)
+      errors.Add(where, fmt::format("'open' and 'closed' are both {:g}", (*opening)->open),
+                 "the values that the file has when it is open and when it is closed");
+  }
+  if (e.grip && !e.hand)
+    errors.Add(e.grip->where, fmt::format("only a hand has a grip, and '{}' is none", entity.name),
+               "hand: true; or 'joint', of a drawer or a door");
+  if (e.joint && (e.hand || e.fixed))
+    errors.Add(e.joint->where, fmt::format("'{}' is {}, and nothing on a joint", entity.name,
+                                           e.hand ? "a hand" : "fixed"));
+}
+
 /// Rules across keys.
 void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
               DiagnosticList& errors) {
@@ -237,6 +283,7 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
   for (const Named<MappedEntity>& entity : map.entities) {
     const MappedEntity& e = entity.value;
     tracked = tracked || e.from;
+    CheckOpenings(entity, format, errors);
     if (e.hand && (e.fixed || e.class_name != "Object"))
       errors.Add(entity.name_where,
                  fmt::format("'{}': a hand has no class and is not fixed", entity.name));
@@ -260,6 +307,18 @@ std::string EndingOf(const std::string& poses_path) {
 }
 
 }  // namespace
+
+double Opening::FractionOf(std::span<const double> numbers) const {
+  double sum = 0;
+  for (const double number : numbers) sum += sum_abs ? std::abs(number) : number;
+  return (sum - closed) / (open - closed);
+}
+
+std::string Opening::Names() const {
+  std::vector<std::string> names;
+  for (const Located<std::string>& name : from) names.push_back(name.value);
+  return fmt::format("{}", fmt::join(names, " + "));
+}
 
 bool ImportMap::IsSure(Warning warning) const {
   return std::ranges::find(sure, warning) != sure.end();

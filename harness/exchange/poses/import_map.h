@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,18 @@ struct McapKeys {
   Clock clock = Clock::kHeader;               ///< which of a message's times counts
 };
 
+/// Numbers of the file that say how far a gripper or a joint is open.
+struct Opening {
+  Where where;
+  std::vector<Located<std::string>> from;  ///< of several, their sum counts
+  bool sum_abs = false;                    ///< the sum of them without their signs
+  double open = 0, closed = 0;             ///< what the file has there, in its own unit
+
+  /// Of the numbers at one time, in the order of `from`: 0 closed .. 1 open, and beyond.
+  double FractionOf(std::span<const double> numbers) const;
+  std::string Names() const;  ///< "left + right"
+};
+
 /// One entity of the recording.
 struct MappedEntity {
   std::optional<Located<std::string>> from;  ///< the body in the file
@@ -60,6 +73,8 @@ struct MappedEntity {
   /// How it is turned in its markers' axes, this or the time.
   std::optional<Located<Eigen::Vector4d>> axes_quat_wxyz;
   std::optional<Located<Eigen::Vector3d>> ahead;  ///< of a hand: where it reaches, likewise; x
+  std::optional<Opening> grip;                    ///< of a hand
+  std::optional<Opening> joint;                   ///< of a drawer or a door
 };
 
 /// Whether the map says how it is turned in its markers' axes.

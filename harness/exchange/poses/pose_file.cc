@@ -20,6 +20,22 @@ std::vector<PoseBody> BodiesOf(const ImportMap& map, DiagnosticList& errors) {
   return bodies;
 }
 
+std::vector<OpeningSeries> OpeningsOf(const ImportMap& map) {
+  std::vector<OpeningSeries> openings;
+  for (std::size_t i = 0; i < map.entities.size(); ++i) {
+    for (const bool is_grip : {true, false}) {
+      const MappedEntity& e = map.entities[i].value;
+      if (is_grip ? e.grip : e.joint) openings.push_back({.entity = i, .is_grip = is_grip});
+    }
+  }
+  return openings;
+}
+
+const Opening& OpeningSeries::Of(const ImportMap& map) const {
+  const MappedEntity& e = map.entities[entity].value;
+  return is_grip ? *e.grip : *e.joint;
+}
+
 void RefuseAbsentBodies(const PoseFile& poses, const ImportMap& map, DiagnosticList& errors) {
   for (const Named<MappedEntity>& entity : map.entities) {
     if (!entity.value.from) continue;

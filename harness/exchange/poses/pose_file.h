@@ -27,12 +27,28 @@ struct PoseBody {
   std::vector<PoseSample> samples;  ///< times increase; where it is not tracked there is none
 };
 
+/// How far a gripper or a joint of the map is open, over time.
+struct OpeningSeries {
+  struct Sample {
+    double t_s = 0;
+    double open = 0;  ///< Opening::FractionOf
+    int line = 0;     ///< 0: the file has no lines
+  };
+  std::size_t entity = 0;       ///< of the map
+  bool is_grip = false;         ///< else a joint
+  std::vector<Sample> samples;  ///< times increase; where nothing is known there is none
+
+  /// What the map says of it.
+  const Opening& Of(const ImportMap& map) const;
+};
+
 struct PoseFile {
   std::string file;
-  std::string text;                 ///< of the file, for messages
-  std::vector<PoseBody> bodies;     ///< those of the map, in its order
-  std::vector<std::string> unused;  ///< names of bodies that the map does not mention
-  std::vector<std::string> notes;   ///< what a user should know, one line each
+  std::string text;                     ///< of the file, for messages
+  std::vector<PoseBody> bodies;         ///< those of the map, in its order
+  std::vector<OpeningSeries> openings;  ///< those of OpeningsOf(), in this order
+  std::vector<std::string> unused;      ///< names of bodies that the map does not mention
+  std::vector<std::string> notes;       ///< what a user should know, one line each
   /// Of a skeleton: from its feet to its head, in the file's unit and axes.
   std::optional<Eigen::Vector3d> stature;
   std::optional<QuaternionOrder> quaternion_order;  ///< as they were read; none: there are none
@@ -44,6 +60,8 @@ struct PoseFile {
 
 /// The bodies of the map, without poses. One that is two entities is an error.
 std::vector<PoseBody> BodiesOf(const ImportMap& map, DiagnosticList& errors);
+/// The grips and joints of the map, without values.
+std::vector<OpeningSeries> OpeningsOf(const ImportMap& map);
 /// Bodies with less than two poses are errors.
 void RefuseAbsentBodies(const PoseFile& poses, const ImportMap& map, DiagnosticList& errors);
 

@@ -61,6 +61,7 @@ class CsvPoseReader {
     constexpr std::array kSeparators = {',', ';', '\t'};
     separator_ = kSeparators[static_cast<std::size_t>(map_.separator)];
     poses.bodies = BodiesOf(map_, map_errors_);
+    poses.openings = OpeningsOf(map_);
     for (std::size_t i = 0; i < poses.bodies.size(); ++i) index_.emplace(poses.bodies[i].name, i);
     poses.has_orientations = !map_.columns.quaternion.empty();
     if (poses.has_orientations) poses.quaternion_order = map_.quaternion_order->value;
@@ -88,6 +89,8 @@ class CsvPoseReader {
     if (!problems_.empty()) return;
     for (PoseBody& body : poses.bodies)
       for (PoseSample& sample : body.samples) sample.t_s -= poses.first_s;
+    for (OpeningSeries& opening : poses.openings)
+      for (OpeningSeries::Sample& sample : opening.samples) sample.t_s -= poses.first_s;
     poses.last_s -= poses.first_s;
     poses.first_s = 0;
     if (poses.rows < 2)
@@ -191,6 +194,11 @@ class CsvPoseReader {
     }
     const Columns& columns = map_.columns;
     if (columns.time) time_seat_ = SeatOf(*columns.time, columns.time->value);
+    for (const OpeningSeries& opening : poses.openings) {
+      std::vector<std::size_t>& seats = opening_seats_.emplace_back();
+      for (const Located<std::string>& column : opening.Of(map_).from)
+        seats.push_back(SeatOf(column, WithBody(column.value, BodyOf(opening))));
+    }
     if (columns.body) {
       body_seat_ = SeatOf(*columns.body, columns.body->value);
       shared_ = SeatsOf("");
@@ -214,6 +222,12 @@ class CsvPoseReader {
     for (const std::string& body : BodiesOfHeader()) {
       if (!index_.contains(body)) poses.unused.push_back(body);
     }
+  }
+
+  /// Whose row has it, or stands for '{}' in its column.
+  const std::string& BodyOf(const OpeningSeries& opening) const {
+    const Named<MappedEntity>& entity = map_.entities[opening.entity];
+    return entity.value.from ? entity.value.from->value : entity.name;
   }
 
   /// The names for which the pattern of x has a column.
@@ -276,6 +290,10 @@ class CsvPoseReader {
     poses.first_s = std::min(poses.first_s, t_s);
     poses.last_s = std::max(poses.last_s, t_s);
     ++poses.rows;
+    for (std::size_t i = 0; i < poses.openings.size(); ++i) {
+      if (!body_seat_ || name == BodyOf(poses.openings[i]))
+        TakeOpening(cells, opening_seats_[i], t_s, poses.openings[i]);
+    }
     if (!body_seat_) {
       for (std::size_t i = 0; i < wide_.size(); ++i)
         TakePose(cells, wide_[i], t_s, poses.bodies[i]);
@@ -347,6 +365,22 @@ class CsvPoseReader {
     body.samples.push_back(sample);
   }
 
+  void TakeOpening(const std::vector<CsvCell>& cells, const std::vector<std::size_t>& seats,
+                   double t_s, OpeningSeries& opening) {
+    std::vector<double> numbers;
+    for (const std::size_t seat : seats) {
+      if (IsMissing(cells[seat])) return;
+      const auto number = Number(cells[seat]);
+      if (!number) return;
+      numbers.push_back(*number);
+    }
+    if (!opening.samples.empty() && t_s <= opening.samples.back().t_s)
+      return Complain({line_, cells[seats.front()].column},
+                      fmt::format("'{}' has two values at {:.6g} s", names_[seats.front()], t_s));
+    opening.samples.push_back(
+        {.t_s = t_s, .open = opening.Of(map_).FractionOf(numbers), .line = line_});
+  }
+
   std::optional<double> Number(const CsvCell& cell) {
     double value = 0;
     const char *begin = cell.text.data(), *end = begin + cell.text.size();
@@ -377,6 +411,7 @@ class CsvPoseReader {
   std::size_t steps_ = 0, whole_steps_ = 0, unit_steps_ = 0;  ///< of times
   Seats shared_;
   std::vector<Seats> wide_;
+  std::vector<std::vector<std::size_t>> opening_seats_;  ///< of each of the openings
 };
 
 }  // namespace
