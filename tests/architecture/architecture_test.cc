@@ -63,6 +63,7 @@ const std::vector<LibraryRule>& LibraryRules() {
       {"zstd", std::regex("zstd\\.h"),
        std::regex("harness/(episode/frames/columns|exchange/messages/log_file)\\.cc")},
       {"LZ4", std::regex("lz4.*\\.h"), std::regex("harness/exchange/messages/log_file\\.cc")},
+      {"HDF5", std::regex("(hdf5|H5.*)\\.h"), std::regex("harness/exchange/hdf5/.*")},
       {"zlib", std::regex("zlib\\.h"),
        std::regex("harness/(show/replay/replay_data|exchange/messages/mcap_file)\\.cc")},
       {"OpenGL and OSMesa", std::regex("(GL/.*|GLES.*|EGL/.*)"), std::regex("render/.*")},

@@ -86,6 +86,7 @@ const Arrows& ProjectArrows() {
         "harness/base/yaml", "harness/episode/run", "harness/episode/sense",
         "harness/truth/timeline"}},
       {"harness/exchange/messages", {"harness/base/base"}},
+      {"harness/exchange/hdf5", {"harness/base/base"}},
       {"harness/exchange/poses",
        {"grammar/base", "harness/base/base", "harness/exchange/messages", "harness/scenario/motion",
         "harness/base/yaml"}},

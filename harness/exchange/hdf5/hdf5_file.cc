@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/hdf5/hdf5_file.h. Tested by tests/harness/exchange/hdf5/hdf5_file_test.cc
+#include "harness/exchange/hdf5/hdf5_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+
+#include "harness/base/base/text_file.h"
+
+namespace prehend::exchange {
+namespace {
+
+using grammar::Diagnostics;
+
+/// Before anything else of the library: no messages of its own, no plugins, no other files.
+void SetUp() {
+  static const bool done = [] {
+    H5open();
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    H5PLset_loading_state(0);
+    H5Lunregister(H5L_TYPE_EXTERNAL);
+    return true;
+  }();
+  static_cast<void>(done);
+}
+
+/// What the library found wrong last, where it began.
+std::string InnermostError() {
+  std::string text;
+  H5Ewalk2(
+      H5E_DEFAULT, H5E_WALK_UPWARD,
+      [](unsigned n, const H5E_error2_t* error, void* to) -> herr_t {
+        if (n == 0 && error->desc) *static_cast<std::string*>(to) = error->desc;
+        return 0;
+      },
+      &text);
+  return ReadableName(text.substr(0, 200));
+}
+
+/// Only types that are numbers of this kind bit by bit: one that a stranger made up is other.
+Hdf5Kind KindOf(hid_t type) {
+  const H5T_class_t one = H5Tget_class(type);
+  if (one == H5T_STRING) return Hdf5Kind::kText;
+  if (one == H5T_ENUM) {
+    std::int8_t no = 1, yes = 0;
+    const bool two = H5Tget_size(type) == 1 && H5Tget_nmembers(type) == 2 &&
+                     H5Tenum_valueof(type, "FALSE", &no) >= 0 &&
+                     H5Tenum_valueof(type, "TRUE", &yes) >= 0;
+    return two && no == 0 && yes == 1 ? Hdf5Kind::kBool : Hdf5Kind::kOther;
+  }
+  const auto is = [&](std::initializer_list<hid_t> known) {
+    return std::ranges::any_of(known, [&](hid_t other) { return H5Tequal(type, other) > 0; });
+  };
+  if (is({H5T_IEEE_F32LE, H5T_IEEE_F64LE, H5T_IEEE_F32BE, H5T_IEEE_F64BE})) return Hdf5Kind::kFloat;
+  if (is({H5T_STD_I64LE, H5T_STD_I32LE, H5T_STD_I16LE, H5T_STD_I8LE, H5T_STD_U64LE, H5T_STD_U32LE,
+          H5T_STD_U16LE, H5T_STD_U8LE, H5T_STD_I64BE, H5T_STD_I32BE, H5T_STD_I16BE, H5T_STD_U64BE,
+          H5T_STD_U32BE, H5T_STD_U16BE}))
+    return Hdf5Kind::kInteger;
+  return Hdf5Kind::kOther;
+}
+
+std::vector<hsize_t> ShapeOf(hid_t space) {
+  const int rank = H5Sget_simple_extent_ndims(space);
+  std::vector<hsize_t> shape(rank > 0 ? static_cast<std::size_t>(rank) : 0);
+  if (rank > 0) H5Sget_simple_extent_dims(space, shape.data(), nullptr);
+  return shape;
+}
+
+/// Numbers are compared as such: demo_2 comes before demo_10.
+bool ComesBefore(const std::string& a, const std::string& b) {
+  std::size_t i = 0, j = 0;
+  const auto digits = [](const std::string& text, std::size_t at) {
+    return std::min(text.find_first_not_of("0123456789", at), text.size()) - at;
+  };
+  while (i < a.size() && j < b.size()) {
+    const std::size_t of_a = digits(a, i), of_b = digits(b, j);
+    if (of_a == 0 || of_b == 0) {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i, ++j;
+      continue;
+    }
+    const std::string_view x = std::string_view(a).substr(i, of_a),
+                           y = std::string_view(b).substr(j, of_b);
+    if (of_a != of_b) return of_a < of_b;
+    if (x != y) return x < y;
+    i += of_a, j += of_b;
+  }
+  return a.size() - i < b.size() - j;
+}
+
+/// Why a dataset is not read, or "": it leads elsewhere, or costs more than it should.
+std::string Refusal(hid_t dataset) {
+  const Hdf5Id plist(H5Dget_create_plist(dataset));
+  if (!plist) return "its properties are damaged";
+  const H5D_layout_t layout = H5Pget_layout(plist);
+  if (layout == H5D_VIRTUAL) return "is a virtual dataset, of other files";
+  if (H5Pget_external_count(plist) != 0) return "has its data in other files";
+  for (int i = 0, count = H5Pget_nfilters(plist); i < count; ++i) {
+    unsigned flags = 0;
+    std::size_t values = 0;
+    char name[40] = {};
+    const H5Z_filter_t filter = H5Pget_filter2(plist, static_cast<unsigned>(i), &flags, &values,
+                                               nullptr, sizeof name, name, nullptr);
+    if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE &&
+        filter != H5Z_FILTER_FLETCHER32)
+      return fmt::format(
+          "is compressed by '{}' (filter {}); gzip and shuffle are read: "
+          "h5repack -f GZIP=4 IN OUT",
+          ReadableName({name, strnlen(name, sizeof name)}), filter);
+  }
+  return "";
+}
+
+/// A chunk that is stored in more bytes than it has is not what a program wrote.
+std::string ChunkRefusal(hid_t dataset, hid_t space, std::size_t value_bytes) {
+  const Hdf5Id plist(H5Dget_create_plist(dataset));
+  if (H5Pget_layout(plist) != H5D_CHUNKED) return "";
+  std::vector<hsize_t> shape = ShapeOf(space), chunk(shape.size()), at(shape.size(), 0);
+  if (H5Pget_chunk(plist, static_cast<int>(chunk.size()), chunk.data()) < 0)
+    return "its chunks are damaged";
+  double bytes = static_cast<double>(value_bytes), chunks = 1;
+  for (std::size_t i = 0; i < chunk.size(); ++i) {
+    bytes *= static_cast<double>(chunk[i]);
+    chunks *= std::ceil(static_cast<double>(shape[i]) / static_cast<double>(chunk[i]));
+  }
+  if (bytes > static_cast<double>(kMostHdf5ChunkBytes) || chunks > 1e5)
+    return fmt::format("has {:.0f} chunks of {:.0f} bytes; chunks of at most {} are read", chunks,
+                       bytes, kMostHdf5ChunkBytes);
+  for (double i = 0; i < chunks; ++i) {
+    unsigned mask = 0;
+    haddr_t address = 0;
+    hsize_t stored = 0;
+    if (H5Dget_chunk_info_by_coord(dataset, at.data(), &mask, &address, &stored) < 0)
+      return "its chunks are damaged";
+    if (static_cast<double>(stored) > bytes + bytes / 8 + 1024)
+      return fmt::format("a chunk of {:.0f} bytes is stored in {}", bytes, stored);
+    for (std::size_t k = at.size(); k-- > 0;) {
+      if ((at[k] += chunk[k]) < shape[k]) break;
+      at[k] = 0;
+    }
+  }
+  return "";
+}
+
+/// A dataset that may be read.
+Hdf5Object ObjectOf(hid_t dataset) {
+  const Hdf5Id type(H5Dget_type(dataset)), space(H5Dget_space(dataset));
+  const std::vector<hsize_t> shape = ShapeOf(space);
+  return {.name = {},
+          .kind = KindOf(type),
+          .bytes = static_cast<int>(H5Tget_size(type)),
+          .shape = {shape.begin(), shape.end()}};
+}
+
+std::string TextIn(hid_t attribute, hid_t type) {
+  const Hdf5Id memory(H5Tcopy(type));
+  if (H5Tis_variable_str(type) > 0) {
+    char* text = nullptr;
+    if (H5Aread(attribute, memory, &text) < 0 || !text) return "";
+    const std::string copy(text, strnlen(text, kMostHdf5TextBytes));
+    H5free_memory(text);
+    return copy;
+  }
+  const std::size_t size = H5Tget_size(type);
+  if (size > kMostHdf5TextBytes) return "";
+  std::string text(size, '\0');
+  if (H5Aread(attribute, memory, text.data()) < 0) return "";
+  return text.substr(0, text.find('\0'));
+}
+
+}  // namespace
+
+Hdf5Id::~Hdf5Id() {
+  if (id_ >= 0) H5Idec_ref(id_);
+}
+
+std::uint64_t Hdf5Object::Width() const {
+  std::uint64_t width = 1;
+  for (std::size_t i = 1; i < shape.size(); ++i) width *= shape[i];
+  return width;
+}
+
+std::string Hdf5Object::Text() const {
+  constexpr std::array kNames = {"group", "float", "int", "bool", "text", "of another type"};
+  const std::string type = kNames[static_cast<std::size_t>(kind)];
+  if (kind == Hdf5Kind::kGroup) return type;
+  const bool sized = kind == Hdf5Kind::kFloat || kind == Hdf5Kind::kInteger;
+  return fmt::format("({}{}) {}{}", fmt::join(shape, ", "), shape.size() == 1 ? "," : "", type,
+                     sized ? std::to_string(8 * bytes) : "");
+}
+
+Result<Hdf5File> Hdf5File::Open(const std::string& path) {
+  SetUp();
+  Hdf5File file;
+  file.path_ = path;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error))
+    return tl::unexpected(file.Error(std::filesystem::exists(path, error)
+                                         ? "it is a folder or a device; expected an HDF5 file"
+                                         : "it does not exist, or cannot be read"));
+  const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_file_locking(access, true, true);
+  file.file_ = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access));
+  if (file.file_) return file;
+  const std::string why = InnermostError();
+  const bool cut = why.find("truncated") != std::string::npos;
+  return tl::unexpected(file.Error(
+      cut ? "the file is cut off (" + why + ")" : "it is no HDF5 file, or is damaged: " + why,
+      cut ? "was it copied whole, and closed by the program that wrote it?" : ""));
+}
+
+Diagnostics Hdf5File::Error(std::string message, std::string hint) const {
+  return {{.file = ReadableName(path_),
+           .place = {},
+           .message = std::move(message),
+           .source_line = {},
+           .hint = std::move(hint)}};
+}
+
+Result<Hdf5Id> Hdf5File::OpenObject(const std::string& path) const {
+  Hdf5Id object(H5Oopen(file_, path.empty() ? "/" : path.c_str(), H5P_DEFAULT));
+  if (!object) return tl::unexpected(WhyNotOpened(path));
+  const H5I_type_t type = H5Iget_type(object);
+  if (type == H5I_DATASET) {
+    if (const std::string why = Refusal(object); !why.empty())
+      return tl::unexpected(Error(fmt::format("'{}' {}", path, why)));
+  } else if (type != H5I_GROUP) {
+    return tl::unexpected(Error(fmt::format("'{}' is neither a group nor a dataset", path)));
+  }
+  return object;
+}
+
+Diagnostics Hdf5File::WhyNotOpened(const std::string& path) const {
+  std::string damage = InnermostError(), before = "/";
+  for (std::size_t end = 0; end < path.size();) {
+    end = path.find('/', end + 1);
+    const std::string part = path.substr(0, end);
+    H5L_info_t info;
+    if (H5Lexists(file_, part.c_str(), H5P_DEFAULT) > 0 &&
+        H5Lget_info(file_, part.c_str(), &info, H5P_DEFAULT) >= 0) {
+      if (info.type != H5L_TYPE_HARD && H5Oexists_by_name(file_, part.c_str(), H5P_DEFAULT) <= 0)
+        return Error(fmt::format("'{}' is a link {}", part,
+                                 info.type == H5L_TYPE_SOFT
+                                     ? "to nothing in this file"
+                                     : "to another file, which is not read"));
+      before = part;
+      continue;
+    }
+    const Result<std::vector<std::string>> names = NamesIn(before);
+    if (!names) break;
+    const std::string name = part.substr(part.rfind('/') + 1);
+    if (std::ranges::find(*names, name) != names->end()) break;
+    const std::string nearest = grammar::NearestName(name, *names);
+    return Error(
+        fmt::format(
+            "'{}' is not in the file: '{}' has {}{}", part, before,
+            fmt::join(names->begin(),
+                      names->begin() + std::min<std::ptrdiff_t>(12, std::ssize(*names)), ", "),
+            names->size() > 12 ? " .."
+            : names->empty()   ? "nothing"
+                               : ""),
+        nearest.empty() ? "" : fmt::format("did you mean '{}'?", nearest));
+  }
+  return Error(fmt::format("'{}' is damaged: {}", path, damage));
+}
+
+bool Hdf5File::Has(const std::string& object) const {
+  const Hdf5Id opened(H5Oopen(file_, object.empty() ? "/" : object.c_str(), H5P_DEFAULT));
+  return static_cast<bool>(opened);
+}
+
+Result<Hdf5Object> Hdf5File::Describe(const std::string& path) const {
+  const Result<Hdf5Id> object = OpenObject(path);
+  if (!object) return tl::unexpected(object.error());
+  Hdf5Object description;
+  description.kind = Hdf5Kind::kGroup;
+  if (H5Iget_type(*object) == H5I_DATASET) description = ObjectOf(*object);
+  description.name = path.substr(path.rfind('/') + 1);
+  return description;
+}
+
+Result<std::vector<std::string>> Hdf5File::NamesIn(const std::string& path) const {
+  const Result<Hdf5Id> group = OpenObject(path);
+  if (!group) return tl::unexpected(group.error());
+  if (H5Iget_type(*group) != H5I_GROUP)
+    return tl::unexpected(Error(fmt::format("'{}' is a dataset; expected a group", path)));
+  std::vector<std::string> names;
+  const herr_t status = H5Literate(
+      *group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr,
+      [](hid_t, const char* name, const H5L_info_t*, void* to) -> herr_t {
+        auto& all = *static_cast<std::vector<std::string>*>(to);
+        all.emplace_back(name);
+        return all.size() > kMostHdf5Names ? 1 : 0;
+      },
+      &names);
+  if (status < 0)
+    return tl::unexpected(Error(fmt::format("'{}' is damaged: {}", path, InnermostError())));
+  if (status > 0)
+    return tl::unexpected(
+        Error(fmt::format("'{}' has more than {} members", path, kMostHdf5Names)));
+  std::ranges::sort(names, ComesBefore);
+  return names;
+}
+
+std::optional<Hdf5Value> Hdf5File::Attribute(const std::string& path,
+                                             const std::string& name) const {
+  const Result<Hdf5Id> object = OpenObject(path);
+  if (!object || H5Aexists(*object, name.c_str()) <= 0) return std::nullopt;
+  const Hdf5Id attribute(H5Aopen(*object, name.c_str(), H5P_DEFAULT));
+  if (!attribute) return std::nullopt;
+  const Hdf5Id type(H5Aget_type(attribute)), space(H5Aget_space(attribute));
+  if (!type || !space || H5Sget_simple_extent_npoints(space) != 1) return std::nullopt;
+  const Hdf5Kind kind = KindOf(type);
+  if (kind == Hdf5Kind::kText) return TextIn(attribute, type);
+  std::int8_t flag = 0;
+  double value = 0;
+  const bool is_bool = kind == Hdf5Kind::kBool;
+  if (!is_bool && kind != Hdf5Kind::kFloat && kind != Hdf5Kind::kInteger) return std::nullopt;
+  if ((is_bool ? H5Aread(attribute, type, &flag) : H5Aread(attribute, H5T_NATIVE_DOUBLE, &value)) <
+      0)
+    return std::nullopt;
+  return is_bool ? flag : value;
+}
+
+Result<std::vector<double>> Hdf5File::Read(const std::string& path, const Hdf5Slice& slice) const {
+  const Result<Hdf5Id> dataset = OpenObject(path);
+  if (!dataset) return tl::unexpected(dataset.error());
+  const auto refuse = [&](const std::string& why) {
+    return tl::unexpected(Error(fmt::format("'{}' {}", path, why)));
+  };
+  if (H5Iget_type(*dataset) != H5I_DATASET) return refuse("is a group; expected a dataset");
+  const Hdf5Object object = ObjectOf(*dataset);
+  const bool is_bool = object.kind == Hdf5Kind::kBool;
+  if (!is_bool && object.kind != Hdf5Kind::kFloat && object.kind != Hdf5Kind::kInteger)
+    return refuse(fmt::format("is {}; expected numbers", object.Text()));
+  const Hdf5Id space(H5Dget_space(*dataset));
+  if (const std::string why = ChunkRefusal(*dataset, space, static_cast<std::size_t>(object.bytes));
+      !why.empty())
+    return refuse(why);
+  const std::uint64_t first = std::min(slice.first_row, object.Rows()),
+                      rows = std::min(slice.rows, object.Rows() - first);
+  const std::uint64_t width = object.Width(), from = std::min(slice.first_column, width),
+                      columns = std::min(slice.columns, width - from);
+  if (rows == 0 || columns == 0) return std::vector<double>{};
+  // Columns of a table are cut by the library, those of what has more dimensions here.
+  const bool cuts = object.shape.size() == 2;
+  const std::uint64_t in_memory = cuts ? columns : width;
+  if (width > kMostHdf5Values || rows > kMostHdf5Values / in_memory)
+    return refuse(fmt::format("has {} rows of {} values; at most {} values are read", rows,
+                              in_memory, kMostHdf5Values));
+  if (!object.shape.empty()) {
+    std::vector<hsize_t> start(object.shape.size(), 0),
+        count(object.shape.begin(), object.shape.end());
+    start[0] = first, count[0] = rows;
+    if (cuts) start[1] = from, count[1] = columns;
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+  }
+  const hsize_t total = rows * in_memory;
+  const Hdf5Id memory(H5Screate_simple(1, &total, nullptr)), type(H5Dget_type(*dataset));
+  std::vector<double> values(total);
+  std::vector<std::int8_t> flags(is_bool ? total : 0);
+  const herr_t status =
+      is_bool ? H5Dread(*dataset, type, memory, space, H5P_DEFAULT, flags.data())
+              : H5Dread(*dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values.data());
+  if (status < 0) return refuse("is damaged: " + InnermostError());
+  std::ranges::copy(flags, values.begin());
+  if (cuts || columns == width) return values;
+  for (std::uint64_t row = 0; row < rows; ++row)
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(row * width + from), columns,
+                values.begin() + static_cast<std::ptrdiff_t>(row * columns));
+  values.resize(rows * columns);
+  return values;
+}
+
+}  // namespace prehend::exchange
