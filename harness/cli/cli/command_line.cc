@@ -150,6 +150,7 @@ std::vector<Command> AllCommands() {
           Limited(EpisodesCommand(), kMany_s),
           Limited(QueryCommand(), kMany_s),
           Limited(ResegmentCommand(), kMany_s),
+          Limited(ExportCommand(), kMany_s),
           Limited(VerifyCommand(), kMany_s),
           Limited(KnowledgeCommand(), kMany_s),
           AskCommand(),

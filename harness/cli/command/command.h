@@ -53,6 +53,7 @@ Command RenderCommand();
 Command NewCommand();
 Command ImportCommand();
 Command ResegmentCommand();
+Command ExportCommand();
 Command SchemaCommand();
 Command RenameCommand();
 Command BenchCommand();

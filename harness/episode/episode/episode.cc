@@ -26,6 +26,14 @@ grammar::EntityTable Episode::entities() const {
   return recording_ ? recording_->header.entity_table : MakeEntityTable(loaded_.scenario);
 }
 
+EpisodeHeader Episode::Header() const {
+  if (recording_) return recording_->header;
+  const std::string& name = name_.scenario;
+  return {.episode = name.substr(name.rfind('/') + 1),
+          .grammar = loaded_.scenario.grammar,
+          .entity_table = entities()};
+}
+
 const RunResult& Episode::Played() {
   if (!played_) played_ = RunScenario(loaded_.scenario, loaded_.program, {.record = true});
   return *played_;
@@ -67,6 +75,13 @@ Episode::End Episode::EachFrame(const std::function<void(const grammar::Frame&)>
     return End{recording_->end_tick, ""};
   }
   const scenario::Scenario& scenario = loaded_.scenario;
+  Sensing sensing(scenario.scene, scenario.sensing);
+  if (played_) {
+    for (const physics::Snapshot& snapshot : played_->recording) {
+      if (sensing.Due(snapshot.tick)) look(sensing.Sense(snapshot));
+    }
+    return End{played_->ticks + 1, IsComplete(played_->status) ? "" : StatusText(*played_)};
+  }
   if (!file_) {
     ScenarioRun playing(scenario, loaded_.program);
     while (playing.Step()) {
@@ -75,7 +90,6 @@ Episode::End Episode::EachFrame(const std::function<void(const grammar::Frame&)>
     const RunResult run = playing.Finish();
     return End{run.ticks + 1, IsComplete(run.status) ? "" : StatusText(run)};
   }
-  Sensing sensing(scenario.scene, scenario.sensing);
   EpisodeFrames frames(*file_, row_, LayoutOf(scenario.scene));
   const Result<void> read =
       frames.Play([&](const physics::Snapshot& snapshot) { look(sensing.Sense(snapshot)); },

@@ -29,6 +29,8 @@ class Episode {
   LoadedRun& loaded() { return loaded_; }
   const std::shared_ptr<const grammar::Program>& program() const { return loaded_.program; }
   grammar::EntityTable entities() const;
+  /// The first line of a recording of it.
+  EpisodeHeader Header() const;
   /// Null unless it is one of an episode file.
   const EpisodeRow* row() const { return file_ ? &row_ : nullptr; }
   const EpisodeFile* file() const { return file_.get(); }

@@ -239,4 +239,8 @@ std::string UuidOf(const std::string& text) {
   return AsUuid(word("1" + text), word("2" + text), 8);
 }
 
+std::string UuidOfEvent(const std::string& episode_uuid, std::size_t index) {
+  return UuidOf(episode_uuid + " event " + std::to_string(index));
+}
+
 }  // namespace prehend::episode

@@ -26,5 +26,7 @@ Database OpenToRead(const std::string& path);
 std::string NewUuid();
 /// The same for the same text (version 8).
 std::string UuidOf(const std::string& text);
+/// Of the event that stands at this place of an episode's timeline.
+std::string UuidOfEvent(const std::string& episode_uuid, std::size_t index);
 
 }  // namespace prehend::episode

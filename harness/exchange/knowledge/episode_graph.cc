@@ -40,7 +40,7 @@ bool IsA(const KeptEntity& entity, const char* wanted) {
 
 /// "log:UUID" of the event that stands at this place of its timeline.
 std::string NameOfEvent(const std::string& episode_uuid, std::size_t index) {
-  return Individual(episode::UuidOf(fmt::format("{} event {}", episode_uuid, index)));
+  return Individual(episode::UuidOfEvent(episode_uuid, index));
 }
 
 /// Names of the map of a task, and of the task.

@@ -118,11 +118,7 @@ void Episode::WriteFrames(const std::string& file) const {
   impl_->WithFrames([&](episode::Episode& episode) {
     AtomicFile out(file);
     if (!out.problem().empty()) Refuse(file, out.problem());
-    const episode::EpisodeHeader own{.episode = name().substr(name().rfind('/') + 1),
-                                     .grammar = grammar_name(),
-                                     .entity_table = episode.entities()};
-    episode::EpisodeWriter writer(out.stream(),
-                                  episode.recording() ? episode.recording()->header : own);
+    episode::EpisodeWriter writer(out.stream(), episode.Header());
     const auto end = episode.EachFrame([&](const grammar::Frame& frame) { writer.Write(frame); });
     writer.Finish(end.tick);
     if (const std::string problem = out.Commit(); !problem.empty()) Refuse(file, problem);

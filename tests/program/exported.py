@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Exported episodes, read by NumPy, pandas and `import`: poses within 1e-9 m, the same events.
+
+    exported.py PREHEND [SCENARIOS]
+"""
+import csv
+import glob
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+import pandas as pd
+
+prehend, count = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 6
+PLAYED = 8  # of these, the files of other formats, too
+
+
+def said(*words, ok=(0,)):
+    run = subprocess.run([prehend, *map(str, words)], capture_output=True, text=True, check=False)
+    assert run.returncode in ok, (words, run.returncode, run.stderr)
+    return run.stdout
+
+
+def resegmented(file, *words):
+    events = json.loads(said("episode", "resegment", file, "--json", *words, ok=(0, 4)))["events"]
+    return [{key: event[key] for key in event if not key.startswith("decided")} for event in events]
+
+
+def poses_of(lines, names):
+    """(ticks, position, quaternion wxyz) of the frames of a recording, by `names`."""
+    at, ticks, p, q = {}, [], [], []
+    for line in lines[1:]:
+        if "end_tick" in line:
+            continue
+        at.update(line["samples"])
+        ticks.append(line["tick"])
+        p.append([at[name]["at_m"] if at[name] else [np.nan] * 3 for name in names])
+        q.append([at[name]["quat_wxyz"] if at[name] else [np.nan] * 4 for name in names])
+    return np.array(ticks), np.array(p), np.array(q)
+
+
+def turned(q, v):
+    """v in the axes that q turns to."""
+    u = q[..., 1:]
+    t = 2 * np.cross(u, v)
+    return v + q[..., :1] * t + np.cross(u, t)
+
+
+def poses_alone(lines, mapped):
+    """What a tracker would know of a recording: bodies of the map as boxes, their poses, no velocities, nothing else."""
+    head, (ticks, p, q) = lines[0], poses_of(lines, mapped)
+    first = {"recording": 1, "episode": head["episode"], "grammar": "pick_and_place_from_motion",
+             "ticks_per_second": head["ticks_per_second"], "entities": {}}
+    for i, name in enumerate(mapped):
+        old = head["entities"][name]
+        if old.get("hand"):
+            first["entities"][name] = {"hand": True, "size_m": old["size_m"]}
+        else:
+            first["entities"][name] = {"class": old["class"], "fixed": old["fixed"], "size_m": old["size_m"]}
+        p[:, i] += turned(q[:, i], np.array(old["centre_m"]))
+    hands = [i for i, name in enumerate(mapped) if head["entities"][name].get("hand")]
+    ahead = {}
+    for line in lines[1:]:
+        for name, hand in line.get("hands", {}).items():
+            if name in mapped and name not in ahead:
+                back = q[list(ticks).index(line["tick"]), mapped.index(name)] * [1, -1, -1, -1]
+                ahead[name] = turned(back, np.array(hand["ahead"]))
+    made = [json.dumps(first)]
+    for k, tick in enumerate(ticks):
+        samples = {name: {"at_m": list(p[k, i]), "quat_wxyz": list(q[k, i])} for i, name in enumerate(mapped)}
+        grips = {mapped[i]: {"ahead": list(turned(q[k, i], ahead[mapped[i]]))} for i in hands}
+        made.append(json.dumps({"tick": int(tick - ticks[0]), "samples": samples, "hands": grips}))
+    made.append(json.dumps({"end_tick": int(ticks[-1] - ticks[0]) + 1}))
+    return "\n".join(made) + "\n"
+
+
+def check_files(folder, name, lines):
+    """What NumPy and pandas read."""
+    names = list(lines[0]["entities"])
+    ticks, p, q = poses_of(lines, names)
+    t = ticks / lines[0]["ticks_per_second"]
+    arrays = np.load(folder / f"{name}.npz")
+    assert [text.decode() for text in arrays["entity"]] == names
+    assert np.array_equal(arrays["t_s"], t) and np.array_equal(arrays["position_m"], p, equal_nan=True)
+    assert np.array_equal(arrays["quaternion_wxyz"], q, equal_nan=True)
+    table = pd.read_csv(folder / f"{name}.csv", float_precision="round_trip")
+    assert list(table.entity[:len(names)]) == names and len(table) == len(t) * len(names)
+    assert np.array_equal(table[["x", "y", "z"]].to_numpy().reshape(p.shape), p, equal_nan=True)
+    assert np.array_equal(table[["qw", "qx", "qy", "qz"]].to_numpy().reshape(q.shape), q, equal_nan=True)
+    assert np.abs(table.t.to_numpy() - np.repeat(t, len(names))).max() < 0.5 / lines[0]["ticks_per_second"]
+    hands = [one for one in names if lines[0]["entities"][one].get("hand")]
+    last = {hand: line["hands"][hand]["trigger"] for line in lines[1:] for hand in line.get("hands", {})}
+    for hand in hands:
+        assert table.grip[table.entity == hand].iloc[-1] == last[hand] == arrays["grip"][-1, names.index(hand)]
+    assert table.grip[~table.entity.isin(hands)].isna().all()
+    events = pd.read_csv(folder / f"{name}.events.csv")
+    uuids = [text.decode() for text in arrays["event_uuid"]]
+    assert list(events.uuid) == uuids and len(set(uuids)) == len(uuids)
+    assert list(events.event) == [text.decode() for text in arrays["event"]]
+    assert np.abs(events.begin_s - arrays["event_begin_s"]).max() < 1e-3 if len(events) else True
+    for roles, (_, row) in zip(arrays["event_roles_json"], events.iterrows()):
+        assert all(str(row[role]) == str(value) for role, value in json.loads(roles).items()
+                   if isinstance(value, str)), (roles, row)
+
+
+def check_uuids(folder):
+    """Of an episode file they are those of the knowledge base, and stay."""
+    kept = folder / "milk.episodes"
+    said("run", "milk_carton_wrap", "--record", kept)
+    said("episode", "knowledge", kept, "-o", folder / "kb")
+    turtle = pathlib.Path(glob.glob(str(folder / "kb/episodes/*.ttl"))[0]).read_text(encoding="utf-8")
+    for out in ("a", "b"):
+        said("episode", "export", kept, "--to", "csv", "-o", folder / out / "milk.csv")
+    first, second = [(folder / out / "milk.events.csv").read_bytes() for out in ("a", "b")]
+    assert first == second
+    for row in csv.DictReader(first.decode().splitlines()):
+        assert f"log:{row['uuid']}" in turtle, row
+    said("episode", "export", kept, "--to", "jsonl", "-o", folder / "kept.jsonl")
+    said("run", "milk_carton_wrap", "--record", folder / "played.jsonl")
+    assert (folder / "kept.jsonl").read_bytes() == (folder / "played.jsonl").read_bytes()
+    said("episode", "export", kept, "--grammar", "pick_and_place_from_motion", "--to", "csv", "-o", folder / "m.csv")
+    assert (folder / "m.events.csv").read_bytes() != first
+
+
+def check_gaps(folder):
+    """What is not tracked for a while, shorter and longer than `bridge_s`, is segmented as before."""
+    def line(tick, x):
+        cup = None if 30 <= tick < 36 or 60 <= tick < 90 else {"at_m": [0, 0, 0.77]}
+        return json.dumps({"tick": tick, "samples": {"cup": cup, "hand": {"at_m": [x, 0, 0.8]}}})
+    take = folder / "gaps.jsonl"
+    take.write_text("\n".join(
+        [json.dumps({"recording": 1, "episode": "gaps", "grammar": "contact_from_motion", "ticks_per_second": 100,
+                     "entities": {"table": {"class": "Table", "fixed": True, "size_m": [1, 1, 0.04]},
+                                  "cup": {"class": "Cup", "size_m": [0.08, 0.08, 0.1]},
+                                  "hand": {"hand": True, "size_m": [0.09, 0.08, 0.03]}}}),
+         json.dumps({"tick": 0, "samples": {"table": {"at_m": [0, 0, 0.7]}}})]
+        + [line(tick, 0.3 - tick / 1000) for tick in range(1, 200)] + [json.dumps({"end_tick": 200})]), encoding="utf-8")
+    said("episode", "export", take, "--to", "jsonl", "-o", folder / "again.jsonl")
+    assert resegmented(take) == resegmented(folder / "again.jsonl")
+    said("episode", "export", folder / "again.jsonl", "--to", "jsonl", "-o", folder / "third.jsonl")
+    assert (folder / "again.jsonl").read_bytes() == (folder / "third.jsonl").read_bytes()
+    said("episode", "export", take, "--to", "npz", "-o", folder / "gaps.npz")
+    assert np.isnan(np.load(folder / "gaps.npz")["position_m"][80, 1]).all()
+
+
+def main():
+    every = [file for file in sorted(glob.glob("scenarios/*/*.yaml"))
+             if "\nscenario:" in "\n" + pathlib.Path(file).read_text(encoding="utf-8")]
+    chosen = [file for file in every if file.split("/")[1] in ("pick_and_place", "slide", "grasp", "reach", "put_down",
+                                                               "support", "transport", "pick_up", "bimanual", "styles",
+                                                               "rates", "tracking", "stirring")]
+    chosen = chosen[:: max(1, len(chosen) // count)][:count]
+    assert len(chosen) == count
+    with tempfile.TemporaryDirectory() as where:
+        folder = pathlib.Path(where)
+        check_uuids(folder)
+        check_gaps(folder)
+        events = 0
+        for file in chosen:
+            name = pathlib.Path(file).stem
+            kept = folder / f"{name}.episodes"
+            run = json.loads(said("run", file, "--json", "--record", kept, ok=(0, 1)))["events"]
+            for form in ("jsonl", "csv", "mcap") + (("npz",) if chosen.index(file) < PLAYED else ()):
+                said("episode", "export", kept, "--to", form, "-o", folder / name / f"{name}.{form}")
+            lines = [json.loads(line) for line in open(folder / name / f"{name}.jsonl", encoding="utf-8")]
+            if chosen.index(file) < PLAYED:
+                check_files(folder / name, name, lines)
+                again = json.loads(said("episode", "resegment", folder / name / f"{name}.jsonl", "--json"))["events"]
+                assert run == again, name
+            text = (folder / name / f"{name}.csv.map.yaml").read_text(encoding="utf-8")
+            mapped = [json.loads(one) for one in re.findall(r'^  (".*?"): {', text, re.M)]
+            wanted = folder / name / "wanted.jsonl"
+            wanted.write_text(poses_alone(lines, mapped), encoding="utf-8")
+            truth = resegmented(wanted)
+            events += len(truth)
+            for form in ("csv", "mcap"):
+                take = folder / name / f"{form}.jsonl"
+                said("import", folder / name / f"{name}.{form}", "--map", folder / name / f"{name}.{form}.map.yaml", "-o", take)
+                read = poses_of([json.loads(line) for line in open(take, encoding="utf-8")], mapped)
+                want = poses_of([{}] + [json.loads(line) for line in open(wanted, encoding="utf-8")][1:], mapped)
+                assert np.array_equal(read[0], want[0]), (name, form)
+                assert np.nanmax(np.abs(read[1] - want[1])) < 1e-9, (name, form)
+                assert resegmented(take) == truth, (name, form)
+        print(f"{count} scenarios, {events} events by each of csv and mcap: the same")
+
+
+main()
