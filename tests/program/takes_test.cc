@@ -107,6 +107,44 @@ TEST_F(Takes, OneTableOfManyRecordings) {
             "");
 }
 
+TEST_F(Takes, WhereNothingHappensFalseAlarmsCount) {
+  const std::string take = Recording("a", {{1, 2}, {3, 4}}),
+                    nothing = Write("nothing.csv", "begin_s,end_s,label\n");
+  for (const std::vector<std::string>& meaning : {std::vector<std::string>{}, {"--map", map_}}) {
+    std::vector<std::string> words = {take, "--truth", nothing};
+    words.insert(words.end(), meaning.begin(), meaning.end());
+    const auto total = Json(words)["grammars"][0]["total"];
+    EXPECT_EQ(total["true"], 0);
+    EXPECT_EQ(total["found"], 2);
+    EXPECT_EQ(total["ward"]["inserted"], 2);
+    EXPECT_EQ(total["f1_50"], 0);
+  }
+  EXPECT_EQ(Has(Score({take, "--truth", nothing, "--verbose"}).out, "extra    near(hand, cup)"),
+            "");
+  // Beside others it says nothing of what these do not name.
+  const std::string other = Recording("b", {{1, 2}}),
+                    marked = Write("b.csv", "begin_s,end_s,label\n1,2,near\n");
+  EXPECT_EQ(
+      Json({take, other, "--truth", nothing, "--truth", marked})["grammars"][0]["total"]["f1_50"],
+      0.5);
+  // In a table of all a row with nothing but a name says it; without one it was forgotten.
+  const std::string by_take =
+      Write("by.yaml", "columns: {take: video}\nlabels: {near: {event: near}}\n");
+  const auto table = [&](const std::string& more) {
+    return Write("all.csv", "video,begin_s,end_s,label\nb,1,2,near\n" + more);
+  };
+  EXPECT_EQ(Json({take, other, "--truth", table("a,,,\n"), "--map",
+                  by_take})["grammars"][0]["total"]["ward"]["inserted"],
+            2);
+  const Said forgotten = Score({take, other, "--truth", table(""), "--map", by_take});
+  EXPECT_EQ(forgotten.exit_code, 2);
+  EXPECT_EQ(Has(forgotten.err, "no row has 'a' in the column 'video'"), "");
+  // A file that says nothing at all is no answer.
+  const Said empty = Score({take, "--truth", Write("empty.csv", "")});
+  EXPECT_EQ(empty.exit_code, 2);
+  EXPECT_EQ(Has(empty.err, "empty.csv: error: the file is empty"), "");
+}
+
 TEST_F(Takes, ASweepSeesTheBetterParameterInATableOfAll) {
   const std::string one = Recording("P1", {{1, 2}}), table = Write("all.csv", kTable),
                     by_take =

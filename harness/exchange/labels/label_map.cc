@@ -266,11 +266,14 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
     warning.is_warning = true;
     reading.warnings_ += grammar::Format(warning);
   }
-  // What labels could name: without one of them, what is recognised of it is too much.
+  // What labels could name: without one of them, what is recognised of it is too much. Where no
+  // label is and no map, that is all.
   if (map) {
     for (const auto& [text, meaning] : map->labels)
       if (!meaning.ignored && !reading.compared_.contains(meaning.event))
         Compare(meaning.event, meaning.roles, reading.compared_);
+  } else if (reading.compared_.empty()) {
+    for (const EventSignature& event : events) reading.compared_[event.name] = event.roles;
   }
   // Of a symmetric event one role alone says nothing.
   for (auto& [name, roles] : reading.compared_) {

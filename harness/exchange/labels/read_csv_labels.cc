@@ -329,6 +329,10 @@ class RowTaker {
   }
 
   void TakeWhole(Label label, const std::vector<CsvCell>& cells) {
+    if (label.text.empty() && cells[columns_.begin->seat].text.empty() && !label.keys.empty()) {
+      file_.nothing_in.insert(std::move(label.keys));
+      return;
+    }
     const auto from_s = Seconds(*columns_.begin, cells),
                to_s = Seconds(columns_.end ? *columns_.end : *columns_.duration, cells);
     if (!from_s || !to_s) return;

@@ -47,6 +47,7 @@ class EafReader {
                "ELAN saves it so after Options > Propagate time offset is not set to frames");
     for (const pugi::xml_node media : root.child("HEADER").children("MEDIA_DESCRIPTOR"))
       WarnOfOrigin(media);
+    file_.has_header = root.child("HEADER") || root.child("TIER");
     ReadSlots(root.child("TIME_ORDER"));
     for (const pugi::xml_node tier : root.children("TIER")) ReadAligned(tier);
     for (const pugi::xml_node tier : root.children("TIER")) ReadReferring(tier);

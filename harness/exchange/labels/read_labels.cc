@@ -134,7 +134,11 @@ Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv, Bac
                                 fmt::format("{}", fmt::join(LabelEndings(), ", ")))};
   }
   TakeBackward(file, backward, problems);
-  if (problems.empty() && file.labels.empty()) problems.push_back(file.At({}, "it has no labels"));
+  // Below a header, or in the tiers, nothing is an answer, too: nothing happened.
+  const bool says_nothing = file.has_header && file.empty.empty() && file.backward == 0 &&
+                            file.text.find_first_not_of(" \t\n") != std::string::npos;
+  if (problems.empty() && file.labels.empty() && !says_nothing)
+    problems.push_back(file.At({}, "it has no labels"));
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   return file;
 }

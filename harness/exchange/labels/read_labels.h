@@ -4,6 +4,7 @@
 // tests/harness/exchange/labels/labels_test.cc
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,9 @@ struct LabelFile {
   std::vector<Label> labels;  ///< without empty ones, in the order of the file
   std::size_t backward = 0;   ///< labels that end before they begin, which were left out
   std::vector<Label> empty;   ///< those without text, which were left out
+  bool has_header = true;     ///< without labels, it says that nothing happened
+  /// Of a table: keys of rows with neither times nor a label, which say that of a take.
+  std::set<std::vector<std::string>> nothing_in;
   grammar::Diagnostics warnings;
   /// Of a table: columns that seem to say whose take a row is of, and hold several values.
   std::vector<std::string> several;

@@ -172,7 +172,11 @@ class TruthReader {
       if (is_table && !IsWanted(file.labels[i], wanted, path)) continue;
       rows.labels.push_back(i);
     }
-    if (rows.labels.empty()) ComplainOfNone(file, wanted, path);
+    const bool says_nothing =
+        wanted.empty() || !is_table || std::ranges::any_of(file.nothing_in, [&](const auto& keys) {
+          return IsWanted({.keys = keys}, wanted, path);
+        });
+    if (rows.labels.empty() && !says_nothing) ComplainOfNone(file, wanted, path);
   }
 
   /// Which labels of the files that were read are of some take, also one that is read apart.
@@ -213,7 +217,8 @@ class TruthReader {
         grammar::NearestName(wanted[0].values.front(), {known.begin(), known.end()});
     problems_.push_back(file.At(
         {}, "no row has " + asked,
-        fmt::format("{}rows: {{{}: VALUE}} in a file of takes says which are of a recording",
+        fmt::format("{}rows: {{{}: VALUE}} in a file of takes says which are of a recording; if "
+                    "nothing happened in it, a row with nothing but its name says so",
                     near.empty() ? "" : "it has '" + near + "'; ", wanted[0].column)));
   }
 

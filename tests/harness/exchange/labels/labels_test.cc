@@ -205,7 +205,12 @@ TEST_F(Labels, FaultyCsvIsNamed) {
       backward.error().back().hint,
       "there are 25 such labels in the file; --skip-bad-labels leaves out what ends before it "
       "begins");
-  EXPECT_EQ(Problem("a.csv", head), "a.csv: error: it has no labels");
+  EXPECT_EQ(Read("a.csv", head), "") << "nothing happened, and it says so";
+  EXPECT_EQ(Problem("a.csv", "\n"),
+            "a.csv:1:1: error: found the columns ; wanted one for the "
+            "begin, the end and the label of each row");
+  EXPECT_EQ(Problem("a.csv", head + "0,1,\n"), "a.csv: error: it has no labels");
+  EXPECT_EQ(Problem("a.txt", " \n"), "a.txt: error: it has a line for each frame");
   EXPECT_EQ(Problem("a.csv", head + "0,1,h\xe9\n"), "a.csv:2:6: error: byte 0xe9 is not UTF-8");
   EXPECT_NE(Problem("a.csv", "").find("a.csv"), std::string::npos);
   EXPECT_EQ(Problem("a.doc", head),
@@ -264,6 +269,7 @@ TEST_F(Labels, FaultyEafIsNamed) {
             "a.eaf:16:18: error: ANNOTATION_REF: there is no annotation 'a7' before it");
   EXPECT_EQ(Problem("a.eaf", With(kEaf, "\"1500\"", "\"100\"")).substr(0, 12), "a.eaf:10:18:");
   EXPECT_EQ(Problem("a.eaf", "<ANNOTATION_DOCUMENT/>"), "a.eaf: error: it has no labels");
+  EXPECT_EQ(Read("a.eaf", "<ANNOTATION_DOCUMENT><HEADER/></ANNOTATION_DOCUMENT>"), "");
 }
 
 // What EAFv3.0.xsd asks of the elements that are written, in their order.
