@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/base/process/child_process.h. Tested by
+// tests/harness/base/process/child_process_test.cc
+#include "harness/base/process/child_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace prehend {
+namespace {
+
+void Close(int& descriptor) {
+  if (descriptor >= 0) close(descriptor);
+  descriptor = -1;
+}
+
+/// Kills what is left of the children, whoever made them: an orphan becomes a child of this process
+/// (PR_SET_CHILD_SUBREAPER).
+void EndChildren() {
+  const std::string list = fmt::format("/proc/self/task/{}/children", getpid());
+  for (int round = 0; round < 1000; ++round) {
+    std::FILE* const file = std::fopen(list.c_str(), "r");
+    if (!file) return;
+    int child = 0, count = 0;
+    for (; std::fscanf(file, "%d", &child) == 1; ++count) kill(child, SIGKILL);
+    std::fclose(file);
+    if (count == 0) return;
+    while (waitpid(-1, nullptr, WNOHANG) > 0) {
+    }
+    usleep(1000);
+  }
+}
+
+/// In the process above the program: ends as it ends, and nothing is left.
+[[noreturn]] void Watch(pid_t program, pid_t parent, const sigset_t& told) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  bool is_over = getppid() != parent;
+  int status = 0, code = 128 + SIGKILL;
+  while (!is_over) {
+    int signal = 0;
+    sigwait(&told, &signal);
+    is_over = signal == SIGTERM;
+    for (pid_t ended = 1; ended > 0;) {
+      ended = waitpid(-1, &status, WNOHANG);
+      if (ended != program) continue;
+      is_over = true;
+      code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    }
+  }
+  EndChildren();
+  _exit(code);
+}
+
+/// In the child: becomes the program.
+[[noreturn]] void Become(const std::vector<char*>& arguments, const std::vector<char*>& more,
+                         int problem) {
+  for (char* one : more) putenv(one);
+  execvp(arguments[0], arguments.data());
+  const int why = errno;
+  (void)!write(problem, &why, sizeof why);
+  _exit(127);
+}
+
+std::vector<char*> Pointers(const std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (const std::string& word : words) pointers.push_back(const_cast<char*>(word.c_str()));
+  return pointers;
+}
+
+}  // namespace
+
+ChildProcess::~ChildProcess() {
+  if (process_ > 0) Kill();
+  for (int* one : {&in_, &out_, &err_}) Close(*one);
+}
+
+std::string ChildProcess::Start(const std::vector<std::string>& words, const How& how) {
+  // Sockets, because writing to one whose reader is gone need not raise a signal.
+  int ends[4][2] = {{-1, -1}, {-1, -1}, {-1, -1}, {-1, -1}};
+  for (auto& pair : ends)
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0)
+      return std::string("no connection to it: ") + std::strerror(errno);
+  std::vector<char*> arguments = Pointers(words), more = Pointers(how.environment);
+  arguments.push_back(nullptr);
+  is_watched_ = how.is_watched;
+  sigset_t told, before;
+  sigemptyset(&told);
+  sigaddset(&told, SIGCHLD);
+  sigaddset(&told, SIGTERM);
+  sigprocmask(SIG_BLOCK, &told, &before);  // until the watching process waits for them
+  const pid_t parent = getpid();
+  process_ = fork();
+  if (process_ == 0) {
+    if (is_watched_) {
+      setpgid(0, 0);
+      prctl(PR_SET_CHILD_SUBREAPER, 1);
+    }
+    const pid_t above = is_watched_ ? fork() : 0;
+    if (above == 0) {
+      for (int one = 0; one < 3; ++one) dup2(ends[one][1], one);
+      sigset_t none;
+      sigemptyset(&none);
+      sigprocmask(SIG_SETMASK, &none, nullptr);
+      if (how.memory_bytes > 0) {
+        const rlimit limit{how.memory_bytes, how.memory_bytes};
+        setrlimit(RLIMIT_AS, &limit);
+      }
+      Become(arguments, more, ends[3][1]);
+    }
+    for (auto& pair : ends)
+      for (int& one : pair) Close(one);
+    Watch(above, parent, told);
+  }
+  sigprocmask(SIG_SETMASK, &before, nullptr);
+  for (auto& pair : ends) Close(pair[1]);
+  int why = process_ < 0 ? errno : 0;
+  if (process_ > 0) (void)!read(ends[3][0], &why, sizeof why);  // it ends when the program starts
+  Close(ends[3][0]);
+  if (why != 0) {
+    for (int one = 0; one < 3; ++one) Close(ends[one][0]);
+    if (process_ > 0) Kill();
+    return why == ENOENT ? fmt::format("'{}' is not installed", words[0])
+                         : fmt::format("'{}' cannot be started: {}", words[0], std::strerror(why));
+  }
+  in_ = ends[0][0];
+  out_ = ends[1][0];
+  err_ = ends[2][0];
+  fcntl(in_, F_SETFL, O_NONBLOCK);
+  return "";
+}
+
+void ChildProcess::Exchange(double most_s, int also) {
+  if (closes_input_ && unsent() == 0) Close(in_);
+  // A closed descriptor is -1, which poll() passes over.
+  std::array<pollfd, 4> watched{pollfd{unsent() > 0 ? in_ : -1, POLLOUT, 0},
+                                {out_, POLLIN, 0},
+                                {err_, POLLIN, 0},
+                                {also, POLLIN, 0}};
+  if (poll(watched.data(), watched.size(), most_s <= 0 ? 0 : static_cast<int>(most_s * 1000) + 1) <
+      0)
+    return;
+  if (watched[0].revents != 0) {
+    const ssize_t count = send(in_, input_.data() + sent_, unsent(), MSG_NOSIGNAL);
+    if (count > 0) sent_ += static_cast<std::size_t>(count);
+    const bool is_gone = count < 0 && errno != EAGAIN && errno != EINTR;
+    if (unsent() == 0 || is_gone) {
+      input_.clear();
+      sent_ = 0;
+    }
+    if (is_gone || (closes_input_ && unsent() == 0)) Close(in_);
+  }
+  const auto receive = [](int& from, std::string& text) {
+    std::array<char, 65536> bytes;
+    const ssize_t count = recv(from, bytes.data(), bytes.size(), 0);
+    if (count > 0) text.append(bytes.data(), static_cast<std::size_t>(count));
+    if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) Close(from);
+  };
+  if (watched[1].revents != 0) receive(out_, out);
+  if (watched[2].revents != 0) receive(err_, err);
+}
+
+bool ChildProcess::HasEnded(double most_s) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(most_s);
+  int status = 0;
+  rusage used{};
+  for (pid_t ended = 0; process_ > 0 && ended == 0;) {
+    ended = wait4(process_, &status, most_s < 0 ? 0 : WNOHANG, &used);
+    if (ended < 0 && errno == EINTR) ended = 0;
+    if (ended == 0 && std::chrono::steady_clock::now() > until && most_s >= 0) return false;
+    if (ended == 0) Exchange(0.002);
+    if (ended != process_) continue;
+    process_ = 0;
+    const auto seconds = [](const timeval& time) {
+      return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    end_.cpu_s = seconds(used.ru_utime) + seconds(used.ru_stime);
+    end_.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+    end_.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    if (is_watched_ && end_.exit_code > 128) end_ = {0, end_.exit_code - 128, end_.cpu_s};
+  }
+  return true;
+}
+
+void ChildProcess::Kill() {
+  if (process_ <= 0) return;
+  kill(process_, is_watched_ ? SIGTERM : SIGKILL);
+  HasEnded(-1);
+}
+
+}  // namespace prehend

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Another program that runs beside this one: text goes both ways, and neither waits for the other
+// for ever. Tested by tests/harness/base/process/child_process_test.cc
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace prehend {
+
+class ChildProcess {
+ public:
+  ChildProcess() = default;
+  /// Kills it, if it still runs.
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  struct How {
+    std::size_t memory_bytes = 0;               ///< of its address space; 0: any
+    std::vector<std::string> environment = {};  ///< "NAME=value", beside that of this process
+    /// With a process above it, which ends all that it has started when it ends, when it is killed,
+    /// and when this process does.
+    bool is_watched = false;
+  };
+  /// `words`: the program, which is searched in PATH, and its arguments. "", or why not.
+  std::string Start(const std::vector<std::string>& words, const How& how);
+
+  /// To be sent as far as it takes it, by Exchange().
+  void Send(std::string_view text) { input_ += text; }
+  /// Once all is sent.
+  void CloseInput() { closes_input_ = true; }
+  std::size_t unsent() const { return input_.size() - sent_; }
+  /// Waits at most so long until something can be sent or has come, and moves it. `also`: a
+  /// descriptor that ends the wait, too.
+  void Exchange(double most_s, int also = -1);
+  /// Neither output is open any more.
+  bool has_said_all() const { return out_ < 0 && err_ < 0; }
+  bool reads_on() const { return in_ >= 0; }
+  std::string out, err;  ///< what has come; who reads may take it out
+
+  struct End {
+    int exit_code = 0, signal = 0;  ///< one of them; signal 0: it ended by itself
+    double cpu_s = 0;
+  };
+  /// Waits at most so long for its end; false if it still runs.
+  bool HasEnded(double most_s);
+  void Kill();
+  /// After HasEnded() or Kill().
+  const End& end() const { return end_; }
+
+ private:
+  pid_t process_ = 0;
+  bool is_watched_ = false;
+  int in_ = -1, out_ = -1, err_ = -1;
+  std::string input_;
+  std::size_t sent_ = 0;
+  bool closes_input_ = false;
+  End end_;
+};
+
+}  // namespace prehend
