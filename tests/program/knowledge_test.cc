@@ -392,19 +392,77 @@ TEST(Knowledge, AProjectsPrologIsNotRun) {
       0);
   EXPECT_FALSE(fs::exists(was_here));
   // Folders are names, never patterns.
-  const fs::path odd = folder / "kb {*} $HOME";
-  fs::copy(ThreeDays().kb, odd, fs::copy_options::recursive);
-  EXPECT_EQ(Answers(odd.string(), "entity(O, [an, object, [name, handle]])", "O"), Words{"handle"});
+  for (const char* name : {"kb {*} $HOME", "~", "http:/kb", "library(lists)", "a?[b]*"}) {
+    const fs::path odd = folder / name;
+    fs::create_directories(odd);
+    fs::copy(ThreeDays().kb, odd, fs::copy_options::recursive);
+    EXPECT_EQ(Answers(odd.string(), "entity(O, [an, object, [name, handle]])", "O"),
+              Words{"handle"})
+        << name;
+  }
+  // Within any nesting the ellipsis says nothing; to Prolog it would be a file to load.
+  WriteFile(folder / "...pl", ":- shell('touch " + was_here + "').\n");
+  for (const char* goal : {"findall(X, [..], L)", "forall(true, [..])", "limit(1, ([..]))"})
+    EXPECT_EQ(Prehend({"episode", "ask", ThreeDays().kb, goal}).exit_code, 0) << goal;
+  EXPECT_FALSE(fs::exists(was_here));
+  // What never ends is no file.
+  fs::create_symlink("/dev/zero", folder / "~" / "episodes" / "endless.ttl");
+  const Said endless = Prehend({"episode", "ask", (folder / "~").string(), "true"});
+  EXPECT_EQ(endless.exit_code, 2);
+  EXPECT_NE(endless.err.find("endless.ttl is no file"), std::string::npos) << endless.err;
 }
 
 TEST(Knowledge, ALimitHoldsInTheMidstOfAGoal) {
-  for (const char* query : {"X is 3**1500000000, fail", "sum_list([7**900000000], X)",
-                            "aggregate_all(max(3**1500000000), true, X)"}) {
+  // As small terms as can be, with 2^40 leaves.
+  std::string doubled;
+  for (int i = 0; i < 40; ++i) {
+    const std::string from = std::to_string(i), to = std::to_string(i + 1);
+    for (const std::string x : {"X", "Y"})
+      doubled += x + from + " = f(" + x + to + ", " + x + to + "), ";
+  }
+  const std::string too_large = "the query needs an integer of more than 65536 bits";
+  for (const auto& [query, why] : std::vector<std::pair<std::string, std::string>>{
+           {doubled + "X40 = a, Y40 = a, X0 == Y0", "the query took more than 1 s"},
+           {"X is 3**1500000000, fail", too_large},
+           {"sum_list([7**900000000], X)", too_large},
+           {"aggregate_all(max(3**1500000000), true, X)", too_large},
+           {"aggregate_all(r(count, max(2^100000, a)), true, X)", too_large},
+           {"limit(1 << 100000000000, true)", too_large},
+           {"1 >> -100000000000 > 0", too_large},
+           {"X is 1r3 ** 200000", too_large},
+           {"X is 2 ** 65536", too_large}}) {
     const auto begin = std::chrono::steady_clock::now();
     const Said said = Prehend({"episode", "ask", ThreeDays().kb, query, "--time-limit-s", "1"});
     EXPECT_EQ(said.exit_code, 2) << query << said.out;
-    EXPECT_NE(said.err.find("the query took more than 1 s"), std::string::npos) << said.err;
+    EXPECT_NE(said.err.find(why), std::string::npos) << query << ": " << said.err;
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(8)) << query;
+  }
+}
+
+TEST(Knowledge, EveryAnswerIsPrinted) {
+  const std::string& kb = ThreeDays().kb;
+  for (const auto& [query, value] : std::vector<std::pair<std::string, std::string>>{
+           {"X is inf", "inf"},
+           {"X is -inf", "-inf"},
+           {"X is nan", "nan"},
+           {"X = 1r3", "1r3"},
+           {"X is 2 ** 70", "1180591620717411303424"},
+           {"X is 10 ** 400", "1" + std::string(400, '0')},
+           {"X = f(X)", "@(S_1,[S_1=f(S_1)])"},
+           {"X = [1, X]", "@(S_1,[S_1=[1,S_1]])"},
+           {"X = composed(a, b)", "composed(a,b)"},
+           {"X = f(Y, Z)", "f(_,_)"},
+           {"X = _{a: 1}", "_{a:1}"},
+           {"X = 'é'", "é"},
+           {"X = \"a\\u0000b\"", std::string("a\0b", 3)},
+           {"aggregate_all(max(Y * 2, Y), member(Y, [1, 2]), X)", "max(4,2)"},
+           {"aggregate_all(r(count, sum(Y + 1)), member(Y, [1, 2]), X)", "r(2,5)"},
+           {"X is 2 ** -1 + max(1, 1.5) - 7 // 2", "-1.0"},
+           {"X is 1 ** (2 ** 30000)", "1"}}) {
+    EXPECT_EQ(Answers(kb, query, "X"), Words{value}) << query;
+    if (query == "X = 'é'") {
+      EXPECT_EQ(Prehend({"episode", "ask", kb, query}, {"LC_ALL=C"}).out, "X\né\n1 answer\n");
+    }
   }
 }
 
@@ -416,6 +474,12 @@ TEST(Knowledge, HostileQueriesAreRefusedOrStopped) {
            {"G = halt, call(G)", "call/1 is not allowed in a query"},
            {"findall(X, system(X), L)", "system/1 is not allowed in a query"},
            {"['/etc/passwd']", "is not allowed in a query"},
+           {"X = {|html||a|}", "quasi quotations are not allowed"},
+           {"true()", "true/0 is not allowed in a query"},
+           {"X^member(X, [1])", "(^)/2 is not allowed in a query"},
+           {"X is cputime", "found cputime, wanted a number"},
+           {"X is shell(ls)", "found shell(ls), wanted a number"},
+           {"X is 1 / 0", "a number cannot be computed: zero_divisor"},
            {"assertz(a)", "assertz/1 is not allowed in a query"},
            {"entity(A", "the query is no Prolog term"},
            {"X", "a goal is unknown"},

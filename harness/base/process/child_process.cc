@@ -14,6 +14,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -64,9 +65,15 @@ void EndChildren() {
   _exit(code);
 }
 
-/// In the child: becomes the program.
+/// In the child: becomes the program, within its limits from the first instruction on.
 [[noreturn]] void Become(const std::vector<char*>& arguments, const std::vector<char*>& more,
-                         int problem) {
+                         const ChildProcess::How& how, int problem) {
+  const auto limit = [](auto resource, rlim_t most) {
+    const rlimit both{most, most};
+    if (most > 0) setrlimit(resource, &both);
+  };
+  limit(RLIMIT_AS, how.memory_bytes);
+  limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(how.cpu_s)));
   for (char* one : more) putenv(one);
   execvp(arguments[0], arguments.data());
   const int why = errno;
@@ -114,11 +121,9 @@ std::string ChildProcess::Start(const std::vector<std::string>& words, const How
       sigset_t none;
       sigemptyset(&none);
       sigprocmask(SIG_SETMASK, &none, nullptr);
-      if (how.memory_bytes > 0) {
-        const rlimit limit{how.memory_bytes, how.memory_bytes};
-        setrlimit(RLIMIT_AS, &limit);
-      }
-      Become(arguments, more, ends[3][1]);
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      if (!is_watched_ && getppid() != parent) _exit(127);
+      Become(arguments, more, how, ends[3][1]);
     }
     for (auto& pair : ends)
       for (int& one : pair) Close(one);

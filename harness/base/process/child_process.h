@@ -23,9 +23,10 @@ class ChildProcess {
 
   struct How {
     std::size_t memory_bytes = 0;               ///< of its address space; 0: any
+    double cpu_s = 0;                           ///< of processor time; 0: any
     std::vector<std::string> environment = {};  ///< "NAME=value", beside that of this process
     /// With a process above it, which ends all that it has started when it ends, when it is killed,
-    /// and when this process does.
+    /// and when this process does. Without one, the program itself ends with this process.
     bool is_watched = false;
   };
   /// `words`: the program, which is searched in PATH, and its arguments. "", or why not.

@@ -15,7 +15,9 @@ ToolResult RunTool(const std::vector<std::string>& words, const std::string& inp
                    const ToolLimits& limits) {
   ToolResult result;
   ChildProcess tool;
-  result.problem = tool.Start(words, {.memory_bytes = limits.memory_bytes});
+  // If this process is stopped, nobody looks at the clock.
+  const double cpu_s = limits.answering_s > 0 ? limits.time_s + limits.answering_s : 0;
+  result.problem = tool.Start(words, {.memory_bytes = limits.memory_bytes, .cpu_s = cpu_s});
   if (!result.problem.empty()) return result;
   double time_s = limits.time_s;
   auto deadline = Clock::now() + std::chrono::duration<double>(time_s);

@@ -59,7 +59,7 @@ Answered AskSwipl(const std::string& folder, const std::string& query, int most,
         Json::parse(said.out.begin() + static_cast<std::ptrdiff_t>(begin),
                     said.out.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
     begin = end + 1;
-    if (line.is_discarded()) continue;
+    if (line.is_discarded()) continue;  // cut off
     if (!line.contains("end")) {
       answered.answers.push_back(line);
       continue;

@@ -68,18 +68,22 @@ plain(Text, Text).
 % --- loading ---------------------------------------------------------------------------------------------------------
 
 load_knowledge(Folder) :-
-    (   exists_directory(Folder) -> true
+    place(Folder, Place),
+    (   exists_directory(Place) -> true
     ;   throw(refused("there is no folder ~w"-[Folder]))
     ),
-    atom_concat(Folder, '/prehend.ttl', Words),
+    atom_concat(Place, '/prehend.ttl', Words),
     (   exists_file(Words) -> true
     ;   throw(refused("~w has no prehend.ttl: 'prehend episode knowledge' writes such a folder"-[Folder]))
     ),
     load_file(Words, [silent(true)]),
-    forall(( member(Part, [maps, episodes]), directory_file_path(Folder, Part, Below), exists_directory(Below),
+    forall(( member(Part, [maps, episodes]), directory_file_path(Place, Part, Below), exists_directory(Below),
              directory_files(Below, Names), msort(Names, Sorted), member(Name, Sorted),
              file_name_extension(_, ttl, Name), directory_file_path(Below, Name, File) ),
-           load_file(File, [silent(true)])).
+           ( exists_file(File) -> load_file(File, [silent(true)]) ; throw(refused("~w is no file"-[File])) )).
+% A relative name could be a scheme of Prolog's, as in http://x.
+place(Name, Place) :-
+    working_directory(Here, Here), ( sub_atom(Name, 0, _, _, '/') -> Place = Name ; atom_concat(Here, Name, Place) ).
 
 % --- descriptions ----------------------------------------------------------------------------------------------------
 
@@ -408,14 +412,17 @@ label_of(X, Label) :- atom(X), once(value(X, rdfs:label, Label)).
 
 % --- queries as text -------------------------------------------------------------------------------------------------
 
-%!  safe_query(+Goal) throws refused(..) unless it consists of what a question needs.
+%!  safe_query(+Goal) throws refused(..) unless each of its goals has a clause below.
 safe_query(G) :- var(G), !, throw(refused("a goal is unknown when the query begins"-[])).
 safe_query(G) :- ellipsis(G), !.
-safe_query(G) :- control(G, Inner), !, maplist(safe_query, Inner).
-safe_query(G) :- callable(G), functor(G, Name, Arity), allowed(Name/Arity), !.
 safe_query(G) :-
-    (   callable(G) -> functor(G, Name, Arity), What = Name/Arity ; What = G ),
-    throw(refused("~q is not allowed in a query"-[What])).
+    (   compound(G) -> compound_name_arity(G, Name, Arity), compound_name_arity(H, Name, Arity)
+    ;   H = G, Name = G, Arity = 0
+    ),
+    (   clause(asked(H), _) -> true
+    ;   ( callable(G) -> What = Name/Arity ; What = G ), throw(refused("~q is not allowed in a query"-[What]))
+    ),
+    ( control(G, Inner) -> maplist(safe_query, Inner) ; true ).
 
 control((A, B), [A, B]).
 control((A ; B), [A, B]).
@@ -428,12 +435,84 @@ control(aggregate_all(_, A, _), [A]).
 control(distinct(_, A), [A]).
 control(limit(_, A), [A]).
 
-allowed(true/0). allowed(fail/0). allowed((=)/2). allowed((\=)/2). allowed((==)/2). allowed((\==)/2).
-allowed((<)/2). allowed((>)/2). allowed((=<)/2). allowed((>=)/2). allowed((=:=)/2). allowed((=\=)/2). allowed((is)/2).
-allowed(between/3). allowed(member/2). allowed(memberchk/2). allowed(length/2). allowed(msort/2). allowed(nth1/3).
-allowed(sum_list/2). allowed(max_list/2). allowed(min_list/2).
-allowed(entity/2). allowed(occurs/2). allowed(holds/1). allowed(allen/3). allowed(episode_of/2). allowed(label_of/2).
-allowed(show/1). allowed(show/2).
+%!  ask(+Goal) interprets a query. Its goals are never called: what runs is the body of a clause of asked/1, and the
+%   goals that Prolog's own predicates get are ask(..).
+ask(G) :- nonvar(G), ( ellipsis(G) -> true ; asked(G) ).
+
+asked(true).
+asked(fail) :- fail.
+asked((A, B)) :- ask(A), ask(B).
+asked((A ; B)) :- nonvar(A), A = (If -> Then), !, ( ask(If) -> ask(Then) ; ask(B) ).
+asked((A ; B)) :- ( ask(A) ; ask(B) ).
+asked((A -> B)) :- ( ask(A) -> ask(B) ).
+asked(\+ A) :- \+ ask(A).
+asked(once(A)) :- once(ask(A)).
+asked(forall(A, B)) :- forall(ask(A), ask(B)).
+asked(findall(X, A, L)) :- findall(X, ask(A), L).
+asked(aggregate_all(T0, A, X)) :- measured(T0, T, Measures), aggregate_all(T, ( ask(A), maplist(measure, Measures) ), X).
+asked(distinct(W, A)) :- distinct(W, ask(A)).
+asked(limit(N0, A)) :- ( N0 == infinite -> N = N0 ; number_of(N0, N) ), limit(N, ask(A)).
+asked(A = B) :- A = B.
+asked(A \= B) :- A \= B.
+asked(A == B) :- A == B.
+asked(A \== B) :- A \== B.
+asked(A < B) :- number_of(A, X), number_of(B, Y), X < Y.
+asked(A > B) :- number_of(A, X), number_of(B, Y), X > Y.
+asked(A =< B) :- number_of(A, X), number_of(B, Y), X =< Y.
+asked(A >= B) :- number_of(A, X), number_of(B, Y), X >= Y.
+asked(A =:= B) :- number_of(A, X), number_of(B, Y), X =:= Y.
+asked(A =\= B) :- number_of(A, X), number_of(B, Y), X =\= Y.
+asked(X is E) :- number_of(E, X).
+asked(between(A, B, X)) :- between(A, B, X).
+asked(member(X, L)) :- member(X, L).
+asked(memberchk(X, L)) :- memberchk(X, L).
+asked(length(L, N)) :- length(L, N).
+asked(msort(L, M)) :- msort(L, M).
+asked(nth1(N, L, X)) :- nth1(N, L, X).
+asked(sum_list(L, X)) :- maplist(number_of, L, Ns), sum_list(Ns, X).
+asked(max_list(L, X)) :- maplist(number_of, L, Ns), max_list(Ns, X).
+asked(min_list(L, X)) :- maplist(number_of, L, Ns), min_list(Ns, X).
+asked(entity(E, D)) :- entity(E, D).
+asked(occurs(E, T)) :- occurs(E, T).
+asked(holds(R)) :- holds(R).
+asked(allen(A, R, B)) :- allen(A, R, B).
+asked(episode_of(E, Episode)) :- episode_of(E, Episode).
+asked(label_of(E, L)) :- label_of(E, L).
+asked(show(W)) :- show(W).
+asked(show(W, T)) :- show(W, T).
+
+% What aggregate_all measures is measured before it sees it: max(X * 2) as max(N), with N of X * 2.
+measured(T, T, []) :- ( \+ compound(T) ; compound_name_arity(T, F, _), memberchk(F, [bag, set, count]) ), !.
+measured(T0, T, [E-N]) :- T0 =.. [F, E | W], memberchk(F, [sum, max, min]), !, T =.. [F, N | W].
+measured(T0, T, Measures) :-
+    T0 =.. [F | Ts0], maplist(measured, Ts0, Ts, Each), append(Each, Measures), T =.. [F | Ts].
+measure(E-N) :- number_of(E, N).
+
+%!  number_of(+Expression, ?Number) : of listed functions, and of no number beyond a size.
+number_of(E, N) :- number(E), !, N = E.
+number_of(E, _) :- var(E), !, throw(error(instantiation_error, _)).
+number_of(E, N) :-
+    (   callable(E), \+ is_dict(E), E =.. [F | Es], length(Es, Arity), function(Arity, Fs), memberchk(F, Fs) -> true
+    ;   throw(error(type_error(evaluable, E), _))
+    ),
+    maplist(number_of, Es, Ns),
+    ( growth(F, Ns, Grown) -> of_size(Grown) ; true ),
+    Applied =.. [F | Ns], M is Applied, bits(M, Bits), of_size(Bits), N = M.
+function(0, [pi, e, inf, nan, epsilon]).
+function(1, [-, +, abs, sign, min, max, sqrt, exp, log, log2, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, asinh,
+             acosh, atanh, float, integer, truncate, round, floor, ceiling, float_integer_part, float_fractional_part,
+             rational, rationalize, numerator, denominator, \, msb]).
+function(2, [+, -, *, /, //, mod, rem, div, rdiv, min, max, **, ^, >>, <<, /\, \/, xor, gcd, atan, atan2, copysign, log,
+             truncate]).
+growth(F, [A, B], Bits) :- memberchk(F, [**, ^]), \+ float(A), \+ float(B), abs(A) =\= 1, bits(A, As), !,
+    ( B =:= 0 -> Bits = 0 ; Bits is (As - 1) * min(abs(B), 1 << 20) ).
+growth(<<, [A, B], Bits) :- integer(A), integer(B), bits(A, As), Bits is As + B.
+growth(>>, [A, B], Bits) :- integer(A), integer(B), bits(A, As), Bits is As - B.
+bits(N, 0) :- ( float(N) ; N =:= 0 ), !.
+bits(N, Bits) :- integer(N), !, Bits is msb(abs(N)) + 1.
+bits(N, Bits) :- A is numerator(N), B is denominator(N), bits(A, As), bits(B, Bs), Bits is As + Bs.
+of_size(Bits) :-
+    ( Bits =< 65536 -> true ; throw(refused("the query needs an integer of more than 65536 bits"-[])) ).
 
 % Words that are known before the question is asked.
 known_words(G) :- control(G, Inner), !, maplist(known_words, Inner).
@@ -451,17 +530,10 @@ known_pair(Key, Value, _) :-
     ( key_words(Key, [sub, action]) -> true ; property(Key, P), value_known(P, Value) ),
     ( is_list(Value) -> known_description(Value) ; true ).
 
-% Without the ellipses, which as goals would load a file of that name.
-without_ellipses(G, true) :- ellipsis(G), !.
-without_ellipses((A, B), (C, D)) :- !, without_ellipses(A, C), without_ellipses(B, D).
-without_ellipses((A ; B), (C ; D)) :- !, without_ellipses(A, C), without_ellipses(B, D).
-without_ellipses((A -> B), (C -> D)) :- !, without_ellipses(A, C), without_ellipses(B, D).
-without_ellipses(\+ A, \+ B) :- !, without_ellipses(A, B).
-without_ellipses(G, G).
-
 %!  ask_main reads a query from standard input. Arguments: folder, number of answers, seconds. Prints a JSON object per
 %   answer, and a last one that says how it ended.
 ask_main :-
+    maplist(in_utf8, [user_input, user_output]),
     current_prolog_flag(argv, Arguments),
     append(_, [Folder, Most0, Seconds0], Arguments), !,
     atom_number(Most0, Most), atom_number(Seconds0, Seconds),
@@ -470,6 +542,8 @@ ask_main :-
     forall(member(Word-Known, Notes), put_line(_{end: note, word: Word, known: Known})),
     put_line(End).
 
+in_utf8(Stream) :- set_stream(Stream, encoding(utf8)).
+
 refusal(unknown(What, Word, Known0), End) :- !,
     sort(Known0, Known), format(string(Why), "no ~w is called ~w", [What, Word]),
     End = _{end: refused, why: Why, word: Word, known: Known}.
@@ -477,14 +551,12 @@ refusal(Error, _{end: refused, why: Why}) :- why(Error, Why).
 
 ask_all(Folder, Most, Seconds, End) :-
     read_string(user_input, _, Text),
-    read_query(Text, Goal0, Names),
-    safe_query(Goal0),
-    without_ellipses(Goal0, Goal),
+    read_query(Text, Goal, Names),
+    safe_query(Goal),
     load_knowledge(Folder),
-    known_words(Goal),
     put_line(_{end: loaded}),
     State = count(0),
-    catch(call_with_time_limit(Seconds, answers(Goal, Names, Most, State)), Error, true),
+    catch(call_with_time_limit(Seconds, ( known_words(Goal), answers(Goal, Names, Most, State) )), Error, true),
     (   var(Error) -> arg(1, State, Count), End = _{end: done, answers: Count}
     ;   Error == time_limit_exceeded
     ->  format(string(Why), "the query took more than ~w s", [Seconds]), End = _{end: refused, why: Why}
@@ -502,7 +574,7 @@ read_query(Text, Goal, Names) :-
     ;   throw(Error)
     ).
 read_goal(Text, Goal, Names) :-
-    Options = [module(prehend), syntax_errors(error)],
+    Options0 = [module(prehend), syntax_errors(error)], Options = [quasi_quotations(Quoted) | Options0],
     open_string(Text, Stream),
     catch(read_term(Stream, Goal0, [variable_names(Names0) | Options]), error(syntax_error(end_of_file), _), true),
     (   nonvar(Names0) -> Goal = Goal0, Names = Names0
@@ -510,7 +582,8 @@ read_goal(Text, Goal, Names) :-
         read_term(Again, Goal, [variable_names(Names) | Options])
     ),
     character_count(Stream, At),
-    catch(read_term(Stream, More, Options), error(syntax_error(_), _), true),
+    catch(read_term(Stream, More, [quasi_quotations(_) | Options0]), error(syntax_error(_), _), true),
+    ( Quoted == [] -> true ; throw(refused("quasi quotations are not allowed in a query"-[])) ),
     (   ( var(Names0) ; More == end_of_file ) -> true
     ;   throw(refused("there is more after the first full stop, at character ~w: one question at a time"-[At]))
     ).
@@ -542,7 +615,7 @@ bracket('{', '}').
 answers(Goal, Names, Most, State) :-
     b_setval(prehend_episode, none), b_setval(prehend_shown, []),
     exclude(is_hidden, Names, Told),
-    (   distinct(Told-Shown, ( call(prehend:Goal), b_getval(prehend_shown, Shown) )),
+    (   distinct(Key-Shown, ( ask(Goal), key(Told, Key), b_getval(prehend_shown, Shown) )),
         arg(1, State, Before), Count is Before + 1, nb_setarg(1, State, Count),
         foldl(put_binding, Told, _{}, Bindings),
         reverse(Shown, InOrder), maplist(with_episode, InOrder, Pictures),
@@ -552,6 +625,9 @@ answers(Goal, Names, Most, State) :-
     ;   true
     ).
 
+% Sets hold no cycles.
+key(Told, Key) :- ( acyclic_term(Told) -> Key = Told ; as_text("~q", [Told], Key) ).
+
 is_hidden(Name = _) :- sub_atom(Name, 0, 1, _, '_').
 
 with_episode(Shown, Shown.put(_{file: File, number: Number})) :-
@@ -560,14 +636,17 @@ with_episode(Shown, Shown.put(_{file: File, number: Number})) :-
 
 put_binding(Name = Value, Bindings, Bindings.put(Name, Said)) :- in_json(Value, Said).
 in_json(Value, '_') :- var(Value), !.
-in_json(Value, Value) :- number(Value), !.
-in_json(Value, _{iri: Value, text: Text}) :- atom(Value), sub_atom(Value, 0, _, _, 'http'), !, text_of(Value, Text).
-in_json(Value, Value) :- atom(Value), !.
-in_json(Value, Value) :- string(Value), !.
-in_json(composed(Type, Members), _{text: Text, parts: Parts}) :- !,
-    maplist(in_json, Members, Parts), format(string(Text), "~w", [Type]).
+in_json(Value, Text) :- cyclic_term(Value), !, as_text("~q", [Value], Text).
+in_json(Value, Said) :- number(Value), number_in_json(Value, Said), !.
+in_json(Value, _{iri: Value, text: Text}) :- is_iri(Value), !, text_of(Value, Text).
+in_json(Value, Value) :- ( atom(Value) ; string(Value) ), !.
+in_json(composed(Type, Members), _{text: Text, parts: Parts}) :- is_list(Members), !,
+    maplist(in_json, Members, Parts), as_text("~w", [Type], Text).
 in_json(Value, Values) :- is_list(Value), !, maplist(in_json, Value, Values).
-in_json(Value, Text) :- format(string(Text), "~q", [Value]).
+in_json(Value, Text) :- as_text("~q", [Value], Text).
+number_in_json(Value, Value) :- integer(Value), !, abs(Value) < 1 << 53.
+number_in_json(Value, Said) :-
+    float(Value), ( Value =\= Value -> Said = nan ; Value =:= inf -> Said = inf ; Value =:= -inf -> Said = '-inf' ; Said = Value ).
 
 % An event is called as in a timeline: Sliding(right_hand, milk).
 text_of(Iri, Text) :- label_of(Iri, Text), !.
@@ -580,12 +659,16 @@ text_of(Iri, Text) :- style_word(Iri, Text), !.
 text_of(Iri, Text) :- short(Iri, Text), \+ sub_atom(Iri, _, _, _, 'log.owl#'), !.
 text_of(Iri, Text) :- atom_string(Iri, Text).
 
-why(refused(Format-Arguments0), Why) :- !,
+% Variables are written as _.
+as_text(Format, Arguments0, Text) :-
     copy_term(Arguments0, Arguments), term_variables(Arguments, Variables), maplist(=('$VAR'('_')), Variables),
-    format(string(Why), Format, Arguments).
+    format(string(Text), Format, Arguments).
+
+why(refused(Format-Arguments), Why) :- !, as_text(Format, Arguments, Why).
 why(error(resource_error(What), _), Why) :- !, format(string(Why), "the query needs too much ~w", [What]).
-why(error(type_error(evaluable, Found), _), Why) :- !, format(string(Why), "found ~q, wanted a number", [Found]).
-why(error(type_error(Type, Found), _), Why) :- !, format(string(Why), "found ~q, wanted a ~w", [Found, Type]).
+why(error(type_error(evaluable, Found), _), Why) :- !, as_text("found ~q, wanted a number", [Found], Why).
+why(error(type_error(Type, Found), _), Why) :- !, as_text("found ~q, wanted a ~w", [Found, Type], Why).
+why(error(evaluation_error(What), _), Why) :- !, format(string(Why), "a number cannot be computed: ~w", [What]).
 why(error(instantiation_error, _), Why) :- !, Why = "a variable has no value where one is needed".
 why(error(Formal, _), Why) :- !, format(string(Why), "~p", [Formal]).
 why(Error, Why) :- format(string(Why), "~p", [Error]).

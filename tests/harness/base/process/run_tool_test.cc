@@ -2,6 +2,11 @@
 #include "harness/base/process/run_tool.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
 
 namespace prehend {
 namespace {
@@ -31,6 +36,37 @@ TEST(RunTool, WhatDoesNotEndByItselfSaysWhy) {
   EXPECT_EQ(RunTool({"sh", "-c", "kill -9 $$"}, "").problem, "was ended by signal 9");
   EXPECT_TRUE(RunTool({"true"}, std::string(1'000'000, 'x')).Succeeded())
       << "a program that reads nothing does no harm";
+}
+
+TEST(RunTool, NoProgramOutlivesWhoAskedForIt) {
+  for (int i = 0; i < 20; ++i) {
+    int said[2];
+    ASSERT_EQ(pipe(said), 0);
+    const pid_t parent = fork();
+    if (parent == 0) {
+      const std::string number = "echo $$ >&" + std::to_string(said[1]) + "; exec sleep 60";
+      RunTool({"sh", "-c", number}, "");
+      _exit(0);
+    }
+    close(said[1]);
+    // Killed after the program has said its number, or at some moment before.
+    char text[32] = {};
+    if (i % 2 == 0) {
+      ASSERT_GT(read(said[0], text, sizeof text - 1), 0);
+    } else {
+      usleep(static_cast<useconds_t>(300 * i));
+    }
+    kill(parent, SIGKILL);
+    waitpid(parent, nullptr, 0);
+    if (i % 2 != 0 && read(said[0], text, sizeof text - 1) <= 0) text[0] = '\0';
+    // Nobody has the other end any more: this is the end, and no timeout.
+    char more;
+    const auto begin = std::chrono::steady_clock::now();
+    while (read(said[0], &more, 1) > 0) {
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20)) << text;
+    close(said[0]);
+  }
 }
 
 }  // namespace
