@@ -42,7 +42,7 @@ std::string WithoutHands(const std::vector<grammar::EntityInfo>& entities,
 /// Whether contacts and grasps are made of motion already.
 bool UsesMotion(const grammar::Program& program) {
   return std::ranges::any_of(program.rules, [](const grammar::Rule& rule) {
-    return rule.file.ends_with("contact_from_motion.grammar");
+    return rule.file.ends_with("support_from_motion.grammar");
   });
 }
 

@@ -61,7 +61,7 @@ TEST(Compile, AVariantTakesThePlaceOfAGrammarThatOthersUse) {
   ASSERT_TRUE(result.program) << Format(result.diagnostics);
   std::set<std::string> files;
   for (const Rule& rule : result.program->rules) files.insert(rule.file);
-  EXPECT_TRUE(files.contains("grammar/library/contact_from_motion.grammar"));
+  EXPECT_TRUE(files.contains("grammar/library/support_from_motion.grammar"));
   EXPECT_TRUE(files.contains("grammar/library/grasp_from_motion.grammar"));
   EXPECT_FALSE(files.contains("grammar/library/contact.grammar"));
   EXPECT_FALSE(files.contains("grammar/library/grasp.grammar"));
