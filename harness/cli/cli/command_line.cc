@@ -145,7 +145,7 @@ std::vector<Command> AllCommands() {
           Limited(RenderCommand(), kOne_s),
           Limited(FigureCommand(), kMany_s),
           Limited(ReportCommand(), kMany_s),
-          Limited(ImportCommand(), kOne_s),
+          Limited(ImportCommand(), kMany_s),
           Limited(ScoreCommand(), kMany_s),
           Limited(EpisodesCommand(), kMany_s),
           Limited(QueryCommand(), kMany_s),

@@ -3,6 +3,8 @@
 // Tested by tests/program/import_test.cc
 #include <fmt/format.h>
 
+#include <map>
+
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/content_hash.h"
 #include "harness/cli/command/command.h"
@@ -11,7 +13,9 @@
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/missing_facts.h"
+#include "harness/exchange/import/import_demonstrations.h"
 #include "harness/exchange/import/import_poses.h"
+#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::cli {
 namespace {
@@ -79,6 +83,81 @@ ExitCode ImportLines(const std::string& file, const ParsedOptions& options,
   return exit_code;
 }
 
+/// What is said of many demonstrations is said once: with the name of the first one.
+class OnceEach {
+ public:
+  explicit OnceEach(std::ostream& err) : err_(err) {}
+  ~OnceEach() {
+    for (const auto& [key, one] : said_)
+      err_ << one.first
+           << (one.second > 1 ? fmt::format(" (and so of {} others)", one.second - 1) : "") << "\n";
+  }
+  void Say(const std::string& text) {
+    std::string key = text;
+    std::erase_if(key, [](char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-'; });
+    ++said_.try_emplace(key, text, 0).first->second.second;
+  }
+
+ private:
+  std::ostream& err_;
+  std::map<std::string, std::pair<std::string, std::size_t>> said_;
+};
+
+/// Each demonstration becomes an episode. One that is damaged is left out, and named.
+ExitCode ImportDemonstrations(const std::string& path, const ParsedOptions& options,
+                              const CommandContext& context) {
+  const std::string output = options.Text("--output"), grammar = options.Text("--grammar");
+  const bool check = options.Has("--check");
+  const auto import = exchange::DemonstrationImport::Open(path, options.Text("--map"));
+  if (!import) return Complain(context, import.error());
+  const std::size_t count = import->groups().size();
+  if (!check && count > 1 && !episode::IsEpisodeFile(output))
+    return Complain(
+        context, ExitCode::kBadInput,
+        fmt::format("{} has {} demonstrations: -o NAME.episodes keeps them all", path, count));
+  if (const grammar::Diagnostics wrong = import->WrongInMap(); !wrong.empty())
+    return Complain(context, wrong);
+  OnceEach warnings(context.err);
+  std::vector<std::vector<std::string>> table = {{"episode", "frames", "seconds", "success"}};
+  std::string first;
+  ExitCode exit_code = ExitCode::kAgrees;
+  for (const std::string& group : import->groups()) {
+    auto imported = import->Import(group);
+    if (!imported) {
+      for (const grammar::Diagnostic& error : imported.error())
+        warnings.Say("prehend: left out: " + error.message);
+      exit_code = ExitCode::kDiffers;
+      continue;
+    }
+    episode::Recording& episode = imported->episode;
+    for (const std::string& warning : imported->warnings)
+      warnings.Say("warning: " + episode.header.episode + ": " + warning);
+    if (first.empty()) {
+      const grammar::CompileResult compiled =
+          episode::LoadGrammarOf(episode.header, grammar, context.root);
+      if (!compiled.program) return Complain(context, compiled.diagnostics);
+      if (check) exit_code = LookWith(*compiled.program, episode, context);
+      first = exchange::ImportTable(*imported);
+    }
+    if (!check) {
+      episode::BridgeLooks(episode);
+      const ExitCode written = WriteRecording(episode, output, path, grammar, context);
+      if (written != ExitCode::kAgrees) return written;
+    }
+    const auto& success = episode.header.attributes.success;
+    table.push_back({episode.header.episode, std::to_string(episode.frames.size()),
+                     fmt::format("{:.2f}", imported->duration_s),
+                     !success   ? "-"
+                     : *success ? "yes"
+                                : "no"});
+  }
+  if (output == "-") return exit_code;
+  context.out << first << "\n";
+  for (const std::string& line : truth::AlignColumns(table)) context.out << line << "\n";
+  context.out << fmt::format("{} of {} demonstrations\n", table.size() - 1, count);
+  return exit_code;
+}
+
 ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) {
   const std::string output = options.Text("--output"), poses = options.Text("poses");
   const bool check = options.Has("--check");
@@ -87,11 +166,20 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
                     "expected either -o, the recording to write, or --check, to write nothing");
   if (episode::EpisodeKindOf(poses) == episode::EpisodeKind::kJsonLines)
     return ImportLines(poses, options, context);
+  const Result<exchange::PoseFormat> format = exchange::PoseFormatOf(poses);
+  const bool is_hdf5 = format && *format == exchange::PoseFormat::kHdf5;
+  if (is_hdf5 && check && !options.Has("--map")) {
+    const Result<std::string> map = exchange::ProposedMap(poses);
+    if (!map) return Complain(context, map.error());
+    context.out << *map;
+    return ExitCode::kAgrees;
+  }
   if (!options.Has("--map"))
     return Complain(context, ExitCode::kBadInput,
-                    poses +
-                        " needs --map, a file that says what it means "
-                        "(docs/motion-capture.md)");
+                    fmt::format("{} needs --map, a file that says what it means "
+                                "(docs/motion-capture.md){}",
+                                poses, is_hdf5 ? "; --check alone proposes one" : ""));
+  if (is_hdf5) return ImportDemonstrations(poses, options, context);
   auto imported = exchange::ImportPoses(poses, options.Text("--map"));
   if (!imported) return Complain(context, imported.error());
   episode::Recording& episode = imported->episode;
@@ -123,7 +211,7 @@ Command ImportCommand() {
                    "import poses.csv --map bodies.yaml -o take.jsonl",
                    "episode resegment take.jsonl", "import take.jsonl -o takes.episodes"},
       .options = {{.name = "poses",
-                   .help = "a file with poses of hands and things, CSV, BVH, MCAP or a bag "
+                   .help = "a file with poses of hands and things, CSV, BVH, MCAP, a bag or HDF5 "
                            "(docs/motion-capture.md), or a recording (docs/recording-format.md)",
                    .required = true},
                   {.name = "--map",

@@ -5,6 +5,7 @@
 // tests/harness/episode/sense/episode_file_test.cc
 #pragma once
 
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -19,7 +20,14 @@ inline constexpr int kEpisodeVersion = 1;
 inline constexpr std::size_t kMaxEpisodeFrames = 1'000'000;
 inline constexpr std::size_t kMaxEpisodeBytes = std::size_t{1} << 30;
 inline constexpr std::size_t kMaxEpisodeLineBytes = 1 << 20;
+inline constexpr std::size_t kMaxLanguageBytes = 1000;
 inline constexpr double kBridge_s = 0.1;
+
+/// What is known of an episode beside its frames.
+struct EpisodeAttributes {
+  std::optional<bool> success;
+  std::string language;  ///< what was to be done, in words; "": nothing says it
+};
 
 /// The first line.
 struct EpisodeHeader {
@@ -28,6 +36,7 @@ struct EpisodeHeader {
   /// Where a file names the grammar: the rest of an error about it. Without a file: nowhere.
   grammar::Diagnostic grammar_named = {};
   double bridge_s = kBridge_s;  ///< for so long a missing look is as the last one
+  EpisodeAttributes attributes;
   grammar::EntityTable entity_table;
 };
 

@@ -113,6 +113,8 @@ ValueFormat<HeaderEntry> HeaderFormat() {
       .Optional("grammar", &H::grammar, Name(), "")
       .Required("ticks_per_second", &H::ticks_per_second, Integer<std::int64_t>(1, 1'000'000), "")
       .Optional("bridge_s", &H::bridge_s, Number(0, 60), "")
+      .Optional("success", &H::success, Flag(), "")
+      .Optional("language", &H::language, Text(kMaxLanguageBytes), "")
       .Optional("styles", &H::styles, ListOf(Name(), 0, 1000), "")
       .Required("entities", &H::entities, MapOf(Name(), member, 1, kMaxMembers), "")
       .format();

@@ -60,6 +60,8 @@ struct HeaderEntry {
   Located<std::string> grammar = {kDefaultGrammar, {}};
   std::int64_t ticks_per_second = 0;
   double bridge_s = kBridge_s;
+  std::optional<bool> success;
+  std::string language;
   std::vector<std::string> styles;
   std::vector<Named<MemberEntry>> entities;
 };

@@ -179,6 +179,7 @@ class EpisodeReader {
     }
     CheckParts(header, errors);
     episode.header.bridge_s = header.bridge_s;
+    episode.header.attributes = {.success = header.success, .language = header.language};
     now_.entities.resize(names_.size(), grammar::NotTracked());
     bridge_ = BridgeOf(episode.header);
     for (const int hand : hands_) now_.hands.push_back({.entity = hand, .collision_spheres = {}});

@@ -146,6 +146,8 @@ EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header)
                 {"grammar", header.grammar},
                 {"ticks_per_second", entity_table_.ticks_per_second}};
   if (header.bridge_s != kBridge_s) first["bridge_s"] = header.bridge_s;
+  if (header.attributes.success) first["success"] = *header.attributes.success;
+  if (!header.attributes.language.empty()) first["language"] = header.attributes.language;
   first["styles"] = entity_table_.styles;
   first["entities"] = std::move(entities);
   out_ << first.dump() << "\n";

@@ -5,11 +5,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <hdf5.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
+#include <regex>
 #include <string_view>
 
 #include "harness/base/base/text_file.h"
@@ -66,13 +67,6 @@ Hdf5Kind KindOf(hid_t type) {
   return Hdf5Kind::kOther;
 }
 
-std::vector<hsize_t> ShapeOf(hid_t space) {
-  const int rank = H5Sget_simple_extent_ndims(space);
-  std::vector<hsize_t> shape(rank > 0 ? static_cast<std::size_t>(rank) : 0);
-  if (rank > 0) H5Sget_simple_extent_dims(space, shape.data(), nullptr);
-  return shape;
-}
-
 /// Numbers are compared as such: demo_2 comes before demo_10.
 bool ComesBefore(const std::string& a, const std::string& b) {
   std::size_t i = 0, j = 0;
@@ -95,6 +89,16 @@ bool ComesBefore(const std::string& a, const std::string& b) {
   return a.size() - i < b.size() - j;
 }
 
+/// The number and the name of one of its filters.
+std::pair<H5Z_filter_t, std::string> FilterOf(hid_t plist, int i) {
+  unsigned flags = 0;
+  std::size_t values = 0;
+  char name[40] = {};
+  const H5Z_filter_t filter = H5Pget_filter2(plist, static_cast<unsigned>(i), &flags, &values,
+                                             nullptr, sizeof name, name, nullptr);
+  return {filter, ReadableName({name, strnlen(name, sizeof name)})};
+}
+
 /// Why a dataset is not read, or "": it leads elsewhere, or costs more than it should.
 std::string Refusal(hid_t dataset) {
   const Hdf5Id plist(H5Dget_create_plist(dataset));
@@ -102,60 +106,64 @@ std::string Refusal(hid_t dataset) {
   const H5D_layout_t layout = H5Pget_layout(plist);
   if (layout == H5D_VIRTUAL) return "is a virtual dataset, of other files";
   if (H5Pget_external_count(plist) != 0) return "has its data in other files";
-  for (int i = 0, count = H5Pget_nfilters(plist); i < count; ++i) {
-    unsigned flags = 0;
-    std::size_t values = 0;
-    char name[40] = {};
-    const H5Z_filter_t filter = H5Pget_filter2(plist, static_cast<unsigned>(i), &flags, &values,
-                                               nullptr, sizeof name, name, nullptr);
-    if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE &&
-        filter != H5Z_FILTER_FLETCHER32)
+  for (int i = 0; i < H5Pget_nfilters(plist); ++i) {
+    const auto [filter, name] = FilterOf(plist, i);
+    if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE)
       return fmt::format(
           "is compressed by '{}' (filter {}); gzip and shuffle are read: "
           "h5repack -f GZIP=4 IN OUT",
-          ReadableName({name, strnlen(name, sizeof name)}), filter);
+          name, filter);
   }
   return "";
 }
 
-/// A chunk that is stored in more bytes than it has is not what a program wrote.
-std::string ChunkRefusal(hid_t dataset, hid_t space, std::size_t value_bytes) {
+/// HDF5 1.10 reads beyond the end of a chunk that is shorter than it should be: "", or why not.
+std::string ChunkProblem(hid_t dataset, const Hdf5Object& object) {
   const Hdf5Id plist(H5Dget_create_plist(dataset));
-  if (H5Pget_layout(plist) != H5D_CHUNKED) return "";
-  std::vector<hsize_t> shape = ShapeOf(space), chunk(shape.size()), at(shape.size(), 0);
-  if (H5Pget_chunk(plist, static_cast<int>(chunk.size()), chunk.data()) < 0)
-    return "its chunks are damaged";
-  double bytes = static_cast<double>(value_bytes), chunks = 1;
-  for (std::size_t i = 0; i < chunk.size(); ++i) {
-    bytes *= static_cast<double>(chunk[i]);
-    chunks *= std::ceil(static_cast<double>(shape[i]) / static_cast<double>(chunk[i]));
+  if (H5Pget_layout(plist) != H5D_CHUNKED || object.shape.empty()) return "";
+  const std::vector<hsize_t> shape(object.shape.begin(), object.shape.end());
+  std::vector<hsize_t> chunk(shape.size(), 0), at(shape.size(), 0);
+  H5Pget_chunk(plist, static_cast<int>(chunk.size()), chunk.data());
+  std::size_t bytes = static_cast<std::size_t>(object.bytes);
+  for (const hsize_t size : chunk) {
+    if (size == 0 || size > kMostHdf5ChunkBytes / bytes)
+      return fmt::format("has chunks of more than {} bytes", kMostHdf5ChunkBytes);
+    bytes *= size;
   }
-  if (bytes > static_cast<double>(kMostHdf5ChunkBytes) || chunks > 1e5)
-    return fmt::format("has {:.0f} chunks of {:.0f} bytes; chunks of at most {} are read", chunks,
-                       bytes, kMostHdf5ChunkBytes);
-  for (double i = 0; i < chunks; ++i) {
+  int deflates = -1;  // which of its filters
+  for (int i = 0; i < H5Pget_nfilters(plist); ++i)
+    if (FilterOf(plist, i).first == H5Z_FILTER_DEFLATE) deflates = i;
+  for (std::size_t i = 0; i < kMostHdf5Names; ++i) {
     unsigned mask = 0;
     haddr_t address = 0;
     hsize_t stored = 0;
     if (H5Dget_chunk_info_by_coord(dataset, at.data(), &mask, &address, &stored) < 0)
-      return "its chunks are damaged";
-    if (static_cast<double>(stored) > bytes + bytes / 8 + 1024)
-      return fmt::format("a chunk of {:.0f} bytes is stored in {}", bytes, stored);
-    for (std::size_t k = at.size(); k-- > 0;) {
-      if ((at[k] += chunk[k]) < shape[k]) break;
-      at[k] = 0;
+      return "is damaged: " + InnermostError();
+    uLongf size = stored;
+    if (deflates >= 0 && (mask >> deflates & 1) == 0 && stored <= 2 * bytes + 1024) {
+      std::vector<Bytef> packed(stored), whole(size = bytes);
+      if (H5Dread_chunk(dataset, H5P_DEFAULT, at.data(), &mask, packed.data()) < 0 ||
+          uncompress(whole.data(), &size, packed.data(), stored) != Z_OK)
+        size = 0;
     }
+    if (address != HADDR_UNDEF && size != bytes)
+      return "is damaged: a chunk is not as long as it should be";
+    std::size_t k = at.size();
+    while (k-- > 0 && (at[k] += chunk[k]) >= shape[k]) at[k] = 0;
+    if (k == SIZE_MAX) return "";
   }
-  return "";
+  return fmt::format("has more than {} chunks", kMostHdf5Names);
 }
 
 /// A dataset that may be read.
 Hdf5Object ObjectOf(hid_t dataset) {
   const Hdf5Id type(H5Dget_type(dataset)), space(H5Dget_space(dataset));
-  const std::vector<hsize_t> shape = ShapeOf(space);
+  std::vector<hsize_t> shape(
+      static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
+  H5Sget_simple_extent_dims(space, shape.data(), nullptr);
   return {.name = {},
           .kind = KindOf(type),
-          .bytes = static_cast<int>(H5Tget_size(type)),
+          .bytes = static_cast<int>(std::max<std::size_t>(1, H5Tget_size(type))),
           .shape = {shape.begin(), shape.end()}};
 }
 
@@ -258,15 +266,11 @@ Diagnostics Hdf5File::WhyNotOpened(const std::string& path) const {
     const std::string name = part.substr(part.rfind('/') + 1);
     if (std::ranges::find(*names, name) != names->end()) break;
     const std::string nearest = grammar::NearestName(name, *names);
-    return Error(
-        fmt::format(
-            "'{}' is not in the file: '{}' has {}{}", part, before,
-            fmt::join(names->begin(),
-                      names->begin() + std::min<std::ptrdiff_t>(12, std::ssize(*names)), ", "),
-            names->size() > 12 ? " .."
-            : names->empty()   ? "nothing"
-                               : ""),
-        nearest.empty() ? "" : fmt::format("did you mean '{}'?", nearest));
+    const auto end_of_list = names->begin() + std::min<std::ptrdiff_t>(12, std::ssize(*names));
+    return Error(fmt::format("'{}' is not in the file: '{}' has {}{}", part, before,
+                             fmt::join(names->begin(), end_of_list, ", "),
+                             end_of_list != names->end() ? " .." : ""),
+                 nearest.empty() ? "" : fmt::format("did you mean '{}'?", nearest));
   }
   return Error(fmt::format("'{}' is damaged: {}", path, damage));
 }
@@ -329,7 +333,7 @@ std::optional<Hdf5Value> Hdf5File::Attribute(const std::string& path,
   return is_bool ? flag : value;
 }
 
-Result<std::vector<double>> Hdf5File::Read(const std::string& path, const Hdf5Slice& slice) const {
+Result<std::vector<double>> Hdf5File::Read(const std::string& path, const Hdf5Part& part) const {
   const Result<Hdf5Id> dataset = OpenObject(path);
   if (!dataset) return tl::unexpected(dataset.error());
   const auto refuse = [&](const std::string& why) {
@@ -340,43 +344,36 @@ Result<std::vector<double>> Hdf5File::Read(const std::string& path, const Hdf5Sl
   const bool is_bool = object.kind == Hdf5Kind::kBool;
   if (!is_bool && object.kind != Hdf5Kind::kFloat && object.kind != Hdf5Kind::kInteger)
     return refuse(fmt::format("is {}; expected numbers", object.Text()));
-  const Hdf5Id space(H5Dget_space(*dataset));
-  if (const std::string why = ChunkRefusal(*dataset, space, static_cast<std::size_t>(object.bytes));
-      !why.empty())
-    return refuse(why);
-  const std::uint64_t first = std::min(slice.first_row, object.Rows()),
-                      rows = std::min(slice.rows, object.Rows() - first);
-  const std::uint64_t width = object.Width(), from = std::min(slice.first_column, width),
-                      columns = std::min(slice.columns, width - from);
-  if (rows == 0 || columns == 0) return std::vector<double>{};
-  // Columns of a table are cut by the library, those of what has more dimensions here.
-  const bool cuts = object.shape.size() == 2;
-  const std::uint64_t in_memory = cuts ? columns : width;
-  if (width > kMostHdf5Values || rows > kMostHdf5Values / in_memory)
-    return refuse(fmt::format("has {} rows of {} values; at most {} values are read", rows,
-                              in_memory, kMostHdf5Values));
-  if (!object.shape.empty()) {
-    std::vector<hsize_t> start(object.shape.size(), 0),
-        count(object.shape.begin(), object.shape.end());
-    start[0] = first, count[0] = rows;
-    if (cuts) start[1] = from, count[1] = columns;
-    H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
-  }
-  const hsize_t total = rows * in_memory;
-  const Hdf5Id memory(H5Screate_simple(1, &total, nullptr)), type(H5Dget_type(*dataset));
-  std::vector<double> values(total);
-  std::vector<std::int8_t> flags(is_bool ? total : 0);
-  const herr_t status =
-      is_bool ? H5Dread(*dataset, type, memory, space, H5P_DEFAULT, flags.data())
-              : H5Dread(*dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values.data());
-  if (status < 0) return refuse("is damaged: " + InnermostError());
+  const std::uint64_t rows = object.Rows(), width = object.Width();
+  if (width > kMostHdf5Values || rows > kMostHdf5Values / std::max<std::uint64_t>(width, 1))
+    return refuse(fmt::format("is {}; at most {} values are read", object.Text(), kMostHdf5Values));
+  if (const std::string why = ChunkProblem(*dataset, object); !why.empty()) return refuse(why);
+  const Hdf5Id type(H5Dget_type(*dataset));
+  std::vector<double> values(rows * width);
+  std::vector<std::int8_t> flags(is_bool ? values.size() : 0);
+  const hid_t as = is_bool ? static_cast<hid_t>(type) : H5T_NATIVE_DOUBLE;
+  void* const to = is_bool ? static_cast<void*>(flags.data()) : values.data();
+  if (!values.empty() && H5Dread(*dataset, as, H5S_ALL, H5S_ALL, H5P_DEFAULT, to) < 0)
+    return refuse("is damaged: " + InnermostError());
   std::ranges::copy(flags, values.begin());
-  if (cuts || columns == width) return values;
-  for (std::uint64_t row = 0; row < rows; ++row)
+  const std::uint64_t from = std::min(part.first, width),
+                      columns = std::min(part.count, width - from);
+  for (std::uint64_t row = 0; columns < width && row < rows; ++row)
     std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(row * width + from), columns,
                 values.begin() + static_cast<std::ptrdiff_t>(row * columns));
   values.resize(rows * columns);
   return values;
+}
+
+std::optional<Hdf5Part> Hdf5PartOf(const std::string& text) {
+  static const std::regex kPart(R"(([^\[\]/][^\[\]]*)(?:\[(\d{1,6})(?::(\d{1,6}))?\])?)");
+  std::smatch match;
+  if (text.size() > 500 || !std::regex_match(text, match, kPart)) return std::nullopt;
+  if (!match[2].matched) return Hdf5Part{.dataset = match[1]};
+  const std::uint64_t first = std::stoull(match[2]),
+                      end = match[3].matched ? std::stoull(match[3]) : first + 1;
+  if (end <= first) return std::nullopt;
+  return Hdf5Part{.dataset = match[1], .first = first, .count = end - first};
 }
 
 }  // namespace prehend::exchange

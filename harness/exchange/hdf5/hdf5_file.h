@@ -17,7 +17,7 @@
 namespace prehend::exchange {
 
 inline constexpr std::size_t kMostHdf5Values = std::size_t{16} << 20;  ///< of one reading
-inline constexpr std::size_t kMostHdf5ChunkBytes = std::size_t{4} << 20;
+inline constexpr std::size_t kMostHdf5ChunkBytes = std::size_t{64} << 20;
 inline constexpr std::size_t kMostHdf5Names = 100'000;  ///< in a group
 inline constexpr std::size_t kMostHdf5TextBytes = std::size_t{16} << 20;
 
@@ -37,11 +37,14 @@ struct Hdf5Object {
   std::string Text() const;
 };
 
-/// Which values of a dataset: rows, and columns of each row, whose values count in one line.
-struct Hdf5Slice {
-  std::uint64_t first_row = 0, rows = UINT64_MAX;  ///< at most so many
-  std::uint64_t first_column = 0, columns = UINT64_MAX;
+/// A dataset, and which of the columns of its rows: "obs/object[0:3]", "actions[6]".
+struct Hdf5Part {
+  std::string dataset = {};
+  std::uint64_t first = 0, count = UINT64_MAX;
 };
+
+/// None if it is no such name.
+std::optional<Hdf5Part> Hdf5PartOf(const std::string& text);
 
 using Hdf5Value = std::variant<double, std::string>;
 
@@ -77,8 +80,8 @@ class Hdf5File {
   Result<std::vector<std::string>> NamesIn(const std::string& group) const;
   /// A number, a truth value or a text; none if the attribute is not there or is something else.
   std::optional<Hdf5Value> Attribute(const std::string& object, const std::string& name) const;
-  /// Row after row.
-  Result<std::vector<double>> Read(const std::string& dataset, const Hdf5Slice& slice = {}) const;
+  /// Row after row. `part`: its columns.
+  Result<std::vector<double>> Read(const std::string& dataset, const Hdf5Part& part = {}) const;
 
  private:
   Result<Hdf5Id> OpenObject(const std::string& path) const;

@@ -107,6 +107,7 @@ class Importer {
     if (document_.root.Find("grammar"))
       header.grammar_named = ErrorAt(document_, map_.grammar.where);
     header.bridge_s = map_.bridge_s;
+    header.attributes = file_.attributes;
     header.entity_table.ticks_per_second = map_.ticks_per_second;
     for (const Named<MappedEntity>& entity : map_.entities) {
       const MappedEntity& e = entity.value;
@@ -467,12 +468,16 @@ Result<Imported> ImportPoses(const std::string& poses_path, const std::string& m
   const Result<MapFile> map = ReadImportMap(map_path, *format);
   if (!map) return tl::unexpected(map.error());
   constexpr std::array kReaders = {ReadCsvPoses, ReadBvhPoses, ReadMcapPoses};
-  Result<PoseFile> poses = kReaders[static_cast<std::size_t>(*format)](poses_path, *map);
+  Result<PoseFile> poses = kReaders.at(static_cast<std::size_t>(*format))(poses_path, *map);
   if (!poses) return tl::unexpected(poses.error());
-  if (map->map.is_left_handed) MirrorPoses(map->map, *poses);
-  Implausible implausible = FindImplausible(*poses, *map);
+  return ImportPoses(std::move(*poses), *map);
+}
+
+Result<Imported> ImportPoses(PoseFile poses, const MapFile& map) {
+  if (map.map.is_left_handed) MirrorPoses(map.map, poses);
+  Implausible implausible = FindImplausible(poses, map);
   if (!implausible.errors.empty()) return tl::unexpected(std::move(implausible.errors));
-  return Importer(*poses, *map, std::move(implausible)).Import();
+  return Importer(poses, map, std::move(implausible)).Import();
 }
 
 }  // namespace prehend::exchange

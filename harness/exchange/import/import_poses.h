@@ -34,6 +34,8 @@ struct Imported {
   std::vector<std::string> warnings;  ///< one line each
 };
 
+/// What the file has, as its map says.
+Result<Imported> ImportPoses(PoseFile poses, const MapFile& map);
 /// Reads, checks and converts. Nothing comes of a file with errors.
 Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path);
 

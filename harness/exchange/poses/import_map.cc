@@ -12,6 +12,7 @@
 #include <map>
 
 #include "harness/base/base/text_file.h"
+#include "harness/exchange/hdf5/hdf5_file.h"
 
 namespace prehend::exchange {
 namespace {
@@ -42,6 +43,30 @@ ValueFormat<McapKeys> McapFormat() {
           Choice<Clock>(
               {{"header", Clock::kHeader}, {"log", Clock::kLog}, {"publish", Clock::kPublish}}),
           "Which time of a message counts: when it was measured, logged or published.")
+      .format();
+}
+
+ValueFormat<Hdf5Keys> Hdf5Format() {
+  return StructFormat<Hdf5Keys>("hdf5")
+      .Optional("episodes", &Hdf5Keys::episodes, Text(200),
+                "The groups that are demonstrations; '*' in the last name stands for any text.")
+      .Optional("success", &Hdf5Keys::success, Text(200),
+                "Whether it succeeded: '@name' is an attribute of the group, 'name' a dataset.")
+      .Optional("language", &Hdf5Keys::language, Text(200), "What was to be done, likewise.")
+      .Optional("skip", &Hdf5Keys::skip, Integer<int>(0, 1'000'000),
+                "Frames at the beginning that are not read.")
+      .format();
+}
+
+ValueFormat<SubtaskLabel> LabelFormat() {
+  using L = SubtaskLabel;
+  return StructFormat<L>("a label")
+      .Required("at", &L::at_end, Choice<bool>({{"begin", false}, {"end", true}}),
+                "Which boundary of the event.")
+      .Required("of", &L::of, WithPlace(Text(200)), "The event.")
+      .Optional("hand", &L::hand, Text(200), "Its hand.")
+      .Optional("object", &L::object, Text(200), "Its object.")
+      .Optional("requires", &L::required, Text(500), "An event that holds there.")
       .format();
 }
 
@@ -94,7 +119,18 @@ ValueFormat<MappedEntity> EntityFormat() {
       .Optional("grip", &E::grip, OpeningFormat("a grip"), "How far its gripper is open.")
       .Optional("joint", &E::joint, OpeningFormat("a joint"),
                 "How far it is open, of what is on a slider or a hinge.")
-      .ExactlyOneOf({"from", "at_m"})
+      .Optional("pose", &E::pose, Text(500),
+                "Of HDF5: a dataset of matrices of 4x4, or of places and quaternions.")
+      .Optional("position", &E::position, Text(500), "Of HDF5: a dataset of places; beside it")
+      .Optional("quaternion", &E::quaternion, Text(500), "its orientation, or")
+      .Optional("euler", &E::euler, Text(500),
+                "its angles about the fixed axes x, y and then z, radians, or")
+      .Optional("axis_angle", &E::axis_angle, Text(500), "its axis times its angle, radians.")
+      .Optional("first", &E::first, Text(500), "Of HDF5: its pose before the first row.")
+      .Optional("shift", &E::shift, Integer<int>(-10, 10),
+                "Of HDF5: its rows count so many frames later: 1 of what is written after actions.")
+      .ExactlyOneOf({"from", "at_m", "pose", "position"})
+      .AtMostOneOf({"quaternion", "euler", "axis_angle", "pose"})
       .AtMostOneOf({"upright_at_s", "axes_quat_wxyz"})
       .format();
 }
@@ -168,8 +204,13 @@ ValueFormat<ImportMap> MapFormat() {
                 "The recording's unit of time.")
       .Optional("columns", &M::columns, ColumnsFormat(), "Of CSV: where the values stand.")
       .Optional("mcap", &M::mcap, McapFormat(), "Of MCAP: frame and clock.")
+      .Optional("hdf5", &M::hdf5, Hdf5Format(), "Of HDF5: where the demonstrations are.")
       .Required("entities", &M::entities, MapOf(name, EntityFormat(), 1, 1000),
                 "What the bodies are, and what no tracker sees.")
+      .Optional("labels", &M::labels, MapOf(name, LabelFormat(), 0, 1000),
+                "Of demonstrations: where each sub-task ends.")
+      .Optional("text", &M::text, MapOf(name, Text(500), 0, 1000),
+                "What each sub-task is in words; rest: the last one.")
       .format();
 }
 
@@ -248,7 +289,7 @@ void CheckOpenings(const Named<MappedEntity>& entity, PoseFormat format, Diagnos
   for (const auto* opening : {&e.grip, &e.joint}) {
     if (!*opening) continue;
     const Where& where = (*opening)->where;
-    if (format != PoseFormat::kCsv)
+    if (format != PoseFormat::kCsv && format != PoseFormat::kHdf5)
       errors.Add(where, "files of this kind have poses only: grip and joint are read from CSV");
     if ((*opening)->open == (*opening)->closed)
       errors.Add(where, fmt::format("'open' and 'closed' are both {:g}", (*opening)->open),
@@ -260,6 +301,37 @@ void CheckOpenings(const Named<MappedEntity>& entity, PoseFormat format, Diagnos
   if (e.joint && (e.hand || e.fixed))
     errors.Add(e.joint->where, fmt::format("'{}' is {}, and nothing on a joint", entity.name,
                                            e.hand ? "a hand" : "fixed"));
+}
+
+/// What only HDF5 files have, and there, that a name is one of a dataset.
+void CheckDatasets(const Named<MappedEntity>& entity, PoseFormat format, DiagnosticList& errors) {
+  const MappedEntity& e = entity.value;
+  const bool is_hdf5 = format == PoseFormat::kHdf5;
+  const auto check = [&](const Located<std::string>& name, const char* key) {
+    if (!is_hdf5)
+      errors.Add(name.where, fmt::format("'{}' is a dataset of an HDF5 file; this is none", key));
+    else if (!Hdf5PartOf(name.value))
+      errors.Add(name.where,
+                 fmt::format("expected a dataset below the group of a demonstration, "
+                             "found '{}'",
+                             name.value),
+                 "obs/eef_pos, or with its columns, from 0, obs/object[0:3]");
+  };
+  constexpr std::array kKeys = {"pose", "position", "quaternion", "euler", "axis_angle", "first"};
+  const std::array values = {&e.pose,  &e.position,   &e.quaternion,
+                             &e.euler, &e.axis_angle, &e.first};
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (*values[i]) check(**values[i], kKeys[i]);
+  for (const auto* opening : {&e.grip, &e.joint})
+    for (std::size_t i = 0; is_hdf5 && *opening && i < (*opening)->from.size(); ++i)
+      check((*opening)->from[i], "from");
+  if (is_hdf5 && e.from && !e.pose && !e.position)
+    errors.Add(e.from->where, "'from' is of files whose bodies have names",
+               "pose: DATASET, or position: and quaternion: DATASET");
+  if (e.first && !e.pose) errors.Add(e.first->where, "'first' is a pose; it needs 'pose'");
+  if (e.at_m && (e.quaternion || e.euler || e.axis_angle))
+    errors.Add(entity.name_where,
+               fmt::format("'{}' has at_m, and a dataset beside it", entity.name));
 }
 
 /// Rules across keys.
@@ -277,12 +349,17 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
   }
   if (format == PoseFormat::kBvh && map.quaternion_order)
     errors.Add(map.quaternion_order->where, "BVH has angles, and no quaternions");
+  if (format == PoseFormat::kHdf5 && !map.episode.empty())
+    errors.Add(root.where, "'episode' is one name, and each demonstration has that of its group");
+  if (format != PoseFormat::kHdf5 && map.hdf5.where.place.line > 0)
+    errors.Add(map.hdf5.where, "'hdf5' says something of HDF5 files; this is none");
   if (format != PoseFormat::kMcap && map.mcap.where.place.line > 0)
     errors.Add(map.mcap.where, "'mcap' says something of MCAP files; this is none");
   bool tracked = false;
   for (const Named<MappedEntity>& entity : map.entities) {
     const MappedEntity& e = entity.value;
     tracked = tracked || e.from;
+    CheckDatasets(entity, format, errors);
     CheckOpenings(entity, format, errors);
     if (e.hand && (e.fixed || e.class_name != "Object"))
       errors.Add(entity.name_where,
@@ -358,9 +435,14 @@ bool IsBag(const std::string& poses_path) { return EndingOf(poses_path) == ".bag
 Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
   const std::string ending = EndingOf(poses_path);
   if (ending == ".bvh") return PoseFormat::kBvh;
+  if (ending == ".hdf5" || ending == ".h5") return PoseFormat::kHdf5;
   if (ending == ".mcap" || ending == ".bag") return PoseFormat::kMcap;
   static const std::map<std::string, std::string> kOthers = {
       {".db3", "convert it, with the program that comes with MCAP: mcap convert IN.db3 OUT.mcap"},
+      {".npz", "write its arrays as CSV, or as HDF5 with h5py"},
+      {".npy", "write its array as CSV, or as HDF5 with h5py"},
+      {".pkl", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
+      {".parquet", "write its poses as CSV, or as HDF5 with h5py"},
       {".c3d", "export poses of rigid bodies as CSV; C3D mostly holds single markers"},
       {".fbx", "export it as BVH"},
       {".trc", "export poses of rigid bodies as CSV; TRC holds single markers"}};
@@ -370,7 +452,7 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
       {.file = ReadableName(poses_path),
        .place = {},
        .message =
-           fmt::format("files {} are not read; CSV, BVH, MCAP and bags of ROS 1 are", ending),
+           fmt::format("files {} are not read; CSV, BVH, MCAP, bags of ROS 1 and HDF5 are", ending),
        .source_line = {},
        .hint = other->second}});
 }
@@ -380,8 +462,13 @@ Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format) {
   if (!document) return tl::unexpected(std::move(document.error()));
   MapFile file{.document = std::move(*document), .map = {}};
   DiagnosticList errors(file.document);
-  if (MapFormat().Read(file.document.root, errors, file.map))
+  if (MapFormat().Read(file.document.root, errors, file.map)) {
+    for (Named<MappedEntity>& entity : file.map.entities) {
+      MappedEntity& e = entity.value;
+      if (e.pose || e.position) e.from = e.pose ? e.pose : e.position;
+    }
     CheckMap(file.map, format, file.document.root, errors);
+  }
   if (!errors.empty()) return tl::unexpected(errors.Sorted());
   return file;
 }

@@ -16,7 +16,7 @@
 namespace prehend::exchange {
 
 /// What is imported, by the ending of its name. Bags of ROS 1 hold messages as MCAP files do.
-enum class PoseFormat { kCsv, kBvh, kMcap };
+enum class PoseFormat { kCsv, kBvh, kMcap, kHdf5 };
 enum class LengthUnit { kMetre, kCentimetre, kMillimetre, kInch };
 enum class TimeUnit { kSecond, kMillisecond, kMicrosecond, kNanosecond, kFrame };
 enum class QuaternionOrder { kWxyz, kXyzw };
@@ -46,6 +46,16 @@ struct McapKeys {
   Clock clock = Clock::kHeader;               ///< which of a message's times counts
 };
 
+/// Of HDF5 files.
+struct Hdf5Keys {
+  Where where;
+  Located<std::string> episodes = {"data/*", {}};  ///< the groups that are demonstrations
+  /// "@success" is an attribute of the group, "success" a dataset, whose last value counts.
+  std::optional<Located<std::string>> success;
+  std::optional<Located<std::string>> language;
+  int skip = 0;  ///< frames at the beginning
+};
+
 /// Numbers of the file that say how far a gripper or a joint is open.
 struct Opening {
   Where where;
@@ -58,10 +68,23 @@ struct Opening {
   std::string Names() const;  ///< "left + right"
 };
 
+/// Where a sub-task of a demonstration ends: at a boundary of an event.
+struct SubtaskLabel {
+  Where where;
+  bool at_end = false;  ///< of the event; else where it begins
+  Located<std::string> of;
+  std::optional<Located<std::string>> hand, object;
+  std::optional<Located<std::string>> required;  ///< an event that holds then: "supported_by(a, b)"
+};
+
 /// One entity of the recording.
 struct MappedEntity {
   std::optional<Located<std::string>> from;  ///< the body in the file
-  std::optional<Eigen::Vector3d> at_m;       ///< of what no tracker sees
+  /// Of HDF5, datasets, with their columns: "obs/object[0:3]". `from` is the first of them.
+  std::optional<Located<std::string>> pose, position, quaternion, euler, axis_angle;
+  std::optional<Located<std::string>> first;  ///< its pose before the first row
+  int shift = 0;                              ///< frames by which the rows come later
+  std::optional<Eigen::Vector3d> at_m;        ///< of what no tracker sees
   Eigen::Vector4d quat_wxyz = {1, 0, 0, 0};
   bool hand = false;
   bool fixed = false;
@@ -105,7 +128,10 @@ struct ImportMap {
   std::int64_t ticks_per_second = 10'000;
   Columns columns;  ///< of CSV only
   McapKeys mcap;
+  Hdf5Keys hdf5;
   std::vector<Named<MappedEntity>> entities;
+  std::vector<Named<SubtaskLabel>> labels;  ///< of what is written back, in their order
+  std::vector<Named<std::string>> text;     ///< of each sub-task, and of the "rest"
 
   bool IsSure(Warning warning) const;
   double MetresPerUnit() const;

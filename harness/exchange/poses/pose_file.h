@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/episode/sense/episode_file.h"
 #include "harness/exchange/poses/import_map.h"
 
 namespace prehend::exchange {
@@ -48,7 +49,8 @@ struct PoseFile {
   std::vector<PoseBody> bodies;         ///< those of the map, in its order
   std::vector<OpeningSeries> openings;  ///< those of OpeningsOf(), in this order
   std::vector<std::string> unused;      ///< names of bodies that the map does not mention
-  std::vector<std::string> notes;       ///< what a user should know, one line each
+  episode::EpisodeAttributes attributes;
+  std::vector<std::string> notes;  ///< what a user should know, one line each
   /// Of a skeleton: from its feet to its head, in the file's unit and axes.
   std::optional<Eigen::Vector3d> stature;
   std::optional<QuaternionOrder> quaternion_order;  ///< as they were read; none: there are none

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/import/import_demonstrations.h. Tested by tests/program/import_hdf5.py
+#include "harness/exchange/import/import_demonstrations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/exchange/import/compare_series.h"
+
+namespace prehend::exchange {
+namespace {
+
+grammar::Diagnostics OfGroup(const std::string& group, grammar::Diagnostics errors) {
+  for (grammar::Diagnostic& error : errors) error.message = group + ": " + error.message;
+  return errors;
+}
+
+}  // namespace
+
+Result<DemonstrationImport> DemonstrationImport::Open(const std::string& poses_path,
+                                                      const std::string& map_path) {
+  Result<MapFile> map = ReadImportMap(map_path, PoseFormat::kHdf5);
+  if (!map) return tl::unexpected(map.error());
+  DemonstrationImport import;
+  import.map_ = std::make_unique<MapFile>(std::move(*map));
+  auto demonstrations = Demonstrations::Open(poses_path, *import.map_);
+  if (!demonstrations) return tl::unexpected(demonstrations.error());
+  import.demonstrations_ = std::move(*demonstrations);
+  return import;
+}
+
+grammar::Diagnostics DemonstrationImport::WrongInMap() const {
+  constexpr std::size_t kLooks = 10;
+  const std::size_t step = std::max<std::size_t>(1, groups().size() / kLooks);
+  std::size_t looked = 0, refused = 0;
+  grammar::Diagnostics first;
+  for (std::size_t i = 0; i < groups().size(); i += step) {
+    ++looked;
+    const std::string& group = groups()[i];
+    const Result<PoseFile> poses = demonstrations_->Read(group);
+    grammar::Diagnostics wrong;
+    if (poses) wrong = OfGroup(group, CompareSeries(*demonstrations_, group, *poses, *map_));
+    if (!wrong.empty()) return wrong;
+    const Result<Imported> imported = Import(group);
+    refused += !imported;
+    if (!imported && first.empty()) first = imported.error();
+  }
+  return 2 * refused > looked ? first : grammar::Diagnostics{};
+}
+
+Result<Imported> DemonstrationImport::Import(const std::string& group) const {
+  Result<PoseFile> poses = demonstrations_->Read(group);
+  if (!poses) return tl::unexpected(OfGroup(group, std::move(poses.error())));
+  Result<Imported> imported = ImportPoses(std::move(*poses), *map_);
+  if (!imported) return tl::unexpected(OfGroup(group, std::move(imported.error())));
+  return imported;
+}
+
+namespace {
+
+constexpr std::size_t kMostListed = 200;
+
+/// The groups of a file whose map is not written yet.
+Result<std::pair<std::string, std::vector<std::string>>> GuessGroups(const Hdf5File& file) {
+  std::string pattern = file.Has("data") ? "data/*" : file.Has("traj_0") ? "traj_*" : "*";
+  auto groups = GroupsLike(file, pattern);
+  if (!groups) return tl::unexpected(groups.error());
+  return std::pair(std::move(pattern), std::move(*groups));
+}
+
+/// Every dataset below a group, by its path below it.
+void CollectDatasets(const Hdf5File& file, const std::string& group, const std::string& below,
+                     std::vector<Hdf5Object>& all) {
+  const auto names = file.NamesIn(group + (below.empty() ? "" : "/" + below));
+  for (std::size_t i = 0; names && i < names->size() && all.size() < kMostListed; ++i) {
+    const std::string path = below.empty() ? (*names)[i] : below + "/" + (*names)[i];
+    auto object = file.Describe(group + "/" + path);
+    if (!object) continue;
+    if (object->kind == Hdf5Kind::kGroup && std::ranges::count(path, '/') < 8)
+      CollectDatasets(file, group, path, all);
+    object->name = path;
+    if (object->kind != Hdf5Kind::kGroup) all.push_back(std::move(*object));
+  }
+}
+
+std::string LastOf(const std::string& path) { return path.substr(path.rfind('/') + 1); }
+
+class Proposal {
+ public:
+  Proposal(const Hdf5File& file, std::string pattern, const std::vector<std::string>& groups)
+      : file_(file), pattern_(std::move(pattern)), group_(groups.front()) {
+    CollectDatasets(file, group_, "", datasets_);
+  }
+
+  std::string Text() {
+    Things("object_pose/", "");
+    if (things_.empty()) Things("object_poses/", "");
+    if (things_.empty()) Things("actors/", "[0:7]");
+    if (things_.empty()) States();
+    const std::string hand = Hand();
+    std::string text;
+    for (const Hdf5Object& one : datasets_)
+      text += fmt::format("#   {:<52} {}\n", one.name, one.Text());
+    text += "import: 1\nunit: m\naxes: z_up\n";
+    if (!ControlRateOf(file_, group_))
+      text += "rate_hz: 20                # not in the file: the rate of its actions\n";
+    if (asks_order_)
+      text += fmt::format("quaternion_order: {:<10}# {}\n", order_,
+                          "not in the file: Isaac Lab up to 2 and ManiSkill wxyz, Isaac Lab from 3 "
+                          "on and robosuite xyzw");
+    text += fmt::format("hdf5: {{episodes: \"{}\"{}}}\n", pattern_,
+                        file_.Attribute(group_, "success") ? ", success: \"@success\""
+                        : Has("success")                   ? ", success: success"
+                                                           : "");
+    text +=
+        "grammar: robot_pick_and_place\nentities:                  # sizes are not in the file\n"
+        "  table: {at_m: [0.5, 0, -0.02], fixed: true, class: Table, size_m: [1.2, 1.6, 0.04]}\n";
+    return text + things_ + hand;
+  }
+
+ private:
+  const Hdf5Object* Find(const std::string& part) const {
+    const auto found = std::ranges::find_if(datasets_, [&](const Hdf5Object& one) {
+      return ("/" + one.name).find("/" + part) != std::string::npos;
+    });
+    return found == datasets_.end() ? nullptr : &*found;
+  }
+  bool Has(const std::string& path) const {
+    return std::ranges::find(datasets_, path, &Hdf5Object::name) != datasets_.end();
+  }
+
+  /// `order`: whether its pose has quaternions.
+  void Thing(const std::string& name, const std::string& pose, bool order) {
+    things_ += fmt::format("  {}: {{pose: {}, size_m: [0.05, 0.05, 0.05]}}\n", name, pose);
+    asks_order_ = asks_order_ || order;
+  }
+
+  void Things(const std::string& below, const std::string& slice) {
+    for (const Hdf5Object& one : datasets_)
+      if (("/" + one.name).find("/" + below) != std::string::npos)
+        Thing(LastOf(one.name), '"' + one.name + slice + '"', !slice.empty());
+  }
+
+  /// Of Isaac Lab: they are written after the action.
+  void States() {
+    for (const Hdf5Object& one : datasets_) {
+      if (!one.name.starts_with("states/rigid_object/") || LastOf(one.name) != "root_pose")
+        continue;
+      const std::string name = LastOf(one.name.substr(0, one.name.rfind('/')));
+      Thing(name,
+            fmt::format("{0}, first: initial_state{1}, shift: 1", one.name, one.name.substr(6)),
+            true);
+    }
+  }
+
+  std::string Hand() {
+    std::string keys;
+    if (const Hdf5Object* matrix = Find("eef_pose"); matrix && matrix->shape.size() == 3) {
+      keys = "pose: \"" + matrix->name + "\"";
+    } else if (const Hdf5Object* tcp = Find("tcp_pose")) {
+      keys = "pose: \"" + tcp->name + "\"";
+      asks_order_ = true;
+    } else {
+      struct Pair {
+        const char *place, *turn, *key;
+      };
+      for (const Pair& pair : {Pair{"eef_pos", "eef_quat", "quaternion"},
+                               {"robot0_eef_pos", "robot0_eef_quat", "quaternion"},
+                               {"ee_pos", "ee_ori", "axis_angle"}}) {
+        const Hdf5Object *place = Find(pair.place), *turn = Find(pair.turn);
+        if (!place || !turn || !keys.empty()) continue;
+        keys = fmt::format("position: {}, {}: {}", place->name, pair.key, turn->name);
+        asks_order_ = asks_order_ || std::string_view(pair.key) == "quaternion";
+        if (std::string_view(pair.place).starts_with("robot0")) order_ = "xyzw";
+      }
+    }
+    if (keys.empty()) return "  # gripper: no dataset is called as poses of grippers are\n";
+    for (const char* name : {"gripper_pos", "robot0_gripper_qpos", "gripper_states"}) {
+      const Hdf5Object* grip = Find(name);
+      if (!grip) continue;
+      return fmt::format(
+          "  gripper: {{{}, hand: true, ahead: [0, 0, 1], size_m: [0.02, 0.1, 0.06],\n"
+          "            grip: {{from: {}, sum_abs: true, open: 0.08, closed: 0}}}}\n",
+          keys, grip->name);
+    }
+    return fmt::format(
+        "  gripper: {{{}, hand: true, ahead: [0, 0, 1], size_m: [0.02, 0.1, 0.06]}}\n", keys);
+  }
+
+  const Hdf5File& file_;
+  const std::string pattern_, group_;
+  std::vector<Hdf5Object> datasets_;
+  std::string things_, order_ = "wxyz";
+  bool asks_order_ = false;
+};
+
+}  // namespace
+
+Result<std::string> ProposedMap(const std::string& path) {
+  const auto file = Hdf5File::Open(path);
+  if (!file) return tl::unexpected(file.error());
+  auto groups = GuessGroups(*file);
+  if (!groups) return tl::unexpected(groups.error());
+  const std::vector<std::string>& all = groups->second;
+  return fmt::format("# {}: {} demonstrations, '{}' to '{}'; the first has\n", file->path(),
+                     all.size(), all.front(), all.back()) +
+         Proposal(*file, groups->first, all).Text();
+}
+
+}  // namespace prehend::exchange
