@@ -148,7 +148,10 @@ std::string ChildProcess::Start(const std::vector<std::string>& words, const How
 }
 
 void ChildProcess::Exchange(double most_s, int also) {
-  if (closes_input_ && unsent() == 0) Close(in_);
+  const auto end_input = [&] {
+    if (closes_input_ && unsent() == 0 && in_ >= 0) shutdown(in_, SHUT_WR);
+  };
+  end_input();
   // A closed descriptor is -1, which poll() passes over.
   std::array<pollfd, 4> watched{pollfd{unsent() > 0 ? in_ : -1, POLLOUT, 0},
                                 {out_, POLLIN, 0},
@@ -160,12 +163,15 @@ void ChildProcess::Exchange(double most_s, int also) {
   if (watched[0].revents != 0) {
     const ssize_t count = send(in_, input_.data() + sent_, unsent(), MSG_NOSIGNAL);
     if (count > 0) sent_ += static_cast<std::size_t>(count);
-    const bool is_gone = count < 0 && errno != EAGAIN && errno != EINTR;
-    if (unsent() == 0 || is_gone) {
+    if (count < 0 && errno != EAGAIN && errno != EINTR) {
+      Close(in_);
+      is_unread_ = true;
+    }
+    if (unsent() == 0 || is_unread_) {
       input_.clear();
       sent_ = 0;
     }
-    if (is_gone || (closes_input_ && unsent() == 0)) Close(in_);
+    end_input();
   }
   const auto receive = [](int& from, std::string& text) {
     std::array<char, 65536> bytes;
@@ -175,6 +181,14 @@ void ChildProcess::Exchange(double most_s, int also) {
   };
   if (watched[1].revents != 0) receive(out_, out);
   if (watched[2].revents != 0) receive(err_, err);
+}
+
+bool ChildProcess::HasReadAll() const {
+  int problem = 0;  // ECONNRESET: it was closed with something in it
+  socklen_t size = sizeof problem;
+  const bool is_lost =
+      in_ >= 0 && getsockopt(in_, SOL_SOCKET, SO_ERROR, &problem, &size) == 0 && problem != 0;
+  return !is_unread_ && !is_lost && unsent() == 0;
 }
 
 bool ChildProcess::HasEnded(double most_s) {

@@ -42,7 +42,8 @@ class ChildProcess {
   void Exchange(double most_s, int also = -1);
   /// Neither output is open any more.
   bool has_said_all() const { return out_ < 0 && err_ < 0; }
-  bool reads_on() const { return in_ >= 0; }
+  /// Of one that has ended, whether it read all that was sent.
+  bool HasReadAll() const;
   std::string out, err;  ///< what has come; who reads may take it out
 
   struct End {
@@ -61,7 +62,7 @@ class ChildProcess {
   int in_ = -1, out_ = -1, err_ = -1;
   std::string input_;
   std::size_t sent_ = 0;
-  bool closes_input_ = false;
+  bool closes_input_ = false, is_unread_ = false;
   End end_;
 };
 

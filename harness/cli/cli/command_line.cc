@@ -159,6 +159,7 @@ std::vector<Command> AllCommands() {
           Limited(MarginsCommand(), kSettings_s),
           Limited(TracksCommand(), kOne_s),
           WatchCommand(),
+          Limited(RecogniserCommand(), kOne_s),
           BenchCommand(),
           Limited(PosesCommand(), kOne_s),
           SchemaCommand(),

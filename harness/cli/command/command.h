@@ -69,6 +69,7 @@ Command MarginsCommand();
 Command FigureCommand();
 Command TryCommand();
 Command WatchCommand();
+Command RecogniserCommand();
 Command KnowledgeCommand();
 Command AskCommand();
 

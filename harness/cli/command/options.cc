@@ -196,6 +196,19 @@ Option MemoryLimitOption() {
 
 Option JsonOption() { return {.name = "--json", .help = "print JSON instead of text"}; }
 
+Option OnlineOption() {
+  return {.name = "--online",
+          .help = "a program gets its next frame when it has answered the last one"};
+}
+
+Option RecogniserLimitOption() {
+  return {.name = "--recogniser-limit-s",
+          .help = fmt::format("seconds for a program and an episode; default: {:g}",
+                              kRecogniserLimit_s),
+          .placeholder = "S",
+          .rule = NumbersFrom(1, 86400)};
+}
+
 std::vector<Option> TruthOptions(const std::string& help, const std::string& placeholder) {
   return {{.name = "--truth", .help = help, .placeholder = placeholder, .repeatable = true},
           {.name = "--map",

@@ -73,6 +73,7 @@ class ParsedOptions {
 
 constexpr int kMaxJobs = 256;
 constexpr double kDefaultCollar_ms = 50;
+constexpr double kRecogniserLimit_s = 60;
 
 Option ScenarioArgument();
 Option EpisodeArgument();       ///< a scenario, an episode file or a recording
@@ -81,8 +82,10 @@ Option EpisodeFilesArgument();  ///< "files": no others
 Option EpisodeOption();         ///< one of an episode file
 Option EpisodesOption();        ///< some of episode files
 Option GrammarOption();
-Option SettingsOption();    ///< of a grammar and a scenario
-Option ParametersOption();  ///< of a grammar alone
+Option OnlineOption();           ///< of a recogniser
+Option RecogniserLimitOption();  ///< for an episode
+Option SettingsOption();         ///< of a grammar and a scenario
+Option ParametersOption();       ///< of a grammar alone
 Option OutputOption(const std::string& help, const std::string& placeholder = "FILE");
 Option JobsOption(const std::string& of_what);
 Option FilterOption();

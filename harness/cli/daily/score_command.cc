@@ -20,6 +20,8 @@ ExitCode PrintScores(const Result<measure::LabelScores>& scores, double collar_s
                      const CommandContext& context) {
   context.err << warnings;
   if (!scores) return Complain(context, scores.error());
+  context.err << scores->failures;
+  const ExitCode code = scores->failures.empty() ? ExitCode::kAgrees : ExitCode::kBadInput;
   if (options.Has("--json")) {
     nlohmann::ordered_json json = measure::ScoresJson(scores->of_grammars, collar_s);
     json["by_hand"] = measure::ScoresJson(scores->by_hand, collar_s);
@@ -36,7 +38,7 @@ ExitCode PrintScores(const Result<measure::LabelScores>& scores, double collar_s
   } else {
     context.out << measure::LabelScoresText(*scores, collar_s, options.Has("--verbose"));
   }
-  return ExitCode::kAgrees;
+  return code;
 }
 
 double CollarFrom(const ParsedOptions& options) {
@@ -45,6 +47,24 @@ double CollarFrom(const ParsedOptions& options) {
 
 exchange::Backward BackwardFrom(const ParsedOptions& options) {
   return options.Has("--skip-bad-labels") ? exchange::Backward::kSkip : exchange::Backward::kRefuse;
+}
+
+/// Grammars, files and programs, in this order.
+measure::Asking AskingFrom(const ParsedOptions& options, const CommandContext& context) {
+  measure::Asking asking{
+      .sources = {},
+      .label_map = options.Text("--map"),
+      .pace = options.Has("--online")      ? measure::Pace::kOnline
+              : options.Has("--real-time") ? measure::Pace::kRealTime
+                                           : measure::Pace::kOffline,
+      .time_limit_s = options.NumberOr("--recogniser-limit-s", kRecogniserLimit_s)};
+  for (const std::string& name : options.All("--grammar"))
+    asking.sources.push_back({measure::Source::Kind::kGrammar, name});
+  for (const std::string& path : options.All("--found"))
+    asking.sources.push_back({measure::Source::Kind::kFiles, path});
+  for (const std::string& typed : options.All("--recogniser"))
+    asking.sources.push_back(measure::SourceOf(typed, context.root));
+  return asking;
 }
 
 /// `score LABELS --truth LABELS`: how two people agree.
@@ -74,18 +94,22 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
   if (!options.Has("names"))
     return Complain(context, ExitCode::kBadInput,
                     "--truth: which recordings? score take1.jsonl --truth take1.csv");
-  if (std::ranges::all_of(options.All("names"), exchange::IsLabelFile))
+  if (std::ranges::all_of(options.All("names"), exchange::IsLabelFile)) {
+    if (options.Has("--found") || options.Has("--recogniser"))
+      return Complain(
+          context, ExitCode::kBadInput,
+          "--found and --recogniser: of which recordings? score take1.jsonl --found ..");
     return RunLabelFiles(options, context);
+  }
   auto takes = FindTakesOrComplain("names", options, context);
   if (!takes) return takes.error();
   const double collar_s = CollarFrom(options);
   std::string warnings;
   const auto scores = measure::ScoreLabels({.root = context.root,
                                             .takes = std::move(*takes),
-                                            .grammars = options.All("--grammar"),
+                                            .asking = AskingFrom(options, context),
                                             .settings = options.All("--set"),
                                             .label_files = options.All("--truth"),
-                                            .label_map = options.Text("--map"),
                                             .backward = BackwardFrom(options),
                                             .collar_s = collar_s,
                                             .is_collar_asked = options.Has("--collar-ms")},
@@ -94,7 +118,7 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
 }
 
 /// `score`: against what physically happened, in scenarios.
-ExitCode RunScenarios(const measure::ScoredGrammars& grammars,
+ExitCode RunScenarios(const measure::Asking& asking, const measure::NotCovered& not_covered,
                       const std::vector<std::string>& events, const grammar::Overrides& settings,
                       const ParsedOptions& options, const CommandContext& context) {
   const auto selection =
@@ -106,10 +130,11 @@ ExitCode RunScenarios(const measure::ScoredGrammars& grammars,
         !lack.empty())
       return Complain(context, ExitCode::kBadInput, lack);
     requests.push_back(
-        {NameOf(file), episode::IdOf(file), context.root, grammars.names, events, settings});
+        {NameOf(file), episode::IdOf(file), context.root, &asking, events, settings});
   }
   const double collar_s = CollarFrom(options);
-  const auto scores = measure::ScoreScenarios(requests, grammars, collar_s, CoreCount());
+  const auto scores = measure::ScoreScenarios(requests, asking, not_covered, collar_s, CoreCount());
+  context.err << scores.notes;
   ExitCode worst = ExitCode::kAgrees;
   for (const measure::NotScored& one : scores.not_scored) {
     context.err << "prehend: " << one.id << " was not scored: " << one.why;
@@ -128,29 +153,34 @@ ExitCode RunScenarios(const measure::ScoredGrammars& grammars,
 }
 
 ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
+  if (options.Has("--online") && options.Has("--real-time"))
+    return Complain(context, ExitCode::kBadInput, "--online or --real-time, not both");
   const bool has_takes = std::ranges::any_of(options.All("names"), [](const std::string& typed) {
     return episode::IsTakesFile(typed) || episode::IsTakesFile(typed + "/takes.yaml");
   });
   if (options.Has("--truth") || has_takes) return RunLabels(options, context);
-  std::vector<std::string> names = options.All("--grammar");
+  measure::Asking asking = AskingFrom(options, context);
   // The baseline keeps the authors' numbers.
-  if (names.empty())
-    names = options.Has("--set") ? std::vector<std::string>{kDefaultGrammar}
-                                 : std::vector<std::string>{kDefaultGrammar, "original_2020"};
+  if (asking.sources.empty()) {
+    asking.sources.push_back({measure::Source::Kind::kGrammar, kDefaultGrammar});
+    if (!options.Has("--set"))
+      asking.sources.push_back({measure::Source::Kind::kGrammar, "original_2020"});
+  }
   const Result<grammar::Overrides> settings = episode::ParameterSettings(options.All("--set"));
   if (!settings) return Complain(context, settings.error());
+  const bool has_others = options.Has("--found") || options.Has("--recogniser");
   for (const char* of_labels : {"--map", "--episode", "--skip-bad-labels"}) {
-    if (options.Has(of_labels))
+    if (options.Has(of_labels) && !(has_others && of_labels == std::string("--map")))
       return Complain(context, ExitCode::kBadInput,
                       fmt::format("{} needs --truth: where are the labels?", of_labels));
   }
   const std::vector<std::string> events = measure::EventsIn(options.All("--event"));
   if (const std::string unknown = measure::UnknownEvent(events); !unknown.empty())
     return Complain(context, ExitCode::kBadInput, unknown);
-  Result<measure::ScoredGrammars> grammars =
-      measure::CompileToScore(context.root, names, *settings, events);
-  if (!grammars) return Complain(context, grammars.error());
-  return RunScenarios(*grammars, events, *settings, options, context);
+  const Result<measure::NotCovered> not_covered =
+      measure::CompileToScore(context.root, asking.sources, *settings, events);
+  if (!not_covered) return Complain(context, not_covered.error());
+  return RunScenarios(asking, *not_covered, events, *settings, options, context);
 }
 
 }  // namespace
@@ -183,6 +213,20 @@ Command ScoreCommand() {
                {.name = "--verbose",
                 .help = "list every event that differs from what an evaluator says, or "
                         "from the labels"},
+               {.name = "--found",
+                .help = "score these events, too, which somebody else found: a folder with a file "
+                        "for each episode (.csv, .eaf, .TextGrid, .timeline, .jsonl, .txt), or one "
+                        "table with a column 'episode' (docs/recognisers.md)",
+                .placeholder = "FILE|FOLDER",
+                .repeatable = true},
+               {.name = "--recogniser",
+                .help = "score a program that reads frames and prints events "
+                        "(docs/recognisers.md), a grammar, or files:FOLDER; may be repeated",
+                .placeholder = "CMD",
+                .repeatable = true},
+               OnlineOption(),
+               {.name = "--real-time", .help = "a program gets its frames when their time comes"},
+               RecogniserLimitOption(),
                JsonOption()},
               TruthOptions(
                   "labels by people (.csv, .eaf, .TextGrid) of the recordings or episode files "

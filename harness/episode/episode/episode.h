@@ -39,6 +39,8 @@ class Episode {
 
   /// What `prehend run` prints; a scenario is simulated, once. `frames`: with every snapshot.
   Result<RunResult> Run(bool frames);
+  /// The same of a scenario, with every snapshot; it is kept, and what asks for frames reads it.
+  const RunResult& Played();
   /// After Run(): of a recording, what it does not have of what the grammar asks for.
   const MissingFacts& missing() const { return missing_; }
   /// The same of a recording, with what it does not have of what the grammar asks for.
@@ -65,7 +67,6 @@ class Episode {
   Episode(EpisodeName name, LoadedRun loaded)
       : name_(std::move(name)), loaded_(std::move(loaded)) {}
 
-  const RunResult& Played();
   Result<std::vector<physics::Snapshot>> ReadSnapshots(
       const std::function<bool(std::int64_t)>& wanted) const;
   tl::unexpected<grammar::Diagnostics> Failure(const std::string& message) const;

@@ -68,15 +68,21 @@ void BridgeLooks(Recording& episode);
 /// Reports errors with file, line and column. The limits are those above.
 Result<Recording> ReadRecording(const std::string& path);
 
+/// Facts of frames beside the poses; without triggers there are no styles, either.
+struct WrittenFacts {
+  bool touches = true, trigger = true, joints = true, gazes = true;
+};
+
 /// Writes each frame as it comes.
 class EpisodeWriter {
  public:
-  EpisodeWriter(std::ostream& out, const EpisodeHeader& header);
+  EpisodeWriter(std::ostream& out, const EpisodeHeader& header, const WrittenFacts& facts = {});
   void Write(const grammar::Frame& frame);
   void Finish(grammar::Tick end_tick);
 
  private:
   std::ostream& out_;
+  const WrittenFacts facts_;
   grammar::EntityTable entity_table_;
   std::vector<std::string> shown_;  ///< per entity: its last line, as only changes are written
 };

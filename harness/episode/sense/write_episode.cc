@@ -85,29 +85,32 @@ Json MemberJson(const grammar::EntityInfo& member, const grammar::EntityTable& e
   return json;
 }
 
-Json SampleJson(const grammar::EntitySample& look, const grammar::EntityTable& entity_table) {
+Json SampleJson(const grammar::EntitySample& look, const grammar::EntityTable& entity_table,
+                const WrittenFacts& facts) {
   if (!grammar::IsTracked(look)) return nullptr;
   Json json = {{"at_m", ToJson(look.p_WB_m)},
                {"quat_wxyz", ToJson(look.q_WB)},
                {"v_m_per_s", ToJson(look.v_WB_m_per_s)},
                {"w_rad_per_s", ToJson(look.w_WB_rad_per_s)}};
   if (look.asleep) json["asleep"] = true;
-  if (look.joint_position != 0) json["joint_position"] = look.joint_position;
-  if (look.joint_fraction != 0) json["joint_fraction"] = look.joint_fraction;
-  if (look.gazes_at != grammar::kNoEntity)
+  if (facts.joints && look.joint_position != 0) json["joint_position"] = look.joint_position;
+  if (facts.joints && look.joint_fraction != 0) json["joint_fraction"] = look.joint_fraction;
+  if (facts.gazes && look.gazes_at != grammar::kNoEntity)
     json["gazes_at"] = entity_table.entities[look.gazes_at].name;
   return json;
 }
 
-Json HandJson(const grammar::HandSample& hand, const grammar::EntityTable& entity_table) {
-  Json collision_spheres = Json::array();
-  for (const grammar::CollisionSphere& collision_sphere : hand.collision_spheres) {
-    collision_spheres.push_back({collision_sphere.p_W_m.x(), collision_sphere.p_W_m.y(),
-                                 collision_sphere.p_W_m.z(), collision_sphere.radius_m});
+Json HandJson(const grammar::HandSample& hand, const grammar::EntityTable& entity_table,
+              const WrittenFacts& facts) {
+  Json json;
+  if (facts.trigger) json["trigger"] = hand.trigger;
+  json["ahead"] = ToJson(hand.ahead_W);
+  if (facts.touches) {  // where the fingers are, they may touch
+    Json& spheres = json["collision_spheres_m"] = Json::array();
+    for (const grammar::CollisionSphere& one : hand.collision_spheres)
+      spheres.push_back({one.p_W_m.x(), one.p_W_m.y(), one.p_W_m.z(), one.radius_m});
   }
-  Json json = {{"trigger", hand.trigger},
-               {"ahead", ToJson(hand.ahead_W)},
-               {"collision_spheres_m", std::move(collision_spheres)}};
+  if (!facts.trigger) return json;
   if (hand.style >= 0 && hand.style < static_cast<int>(entity_table.styles.size()))
     json["style"] = entity_table.styles[hand.style];
   return json;
@@ -136,15 +139,18 @@ Json TouchJson(const grammar::Touch& touch, const grammar::EntityTable& entity_t
 
 }  // namespace
 
-EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header)
-    : out_(out), entity_table_(header.entity_table), shown_(header.entity_table.entities.size()) {
+EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header,
+                             const WrittenFacts& facts)
+    : out_(out),
+      facts_(facts),
+      entity_table_(header.entity_table),
+      shown_(header.entity_table.entities.size()) {
   Json entities = Json::object();
   for (const grammar::EntityInfo& member : entity_table_.entities)
     entities[member.name] = MemberJson(member, entity_table_);
-  Json first = {{"recording", kEpisodeVersion},
-                {"episode", header.episode},
-                {"grammar", header.grammar},
-                {"ticks_per_second", entity_table_.ticks_per_second}};
+  Json first = {{"recording", kEpisodeVersion}, {"episode", header.episode}};
+  if (!header.grammar.empty()) first["grammar"] = header.grammar;
+  first["ticks_per_second"] = entity_table_.ticks_per_second;
   if (header.bridge_s != kBridge_s) first["bridge_s"] = header.bridge_s;
   if (header.attributes.success) first["success"] = *header.attributes.success;
   if (!header.attributes.language.empty()) first["language"] = header.attributes.language;
@@ -156,7 +162,7 @@ EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header)
 void EpisodeWriter::Write(const grammar::Frame& frame) {
   Json samples = Json::object();
   for (std::size_t i = 0; i < frame.entities.size(); ++i) {
-    Json sample = SampleJson(frame.entities[i], entity_table_);
+    Json sample = SampleJson(frame.entities[i], entity_table_, facts_);
     std::string text = sample.dump();
     if (text == shown_[i]) continue;
     samples[entity_table_.entities[i].name] = std::move(sample);
@@ -164,15 +170,12 @@ void EpisodeWriter::Write(const grammar::Frame& frame) {
   }
   Json hands = Json::object(), touches = Json::array();
   for (const grammar::HandSample& hand : frame.hands)
-    hands[entity_table_.entities[hand.entity].name] = HandJson(hand, entity_table_);
+    hands[entity_table_.entities[hand.entity].name] = HandJson(hand, entity_table_, facts_);
   for (const grammar::Touch& touch : frame.touches)
     touches.push_back(TouchJson(touch, entity_table_));
-  out_ << Json{{"tick", frame.tick},
-               {"samples", std::move(samples)},
-               {"hands", std::move(hands)},
-               {"touches", std::move(touches)}}
-              .dump()
-       << "\n";
+  Json line = {{"tick", frame.tick}, {"samples", std::move(samples)}, {"hands", std::move(hands)}};
+  if (facts_.touches) line["touches"] = std::move(touches);
+  out_ << line.dump() << "\n";
 }
 
 void EpisodeWriter::Finish(grammar::Tick end_tick) {

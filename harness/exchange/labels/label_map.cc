@@ -97,10 +97,17 @@ struct Meant {
   std::string problem = {}, hint = {};
 };
 
-Meant WithoutMap(const std::string& text, const Events& events) {
+Meant WithoutMap(const Label& label, const std::string& text, const Events& events) {
   Meant meant;
   meant.event = EventIn(text, events, meant.problem);
-  if (!meant.event) meant.hint = "say what your labels mean in a file: --map labels.yaml";
+  if (!meant.event) {
+    meant.hint = "say what your labels mean in a file: --map labels.yaml";
+  } else if (meant.event->roles.empty()) {
+    const EventSignature& event = *FindEvent(events, meant.event->event);
+    for (const grammar::Role& role : label.roles)
+      if (std::ranges::count(event.roles, role.name) > 0) meant.event->roles.push_back(role);
+    PutInOrder(event, meant.event->roles);
+  }
   return meant;
 }
 
@@ -143,11 +150,11 @@ bool AddRoles(const Label& label, const LabelMap& map, const Meaning* tier,
   return true;
 }
 
-Meant ByMap(const Label& label, const std::string& text, const LabelMap& map,
-            const Events& events) {
+Meant ByMap(const Label& label, const std::string& text, const LabelMap& map, const Events& events,
+            Side side) {
   Meant meant;
   const Meaning* tier = nullptr;
-  if (!map.tiers.empty()) {
+  if (!map.tiers.empty() && (side == Side::kTruth || map.tiers.contains(label.tier))) {
     tier = Find(map.tiers, label.tier, "tier", meant);
     if (!tier || tier->ignored) return meant;
   }
@@ -221,7 +228,8 @@ std::vector<Label> LabelsOf(const LabelFile& file, const TakeRows& take, const L
 }  // namespace
 
 Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelMap* map,
-                                      const Events& events, std::vector<TakeRows> takes) {
+                                      const Events& events, std::vector<TakeRows> takes,
+                                      Side side) {
   LabelReading reading;
   if (map) {
     reading.join_s_ = map->join_s;
@@ -236,7 +244,13 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
     std::vector<LabelledEvent>& of_take = reading.events_.emplace_back();
     for (const Label& label : LabelsOf(file, take, map, problems)) {
       const std::string text = Trimmed(label.text);
-      Meant meant = map ? ByMap(label, text, *map, events) : WithoutMap(text, events);
+      const bool in_map = map && map->labels.contains(text);
+      if (text == "background" && !in_map && !FindEvent(events, text)) {
+        ++reading.counted_.ignored[text];
+        continue;
+      }
+      Meant meant = map && (in_map || side == Side::kTruth) ? ByMap(label, text, *map, events, side)
+                                                            : WithoutMap(label, text, events);
       const bool is_problem = !meant.problem.empty();
       if (is_problem && problems.size() < kMostComplaints &&
           complained.insert(meant.problem).second)
@@ -246,7 +260,8 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
       ++(label.IsMoment() ? reading.counted_.moments : reading.counted_.labels);
       Compare(meant.event->event, meant.event->roles, reading.compared_);
       of_take.push_back({label.begin_s + take.offset_s, label.end_s + take.offset_s,
-                         std::move(*meant.event), label.place, std::move(meant.in_map)});
+                         std::move(*meant.event), label.place, std::move(meant.in_map),
+                         label.decided_s});
     }
     reading.WarnOfOverlaps(file, of_take);
   }
@@ -332,13 +347,11 @@ grammar::Diagnostic LabelReading::At(const LabelFile& labels, const LabelledEven
   return in_map;
 }
 
-Result<grammar::Timeline> LabelReading::Truth(std::size_t take,
-                                              const std::vector<grammar::EntityInfo>& entities,
-                                              grammar::Tick ticks_per_second,
-                                              grammar::Tick end) const {
+Diagnostics LabelReading::Problems(std::size_t take,
+                                   const std::vector<grammar::EntityInfo>& entities,
+                                   double end_s) const {
   const LabelFile& labels = files_[takes_[take].file];
   Diagnostics problems;
-  const double end_s = static_cast<double>(end) / static_cast<double>(ticks_per_second);
   for (const LabelledEvent& label : events_[take]) {
     if (problems.size() >= kMostComplaints) break;
     for (const grammar::Role& role : label.event.roles) {
@@ -382,23 +395,68 @@ Result<grammar::Timeline> LabelReading::Truth(std::size_t take,
                 "takes: starts_at: 2026-10-25T01:59:50"));
     }
   }
+  return problems;
+}
+
+Result<grammar::Timeline> LabelReading::Truth(std::size_t take,
+                                              const std::vector<grammar::EntityInfo>& entities,
+                                              grammar::Tick ticks_per_second,
+                                              grammar::Tick end) const {
+  Diagnostics problems =
+      Problems(take, entities, static_cast<double>(end) / static_cast<double>(ticks_per_second));
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   return Marked(take, ticks_per_second, end, false);
+}
+
+Result<grammar::Timeline> LabelReading::Found(std::size_t take,
+                                              const std::vector<grammar::EntityInfo>& entities,
+                                              grammar::Tick ticks_per_second, grammar::Tick end,
+                                              const ComparedRoles& compared) const {
+  Diagnostics problems =
+      Problems(take, entities, static_cast<double>(end) / static_cast<double>(ticks_per_second));
+  grammar::Timeline found{.ticks_per_second = ticks_per_second, .events = {}};
+  for (const LabelledEvent& label : events_[take]) {
+    if (problems.size() >= kMostComplaints) break;
+    const LabelFile& file = files_[takes_[take].file];
+    if (label.IsMoment())
+      problems.push_back(file.At(label.place, "what is found has a begin and a later end"));
+    const auto roles = compared.find(label.event.event);
+    if (roles == compared.end()) {
+      found.events.push_back(InTicks(label, ticks_per_second, end));
+      continue;
+    }
+    for (const std::string& role : roles->second)
+      if (std::ranges::count(label.event.roles, role, &grammar::Role::name) == 0)
+        problems.push_back(
+            file.At(label.place,
+                    fmt::format("'{}' says no {}, and what is true does", label.event.event, role),
+                    fmt::format("{}({}), or the roles in columns, in the map or in \"roles\"",
+                                label.event.event,
+                                fmt::join(signatures_.at(label.event.event).roles, ", "))));
+    found.events.push_back(InTicks(label, ticks_per_second, end));
+  }
+  if (!problems.empty()) return tl::unexpected(std::move(problems));
+  Sort(found);
+  return found;
+}
+
+grammar::NamedEvent LabelReading::InTicks(const LabelledEvent& label,
+                                          grammar::Tick ticks_per_second, grammar::Tick end) const {
+  grammar::NamedEvent event = label.event;
+  event.interval.begin =
+      std::clamp<grammar::Tick>(truth::TickAt(label.begin_s, ticks_per_second), 0, end - 1);
+  event.interval.end = std::clamp<grammar::Tick>(truth::TickAt(label.end_s, ticks_per_second),
+                                                 event.interval.begin + 1, end);
+  event.decided = label.decided_s ? truth::TickAt(*label.decided_s, ticks_per_second) : -1;
+  return event;
 }
 
 grammar::Timeline LabelReading::Marked(std::size_t take, grammar::Tick ticks_per_second,
                                        grammar::Tick end, bool moments) const {
   grammar::Timeline marked{.ticks_per_second = ticks_per_second, .events = {}};
-  for (const LabelledEvent& label : events_[take]) {
-    if (label.IsMoment() && !moments) continue;
-    grammar::NamedEvent event = label.event;
-    event.interval.begin =
-        std::clamp<grammar::Tick>(truth::TickAt(label.begin_s, ticks_per_second), 0, end - 1);
-    event.interval.end = std::clamp<grammar::Tick>(truth::TickAt(label.end_s, ticks_per_second),
-                                                   event.interval.begin + 1, end);
-    event.decided = event.interval.end;
-    marked.events.push_back(std::move(event));
-  }
+  for (const LabelledEvent& label : events_[take])
+    if (moments || !label.IsMoment())
+      marked.events.push_back(InTicks(label, ticks_per_second, end));
   return Compared(marked, compared_, truth::TickAt(join_s_, ticks_per_second));
 }
 

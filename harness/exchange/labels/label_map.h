@@ -87,6 +87,10 @@ struct Moments {
   int marked = 0, found = 0;
 };
 
+/// What labels are: what is true, or what somebody else found. Of the latter the map says what it
+/// has, and all else is an event as it is printed, in tiers that mean nothing.
+enum class Side { kTruth, kFound };
+
 /// Labels as events. One without roles in common with other labels of its event is compared without
 /// them.
 class LabelReading {
@@ -94,7 +98,7 @@ class LabelReading {
   /// `map` may be null. Errors are labels that the map does not have, or that are no events.
   static Result<LabelReading> Of(std::vector<LabelFile> files, const LabelMap* map,
                                  const std::vector<grammar::EventSignature>& events,
-                                 std::vector<TakeRows> takes);
+                                 std::vector<TakeRows> takes, Side side = Side::kTruth);
   /// A file for each take.
   static Result<LabelReading> Of(std::vector<LabelFile> files, const LabelMap* map,
                                  const std::vector<grammar::EventSignature>& events);
@@ -116,7 +120,14 @@ class LabelReading {
   Result<grammar::Timeline> Truth(std::size_t take,
                                   const std::vector<grammar::EntityInfo>& entities,
                                   grammar::Tick ticks_per_second, grammar::Tick end) const;
-  /// The same without a recording; with those of a moment or not, which then last a tick.
+  /// The same with all their roles, of what was found; when it was decided is -1 where nothing says
+  /// it. Errors are also events of a moment, and those without a role in which they are compared.
+  Result<grammar::Timeline> Found(std::size_t take,
+                                  const std::vector<grammar::EntityInfo>& entities,
+                                  grammar::Tick ticks_per_second, grammar::Tick end,
+                                  const ComparedRoles& compared) const;
+  /// The same as Truth() without a recording; with those of a moment or not, which then last a
+  /// tick.
   grammar::Timeline Marked(std::size_t take, grammar::Tick ticks_per_second, grammar::Tick end,
                            bool moments) const;
   /// Where the last label of the take ends, in seconds.
@@ -132,11 +143,16 @@ class LabelReading {
     grammar::NamedEvent event;
     grammar::Place place;
     std::map<std::string, Where> in_map;  ///< of the entities that the map names, not the label
+    std::optional<double> decided_s;
     bool IsMoment() const { return begin_s == end_s; }
   };
   /// What is wrong with a role of a label, in the file that says it.
   grammar::Diagnostic At(const LabelFile& labels, const LabelledEvent& label,
                          const std::string& entity, std::string message, std::string hint) const;
+  grammar::Diagnostics Problems(std::size_t take, const std::vector<grammar::EntityInfo>& entities,
+                                double end_s) const;
+  grammar::NamedEvent InTicks(const LabelledEvent& label, grammar::Tick ticks_per_second,
+                              grammar::Tick end) const;
   void WarnOfOverlaps(const LabelFile& file, const std::vector<LabelledEvent>& events);
 
   std::vector<LabelFile> files_;

@@ -13,6 +13,7 @@
 #include <tuple>
 
 #include "harness/base/base/csv_cells.h"
+#include "harness/base/base/text_file.h"
 #include "harness/episode/episode/take.h"
 #include "harness/exchange/labels/read_labels.h"
 
@@ -448,27 +449,46 @@ Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
   return rows ? rows->Finish() : Diagnostics{};
 }
 
-Diagnostics ReadFrameLabels(LabelFile& file, double rate_hz) {
-  if (rate_hz <= 0)
-    return {file.At({}, "it has a line for each frame",
-                    "how many has the video per second? In the map: rate_hz: 30")};
+std::vector<std::string> HeadOfTable(const std::string& path) {
+  std::vector<std::string> words;
+  const Result<std::string> text = ReadTextFile(path);
+  if (!text) return words;
+  const std::string_view line = std::string_view(*text).substr(0, text->find('\n'));
+  const char separator = Lower(path).ends_with(".tsv") ? '\t' : SeparatorOf(line);
+  for (const CsvCell& cell : CsvCellsOf(line, separator)) words.emplace_back(cell.text);
+  return words;
+}
+
+Diagnostics ReadFrameLabels(LabelFile& file, const CsvReading& how) {
+  std::vector<std::string_view> lines;
   const std::string_view text = file.text;
-  double frame = 0;
-  for (std::size_t begin = 0; begin < text.size(); ++frame) {
+  for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
+    lines.push_back(text.substr(begin, end - begin));
     begin = end + 1;
-    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
-    const double from_s = frame / rate_hz, to_s = (frame + 1) / rate_hz;
-    if (!file.labels.empty() && file.labels.back().text == line &&
-        file.labels.back().end_s == from_s)
-      file.labels.back().end_s = to_s;
+  }
+  const bool by_frame = how.frames_s.size() > 1 && lines.size() == how.frames_s.size() - 1;
+  if (!by_frame && how.rate_hz <= 0)
+    return {file.At({},
+                    how.frames_s.empty()
+                        ? "it has a line for each frame"
+                        : fmt::format("it has {} lines, and the recording {} frames", lines.size(),
+                                      how.frames_s.size() - 1),
+                    "how many has the video per second? In the map: rate_hz: 30")};
+  const auto at_s = [&](std::size_t line) {
+    return by_frame ? how.frames_s[line] : static_cast<double>(line) / how.rate_hz;
+  };
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (lines[i].find_first_not_of(" \t") == std::string_view::npos) continue;
+    if (!file.labels.empty() && file.labels.back().text == lines[i] &&
+        file.labels.back().end_s == at_s(i))
+      file.labels.back().end_s = at_s(i + 1);
     else
-      file.labels.push_back({.begin_s = from_s,
-                             .end_s = to_s,
-                             .text = std::string(line),
+      file.labels.push_back({.begin_s = at_s(i),
+                             .end_s = at_s(i + 1),
+                             .text = std::string(lines[i]),
                              .tier = {},
-                             .place = {static_cast<int>(frame) + 1, 1}});
+                             .place = {static_cast<int>(i) + 1, 1}});
   }
   return {};
 }

@@ -122,13 +122,15 @@ Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv, Bac
   if (IsTable(path)) {
     problems = ReadCsvLabels(file, csv);
   } else if (ending == ".txt") {
-    problems = ReadFrameLabels(file, csv.rate_hz);
+    problems = ReadFrameLabels(file, csv);
   } else if (ending == ".eaf") {
     problems = ReadEafLabels(file);
   } else if (ending == ".textgrid") {
     problems = ReadTextGridLabels(file);
   } else if (ending == ".timeline") {
     problems = ReadGoldenLabels(file);
+  } else if (ending == ".jsonl") {
+    problems = ReadJsonLabels(file, csv.ticks_per_second);
   } else {
     problems = {file.At({}, "no file of labels, which end in " +
                                 fmt::format("{}", fmt::join(LabelEndings(), ", ")))};

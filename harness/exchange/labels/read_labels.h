@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What people marked in a recording, as annotation programs write it: tables (comma-separated
-// values), a label for each frame, ELAN (EAF), Praat (TextGrid), and our own goldens. Tested by
+// values), a label for each frame, ELAN (EAF), Praat (TextGrid), and our own goldens; the same
+// files hold what a recogniser found, and so do lines of JSON. Tested by
 // tests/harness/exchange/labels/labels_test.cc
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,8 +26,9 @@ struct Label {
   double begin_s = 0, end_s = 0;
   std::string text, tier;  ///< "" where the file has no tiers
   grammar::Place place;
-  std::vector<grammar::Role> roles;  ///< of a table: what the columns of roles hold
-  std::vector<std::string> keys;     ///< of a table: what the columns CsvReading::keys hold
+  std::vector<grammar::Role> roles;      ///< of a table: what the columns of roles hold
+  std::vector<std::string> keys;         ///< of a table: what the columns CsvReading::keys hold
+  std::optional<double> decided_s = {};  ///< of what was found, if the file says when
 
   bool IsMoment() const { return begin_s == end_s; }
 };
@@ -40,6 +44,10 @@ struct CsvReading {
   double unit_s = 0;   ///< of the times; 0: as the names of the columns say, otherwise seconds
   double rate_hz = 0;  ///< of the video, for times in frames; 0: not known
   bool in_frames = false;
+  /// Of the recording that labels are of, if it is known: times in its ticks, and lines for each of
+  /// its frames.
+  double ticks_per_second = 0;
+  std::vector<double> frames_s = {};  ///< the begin of each frame, and the end of the last one
 };
 
 struct LabelFile {
@@ -68,8 +76,11 @@ enum class Backward { kRefuse, kSkip };
 
 bool IsTable(const std::string& path);
 
+/// The words of the first line of a table; none if it cannot be read.
+std::vector<std::string> HeadOfTable(const std::string& path);
+
 /// Errors have file, line and column; at most a dozen, and twenty labels that end before they
-/// begin. `csv`: of tables only.
+/// begin. Also reads .jsonl, which by its ending alone may be a recording.
 Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv = {},
                              Backward backward = Backward::kRefuse);
 
@@ -77,7 +88,11 @@ Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv = {}
 /// Times are numbers, 1:02:03.5 and 02:03.5, or 2026-10-25T01:59:57.010, which is seconds of 1970.
 grammar::Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how = {});
 /// A line for each frame, with nothing but its label (MS-TCN).
-grammar::Diagnostics ReadFrameLabels(LabelFile& file, double rate_hz);
+/// Lines that are as many as the recording has frames are those of these; else `rate_hz` counts.
+grammar::Diagnostics ReadFrameLabels(LabelFile& file, const CsvReading& how);
+grammar::Diagnostics ReadJsonLabels(LabelFile& file, double ticks_per_second);
+/// What is wrong with a line that has an event, or "".
+std::string ReadEventLine(const nlohmann::json& line, double ticks_per_second, Label& label);
 /// EAF 2.7 to 3.0 (Max Planck Institute for Psycholinguistics): time slots in milliseconds,
 /// annotations that are aligned or refer to an aligned one. Slots without a time are spaced evenly
 /// between their neighbours, as ELAN shows them.

@@ -33,16 +33,16 @@ std::vector<std::string> NamesOf(const episode::Take& take) {
 
 /// The file there with the name of the episode: of take1.jsonl take1.csv, take1.eaf, ..; of an
 /// episode SKILL/NAME.csv or NAME.csv. "" and `problem` if there is none.
-std::string FileIn(const std::string& folder, const episode::EpisodeName& episode,
-                   std::string& problem) {
+std::string FileIn(const std::string& folder, const episode::EpisodeName& episode, const char* what,
+                   const std::vector<std::string>& endings, std::string& problem) {
   std::error_code error;
   for (const fs::path& stem : StemsOf(episode, folder)) {
-    for (const std::string& ending : LabelEndings())
+    for (const std::string& ending : endings)
       if (fs::exists(stem.string() + ending, error)) return stem.string() + ending;
   }
-  problem = fmt::format("{} has no labels of '{}': no {} with one of the endings {}", folder,
+  problem = fmt::format("{} has no {} of '{}': no {} with one of the endings {}", folder, what,
                         episode.scenario, StemsOf(episode, folder).back().filename().string(),
-                        fmt::join(LabelEndings(), ", "));
+                        fmt::join(endings, ", "));
   return "";
 }
 
@@ -52,13 +52,32 @@ struct WantedRows {
   std::vector<std::string> values;
 };
 
-/// Reads the labels of takes, each file once.
+/// Reads the labels of takes, each file once. With `clock`, what somebody found in them.
 class TruthReader {
  public:
-  TruthReader(const std::vector<episode::Take>& takes, const LabelMap* map, Backward backward)
-      : takes_(takes), map_(map), csv_(map ? map->csv : CsvReading{}), backward_(backward) {
+  TruthReader(const std::vector<episode::Take>& takes, const LabelMap* map, Backward backward,
+              std::function<TakeClock()> clock = {})
+      : takes_(takes),
+        map_(map),
+        csv_(map ? map->csv : CsvReading{}),
+        backward_(backward),
+        clock_(std::move(clock)) {
+    if (clock_) csv_ = {.rate_hz = csv_.rate_hz};  // the columns of the map are those of labels
     if (csv_.take == "ignore") says_nothing_of_takes_ = true;
     if (says_nothing_of_takes_) csv_.take.clear();
+  }
+
+  /// One file or folder of what was found.
+  Result<LabelReading> ReadFound(const std::string& given,
+                                 const std::vector<grammar::EventSignature>& events,
+                                 std::vector<std::size_t> only) {
+    if (IsTable(given)) {
+      const std::vector<std::string> head = HeadOfTable(given);
+      if (std::ranges::count(head, "episode") > 0) csv_.take = "episode";
+    }
+    for (const grammar::EventSignature& event : events)
+      roles_.insert(event.roles.begin(), event.roles.end());
+    return Read({given}, events, std::move(only));
   }
 
   Result<LabelReading> Read(const std::vector<std::string>& given,
@@ -69,8 +88,8 @@ class TruthReader {
     std::string problem;
     const std::vector<std::string> paths = PathsFrom(given, problem);
     if (!problem.empty())
-      return tl::unexpected(
-          grammar::Diagnostics{{.file = "--truth", .place = {}, .message = problem}});
+      return tl::unexpected(grammar::Diagnostics{
+          {.file = clock_ ? "--found" : "--truth", .place = {}, .message = problem}});
     for (std::size_t i = 0; i < takes_.size(); ++i)
       if (IsTable(paths[i]))
         for (const WantedRows& wanted : WantedOf(takes_[i])) keys_[paths[i]].insert(wanted.column);
@@ -80,7 +99,8 @@ class TruthReader {
     for (std::size_t i = 0; i < takes_.size(); ++i) MarkRows(takes_[i], paths[i]);
     Counted others;
     CountOthers(others);
-    auto reading = LabelReading::Of(std::move(files_), map_, events, std::move(rows_));
+    auto reading = LabelReading::Of(std::move(files_), map_, events, std::move(rows_),
+                                    clock_ ? Side::kFound : Side::kTruth);
     if (reading) reading->counted().of_other_takes = std::move(others.of_other_takes);
     return reading;
   }
@@ -106,21 +126,28 @@ class TruthReader {
     } else if (!given.empty() && !is_folder && given.size() != takes_.size() &&
                (given.size() != 1 || !AllHaveRows())) {
       problem = fmt::format(
-          "{} recordings and {} files of labels; wanted one file for each recording, in the same "
-          "order, or a folder, or one table of all whose column says the recording: in the map "
-          "columns: {{take: COLUMN}}",
-          takes_.size(), given.size());
+          "{} recordings and {} files of {}; wanted one file for each recording, in the same "
+          "order, "
+          "or a folder, or one table of all whose column says the recording: {}",
+          takes_.size(), given.size(), what_,
+          clock_ ? "'episode'" : "in the map columns: {take: COLUMN}");
     }
     if (!problem.empty()) return paths;
     for (std::size_t i = 0; i < takes_.size(); ++i) {
       std::string why;
-      paths.push_back(given.empty()       ? takes_[i].labels
-                      : is_folder         ? FileIn(given.front(), takes_[i].episode, why)
+      paths.push_back(given.empty() ? takes_[i].labels
+                      : is_folder ? FileIn(given.front(), takes_[i].episode, what_, Endings(), why)
                       : given.size() == 1 ? given.front()
                                           : given[i]);
       if (problem.empty()) problem = why;
     }
     return paths;
+  }
+
+  std::vector<std::string> Endings() const {
+    std::vector<std::string> endings = LabelEndings();
+    if (clock_) endings.emplace_back(".jsonl");
+    return endings;
   }
 
   bool AllHaveRows() const {
@@ -133,6 +160,14 @@ class TruthReader {
     if (!is_new) return known->second;
     CsvReading csv = csv_;
     csv.keys = {keys_[path].begin(), keys_[path].end()};
+    if (clock_ && IsTable(path)) {
+      for (const std::string& word : HeadOfTable(path))
+        if (roles_.contains(word)) csv.roles.push_back({word, word});
+    } else if (clock_) {
+      const TakeClock clock = clock_();
+      csv.ticks_per_second = clock.ticks_per_second;
+      csv.frames_s = clock.frames_s;
+    }
     Result<LabelFile> file = ReadLabels(path, csv, backward_);
     if (!file) {
       problems_.insert(problems_.end(), file.error().begin(), file.error().end());
@@ -240,6 +275,9 @@ class TruthReader {
   const LabelMap* map_;
   CsvReading csv_;
   const Backward backward_;
+  const std::function<TakeClock()> clock_;
+  const char* const what_ = clock_ ? "events" : "labels";
+  std::set<std::string> roles_;  ///< of what was found: tables may have columns of them
   bool says_nothing_of_takes_ = false;
   std::map<std::string, std::set<std::string>> keys_;  ///< by path: columns that tell rows apart
   std::map<std::string, std::optional<std::size_t>> index_;  ///< by path: in `files_`
@@ -252,19 +290,55 @@ class TruthReader {
 
 }  // namespace
 
+namespace {
+
+/// That of the command line or of the takes; none if nobody names one.
+Result<std::optional<LabelMap>> MapOf(const std::vector<episode::Take>& takes,
+                                      const std::string& map,
+                                      const std::vector<grammar::EventSignature>& events) {
+  const std::string& path = map.empty() ? takes.front().map : map;
+  if (path.empty()) return std::optional<LabelMap>();
+  Result<LabelMap> meaning = ReadLabelMap(path, events);
+  if (!meaning) return tl::unexpected(std::move(meaning.error()));
+  return std::optional<LabelMap>(std::move(*meaning));
+}
+
+}  // namespace
+
 Result<LabelReading> ReadTruths(const std::vector<episode::Take>& takes,
                                 const std::vector<std::string>& given, const std::string& map,
                                 const grammar::Program& program, Backward backward,
                                 std::vector<std::size_t> only) {
   const std::vector<grammar::EventSignature> events = grammar::EventSignatures(program);
-  const std::string& path = map.empty() ? takes.front().map : map;
-  std::optional<LabelMap> read;
-  if (!path.empty()) {
-    Result<LabelMap> meaning = ReadLabelMap(path, events);
-    if (!meaning) return tl::unexpected(std::move(meaning.error()));
-    read = std::move(*meaning);
-  }
-  return TruthReader(takes, read ? &*read : nullptr, backward).Read(given, events, std::move(only));
+  const auto read = MapOf(takes, map, events);
+  if (!read) return tl::unexpected(read.error());
+  return TruthReader(takes, *read ? &**read : nullptr, backward)
+      .Read(given, events, std::move(only));
+}
+
+Result<LabelReading> ReadFound(const std::vector<episode::Take>& takes, std::size_t take,
+                               const std::string& given, const std::string& map,
+                               const grammar::Program& program,
+                               const std::function<TakeClock()>& clock) {
+  const std::vector<grammar::EventSignature> events = grammar::EventSignatures(program);
+  const auto read = MapOf(takes, map, events);
+  if (!read) return tl::unexpected(read.error());
+  // What the takes know of labels, and by which clock, is not so of what was found.
+  std::vector<episode::Take> bare = episode::TakesOf(episode::EpisodesOf(takes));
+  for (episode::Take& one : bare) one.offset_s = 0;
+  return TruthReader(bare, *read ? &**read : nullptr, Backward::kRefuse, clock)
+      .ReadFound(given, events, {take});
+}
+
+Result<LabelReading> AsFound(LabelFile file, const std::vector<episode::Take>& takes,
+                             const std::string& map, const grammar::Program& program) {
+  const std::vector<grammar::EventSignature> events = grammar::EventSignatures(program);
+  const auto read = MapOf(takes, map, events);
+  if (!read) return tl::unexpected(read.error());
+  TakeRows rows;
+  for (std::size_t i = 0; i < file.labels.size(); ++i) rows.labels.push_back(i);
+  return LabelReading::Of({std::move(file)}, *read ? &**read : nullptr, events, {std::move(rows)},
+                          Side::kFound);
 }
 
 std::string WarningsOf(const LabelReading& reading) {

@@ -3,6 +3,7 @@
 // and tests/program/takes_test.cc
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,23 @@ Result<LabelReading> ReadTruths(const std::vector<episode::Take>& takes,
                                 const grammar::Program& program,
                                 Backward backward = Backward::kRefuse,
                                 std::vector<std::size_t> only = {});
+
+/// Times that files of events leave to their take.
+struct TakeClock {
+  double ticks_per_second = 0;
+  std::vector<double> frames_s = {};  ///< the begin of each frame, and the end of the last one
+};
+
+/// The same of what somebody found in one of the takes: `given` is a folder with a file for each of
+/// them, one table with a column `episode`, or the file of a single take. A take of which they say
+/// nothing is an error.
+Result<LabelReading> ReadFound(const std::vector<episode::Take>& takes, std::size_t take,
+                               const std::string& given, const std::string& map,
+                               const grammar::Program& program,
+                               const std::function<TakeClock()>& clock);
+/// The same of events that have been read.
+Result<LabelReading> AsFound(LabelFile file, const std::vector<episode::Take>& takes,
+                             const std::string& map, const grammar::Program& program);
 
 /// What is strange, and what a reading left out that ends before it begins: lines, or "".
 std::string WarningsOf(const LabelReading& reading);

@@ -67,6 +67,7 @@ void AddEpisode(const EpisodeToScore& judged, const LabelledEpisode& episode,
     }
   }
   for (const NamedEvent& one : found_events.events) {
+    if (one.decided < 0) continue;  // nothing says when
     score.latency_s.push_back(static_cast<double>(one.decided - one.interval.end) / per_s);
   }
 }
@@ -137,8 +138,18 @@ double BoundaryErrors::QuantileByMagnitude(double share) const {
 
 double EventScore::LatencyQuantile(double share) const { return Quantile(latency_s, share); }
 
-Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
-              double collar_s, const Collars& collars) {
+Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& all, double collar_s,
+              const Collars& collars) {
+  std::vector<EpisodeToScore> episodes;
+  std::vector<std::string> failed;
+  double cpu_s = 0;
+  for (const EpisodeToScore& episode : all) {
+    cpu_s += episode.cpu_s;
+    if (episode.failure.empty())
+      episodes.push_back(episode);
+    else
+      failed.push_back(episode.scenario);
+  }
   std::set<std::string> kinds;
   for (const EpisodeToScore& episode : episodes) {
     for (const auto* side : {&episode.truth, &episode.found}) {
@@ -152,7 +163,9 @@ Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& epi
               .rows = {},
               .episodes = static_cast<int>(episodes.size()),
               .not_covered = {},
-              .ignored = {}};
+              .ignored = {},
+              .failed = std::move(failed),
+              .cpu_share = cpu_s / std::max(1e-9, SecondsOf(all))};
   for (const EpisodeToScore& episode : episodes) {
     for (const auto& [event, times] : episode.ignored) score.ignored[event] += times;
     for (const auto& [event, moments] : episode.moments) {

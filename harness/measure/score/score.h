@@ -17,7 +17,7 @@
 
 namespace prehend::measure {
 
-/// The true events of one episode, and those that a grammar recognised.
+/// The true events of one episode, and those that a grammar or somebody else found.
 struct EpisodeToScore {
   std::string scenario;
   grammar::Tick ticks = 0;
@@ -28,6 +28,11 @@ struct EpisodeToScore {
   Evaluation by_definitions, by_claims;
   std::string person = {}, set = {};                      ///< of a file of takes
   std::map<std::string, exchange::Moments> moments = {};  ///< by event
+  /// Of a program of somebody else: why it has no events, which is no "nothing found"; what else it
+  /// said; the events that it may find; and its processor time.
+  std::string failure = {}, notes = {};
+  std::vector<std::string> covers = {};
+  double cpu_s = 0;
 };
 
 /// Signed offsets (found - true) of the boundaries of matched events, in seconds.
@@ -78,7 +83,9 @@ struct Score {
       not_covered;  ///< events that are scored, but that no rule of the grammar prints
   std::map<std::string, int> ignored;  ///< of all episodes
   std::map<std::string, exchange::Moments> moments = {};
-  std::string set = {};  ///< the one that all takes are of, or ""
+  std::string set = {};                  ///< the one that all takes are of, or ""
+  std::vector<std::string> failed = {};  ///< episodes without a result, which no figure has
+  double cpu_share = 0;  ///< of a program: processor time for a second of the episodes
   std::string ignored_because = "docs/events.md does not define them";
 };
 

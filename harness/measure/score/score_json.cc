@@ -132,6 +132,8 @@ Json ScoresJson(const std::vector<Score>& scores, double collar_s) {
                         {"episodes", s.episodes},
                         {"not_covered", s.not_covered},
                         {"ignored", s.ignored},
+                        {"failed", s.failed},
+                        {"cpu_s_per_s", s.cpu_share},
                         {"moments", MomentsJson(s)},
                         {"total", EventScoreJson(s.total)},
                         {"mean_of_events", MeanJson(s.mean)},

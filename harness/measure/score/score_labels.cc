@@ -32,7 +32,7 @@ std::string ClockWarning(const std::string& grammar, const std::vector<EpisodeTo
                          const exchange::LabelReading& truths) {
   std::vector<std::pair<grammar::Timeline, grammar::Timeline>> compared;
   for (const EpisodeToScore& episode : episodes)
-    compared.emplace_back(episode.truth, episode.found);
+    if (episode.failure.empty()) compared.emplace_back(episode.truth, episode.found);
   const auto clock = exchange::FindClockOffset(compared);
   if (!clock) return "";
   const std::optional<double> offset_s = truths.offset_s();
@@ -44,31 +44,32 @@ std::string ClockWarning(const std::string& grammar, const std::vector<EpisodeTo
                : fmt::format("add {:.2f} to each offset_s", clock->offset_s));
 }
 
-/// The labels of one take beside what the grammar recognises.
+/// The labels of one take, and nothing found yet.
 Result<EpisodeToScore> Labelled(episode::Episode& episode, const episode::Take& take,
-                                std::size_t index, const exchange::LabelReading& truths,
-                                const std::shared_ptr<const grammar::Program>& program,
-                                double collar_s) {
-  const Result<grammar::Timeline> found = episode.Segment(program);
-  if (!found) return tl::unexpected(found.error());
+                                std::size_t index, const exchange::LabelReading& truths) {
+  const Result<grammar::Tick> end = episode.EndTick();
+  if (!end) return tl::unexpected(end.error());
   const grammar::EntityTable table = episode.entities();
-  const grammar::Tick end = *episode.EndTick();
   Result<grammar::Timeline> truth =
-      truths.Truth(index, table.entities, table.ticks_per_second, end);
+      truths.Truth(index, table.entities, table.ticks_per_second, *end);
   if (!truth) return tl::unexpected(std::move(truth.error()));
-  EpisodeToScore labelled{.scenario = episode.name().scenario,
-                          .ticks = end,
-                          .truth = std::move(*truth),
-                          .found = exchange::Compared(*found, truths.compared()),
-                          .person = take.person,
-                          .set = take.set};
+  return EpisodeToScore{.scenario = episode.name().scenario,
+                        .ticks = *end,
+                        .truth = std::move(*truth),
+                        .person = take.person,
+                        .set = take.set};
+}
+
+/// Of what was found what the labels can judge.
+void AddFound(const grammar::Timeline& found, std::size_t index,
+              const exchange::LabelReading& truths, double collar_s, EpisodeToScore& labelled) {
+  labelled.found = exchange::Compared(found, truths.compared());
   labelled.moments = truths.TakeMoments(
       index, labelled.truth,
-      static_cast<grammar::Tick>(collar_s * static_cast<double>(table.ticks_per_second)),
+      static_cast<grammar::Tick>(collar_s * static_cast<double>(found.ticks_per_second)),
       labelled.found);
-  for (const grammar::NamedEvent& event : found->events)
+  for (const grammar::NamedEvent& event : found.events)
     if (!truths.compared().contains(event.event)) ++labelled.ignored[event.event];
-  return labelled;
 }
 
 }  // namespace
@@ -76,7 +77,8 @@ Result<EpisodeToScore> Labelled(episode::Episode& episode, const episode::Take& 
 void AddScores(const std::string& grammar, std::vector<EpisodeToScore> episodes, double collar_s,
                const Collars& collars, LabelScores& scores) {
   std::string& differences = scores.differences.emplace_back();
-  for (const EpisodeToScore& episode : episodes) differences += DifferencesOf(episode, collar_s);
+  for (const EpisodeToScore& episode : episodes)
+    if (episode.failure.empty()) differences += DifferencesOf(episode, collar_s);
   scores.of_grammars.push_back(ScoreOf(grammar, episodes, collar_s, collars));
   scores.of_grammars.back().ignored_because = "no label means them";
   for (EpisodeToScore& episode : episodes) {
@@ -116,18 +118,22 @@ std::vector<Together> Grouped(const std::vector<episode::Take>& takes, const std
   return groups;
 }
 
-/// Scores one grammar after another.
+/// Scores one source after another.
 class LabelScorer {
  public:
   LabelScorer(const LabelsRequest& request, std::string& warnings)
       : request_(request), warnings_(warnings), opener_(request.root) {}
 
   Result<LabelScores> Score() {
-    std::vector<std::string> grammars = request_.grammars;
-    if (grammars.empty()) grammars.emplace_back();
-    for (const std::string& grammar : grammars) {
-      for (const Together& group : Grouped(request_.takes, grammar)) {
-        const auto added = Add(group, grammar == grammars.front());
+    std::vector<Source> sources = request_.asking.sources;
+    if (sources.empty()) sources.emplace_back();
+    for (const Source& source : sources) {
+      const bool is_grammar = source.kind == Source::Kind::kGrammar;
+      Foreign foreign(request_.asking, source);
+      for (const Together& group :
+           Grouped(request_.takes, is_grammar ? source.text : request_.asking.WhoseEvents())) {
+        const auto added =
+            Add(group, is_grammar ? nullptr : &foreign, source.text, &source == sources.data());
         if (!added) return tl::unexpected(added.error());
       }
     }
@@ -135,7 +141,9 @@ class LabelScorer {
   }
 
  private:
-  Result<void> Add(const Together& group, bool is_first) {
+  /// `foreign` finds the events, or else the grammar of the group.
+  Result<void> Add(const Together& group, Foreign* foreign, const std::string& named,
+                   bool is_first) {
     std::vector<episode::EpisodeName> names;
     for (const std::size_t i : group.takes) names.push_back(request_.takes[i].episode);
     if (group.asked.empty()) {
@@ -147,7 +155,7 @@ class LabelScorer {
     const grammar::CompileResult compiled = opener_.Compile(names.front(), group.asked, *settings);
     if (!compiled.program) return tl::unexpected(compiled.diagnostics);
     const auto truths =
-        exchange::ReadTruths(request_.takes, request_.label_files, request_.label_map,
+        exchange::ReadTruths(request_.takes, request_.label_files, request_.asking.label_map,
                              *compiled.program, request_.backward, group.takes);
     if (!truths) return tl::unexpected(truths.error());
     if (const std::string strange = exchange::WarningsOf(*truths);
@@ -158,14 +166,27 @@ class LabelScorer {
     for (std::size_t i = 0; i < names.size(); ++i) {
       const auto episode = Open(names[i], group.asked);
       if (!episode) return tl::unexpected(episode.error());
-      if ((*episode)->recording())
+      if ((*episode)->recording() && !foreign)
         AddMissing(episode::FindMissingFacts(*(*episode)->recording(), *compiled.program));
-      Result<EpisodeToScore> labelled = Labelled(**episode, request_.takes[group.takes[i]], i,
-                                                 *truths, compiled.program, request_.collar_s);
+      Result<EpisodeToScore> labelled =
+          Labelled(**episode, request_.takes[group.takes[i]], i, *truths);
       if (!labelled) return tl::unexpected(std::move(labelled.error()));
+      const Result<grammar::Timeline> found =
+          foreign ? foreign->Find(request_.takes, group.takes[i], Watched(**episode),
+                                  *compiled.program, truths->compared(), *labelled)
+                  : (*episode)->Segment(compiled.program);
+      if (!found) return tl::unexpected(found.error());
+      AddFound(*found, i, *truths, request_.collar_s, *labelled);
+      if (said_.insert(labelled->notes).second) warnings_ += labelled->notes;
+      if (!labelled->failure.empty())
+        scores_.failures += fmt::format("prehend: {} was not scored by {}: {}", names[i].scenario,
+                                        named, labelled->failure);
       all.push_back(std::move(*labelled));
     }
-    const std::string& name = group.asked.empty() ? GrammarName(*compiled.program) : group.asked;
+    if (std::ranges::none_of(all, [](const auto& one) { return one.failure.empty(); })) return {};
+    const std::string& name = named.empty() && group.asked.empty() ? GrammarName(*compiled.program)
+                              : named.empty()                      ? group.asked
+                                                                   : named;
     warnings_ += ClockWarning(name, all, *truths);
     AddScores(name, std::move(all), request_.collar_s,
               request_.is_collar_asked ? Collars{} : truths->collars_s(), scores_);
@@ -204,6 +225,7 @@ Result<LabelScores> ScoreLabels(const LabelsRequest& request, std::string& warni
 }
 
 std::string LabelScoresText(const LabelScores& scores, double collar_s, bool differences) {
+  if (scores.of_grammars.empty()) return "";  // no table of nothing
   std::string text = ScoresText(scores.of_grammars, collar_s);
   if (scores.of_people) {
     const Score& score = scores.of_grammars.front();

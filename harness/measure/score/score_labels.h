@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grammars against what people marked in recordings. Tested by tests/program/labels_test.cc
+// Grammars and others against what people marked in recordings. Tested by
+// tests/program/labels_test.cc
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "harness/exchange/labels/read_truths.h"
+#include "harness/measure/score/found_events.h"
 #include "harness/measure/score/score.h"
 
 namespace prehend::measure {
@@ -13,10 +15,9 @@ namespace prehend::measure {
 struct LabelsRequest {
   std::string root;
   std::vector<episode::Take> takes;
-  std::vector<std::string> grammars;     ///< names or paths; empty: those of the episodes
+  Asking asking;                         ///< without sources the grammars of the episodes
   std::vector<std::string> settings;     ///< "name=value", of parameters of all grammars
   std::vector<std::string> label_files;  ///< one per take, one of all, or one folder
-  std::string label_map;                 ///< "": labels are events
   exchange::Backward backward = exchange::Backward::kRefuse;
   double collar_s = 0.05;
   bool is_collar_asked = false;  ///< instead of those of the map
@@ -28,6 +29,7 @@ struct LabelScores {
   std::vector<std::string> differences;  ///< from the labels, in the same order; lines or ""
   exchange::Counted counted;
   bool of_people = false;  ///< what was found is labels, too
+  std::string failures;    ///< of programs: lines, or ""
 
   bool HasHands() const;
 };

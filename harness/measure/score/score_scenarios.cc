@@ -7,13 +7,13 @@
 #include <algorithm>
 
 #include "grammar/contents.h"
+#include "harness/base/base/default_grammar.h"
 #include "harness/base/process/wire.h"
 #include "harness/base/process/worker_pool.h"
 #include "harness/episode/episode/open_episode.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_text.h"
-#include "harness/episode/run/segment.h"
 #include "harness/episode/run/validate_claims.h"
 #include "harness/truth/claims/judge_claims.h"
 #include "harness/truth/oracle/oracle.h"
@@ -31,7 +31,7 @@ struct ScenarioOnWire {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Confirmed, of, confirmed)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evaluation, by_event, differences)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EpisodeToScore, scenario, ticks, truth, found, ignored,
-                                   by_definitions, by_claims)
+                                   by_definitions, by_claims, failure, notes, covers, cpu_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioOnWire, episodes, problem, is_bad_input)
 
 namespace {
@@ -58,19 +58,46 @@ std::map<std::string, int> Ignored(const grammar::Timeline& found) {
   return counts;
 }
 
-/// One episode per grammar, all with the same truth: a grammar that does not define a kind of
-/// event, or misspells it, has missed all such events.
+/// All roles of the events that the oracle defines.
+exchange::ComparedRoles JudgedRoles(const grammar::Program& program) {
+  exchange::ComparedRoles roles;
+  for (const grammar::EventSignature& event : grammar::EventSignatures(program))
+    if (truth::OracleDefines(event.name)) roles[event.name] = event.roles;
+  return roles;
+}
+
+/// What a source finds.
+Result<grammar::Timeline> Find(const ScoreRequest& request, const Source& source,
+                               episode::Episode& episode, EpisodeToScore& one) {
+  const bool is_grammar = source.kind == Source::Kind::kGrammar;
+  const std::string whose = is_grammar ? source.text : request.asking->WhoseEvents();
+  const grammar::CompileResult compiled =
+      episode::LoadGrammar(request.root, whose.empty() ? kDefaultGrammar : whose, request.settings);
+  if (!compiled.program) return tl::unexpected(compiled.diagnostics);
+  if (!is_grammar)
+    return Foreign(*request.asking, source)
+        .Find(episode::TakesOf({request.episode}), 0, Watched(episode), *compiled.program,
+              JudgedRoles(*compiled.program), one);
+  Result<grammar::Timeline> found = episode.Segment(compiled.program);
+  const scenario::Scenario& scenario = episode.loaded().scenario;
+  if (found)
+    one.by_claims = ByClaims(
+        request.id, truth::JudgeClaims(scenario.expects, scenario.file,
+                                       episode::ClaimableIn(scenario, *compiled.program), *found));
+  return found;
+}
+
+/// One episode per source, all with the same truth: who does not define a kind of event, or
+/// misspells it, has missed all such events.
 ScenarioOnWire Played(const ScoreRequest& request) {
   const auto unread = [](const grammar::Diagnostics& why) {
     return ScenarioOnWire{.problem = grammar::Format(why), .is_bad_input = true};
   };
   Result<episode::Episode> episode =
-      episode::OpenEpisode(request.episode, {request.grammars.front(), {}}, request.root);
+      episode::OpenEpisode(request.episode, {request.asking->WhoseEvents(), {}}, request.root);
   if (!episode) return unread(episode.error());
-  const Result<episode::RunResult> played = episode->Run(true);
-  if (!played) return unread(played.error());
   const scenario::Scenario& scenario = episode->loaded().scenario;
-  const episode::RunResult& run = *played;
+  const episode::RunResult& run = episode->Played();
   if (run.status.kind != physics::RunStatus::Kind::kCompleted)
     return {.problem = grammar::Format(grammar::Diagnostic{
                 .file = request.episode.file, .place = {}, .message = episode::StatusText(run)})};
@@ -80,56 +107,50 @@ ScenarioOnWire Played(const ScoreRequest& request) {
        truth::PossibleTimelines(scenario.scene, run.recording, end))
     possible.push_back(Scored(truth, request.events));
   ScenarioOnWire sent;
-  for (const std::string& name : request.grammars) {
-    const grammar::CompileResult compiled =
-        episode::LoadGrammar(request.root, name, request.settings);
-    if (!compiled.program) return unread(compiled.diagnostics);
-    const grammar::Timeline found =
-        episode::Resegment(scenario, run.recording, compiled.program, end);
+  for (const Source& source : request.asking->sources) {
     EpisodeToScore& one = sent.episodes.emplace_back();
-    one = {.scenario = request.id,
-           .ticks = end,
-           .truth = possible.front(),
-           .found = Scored(found, request.events),
-           .ignored = Ignored(found),
-           .by_definitions = {},
-           .by_claims = ByClaims(
-               request.id,
-               truth::JudgeClaims(scenario.expects, scenario.file,
-                                  episode::ClaimableIn(scenario, *compiled.program), found))};
-    one.by_definitions =
-        ByDefinitions(request.id, possible, one.found, scenario::DefaultTolerance(scenario));
+    one = {.scenario = request.id, .ticks = end, .truth = possible.front()};
+    const Result<grammar::Timeline> found = Find(request, source, *episode, one);
+    if (!found) return unread(found.error());
+    one.found = Scored(*found, request.events);
+    one.ignored.merge(Ignored(*found));
+    if (one.failure.empty())
+      one.by_definitions =
+          ByDefinitions(request.id, possible, one.found, scenario::DefaultTolerance(scenario));
   }
   return sent;
 }
 
-/// Of the judged events those that no rule of the grammar prints.
-std::vector<std::string> NotCovered(const grammar::Program& program,
-                                    const std::vector<std::string>& events) {
+/// Of the judged events those that are not there.
+std::vector<std::string> SilentOf(const std::vector<std::string>& events,
+                                  const std::function<bool(const std::string&)>& has) {
   std::vector<std::string> silent;
   for (const std::string_view event : truth::OracleEvents()) {
     const bool judged = events.empty() || std::ranges::find(events, event) != events.end();
-    if (judged && !HasEvent(program, event)) silent.emplace_back(event);
+    if (judged && !has(std::string(event))) silent.emplace_back(event);
   }
   return silent;
 }
 
-/// Episodes by grammar.
+/// Episodes by source.
 std::vector<std::vector<EpisodeToScore>> PlayAll(const std::vector<ScoreRequest>& requests,
-                                                 std::size_t grammars, int jobs,
+                                                 const Asking& asking, int jobs,
                                                  std::vector<NotScored>& not_scored) {
+  double time_limit_s = kTimeLimit_s;
+  for (const Source& source : asking.sources)
+    if (source.kind == Source::Kind::kProgram) time_limit_s += asking.time_limit_s + kTimeLimit_s;
   std::vector<WorkerJob> plays;
   for (const ScoreRequest& request : requests)
     plays.push_back([&request] { return ToWire(Played(request)); });
   const std::vector<WorkerResult> results =
-      RunInWorkers(plays, {.jobs = jobs, .time_limit_s = kTimeLimit_s});
-  std::vector<std::vector<EpisodeToScore>> by_grammar(grammars);
+      RunInWorkers(plays, {.jobs = jobs, .time_limit_s = time_limit_s});
+  std::vector<std::vector<EpisodeToScore>> by_grammar(asking.sources.size());
   for (std::size_t i = 0; i < results.size(); ++i) {
     ScenarioOnWire sent{.problem = results[i].reason + "\n"};
     if (results[i].finished) sent = FromWire<ScenarioOnWire>(results[i].output);
     if (!sent.problem.empty())
       not_scored.push_back({requests[i].id, sent.problem, sent.is_bad_input});
-    for (std::size_t g = 0; g < sent.episodes.size(); ++g)
+    for (std::size_t g = 0; sent.problem.empty() && g < sent.episodes.size(); ++g)
       by_grammar[g].push_back(std::move(sent.episodes[g]));
   }
   return by_grammar;
@@ -195,29 +216,48 @@ std::string UnknownEvent(const std::vector<std::string>& events) {
   return "";
 }
 
-Result<ScoredGrammars> CompileToScore(const std::string& root,
-                                      const std::vector<std::string>& names,
-                                      const grammar::Overrides& settings,
-                                      const std::vector<std::string>& events) {
-  ScoredGrammars grammars{.names = names};
-  for (const std::string& name : names) {
-    const grammar::CompileResult compiled = episode::LoadGrammar(root, name, settings);
+Result<NotCovered> CompileToScore(const std::string& root, const std::vector<Source>& sources,
+                                  const grammar::Overrides& settings,
+                                  const std::vector<std::string>& events) {
+  NotCovered not_covered;
+  for (const Source& source : sources) {
+    std::vector<std::string>& silent = not_covered.emplace_back();
+    if (source.kind != Source::Kind::kGrammar) continue;
+    const grammar::CompileResult compiled = episode::LoadGrammar(root, source.text, settings);
     if (!compiled.program) return tl::unexpected(compiled.diagnostics);
-    grammars.not_covered.push_back(NotCovered(*compiled.program, events));
+    silent = SilentOf(events,
+                      [&](const std::string& event) { return HasEvent(*compiled.program, event); });
   }
-  return grammars;
+  return not_covered;
 }
 
-ScenarioScores ScoreScenarios(const std::vector<ScoreRequest>& requests,
-                              const ScoredGrammars& grammars, double collar_s, int jobs) {
+ScenarioScores ScoreScenarios(const std::vector<ScoreRequest>& requests, const Asking& asking,
+                              const NotCovered& not_covered, double collar_s, int jobs) {
   ScenarioScores scores;
-  const auto by_grammar = PlayAll(requests, grammars.names.size(), jobs, scores.not_scored);
-  if (by_grammar.front().empty()) return scores;
-  for (std::size_t g = 0; g < by_grammar.size(); ++g) {
-    scores.of_grammars.push_back(ScoreOf(grammars.names[g], by_grammar[g], collar_s));
-    scores.of_grammars.back().not_covered = grammars.not_covered[g];
+  auto by_source = PlayAll(requests, asking, jobs, scores.not_scored);
+  if (by_source.front().empty()) return scores;
+  std::vector<std::vector<EpisodeToScore>> scored;
+  for (std::size_t s = 0; s < by_source.size(); ++s) {
+    std::vector<EpisodeToScore>& episodes = by_source[s];
+    const std::string& name = asking.sources[s].text;
+    std::vector<std::string> covers;
+    for (const EpisodeToScore& one : episodes) {
+      scores.notes += one.notes;
+      if (!one.covers.empty()) covers = one.covers;
+      if (!one.failure.empty())
+        scores.not_scored.push_back({fmt::format("{} by {}", one.scenario, name), one.failure});
+    }
+    if (std::ranges::none_of(episodes, [](const auto& one) { return one.failure.empty(); }))
+      continue;
+    Score& score = scores.of_grammars.emplace_back(ScoreOf(name, episodes, collar_s));
+    score.not_covered = not_covered[s];
+    if (asking.label_map.empty() && !covers.empty())
+      score.not_covered = SilentOf(requests.front().events, [&](const std::string& event) {
+        return std::ranges::count(covers, event) > 0;
+      });
+    scored.push_back(std::move(episodes));
   }
-  scores.evaluators = EvaluatorsOf(by_grammar);
+  scores.evaluators = EvaluatorsOf(scored);
   return scores;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grammars against what physically happened in many scenarios, and what other evaluators say of
-// them. Tested by tests/program/score_test.cc
+// Grammars and others against what physically happened in many scenarios, and what other evaluators
+// say of them. Tested by tests/program/score_test.cc
 #pragma once
 
 #include <string>
@@ -9,31 +9,27 @@
 #include "grammar/monitor.h"
 #include "harness/base/base/result.h"
 #include "harness/episode/run/episode_name.h"
+#include "harness/measure/score/found_events.h"
 #include "harness/measure/score/score.h"
 
 namespace prehend::measure {
 
-/// One scenario, which is simulated once and segmented by several grammars.
+/// One scenario, which is simulated once and segmented by each source.
 struct ScoreRequest {
   episode::EpisodeName episode;
   std::string id;
   std::string root;
-  std::vector<std::string> grammars;  ///< names or paths
-  std::vector<std::string> events;    ///< only these are scored; empty: all that the oracle defines
-  grammar::Overrides settings = {};   ///< of parameters of all grammars
+  const Asking* asking = nullptr;
+  std::vector<std::string> events;   ///< only these are scored; empty: all that the oracle defines
+  grammar::Overrides settings = {};  ///< of parameters of all grammars
 };
 
-/// Grammars that are scored together.
-struct ScoredGrammars {
-  std::vector<std::string> names;
-  std::vector<std::vector<std::string>> not_covered;  ///< judged events that no rule prints
-};
-
+/// Judged events that no rule of a grammar prints, for each source; none of others than grammars.
 /// `events`: only these are judged; empty: all that the oracle defines.
-Result<ScoredGrammars> CompileToScore(const std::string& root,
-                                      const std::vector<std::string>& names,
-                                      const grammar::Overrides& settings,
-                                      const std::vector<std::string>& events);
+using NotCovered = std::vector<std::vector<std::string>>;
+Result<NotCovered> CompileToScore(const std::string& root, const std::vector<Source>& sources,
+                                  const grammar::Overrides& settings,
+                                  const std::vector<std::string>& events);
 
 /// The names between the commas; empty ones stay, so that they can be reported.
 std::vector<std::string> EventsIn(const std::vector<std::string>& lists);
@@ -49,12 +45,13 @@ struct NotScored {
 struct ScenarioScores {
   std::vector<Score> of_grammars;  ///< none if no scenario could be scored
   std::vector<Evaluator> evaluators;
-  std::vector<NotScored> not_scored;
+  std::string notes;                  ///< of programs, on standard error: lines, or ""
+  std::vector<NotScored> not_scored;  ///< by nobody, or by a program that failed
 };
 
-/// One request per scenario, all with these grammars. `jobs`: processes at a time.
-ScenarioScores ScoreScenarios(const std::vector<ScoreRequest>& requests,
-                              const ScoredGrammars& grammars, double collar_s, int jobs);
+/// One request per scenario, all with what is asked. `jobs`: processes at a time.
+ScenarioScores ScoreScenarios(const std::vector<ScoreRequest>& requests, const Asking& asking,
+                              const NotCovered& not_covered, double collar_s, int jobs);
 
 /// Tables for people, and what differs: all of it, or of much the beginning.
 std::string ScenarioScoresText(const ScenarioScores& scores, double collar_s, bool all_differences);

@@ -134,6 +134,15 @@ std::string IgnoredText(const Score& score) {
   return fmt::format("ignored: {}; {}\n", fmt::join(kinds, ", "), score.ignored_because);
 }
 
+std::string ProgramText(const Score& score) {
+  std::string text;
+  if (!score.failed.empty())
+    text += fmt::format("failed, and in no figure: {}\n", fmt::join(score.failed, ", "));
+  if (score.cpu_share > 0)
+    text += fmt::format("{:.3f} s of processor time for a second\n", score.cpu_share);
+  return text;
+}
+
 std::string MomentsText(const Score& score) {
   std::vector<std::string> kinds;
   for (const auto& [event, moments] : score.moments)
@@ -151,10 +160,10 @@ std::string ScoreTable(const Score& score, double collar_s) {
   for (const EventScore& event : score.events) rows.push_back(RowOf(event));
   rows.push_back(RowOf(score.total));
   if (score.events.size() > 1) rows.push_back(RowOf(score.mean, rows.front().size()));
-  return fmt::format("{}, {}{}\n{}{}{}{}", score.grammar,
+  return fmt::format("{}, {}{}\n{}{}{}{}{}", score.grammar,
                      score.set.empty() ? "" : "set " + score.set + ", ",
                      grammar::CountOf(score.episodes, "episode"), Aligned(rows), MomentsText(score),
-                     NotCoveredText(score), IgnoredText(score));
+                     NotCoveredText(score), IgnoredText(score), ProgramText(score));
 }
 
 std::string SideBySide(const std::vector<Score>& scores, double collar_s) {

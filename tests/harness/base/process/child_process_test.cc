@@ -65,6 +65,19 @@ TEST(ChildProcess, SaysHowItEnded) {
   }
 }
 
+TEST(ChildProcess, SaysWhetherAllWasRead) {
+  for (const char* program : {"read a; read b", "read a", "exit 0"}) {
+    for (const std::size_t size : {std::size_t{10}, std::size_t{1'000'000}}) {
+      ChildProcess child;
+      ASSERT_EQ(child.Start({"sh", "-c", program}, {.is_watched = true}), "");
+      child.Send("one\n" + std::string(size, 'x') + "\n");
+      child.CloseInput();
+      Said(child);
+      EXPECT_EQ(child.HasReadAll(), program == std::string("read a; read b")) << program << size;
+    }
+  }
+}
+
 TEST(ChildProcess, OfAWatchedOneNothingIsLeft) {
   // In its group, in a session of its own, and in the background of one that has ended.
   const std::string forks =

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// prehend grammar recogniser: whether a program of somebody else keeps to the protocol of
+// docs/recognisers.md. Tested by tests/program/recogniser_test.cc
+#include <fmt/format.h>
+
+#include "grammar/base/wording.h"
+#include "harness/cli/command/typed_episode.h"
+#include "harness/measure/score/found_events.h"
+
+namespace prehend::cli {
+namespace {
+
+using measure::Recognised;
+using measure::Rule;
+
+/// In the order of `Rule`, and one more.
+constexpr const char* kRules[] = {
+    "header: the first line comes within 10 s and says \"recogniser\": 1, events, facts",
+    "lines: each is a JSON object in UTF-8 of at most 1 MiB that the protocol has",
+    "events: each is one of the first line, with its roles and entities of the episode",
+    "ticks: they are whole numbers, and no event ends after what it has got",
+    "ready: with --online it answers each frame",
+    "error: it does not give up",
+    "end: it ends in time, with exit code 0",
+    "again: it prints the same lines for the same episode"};
+
+ExitCode RunRecogniser(const ParsedOptions& options, const CommandContext& context) {
+  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
+  if (!episode) return episode.error();
+  const measure::RecogniserChoice choice{
+      .command = options.Text("COMMAND"),
+      .pace = options.Has("--online") ? measure::Pace::kOnline : measure::Pace::kOffline,
+      .time_limit_s = options.NumberOr("--recogniser-limit-s", kRecogniserLimit_s)};
+  const measure::WatchedEpisode watched = measure::Watched(*episode);
+  const Recognised once = measure::Recogniser(choice).Recognise(watched);
+  Recognised twice = once;
+  if (!once.broken) twice = measure::Recogniser(choice).Recognise(watched);
+  const bool is_same = !twice.broken && twice.events.text == once.events.text;
+  int number = 0;
+  for (const char* rule : kRules) {
+    const bool is_last = number == std::ssize(kRules) - 1;
+    const auto one = static_cast<Rule>(number++);
+    const bool is_broken =
+        is_last ? !once.broken && !is_same : once.broken && once.broken->rule == one;
+    // What comes after the line at which it was ended was not seen.
+    const bool is_tried =
+        once.broken ? one == Rule::kHeader : one != Rule::kReady || options.Has("--online");
+    context.out << fmt::format("{:9}  {}\n",
+                               is_broken  ? "not met"
+                               : is_tried ? "met"
+                                          : "not tried",
+                               rule);
+    if (is_broken)
+      context.out << (twice.broken ? grammar::Format(twice.broken->what)
+                                   : "a seed of its own? PREHEND_SEED is the same for both\n");
+  }
+  context.out << grammar::CountOf(once.events.labels.size(), "event") << "\n";
+  return is_same ? ExitCode::kAgrees : ExitCode::kDiffers;
+}
+
+}  // namespace
+
+Command RecogniserCommand() {
+  return {.name = "grammar recogniser",
+          .summary = "Try whether a program of yours can be scored",
+          .examples = {"grammar recogniser 'python3 reco.py' take1.jsonl",
+                       "grammar recogniser ./reco take1.jsonl --online"},
+          .options = {{.name = "COMMAND",
+                       .help = "a program that reads frames and prints events, for the shell "
+                               "(docs/recognisers.md)",
+                       .required = true},
+                      {.name = "EPISODE",
+                       .help = "a recording, an episode file or a scenario",
+                       .required = true},
+                      EpisodeOption(),
+                      GrammarOption(),
+                      ParametersOption(),
+                      OnlineOption(),
+                      RecogniserLimitOption()},
+          .run = RunRecogniser};
+}
+
+}  // namespace prehend::cli
