@@ -151,6 +151,7 @@ std::vector<Command> AllCommands() {
           Limited(QueryCommand(), kMany_s),
           Limited(ResegmentCommand(), kMany_s),
           Limited(ExportCommand(), kMany_s),
+          Limited(LabelCommand(), kMany_s),
           Limited(VerifyCommand(), kMany_s),
           Limited(KnowledgeCommand(), kMany_s),
           AskCommand(),

@@ -54,6 +54,7 @@ Command NewCommand();
 Command ImportCommand();
 Command ResegmentCommand();
 Command ExportCommand();
+Command LabelCommand();
 Command SchemaCommand();
 Command RenameCommand();
 Command BenchCommand();

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/subtasks/label_episodes.h. Tested by tests/program/labels_back.py
+#include "harness/exchange/subtasks/label_episodes.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "harness/base/base/atomic_file.h"
+#include "harness/base/base/csv_cells.h"
+#include "harness/base/base/temporary_folder.h"
+#include "harness/episode/episode/open_episode.h"
+#include "harness/exchange/hdf5/add_signals.h"
+#include "harness/exchange/hdf5/hdf5_file.h"
+
+namespace prehend::exchange {
+namespace {
+
+tl::unexpected<episode::NotFound> Refused(std::string message) {
+  return tl::unexpected(episode::NotFound{.message = std::move(message)});
+}
+
+std::string TableOf(const std::vector<Subtasks>& all, bool frames) {
+  std::string text = frames ? "episode,frame,t_s,subtask,text\n"
+                            : "episode,subtask,text,begin_s,end_s,begin_frame,end_frame\n";
+  for (const Subtasks& one : all) {
+    const std::string name = AsCsvCell(one.episode);
+    for (const Subtask& task : one.all) {
+      const std::string words = AsCsvCell(task.name) + "," + AsCsvCell(task.text);
+      for (std::size_t i = task.begin; frames && i < task.end; ++i)
+        text += fmt::format("{},{},{:.6f},{}\n", name, i, one.Seconds(one.ticks[i]), words);
+      if (!frames)
+        text +=
+            fmt::format("{},{},{:.6f},{:.6f},{},{}\n", name, words, one.Seconds(task.begin_tick),
+                        one.Seconds(task.end_tick), task.begin, task.end);
+    }
+  }
+  return text;
+}
+
+/// Signals of a demonstration, where Isaac Lab or MimicGen looks for them. What does not fit its
+/// file is missing.
+void AddSignalsOf(const Hdf5File& file, const ImportMap& map, Subtasks& one,
+                  std::vector<Hdf5Signal>& signals) {
+  const std::string& pattern = map.hdf5.episodes.value;
+  const std::string group = pattern.substr(0, pattern.rfind('/') + 1) + one.episode;
+  const std::size_t skipped = static_cast<std::size_t>(map.hdf5.skip),
+                    rows = one.ticks.size() + skipped;
+  const Result<Hdf5Object> actions = file.Describe(group + "/actions"),
+                           states = file.Describe(group + "/states");
+  if (!file.Has(group)) one.missing = "'" + group + "' is not in " + file.path();
+  if (actions && actions->Rows() != rows)
+    one.missing =
+        fmt::format("it has {} actions, and the episode {} frames", actions->Rows(), rows);
+  if (!one.missing.empty()) return one.all.clear();
+  const bool isaac =
+      file.Has(group + "/obs/datagen_info") ||
+      (!file.Has(group + "/datagen_info") && states && states->kind == Hdf5Kind::kGroup);
+  for (std::size_t i = 0; i + 1 < one.all.size(); ++i)
+    signals.push_back({.dataset = group + (isaac ? "/obs" : "") +
+                                  "/datagen_info/subtask_term_signals/" + one.all[i].name,
+                       .first = one.all[i].end + skipped,
+                       .rows = rows,
+                       .as_integers = !isaac});
+}
+
+/// Returns "", or what went wrong.
+std::string WriteCopy(const std::string& source, const std::string& output,
+                      const std::vector<Hdf5Signal>& signals) {
+  AtomicFile out(output);
+  if (!out.problem().empty()) return out.problem();
+  const TemporaryFolder folder;
+  const std::filesystem::path copy = std::filesystem::path(folder.path()) / "copy.hdf5";
+  std::error_code error;
+  std::filesystem::copy_file(source, copy, error);
+  if (error) return source + ": " + error.message();
+  std::filesystem::permissions(copy, std::filesystem::perms::owner_write,
+                               std::filesystem::perm_options::add, error);
+  if (const std::string problem = AddSignals(copy, signals); !problem.empty()) return problem;
+  out.stream() << std::ifstream(copy, std::ios::binary).rdbuf();
+  return out.Commit();
+}
+
+}  // namespace
+
+tl::expected<std::vector<Subtasks>, episode::NotFound> LabelEpisodes(
+    const std::vector<episode::EpisodeName>& episodes, const LabelRequest& request) {
+  episode::EpisodeOpener opener(request.root);
+  std::optional<MapFile> map;
+  std::vector<Subtasks> all;
+  const bool is_other = !request.choice.grammar.empty() || !request.choice.settings.empty();
+  for (const episode::EpisodeName& name : episodes) {
+    Result<episode::Episode> episode = opener.Open(name, request.choice);
+    if (!episode) return tl::unexpected(episode::NotFound{.diagnostics = episode.error()});
+    const std::string source = episode->loaded().scenario.file;
+    if (!map) {
+      const Result<PoseFormat> format = PoseFormatOf(source);
+      Result<MapFile> read =
+          format ? ReadImportMap(request.map, *format) : tl::unexpected(format.error());
+      if (!read) return tl::unexpected(episode::NotFound{.diagnostics = read.error()});
+      map = std::move(*read);
+      if (auto wrong = WrongInLabels(*map, *episode->program()); !wrong.empty())
+        return tl::unexpected(episode::NotFound{.diagnostics = std::move(wrong)});
+    }
+    const Result<Motion> motion = Motion::Of(*episode, is_other);
+    if (!motion) return tl::unexpected(episode::NotFound{.diagnostics = motion.error()});
+    all.push_back(FindSubtasks(map->map, *motion));
+    all.back().source = source;
+    if (source != all.front().source && !request.hdf5.empty())
+      return Refused(
+          fmt::format("--write: the episodes are of {} and of {}; label those of one "
+                      "file at a time",
+                      all.front().source, source));
+  }
+  std::string problem;
+  if (request.hdf5.empty()) {
+    problem = WriteTextFile(request.table, TableOf(all, request.frames));
+  } else {
+    const std::string& source = all.front().source;
+    const Result<Hdf5File> file = Hdf5File::Open(source);
+    if (!file) return tl::unexpected(episode::NotFound{.diagnostics = file.error()});
+    std::error_code error;
+    if (std::filesystem::equivalent(source, request.hdf5, error))
+      return Refused("--write: " + request.hdf5 + " is the original; name another file");
+    std::vector<Hdf5Signal> signals;
+    for (Subtasks& one : all) {
+      if (one.missing.empty()) AddSignalsOf(*file, map->map, one, signals);
+    }
+    problem = WriteCopy(source, request.hdf5, signals);
+  }
+  if (problem.empty()) return all;
+  return tl::unexpected(episode::NotFound{.exit_code = ExitCode::kFailure, .message = problem});
+}
+
+}  // namespace prehend::exchange
