@@ -186,6 +186,10 @@ def test_faults(folder, demos):
     left_out("skewed", at_row(cube, 3, 1.0), "in row 3: expected a matrix of a rotation")
     left_out("not_unit", at_row("data/demo_3/states/rigid_object/cube_1/root_pose", 3, 0.4), "in row 3: expected a unit",
              base="isaac_raw")
+    def two(file):
+        at_row(cube, 7, np.nan)(file)
+        at_row(cube.replace("demo_3", "demo_0"), 9, np.nan)(file)
+    planted.expect("two", two, 1, "4 of 6 demonstrations; left out: data/demo_0, data/demo_3")
     left_out("external", lambda file: (file.__delitem__(cube), file.__setitem__(cube, h5py.ExternalLink("other.hdf5", "/a"))),
              "is a link to another file")
     left_out("kept", at_row(cube, 7, np.nan), output=os.path.join(folder, "kept.episodes"))
@@ -255,7 +259,7 @@ entities:
   drawer:  {joint: {from: "states/articulation/cabinet/joint_position[3]", closed: 0.0, open: 0.4}, at_m: [0.7, 0, 0.4], size_m: [0.4, 0.5, 0.2]}
 labels:                           # of `label`
   grasp_1: {at: begin, of: grasping, object: cube_2}
-  stack_1: {at: end, of: grasping, object: cube_2, requires: "supported_by(cube_2, cube_1)"}
+  stack_1: {at: end, of: grasping, object: cube_2, requires: supported_by(cube_2, cube_1)}
 text: {grasp_1: "grasp the red cube", stack_1: "put it on the blue cube", rest: "put it on the red cube"}
 """
     done = imported(path, text, folder)

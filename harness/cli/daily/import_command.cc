@@ -119,14 +119,14 @@ ExitCode ImportDemonstrations(const std::string& path, const ParsedOptions& opti
     return Complain(context, wrong);
   OnceEach warnings(context.err);
   std::vector<std::vector<std::string>> table = {{"episode", "frames", "seconds", "success"}};
-  std::string first;
+  std::string first, left_out;
   ExitCode exit_code = ExitCode::kAgrees;
   for (const std::string& group : import->groups()) {
     auto imported = import->Import(group);
     if (!imported) {
       for (const grammar::Diagnostic& error : imported.error())
         warnings.Say("prehend: left out: " + error.message);
-      exit_code = ExitCode::kDiffers;
+      left_out += (left_out.empty() ? "; left out: " : ", ") + group;
       continue;
     }
     episode::Recording& episode = imported->episode;
@@ -140,7 +140,7 @@ ExitCode ImportDemonstrations(const std::string& path, const ParsedOptions& opti
       first = exchange::ImportTable(*imported);
     }
     if (!check) {
-      episode::BridgeLooks(episode);
+      if (episode::IsEpisodeFile(output)) episode::BridgeLooks(episode);
       const ExitCode written = WriteRecording(episode, output, path, grammar, context);
       if (written != ExitCode::kAgrees) return written;
     }
@@ -151,10 +151,11 @@ ExitCode ImportDemonstrations(const std::string& path, const ParsedOptions& opti
                      : *success ? "yes"
                                 : "no"});
   }
+  if (exit_code == ExitCode::kAgrees && !left_out.empty()) exit_code = ExitCode::kDiffers;
   if (output == "-") return exit_code;
   context.out << first << "\n";
   for (const std::string& line : truth::AlignColumns(table)) context.out << line << "\n";
-  context.out << fmt::format("{} of {} demonstrations\n", table.size() - 1, count);
+  context.out << fmt::format("{} of {} demonstrations{}\n", table.size() - 1, count, left_out);
   return exit_code;
 }
 

@@ -120,9 +120,9 @@ class Proposal {
   }
 
  private:
-  const Hdf5Object* Find(const std::string& part) const {
+  const Hdf5Object* Find(std::string_view part) const {
     const auto found = std::ranges::find_if(datasets_, [&](const Hdf5Object& one) {
-      return ("/" + one.name).find("/" + part) != std::string::npos;
+      return ("/" + one.name).find("/" + std::string(part)) != std::string::npos;
     });
     return found == datasets_.end() ? nullptr : &*found;
   }
@@ -155,37 +155,31 @@ class Proposal {
   }
 
   std::string Hand() {
+    struct Way {
+      std::string_view place, turn, key;
+    };
     std::string keys;
-    if (const Hdf5Object* matrix = Find("eef_pose"); matrix && matrix->shape.size() == 3) {
-      keys = "pose: \"" + matrix->name + "\"";
-    } else if (const Hdf5Object* tcp = Find("tcp_pose")) {
-      keys = "pose: \"" + tcp->name + "\"";
-      asks_order_ = true;
-    } else {
-      struct Pair {
-        const char *place, *turn, *key;
-      };
-      for (const Pair& pair : {Pair{"eef_pos", "eef_quat", "quaternion"},
-                               {"robot0_eef_pos", "robot0_eef_quat", "quaternion"},
-                               {"ee_pos", "ee_ori", "axis_angle"}}) {
-        const Hdf5Object *place = Find(pair.place), *turn = Find(pair.turn);
-        if (!place || !turn || !keys.empty()) continue;
-        keys = fmt::format("position: {}, {}: {}", place->name, pair.key, turn->name);
-        asks_order_ = asks_order_ || std::string_view(pair.key) == "quaternion";
-        if (std::string_view(pair.place).starts_with("robot0")) order_ = "xyzw";
-      }
+    for (const auto& [place, turn, key] : {Way{"eef_pose", "", ""},
+                                           {"tcp_pose", "", ""},
+                                           {"eef_pos", "eef_quat", "quaternion"},
+                                           {"robot0_eef_pos", "robot0_eef_quat", "quaternion"},
+                                           {"ee_pos", "ee_ori", "axis_angle"}}) {
+      const Hdf5Object *at = Find(place), *turned = Find(turn);
+      if (!at || !turned || !keys.empty()) continue;
+      keys = turn.empty() ? "pose: " + at->name
+                          : fmt::format("position: {}, {}: {}", at->name, key, turned->name);
+      asks_order_ = asks_order_ || key == "quaternion" || (turn.empty() && at->shape.size() < 3);
+      if (place.starts_with("robot0")) order_ = "xyzw";
     }
     if (keys.empty()) return "  # gripper: no dataset is called as poses of grippers are\n";
-    for (const char* name : {"gripper_pos", "robot0_gripper_qpos", "gripper_states"}) {
-      const Hdf5Object* grip = Find(name);
-      if (!grip) continue;
-      return fmt::format(
-          "  gripper: {{{}, hand: true, ahead: [0, 0, 1], size_m: [0.02, 0.1, 0.06],\n"
-          "            grip: {{from: {}, sum_abs: true, open: 0.08, closed: 0}}}}\n",
-          keys, grip->name);
-    }
+    std::string grip;
+    for (const char* name : {"gripper_pos", "robot0_gripper_qpos", "gripper_states"})
+      if (const Hdf5Object* one = Find(name); one && grip.empty())
+        grip = fmt::format(
+            ",\n            grip: {{from: {}, sum_abs: true, open: 0.08, closed: 0}}", one->name);
     return fmt::format(
-        "  gripper: {{{}, hand: true, ahead: [0, 0, 1], size_m: [0.02, 0.1, 0.06]}}\n", keys);
+        "  gripper: {{{}, hand: true, ahead: [0, 0, 1], size_m: [0.02, 0.1, 0.06]{}}}\n", keys,
+        grip);
   }
 
   const Hdf5File& file_;

@@ -376,6 +376,22 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
     errors.Add(map.entities.front().name_where, "no entity is 'from' a body of the file");
 }
 
+/// "supported_by(a, b)" in braces and without quotes is two keys to YAML. It becomes one value.
+void JoinCalls(YamlNode& label) {
+  std::vector<YamlNode>& all = label.children;
+  for (std::size_t i = 1; i < all.size();) {
+    std::string& before = all[i - 1].text;
+    const bool is_open = !all[i - 1].quoted && before.find('(') != std::string::npos &&
+                         before.find(')') == std::string::npos;
+    if (!is_open || all[i].kind != YamlNode::Kind::kNull || !all[i].text.empty()) {
+      ++i;
+      continue;
+    }
+    before += ", " + all[i].key;
+    all.erase(all.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
 std::string EndingOf(const std::string& poses_path) {
   std::string ending = std::filesystem::path(poses_path).extension().string();
   std::ranges::transform(ending, ending.begin(),
@@ -462,6 +478,8 @@ Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format) {
   if (!document) return tl::unexpected(std::move(document.error()));
   MapFile file{.document = std::move(*document), .map = {}};
   DiagnosticList errors(file.document);
+  for (YamlNode& node : file.document.root.children)
+    if (node.key == "labels") std::ranges::for_each(node.children, JoinCalls);
   if (MapFormat().Read(file.document.root, errors, file.map)) {
     for (Named<MappedEntity>& entity : file.map.entities) {
       MappedEntity& e = entity.value;
