@@ -182,7 +182,7 @@ TEST_F(ImportBvh, FilesThatAreNotReadSayWhatHelps) {
     const Said said = Prehend(
         {"import", (folder_ / name).string(), "--map", (folder_ / "map.yaml").string(), "--check"});
     EXPECT_EQ(said.exit_code, 2);
-    EXPECT_NE(said.err.find("are not read; CSV, BVH, MCAP and bags of ROS 1 are"),
+    EXPECT_NE(said.err.find("are not read; CSV, BVH, MCAP, bags of ROS 1 and HDF5 are"),
               std::string::npos)
         << said.err;
   }
