@@ -136,6 +136,18 @@ double Lowering::Constant(const Expr& expr, const Dimension& dimension, std::str
   return ConstantOf(expr, dimension, what).value_or(0);
 }
 
+int Lowering::Count(const Expr& expr) {
+  constexpr int kMost = 1'000'000;
+  anchors_ = {};
+  const std::optional<double> count = ConstantOf(expr, kPlain, "'at least'");
+  if (!count) return 1;
+  if (*count >= 1 && *count <= kMost && *count == std::floor(*count))
+    return static_cast<int>(*count);
+  Complain(expr.place, "'at least' takes a whole number from 1 to " + std::to_string(kMost),
+           "for example: at least 3");
+  return 1;
+}
+
 double Lowering::Span(const Expr& expr, std::string_view what) {
   anchors_ = {};
   const std::optional<double> seconds = ConstantOf(expr, kSeconds, what);
@@ -151,7 +163,8 @@ std::optional<double> Lowering::ConstantOf(const Expr& expr, const Dimension& di
   if (node.op != Op::kNumber) {
     Complain(expr.place, std::string(what) + " must be a number or a parameter");
   } else if (!(typed.dimension == dimension)) {
-    Complain(expr.place, std::string(what) + " is in " + DimensionText(dimension) + ", this is " +
+    Complain(expr.place, std::string(what) + (dimension == kPlain ? " is " : " is in ") +
+                             DimensionText(dimension) + ", this is " +
                              DimensionText(typed.dimension));
   } else if (node.number < 0) {
     Complain(expr.place, std::string(what) + " cannot be negative");

@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "grammar/analysis/classes.h"
@@ -33,7 +34,8 @@ struct Symbols {
   std::map<std::string, int, std::less<>>
       files;  ///< name -> place in the order in which they were read, what is used first
   std::map<std::string, DefineSource, std::less<>> defines;
-  std::map<std::pair<RuleId, std::vector<int>>, RuleId> any_rules;  ///< (rule, kept roles) -> rule
+  std::map<std::tuple<RuleId, std::vector<int>, int>, RuleId>
+      any_rules;  ///< (rule, kept roles, how many bindings) -> rule
   std::map<std::pair<RuleId, std::vector<std::string>>, RuleId>
       narrowed_rules;          ///< (rule, classes of its roles) -> rule
   std::set<RuleId> otherwise;  ///< rules of that form
@@ -91,6 +93,8 @@ class Lowering {
   NodeId Attribute(const ast::Expr& expr, Dimension& dimension);
   /// A number that only depends on parameters, zero or more.
   double Constant(const ast::Expr& expr, const Dimension& dimension, std::string_view what);
+  /// How many, of `at least`: a whole number.
+  int Count(const ast::Expr& expr);
   /// A constant time of more than 0 s.
   double Span(const ast::Expr& expr, std::string_view what);
   int HandRole(const ast::Expr& expr);
@@ -172,7 +176,8 @@ class Lowering {
   Typed LowerEdge(const ast::Expr& expr);
   Typed LowerAnchor(const ast::Expr& expr);
   Typed LowerCall(const ast::Expr& expr);
-  Typed LowerRuleCall(RuleId rule, const ast::Expr& expr);
+  Typed LowerRuleCall(RuleId rule, const ast::Expr& expr, int at_least = 1);
+  Typed LowerAtLeast(const ast::Expr& expr);
   Typed LowerDefine(const DefineSource& source, const ast::Expr& expr);
   Typed LowerBody(const DefineSource& source, const Scope& scope);
   Typed LowerValue(const Scope::Value& value);
@@ -205,7 +210,7 @@ class Lowering {
   int FindParam(std::string_view name) const;
   std::optional<int> RoleArgument(const ast::Expr& expr, std::string_view wanted_class,
                                   std::string_view callee);
-  RuleId MakeAnyRule(RuleId rule, const std::vector<int>& kept);
+  RuleId MakeAnyRule(RuleId rule, const std::vector<int>& kept, int at_least);
   RuleId MakeNarrowedRule(RuleId rule, const std::vector<std::string>& classes);
   std::vector<std::string> KnownNames(bool calls) const;
 

@@ -72,6 +72,7 @@ std::optional<int> Lowering::RoleArgument(const Expr& expr, std::string_view wan
 }
 
 Lowering::Typed Lowering::LowerCall(const Expr& expr) {
+  if (expr.text == ast::kAtLeast) return LowerAtLeast(expr);
   if (IsOverInterval(expr.text)) return LowerOverInterval(expr);
   if (expr.text == "is") return LowerIs(expr);
   if (const auto found = symbols_.rules.find(expr.text); found != symbols_.rules.end()) {
@@ -86,7 +87,24 @@ Lowering::Typed Lowering::LowerCall(const Expr& expr) {
              Suggest(expr.text, KnownNames(true)));
 }
 
-Lowering::Typed Lowering::LowerRuleCall(RuleId rule, const Expr& expr) {
+// `at least 3 of grasping(hand, any)`: so many that play `any` do so at once.
+Lowering::Typed Lowering::LowerAtLeast(const Expr& expr) {
+  const Expr& call = expr.args[1];
+  const auto found = symbols_.rules.find(call.text);
+  const bool has_any = std::ranges::any_of(call.args, [](const Expr& arg) {
+    return arg.kind == Expr::Kind::kName && arg.text == "any";
+  });
+  if (found == symbols_.rules.end() || !has_any) {
+    return Bad(call.place, "'at least .. of' counts who plays 'any' in an event or a condition",
+               "for example: at least 3 of grasping(hand, any)");
+  }
+  const Anchors anchors = anchors_;
+  const int at_least = Count(expr.args[0]);
+  anchors_ = anchors;
+  return LowerRuleCall(found->second, call, at_least);
+}
+
+Lowering::Typed Lowering::LowerRuleCall(RuleId rule, const Expr& expr, int at_least) {
   const std::vector<RuleRole> wanted = symbols_.program.rules[rule].roles;
   if (wanted.size() != expr.args.size()) {
     return Bad(expr.place, Quoted(expr.text) + " takes " + std::to_string(wanted.size()) +
@@ -126,7 +144,7 @@ Lowering::Typed Lowering::LowerRuleCall(RuleId rule, const Expr& expr) {
   }
   if (kept.empty()) return Bad(expr.place, "at least one role must be named; all are 'any'");
   if (narrowed) reference.rule = MakeNarrowedRule(rule, classes);
-  if (kept.size() < wanted.size()) reference.rule = MakeAnyRule(reference.rule, kept);
+  if (kept.size() < wanted.size()) reference.rule = MakeAnyRule(reference.rule, kept, at_least);
   return {.node = Add({.op = Op::kHolds, .slot = AddReference(reference)}), .type = Type::kTruth};
 }
 
@@ -152,17 +170,17 @@ RuleId Lowering::MakeNarrowedRule(RuleId rule, const std::vector<std::string>& c
   return next;
 }
 
-// The hidden rule "some binding of `rule` with these roles holds".
-RuleId Lowering::MakeAnyRule(RuleId rule, const std::vector<int>& kept) {
+// The hidden rule "so many bindings of `rule` with these roles hold".
+RuleId Lowering::MakeAnyRule(RuleId rule, const std::vector<int>& kept, int at_least) {
   const auto [entry, is_new] =
-      symbols_.any_rules.try_emplace({rule, kept}, symbols_.program.rules.end_id());
+      symbols_.any_rules.try_emplace({rule, kept, at_least}, symbols_.program.rules.end_id());
   if (is_new) {
     const Rule& source = symbols_.program.rules[rule];
     Rule any{.name = source.name,
              .file = source.file,
              .place = source.place,
              .hidden = true,
-             .of_form = AnyRule()};
+             .of_form = AnyRule{.at_least = at_least}};
     Reference guard{.rule = rule};
     for (std::size_t i = 0; i < kept.size(); ++i) {
       any.roles.push_back(source.roles[kept[i]]);

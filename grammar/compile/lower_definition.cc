@@ -5,7 +5,6 @@
 #include "grammar/compile/lower_definition.h"
 
 #include <algorithm>
-#include <cmath>
 #include <initializer_list>
 
 #include "grammar/analysis/contradictions.h"
@@ -18,8 +17,6 @@ using ast::Definition;
 
 /// Where a grammar does not say `onset`: a tenth of the speed below which something pauses.
 constexpr double kPausePerOnset = 10;
-
-constexpr int kMostRepetitions = 1'000'000;
 
 class DefinitionLowering {
  public:
@@ -141,17 +138,8 @@ class DefinitionLowering {
     std::vector<int> counted;
     for (const ast::Expr& call : d_.repeated) counted.push_back(lowering_.RuleCall(call));
     const bool all_calls = std::ranges::find(counted, kNone) == counted.end();
-    const double at_least = lowering_.Constant(d_.at_least, kPlain, "'at least'");
     const double gap_s = d_.gap ? lowering_.Constant(*d_.gap, kSeconds, "'gap at most'") : 0;
-    int whole = 1;
-    if (at_least >= 1 && at_least <= kMostRepetitions && at_least == std::floor(at_least)) {
-      whole = static_cast<int>(at_least);
-    } else {
-      lowering_.Complain(
-          d_.at_least.place,
-          "'at least' takes a whole number from 1 to " + std::to_string(kMostRepetitions),
-          "for example: at least 3");
-    }
+    const int whole = lowering_.Count(d_.at_least);
     if (!d_.gap) {
       const double within_s = lowering_.Span(*d_.within, "'within'");
       if (!all_calls) return;

@@ -78,6 +78,7 @@ std::string Lowering::TextOf(const Expr& expr) {
     case Expr::Kind::kText:
       return '"' + expr.text + '"';
     case Expr::Kind::kCall:
+      if (expr.text == ast::kAtLeast) return expr.text + " " + joined(" of ", false);
       return expr.text + "(" + joined(", ", false) + ")";
     case Expr::Kind::kUnary:
       return expr.text + (expr.text == "not" ? " " : "") + Bracketed(expr.args[0]);

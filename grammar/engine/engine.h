@@ -193,6 +193,7 @@ class Engine final {
   Bound BoundOf(NodeId node, RuleInstance& instance);
   bool IsSettled(Bound one) const { return !one.holds && one.known > history_.now(); }
   FrameNumber StaysUntil(RuleInstance& instance);
+  FrameNumber CountStaysUntil(const RuleInstance& instance) const;
   void CatchUp(RuleInstance& instance, FrameNumber end);
   bool AsksOnlyOthers(NodeId node) const;
   bool AsksForTheNearest(const Rule& rule) const;

@@ -301,6 +301,7 @@ FrameNumber Engine::StaysUntil(RuleInstance& instance) {
     case Form::kAny: {
       const int one = RuleOf(instance).As<AnyRule>().one;
       const auto& any = instance.As<AnyState>();
+      if (RuleOf(instance).As<AnyRule>().at_least > 1) return CountStaysUntil(instance);
       Bound none{true, kNever};
       for (const InstanceId member : any.members) {
         const bool counts = one == kNone || !instance.open ||
@@ -315,6 +316,21 @@ FrameNumber Engine::StaysUntil(RuleInstance& instance) {
       break;
   }
   return 0;  // they ask for more
+}
+
+// As long as so many hold for certain, or so few may.
+FrameNumber Engine::CountStaysUntil(const RuleInstance& instance) const {
+  const auto at_least = static_cast<std::size_t>(RuleOf(instance).As<AnyRule>().at_least);
+  std::vector<FrameNumber> holding, others;  // up to where each is known to stay so
+  for (const InstanceId member : instance.As<AnyState>().members) {
+    const Bound bound = BoundOf(member);
+    (bound.holds ? holding : others).push_back(bound.known);
+  }
+  std::ranges::sort(holding, std::greater<>());
+  std::ranges::sort(others);
+  if (holding.size() >= at_least) return holding[at_least - 1];
+  const std::size_t missing = at_least - holding.size();
+  return missing <= others.size() ? others[missing - 1] : kNever;
 }
 
 Engine::Bound Engine::Both(Bound a, Bound b) {

@@ -114,13 +114,19 @@ bool Engine::StepRepeat(RuleInstance& instance, FrameNumber frame) {
 }
 
 bool Engine::StepAny(RuleInstance& instance, FrameNumber frame) {
-  if (RuleOf(instance).As<AnyRule>().one != kNone) return StepOwners(instance, frame);
-  Kleene truth = Kleene::kFalse;
+  const AnyRule& rule = RuleOf(instance).As<AnyRule>();
+  if (rule.one != kNone) return StepOwners(instance, frame);
+  int hold = 0, may_hold = 0;
   for (const InstanceId member : instance.As<AnyState>().members) {
-    truth = Or(truth, instances_.TruthAt(member, frame));
-    if (truth == Kleene::kTrue) break;
+    const Kleene truth = instances_.TruthAt(member, frame);
+    hold += truth == Kleene::kTrue ? 1 : 0;
+    may_hold += truth == Kleene::kFalse ? 0 : 1;
+    if (hold == rule.at_least) break;
   }
-  return StepRun(instance, frame, truth);
+  return StepRun(instance, frame,
+                 hold >= rule.at_least       ? Kleene::kTrue
+                 : may_hold >= rule.at_least ? Kleene::kUnknown
+                                             : Kleene::kFalse);
 }
 
 // `one hand per object`: who has it keeps it as long as one of its candidates holds. When it is

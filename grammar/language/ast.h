@@ -13,6 +13,9 @@
 
 namespace prehend::grammar::ast {
 
+/// The text of a call that is written `at least n of E(..)`; its args are n and E(..).
+inline constexpr char kAtLeast[] = "at least";
+
 struct Expr {
   enum class Kind {
     kQuantity,  ///< 25 cm

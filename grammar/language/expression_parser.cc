@@ -163,9 +163,22 @@ Expr ExpressionParser::ParsePrimary() {
     return inner;
   }
   if (Accept("any")) return ParseAny(token.place);
+  if (At("at") && Peek(1).text == "least") return ParseAtLeast();
   std::string name = ExpectName("a condition, a signal or a value");
   if (At("(")) return ParseCall(token);
   return Make(Expr::Kind::kName, token.place, std::move(name), {});
+}
+
+// `at least 3 of grasping(hand, any)`.
+Expr ExpressionParser::ParseAtLeast() {
+  const Place place = Take().place;
+  SkipOne();
+  Expr number = ParsePostfix();
+  if (!Accept("of"))
+    Fail("expected 'of' after 'at least' and a number, found " + Found(),
+         "for example: at least 3 of grasping(hand, any)");
+  Expr call = ParsePrimary();
+  return Make(Expr::Kind::kCall, place, ast::kAtLeast, Args(std::move(number), std::move(call)));
 }
 
 // `any`, `any Cup`.

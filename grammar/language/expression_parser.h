@@ -41,6 +41,7 @@ class ExpressionParser : public TokenReader {
   ast::Expr ParseNegation();
   ast::Expr ParseCall(const Token& name);
   ast::Expr ParseAny(Place place);
+  ast::Expr ParseAtLeast();
   void ParseUnit(Quantity& quantity);
   bool AtUnit(std::size_t ahead) const;
 

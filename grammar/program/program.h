@@ -104,11 +104,12 @@ enum class Form : std::uint8_t {
 /// `touching`: the fact itself, as frames give it.
 struct TouchingRule {};
 
-/// Made for an `any`: some binding of the rule of references[0] holds. With `one`, made for `one ..
-/// per`: one of these bindings at a time, with the entity that it has in that role.
+/// Made for an `any`: so many bindings of the rule of references[0] hold at once. With `one`, made
+/// for `one .. per`: one of these bindings at a time, with the entity that it has in that role.
 struct AnyRule {
   int one = kNone;      ///< role of the rule of references[0]
   double within_s = 0;  ///< of those that begin so soon after the first, the nearest
+  int at_least = 1;
 };
 
 /// `while condition until until`; or `repeat`, whose condition is that one of `counted` holds.

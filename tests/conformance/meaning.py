@@ -80,6 +80,9 @@ class Meaning:
             return [i in edges for i in n]
         if op == "call" and expr[1] in self.rules:
             return self.inside([one for who in self.called(expr, env) for one in self.intervals(expr[1], who)])
+        if op == "at least":
+            each = [self.inside(self.intervals(args[1][1], who)) for who in self.called(args[1], env)]
+            return [sum(holds[i] for holds in each) >= args[0] for i in n]
         if op == "call":
             return [frozenset(dict(env)[name] for name, _ in args[1:]) in self.touches[i] for i in n]
         if op in ("and", "or", "not"):

@@ -75,6 +75,8 @@ class Parser:
         return left
 
     def primary(self):
+        if self.take("at least"):
+            return "at least", int(self.word()), (self.take("of"), self.primary())[1]
         word = self.word()
         if word == "(":
             return (self.expr(), self.take(")"))[0]

@@ -59,7 +59,7 @@ int RunExamples(const std::string& page) {
 
 TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
   EXPECT_EQ(RunExamples("grammar-tutorial.md"), 27);
-  EXPECT_EQ(RunExamples("cookbook.md"), 13);
+  EXPECT_EQ(RunExamples("cookbook.md"), 15);
   EXPECT_EQ(RunExamples("drawings.md"), 1);
   EXPECT_EQ(RunExamples("grammar-language.md"), 7);
   EXPECT_EQ(RunExamples("semantics.md"), 7);

@@ -76,7 +76,9 @@ std::string Label(ReplayMonitor& past, InstanceId instance) {
         (i == 0 ? "" : ", ") +
         (role == kNone ? "any" + class_name : past.entity_table().entities[entities[role]].name);
   }
-  return rule.name + "(" + roles + ")";
+  const int at_least = is_any ? rule.As<grammar::AnyRule>().at_least : 1;
+  const std::string how_many = at_least > 1 ? fmt::format("at least {} of ", at_least) : "";
+  return how_many + rule.name + "(" + roles + ")";
 }
 
 std::string Source(const std::string& file, const Place& place) {

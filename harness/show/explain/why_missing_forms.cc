@@ -403,7 +403,11 @@ MissingReasons::Cause MissingReasons::OfAny(InstanceId instance, const Window& w
     Cause cause = OfInstance(candidate, window, depth + 1);
     if (cause.closeness > best.closeness) best = std::move(cause);
   }
-  return best;
+  if (past_.RuleOf(instance).As<grammar::AnyRule>().at_least == 1) return best;
+  Reason fewer = Failed(Label(past_, instance), "fewer were there at once");
+  for (const InstanceId member : past_.MembersOf(instance))
+    fewer.because.push_back(Intervals(member, "was there"));
+  return {{std::move(fewer)}, 0};
 }
 
 namespace {

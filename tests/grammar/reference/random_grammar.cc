@@ -177,7 +177,7 @@ class Maker {
                 .anchor = anchor};
       case 3:
       case 4:
-        return rules_.empty() ? Touch() : Call();
+        return rules_.empty() ? Touch() : CallOfSome();
       case 5:
         return {.kind = Kind::kNot, .args = {Condition(depth - 1, anchor)}};
       case 6:
@@ -205,11 +205,11 @@ class Maker {
       case 1:
         return {.kind = Kind::kNot, .args = {Touch()}};
       case 2:
-        return {.kind = Kind::kOr, .args = {Touch(), rules_.empty() ? Touch() : Call()}};
+        return {.kind = Kind::kOr, .args = {Touch(), rules_.empty() ? Touch() : CallOfSome()}};
       case 3:
         return Touch();
       default:
-        return rules_.empty() ? Touch() : Call();
+        return rules_.empty() ? Touch() : CallOfSome();
     }
   }
 
@@ -231,6 +231,13 @@ class Maker {
   }
 
   Term Touch() { return {.kind = Kind::kTouch, .which = static_cast<int>(Below(kRoles))}; }
+
+  // In a condition it may count who plays `any`.
+  Term CallOfSome() {
+    Term call = Call();
+    if ((rules_[call.which].roles & kP & ~call.named) != 0 && Below(2) == 0) call.at_least = 2;
+    return call;
+  }
 
   Term Call() {
     Term call{.kind = Kind::kRule, .which = AnyRule()};
@@ -278,7 +285,8 @@ class Writer {
                std::to_string(speed ? 250 * term.value : term.value) + (speed ? " m/s" : ".5 m");
       }
       case Kind::kRule:
-        return Head(term.which, rules_[term.which].roles, term.named, false);
+        return (term.at_least > 1 ? "at least 2 of " : "") +
+               Head(term.which, rules_[term.which].roles, term.named, false);
       case Kind::kNot:
         return "(not " + TermText(term.args[0]) + ")";
       case Kind::kEdge:

@@ -72,6 +72,7 @@ struct Term {
   Kind kind = Kind::kHigh;
   int which = 0;       ///< kTouch: role; kRule: rule
   unsigned named = 0;  ///< kRule: roles that are named; the others are `any`
+  int at_least = 1;    ///< kRule: of both p
   int value = 0;       ///< kHigh: height(x) >= value metres, from `anchor` on if there is one
   std::string anchor;  ///< kHigh, kRising: "begin", "end" or nothing
   Tick window = 0;     ///< kRising: rate(height(x), window) >= value * 250 m/s, likewise

@@ -72,6 +72,9 @@ class Meaning {
         const bool anybody = (rules_[term.which].roles & kP & ~term.named) != 0;
         const Stream own =
             reference::Truth(reference::RunsOf(found_[term.which][anybody ? 0 : p]), n_);
+        if (term.at_least > 1)
+          return known(
+              reference::And(own, reference::Truth(reference::RunsOf(found_[term.which][1]), n_)));
         return known(anybody ? reference::Or(own, reference::Truth(
                                                       reference::RunsOf(found_[term.which][1]), n_))
                              : own);
