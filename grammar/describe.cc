@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "grammar/analysis/value_ranges.h"
 #include "grammar/state/instances.h"
 
 namespace prehend::grammar {
@@ -16,20 +17,11 @@ void Include(Wait& wait, const Wait& other) {
   wait.until_end_of.insert(other.until_end_of.begin(), other.until_end_of.end());
 }
 
-// The begin or the end of another rule's interval, in the roles of the one that asks.
-struct Edge {
-  Op op = Op::kBegins;
-  RuleId rule;
-  Binding roles = kUnbound;
-  friend bool operator==(const Edge&, const Edge&) = default;
-};
-
-std::optional<Edge> EdgeOf(const Program& program, const Rule& rule, NodeId index) {
+// Whose end that is; null if it is none, or that of more.
+const Reference* EndOf(const Program& program, const Rule& rule, NodeId index) {
   const Node& node = program.nodes[index];
-  if (node.op != Op::kBegins && node.op != Op::kEnds) return std::nullopt;
-  const Node& arg = program.nodes[node.args[0]];
-  if (arg.op != Op::kHolds) return std::nullopt;
-  return Edge{node.op, rule.references[arg.slot].rule, rule.references[arg.slot].roles};
+  if (node.op != Op::kEnds || program.nodes[node.args[0]].op != Op::kHolds) return nullptr;
+  return &rule.references[program.nodes[node.args[0]].slot];
 }
 
 // Follows the schedule, so what a rule refers to is known before it.
@@ -48,7 +40,7 @@ class Waits {
   void Work(RuleId index) {
     const Rule& rule = program_.rules[index];
     Wait& end = end_[index];
-    const std::optional<Edge> settling = SettlesWhereItEnds(rule);
+    const std::optional<std::string> settling = SettlesWhereItEnds(rule);
     end = WaitOf(rule, settling);
     if (rule.confirmed_within != kNone) {
       end.until_end_of.insert(program_.rules[rule.references[rule.confirmed_within].rule].name);
@@ -56,11 +48,10 @@ class Waits {
     const auto* from_to = rule.If<FromToRule>();
     const auto* looks_back = rule.If<UntilSinceRule>();
     if (looks_back != nullptr) {
-      if (const auto edge = EdgeOf(program_, rule, looks_back->until))
-        settled_[index] = Settled{*edge, end};
+      settled_[index] = Settled{Signature(program_, rule, looks_back->until), end};
     } else if (const auto* rest = rule.If<RestOfRule>()) {
       if (const Settled* whole = SettledBy(rule.references[rest->whole]))
-        settled_[index] = Settled{whole->edge, WaitOf(rule, whole->edge)};
+        settled_[index] = Settled{whole->moment, WaitOf(rule, whole->moment)};
     }
     // The truth at a frame may have to wait for more than the end's decision: see
     // grammar/engine/engine_events.cc, UpdateKnown.
@@ -99,8 +90,8 @@ class Waits {
   // `until A since F` is not known before an A comes, or the time to look back is over; where an A
   // comes, all before it is.
   struct Settled {
-    Edge edge;  // the A
-    Wait wait;  // from there on
+    std::string moment;  // the A
+    Wait wait;           // from there on
   };
 
   // Null if that is no such rule, or if its roles are not those of the rule that asks.
@@ -113,23 +104,22 @@ class Waits {
   }
 
   // `to R ends`, R ending at such an A: what looks back from the same A needs no time there.
-  std::optional<Edge> SettlesWhereItEnds(const Rule& rule) const {
+  std::optional<std::string> SettlesWhereItEnds(const Rule& rule) const {
     const auto* from_to = rule.If<FromToRule>();
     if (from_to == nullptr || from_to->absence) return std::nullopt;
-    const auto to = EdgeOf(program_, rule, from_to->to);
-    if (!to || to->op != Op::kEnds) return std::nullopt;
-    const Settled* settled = SettledBy({.rule = to->rule, .roles = to->roles});
-    return settled != nullptr ? std::optional(settled->edge) : std::nullopt;
+    const Reference* const ends = EndOf(program_, rule, from_to->to);
+    const Settled* const settled = ends == nullptr ? nullptr : SettledBy(*ends);
+    return settled != nullptr ? std::optional(settled->moment) : std::nullopt;
   }
 
   // For all that the rule asks about. A composition waits for its parts' ends to be decided, every
   // other rule for truths.
-  Wait WaitOf(const Rule& rule, const std::optional<Edge>& settling) const {
+  Wait WaitOf(const Rule& rule, const std::optional<std::string>& settling) const {
     Wait wait;
     const bool composes = rule.form() == Form::kCompose;
     for (const Reference& reference : rule.references) {
       const Settled* settled = settling ? SettledBy(reference) : nullptr;
-      const bool is_settled = settled != nullptr && settled->edge == *settling;
+      const bool is_settled = settled != nullptr && settled->moment == *settling;
       Include(wait, is_settled ? settled->wait
                     : composes ? end_[reference.rule]
                                : truth_[reference.rule]);

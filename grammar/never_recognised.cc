@@ -20,9 +20,9 @@ struct Judged {
 Judged And(const Judged& a, const Judged& b) { return a.truth <= b.truth ? a : b; }
 Judged Or(const Judged& a, const Judged& b) { return a.truth >= b.truth ? a : b; }
 
-class Judge {
+class FactsJudge {
  public:
-  Judge(const Program& program, const FactsOfEpisode& facts)
+  FactsJudge(const Program& program, const FactsOfEpisode& facts)
       : program_(program), facts_(facts), never_(program.rules.size()) {
     for (const RuleId rule : program.schedule) never_[rule] = NeverOf(program.rules[rule]);
   }
@@ -176,7 +176,7 @@ void FactsOfEpisode::Add(const Frame& frame, const EntityTable& entities) {
 
 std::vector<NeverRecognised> FindNeverRecognised(const Program& program,
                                                  const FactsOfEpisode& facts) {
-  const Judge judge(program, facts);
+  const FactsJudge judge(program, facts);
   std::vector<NeverRecognised> never;
   for (const RuleId index : IdsOf(program.rules)) {
     const Rule& rule = program.rules[index];

@@ -20,8 +20,8 @@ const Arrows& ProjectArrows() {
       {"grammar/values", {"grammar/base", "grammar/state"}},
       {"grammar/engine", {"grammar/base", "grammar/program", "grammar/state", "grammar/values"}},
       {"grammar",
-       {"grammar/base", "grammar/compile", "grammar/drawing", "grammar/engine", "grammar/program",
-        "grammar/state"}},
+       {"grammar/analysis", "grammar/base", "grammar/compile", "grammar/drawing", "grammar/engine",
+        "grammar/program", "grammar/state"}},
 
       {"physics/base", {}},
       {"physics/scene", {"physics/base"}},
