@@ -165,6 +165,8 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
   if (check == !output.empty())
     return Complain(context, ExitCode::kBadInput,
                     "expected either -o, the recording to write, or --check, to write nothing");
+  if (const auto format = exchange::PoseFormatOf(poses); options.Has("--map") && !format)
+    return Complain(context, format.error());
   if (episode::EpisodeKindOf(poses) == episode::EpisodeKind::kJsonLines)
     return ImportLines(poses, options, context);
   const Result<exchange::PoseFormat> format = exchange::PoseFormatOf(poses);

@@ -20,8 +20,9 @@
 namespace prehend::exchange {
 namespace {
 
-constexpr double kGap = 1.5;            ///< of the usual step: longer is a gap
-constexpr double kFarthest_m = 1e4;     ///< of the recording format
+constexpr double kGap = 1.5;         ///< of the usual step: longer is a gap
+constexpr double kFarthest_m = 1e4;  ///< of the recording format
+constexpr double kUnmoved_m = 0.001;
 constexpr double kTrembles_m = 0.0008;  ///< more than this hides how things move
 
 std::string EpisodeName(const ImportMap& map, const std::string& path) {
@@ -60,6 +61,10 @@ class Importer {
     JudgeJumps();
     for (std::size_t i = 0; i < tracks_.size(); ++i) AddTrack(map_.entities[i], tracks_[i]);
     for (const OpeningSeries& opening : file_.openings) AddOpening(opening);
+    if (std::ranges::all_of(imported_.entities, [](const EntityReport& report) {
+          return report.from.empty() || report.extent.diagonal().norm() < kUnmoved_m;
+        }))
+      Warn(fmt::format("nothing moves: each body stays within {:g} mm", 1e3 * kUnmoved_m));
     WarnOfTrembling();
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
     if (const std::string problem = SetTicks(); !problem.empty())
@@ -465,7 +470,8 @@ class Importer {
 Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path) {
   const Result<PoseFormat> format = PoseFormatOf(poses_path);
   if (!format) return tl::unexpected(format.error());
-  const Result<MapFile> map = ReadImportMap(map_path, *format);
+  const Result<MapFile> map =
+      ReadImportMap(map_path, *format, *format == PoseFormat::kCsv ? poses_path : "");
   if (!map) return tl::unexpected(map.error());
   constexpr std::array kReaders = {ReadCsvPoses, ReadBvhPoses, ReadMcapPoses};
   Result<PoseFile> poses = kReaders.at(static_cast<std::size_t>(*format))(poses_path, *map);

@@ -13,6 +13,7 @@
 
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/hdf5/hdf5_file.h"
+#include "harness/exchange/poses/table_layout.h"
 
 namespace prehend::exchange {
 namespace {
@@ -20,17 +21,39 @@ namespace {
 constexpr double kMaxPosition_m = 1e4;
 constexpr double kMostTilt_deg = 60;  ///< of `up` from `axes`: farther is another axis
 
+/// One name, or a list of names.
+ValueFormat<std::vector<Located<std::string>>> OneOrMoreNames() {
+  using Names = std::vector<Located<std::string>>;
+  const auto one = WithPlace(Text(200));
+  const auto list = ListOf(one, 1, 16);
+  return ValueFormat<Names>(
+      {.schema = AnyOf({one.schema(), list.schema()}),
+       .read = [one, list](const YamlNode& node, DiagnosticList& errors, void* value) {
+         Names& names = *static_cast<Names*>(value);
+         if (node.kind == YamlNode::Kind::kSequence) return list.Read(node, errors, names);
+         return one.Read(node, errors, names.emplace_back());
+       }});
+}
+
 ValueFormat<Columns> ColumnsFormat() {
   const auto name = WithPlace(Text(200));
   return StructFormat<Columns>("columns")
-      .Optional("body", &Columns::body, Text(200),
-                "The column with the body's name, of a file with one body per row.")
+      .Optional("body", &Columns::body, OneOrMoreNames(),
+                "The column with the body's name, of a file with one body per row; the names in "
+                "several columns are joined by '/'.")
       .Optional("time", &Columns::time, Text(200),
                 "The column with the time. Without it, rows are 1 / rate_hz apart.")
       .Required("position", &Columns::position, ListOf(name, 3, 3),
                 "The columns of x, y and z. '{}' stands for the body's name.")
       .Optional("quaternion", &Columns::quaternion, ListOf(name, 4, 4),
                 "The columns of the orientation, in the order of quaternion_order.")
+      .Optional("euler", &Columns::euler, ListOf(name, 3, 3),
+                "Instead: the columns of three angles, in the order of euler_order.")
+      .Optional("matrix", &Columns::matrix, ListOf(name, 9, 9),
+                "Instead: the columns of a rotation matrix, row by row.")
+      .Optional("axis_angle", &Columns::axis_angle, ListOf(name, 3, 3),
+                "Instead: the columns of the axis that is turned about, times the angle.")
+      .AtMostOneOf({"quaternion", "euler", "matrix", "axis_angle"})
       .format();
 }
 
@@ -70,23 +93,9 @@ ValueFormat<SubtaskLabel> LabelFormat() {
       .format();
 }
 
-/// One name, or a list of names.
-ValueFormat<std::vector<Located<std::string>>> NamesFormat() {
-  using Names = std::vector<Located<std::string>>;
-  const auto one = WithPlace(Text(200));
-  const auto list = ListOf(one, 1, 16);
-  return ValueFormat<Names>(
-      {.schema = AnyOf({one.schema(), list.schema()}),
-       .read = [one, list](const YamlNode& node, DiagnosticList& errors, void* value) {
-         Names& names = *static_cast<Names*>(value);
-         if (node.kind == YamlNode::Kind::kSequence) return list.Read(node, errors, names);
-         return one.Read(node, errors, names.emplace_back());
-       }});
-}
-
 ValueFormat<Opening> OpeningFormat(const char* noun) {
   return StructFormat<Opening>(noun)
-      .Required("from", &Opening::from, NamesFormat(),
+      .Required("from", &Opening::from, OneOrMoreNames(),
                 "The column or field with the value; of several, their sum.")
       .Optional("sum_abs", &Opening::sum_abs, Flag(), "They are added without their signs.")
       .Required("open", &Opening::open, Number(-1e9, 1e9), "The value when it is open.")
@@ -153,7 +162,7 @@ ValueFormat<ImportMap> MapFormat() {
                 "The unit of positions in the file.")
       .Optional("metres_per_unit", &M::metres_per_unit, Number(1e-6, 1e3),
                 "The same as a number, where it is none of these.")
-      .ExactlyOneOf({"unit", "metres_per_unit"})
+      .AtMostOneOf({"unit", "metres_per_unit"})
       .Optional("axes", &M::axes, Choice<int>({{"x_up", 0}, {"y_up", 1}, {"z_up", 2}}),
                 "Which axis of the file points up. This, or up, or both.")
       .Optional("up", &M::up, Vector<3>(-1e6, 1e6),
@@ -165,20 +174,30 @@ ValueFormat<ImportMap> MapFormat() {
           Choice<QuaternionOrder>(
               {{"wxyz", QuaternionOrder::kWxyz}, {"xyzw", QuaternionOrder::kXyzw}}),
           "The order of the four columns of columns.quaternion; of MCAP, of the fields x, y, z, w.")
+      .Optional("euler_order", &M::euler_order, Text(3),
+                "The axes of columns.euler, first turn first: XYZ about the body's own axes, xyz "
+                "about the file's.")
+      .Optional("angle_unit", &M::angles_in_degrees, Choice<bool>({{"deg", true}, {"rad", false}}),
+                "Of angles.")
       .Optional("time_unit", &M::time_unit,
                 Choice<TimeUnit>({{"s", TimeUnit::kSecond},
                                   {"ms", TimeUnit::kMillisecond},
                                   {"us", TimeUnit::kMicrosecond},
                                   {"ns", TimeUnit::kNanosecond},
-                                  {"frame", TimeUnit::kFrame}}),
-                "Of CSV: the unit of the time column; frame: a number, rate_hz per second.")
+                                  {"frame", TimeUnit::kFrame},
+                                  {"iso", TimeUnit::kIso}}),
+                "Of CSV: the unit of the time column; frame: a number, rate_hz per second; iso: "
+                "dates like 2026-01-31T10:00:00.25Z, or times of day.")
       .Optional("rate_hz", &M::rate_hz, Number(0.1, 10'000),
                 "Frames per second. It is compared with the times.")
       .Optional("separator", &M::separator,
                 Choice<Separator>({{"comma", Separator::kComma},
                                    {"semicolon", Separator::kSemicolon},
-                                   {"tab", Separator::kTab}}),
-                "What separates columns.")
+                                   {"tab", Separator::kTab},
+                                   {"space", Separator::kSpace}}),
+                "What separates columns; space: any number of blanks.")
+      .Optional("decimal", &M::decimal_comma, Choice<bool>({{"point", false}, {"comma", true}}),
+                "What separates the decimals of numbers.")
       .Optional("header_line", &M::header_line, Integer<int>(1, 1000),
                 "The line with the names of the columns; those before it are not read.")
       .Optional("missing", &M::missing, ListOf(Text(40), 0, 20),
@@ -214,35 +233,31 @@ ValueFormat<ImportMap> MapFormat() {
       .format();
 }
 
-/// What only files of comma-separated values have.
-void CheckColumns(const ImportMap& map, const YamlNode& root, DiagnosticList& errors) {
+/// Angles in columns called x, y, z that are not in the order that the map says.
+void CheckEulerOrder(const ImportMap& map, DiagnosticList& errors) {
+  const std::string fault = FaultOfEulerOrder(map.euler_order->value);
+  if (!fault.empty()) return errors.Add(map.euler_order->where, fault);
+  std::string letters;
+  for (const Located<std::string>& column : map.columns.euler) {
+    const char last = static_cast<char>(
+        std::tolower(static_cast<unsigned char>(column.value.empty() ? ' ' : column.value.back())));
+    letters += last;
+  }
+  std::string order = map.euler_order->value;
+  for (char& c : order) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (letters.find_first_not_of("xyz") == std::string::npos && letters != order &&
+      std::ranges::is_permutation(letters, order))
+    errors.Add(map.columns.euler.front().where,
+               fmt::format("the columns are in the order {}, and euler_order is {}", letters,
+                           map.euler_order->value),
+               "list the columns in the order of euler_order");
+}
+
+void CheckOrientation(const ImportMap& map, DiagnosticList& errors) {
   const Columns& columns = map.columns;
-  if (columns.position.empty()) {
-    errors.Add(root.where, "'columns' is missing: a CSV file needs it",
-               "columns: {time: t, position: [\"{}_x\", \"{}_y\", \"{}_z\"]}");
-    return;
-  }
-  if (!map.time_unit) {
-    errors.Add(root.where, "'time_unit' is missing: a CSV file needs it",
-               "time_unit: s, ms, us, ns or frame");
-    return;
-  }
-  for (const auto* list : {&columns.position, &columns.quaternion}) {
-    for (const Located<std::string>& column : *list) {
-      const bool names_body = column.value.find("{}") != std::string::npos;
-      if (columns.body && names_body)
-        errors.Add(column.where, fmt::format("'{}' stands for all bodies of a row, but "
-                                             "columns.body says that a row has one",
-                                             column.value));
-      if (!columns.body && !names_body)
-        errors.Add(column.where, fmt::format("'{}' names no body", column.value),
-                   "write '{}' where the body's name stands, or say in columns.body which column "
-                   "has it");
-    }
-  }
   std::vector<std::string> upright;
   for (const Named<MappedEntity>& entity : map.entities) {
-    if (columns.quaternion.empty() && entity.value.from && SaysAxes(entity.value))
+    if (columns.Orientation().empty() && entity.value.from && SaysAxes(entity.value))
       upright.push_back(entity.name);
   }
   if (!upright.empty())
@@ -257,11 +272,45 @@ void CheckColumns(const ImportMap& map, const YamlNode& root, DiagnosticList& er
     errors.Add(columns.quaternion.front().where,
                "quaternion_order is missing: which of the four columns is w",
                "quaternion_order: xyzw, if w is the last; wxyz, if it is the first");
+  const auto& angles = columns.euler.empty() ? columns.axis_angle : columns.euler;
+  if (!angles.empty() && !map.angles_in_degrees)
+    errors.Add(angles.front().where, "angle_unit is missing: what the angles are in",
+               "angle_unit: deg, or rad");
+  if (columns.euler.empty()) return;
+  if (map.euler_order) return CheckEulerOrder(map, errors);
+  errors.Add(columns.euler.front().where,
+             "euler_order is missing: about which axes the three angles turn, in their order",
+             "euler_order: XYZ, if each is about the body's own axis; xyz, about the file's");
+}
+
+/// What only files of comma-separated values have.
+void CheckColumns(const ImportMap& map, const YamlNode& root, DiagnosticList& errors) {
+  const Columns& columns = map.columns;
+  if (columns.position.empty()) {
+    errors.Add(root.where, "'columns' is missing: a CSV file needs it",
+               "columns: {time: t, position: [\"{}_x\", \"{}_y\", \"{}_z\"]}");
+    return;
+  }
+  if (!map.time_unit && columns.time)
+    return errors.Add(root.where, "'time_unit' is missing: a CSV file needs it",
+                      "time_unit: s, ms, us, ns, iso or frame");
+  for (const auto* list : {&columns.position, &columns.Orientation()}) {
+    for (const Located<std::string>& column : *list) {
+      const bool names_body = column.value.find("{}") != std::string::npos;
+      if (!columns.body.empty() && names_body)
+        errors.Add(column.where, fmt::format("'{}' stands for all bodies of a row, but "
+                                             "columns.body says that a row has one",
+                                             column.value));
+      if (columns.body.empty() && !names_body && !columns.IsOfOneBody())
+        errors.Add(column.where, fmt::format("'{}' names no body", column.value),
+                   "write '{}' where the body's name stands, as in the others; or say in "
+                   "columns.body which column has it; with neither, the file is of one body");
+    }
+  }
+  CheckOrientation(map, errors);
   if (!columns.time && !map.rate_hz)
     errors.Add(columns.where, "neither columns.time nor rate_hz says when a row is");
-  if (!columns.time && columns.body)
-    errors.Add(columns.where, "a file with one body per row needs columns.time");
-  if (map.time_unit->value == TimeUnit::kFrame && !map.rate_hz)
+  if (map.time_unit && map.time_unit->value == TimeUnit::kFrame && !map.rate_hz)
     errors.Add(map.time_unit->where, "time_unit: frame needs rate_hz");
 }
 
@@ -339,6 +388,8 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
               DiagnosticList& errors) {
   const bool is_csv = format == PoseFormat::kCsv;
   CheckUp(map, root, errors);
+  if (!map.unit && !map.metres_per_unit)
+    errors.Add(root.where, "a map needs one of the keys unit, metres_per_unit");
   if (is_csv) {
     CheckColumns(map, root, errors);
   } else {
@@ -417,6 +468,35 @@ bool ImportMap::IsSure(Warning warning) const {
   return std::ranges::find(sure, warning) != sure.end();
 }
 
+const std::vector<Located<std::string>>& Columns::Orientation() const {
+  for (const auto* form : {&euler, &matrix, &axis_angle})
+    if (!form->empty()) return *form;
+  return quaternion;
+}
+
+OrientationForm Columns::Form() const {
+  if (!euler.empty()) return OrientationForm::kEuler;
+  if (!matrix.empty()) return OrientationForm::kMatrix;
+  return axis_angle.empty() ? OrientationForm::kQuaternion : OrientationForm::kAxisAngle;
+}
+
+bool Columns::IsOfOneBody() const {
+  const auto names_body = [](const Located<std::string>& column) {
+    return column.value.find("{}") != std::string::npos;
+  };
+  return body.empty() && std::ranges::none_of(position, names_body) &&
+         std::ranges::none_of(Orientation(), names_body);
+}
+
+OrientationFormat ImportMap::Orientation() const {
+  return {.form = columns.Form(),
+          .order = quaternion_order ? quaternion_order->value : QuaternionOrder::kXyzw,
+          .euler_order = euler_order ? euler_order->value : "XYZ",
+          .radians_per_unit = angles_in_degrees && angles_in_degrees->value
+                                  ? static_cast<double>(EIGEN_PI) / 180
+                                  : 1};
+}
+
 double ImportMap::MetresPerUnit() const {
   if (metres_per_unit) return metres_per_unit->value;
   constexpr std::array kMetres = {1.0, 1e-2, 1e-3, 0.0254};
@@ -453,6 +533,7 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
   if (ending == ".bvh") return PoseFormat::kBvh;
   if (ending == ".hdf5" || ending == ".h5") return PoseFormat::kHdf5;
   if (ending == ".mcap" || ending == ".bag") return PoseFormat::kMcap;
+  static const std::string kTable = "write its poses to a CSV file: one row a time, named columns";
   static const std::map<std::string, std::string> kOthers = {
       {".db3", "convert it, with the program that comes with MCAP: mcap convert IN.db3 OUT.mcap"},
       {".npz", "write its arrays as CSV, or as HDF5 with h5py"},
@@ -461,7 +542,15 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
       {".parquet", "write its poses as CSV, or as HDF5 with h5py"},
       {".c3d", "export poses of rigid bodies as CSV; C3D mostly holds single markers"},
       {".fbx", "export it as BVH"},
-      {".trc", "export poses of rigid bodies as CSV; TRC holds single markers"}};
+      {".json", kTable},
+      {".pickle", kTable},
+      {".mat", kTable},
+      {".xlsx", "save the sheet as CSV"},
+      {".xls", "save the sheet as CSV"},
+      {".ods", "save the sheet as CSV"},
+      {".zip", "unpack it"},
+      {".gz", "unpack it"},
+      {".7z", "unpack it"}};
   const auto other = kOthers.find(ending);
   if (other == kOthers.end()) return PoseFormat::kCsv;
   return tl::unexpected(grammar::Diagnostics{
@@ -473,7 +562,8 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
        .hint = other->second}});
 }
 
-Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format) {
+Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format,
+                              const std::string& table) {
   Result<YamlDocument> document = ReadYamlFile(path);
   if (!document) return tl::unexpected(std::move(document.error()));
   MapFile file{.document = std::move(*document), .map = {}};
@@ -484,6 +574,12 @@ Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format) {
     for (Named<MappedEntity>& entity : file.map.entities) {
       MappedEntity& e = entity.value;
       if (e.pose || e.position) e.from = e.pose ? e.pose : e.position;
+    }
+    std::optional<TableLayout> layout;
+    if (!table.empty()) layout = LayoutOfFile(table);
+    if (layout && !(layout->yields && !file.map.columns.position.empty())) {
+      Complete(*layout, file.document.root.where, file.map, errors);
+      file.layout = std::make_shared<const TableLayout>(std::move(*layout));
     }
     CheckMap(file.map, format, file.document.root, errors);
   }

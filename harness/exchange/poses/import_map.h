@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,15 +13,15 @@
 
 #include "harness/base/base/result.h"
 #include "harness/base/yaml/struct_format.h"
+#include "harness/exchange/poses/orientation.h"
+#include "harness/exchange/poses/table_cells.h"
 
 namespace prehend::exchange {
 
 /// What is imported, by the ending of its name. Bags of ROS 1 hold messages as MCAP files do.
 enum class PoseFormat { kCsv, kBvh, kMcap, kHdf5 };
 enum class LengthUnit { kMetre, kCentimetre, kMillimetre, kInch };
-enum class TimeUnit { kSecond, kMillisecond, kMicrosecond, kNanosecond, kFrame };
-enum class QuaternionOrder { kWxyz, kXyzw };
-enum class Separator { kComma, kSemicolon, kTab };
+enum class TimeUnit { kSecond, kMillisecond, kMicrosecond, kNanosecond, kFrame, kIso };
 enum class Lost { kRefuse, kHold, kUnknown };
 enum class OutlierRule { kKeep, kLost };
 enum class Clock { kHeader, kLog, kPublish };
@@ -33,10 +34,18 @@ inline constexpr std::array kWarningNames = {"unit",  "axes", "quaternion_order"
 /// The names of columns. `{}` in a name stands for the body's name: then a row has all bodies.
 struct Columns {
   Where where;
-  std::optional<Located<std::string>> body;  ///< holds the body's name: then a row has one body
+  /// Hold the body's name, of several joined by '/': then a row has one body.
+  std::vector<Located<std::string>> body;
   std::optional<Located<std::string>> time;
-  std::vector<Located<std::string>> position;    ///< of x, y, z
-  std::vector<Located<std::string>> quaternion;  ///< four in `quaternion_order`, or none
+  std::vector<Located<std::string>> position;  ///< of x, y, z
+  /// One of them, or none; by OrientationForm.
+  std::vector<Located<std::string>> quaternion, euler, matrix, axis_angle;
+
+  /// Of the orientation; nothing is turned without.
+  const std::vector<Located<std::string>>& Orientation() const;
+  OrientationForm Form() const;
+  /// No column has the name of a body, and none has '{}' for it.
+  bool IsOfOneBody() const;
 };
 
 /// Of MCAP files.
@@ -114,10 +123,13 @@ struct ImportMap {
   std::optional<Located<Eigen::Vector3d>> up;  ///< the direction of up in the file's axes, or both
   bool is_left_handed = false;  ///< the file's axes; positions and orientations are mirrored
   std::optional<Located<QuaternionOrder>> quaternion_order;
+  std::optional<Located<std::string>> euler_order;
+  std::optional<Located<bool>> angles_in_degrees;
   std::optional<Located<TimeUnit>> time_unit;  ///< of CSV only
   std::optional<Located<double>> rate_hz;
   Separator separator = Separator::kComma;
-  int header_line = 1;
+  bool decimal_comma = false;
+  int header_line = 0;               ///< 0: the first; of lines with '#', the one with the names
   std::vector<std::string> missing;  ///< cells that mean "not tracked", besides empty ones
   bool zero_is_missing = false;
   double bridge_s = 0.1;  ///< the longest gap that is filled with a straight line
@@ -135,6 +147,8 @@ struct ImportMap {
 
   bool IsSure(Warning warning) const;
   double MetresPerUnit() const;
+  /// Of `columns`.
+  OrientationFormat Orientation() const;
   /// From the file's axes to those of which `axes` is z: of positions, and of bodies' own axes.
   Eigen::Quaterniond AxesTurn() const;
   /// From the file's axes to the recording's, z up: of positions. `up` turns the world, the
@@ -150,10 +164,13 @@ struct ImportMap {
   const Where& UnitWhere() const { return unit ? unit->where : metres_per_unit->where; }
 };
 
+struct TableLayout;
+
 /// The map with the document that its places refer to.
 struct MapFile {
   YamlDocument document;
   ImportMap map;
+  std::shared_ptr<const TableLayout> layout = nullptr;  ///< of the table, if its head is known
 };
 
 bool IsBag(const std::string& poses_path);
@@ -161,8 +178,10 @@ bool IsBag(const std::string& poses_path);
 /// A kind of file that is not read is an error that says what helps.
 Result<PoseFormat> PoseFormatOf(const std::string& poses_path);
 
-/// For a file of this format. Errors have their places.
-Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format);
+/// For a file of this format; `table` is one of kCsv that is there, and says some of it itself.
+/// Errors have their places.
+Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format,
+                              const std::string& table = "");
 
 /// The JSON Schema of maps, as text.
 std::string ImportMapSchema();

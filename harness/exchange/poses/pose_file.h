@@ -14,7 +14,6 @@
 namespace prehend::exchange {
 
 inline constexpr std::size_t kMaxPoseFileBytes = std::size_t{1} << 30;
-inline constexpr double kUnitTolerance = 0.01;  ///< of the length of a quaternion
 
 struct PoseSample {
   double t_s = 0;

@@ -6,14 +6,17 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 
 #include "grammar/base/wording.h"
 #include "harness/base/base/csv_cells.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/poses/pose_file.h"
+#include "harness/exchange/poses/table_layout.h"
 
 namespace prehend::exchange {
 namespace {
@@ -36,6 +39,8 @@ double SecondsPer(const ImportMap& map) {
       return 1e-6;
     case TimeUnit::kNanosecond:
       return 1e-9;
+    case TimeUnit::kIso:
+      return 1;
     case TimeUnit::kFrame:
       break;
   }
@@ -49,43 +54,51 @@ std::string WithBody(const std::string& column, const std::string& body) {
 
 /// Where the values of a body stand in a row.
 struct Seats {
-  std::vector<std::size_t> position, quaternion;
+  std::vector<std::size_t> position, orientation;
 };
 
 class CsvPoseReader {
  public:
   CsvPoseReader(const std::string& path, std::string text, const MapFile& map)
-      : map_(map.map), map_errors_(map.document) {
+      : map_(map.map),
+        map_errors_(map.document),
+        layout_(map.layout.get()),
+        stem_(std::filesystem::path(path).stem().string()) {
     poses.file = path;
     poses.text = std::move(text);
-    constexpr std::array kSeparators = {',', ';', '\t'};
-    separator_ = kSeparators[static_cast<std::size_t>(map_.separator)];
+    orientation_ = map_.Orientation();
     poses.bodies = BodiesOf(map_, map_errors_);
     poses.openings = OpeningsOf(map_);
     for (std::size_t i = 0; i < poses.bodies.size(); ++i) index_.emplace(poses.bodies[i].name, i);
-    poses.has_orientations = !map_.columns.quaternion.empty();
-    if (poses.has_orientations) poses.quaternion_order = map_.quaternion_order->value;
+    poses.has_orientations = !map_.columns.Orientation().empty();
+    if (!map_.columns.quaternion.empty()) poses.quaternion_order = orientation_.order;
   }
 
   void Read() {
     const std::string_view text = poses.text;
+    const int header_line = layout_ ? 0 : HeaderLine();
+    if (layout_) TakeLayout();
+    if (!map_errors_.empty()) return;
     for (std::size_t begin = 0; begin < text.size() && problems_.size() < kMostComplaints;) {
       const std::size_t end = std::min(text.find('\n', begin), text.size());
       std::string_view line = text.substr(begin, end - begin);
       if (line.ends_with('\r')) line.remove_suffix(1);
       begin = end + 1;
-      if (++line_ < map_.header_line) continue;
+      if (++line_ < (layout_ ? layout_->first_row : header_line)) continue;
       if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-      if (line_ == map_.header_line) {
-        TakeHeader(CsvCellsOf(line, separator_));
+      if (line_ == header_line) {
+        TakeHeader(HeaderCells(line));
         if (!problems_.empty()) return;
-      } else if (line.find_first_not_of(" \t") != std::string_view::npos) {
-        TakeRow(CsvCellsOf(line, separator_));
+      } else if (line.find_first_not_of(" \t") != std::string_view::npos &&
+                 !line.starts_with('#')) {
+        TakeRow(TableCellsOf(line, map_.separator), begin >= text.size());
+      } else if (layout_ && layout_->ends_at_blank && poses.rows > 0) {
+        break;
       }
       if (!map_errors_.empty()) return;
     }
-    if (line_ < map_.header_line)
-      Complain({1, 1}, fmt::format("{} lines; the header is on line {}", line_, map_.header_line));
+    if (line_ < header_line)
+      Complain({1, 1}, fmt::format("{} lines; the header is on line {}", line_, header_line));
     if (!problems_.empty()) return;
     for (PoseBody& body : poses.bodies)
       for (PoseSample& sample : body.samples) sample.t_s -= poses.first_s;
@@ -114,13 +127,47 @@ class CsvPoseReader {
         grammar::DiagnosticAt(poses.file, poses.text, place, std::move(message), std::move(hint)));
   }
 
+  /// What the map says; or, of lines with '#' at the top, the one with the names.
+  int HeaderLine() {
+    if (map_.header_line > 0) return map_.header_line;
+    std::string_view text = poses.text;
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    std::size_t most = 0;
+    int best = 1;
+    for (int line = 1; text.starts_with('#') && line <= kMostPreamble; ++line) {
+      const std::string_view whole = text.substr(0, text.find('\n'));
+      const std::string_view head = whole.substr(0, kMostHeaderBytes);
+      const std::size_t names =
+          std::max(NamesIn(HeaderCells(head)), NamesIn(TableCellsOf(head, Separator::kSpace)));
+      if (names > most) best = line;
+      most = std::max(most, names);
+      text.remove_prefix(std::min(whole.size() + 1, text.size()));
+    }
+    return best;
+  }
+
+  /// Without the sign of a comment before the names, unless the map has it in a name.
+  std::vector<CsvCell> HeaderCells(std::string_view line) const {
+    std::size_t first = 0;
+    if (line.starts_with('#') && !(map_.columns.time && map_.columns.time->value.starts_with('#')))
+      first = std::min(line.find_first_not_of("# "), line.size());
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    std::vector<CsvCell> cells = TableCellsOf(line.substr(first), map_.separator);
+    while (cells.size() > 1 && cells.back().text.empty()) cells.pop_back();
+    for (CsvCell& cell : cells) cell.column += static_cast<int>(first);
+    return cells;
+  }
+
   /// A header that cannot be one, whatever the map says.
   bool IsNoHeader(const std::vector<CsvCell>& cells) {
     const std::string_view text = cells.front().text;
-    const std::size_t other = text.find_first_of(",;\t");
+    std::size_t other = text.find_first_of(",;\t");
+    if (other == std::string_view::npos && NamesIn(TableCellsOf(text, Separator::kSpace)) > 1)
+      other = text.find(' ');
     if (cells.size() == 1 && other != std::string_view::npos) {
       const char* const name = text[other] == ','   ? "comma"
                                : text[other] == ';' ? "semicolon"
+                               : text[other] == ' ' ? "space"
                                                     : "tab";
       Complain({line_, cells.front().column + static_cast<int>(other)},
                fmt::format("the names of the columns are separated by {}s", name),
@@ -143,14 +190,13 @@ class CsvPoseReader {
   std::size_t NamesIn(const std::vector<CsvCell>& cells) const {
     const Columns& columns = map_.columns;
     std::vector<std::string> wanted;
-    for (const auto* one : {&columns.time, &columns.body}) {
-      if (*one) wanted.push_back((*one)->value);
-    }
-    for (const auto* list : {&columns.position, &columns.quaternion}) {
+    if (columns.time) wanted.push_back(columns.time->value);
+    for (const Located<std::string>& column : columns.body) wanted.push_back(column.value);
+    for (const auto* list : {&columns.position, &columns.Orientation()}) {
       for (const Located<std::string>& column : *list) {
-        if (columns.body) wanted.push_back(column.value);
+        if (!columns.body.empty()) wanted.push_back(column.value);
         for (const PoseBody& body : poses.bodies) {
-          if (!columns.body) wanted.push_back(WithBody(column.value, body.name));
+          if (columns.body.empty()) wanted.push_back(WithBody(column.value, body.name));
         }
       }
     }
@@ -169,7 +215,7 @@ class CsvPoseReader {
     for (std::size_t begin = 0, line = 1; begin < text.size() && line <= kMostPreamble; ++line) {
       const std::size_t end = std::min(text.find('\n', begin), text.size());
       const std::vector<CsvCell> other =
-          CsvCellsOf(text.substr(begin, std::min(end - begin, kMostHeaderBytes)), separator_);
+          HeaderCells(text.substr(begin, std::min(end - begin, kMostHeaderBytes)));
       begin = end + 1;
       const std::size_t names = NamesIn(other);
       if (names <= most) continue;
@@ -184,8 +230,28 @@ class CsvPoseReader {
     return true;
   }
 
+  void TakeLayout() {
+    std::vector<CsvCell> cells;
+    for (const std::string& name : layout_->names) cells.push_back({.text = name});
+    line_ = std::max(layout_->first_row - 1, 1);
+    TakeNames(cells);
+    line_ = 0;
+    poses.notes = layout_->notes;
+    poses.quaternion_order.reset();  // the file says it
+    if (map_.columns.IsOfOneBody()) return;
+    poses.has_orientations = false;
+    for (const PoseBody& body : poses.bodies)
+      poses.has_orientations |= std::ranges::count(layout_->turning, body.name) > 0;
+    if (layout_->turning.empty()) return;
+    poses.unused = layout_->turning;  // its markers are left aside
+    std::erase_if(poses.unused, [&](const std::string& name) { return index_.contains(name); });
+  }
+
   void TakeHeader(const std::vector<CsvCell>& cells) {
-    if (IsElsewhere(cells) || IsNoHeader(cells)) return;
+    if (!IsElsewhere(cells) && !IsNoHeader(cells)) TakeNames(cells);
+  }
+
+  void TakeNames(const std::vector<CsvCell>& cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const std::string name(cells[i].text);
       names_.push_back(name);
@@ -199,21 +265,32 @@ class CsvPoseReader {
       for (const Located<std::string>& column : opening.Of(map_).from)
         seats.push_back(SeatOf(column, WithBody(column.value, BodyOf(opening))));
     }
-    if (columns.body) {
-      body_seat_ = SeatOf(*columns.body, columns.body->value);
+    for (const Located<std::string>& column : columns.body)
+      body_seats_.push_back(SeatOf(column, column.value));
+    if (!columns.body.empty()) {
       shared_ = SeatsOf("");
       return;
     }
     for (const Named<MappedEntity>& entity : map_.entities) {
       if (!entity.value.from) continue;
       const std::string& body = entity.value.from->value;
+      if (columns.IsOfOneBody() && body != stem_) {
+        map_errors_.AddUnknownName(
+            entity.value.from->where,
+            fmt::format("no body is called '{}': no column has a body's name, so the file is of "
+                        "one body, which is called as the file, '{}'",
+                        body, stem_),
+            body, {stem_});
+        continue;
+      }
       if (std::ranges::none_of(columns.position, [&](const Located<std::string>& column) {
             return seats_by_name_.contains(WithBody(column.value, body));
           })) {
         map_errors_.AddUnknownName(
             entity.value.from->where,
-            fmt::format("no body is called '{}': the file has no column '{}'", body,
-                        WithBody(columns.position.front().value, body)),
+            layout_ ? fmt::format("no body is called '{}' in {}", body, layout_->name)
+                    : fmt::format("no body is called '{}': the file has no column '{}'", body,
+                                  WithBody(columns.position.front().value, body)),
             body, BodiesOfHeader());
         continue;
       }
@@ -234,6 +311,7 @@ class CsvPoseReader {
   std::vector<std::string> BodiesOfHeader() const {
     const std::string& pattern = map_.columns.position.front().value;
     const std::size_t at = pattern.find("{}");
+    if (at == std::string::npos) return {};
     const std::string before = pattern.substr(0, at), after = pattern.substr(at + 2);
     std::vector<std::string> bodies;
     for (const std::string& name : names_) {
@@ -258,43 +336,70 @@ class CsvPoseReader {
     Seats seats;
     for (const Located<std::string>& column : map_.columns.position)
       seats.position.push_back(SeatOf(column, WithBody(column.value, body)));
-    for (const Located<std::string>& column : map_.columns.quaternion)
-      seats.quaternion.push_back(SeatOf(column, WithBody(column.value, body)));
+    const bool turns =
+        !layout_ || map_.columns.IsOfOneBody() || std::ranges::count(layout_->turning, body) > 0;
+    for (const Located<std::string>& column : map_.columns.Orientation())
+      if (turns) seats.orientation.push_back(SeatOf(column, WithBody(column.value, body)));
     return seats;
   }
 
-  void TakeRow(const std::vector<CsvCell>& cells) {
+  /// Of the row's body, in a file with one per row.
+  std::string BodyOfRow(const std::vector<CsvCell>& cells) const {
+    std::string name;
+    for (const std::size_t seat : body_seats_)
+      name.append(name.empty() ? "" : "/").append(cells[seat].text);
+    return name;
+  }
+
+  std::optional<double> TimeOf(const CsvCell& cell) {
+    if (map_.time_unit->value != TimeUnit::kIso) return Number(cell);
+    const auto time = SecondsOfIsoTime(cell.text);
+    if (!time)
+      Complain({line_, cell.column}, fmt::format("expected a time like 2026-01-31T10:00:00.25Z, "
+                                                 "found '{}'",
+                                                 ReadableText(cell.text)));
+    return time;
+  }
+
+  void TakeRow(std::vector<CsvCell> cells, bool is_last) {
+    while (cells.size() > names_.size() && cells.back().text.empty()) cells.pop_back();
+    // Some programs leave out the empty cells at the end of a row.
+    while (layout_ && cells.size() < names_.size() && (!is_last || poses.text.ends_with('\n')))
+      cells.push_back({.text = {}, .column = cells.back().column});
     if (cells.size() != names_.size())
       return Complain(
           {line_, cells.back().column},
           fmt::format("expected {} values as in the header, found {}{}", names_.size(),
                       cells.size(), cells.size() < names_.size() ? ": is the file cut off?" : ""));
-    double t_s = static_cast<double>(poses.rows) / (map_.rate_hz ? map_.rate_hz->value : 1);
+    const std::string name = BodyOfRow(cells);
+    double t_s = 0;
     if (time_seat_) {
-      const auto time = Number(cells[*time_seat_]);
+      const auto time = TimeOf(cells[*time_seat_]);
       if (!time) return;
       if (first_time_ == std::nullopt) first_time_ = *time;
       t_s = (*time - *first_time_) * SecondsPer(map_);
+    } else {
+      t_s = static_cast<double>(rows_of_[name]++) / map_.rate_hz->value;
     }
     const Place place{line_, time_seat_ ? cells[*time_seat_].column : 1};
+    const bool has_bodies = !body_seats_.empty();
     // One body after the other is as good as one time after the other.
-    const std::string name(body_seat_ ? cells[*body_seat_].text : "");
     const auto [before, is_first] = last_times_s_.try_emplace(name, t_s);
-    if (!is_first && (body_seat_ ? t_s < before->second : t_s <= before->second))
+    if (!is_first && (has_bodies ? t_s < before->second : t_s <= before->second))
       return Complain(place,
                       fmt::format("the times{} must increase from row to row: {:.6g} s after the "
                                   "first row comes after {:.6g} s",
-                                  body_seat_ ? " of '" + name + "'" : "", t_s, before->second));
+                                  has_bodies ? " of '" + name + "'" : "", t_s, before->second));
     if (!is_first && time_seat_) CountStep((t_s - before->second) / SecondsPer(map_));
     before->second = t_s;
     poses.first_s = std::min(poses.first_s, t_s);
     poses.last_s = std::max(poses.last_s, t_s);
     ++poses.rows;
     for (std::size_t i = 0; i < poses.openings.size(); ++i) {
-      if (!body_seat_ || name == BodyOf(poses.openings[i]))
+      if (!has_bodies || name == BodyOf(poses.openings[i]))
         TakeOpening(cells, opening_seats_[i], t_s, poses.openings[i]);
     }
-    if (!body_seat_) {
+    if (!has_bodies) {
       for (std::size_t i = 0; i < wide_.size(); ++i)
         TakePose(cells, wide_[i], t_s, poses.bodies[i]);
       return;
@@ -308,7 +413,7 @@ class CsvPoseReader {
   /// In the file's unit of time.
   void CountStep(double step) {
     const double whole = std::round(step);
-    if (whole == 0 && body_seat_) return;
+    if (whole == 0 && !body_seats_.empty()) return;
     ++steps_;
     whole_steps_ += whole >= 1 && std::abs(step - whole) < 1e-6;
     unit_steps_ += whole == 1;
@@ -316,8 +421,9 @@ class CsvPoseReader {
 
   /// A tracker that takes one pose each millisecond has times as frames have numbers.
   void CheckTimes() {
-    poses.counts_frames = map_.time_unit->value != TimeUnit::kFrame && steps_ >= kLeastSteps &&
-                          whole_steps_ == steps_ && 10 * unit_steps_ >= 9 * steps_;
+    poses.counts_frames = time_seat_ && map_.time_unit->value != TimeUnit::kFrame &&
+                          steps_ >= kLeastSteps && whole_steps_ == steps_ &&
+                          10 * unit_steps_ >= 9 * steps_;
     if (poses.counts_frames && !map_.rate_hz && !map_.IsSure(Warning::kTime))
       poses.notes.push_back(fmt::format(
           "the times of '{}' are whole numbers that grow by 1 each: they look like frame numbers; "
@@ -331,7 +437,7 @@ class CsvPoseReader {
 
   void TakePose(const std::vector<CsvCell>& cells, const Seats& seats, double t_s, PoseBody& body) {
     std::vector<std::size_t> all = seats.position;
-    all.insert(all.end(), seats.quaternion.begin(), seats.quaternion.end());
+    all.insert(all.end(), seats.orientation.begin(), seats.orientation.end());
     const auto missing = [&](std::size_t seat) { return IsMissing(cells[seat]); };
     if (std::ranges::all_of(all, missing)) return;
     if (const auto one = std::ranges::find_if(all, missing); one != all.end())
@@ -350,17 +456,15 @@ class CsvPoseReader {
     const Place place{line_, cells[all.back()].column};
     if (!body.samples.empty() && t_s <= body.samples.back().t_s)
       return Complain(place, fmt::format("'{}' has two poses at {:.6g} s", body.name, t_s));
-    if (values.size() == 7) {
-      const bool w_first = map_.quaternion_order->value == QuaternionOrder::kWxyz;
-      const double* v = &values[3];
-      sample.q = w_first ? Eigen::Quaterniond(v[0], v[1], v[2], v[3])
-                         : Eigen::Quaterniond(v[3], v[0], v[1], v[2]);
-      if (std::abs(sample.q.norm() - 1) > kUnitTolerance)
-        return Complain({line_, cells[seats.quaternion.front()].column},
-                        fmt::format("'{}': expected a unit quaternion, found one of length {:.4g}",
-                                    body.name, sample.q.norm()),
-                        "are these the four columns of one body's orientation?");
-      sample.q.normalize();
+    if (!seats.orientation.empty()) {
+      const std::string fault =
+          ReadOrientation(orientation_, std::span(values).subspan(3), sample.q);
+      if (!fault.empty())
+        return Complain({line_, cells[seats.orientation.front()].column},
+                        fmt::format("'{}': {}", body.name, fault),
+                        orientation_.form == OrientationForm::kQuaternion
+                            ? "are these the four columns of one body's orientation?"
+                            : "");
     }
     body.samples.push_back(sample);
   }
@@ -382,15 +486,15 @@ class CsvPoseReader {
   }
 
   std::optional<double> Number(const CsvCell& cell) {
-    double value = 0;
-    const char *begin = cell.text.data(), *end = begin + cell.text.size();
-    const auto [rest, error] = std::from_chars(begin, end, value);
-    if (error == std::errc() && rest == end && std::isfinite(value)) return value;
+    const std::optional<double> value = NumberOf(cell.text, map_.decimal_comma);
+    if (value && std::isfinite(*value)) return value;
     std::string hint;
-    if (error == std::errc() && rest == end)
+    if (value)
       hint = fmt::format("if that means 'not tracked', the map says missing: [{}]", cell.text);
-    else if (cell.text.find(',') != std::string_view::npos)
-      hint = "decimals have a point";
+    else if (NumberOf(cell.text, true))
+      hint = "if that is a decimal comma, the map says decimal: comma";
+    else if (SecondsOfIsoTime(cell.text))
+      hint = "if that is the time, the map says time_unit: iso";
     Complain({line_, cell.column},
              fmt::format("expected a number, found '{}'", ReadableText(cell.text)), hint);
     return std::nullopt;
@@ -399,13 +503,17 @@ class CsvPoseReader {
   const ImportMap& map_;
   DiagnosticList map_errors_;
   Diagnostics problems_;
-  char separator_ = ',';
+  const TableLayout* const layout_;
+  const std::string stem_;
+  OrientationFormat orientation_;
   int line_ = 0;
   std::vector<std::string> names_;
   std::map<std::string, std::size_t> seats_by_name_;
   std::map<std::string, int> twice_;          ///< names of several columns -> place of the last
   std::map<std::string, std::size_t> index_;  ///< of bodies
-  std::optional<std::size_t> time_seat_, body_seat_;
+  std::optional<std::size_t> time_seat_;
+  std::vector<std::size_t> body_seats_;
+  std::map<std::string, std::size_t> rows_of_;  ///< by body, of files without times
   std::optional<double> first_time_;
   std::map<std::string, double> last_times_s_;  ///< by body; of a row with all bodies under ""
   std::size_t steps_ = 0, whole_steps_ = 0, unit_steps_ = 0;  ///< of times

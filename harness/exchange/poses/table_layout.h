@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables of poses as trackers export them, known by their heads: Motive, Vicon, Qualisys, TRC,
+// EuRoC; and by their rows: TUM, KITTI. What such a file says of itself the map need not. Tested by
+// tests/program/import_layouts_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/exchange/poses/import_map.h"
+
+namespace prehend::exchange {
+
+struct TableLayout {
+  std::string name;     ///< "a CSV file of Motive"
+  bool yields = false;  ///< to the columns of the map: a plain table that has names, or none
+  Separator separator = Separator::kComma;
+  int first_row = 1;                 ///< the line
+  bool ends_at_blank = false;        ///< another part follows a blank line
+  std::vector<std::string> names;    ///< of the columns
+  std::vector<std::string> turning;  ///< bodies with orientations
+  Columns columns;
+  std::optional<LengthUnit> unit;
+  bool says_unit = true;  ///< else it is usual
+  std::optional<TimeUnit> time_unit;
+  std::optional<double> rate_hz;
+  std::optional<QuaternionOrder> quaternion_order;
+  std::optional<std::string> euler_order;
+  std::optional<bool> angles_in_degrees;
+  bool zero_is_missing = false;
+  std::vector<std::string> notes;
+};
+
+/// By the first lines of a file.
+std::optional<TableLayout> LayoutOf(std::string_view text);
+/// Of a file; none of one that cannot be read.
+std::optional<TableLayout> LayoutOfFile(const std::string& path);
+
+/// Puts what the file says into the map; where the map says otherwise, that is an error.
+void Complete(TableLayout& layout, Where where, ImportMap& map, DiagnosticList& errors);
+
+}  // namespace prehend::exchange

@@ -1,0 +1,454 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables as trackers export them: the same cup and hand, written in each layout and its variants,
+// become the same recording; what is wrong with one is said as it is.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/program/carried_cup.h"
+#include "tests/program/import_csv.h"
+
+namespace prehend::house {
+namespace {
+
+constexpr int kFrames = 301;
+constexpr double kRate_hz = 60;
+constexpr double kTurn_deg = 30;  ///< of the cup, about up, all the time
+
+std::string Text(double value, const char* format = "%.6f") {
+  char text[40];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string Entities(const char* cup = "Cup", const char* hand = "Hand") {
+  return std::string(
+             "entities:\n  table: {at_m: [0, 0, 0.7], fixed: true, class: Table, "
+             "size_m: [2.0, 1.0, 0.04]}\n  cup: {from: \"") +
+         cup + "\", class: Cup, size_m: [0.08, 0.08, 0.1]}\n  hand: {from: \"" + hand +
+         "\", hand: true, size_m: [0, 0, 0]}\n";
+}
+
+/// One frame after the other; a row of "" is left out.
+std::string Rows(const std::function<std::string(int)>& row) {
+  std::string rows;
+  for (int i = 0; i < kFrames; ++i) rows += row(i) + "\n";
+  return rows;
+}
+
+struct Take {
+  Said said;
+  std::string frames;  ///< of the recording, without its head
+};
+
+Take Import(const std::string& file, const std::string& bytes, const std::string& map) {
+  const auto folder = FreshFolder("layouts");
+  Take take{.said = ImportFile(folder, file, bytes, "import: 1\nepisode: take\n" + map)};
+  if (take.said.exit_code == 0)
+    take.frames = Prehend({"episode", "resegment", (folder / "take.jsonl").string()}).out;
+  return take;
+}
+
+/// What is done in all of them.
+const std::string& Carried() {
+  static const std::string events = [] {
+    std::string csv = "t,Cup_x,Cup_y,Cup_z,Hand_x,Hand_y,Hand_z\n";
+    csv += Rows([](int i) {
+      const Row c = CupAt(i / kRate_hz), h = HandAt(i / kRate_hz);
+      return Text(i / kRate_hz) + "," + Text(c.x) + "," + Text(c.y) + "," + Text(c.z) + "," +
+             Text(h.x) + "," + Text(h.y) + "," + Text(h.z);
+    });
+    return Import("poses.csv", csv,
+                  "unit: m\naxes: z_up\ntime_unit: s\ncolumns: {time: t, position: [\"{}_x\", "
+                  "\"{}_y\", \"{}_z\"]}\n" +
+                      Entities())
+        .frames;
+  }();
+  EXPECT_NE(events.find("transporting"), std::string::npos) << events;
+  return events;
+}
+
+void ExpectCarried(const std::string& file, const std::string& bytes, const std::string& map) {
+  const Take take = Import(file, bytes, map);
+  EXPECT_EQ(take.said.exit_code, 0) << take.said.err;
+  EXPECT_EQ(take.frames, Carried()) << take.said.err;
+}
+
+void ExpectRefused(const std::string& file, const std::string& bytes, const std::string& map,
+                   const std::string& why) {
+  const Take take = Import(file, bytes, map);
+  EXPECT_EQ(take.said.exit_code, 2);
+  EXPECT_NE(take.said.err.find(why), std::string::npos) << take.said.err;
+}
+
+std::string Three(const Row& r, double scale, const std::string& separator, bool y_up = false) {
+  const double x = r.x * scale, y = (y_up ? r.z : r.y) * scale, z = (y_up ? -r.y : r.z) * scale;
+  return Text(x) + separator + Text(y) + separator + Text(z);
+}
+
+// ---------------------------------------------------------------------------------------- Motive
+
+struct Motive {
+  std::string version = "1.23", unit = "Meters", rotation = "Quaternion";
+  double scale = 1;
+  bool labels = false;  ///< Type, Name, .. in the first cell, and parents, as 3.x writes them
+  std::string end = "\n";
+  int lost_from = 0, lost_until = 0;  ///< of the hand
+};
+
+std::string MotiveCsv(const Motive& m) {
+  const bool quaternion = m.rotation == "Quaternion";
+  const std::string turn = quaternion ? "Rotation,Rotation,Rotation,Rotation,"
+                                      : "Rotation,Rotation,Rotation,",
+                    letters = quaternion ? "X,Y,Z,W," : "X,Y,Z,";
+  const int each = quaternion ? 8 : 7;
+  std::string types, names, ids, parts, axes;
+  for (const char* body : {"Hand", "Cup"}) {
+    for (int i = 0; i < each; ++i) {
+      types += ",Rigid Body";
+      names += std::string(",") + body;
+      ids += ",\"A1\"";
+    }
+    parts += "," + turn + "Position,Position,Position,Mean Marker Error";
+    axes += "," + letters + "X,Y,Z,";
+  }
+  types += ",Marker,Marker,Marker";
+  names += ",Cup:Marker 001,Cup:Marker 001,Cup:Marker 001";
+  ids += ",,,", parts += ",Position,Position,Position", axes += ",X,Y,Z";
+  const auto line = [&](const char* label, const std::string& cells) {
+    return (m.labels ? std::string(",") + label : std::string(",")) + cells + m.end;
+  };
+  std::string csv = "Format Version," + m.version +
+                    ",Take Name,Take 1,Capture Frame Rate,60.000000,Export Frame Rate,60.000000,"
+                    "Rotation Type," +
+                    m.rotation + ",Length Units," + m.unit + ",Coordinate Space,Global" + m.end;
+  csv += m.end + line("Type", types) + line("Name", names) + line("ID", ids);
+  if (m.labels) csv += line("Parent", ids);
+  csv += line("", parts) + "Frame,Time (Seconds)" + axes + m.end;
+  const double half = kTurn_deg / 2 * 3.14159265358979 / 180;
+  for (int i = 0; i < kFrames; ++i) {
+    const std::string turned = quaternion
+                                   ? "0," + Text(std::sin(half)) + ",0," + Text(std::cos(half))
+                                   : "0," + Text(kTurn_deg) + ",0";
+    const std::string still = quaternion ? "0,0,0,1" : "0,0,0";
+    csv += std::to_string(i) + "," + Text(i / kRate_hz);
+    if (i >= m.lost_from && i < m.lost_until)
+      csv += std::string(static_cast<std::size_t>(each), ',');
+    else
+      csv += "," + still + "," + Three(HandAt(i / kRate_hz), m.scale, ",", true) + ",0.0004";
+    csv +=
+        "," + turned + "," + Three(CupAt(i / kRate_hz), m.scale, ",", true) + ",0.0004,,," + m.end;
+  }
+  return csv;
+}
+
+const std::string kMotiveMap = "axes: y_up\n" + Entities();
+
+TEST(ImportLayouts, MotiveInAllItsVersions) {
+  ExpectCarried("take.csv", MotiveCsv({}), kMotiveMap);
+  ExpectCarried("take.csv", MotiveCsv({.version = "1.25", .labels = true, .end = "\r\n"}),
+                kMotiveMap);
+  ExpectCarried("take.csv", MotiveCsv({.unit = "Millimeters", .scale = 1000}), kMotiveMap);
+  ExpectCarried("take.csv", "\xEF\xBB\xBF" + MotiveCsv({.unit = "Centimeters", .scale = 100}),
+                kMotiveMap);
+  ExpectCarried("take.csv", MotiveCsv({.rotation = "XYZ"}), kMotiveMap);
+  // What is lost for three frames is bridged.
+  ExpectCarried("take.csv", MotiveCsv({.lost_from = 2, .lost_until = 5}), kMotiveMap);
+}
+
+TEST(ImportLayouts, MotiveIsRefusedForTheTrueReason) {
+  ExpectRefused("take.csv", MotiveCsv({}), "axes: y_up\nunit: mm\n" + Entities(),
+                "'unit' contradicts the file");
+  ExpectRefused("take.csv", MotiveCsv({}), "axes: y_up\n" + Entities("Mug"),
+                "no body is called 'Mug' in a CSV file of Motive");
+  ExpectRefused("take.csv", MotiveCsv({.lost_from = 100, .lost_until = 200}), kMotiveMap,
+                "'Hand' is not tracked for");
+  ExpectRefused("take.csv", MotiveCsv({.unit = "Furlongs"}), kMotiveMap,
+                "needs one of the keys unit");
+  std::string cut = MotiveCsv({});
+  cut.resize(cut.size() - 30);
+  ExpectRefused("take.csv", cut, kMotiveMap, "is the file cut off?");
+}
+
+TEST(ImportLayouts, ColumnsOfAMapAreNotUsedWhereTheHeadSaysMore) {
+  const Take take = Import("take.csv", MotiveCsv({}),
+                           "unit: m\nquaternion_order: xyzw\nheader_line: 7\ntime_unit: s\n"
+                           "columns: {time: Time (Seconds), position: [\"{} X\", \"{} Y\", "
+                           "\"{} Z\"]}\n" +
+                               kMotiveMap);
+  EXPECT_EQ(take.said.exit_code, 0) << take.said.err;
+  EXPECT_NE(take.said.err.find("'columns' of the map is not used"), std::string::npos);
+  EXPECT_EQ(take.frames, Carried());
+}
+
+// ----------------------------------------------------------------------------------------- Vicon
+
+std::string ViconCsv(const std::string& part, const std::string& rotation,
+                     const std::string& unit = "rad", const std::string& s = ",") {
+  const bool markers = part == "Trajectories", four = rotation == "Quaternion";
+  const std::string turn = four ? "RX,RY,RZ,RW," : "RX,RY,RZ,",
+                    axes = markers ? "X,Y,Z" : turn + "TX,TY,TZ";
+  const std::string before = four ? "Global Angle (Quaternion) " : "";
+  const std::string gap = markers ? ",,," : four ? ",,,,,,," : ",,,,,,";
+  std::string csv = part + "\n60\n,," + before + "s:Cup" + gap + before + "s:Hand" + gap +
+                    "\nFrame,Sub Frame," + axes + "," + axes + "\n,";
+  const std::string units = (markers ? ""
+                             : four  ? ",,,,"
+                                     : "," + unit + "," + unit + "," + unit) +
+                            ",mm,mm,mm";
+  csv += units + units + "\n";
+  const double angle = unit == "deg" ? kTurn_deg : kTurn_deg * 3.14159265358979 / 180;
+  const double half = kTurn_deg / 2 * 3.14159265358979 / 180;
+  csv += Rows([&](int i) {
+    const std::string turned =
+        four ? "0,0," + Text(std::sin(half)) + "," + Text(std::cos(half)) + ","
+             : "0,0," + Text(angle) + ",";
+    const std::string still = four ? "0,0,0,1," : "0,0,0,";
+    return std::to_string(i + 1) + ",0," + (markers ? "" : turned) +
+           Three(CupAt(i / kRate_hz), 1000, ",") + "," + (markers ? "" : still) +
+           Three(HandAt(i / kRate_hz), 1000, ",");
+  });
+  if (s != ",")
+    for (char& c : csv) c = c == ',' ? s[0] : c;
+  return csv;
+}
+
+TEST(ImportLayouts, ViconTrackerAndNexus) {
+  const std::string map = "axes: z_up\n" + Entities("s:Cup", "s:Hand");
+  ExpectCarried("take.csv", ViconCsv("Objects", "Helical"), map);
+  ExpectCarried("take.csv", ViconCsv("Objects", "Quaternion"), map);
+  ExpectCarried("take.csv", ViconCsv("Segments", "Helical", "deg"), map);
+  ExpectCarried("take.csv", ViconCsv("Objects", "Euler", "deg"), map + "euler_order: XYZ\n");
+  ExpectCarried("take.csv", ViconCsv("Trajectories", ""), map);
+  ExpectCarried("take.csv", ViconCsv("Trajectories", "", "", ";"), map);
+  // Forces before, other parts behind.
+  ExpectCarried("take.csv",
+                "Devices\n1000\n,,Plate,,\nFrame,Sub Frame,Fx,Fy,Fz\n,,N,N,N\n1,0,1,2,3\n\n" +
+                    ViconCsv("Objects", "Helical") + "\nTrajectories\n60\n,,M\n",
+                map);
+  ExpectRefused("take.csv", ViconCsv("Objects", "Helical"), map + "rate_hz: 100\n",
+                "'rate_hz' contradicts the file");
+}
+
+// -------------------------------------------------------------------------------------- Qualisys
+
+struct Qualisys {
+  bool six = false, head = true, tab = true, by_rows = false;
+  int lost_from = 0, lost_until = 0;
+};
+
+std::string QualisysTsv(const Qualisys& q) {
+  std::string tsv =
+      "NO_OF_FRAMES\t301\nNO_OF_CAMERAS\t8\nFREQUENCY\t60\nDESCRIPTION\t--\n"
+      "DATA_INCLUDED\t" +
+      std::string(q.six ? "6D\nBODY_NAMES" : "3D\nMARKER_NAMES") + "\tCup\tHand\n";
+  const std::string end = q.tab ? "\t\n" : "\n";
+  if (q.head) {
+    tsv += "Frame\tTime";
+    for (const char* body : {"Cup", "Hand"}) {
+      tsv += std::string("\t") + body + " X\t" +
+             (q.six ? "Y\tZ" : std::string(body) + " Y\t" + body + " Z");
+      if (q.six) tsv += "\tRoll\tPitch\tYaw\tResidual";
+      for (int i = 0; q.six && i < 9; ++i) tsv += "\tRot[" + std::to_string(i) + "]";
+    }
+    tsv += end;
+  }
+  const double a = kTurn_deg * 3.14159265358979 / 180, c = std::cos(a), s = std::sin(a);
+  const std::string turned = "0\t0\t" + Text(kTurn_deg) + "\t0.3\t" + Text(c) + "\t" +
+                             Text(q.by_rows ? -s : s) + "\t0\t" + Text(q.by_rows ? s : -s) + "\t" +
+                             Text(c) + "\t0\t0\t0\t1";
+  const std::string still = "0\t0\t0\t0.3\t1\t0\t0\t0\t1\t0\t0\t0\t1";
+  return tsv + Rows([&](int i) {
+           const bool lost = i >= q.lost_from && i < q.lost_until;
+           const std::string hand = Three(HandAt(i / kRate_hz), 1000, "\t");
+           return (q.head ? std::to_string(i + 1) + "\t" + Text(i / kRate_hz) + "\t" : "") +
+                  Three(CupAt(i / kRate_hz), 1000, "\t") + (q.six ? "\t" + turned : "") + "\t" +
+                  (lost ? "0.000\t0.000\t0.000" : hand) + (q.six ? "\t" + still : "") +
+                  (q.tab ? "\t" : "");
+         });
+}
+
+TEST(ImportLayouts, QualisysIn3DAnd6D) {
+  const std::string map = "axes: z_up\n" + Entities();
+  ExpectCarried("take.tsv", QualisysTsv({}), map);
+  ExpectCarried("take.tsv", QualisysTsv({.tab = false}), map);
+  ExpectCarried("take.tsv", QualisysTsv({.head = false}), map);
+  ExpectCarried("take.tsv", QualisysTsv({.six = true}), map);
+  ExpectCarried("take.tsv", QualisysTsv({.six = true, .head = false}), map);
+  ExpectCarried("take.tsv", QualisysTsv({.six = true, .by_rows = true}), map);
+  ExpectCarried("take.tsv", QualisysTsv({.lost_from = 2, .lost_until = 5}), map);
+  ExpectRefused("take.tsv", QualisysTsv({.lost_from = 100, .lost_until = 200}), map,
+                "'Hand' is not tracked for");
+}
+
+// ------------------------------------------------------------------- TRC, TUM, EuRoC, KITTI, own
+
+std::string Trc(const std::string& names, const std::string& unit, double scale,
+                const std::string& blank) {
+  return "PathFileType\t4\t(X/Y/Z)\ttake.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\t"
+         "OrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n60\t60\t301\t2\t" +
+         unit + "\t60\t1\t301\nFrame#\tTime\t" + names + "\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n" + blank +
+         Rows([&](int i) {
+           return std::to_string(i + 1) + "\t" + Text(i / kRate_hz) + "\t" +
+                  Three(CupAt(i / kRate_hz), scale, "\t", true) + "\t" +
+                  Three(HandAt(i / kRate_hz), scale, "\t", true);
+         });
+}
+
+TEST(ImportLayouts, Trc) {
+  const std::string map = "axes: y_up\n" + Entities();
+  ExpectCarried("take.trc", Trc("Cup\t\t\tHand\t\t", "mm", 1000, "\n"), map);
+  ExpectCarried("take.trc", Trc("Cup\t\t\tHand\t\t\t", "m", 1, ""), map);
+  ExpectCarried("take.trc", Trc("Cup\t\tHand", "mm", 1000, "\t\n"), map);
+  ExpectRefused("take.trc", Trc("Cup\t\t\tHand", "m", 1000, ""), "unit: mm\n" + map,
+                "'unit' contradicts the file: a TRC file says otherwise");
+}
+
+/// One body; its poses at 60 Hz, 30 degrees turned, as the table of import says them.
+void ExpectCupOnly(const std::string& file, const std::string& bytes, const std::string& map) {
+  const auto folder = FreshFolder("layouts");
+  const Said said =
+      ImportFile(folder, file, bytes,
+                 "import: 1\nentities:\n  cup: {from: take, class: Cup, size_m: [0.08, 0.08, 0.1], "
+                 "upright_at_s: 0}\n" +
+                     map,
+                 {"--check"});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.out.find("take                 301    60.0 "), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find("0.00..0.40"), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find("[0.96593, 0.00000, 0.00000, -0.25882]"), std::string::npos) << said.out;
+}
+
+TEST(ImportLayouts, FilesOfOneBody) {
+  const double a = kTurn_deg * 3.14159265358979 / 180;
+  const std::string z = Text(std::sin(a / 2)), w = Text(std::cos(a / 2));
+  const auto rows = [&](const std::function<std::string(double, std::string)>& row,
+                        const std::string& separator) {
+    return Rows([&](int i) { return row(i / kRate_hz, Three(CupAt(i / kRate_hz), 1, separator)); });
+  };
+  const auto tum = [&](double t, const std::string& p) {
+    return Text(1767225600 + t) + " " + p + " 0 0 " + z + " " + w;
+  };
+  ExpectCupOnly("take.txt", "# timestamp tx ty tz qx qy qz qw\n" + rows(tum, " "), "axes: z_up\n");
+  ExpectCupOnly("take.tum", rows(tum, " "), "axes: z_up\n");
+  // The map has the last word of what has no head.
+  ExpectCupOnly("take.txt", "# ground truth\n# t x y z a b c d\n" + rows(tum, " "),
+                "axes: z_up\nunit: m\ntime_unit: s\nseparator: space\nquaternion_order: xyzw\n"
+                "columns: {time: t, position: [x, 'y', z], quaternion: [a, b, c, d]}\n");
+  ExpectCupOnly("take.csv",
+                "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],"
+                "q_RS_y [],q_RS_z []\n" +
+                    rows(
+                        [&](double t, const std::string& p) {
+                          return std::to_string(1403636579758555392 + std::llround(t * 1e9)) + "," +
+                                 p + "," + w + ",0,0," + z;
+                        },
+                        ","),
+                "axes: z_up\n");
+  const std::string c = Text(std::cos(a)), s = Text(std::sin(a));
+  ExpectCupOnly("take.txt", Rows([&](int i) {
+                  const Row r = CupAt(i / kRate_hz);
+                  return c + " -" + s + " 0 " + Text(r.x) + " " + s + " " + c + " 0 " + Text(r.y) +
+                         " 0 0 1 " + Text(r.z);
+                }),
+                "axes: z_up\nrate_hz: 60\n");
+  // No layout: plus signs, decimal commas, dates, angles.
+  std::string own =
+      "time;x;y;z;rz;ry;rx;\n" + rows(
+                                     [&](double t, std::string p) {
+                                       p = Text(t, "2026-01-31T10:00:%09.6fZ;+") + p + ";30,0;0;0;";
+                                       return p;
+                                     },
+                                     ";");
+  for (std::size_t at = own.find('\n'); at < own.size(); ++at)
+    if (own[at] == '.' && own[at + 7] != 'Z') own[at] = ',';
+  ExpectCupOnly("take.csv", own,
+                "axes: z_up\nunit: m\ntime_unit: iso\nseparator: semicolon\ndecimal: comma\n"
+                "euler_order: ZYX\nangle_unit: deg\n"
+                "columns: {time: time, position: [x, 'y', z], euler: [rz, ry, rx]}\n");
+  ExpectRefused("take.txt", rows(tum, " "), "axes: z_up\n" + Entities(),
+                "which is called as the file, 'take'");
+}
+
+TEST(ImportLayouts, RowsOfBodiesWithoutTimesAndWithTwoNames) {
+  const auto row = [](const char* name, int i, const Row& r) {
+    return std::to_string(i) + "," + name + "," + Three(r, 1, ",") + "\n";
+  };
+  std::string csv = "frame,hand,landmark,x,y,z\n", apart = csv;
+  for (int i = 0; i < kFrames; ++i)
+    csv += row("Left,8", i, CupAt(i / kRate_hz)) + row("Right,0", i, HandAt(i / kRate_hz));
+  for (int i = 0; i < kFrames; ++i) apart += row("Left,8", i, CupAt(i / kRate_hz));
+  for (int i = 0; i < kFrames; ++i) apart += row("Right,0", i, HandAt(i / kRate_hz));
+  const std::string map = "unit: m\naxes: z_up\nrate_hz: 60\n" + Entities("Left/8", "Right/0") +
+                          "columns: {body: [hand, landmark], position: [x, 'y', z]";
+  ExpectCarried("poses.csv", csv, map + "}\n");
+  ExpectCarried("poses.csv", apart, map + "}\n");
+  ExpectCarried("poses.csv", csv, map + ", time: frame}\ntime_unit: frame\n");
+}
+
+/// The map of docs/motion-capture.md that has this text.
+std::string MapOfDocs(const std::string& text) {
+  const std::string page = ReadFile(PREHEND_SOURCE_DIR "/docs/motion-capture.md");
+  for (std::size_t at = 0; (at = page.find("```yaml\n", at)) != std::string::npos; ++at) {
+    const std::string map = page.substr(at + 8, page.find("```\n", at + 8) - at - 8);
+    if (map.find(text) != std::string::npos) return map;
+  }
+  return "";
+}
+
+TEST(ImportLayouts, TheMapsOfTheDocsAreWholeMaps) {
+  const auto folder = FreshFolder("layouts");
+  const auto check = [&](const std::string& file, const std::string& bytes,
+                         const std::string& map) {
+    const Said said = ImportFile(folder, file, bytes, map, {"--check"});
+    EXPECT_EQ(said.exit_code, 0) << map << said.err;
+    EXPECT_NE(said.out.find("0.00..0.40"), std::string::npos) << said.out;
+  };
+  const std::string motive = MapOfDocs("from: Hand, hand");
+  check("take.csv", MotiveCsv({}), motive);
+  check("take.tsv", QualisysTsv({.six = true}), Replaced(motive, "y_up", "z_up"));
+  check("cup.txt", Rows([](int i) {
+          const Row r = CupAt(i / kRate_hz);
+          return "1 0 0 " + Text(r.x) + " 0 1 0 " + Text(-r.z) + " 0 0 1 " + Text(r.y);
+        }),
+        MapOfDocs("up: [0, -1, 0]"));
+  std::string csv = "hand,landmark,x,y,z,rx,ry,rz\n";
+  for (int i = 0; i < kFrames; ++i)
+    csv += "Left,8," + Three(CupAt(i / kRate_hz), 1, ",") + ",0,0,30\n";
+  check("take.csv", csv, MapOfDocs("[hand, landmark]"));
+}
+
+TEST(ImportLayouts, OtherFilesAreNamed) {
+  for (const char* ending : {".json", ".xlsx", ".parquet", ".npz", ".pkl", ".zip", ".JSON"}) {
+    std::string small = ending;
+    for (char& c : small) c = static_cast<char>(std::tolower(c));
+    ExpectRefused(std::string("take") + ending, "{}", kMotiveMap,
+                  "files " + small + " are not read");
+  }
+}
+
+TEST(ImportLayouts, AThingThatNeverMovesIsNoWrongUnit) {
+  const Take take =
+      Import("poses.csv", "t,x,y,z\n0,0.1,0.2,0.8\n0.02,0.1,0.2,0.8\n0.04,0.1,0.2,0.8\n",
+             "unit: m\naxes: z_up\ntime_unit: s\n"
+             "columns: {time: t, position: [x, 'y', z]}\n"
+             "entities:\n  cup: {from: poses, size_m: [0.1, 0.1, 0.1]}\n");
+  EXPECT_EQ(take.said.exit_code, 0) << take.said.err;
+  EXPECT_NE(take.said.err.find("nothing moves: each body stays within 1 mm"), std::string::npos);
+  EXPECT_EQ(take.said.err.find("unit"), std::string::npos) << take.said.err;
+}
+
+TEST(ImportLayouts, OrdersOfAnglesAreChecked) {
+  const std::string csv = "t,rx,ry,rz,x,y,z\n0,1,2,3,0,0,0\n1,1,2,3,0,0,0\n",
+                    map =
+                        "unit: m\naxes: z_up\ntime_unit: s\nangle_unit: deg\n"
+                        "columns: {time: t, position: [x, 'y', z], euler: [rx, ry, rz]}\n"
+                        "entities:\n  cup: {from: poses, size_m: [0.1, 0.1, 0.1]}\n";
+  ExpectRefused("poses.csv", csv, map, "euler_order is missing");
+  ExpectRefused("poses.csv", csv, map + "euler_order: ZYX\n", "the columns are in the order xyz");
+  ExpectRefused("poses.csv", csv, map + "euler_order: abc\n", "expected three axes like XYZ");
+}
+
+}  // namespace
+}  // namespace prehend::house
