@@ -65,6 +65,38 @@ TEST(Watch, ReadsAPipeAndPrintsBeforeItsEnd) {
   ExpectTheEventsOf(file, {.exit_code = 0, .out = ReadFile(out), .err = ""});
 }
 
+TEST(Watch, AFrameFarAheadIsLeftOutAndFaultsOfAKindAreCounted) {
+  const auto folder = FreshFolder("watch");
+  const auto file = Recorded(folder);
+  const std::string text = ReadFile(file);
+  std::size_t at = 0;
+  for (int i = 0; i < 300; ++i) at = text.find('\n', at) + 1;
+  const auto faulty = folder / "faulty.jsonl";
+  std::string late = "{\"tick\": 90000000000, \"samples\": {}}\n";
+  for (int i = 0; i < 50; ++i) late += "{\"tick\": " + std::to_string(i) + ", \"samples\": {}}\n";
+  WriteFile(faulty, text.substr(0, at) + late + text.substr(at));
+  const Said said = Prehend({"grammar", "watch", faulty.string(), "--json"});
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_NE(said.err.find("s after the one before is left out"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("50 lines in all: the ticks must increase"), std::string::npos)
+      << said.err;
+  EXPECT_EQ(said.err.find("faulty.jsonl:304:"), std::string::npos) << said.err;
+  EXPECT_EQ(said.out, Prehend({"grammar", "watch", file.string(), "--json"}).out);
+}
+
+TEST(Watch, FramesAfterAPauseAreTaken) {
+  const auto folder = FreshFolder("watch");
+  const auto file = folder / "pause.jsonl";
+  const std::string text = ReadFile(Recorded(folder));
+  const std::string head = text.substr(0, text.find('\n') + 1);
+  std::string frames;
+  for (const int tick : {0, 100, 9'000'000, 9'000'100, 9'000'200})
+    frames += "{\"tick\": " + std::to_string(tick) + ", \"samples\": {}}\n";
+  WriteFile(file, head + frames + "{\"end_tick\": 9000300}\n");
+  const Said said = Prehend({"grammar", "watch", file.string()});
+  EXPECT_NE(said.err.find("1 faulty line was skipped"), std::string::npos) << said.err;
+}
+
 TEST(Watch, AFaultyLineIsNamedAndLeftOut) {
   const auto folder = FreshFolder("watch");
   const auto file = Recorded(folder);

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/command/typed_episode.h"
@@ -54,11 +56,16 @@ void Print(const grammar::Timeline& decided, bool as_json, std::ostream& out) {
   out.flush();
 }
 
+constexpr double kMostAhead_s = 10;
+constexpr std::size_t kSaid = 2;  ///< faults of a kind that are said when they come
+
 /// Lines of a recording, as they come. Faulty ones are reported and left out.
 class LineWatcher {
  public:
   LineWatcher(const std::string& name, const CommandContext& context)
-      : name_(name), context_(context), stream_(name) {}
+      : name_(name), context_(context), stream_(name) {
+    stream_.DoubtFrames(kMostAhead_s);
+  }
 
   ExitCode Watch(std::istream& in, const ParsedOptions& options) {
     while (!stream_.has_header()) {
@@ -100,8 +107,10 @@ class LineWatcher {
       line = "a line of " + std::to_string(bytes) + " bytes";
     wrong_ = stream_.Take(line);
     if (wrong_.empty() || !stream_.has_header()) return true;
-    context_.err << grammar::Format(wrong_) << std::flush;
     ++skipped_;
+    std::string kind = wrong_.front().message;
+    std::erase_if(kind, [](unsigned char c) { return std::isdigit(c) || c == '.'; });
+    if (++faults_[kind] <= kSaid) context_.err << grammar::Format(wrong_) << std::flush;
     return true;
   }
 
@@ -112,6 +121,10 @@ class LineWatcher {
   ExitCode End() const {
     if (stream_.end_tick() == 0) return EndsTooEarly();
     context_.err << stream_.gaps();
+    for (const auto& [kind, count] : faults_) {
+      if (count > kSaid)
+        context_.err << fmt::format("prehend: {}: {} lines in all: {}\n", name_, count, kind);
+    }
     if (!stream_.says_its_end())
       context_.err << fmt::format(
           "prehend: {} ended after line {} without 'end_tick': what was open ends there\n", name_,
@@ -127,6 +140,7 @@ class LineWatcher {
   episode::EpisodeStream stream_;
   grammar::Diagnostics wrong_;  ///< with the last line
   std::size_t line_ = 0, skipped_ = 0;
+  std::map<std::string, std::size_t> faults_;  ///< by message, without its numbers
 };
 
 /// A run or a recording of an episode file, or a scenario while it is played.

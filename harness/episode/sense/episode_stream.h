@@ -20,6 +20,9 @@ class EpisodeStream {
   EpisodeStream(const EpisodeStream&) = delete;
   EpisodeStream& operator=(const EpisodeStream&) = delete;
 
+  /// A frame that is farther than this after the one before is faulty, unless the next one agrees
+  /// with it: then there was a pause.
+  void DoubtFrames(double ahead_s);
   /// Takes the next line, of at most kMaxEpisodeLineBytes. Returns what is wrong with it.
   grammar::Diagnostics Take(const std::string& line);
   /// The same of values that are within the limits of the format.

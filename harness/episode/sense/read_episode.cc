@@ -44,6 +44,7 @@ class EpisodeReader {
 
   grammar::Diagnostics diagnostics;
   Recording episode;
+  double most_ahead_s = 0;  ///< EpisodeStream::DoubtFrames; 0: any
 
   void TakeLine(const std::string& text) {
     ++line_;
@@ -289,6 +290,11 @@ class EpisodeReader {
       return errors.Add(entry.tick.where,
                         fmt::format("the ticks must increase: {} comes after {}", tick, before));
     }
+    if (!first && most_ahead_s > 0 && IsFarAhead(tick - before, tick))
+      return errors.Add(entry.tick.where,
+                        fmt::format("a frame {:.6g} s after the one before is left out: is its "
+                                    "time right?",
+                                    static_cast<double>(tick - before) / TicksPerSecond()));
     const double dt_s = static_cast<double>(tick - before) /
                         static_cast<double>(episode.header.entity_table.ticks_per_second);
     now_.tick = tick;
@@ -322,6 +328,20 @@ class EpisodeReader {
     bridge_.Fill(tick, episode.frames.back().entities);
     if (episode.frames.size() > kMaxEpisodeFrames)
       errors.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
+  }
+
+  double TicksPerSecond() const {
+    return static_cast<double>(episode.header.entity_table.ticks_per_second);
+  }
+
+  /// One frame of a stream; a second one that agrees with it comes after a pause.
+  bool IsFarAhead(grammar::Tick ahead, grammar::Tick tick) {
+    const double most = most_ahead_s * TicksPerSecond();
+    const bool is_far = static_cast<double>(ahead) > most;
+    const bool agrees =
+        far_tick_ && tick > *far_tick_ && static_cast<double>(tick - *far_tick_) <= most;
+    far_tick_ = is_far ? std::optional(tick) : std::nullopt;
+    return is_far && !agrees;
   }
 
   /// The time since the look that its velocity follows from, which `now_` holds then; 0 if how it
@@ -463,6 +483,7 @@ class EpisodeReader {
   ValueFormat<LineEntry> line_format_;
   int line_ = 0;
   const bool keeps_all_;
+  std::optional<grammar::Tick> far_tick_;  ///< of the last frame, if it was left out
   bool header_ = false;
   bool had_header_ = false;  ///< a good one
   std::vector<std::string> names_;
@@ -519,6 +540,7 @@ Result<Recording> EpisodeStream::Whole(grammar::Tick end_tick) {
   return std::move(lines.episode);
 }
 
+void EpisodeStream::DoubtFrames(double ahead_s) { reader_->lines.most_ahead_s = ahead_s; }
 bool EpisodeStream::has_header() const { return reader_->lines.has_header(); }
 const EpisodeHeader& EpisodeStream::header() const { return reader_->lines.episode.header; }
 std::string EpisodeStream::gaps() const {

@@ -30,15 +30,21 @@ double Share(const Seconds& a, const Seconds& b) {
 struct Pair {
   std::vector<Seconds> marked, recognised;
 
-  int Found(double offset_s) const {
+  /// How many of the labels are found if they were so much later; adds how far these begin from
+  /// what was recognised, moved and not.
+  int Found(double offset_s, double* moved_s = nullptr, double* now_s = nullptr) const {
     int found = 0;
     for (Seconds label : marked) {
+      const double begin_s = label.begin_s;
       label.begin_s += offset_s;
       label.end_s += offset_s;
       // What shares half of the union has the middle of both.
       const double middle_s = (label.begin_s + label.end_s) / 2;
       const auto at = std::ranges::lower_bound(recognised, middle_s, {}, &Seconds::end_s);
-      found += at != recognised.end() && Share(label, *at) >= 0.5 ? 1 : 0;
+      if (at == recognised.end() || Share(label, *at) < 0.5) continue;
+      ++found;
+      if (moved_s) *moved_s += std::abs(label.begin_s - at->begin_s);
+      if (now_s) *now_s += std::abs(begin_s - at->begin_s);
     }
     return found;
   }
@@ -92,6 +98,10 @@ std::optional<ClockOffset> FindClockOffset(
   const int gain = best.found_then - best.found_now;
   if (gain < kLeastGain || gain < kLeastGainShare * best.all || std::abs(best.offset_s) < kLeast_s)
     return std::nullopt;
+  // Where only the ends come late, moving makes the begins worse: that is no other clock.
+  double moved_s = 0, now_s = 0;
+  for (const Pair& pair : pairs) pair.Found(best.offset_s, &moved_s, &now_s);
+  if (moved_s > now_s) return std::nullopt;
   return best;
 }
 

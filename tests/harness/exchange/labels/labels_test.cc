@@ -179,6 +179,11 @@ TEST_F(Labels, AnotherClockIsNoticed) {
   EXPECT_EQ(clock->all, 5);
   EXPECT_FALSE(of(found, found));
   EXPECT_FALSE(of(marked, {}));
+  // Ends that are late are no shift: the begins agree as they are.
+  grammar::Timeline late = marked;
+  for (grammar::NamedEvent& event : late.events)
+    event.interval.end += 5 * (event.interval.end - event.interval.begin) / 4;
+  EXPECT_FALSE(of(marked, late));
 }
 
 TEST_F(Labels, FaultyCsvIsNamed) {
