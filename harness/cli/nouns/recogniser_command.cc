@@ -3,7 +3,6 @@
 // docs/recognisers.md. Tested by tests/program/recogniser_test.cc
 #include <fmt/format.h>
 
-#include "grammar/base/wording.h"
 #include "harness/cli/command/typed_episode.h"
 #include "harness/measure/score/found_events.h"
 
@@ -54,7 +53,7 @@ ExitCode RunRecogniser(const ParsedOptions& options, const CommandContext& conte
       context.out << (twice.broken ? grammar::Format(twice.broken->what)
                                    : "a seed of its own? PREHEND_SEED is the same for both\n");
   }
-  context.out << grammar::CountOf(once.events.labels.size(), "event") << "\n";
+  context.out << fmt::format("events: {}\n", once.events.labels.size());
   return is_same ? ExitCode::kAgrees : ExitCode::kDiffers;
 }
 
