@@ -18,8 +18,8 @@ class HandMotion {
 
   bool Moves(int frame) const {
     return evidence_.Motion_m_per_s(hand_, frame) >= settings_.idle_speed_m_per_s &&
-           evidence_.Excursion_m(hand_, frame, settings_.idle_window_s, touch_ + 1) >
-               settings_.idle_excursion_m;
+           evidence_.Leaves(hand_, frame, settings_.idle_excursion_m, settings_.idle_window_s,
+                            touch_ + 1);
   }
 
   /// Where a movement begins that was noticed at `frame`, not before `earliest`: where the hand

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <ranges>
 
 #include "harness/truth/oracle/distance.h"
 
@@ -226,16 +227,25 @@ double Evidence::Apart_m(int hand, int frame, int other) const {
   return Farthest_m(recording.hand(hand, frame), recording.hand(hand, other));
 }
 
-double Evidence::Excursion_m(int hand, int frame, double window_s, int end) const {
-  return Cached(excursions_[{hand, window_s, end}], recording.size(), frame, [&] {
-    const physics::HandState& here = recording.hand(hand, frame);
-    double farthest_m = 0;
-    for (int i = frame - 1; i >= 0 && recording.Seconds(i, frame) <= window_s / 2; --i)
-      farthest_m = std::max(farthest_m, Farthest_m(here, recording.hand(hand, i)));
-    for (int i = frame + 1; i < end && recording.Seconds(frame, i) <= window_s / 2; ++i)
-      farthest_m = std::max(farthest_m, Farthest_m(here, recording.hand(hand, i)));
-    return farthest_m;
-  });
+bool Evidence::Leaves(int hand, int frame, double distance_m, double window_s, int end) const {
+  const auto before = std::views::iota(0, frame),
+             after = std::views::iota(frame, std::max(end, frame));
+  const int first =
+      frame - static_cast<int>(before.end() - std::ranges::partition_point(before, [&](int i) {
+                                 return recording.Seconds(i, frame) > window_s / 2;
+                               }));
+  const int last =
+      frame - 1 +
+      static_cast<int>(
+          std::ranges::partition_point(
+              after, [&](int i) { return recording.Seconds(frame, i) <= window_s / 2; }) -
+          after.begin());
+  // What moves is farthest at the ends.
+  for (int i = first; i < frame; ++i)
+    if (Apart_m(hand, frame, i) > distance_m) return true;
+  for (int i = last; i > frame; --i)
+    if (Apart_m(hand, frame, i) > distance_m) return true;
+  return false;
 }
 
 bool InReachRegion(const Recording& recording, int hand, int body, int frame, double radius_m) {

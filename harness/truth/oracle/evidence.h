@@ -50,20 +50,13 @@ class Evidence {
   double Motion_m_per_s(int hand, int frame) const;
   /// How far palm or a finger is in one frame from where it is in another: the farthest, metres.
   double Apart_m(int hand, int frame, int other) const;
-  /// How far palm or a finger gets from where it is, within `window_s` / 2 before or after, in
-  /// frames before `end`: the farthest of them, metres.
-  double Excursion_m(int hand, int frame, double window_s, int end) const;
+  /// Whether palm or a finger gets farther than this from where it is, within `window_s` / 2 before
+  /// or after, in frames before `end`.
+  bool Leaves(int hand, int frame, double distance_m, double window_s, int end) const;
 
  private:
-  struct ExcursionWindow {
-    int hand = 0;
-    double window_s = 0;
-    int end = 0;
-    friend auto operator<=>(const ExcursionWindow&, const ExcursionWindow&) = default;
-  };
   mutable std::map<Pair, std::vector<double>> distances_;
   mutable std::map<int, std::vector<double>> motions_;
-  mutable std::map<ExcursionWindow, std::vector<double>> excursions_;
 };
 
 /// Whether the body's true shape reaches into the hand's region of interest: the sphere ahead of
