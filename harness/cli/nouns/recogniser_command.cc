@@ -3,7 +3,9 @@
 // docs/recognisers.md. Tested by tests/program/recogniser_test.cc
 #include <fmt/format.h>
 
-#include "harness/cli/command/typed_episode.h"
+#include "harness/cli/command/command.h"
+#include "harness/episode/episode/find_episodes.h"
+#include "harness/episode/episode/open_episode.h"
 #include "harness/measure/score/found_events.h"
 
 namespace prehend::cli {
@@ -24,12 +26,15 @@ constexpr const char* kRules[] = {
     "again: it prints the same lines for the same episode"};
 
 ExitCode RunRecogniser(const ParsedOptions& options, const CommandContext& context) {
-  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
-  if (!episode) return episode.error();
+  const auto name =
+      episode::FindEpisode(options.Text("EPISODE"), options.Text("--episode"), context.root);
+  if (!name) return Complain(context, name.error());
+  auto episode = episode::OpenEpisode(*name, {}, context.root);
+  if (!episode) return Complain(context, episode.error());
   const measure::RecogniserChoice choice{
       .command = options.Text("COMMAND"),
       .pace = options.Has("--online") ? measure::Pace::kOnline : measure::Pace::kOffline,
-      .time_limit_s = options.NumberOr("--recogniser-limit-s", kRecogniserLimit_s)};
+      .time_limit_s = kRecogniserLimit_s};
   const measure::WatchedEpisode watched = measure::Watched(*episode);
   const Recognised once = measure::Recogniser(choice).Recognise(watched);
   Recognised twice = once;
@@ -72,10 +77,7 @@ Command RecogniserCommand() {
                        .help = "a recording, an episode file or a scenario",
                        .required = true},
                       EpisodeOption(),
-                      GrammarOption(),
-                      ParametersOption(),
-                      OnlineOption(),
-                      RecogniserLimitOption()},
+                      OnlineOption()},
           .run = RunRecogniser};
 }
 
