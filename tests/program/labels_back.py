@@ -70,11 +70,13 @@ def mimicgen_ends(demo, names):
 
 
 def edges_of(episodes, name):
-    """(begin of the first grasp, its end on the table) of `resegment`, in frames of 20 Hz."""
+    """(begin of the first grasp, its end on the table) of `resegment`, in frames of 20 Hz; None: there is none."""
     events = json.loads(said("episode", "resegment", episodes, "--episode", name, "--json"))["events"]
     grasps = [event for event in events if event["event"] == "grasping" and event["roles"]["object"] == "cube_1"]
     supports = [event for event in events if event["event"] == "supported_by" and event["roles"]
                 == {"object": "cube_1", "support": "table"}]
+    if not grasps:
+        return None, None
     begin = min(event["begin_s"] for event in grasps)
     ends = [event["end_s"] for event in grasps if not event.get("open_end") and event["end_s"] > begin and any(
         support["begin_s"] <= event["end_s"] + 0.5 and support["end_s"] > event["end_s"] for support in supports)]
@@ -110,7 +112,8 @@ def check_kind(folder, kind, ends_in):
                     signal = file[f"data/{name}/{group}/subtask_term_signals/{label}"][()]
                     assert not signal[0] and np.all(np.diff(signal.astype(int)) >= 0)
             else:
-                assert f"{name} is left without labels: place_1: no end of grasping cube_1" in told
+                why = "place_1: no end" if edges[name][0] is not None else "grasp_1: no begin"
+                assert f"{name} is left without labels: {why} of grasping cube_1" in told
                 assert f"data/{name}/{group}/subtask_term_signals/place_1" not in after
     again = os.path.join(folder, "again.hdf5")
     said("episode", "label", episodes, "--map", map_path, "--write", again, code=0 if len(whole) == len(names) else 1)
