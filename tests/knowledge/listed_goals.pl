@@ -24,11 +24,13 @@ main :-
 asked(Line, State) :-
     count(1, State, N),
     catch(prehend:read_query(Line, Goal, Names), _, fail),
-    catch(call_with_inference_limit(run(N, Goal, Names), 5000, Ended), _, true), Ended \== inference_limit_exceeded, !,
+    catch(call_with_inference_limit(run(N, Goal, Names), 5000, Ended), Ended, true), \+ is_long(Ended), !,
     count(2, State, _),
     (   catch(( trace, run(N, Goal, Names), notrace ), _, ( notrace, fail )) -> count(3, State, _) ; true ),
     notrace, nodebug.
 asked(_, _).
+is_long(Ended) :- ( compound(Ended) -> functor(Ended, Name, _) ; Name = Ended ), Name == inference_limit_exceeded.
+is_long(error(resource_error(_), _)).
 count(I, State, N) :- arg(I, State, Before), N is Before + 1, nb_setarg(I, State, N).
 
 run(N, Goal, Names) :-

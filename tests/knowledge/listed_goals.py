@@ -136,7 +136,7 @@ def main():
         others = sorted({line for line in names.stdout.splitlines() if re.fullmatch(r"[a-z]\w*/\d", line)})
         maker = Maker(seed, others)
         queries = "".join(maker.query() + "\n" for _ in range(count))
-        said = subprocess.run(["swipl", "-q", "-f", "none", "-g", "main", "-t", "halt", HERE / "listed_goals.pl", "--", PROLOG, f"{folder}/kb"],
+        said = subprocess.run(["swipl", "-q", "-f", "none", "--stack-limit=32m", "-g", "main", "-t", "halt", HERE / "listed_goals.pl", "--", PROLOG, f"{folder}/kb"],
                               input=queries, capture_output=True, text=True, cwd=folder)
         left = {path.name for path in pathlib.Path(folder).iterdir()}
     called = {name.replace("'", "").removeprefix("system:") for name in re.findall(r"^called\((.*)\)$", said.stdout, re.MULTILINE)}
