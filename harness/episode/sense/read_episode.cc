@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads an episode line by line, with the field tables and error messages of scenario files. Tested
-// by tests/harness/episode/sense/episode_file_test.cc
+// Reads an episode line by line. Tested by tests/harness/episode/sense/episode_file_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -290,13 +289,13 @@ class EpisodeReader {
       return errors.Add(entry.tick.where,
                         fmt::format("the ticks must increase: {} comes after {}", tick, before));
     }
-    if (!first && most_ahead_s > 0 && IsFarAhead(tick - before, tick))
-      return errors.Add(entry.tick.where,
-                        fmt::format("a frame {:.6g} s after the one before is left out: is its "
-                                    "time right?",
-                                    static_cast<double>(tick - before) / TicksPerSecond()));
-    const double dt_s = static_cast<double>(tick - before) /
-                        static_cast<double>(episode.header.entity_table.ticks_per_second);
+    const double dt_s = static_cast<double>(tick - before) / TicksPerSecond();
+    if (!first && most_ahead_s > 0 && IsFarAhead(dt_s, tick)) {
+      for (const auto& sample : entry.samples) IndexOf(sample.name, sample.name_where, errors);
+      constexpr const char* kFar =
+          "a frame {:.6g} s after the one before is left out: is its time right?";
+      return errors.Add(entry.tick.where, fmt::format(kFar, dt_s));
+    }
     now_.tick = tick;
     for (grammar::EntitySample& look : now_.entities) {
       if (IsTracked(look)) look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
@@ -335,11 +334,10 @@ class EpisodeReader {
   }
 
   /// One frame of a stream; a second one that agrees with it comes after a pause.
-  bool IsFarAhead(grammar::Tick ahead, grammar::Tick tick) {
-    const double most = most_ahead_s * TicksPerSecond();
-    const bool is_far = static_cast<double>(ahead) > most;
-    const bool agrees =
-        far_tick_ && tick > *far_tick_ && static_cast<double>(tick - *far_tick_) <= most;
+  bool IsFarAhead(double ahead_s, grammar::Tick tick) {
+    const bool is_far = ahead_s > most_ahead_s;
+    const bool agrees = far_tick_ && tick > *far_tick_ &&
+                        static_cast<double>(tick - *far_tick_) <= most_ahead_s * TicksPerSecond();
     far_tick_ = is_far ? std::optional(tick) : std::nullopt;
     return is_far && !agrees;
   }
