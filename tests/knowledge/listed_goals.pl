@@ -19,12 +19,12 @@ main :-
     forall(seen(P), ( writeq(called(P)), nl )),
     writeq(State), nl.
 
-% counts(all, traced, traced to their end). A query that ends within a number of inferences is run again for the tracer, which
+% counts(all, traced, traced to their end). What ends within a number of inferences is run again for the tracer, which
 % knows no limits. Every second one is run without the check before it.
 asked(Line, State) :-
     count(1, State, N),
     catch(prehend:read_query(Line, Goal, Names), _, fail),
-    catch(call_with_inference_limit(run(N, Goal, Names), 5000, Ended), Ended, true), \+ is_long(Ended), !,
+    catch(call_with_inference_limit(\+ \+ run(N, Goal, Names), 5000, Ended), Ended, true), \+ is_long(Ended), !,
     count(2, State, _),
     (   catch(( trace, run(N, Goal, Names), notrace ), _, ( notrace, fail )) -> count(3, State, _) ; true ),
     notrace, nodebug.
