@@ -126,7 +126,7 @@ TEST_F(TryCommand, TheCookbookIsRight) {
     EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
     EXPECT_EQ(said.err, "");
   }
-  EXPECT_EQ(tried, 13);
+  EXPECT_EQ(tried, 15);
 }
 
 }  // namespace
