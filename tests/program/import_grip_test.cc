@@ -114,6 +114,25 @@ TEST(ImportGrip, AnActionIsOneAndBeyondTheEndsNothingMore) {
   EXPECT_EQ(FactsAt(folder, 0.2).fraction, 0);
 }
 
+TEST(ImportGrip, AHandleIsAPartOfItsDrawer) {
+  const auto folder = FreshFolder("import_grip");
+  const std::string map =
+      Replaced(kMap, "cup: {from: cup, class: Cup, size_m: [0.08, 0.08, 0.1]}",
+               "knob: {from: cup, class: Handle, size_m: [0.02, 0.02, 0.02], part_of: door}");
+  const Said said = ImportCsv(folder, Csv(), map);
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const std::string text = ReadFile(folder / "take.jsonl");
+  EXPECT_NE(text.find("\"part_of\":\"door\""), std::string::npos) << text.substr(0, 900);
+  EXPECT_NE(text.find("\"attached\":true"), std::string::npos) << text.substr(0, 900);
+  const Said doors = Prehend({"episode", "resegment", (folder / "take.jsonl").string(), "--grammar",
+                              "furniture_from_gripper"});
+  EXPECT_EQ(doors.exit_code, 0) << doors.err;
+  const Said wrong = ImportCsv(folder, Csv(), Replaced(map, "part_of: door", "part_of: dor"));
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(wrong.err.find("no entity is called 'dor'"), std::string::npos) << wrong.err;
+  EXPECT_EQ(ImportCsv(folder, Csv(), Replaced(map, "part_of: door", "part_of: knob")).exit_code, 2);
+}
+
 TEST(ImportGrip, OneBodyPerRowHasTheValuesOfItsRows) {
   const auto folder = FreshFolder("import_grip");
   std::string csv = "t,name,x,y,z,w\n";
@@ -188,7 +207,7 @@ TEST(ImportGrip, MissingValuesAreBridgedHeldOrRefused) {
   EXPECT_EQ(no_number.exit_code, 2);
   EXPECT_NE(no_number.err.find("poses.csv:23:"), std::string::npos) << no_number.err;
   EXPECT_NE(no_number.err.find("missing: [nan]"), std::string::npos) << no_number.err;
-  const std::string map = Replaced(kMap, "axes: z_up", "axes: z_up\nmissing: ['nan']");
+  const std::string map = Replaced(kMap, "axes: z_up", "axes: z_up\nmissing: [nan, -1, 'lost']");
   const Said missing = ImportCsv(folder, nan, map);
   EXPECT_EQ(missing.exit_code, 0) << missing.err;
 }

@@ -119,14 +119,19 @@ class Importer {
       grammar::EntityInfo& info = header.entity_table.entities.emplace_back();
       info.name = entity.name;
       info.half_size_m = e.size_m / 2;
+      if (e.part_of)
+        info.part_of = static_cast<int>(
+            std::ranges::find(map_.entities, e.part_of->value, &Named<MappedEntity>::name) -
+            map_.entities.begin());
       if (e.hand) {
         info.classes = {"Hand", "Entity"};
         info.sensor_sets = {"fingers", "thumb", "palm"};
       } else {
         info.classes = {e.class_name,
-                        e.joint   ? "Jointed"
-                        : e.fixed ? "Fixed"
-                                  : "Movable",
+                        e.joint     ? "Jointed"
+                        : e.part_of ? "Attached"
+                        : e.fixed   ? "Fixed"
+                                    : "Movable",
                         "Thing", "Entity"};
       }
     }

@@ -24,6 +24,7 @@ constexpr double kNearTop_m = 0.05;
 constexpr double kTurned_deg = 15, kAbout_deg = 20;
 constexpr double kInHand_m = 0.015;  ///< in the hand that carries it, root mean square
 constexpr double kWaits_m = 0.005;
+constexpr double kCarried_m_per_s = 7;
 constexpr double kBeside_m = 0.05;  ///< a right hand from a left one
 
 double DegreesFrom(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -53,7 +54,7 @@ class WayUp {
     Votes votes;
     for (std::size_t i = 1; i < seen_.rests.size(); ++i) {
       const Rest &from = seen_.rests[i - 1], &to = seen_.rests[i];
-      if (from.body != to.body || !from.stands || !to.stands) continue;
+      if (from.body != to.body || !from.stands || !to.stands || Jumps(from, to)) continue;
       Eigen::AlignedBox1d heights;
       Eigen::AlignedBox3d extent;
       for (std::size_t k = from.begin; k < to.end; ++k) {
@@ -104,7 +105,7 @@ class WayUp {
     for (std::size_t i = 0; i < seen_.rests.size(); ++i) {
       for (std::size_t k = i + 1; k < seen_.rests.size(); ++k) {
         const Rest &a = seen_.rests[i], &b = seen_.rests[k];
-        if (a.body != b.body || !a.stands || !b.stands) continue;
+        if (a.body != b.body || !a.stands || !b.stands || Jumps(a, b)) continue;
         const auto as_read = [&](const Eigen::Quaterniond& q) {
           return reorder_wxyz ? Reordered(q, *reorder_wxyz) : q;
         };
@@ -118,6 +119,15 @@ class WayUp {
   }
 
  private:
+  /// Faster than anybody carries it: what it did there tells nothing.
+  bool Jumps(const Rest& from, const Rest& to) const {
+    const std::vector<BodyLook>& looks = seen_.looks[from.body];
+    for (std::size_t k = from.begin + 1; k < to.end; ++k) {
+      if ((looks[k].p_m - looks[k - 1].p_m).norm() > kCarried_m_per_s * seen_.look_s) return true;
+    }
+    return false;
+  }
+
   const MotionSeen& seen_;
   const ImportMap& map_;
 };

@@ -93,6 +93,18 @@ ValueFormat<SubtaskLabel> LabelFormat() {
       .format();
 }
 
+/// A cell as it is spelled: numbers and nan, too.
+ValueFormat<std::string> CellFormat() {
+  const auto text = Text(40);
+  return ValueFormat<std::string>(
+      {.schema = AnyOf({text.schema(), Number(-1e300, 1e300).schema()}),
+       .read = [text](const YamlNode& node, DiagnosticList& errors, void* value) {
+         YamlNode cell = node;
+         cell.quoted = cell.quoted || node.kind == YamlNode::Kind::kScalar;
+         return text.erased().read(cell, errors, value);
+       }});
+}
+
 ValueFormat<Opening> OpeningFormat(const char* noun) {
   return StructFormat<Opening>(noun)
       .Required("from", &Opening::from, OneOrMoreNames(),
@@ -126,6 +138,8 @@ ValueFormat<MappedEntity> EntityFormat() {
       .Optional("ahead", &E::ahead, Vector<3>(-1, 1),
                 "Where a hand reaches, in its own frame, z up.")
       .Optional("grip", &E::grip, OpeningFormat("a grip"), "How far its gripper is open.")
+      .Optional("part_of", &E::part_of, Text(200),
+                "What it is fixed to, as a handle is to a drawer.")
       .Optional("joint", &E::joint, OpeningFormat("a joint"),
                 "How far it is open, of what is on a slider or a hinge.")
       .Optional("pose", &E::pose, Text(500),
@@ -200,7 +214,7 @@ ValueFormat<ImportMap> MapFormat() {
                 "What separates the decimals of numbers.")
       .Optional("header_line", &M::header_line, Integer<int>(1, 1000),
                 "The line with the names of the columns; those before it are not read.")
-      .Optional("missing", &M::missing, ListOf(Text(40), 0, 20),
+      .Optional("missing", &M::missing, ListOf(CellFormat(), 0, 20),
                 "Cells that mean 'not tracked', besides empty ones: [nan].")
       .Optional("zero_is_missing", &M::zero_is_missing, Flag(),
                 "A body at exactly 0, 0, 0 is not tracked.")
@@ -407,11 +421,23 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
   if (format != PoseFormat::kMcap && map.mcap.where.place.line > 0)
     errors.Add(map.mcap.where, "'mcap' says something of MCAP files; this is none");
   bool tracked = false;
+  std::vector<std::string> names;
+  for (const Named<MappedEntity>& entity : map.entities) names.push_back(entity.name);
   for (const Named<MappedEntity>& entity : map.entities) {
     const MappedEntity& e = entity.value;
     tracked = tracked || e.from;
     CheckDatasets(entity, format, errors);
     CheckOpenings(entity, format, errors);
+    if (e.part_of && std::ranges::find(names, e.part_of->value) == names.end())
+      errors.AddUnknownName(e.part_of->where,
+                            fmt::format("no entity is called '{}'", e.part_of->value),
+                            e.part_of->value, names);
+    else if (e.part_of && (e.hand || e.fixed || e.joint || e.part_of->value == entity.name))
+      errors.Add(
+          e.part_of->where,
+          fmt::format("'{}' is part of another thing, so it is no hand, is not fixed and has "
+                      "no joint",
+                      entity.name));
     if (e.hand && (e.fixed || e.class_name != "Object"))
       errors.Add(entity.name_where,
                  fmt::format("'{}': a hand has no class and is not fixed", entity.name));
@@ -536,14 +562,14 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
   static const std::string kTable = "write its poses to a CSV file: one row a time, named columns";
   static const std::map<std::string, std::string> kOthers = {
       {".db3", "convert it, with the program that comes with MCAP: mcap convert IN.db3 OUT.mcap"},
-      {".npz", "write its arrays as CSV, or as HDF5 with h5py"},
-      {".npy", "write its array as CSV, or as HDF5 with h5py"},
+      {".npz", "in Python, prehend takes arrays (docs/python.md); or write them as CSV"},
+      {".npy", "in Python, prehend takes arrays (docs/python.md); or write them as CSV"},
       {".pkl", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
-      {".parquet", "write its poses as CSV, or as HDF5 with h5py"},
+      {".parquet", "in Python, prehend takes DataFrames (docs/python.md); or write it as CSV"},
       {".c3d", "export poses of rigid bodies as CSV; C3D mostly holds single markers"},
       {".fbx", "export it as BVH"},
       {".json", kTable},
-      {".pickle", kTable},
+      {".pickle", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
       {".mat", kTable},
       {".xlsx", "save the sheet as CSV"},
       {".xls", "save the sheet as CSV"},

@@ -105,6 +105,7 @@ struct MappedEntity {
   /// How it is turned in its markers' axes, this or the time.
   std::optional<Located<Eigen::Vector4d>> axes_quat_wxyz;
   std::optional<Located<Eigen::Vector3d>> ahead;  ///< of a hand: where it reaches, likewise; x
+  std::optional<Located<std::string>> part_of;    ///< another entity, to which it is fixed
   std::optional<Opening> grip;                    ///< of a hand
   std::optional<Opening> joint;                   ///< of a drawer or a door
 };
