@@ -16,6 +16,7 @@
 #include "harness/exchange/import/plausibility.h"
 #include "harness/exchange/import/rest_poses.h"
 #include "harness/exchange/import/track.h"
+#include "harness/exchange/poses/table_layout.h"
 
 namespace prehend::exchange {
 namespace {
@@ -475,8 +476,8 @@ class Importer {
 Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path) {
   const Result<PoseFormat> format = PoseFormatOf(poses_path);
   if (!format) return tl::unexpected(format.error());
-  const Result<MapFile> map =
-      ReadImportMap(map_path, *format, *format == PoseFormat::kCsv ? poses_path : "");
+  const Result<MapFile> map = *format == PoseFormat::kCsv ? ReadMapOfTable(map_path, poses_path)
+                                                          : ReadImportMap(map_path, *format);
   if (!map) return tl::unexpected(map.error());
   constexpr std::array kReaders = {ReadCsvPoses, ReadBvhPoses, ReadMcapPoses};
   Result<PoseFile> poses = kReaders.at(static_cast<std::size_t>(*format))(poses_path, *map);

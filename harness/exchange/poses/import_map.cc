@@ -6,14 +6,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
-#include <map>
 
-#include "harness/base/base/text_file.h"
 #include "harness/exchange/hdf5/hdf5_file.h"
-#include "harness/exchange/poses/table_layout.h"
 
 namespace prehend::exchange {
 namespace {
@@ -158,6 +153,15 @@ ValueFormat<MappedEntity> EntityFormat() {
       .format();
 }
 
+ValueFormat<TimeUnit> TimeUnits() {
+  return Choice<TimeUnit>({{"s", TimeUnit::kSecond},
+                           {"ms", TimeUnit::kMillisecond},
+                           {"us", TimeUnit::kMicrosecond},
+                           {"ns", TimeUnit::kNanosecond},
+                           {"frame", TimeUnit::kFrame},
+                           {"iso", TimeUnit::kIso}});
+}
+
 ValueFormat<ImportMap> MapFormat() {
   using M = ImportMap;
   const auto name = Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'");
@@ -189,19 +193,12 @@ ValueFormat<ImportMap> MapFormat() {
               {{"wxyz", QuaternionOrder::kWxyz}, {"xyzw", QuaternionOrder::kXyzw}}),
           "The order of the four columns of columns.quaternion; of MCAP, of the fields x, y, z, w.")
       .Optional("euler_order", &M::euler_order, Text(3),
-                "The axes of columns.euler, first turn first: XYZ about the body's own axes, xyz "
-                "about the file's.")
+                "Of columns.euler, first turn first: XYZ about the body's axes, xyz the file's.")
       .Optional("angle_unit", &M::angles_in_degrees, Choice<bool>({{"deg", true}, {"rad", false}}),
                 "Of angles.")
-      .Optional("time_unit", &M::time_unit,
-                Choice<TimeUnit>({{"s", TimeUnit::kSecond},
-                                  {"ms", TimeUnit::kMillisecond},
-                                  {"us", TimeUnit::kMicrosecond},
-                                  {"ns", TimeUnit::kNanosecond},
-                                  {"frame", TimeUnit::kFrame},
-                                  {"iso", TimeUnit::kIso}}),
-                "Of CSV: the unit of the time column; frame: a number, rate_hz per second; iso: "
-                "dates like 2026-01-31T10:00:00.25Z, or times of day.")
+      .Optional(
+          "time_unit", &M::time_unit, TimeUnits(),
+          "Of CSV: the unit of the time column; frame: a number, rate_hz per second; iso: dates.")
       .Optional("rate_hz", &M::rate_hz, Number(0.1, 10'000),
                 "Frames per second. It is compared with the times.")
       .Optional("separator", &M::separator,
@@ -469,13 +466,6 @@ void JoinCalls(YamlNode& label) {
   }
 }
 
-std::string EndingOf(const std::string& poses_path) {
-  std::string ending = std::filesystem::path(poses_path).extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
-
 }  // namespace
 
 double Opening::FractionOf(std::span<const double> numbers) const {
@@ -552,44 +542,8 @@ Eigen::Vector3d ImportMap::Mirrored(Eigen::Vector3d v) const {
   return v;
 }
 
-bool IsBag(const std::string& poses_path) { return EndingOf(poses_path) == ".bag"; }
-
-Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
-  const std::string ending = EndingOf(poses_path);
-  if (ending == ".bvh") return PoseFormat::kBvh;
-  if (ending == ".hdf5" || ending == ".h5") return PoseFormat::kHdf5;
-  if (ending == ".mcap" || ending == ".bag") return PoseFormat::kMcap;
-  static const std::string kTable = "write its poses to a CSV file: one row a time, named columns";
-  static const std::map<std::string, std::string> kOthers = {
-      {".db3", "convert it, with the program that comes with MCAP: mcap convert IN.db3 OUT.mcap"},
-      {".npz", "in Python, prehend takes arrays (docs/python.md); or write them as CSV"},
-      {".npy", "in Python, prehend takes arrays (docs/python.md); or write them as CSV"},
-      {".pkl", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
-      {".parquet", "in Python, prehend takes DataFrames (docs/python.md); or write it as CSV"},
-      {".c3d", "export poses of rigid bodies as CSV; C3D mostly holds single markers"},
-      {".fbx", "export it as BVH"},
-      {".json", kTable},
-      {".pickle", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
-      {".mat", kTable},
-      {".xlsx", "save the sheet as CSV"},
-      {".xls", "save the sheet as CSV"},
-      {".ods", "save the sheet as CSV"},
-      {".zip", "unpack it"},
-      {".gz", "unpack it"},
-      {".7z", "unpack it"}};
-  const auto other = kOthers.find(ending);
-  if (other == kOthers.end()) return PoseFormat::kCsv;
-  return tl::unexpected(grammar::Diagnostics{
-      {.file = ReadableName(poses_path),
-       .place = {},
-       .message =
-           fmt::format("files {} are not read; CSV, BVH, MCAP, bags of ROS 1 and HDF5 are", ending),
-       .source_line = {},
-       .hint = other->second}});
-}
-
 Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format,
-                              const std::string& table) {
+                              const Completion& complete) {
   Result<YamlDocument> document = ReadYamlFile(path);
   if (!document) return tl::unexpected(std::move(document.error()));
   MapFile file{.document = std::move(*document), .map = {}};
@@ -601,12 +555,7 @@ Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format,
       MappedEntity& e = entity.value;
       if (e.pose || e.position) e.from = e.pose ? e.pose : e.position;
     }
-    std::optional<TableLayout> layout;
-    if (!table.empty()) layout = LayoutOfFile(table);
-    if (layout && !(layout->yields && !file.map.columns.position.empty())) {
-      Complete(*layout, file.document.root.where, file.map, errors);
-      file.layout = std::make_shared<const TableLayout>(std::move(*layout));
-    }
+    if (complete) complete(file.document.root.where, file.map, errors);
     CheckMap(file.map, format, file.document.root, errors);
   }
   if (!errors.empty()) return tl::unexpected(errors.Sorted());

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,8 +14,8 @@
 
 #include "harness/base/base/result.h"
 #include "harness/base/yaml/struct_format.h"
-#include "harness/exchange/poses/orientation.h"
-#include "harness/exchange/poses/table_cells.h"
+#include "harness/exchange/cells/orientation.h"
+#include "harness/exchange/cells/table_cells.h"
 
 namespace prehend::exchange {
 
@@ -174,15 +175,12 @@ struct MapFile {
   std::shared_ptr<const TableLayout> layout = nullptr;  ///< of the table, if its head is known
 };
 
-bool IsBag(const std::string& poses_path);
+/// Puts what a file says of itself into a map, before the map is checked.
+using Completion = std::function<void(Where, ImportMap&, DiagnosticList&)>;
 
-/// A kind of file that is not read is an error that says what helps.
-Result<PoseFormat> PoseFormatOf(const std::string& poses_path);
-
-/// For a file of this format; `table` is one of kCsv that is there, and says some of it itself.
-/// Errors have their places.
+/// For a file of this format. Errors have their places.
 Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format,
-                              const std::string& table = "");
+                              const Completion& complete = {});
 
 /// The JSON Schema of maps, as text.
 std::string ImportMapSchema();

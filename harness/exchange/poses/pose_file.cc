@@ -4,6 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+
+#include "harness/base/base/text_file.h"
 
 namespace prehend::exchange {
 
@@ -59,6 +64,53 @@ void MirrorPoses(const ImportMap& map, PoseFile& poses) {
     }
   }
   if (poses.stature) poses.stature = map.Mirrored(*poses.stature);
+}
+
+namespace {
+
+std::string EndingOf(const std::string& poses_path) {
+  std::string ending = std::filesystem::path(poses_path).extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+}  // namespace
+
+bool IsBag(const std::string& poses_path) { return EndingOf(poses_path) == ".bag"; }
+
+Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
+  const std::string ending = EndingOf(poses_path);
+  if (ending == ".bvh") return PoseFormat::kBvh;
+  if (ending == ".hdf5" || ending == ".h5") return PoseFormat::kHdf5;
+  if (ending == ".mcap" || ending == ".bag") return PoseFormat::kMcap;
+  static const std::string kTable = "write its poses to a CSV file: one row a time, named columns";
+  static const std::map<std::string, std::string> kOthers = {
+      {".db3", "convert it, with the program that comes with MCAP: mcap convert IN.db3 OUT.mcap"},
+      {".npz", "in Python, prehend takes arrays (docs/python.md); or write them as CSV"},
+      {".npy", "in Python, prehend takes arrays (docs/python.md); or write them as CSV"},
+      {".pkl", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
+      {".parquet", "in Python, prehend takes DataFrames (docs/python.md); or write it as CSV"},
+      {".c3d", "export poses of rigid bodies as CSV; C3D mostly holds single markers"},
+      {".fbx", "export it as BVH"},
+      {".json", kTable},
+      {".pickle", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
+      {".mat", kTable},
+      {".xlsx", "save the sheet as CSV"},
+      {".xls", "save the sheet as CSV"},
+      {".ods", "save the sheet as CSV"},
+      {".zip", "unpack it"},
+      {".gz", "unpack it"},
+      {".7z", "unpack it"}};
+  const auto other = kOthers.find(ending);
+  if (other == kOthers.end()) return PoseFormat::kCsv;
+  return tl::unexpected(grammar::Diagnostics{
+      {.file = ReadableName(poses_path),
+       .place = {},
+       .message =
+           fmt::format("files {} are not read; CSV, BVH, MCAP, bags of ROS 1 and HDF5 are", ending),
+       .source_line = {},
+       .hint = other->second}});
 }
 
 }  // namespace prehend::exchange

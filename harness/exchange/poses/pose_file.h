@@ -76,4 +76,9 @@ Result<PoseFile> ReadBvhPoses(const std::string& path, const MapFile& map);
 /// Topics of poses, and coordinate frames of a tree of transforms, each a body.
 Result<PoseFile> ReadMcapPoses(const std::string& path, const MapFile& map);
 
+bool IsBag(const std::string& poses_path);
+
+/// A kind of file that is not read is an error that says what helps.
+Result<PoseFormat> PoseFormatOf(const std::string& poses_path);
+
 }  // namespace prehend::exchange

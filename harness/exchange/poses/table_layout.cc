@@ -353,16 +353,7 @@ void Agree(const std::optional<T>& of_file, std::optional<Located<T>>& of_map, c
                fmt::format("leave '{}' out", key));
 }
 
-}  // namespace
-
-std::optional<TableLayout> LayoutOf(std::string_view text) {
-  const Lines lines = HeadOf(text);
-  if (lines.empty()) return std::nullopt;
-  for (const auto reader : {MotiveOf, ViconOf, QualisysOf, TrcOf, EurocOf, RowsOf})
-    if (std::optional<TableLayout> layout = reader(lines)) return layout;
-  return std::nullopt;
-}
-
+/// Of a file; none of one that cannot be read.
 std::optional<TableLayout> LayoutOfFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string head(kHeadBytes, '\0');
@@ -404,6 +395,27 @@ void Complete(TableLayout& layout, Where where, ImportMap& map, DiagnosticList& 
                      &map.columns.matrix, &map.columns.axis_angle})
     for (Located<std::string>& column : *list) column.where = where;
   if (map.columns.time) map.columns.time->where = where;
+}
+
+}  // namespace
+
+std::optional<TableLayout> LayoutOf(std::string_view text) {
+  const Lines lines = HeadOf(text);
+  if (lines.empty()) return std::nullopt;
+  for (const auto reader : {MotiveOf, ViconOf, QualisysOf, TrcOf, EurocOf, RowsOf})
+    if (std::optional<TableLayout> layout = reader(lines)) return layout;
+  return std::nullopt;
+}
+
+Result<MapFile> ReadMapOfTable(const std::string& path, const std::string& table) {
+  std::optional<TableLayout> layout = LayoutOfFile(table);
+  Result<MapFile> file = ReadImportMap(
+      path, PoseFormat::kCsv, [&](Where where, ImportMap& map, DiagnosticList& errors) {
+        if (layout && layout->yields && !map.columns.position.empty()) layout.reset();
+        if (layout) Complete(*layout, where, map, errors);
+      });
+  if (file && layout) file->layout = std::make_shared<const TableLayout>(std::move(*layout));
+  return file;
 }
 
 }  // namespace prehend::exchange

@@ -35,10 +35,8 @@ struct TableLayout {
 
 /// By the first lines of a file.
 std::optional<TableLayout> LayoutOf(std::string_view text);
-/// Of a file; none of one that cannot be read.
-std::optional<TableLayout> LayoutOfFile(const std::string& path);
 
-/// Puts what the file says into the map; where the map says otherwise, that is an error.
-void Complete(TableLayout& layout, Where where, ImportMap& map, DiagnosticList& errors);
+/// With what the file `table` says of itself; where the map says otherwise, that is an error.
+Result<MapFile> ReadMapOfTable(const std::string& path, const std::string& table);
 
 }  // namespace prehend::exchange

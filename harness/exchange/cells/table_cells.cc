@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/poses/table_cells.h. Tested by
-// tests/harness/exchange/poses/table_cells_test.cc
-#include "harness/exchange/poses/table_cells.h"
+// See harness/exchange/cells/table_cells.h. Tested by
+// tests/harness/exchange/cells/table_cells_test.cc
+#include "harness/exchange/cells/table_cells.h"
 
 #include <algorithm>
 #include <array>

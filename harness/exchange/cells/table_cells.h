@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cells of a table of numbers, as programs write them. Tested by
-// tests/harness/exchange/poses/table_cells_test.cc
+// tests/harness/exchange/cells/table_cells_test.cc
 #pragma once
 
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/poses/orientation.h. Tested by
-// tests/harness/exchange/poses/orientation_test.cc
-#include "harness/exchange/poses/orientation.h"
+// See harness/exchange/cells/orientation.h. Tested by
+// tests/harness/exchange/cells/orientation_test.cc
+#include "harness/exchange/cells/orientation.h"
 
 #include <fmt/format.h>
 

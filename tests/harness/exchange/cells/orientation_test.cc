@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/exchange/poses/orientation.h"
+#include "harness/exchange/cells/orientation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/exchange/poses/table_cells.h"
+#include "harness/exchange/cells/table_cells.h"
 
 #include <gtest/gtest.h>
 

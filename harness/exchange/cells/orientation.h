@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers that say how something is turned: quaternions, angles, matrices. Tested by
-// tests/harness/exchange/poses/orientation_test.cc
+// tests/harness/exchange/cells/orientation_test.cc
 #pragma once
 
 #include <Eigen/Geometry>
