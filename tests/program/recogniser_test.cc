@@ -207,8 +207,8 @@ TEST_F(Recognisers, BrokenOnesAreNamedAndNothingIsLeft) {
       {"a line of 10 MB", Python("    say({'begin': 'x' * 10_000_000})\n"),
        "the line has more than 1 MiB"},
       {"writes before it reads",
-       "print('{\"recogniser\": 1, \"events\": {\"grasping\": [\"hand\", \"object\"]}}')\n"
-       "print('{\"event\": \"grasping\", \"roles\": {\"hand\": \"right_hand\", \"object\": "
+       "print('{\"recogniser\": 1, \"events\": {\"grasping\": [\"hand\", \"object\"]}}\\n'\n"
+       "      '{\"event\": \"grasping\", \"roles\": {\"hand\": \"right_hand\", \"object\": "
        "\"milk\"}, \"begin_tick\": 0, \"end_tick\": 9}', flush=True)\n"
        "import sys\nfor line in sys.stdin: pass\n",
        ":2:1: error: milk: the event lies at 0 to 9, and what it has got at 0 to 0"},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads an episode line by line. Tested by tests/harness/episode/sense/episode_file_test.cc
+// Reads an episode line by line, with the field tables and error messages of scenario files. Tested
+// by tests/harness/episode/sense/episode_file_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -87,6 +88,7 @@ class EpisodeReader {
     const bool said_its_end = episode.says_its_end;
     const grammar::Tick end_tick = episode.end_tick;
     take();
+    if (most_ahead_s > 0 && frames > 0 && diagnostics.empty()) DoubtFrame(now.tick);
     grammar::Diagnostics found = std::move(diagnostics);
     diagnostics.clear();
     if (!found.empty() && had_header_) {
@@ -289,13 +291,8 @@ class EpisodeReader {
       return errors.Add(entry.tick.where,
                         fmt::format("the ticks must increase: {} comes after {}", tick, before));
     }
-    const double dt_s = static_cast<double>(tick - before) / TicksPerSecond();
-    if (!first && most_ahead_s > 0 && IsFarAhead(dt_s, tick)) {
-      for (const auto& sample : entry.samples) IndexOf(sample.name, sample.name_where, errors);
-      constexpr const char* kFar =
-          "a frame {:.6g} s after the one before is left out: is its time right?";
-      return errors.Add(entry.tick.where, fmt::format(kFar, dt_s));
-    }
+    const double dt_s = static_cast<double>(tick - before) /
+                        static_cast<double>(episode.header.entity_table.ticks_per_second);
     now_.tick = tick;
     for (grammar::EntitySample& look : now_.entities) {
       if (IsTracked(look)) look.v_WB_m_per_s = look.w_WB_rad_per_s = Eigen::Vector3d::Zero();
@@ -329,17 +326,17 @@ class EpisodeReader {
       errors.Add(entry.tick.where, fmt::format("more than {} frames", kMaxEpisodeFrames));
   }
 
-  double TicksPerSecond() const {
-    return static_cast<double>(episode.header.entity_table.ticks_per_second);
-  }
-
   /// One frame of a stream; a second one that agrees with it comes after a pause.
-  bool IsFarAhead(double ahead_s, grammar::Tick tick) {
+  void DoubtFrame(grammar::Tick before) {
+    const double rate = static_cast<double>(episode.header.entity_table.ticks_per_second),
+                 ahead_s = static_cast<double>(now_.tick - before) / rate;
     const bool is_far = ahead_s > most_ahead_s;
-    const bool agrees = far_tick_ && tick > *far_tick_ &&
-                        static_cast<double>(tick - *far_tick_) <= most_ahead_s * TicksPerSecond();
-    far_tick_ = is_far ? std::optional(tick) : std::nullopt;
-    return is_far && !agrees;
+    const bool agrees = far_tick_ && now_.tick > *far_tick_ &&
+                        static_cast<double>(now_.tick - *far_tick_) <= most_ahead_s * rate;
+    far_tick_ = is_far ? std::optional(now_.tick) : std::nullopt;
+    if (is_far && !agrees)
+      Report(fmt::format("a frame {:.6g} s after the one before is left out", ahead_s),
+             "is its time right?");
   }
 
   /// The time since the look that its velocity follows from, which `now_` holds then; 0 if how it
