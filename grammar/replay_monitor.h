@@ -13,7 +13,7 @@
 
 #include "grammar/base/candidate_log.h"
 #include "grammar/base/event.h"
-#include "grammar/base/reach.h"
+#include "grammar/base/solid.h"
 #include "grammar/base/span.h"
 #include "grammar/program/program.h"
 

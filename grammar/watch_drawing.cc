@@ -9,7 +9,7 @@
 #include "grammar/base/wording.h"
 #include "grammar/check_laws.h"
 #include "grammar/contents.h"
-#include "grammar/drawing/drawn_facts.h"
+#include "grammar/drawing/drawn_episode.h"
 #include "grammar/monitor.h"
 #include "grammar/name_events.h"
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "physics/limit_watch.h"
-
 #include <algorithm>
 #include <cmath>
 
-#include "physics/hand/hand_contacts.h"
+#include "physics/hand/hand_clearance.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/joint.h"
 #include "physics/scene/run_limits.h"
+#include "physics/step_watch.h"
 
 namespace prehend::physics {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <variant>
 
-#include "physics/hand/hand_contacts.h"
+#include "physics/hand/hand_clearance.h"
 #include "physics/person/skeleton.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/joint.h"

@@ -3,13 +3,13 @@
 // cost is the distance plus what the label would cover; places above and beside the anchor are
 // preferred to places below.
 // Tested by tests/render/labels_test.cc
-#include "render/labels.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
+
+#include "render/overlay.h"
 
 namespace prehend::render {
 namespace {

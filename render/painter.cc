@@ -6,7 +6,6 @@
 #include "render/gl/osmesa_context.h"
 #include "render/gl/shaders.h"
 #include "render/inventory.h"
-#include "render/list_things.h"
 #include "render/overlay.h"
 #include "render/picture.h"
 #include "render/scene_renderer.h"

@@ -2,13 +2,13 @@
 // Layout of the strip: every row is distributed to lanes (first free lane), names are inside or
 // above their bars, ticks are at round seconds.
 // Tested by tests/render/timeline_strip_test.cc
-#include "render/timeline_strip.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iterator>
 #include <limits>
+
+#include "render/overlay.h"
 
 namespace prehend::render {
 namespace {

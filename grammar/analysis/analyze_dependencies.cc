@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "grammar/analysis/contradictions.h"
-#include "grammar/analysis/share_values.h"
 
 namespace prehend::grammar {
 namespace {

@@ -7,11 +7,25 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "grammar/analysis/value_ranges.h"
 
 namespace prehend::grammar {
+
+// The classes that the language knows, and which of them exclude or imply each other. Nothing is
+// known about a class of any other name; scenarios have more that are built in
+// (IsScenarioBuiltinClass). Tested by tests/grammar/compile/compile_test.cc
+
+const std::vector<std::string>& BuiltinClasses();
+bool IsBuiltinClass(std::string_view name);
+
+/// True if some entity can be of both classes.
+bool ClassesMeet(std::string_view a, std::string_view b);
+
+/// True if every entity of class `a` is of class `b`, too, as far as that is known.
+bool ClassImplies(std::string_view a, std::string_view b);
 
 /// The comparison `a op b` as `b op a`.
 Op Mirrored(Op op);

@@ -2,12 +2,12 @@
 // A value is described by its expression, with roles in the order in which it names them: that of
 // `speed(hand, 150 ms)` is the same in every rule, whatever the role is called there. A window is
 // the same whatever is asked for in it.
-#include "grammar/analysis/share_values.h"
-
 #include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
+
+#include "grammar/analysis/analyze_dependencies.h"
 
 namespace prehend::grammar {
 namespace {

@@ -57,4 +57,16 @@ class Solid {
   std::vector<double> bounds_m_;  ///< for each part: it lies in this ball around its origin
 };
 
+// How a point lies to a region of the language. Tested by tests/grammar/values/signals_test.cc
+
+/// How far something is from the centre of a region, and how far it may be. For a sphere, the
+/// height does not count.
+struct Reach {
+  double distance_m = 0;
+  double radius_m = 0;
+  double height_m = 0;
+  double most_height_m = 0;
+  bool IsInside() const { return distance_m <= radius_m && height_m <= most_height_m; }
+};
+
 }  // namespace prehend::grammar

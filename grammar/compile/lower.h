@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-#include "grammar/analysis/classes.h"
+#include "grammar/analysis/contradictions.h"
 #include "grammar/analysis/value_ranges.h"
 #include "grammar/base/source.h"
 #include "grammar/language/ast.h"

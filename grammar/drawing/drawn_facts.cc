@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grammar/drawing/drawn_facts.h"
-
 #include <algorithm>
 #include <utility>
 
 #include "grammar/base/wording.h"
+#include "grammar/drawing/drawn_episode.h"
 
 namespace prehend::grammar {
 namespace {

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "grammar/drawing/drawn_episode.h"
-#include "grammar/drawing/drawn_facts.h"
 
 namespace prehend::grammar {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "grammar/base/wording.h"
 #include "grammar/drawing/drawn_episode.h"
-#include "grammar/drawing/drawn_facts.h"
 
 namespace prehend::grammar {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 
 namespace prehend::grammar {
 namespace {

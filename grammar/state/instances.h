@@ -29,7 +29,6 @@
 #include "grammar/program/program.h"
 #include "grammar/state/history.h"
 #include "grammar/state/instance_index.h"
-#include "grammar/state/stable_blocks.h"
 
 namespace prehend::grammar {
 

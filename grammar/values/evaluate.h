@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "grammar/base/reach.h"
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
+#include "grammar/base/solid.h"
 #include "grammar/state/instances.h"
 
 namespace prehend::grammar {

@@ -3,11 +3,10 @@
 // scene order; one step per tick. Tested by tests/physics/box2d/world_test.cc
 #include "physics/box2d/world.h"
 
+#include "physics/box2d/body.h"
 #include "physics/box2d/contacts.h"
 #include "physics/box2d/hand.h"
-#include "physics/box2d/joint.h"
 #include "physics/scene/joint.h"
-#include "physics/scene/welded_bodies.h"
 #include "physics/world/joint_spring.h"
 #include "physics/world/sleep_tracker.h"
 

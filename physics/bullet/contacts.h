@@ -5,10 +5,12 @@
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <btBulletCollisionCommon.h>
 
 #include <vector>
 
 #include "physics/world/contact_hold.h"
+#include "physics/world/world.h"
 
 namespace prehend::physics {
 
@@ -22,5 +24,10 @@ const ContactSide& SideOf(const ContactSides& sides, const btCollisionObject& ob
 /// Call after every step, between the pairs' BeginTick() and EndTick().
 void ReadContacts(const btManifoldArray& manifolds, const ContactSides& sides,
                   TouchingPairs& pairs);
+
+// What a person sees: the first surface that a sphere meets on its way from her eyes. Only for
+// physics/bullet. Tested by tests/physics/person/gaze_test.cc
+
+Sight FirstInSight(const btCollisionWorld& world, const ContactSides& sides, const SightLine& line);
 
 }  // namespace prehend::physics

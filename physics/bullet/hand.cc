@@ -8,7 +8,6 @@
 #include <algorithm>
 
 #include "physics/bullet/body.h"
-#include "physics/bullet/convert.h"
 
 namespace prehend::physics {
 namespace {

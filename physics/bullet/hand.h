@@ -15,7 +15,7 @@
 
 #include "physics/hand/grip.h"
 #include "physics/hand/pid.h"
-#include "physics/scene/link_places.h"
+#include "physics/scene/hand_model.h"
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
 #include "physics/world/world.h"

@@ -12,17 +12,13 @@
 
 #include "physics/bullet/body.h"
 #include "physics/bullet/contacts.h"
-#include "physics/bullet/convert.h"
 #include "physics/bullet/core/flat_impacts.h"
 #include "physics/bullet/core/grain_contacts.h"
 #include "physics/bullet/core/parts.h"
 #include "physics/bullet/first_rest.h"
 #include "physics/bullet/grains.h"
 #include "physics/bullet/hand.h"
-#include "physics/bullet/joint.h"
-#include "physics/bullet/sight_ray.h"
 #include "physics/scene/joint.h"
-#include "physics/scene/welded_bodies.h"
 #include "physics/world/joint_spring.h"
 #include "physics/world/sleep_tracker.h"
 
@@ -51,7 +47,7 @@ constexpr int kNoGroup = 0;  // abstract bodies touch nothing and are not seen
 constexpr int kFixedGroup = 1;
 constexpr int kMovingGroup = 2;
 constexpr int kFirstHandGroup = 4;
-// Persons push moving bodies only. What they do with fixed ones: physics/person/fixed_things.h.
+// Persons push moving bodies only. What they do with fixed ones: physics/person/gaze.h.
 constexpr int kPersonGroup = 1 << 30;
 
 class BulletWorld final : public World {

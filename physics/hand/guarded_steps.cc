@@ -6,7 +6,6 @@
 #include <set>
 
 #include "physics/hand/hand_clearance.h"
-#include "physics/hand/hand_contacts.h"
 #include "physics/hand/script_player.h"
 #include "physics/hand/step_notes.h"
 #include "physics/scene/geometry.h"

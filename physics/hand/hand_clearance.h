@@ -3,6 +3,7 @@
 // covered by small spheres. Tested by tests/physics/hand/reach_planner_test.cc
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "physics/motion/trajectory.h"
@@ -46,5 +47,37 @@ class HandClearance {
   std::vector<Ball> balls_;
   double reach_m_ = 0;  ///< radius of a sphere around H's origin that encloses all
 };
+
+// What a hand touches, as the steps of a script look at it. Tested by
+// tests/physics/hand/guarded_motion_test.cc
+
+/// Calls `see` with the contacts of a hand, and of the body that it holds if there is one, with
+/// another body.
+template <typename See>
+void ForEachContact(HandIndex hand, BodyIndex held, BodyIndex body, const Snapshot& now,
+                    const See& see) {
+  const auto is_ours = [&](const ContactSide& side) {
+    return side.hand == hand || (held != kNone && side.hand == kNone && side.body == held);
+  };
+  for (const auto& points : now.AllContacts()) {
+    for (const ContactPoint& contact : points) {
+      const bool a_is_it = contact.a.hand == kNone && contact.a.body == body;
+      const bool b_is_it = contact.b.hand == kNone && contact.b.body == body;
+      if ((a_is_it && is_ours(contact.b)) || (b_is_it && is_ours(contact.a))) see(contact);
+    }
+  }
+}
+
+/// A thing that leans by more than 20 degrees is meant to: a hand that keeps it upright does not
+/// turn it. The cosine.
+inline constexpr double kCosMostLean = 0.94;
+
+/// Number of hands that touch a body.
+int HandsOn(BodyIndex body, const Snapshot& now);
+
+bool Touches(HandIndex hand, BodyIndex body, const Snapshot& now);
+
+/// "12 mm".
+std::string Millimetres(double length_m);
 
 }  // namespace prehend::physics

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/hand/hand_contacts.h"
+#include "physics/hand/hand_clearance.h"
 #include "physics/hand/script_player.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/landing.h"

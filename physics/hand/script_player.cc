@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "physics/hand/hand_contacts.h"
+#include "physics/hand/hand_clearance.h"
 #include "physics/hand/reach_planner.h"
 #include "physics/hand/step_notes.h"
 #include "physics/scene/geometry.h"

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "physics/hand/hand_clearance.h"
-#include "physics/hand/hand_contacts.h"
 
 namespace prehend::physics {
 namespace {

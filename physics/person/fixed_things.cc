@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The signed distance of a convex shape is a convex function, so along the axis of a capsule it has
 // one minimum, found by the golden section. Tested by tests/physics/person/fixed_things_test.cc
-#include "physics/person/fixed_things.h"
-
 #include <algorithm>
 #include <cmath>
 
+#include "physics/person/gaze.h"
 #include "physics/scene/geometry.h"
 #include "physics/world/contact_hold.h"
 

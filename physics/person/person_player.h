@@ -9,7 +9,6 @@
 
 #include "physics/motion/posture.h"
 #include "physics/motion/trajectory.h"
-#include "physics/person/fixed_things.h"
 #include "physics/person/gaze.h"
 #include "physics/person/skeleton.h"
 #include "physics/world/world.h"

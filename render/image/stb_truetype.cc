@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiles stb_truetype; render/image/font.cc uses it.
+// Compiles stb_truetype; render/image/canvas.cc uses it.
 // Tested by tests/render/image/canvas_test.cc
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 #include "grammar/monitor.h"
 
 namespace prehend::grammar::testing {

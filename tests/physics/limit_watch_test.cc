@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an engine gets wrong is noted, with names, lengths and a remedy.
-#include "physics/limit_watch.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "physics/scene/run_limits.h"
 #include "physics/simulation.h"
+#include "physics/step_watch.h"
 
 namespace prehend::physics {
 namespace {

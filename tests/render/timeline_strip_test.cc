@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/timeline_strip.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "render/overlay.h"
 
 namespace prehend::render {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The content of a file and the identity of the running program as short texts: equal texts mean
-// that nothing changed. (The hash of a physical state is another one: physics/scene/state_hash.h.)
+// that nothing changed. (The hash of a physical state is another one: physics/scene/snapshot.h.)
 // Tested by tests/harness/base/base/content_hash_test.cc
 #pragma once
 

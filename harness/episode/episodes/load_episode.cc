@@ -13,7 +13,7 @@
 #include "harness/episode/run/segment.h"
 #include "harness/episode/sense/entity_table.h"
 #include "harness/episode/sense/sensing.h"
-#include "physics/scene/state_hash.h"
+#include "physics/scene/snapshot.h"
 
 namespace prehend::episode {
 namespace {

@@ -13,7 +13,7 @@
 #include "harness/episode/frames/recorded_frames.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/sense/episode_stream.h"
-#include "physics/scene/state_hash.h"
+#include "physics/scene/snapshot.h"
 
 namespace prehend::episode {
 namespace {

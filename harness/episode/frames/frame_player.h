@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "harness/episode/frames/frame_layout.h"
-#include "physics/scene/link_places.h"
+#include "physics/scene/hand_model.h"
 
 namespace prehend::episode {
 

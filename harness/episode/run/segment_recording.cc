@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/segment.h"
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 
 namespace prehend::episode {
 

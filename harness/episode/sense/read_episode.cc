@@ -12,7 +12,7 @@
 #include <variant>
 
 #include "grammar/base/check.h"
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/yaml/error_at.h"
 #include "harness/base/yaml/located_json.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 #include "harness/episode/sense/episode_file.h"
 #include "harness/scenario/scenario/classes.h"
 

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <span>
 
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 #include "grammar/base/wording.h"
 #include "harness/base/yaml/error_at.h"
 #include "harness/exchange/import/openings.h"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 #include "harness/exchange/import/motion_seen.h"
 #include "harness/exchange/import/rest_poses.h"
 

@@ -17,7 +17,7 @@
 #include <optional>
 #include <utility>
 
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 
 namespace prehend::exchange {
 namespace {

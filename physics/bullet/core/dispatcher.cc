@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sorts pairs by the ids of their proxies, as Bullet does. Tested by
 // tests/physics/world/world_test.cc
+// A flag on each point tells kept points from new ones. Tested by
+// tests/physics/world/tipping_test.cc
 #include "physics/bullet/core/dispatcher.h"
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
@@ -10,7 +12,27 @@
 #include <functional>
 
 namespace prehend::physics {
+
 namespace {
+
+/// Our flag on a contact point: it existed before this tick. A new point has no flags.
+constexpr int kKept = 1 << 16;
+
+std::size_t IndexOf(const btCollisionObject& body) {
+  return static_cast<std::size_t>(body.getWorldArrayIndex());
+}
+
+/// Whether it is a link of a hand. Its points stay as Bullet keeps them: fingers press, so new
+/// points are found all the time.
+bool IsLink(const btCollisionObject& body) {
+  return body.getInternalType() == btCollisionObject::CO_FEATHERSTONE_LINK;
+}
+
+/// The shorter of two changes in the same direction, else zero.
+btVector3 Shared(const btVector3& a, const btVector3& b) {
+  if (a.dot(b) <= 0) return {0, 0, 0};
+  return a.length2() < b.length2() ? a : b;
+}
 
 const btCollisionObject& BodyOf(const btBroadphaseProxy& proxy) {
   return *static_cast<const btCollisionObject*>(proxy.m_clientObject);
@@ -24,6 +46,39 @@ std::uint64_t Ids(const btBroadphasePair& pair) {
 }
 
 }  // namespace
+
+bool CarriedNormals::Turned(const btCollisionObject& body) const {
+  const std::size_t i = IndexOf(body);
+  return !IsLink(body) && i < before_.size() && before_[i].known &&
+         !(before_[i].R_WB == body.getWorldTransform().getBasis());
+}
+
+btVector3 CarriedNormals::WayOf(const btVector3& normal, const btCollisionObject& body) const {
+  return body.getWorldTransform().getBasis() * (normal * before_[IndexOf(body)].R_WB) - normal;
+}
+
+void CarriedNormals::Carry(btPersistentManifold& manifold) const {
+  const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
+  const bool both_turned = Turned(a) && Turned(b);
+  for (int k = 0; k < manifold.getNumContacts(); ++k) {
+    btManifoldPoint& point = manifold.getContactPoint(k);
+    btVector3& normal = point.m_normalWorldOnB;
+    if (both_turned && (point.m_contactPointFlags & kKept)) {
+      const btVector3 way = Shared(WayOf(normal, a), WayOf(normal, b));
+      if (!way.isZero()) {
+        normal = (normal + way).normalized();
+        point.setDistance((point.getPositionWorldOnA() - point.getPositionWorldOnB()).dot(normal));
+      }
+    }
+    point.m_contactPointFlags |= kKept;
+  }
+}
+
+void CarriedNormals::Remember(const btCollisionObject& body) {
+  const std::size_t i = IndexOf(body);
+  if (i >= before_.size()) before_.resize(i + 1);
+  before_[i] = {body.getWorldTransform().getBasis(), true};
+}
 
 void BulletDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cache,
                                                  const btDispatcherInfo& info, btDispatcher*) {

@@ -1,19 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bullet's narrow phase for pairs with at least one body awake. Bullet sorts all overlapping pairs
 // in every tick, because determinism needs an order, and then skips those that sleep. Normals of
-// kept contact points are rotated with their bodies (physics/bullet/core/contact_normals.h). Only
+// kept contact points are rotated with their bodies (physics/bullet/core/dispatcher.h). Only
 // for physics/bullet. Tested by tests/physics/world/world_test.cc
 #pragma once
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include <cstdint>
 #include <vector>
 
-#include "physics/bullet/core/contact_normals.h"
-
 namespace prehend::physics {
+
+// Normals of contact points that Bullet keeps from tick to tick. Bullet moves kept points with
+// their bodies but not their normals, and while two boxes rest on each other without overlap no
+// point is found anew. A box would therefore lie still on a tilting board, held by normals that
+// point up. Only for physics/bullet. Tested by tests/physics/world/tipping_test.cc
+
+/// Rotates kept normals with their bodies, as far as both rotate together. A contact with a body
+/// that does not rotate, or with a hand, keeps its normal to the last bit.
+class CarriedNormals {
+ public:
+  /// Call after the narrow phase of a tick, once for each manifold with a body that may have moved.
+  void Carry(btPersistentManifold& manifold) const;
+  /// Call afterwards, at least once for each body that may have moved.
+  void Remember(const btCollisionObject& body);
+
+ private:
+  bool Turned(const btCollisionObject& body) const;
+  /// Change of the normal by the body's rotation in this tick.
+  btVector3 WayOf(const btVector3& normal, const btCollisionObject& body) const;
+
+  struct Before {
+    btMatrix3x3 R_WB;
+    bool known = false;
+  };
+  std::vector<Before> before_;  ///< by index of the body in its world
+};
 
 class BulletDispatcher final : public btCollisionDispatcher {
  public:

@@ -11,7 +11,6 @@
 
 #include <vector>
 
-#include "physics/bullet/core/rigid_side.h"
 #include "physics/bullet/core/single_bodies.h"
 #include "physics/bullet/lanes/friction_circle.h"
 

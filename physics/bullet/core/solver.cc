@@ -9,7 +9,7 @@
 #include <cstring>
 #include <tuple>
 
-#include "physics/bullet/core/restitution.h"
+#include "physics/bullet/core/flat_impacts.h"
 
 namespace prehend::physics {
 namespace {

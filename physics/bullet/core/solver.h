@@ -43,7 +43,7 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
       int manifold_count, btTypedConstraint** constraints, int constraint_count,
       const btContactSolverInfo& info, btIDebugDraw* drawer) override;
   /// Bullet's version of PlaceInOrder()'s order, within TimelyBounces
-  /// (physics/bullet/core/restitution.h).
+  /// (physics/bullet/core/flat_impacts.h).
   void convertContacts(btPersistentManifold** manifolds, int count,
                        const btContactSolverInfo& info) override;
   /// Largest squared change of an impulse of all rows; zero if nothing changed.

@@ -10,7 +10,7 @@
 #include <immintrin.h>
 #endif
 
-#include "physics/bullet/lanes/lanes.h"
+#include "physics/bullet/lanes/kernels.h"
 
 // Names differ by processor, lest the linker takes one for the other.
 #ifdef PREHEND_AVX2

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "grammar/base/frame.h"
 #include "grammar/base/solid.h"
-#include "grammar/base/tracking.h"
 #include "grammar/monitor.h"
 #include "tests/grammar/scene.h"
 

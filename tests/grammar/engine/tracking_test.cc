@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Of what is not tracked, no condition holds, and neither does its opposite; what held ends there.
-#include "grammar/base/tracking.h"
-
+#include "grammar/base/frame.h"
 #include "grammar/base/solid.h"
 #include "grammar/name_events.h"
 #include "tests/grammar/scene.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grammar/state/stable_blocks.h"
-
 #include <gtest/gtest.h>
+
+#include "grammar/state/instance_index.h"
 
 namespace prehend::grammar {
 namespace {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A person and fixed things: what touches is a contact, what yields stops before it, and what goes
 // in is noted.
-#include "physics/person/fixed_things.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string>
 
+#include "physics/person/gaze.h"
 #include "physics/person/skeleton.h"
 #include "physics/simulation.h"
 

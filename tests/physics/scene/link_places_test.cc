@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "physics/scene/link_places.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <random>
+
+#include "physics/scene/hand_model.h"
 
 namespace prehend::physics {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What bounces, against free flight: physics/bullet/core/restitution.h,
+// What bounces, against free flight: physics/bullet/core/flat_impacts.h,
 // physics/bullet/core/flat_impacts.h, physics/world/contact_hold.h.
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What lies on something that tips over starts to slide where friction says, though it lay still
-// before: physics/bullet/core/contact_normals.h.
+// before: physics/bullet/core/dispatcher.h.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -9,7 +9,7 @@
 
 #include "harness/episode/episodes/load_episode.h"
 #include "harness/episode/run/run_text.h"
-#include "physics/scene/state_hash.h"
+#include "physics/scene/snapshot.h"
 
 namespace prehend::episode {
 namespace {

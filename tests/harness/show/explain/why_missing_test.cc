@@ -2,7 +2,7 @@
 // "Why not", asked of shipped scenarios, and one question per way in which a run comes to nothing.
 #include <gtest/gtest.h>
 
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 #include "tests/harness/show/explain/explain_stage.h"
 
 namespace prehend::show::testing {
