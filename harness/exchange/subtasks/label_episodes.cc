@@ -14,6 +14,7 @@
 #include "harness/episode/episode/open_episode.h"
 #include "harness/exchange/hdf5/add_signals.h"
 #include "harness/exchange/hdf5/hdf5_file.h"
+#include "harness/exchange/poses/pose_file.h"
 
 namespace prehend::exchange {
 namespace {
