@@ -22,7 +22,7 @@
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/sense/entity_table.h"
 #include "harness/episode/sense/sensing.h"
-#include "harness/measure/speed/stopwatch.h"
+#include "harness/measure/speed/measure.h"
 #include "harness/truth/timeline/event_text.h"
 #include "physics/simulation.h"
 

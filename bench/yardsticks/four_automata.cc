@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/yardsticks/worlds.h"
-#include "harness/measure/speed/stopwatch.h"
+#include "harness/measure/speed/measure.h"
 
 namespace prehend::bench {
 namespace {

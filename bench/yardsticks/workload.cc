@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "harness/episode/sense/entity_table.h"
-#include "harness/measure/speed/stopwatch.h"
+#include "harness/measure/speed/measure.h"
 
 namespace prehend::bench {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A position is read along or about the joint's axis, as placed. Tested by
-// tests/physics/scene/joint_test.cc
-// The root of a body is found along its fixed joints (physics/scene/joint.h). Tested by
-// tests/physics/scene/joint_test.cc
+// A position is read along or about the joint's axis, as placed. The root of a body is found along
+// its fixed joints.
 #include "physics/scene/joint.h"
 
 #include <algorithm>

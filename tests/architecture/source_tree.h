@@ -9,7 +9,7 @@
 namespace prehend::architecture {
 
 struct SourceFile {
-  std::string path;  ///< from the root of the project, "harness/episode/run/outcome.h"
+  std::string path;  ///< from the root of the project, "harness/episode/run/run_trials.h"
   std::string text;
 };
 

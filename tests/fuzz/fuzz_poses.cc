@@ -9,7 +9,7 @@
 #include <string>
 
 #include "harness/exchange/messages/log_file.h"
-#include "harness/exchange/messages/message_pose.h"
+#include "harness/exchange/messages/pose_fields.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace prehend;

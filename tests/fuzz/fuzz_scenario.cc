@@ -6,7 +6,6 @@
 #include <string>
 
 #include "harness/episode/run/find_scenario.h"
-#include "harness/episode/run/project_library.h"
 #include "harness/scenario/read/read_scenario.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

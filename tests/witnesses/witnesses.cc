@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "harness/episode/run/load_grammar.h"
-#include "harness/suite/judge/judge_golden.h"
+#include "harness/suite/judge/judges.h"
 #include "harness/truth/golden/golden_files.h"
 #include "tests/witnesses/closed_form_score.h"
 #include "tests/witnesses/metamorphic/metamorphic.h"

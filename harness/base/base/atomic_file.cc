@@ -7,12 +7,17 @@
 
 #include <cctype>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <iostream>
+#include <system_error>
 
 #include "harness/base/base/text_file.h"
 
 namespace prehend {
+
+namespace fs = std::filesystem;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,6 +45,22 @@ std::string WhyNotReplaceable(const fs::path& path) {
 fs::path NameOf(int file) { return "/proc/self/fd/" + std::to_string(file); }
 
 }  // namespace
+
+TemporaryFolder::TemporaryFolder() {
+  std::error_code error;
+  // mkdtemp() puts other letters in the place of the six.
+  std::string name = (fs::temp_directory_path(error) / "prehend-XXXXXX").string();
+  if (!error && !mkdtemp(name.data())) error.assign(errno, std::generic_category());
+  if (error)
+    problem_ = "no folder for temporary files: " + error.message();
+  else
+    path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code error;
+  if (!path_.empty()) fs::remove_all(path_, error);
+}
 
 std::string FileNameOf(std::string_view text) {
   constexpr std::size_t kMost_bytes = 180;

@@ -69,4 +69,24 @@ std::string WhyNotWritable(const std::filesystem::path& path);
 /// file is as it was.
 std::string WriteTextFile(const std::filesystem::path& path, std::string_view text);
 
+// A folder of one's own among the temporary files, removed with all that is in it. Tested by
+// tests/harness/base/base/temporary_folder_test.cc
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  /// Empty if it could not be made.
+  const std::filesystem::path& path() const { return path_; }
+  /// Why it could not be made, or "".
+  const std::string& problem() const { return problem_; }
+
+ private:
+  std::filesystem::path path_;
+  std::string problem_;
+};
+
 }  // namespace prehend

@@ -10,6 +10,12 @@
 
 namespace prehend {
 
+grammar::Diagnostic ErrorAt(const YamlDocument& document, Where where) {
+  DiagnosticList one(document);
+  one.Add(where, "");
+  return one.Sorted().front();
+}
+
 void DiagnosticList::Add(Where where, std::string message, std::string hint) {
   if (found_.size() >= grammar::kMostDiagnostics) return;
   const YamlSource& source = document_.sources[static_cast<std::size_t>(where.source)];

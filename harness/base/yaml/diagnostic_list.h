@@ -41,4 +41,9 @@ class DiagnosticList {
   std::vector<std::pair<Where, grammar::Diagnostic>> found_;
 };
 
+// A place of a document, for an error that is found later. Tested by tests/program/import_test.cc
+
+/// An error at this place that says nothing yet.
+grammar::Diagnostic ErrorAt(const YamlDocument& document, Where where);
+
 }  // namespace prehend

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/base/yaml/located_json_test.cc
-#include "harness/base/yaml/located_json.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <string_view>
 
 #include "harness/base/base/text_file.h"
+#include "harness/base/yaml/located_yaml.h"
 
 namespace prehend {
 namespace {

@@ -11,7 +11,7 @@
 #include <iostream>
 
 #include "harness/base/base/project_paths.h"
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/base/visible_stream.h"
 #include "harness/cli/command/preconditions.h"

@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/process/worker_pool.h"
 #include "harness/episode/episode/lacks.h"

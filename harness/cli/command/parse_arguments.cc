@@ -8,8 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "harness/base/base/shell_quote.h"
-#include "harness/base/base/wrap_text.h"
+#include "harness/base/base/quoting.h"
 
 namespace prehend::cli {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/lacks.h"
 #include "harness/suite/accept/accept.h"

@@ -9,7 +9,7 @@
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/project_paths.h"
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/base/base/visible_stream.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/find_episodes.h"
@@ -17,7 +17,7 @@
 #include "harness/episode/episodes/schema.h"
 #include "harness/suite/check/causes.h"
 #include "harness/suite/check/run_suite.h"
-#include "harness/suite/report/page_texts.h"
+#include "harness/suite/report/charts.h"
 #include "harness/suite/report/report.h"
 
 namespace prehend::cli {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/typed_episode.h"
 #include "harness/episode/run/run_text.h"

@@ -12,7 +12,7 @@
 #include "harness/episode/episodes/recordings.h"
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/load_grammar.h"
-#include "harness/episode/run/missing_facts.h"
+#include "harness/episode/run/segment_recording.h"
 #include "harness/exchange/import/import_demonstrations.h"
 #include "harness/exchange/import/import_poses.h"
 #include "harness/truth/timeline/event_text.h"

@@ -7,11 +7,10 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "harness/base/base/shell_quote.h"
-#include "harness/base/base/wrap_text.h"
+#include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/lacks.h"
-#include "harness/episode/run/project_library.h"
+#include "harness/episode/run/find_scenario.h"
 #include "harness/scenario/read/read_scenario.h"
 #include "harness/suite/check/select_scenarios.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "harness/base/base/atomic_file.h"
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/cli/command/typed_episode.h"
 #include "harness/suite/check/run_suite.h"

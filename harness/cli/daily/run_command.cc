@@ -7,11 +7,11 @@
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/content_hash.h"
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/base/visible_stream.h"
 #include "harness/cli/command/command.h"
-#include "harness/episode/episodes/record_run.h"
+#include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/run_trials.h"

@@ -13,7 +13,7 @@
 #include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/run/load_grammar.h"
-#include "harness/episode/run/validate_claims.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/suite/check/verdict.h"
 #include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/golden/golden_files.h"

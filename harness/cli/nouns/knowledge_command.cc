@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "harness/cli/command/typed_episode.h"
-#include "harness/episode/episode/keep_episodes.h"
+#include "harness/episode/episode/find_episodes.h"
 #include "harness/exchange/knowledge/write_knowledge.h"
 
 namespace prehend::cli {

@@ -9,7 +9,7 @@
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/typed_episode.h"
 #include "harness/episode/episodes/schema.h"
-#include "harness/episode/run/event_time.h"
+#include "harness/episode/run/run_scenario.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/truth/timeline/event_text.h"
 

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "harness/base/base/csv_cells.h"
+#include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
-#include "harness/episode/episode/keep_episodes.h"
+#include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/episodes/query_events.h"
 #include "harness/show/figures/moment_pictures.h"
 #include "harness/show/pictures/pictures.h"

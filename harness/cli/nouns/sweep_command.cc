@@ -11,8 +11,6 @@
 #include "harness/cli/command/typed_episode.h"
 #include "harness/episode/episode/open_episode.h"
 #include "harness/exchange/labels/read_labels.h"
-#include "harness/measure/sweep/margins.h"
-#include "harness/measure/sweep/robust_settings.h"
 #include "harness/measure/sweep/sweep.h"
 #include "harness/show/pictures/svg_file.h"
 

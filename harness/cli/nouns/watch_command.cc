@@ -16,7 +16,7 @@
 #include "harness/cli/command/typed_episode.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/segment.h"
-#include "harness/episode/sense/episode_stream.h"
+#include "harness/episode/sense/episode_file.h"
 #include "harness/truth/timeline/event_text.h"
 #include "harness/truth/timeline/timeline_json.h"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/episode/episode/episode.h"
 
-#include "harness/episode/episodes/placeholder_scene.h"
 #include "harness/episode/episodes/recordings.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/segment.h"

@@ -8,11 +8,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/episode/episodes/episode_file.h"
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/find_scenario.h"
-#include "harness/episode/sense/episode_stream.h"
+#include "harness/episode/sense/episode_file.h"
 
 namespace prehend::episode {
 namespace {

@@ -3,14 +3,17 @@
 // is. Tested by tests/program/episode_kinds_test.cc
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "harness/base/base/atomic_file.h"
 #include "harness/base/base/exit_code.h"
 #include "harness/base/base/result.h"
 #include "harness/episode/episode/take.h"
+#include "harness/episode/run/find_scenario.h"
 
 namespace prehend::episode {
 
@@ -43,5 +46,26 @@ tl::expected<EpisodeName, NotFound> FindEpisode(const std::string& typed, const 
 
 /// All of one episode file.
 Result<std::vector<EpisodeName>> EpisodesOf(const std::string& file);
+
+// For commands that ask an episode file: what is in none is played, or imported, into one first.
+// Tested by tests/program/episode_kinds_test.cc
+
+class EpisodeKeeper {
+ public:
+  /// `root`: the project's; `today`: YYYY-MM-DD; `folder` gets the files; "": one that is removed
+  /// at the end.
+  EpisodeKeeper(std::string root, std::string today, std::string folder = "");
+
+  /// The same episode in a file.
+  Result<EpisodeName> Keep(const EpisodeName& episode);
+  Result<std::vector<EpisodeName>> KeepAll(std::vector<EpisodeName> episodes);
+  /// Of a file that was made here, the scenario or recording in it; any other is as it is.
+  std::string SourceOf(const std::string& file) const;
+
+ private:
+  TemporaryFolder temporary_;
+  std::string root_, today_, folder_;
+  std::map<std::string, std::string> sources_;
+};
 
 }  // namespace prehend::episode

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/episode/episode/keep_episodes.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <vector>
 
 #include "harness/base/base/content_hash.h"
 #include "harness/episode/episode/find_episodes.h"
-#include "harness/episode/episodes/record_run.h"
+#include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/episodes/recordings.h"
 
 namespace prehend::episode {

@@ -7,11 +7,10 @@
 #include <fstream>
 
 #include "grammar/contents.h"
-#include "harness/episode/episodes/placeholder_scene.h"
 #include "harness/episode/episodes/recordings.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/load_run.h"
-#include "harness/episode/sense/episode_stream.h"
+#include "harness/episode/sense/episode_file.h"
 
 namespace prehend::episode {
 namespace {

@@ -87,7 +87,7 @@ class Worker {
                        .run = std::move(*run),
                        .warnings = grammar::Format(loaded.warnings) + missing.warnings,
                        .nothing_left = missing.nothing_left,
-                       .finished = !episode->row() || episode->row()->status != kRecording};
+                       .finished = !episode->row() || episode->row()->status != kBeingRecorded};
     if (!request_.compare || !result.finished) return result;
     const Result<grammar::Timeline> recorded = episode->Recorded();
     if (!recorded) return failed(recorded.error());

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "harness/base/base/text_file.h"
-#include "harness/episode/episodes/summed_pages.h"
 
 namespace prehend::episode {
 namespace {

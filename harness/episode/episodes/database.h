@@ -4,11 +4,16 @@
 // tests/harness/episode/episodes/episode_file_test.cc
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
+
+#include "harness/base/base/result.h"
+#include "harness/episode/frames/columns.h"
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -91,5 +96,52 @@ class Transaction {
   const Database& database_;
   bool open_ = true;
 };
+
+// Where exceptions of the database and of frames become diagnostics: they do not leave this room.
+// Tested by tests/harness/episode/episodes/episode_file_test.cc
+
+/// What `work` returns, or an error about the file. `about`: begins its message.
+template <typename Work>
+auto Guarded(const std::string& file, const Work& work, const std::string& about = "")
+    -> Result<std::invoke_result_t<Work>> {
+  const auto wrong = [&](const std::string& message) {
+    return tl::unexpected(grammar::Diagnostics{
+        {.file = file, .place = {}, .message = about + message, .source_line = {}, .hint = {}}});
+  };
+  try {
+    if constexpr (std::is_void_v<std::invoke_result_t<Work>>) {
+      work();
+      return {};
+    } else {
+      return work();
+    }
+  } catch (const DatabaseError& error) {
+    return wrong(error.what());
+  } catch (const Damage& damage) {
+    return wrong(std::string("the file is damaged: ") + damage.what());
+  }
+}
+
+/// The same as a text: "", or "FILE: what went wrong".
+template <typename Work>
+std::string ProblemOf(const std::string& file, const Work& work) {
+  const auto done = Guarded(file, work);
+  return done ? "" : file + ": " + done.error().front().message;
+}
+
+// Checksums of an episode file: each page of the database ends with a hash of the rest of it and of
+// its place. So whatever is read was written so, rows, indices and tables alike. SQLite itself
+// keeps its hands off the end of a page where a database asks for it when it is made, so that every
+// program can read the file. Tested by tests/program/damaged_episodes_test.cc
+
+/// Of an episode file, in its header ("preh").
+inline constexpr std::int64_t kApplicationId = 0x70726568;
+/// Of each page, for its checksum.
+inline constexpr int kBytesOfSum = 8;
+
+/// The name of a file system of SQLite that writes checksums and compares them; a page that does
+/// not have its own cannot be read (SQLITE_IOERR_DATA). Databases of other programs, which have
+/// neither room for them nor the application id of an episode file, are read as they are.
+const char* SummedPages();
 
 }  // namespace prehend::episode

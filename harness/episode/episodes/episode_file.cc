@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/base/base/content_hash.h"
-#include "harness/episode/episodes/guarded.h"
+#include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/write_rows.h"
 
 namespace prehend::episode {

@@ -4,11 +4,10 @@
 #include <fmt/format.h>
 
 #include "grammar/contents.h"
-#include "harness/episode/episodes/placeholder_scene.h"
 #include "harness/episode/episodes/recordings.h"
 #include "harness/episode/episodes/write_rows.h"
+#include "harness/episode/run/find_scenario.h"
 #include "harness/episode/run/load_grammar.h"
-#include "harness/episode/run/project_library.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/segment.h"
 #include "harness/episode/sense/entity_table.h"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/episode/episodes/placeholder_scene.h"
-
 #include <algorithm>
 
-#include "harness/scenario/scenario/classes.h"
+#include "harness/episode/episodes/recordings.h"
+#include "harness/scenario/scenario/scenario.h"
 
 namespace prehend::episode {
 namespace {

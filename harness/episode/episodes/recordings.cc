@@ -7,12 +7,12 @@
 #include <sstream>
 
 #include "grammar/contents.h"
-#include "harness/episode/episodes/guarded.h"
+#include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/episodes/write_rows.h"
 #include "harness/episode/frames/recorded_frames.h"
 #include "harness/episode/run/load_grammar.h"
-#include "harness/episode/sense/episode_stream.h"
+#include "harness/episode/sense/episode_file.h"
 #include "physics/scene/snapshot.h"
 
 namespace prehend::episode {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/episode/episodes/summed_pages.h"
-
 #include <sqlite3.h>
 
 #include <array>
@@ -9,6 +7,7 @@
 #include <string_view>
 
 #include "harness/base/base/content_hash.h"
+#include "harness/episode/episodes/database.h"
 
 namespace prehend::episode {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/base/temporary_folder.h"
+#include "harness/base/base/atomic_file.h"
 #include "harness/episode/run/load_run.h"
 
 namespace prehend::episode {

@@ -110,7 +110,7 @@ std::int64_t WriteEpisode(const Database& database, std::int64_t task, const New
       " outcome, engine, seed, program, program_hash, recorded_on, failure_entity,"
       " failure_reason, failure_advice) VALUES(?, ?, ?, ?, ?, 0, '', '', ?, ?, ?, ?, ?, '', '',"
       " '')");
-  insert.Bind(NewUuid()).Bind(task).Bind(kRecording).Bind(episode.grammar);
+  insert.Bind(NewUuid()).Bind(task).Bind(kBeingRecorded).Bind(episode.grammar);
   insert.Bind(episode.ticks_per_second).Bind(episode.engine).Bind(episode.seed);
   insert.Bind("prehend " PREHEND_VERSION)
       .Bind(episode.program_hash)

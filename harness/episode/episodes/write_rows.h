@@ -16,7 +16,7 @@
 namespace prehend::episode {
 
 /// An episode's status: `recording` until it is finished.
-inline constexpr const char* kRecording = "recording";
+inline constexpr const char* kBeingRecorded = "recording";
 inline constexpr const char* kCompleted = "completed";
 inline constexpr const char* kFailed = "failed";
 /// Of a recording that does not say where it ends.

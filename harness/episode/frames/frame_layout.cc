@@ -5,7 +5,7 @@
 #include <span>
 #include <tuple>
 
-#include "harness/episode/frames/cells.h"
+#include "harness/episode/frames/columns.h"
 
 namespace prehend::episode {
 namespace {

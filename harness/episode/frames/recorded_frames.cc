@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "harness/episode/frames/cells.h"
+#include "harness/episode/frames/columns.h"
 
 namespace prehend::episode {
 namespace {

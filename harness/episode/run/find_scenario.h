@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/episode/run/episode_name.h"
+#include "harness/scenario/read/scenario_library.h"
 
 namespace prehend::episode {
 
@@ -66,5 +67,13 @@ std::string NearestScenario(const std::vector<ScenarioFile>& scenarios, const st
 /// If FindScenario() found nothing: "did you mean 'milk_carton_wrap'?", or which skills share the
 /// name, or "".
 std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed);
+
+// The grammars and hands that scenarios of a project can name. Tested by
+// tests/harness/episode/run/find_scenario_test.cc
+
+/// Grammars and hands of the project. `files` receives the path of every hand that is read, and
+/// must outlive the result.
+scenario::ScenarioLibrary ProjectLibrary(const std::string& root,
+                                         std::vector<std::string>* files = nullptr);
 
 }  // namespace prehend::episode

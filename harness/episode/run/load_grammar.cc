@@ -15,8 +15,7 @@
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/text_file.h"
 #include "harness/episode/run/find_scenario.h"
-#include "harness/episode/run/project_library.h"
-#include "harness/scenario/scenario/classes.h"
+#include "harness/scenario/scenario/scenario.h"
 
 namespace prehend::episode {
 

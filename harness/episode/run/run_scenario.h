@@ -5,10 +5,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "grammar/base/timeline.h"
+#include "grammar/compile/compile.h"
 #include "grammar/monitor.h"
 #include "harness/scenario/scenario/scenario.h"
 #include "harness/truth/timeline/event_drawings.h"
@@ -43,8 +45,8 @@ struct RunResult {
   truth::EventDrawings drawings;             ///< how the grammar wants its events drawn
   std::vector<physics::Snapshot> recording;  ///< empty unless asked for
   std::vector<physics::ScriptNote> notes;
-  std::string
-      outcome;  ///< of the scenario's outcomes; empty unless judged (harness/episode/run/outcome.h)
+  std::string outcome;  ///< of the scenario's outcomes; empty unless judged
+                        ///< (harness/episode/run/run_trials.h)
   RunSeconds seconds;
 };
 
@@ -82,5 +84,37 @@ class ScenarioRun {
 RunResult RunScenario(const scenario::Scenario& scenario,
                       std::shared_ptr<const grammar::Program> program,
                       const RunOptions& options = {});
+
+// A time of an episode as people write it: "reaching.begin", "grasping.end", or in seconds "1.25".
+// Tested by tests/harness/episode/run/event_time_test.cc
+
+/// Either seconds or a boundary of an event.
+struct EventTime {
+  std::optional<double> time_s;
+  std::string event;
+  bool end = false;  ///< the end of the event, otherwise its begin
+};
+
+/// No value if the text is neither seconds nor EVENT.begin nor EVENT.end.
+std::optional<EventTime> ParseEventTime(const std::string& text);
+
+/// Why an episode with this grammar cannot have such a time; no value if it can.
+struct EventTimeProblem {
+  std::string message;
+  std::string hint;
+};
+std::optional<EventTimeProblem> WhyNoEventTime(const std::string& text,
+                                               const grammar::Program& program);
+
+/// The tick that the text names; the first such event counts. If it did not happen, or is after the
+/// episode, the tick is the end of the run, and `missed` gives the reason.
+struct FoundTime {
+  grammar::Tick tick = 0;
+  std::string missed;
+};
+FoundTime FindEventTime(const std::string& text, const RunResult& run);
+
+/// First recorded snapshot at or after a tick, else the last one. Something was recorded.
+const physics::Snapshot& SnapshotAt(const RunResult& run, grammar::Tick tick);
 
 }  // namespace prehend::episode

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "harness/scenario/scenario/classes.h"
+#include "harness/scenario/scenario/scenario.h"
 
 namespace prehend::episode {
 

@@ -14,13 +14,11 @@
 #include "grammar/base/check.h"
 #include "grammar/base/frame.h"
 #include "harness/base/base/text_file.h"
-#include "harness/base/yaml/error_at.h"
-#include "harness/base/yaml/located_json.h"
+#include "harness/base/yaml/diagnostic_list.h"
+#include "harness/base/yaml/located_yaml.h"
 #include "harness/episode/sense/episode_file.h"
 #include "harness/episode/sense/episode_format.h"
-#include "harness/episode/sense/episode_stream.h"
-#include "harness/episode/sense/scan_frame.h"
-#include "harness/scenario/scenario/classes.h"
+#include "harness/scenario/scenario/scenario.h"
 
 namespace prehend::episode {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/episode/sense/scan_frame.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <string>
+
+#include "harness/episode/sense/episode_format.h"
 
 namespace prehend::episode {
 namespace {

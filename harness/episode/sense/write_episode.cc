@@ -6,7 +6,7 @@
 
 #include "grammar/base/frame.h"
 #include "harness/episode/sense/episode_file.h"
-#include "harness/scenario/scenario/classes.h"
+#include "harness/scenario/scenario/scenario.h"
 
 namespace prehend::episode {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/base/base/csv_cells.h"
+#include "harness/base/base/quoting.h"
 
 namespace prehend::exchange {
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "grammar/base/tracking.h"
-#include "harness/base/base/csv_cells.h"
+#include "harness/base/base/quoting.h"
 #include "harness/exchange/export/write_motion.h"
 #include "harness/truth/timeline/event_text.h"
 

@@ -11,7 +11,7 @@
 
 #include "grammar/base/frame.h"
 #include "grammar/base/wording.h"
-#include "harness/base/yaml/error_at.h"
+#include "harness/base/yaml/diagnostic_list.h"
 #include "harness/exchange/import/openings.h"
 #include "harness/exchange/import/plausibility.h"
 #include "harness/exchange/import/rest_poses.h"

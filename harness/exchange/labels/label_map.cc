@@ -9,7 +9,7 @@
 #include <set>
 
 #include "grammar/base/wording.h"
-#include "harness/base/yaml/error_at.h"
+#include "harness/base/yaml/diagnostic_list.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::exchange {

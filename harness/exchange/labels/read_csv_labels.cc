@@ -12,7 +12,7 @@
 #include <set>
 #include <tuple>
 
-#include "harness/base/base/csv_cells.h"
+#include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/episode/episode/take.h"
 #include "harness/exchange/labels/read_labels.h"

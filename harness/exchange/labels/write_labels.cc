@@ -11,7 +11,7 @@
 
 #include "grammar/contents.h"
 #include "harness/base/base/atomic_file.h"
-#include "harness/base/base/markup.h"
+#include "harness/base/base/quoting.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::exchange {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 
-#include "harness/exchange/messages/byte_reader.h"
 #include "harness/exchange/messages/log_file.h"
 
 namespace prehend::exchange {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/messages/message_pose.h. Tested by tests/program/import_messages_test.cc
+// See harness/exchange/messages/pose_fields.h. Tested by tests/program/import_messages_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "harness/base/base/text_file.h"
-#include "harness/exchange/messages/byte_reader.h"
-#include "harness/exchange/messages/message_pose.h"
+#include "harness/exchange/messages/log_file.h"
+#include "harness/exchange/messages/pose_fields.h"
 
 namespace prehend::exchange {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/messages/message_pose.h. Tested by tests/program/import_mcap_test.cc
+// See harness/exchange/messages/pose_fields.h. Tested by tests/program/import_mcap_test.cc
 #include <fmt/format.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "harness/base/base/text_file.h"
-#include "harness/exchange/messages/message_pose.h"
+#include "harness/exchange/messages/pose_fields.h"
 
 namespace prehend::exchange {
 namespace {

@@ -5,7 +5,6 @@
 
 #include <map>
 
-#include "harness/exchange/messages/byte_reader.h"
 #include "harness/exchange/messages/log_file.h"
 
 namespace prehend::exchange {

@@ -5,7 +5,7 @@
 
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/messages/message_definition.h"
-#include "harness/exchange/messages/message_pose.h"
+#include "harness/exchange/messages/pose_fields.h"
 
 namespace prehend::exchange {
 namespace {

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "harness/exchange/messages/log_file.h"
-#include "harness/exchange/messages/message_pose.h"
 #include "harness/exchange/messages/pose_fields.h"
 
 namespace prehend::exchange {

@@ -13,7 +13,7 @@
 #include <span>
 
 #include "grammar/base/wording.h"
-#include "harness/base/base/csv_cells.h"
+#include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/poses/pose_file.h"
 #include "harness/exchange/poses/table_layout.h"

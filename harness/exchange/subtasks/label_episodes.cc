@@ -9,8 +9,7 @@
 #include <optional>
 
 #include "harness/base/base/atomic_file.h"
-#include "harness/base/base/csv_cells.h"
-#include "harness/base/base/temporary_folder.h"
+#include "harness/base/base/quoting.h"
 #include "harness/episode/episode/open_episode.h"
 #include "harness/exchange/hdf5/add_signals.h"
 #include "harness/exchange/hdf5/hdf5_file.h"

@@ -9,8 +9,8 @@
 #include "grammar/name_events.h"
 #include "harness/base/base/default_grammar.h"
 #include "harness/episode/run/load_grammar.h"
+#include "harness/episode/sense/episode_file.h"
 #include "harness/episode/sense/episode_format.h"
-#include "harness/episode/sense/episode_stream.h"
 #include "harness/library/library/opened.h"
 
 namespace prehend {

@@ -9,7 +9,7 @@
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/default_grammar.h"
 #include "harness/base/base/project_paths.h"
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/run_text.h"

@@ -11,7 +11,7 @@
 #include "harness/exchange/labels/read_truths.h"
 #include "harness/library/library/opened.h"
 #include "harness/measure/score/score.h"
-#include "harness/measure/sweep/margins.h"
+#include "harness/measure/sweep/sweep.h"
 #include "harness/show/chart/chart.h"
 #include "harness/show/explain/explain.h"
 #include "harness/show/explain/replay.h"

@@ -10,7 +10,7 @@
 #include "grammar/contents.h"
 #include "harness/episode/episode/open_episode.h"
 #include "harness/episode/run/load_run.h"
-#include "harness/episode/run/missing_facts.h"
+#include "harness/episode/run/segment_recording.h"
 #include "harness/exchange/labels/clock_offset.h"
 #include "harness/exchange/labels/read_truths.h"
 #include "harness/truth/timeline/match_events.h"

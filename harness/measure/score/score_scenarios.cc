@@ -14,7 +14,7 @@
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_text.h"
-#include "harness/episode/run/validate_claims.h"
+#include "harness/episode/run/segment.h"
 #include "harness/truth/claims/judge_claims.h"
 #include "harness/truth/oracle/oracle.h"
 #include "harness/truth/timeline/timeline_wire.h"

@@ -8,7 +8,6 @@
 #include "harness/episode/run/run_scenario.h"
 #include "harness/episode/run/segment.h"
 #include "harness/episode/sense/episode_file.h"
-#include "harness/measure/speed/stopwatch.h"
 
 namespace prehend::measure {
 namespace {

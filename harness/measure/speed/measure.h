@@ -3,12 +3,25 @@
 // by tests/program/command_line_test.cc
 #pragma once
 
+#include <ctime>
 #include <string>
 #include <vector>
 
 #include "harness/episode/episode/episode.h"
 
 namespace prehend::measure {
+
+// Processor time, not wall time, because other programs may run on this machine.
+// Tested by tests/bench/workload_test.cc
+
+class Stopwatch {
+ public:
+  void Restart() { begin_ = std::clock(); }
+  double seconds() const { return static_cast<double>(std::clock() - begin_) / CLOCKS_PER_SEC; }
+
+ private:
+  std::clock_t begin_ = std::clock();
+};
 
 struct SpeedFigure {
   std::string what;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/measure/sweep/margins.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,6 +11,7 @@
 #include "grammar/describe.h"
 #include "harness/episode/episode/open_episode.h"
 #include "harness/episode/run/load_run.h"
+#include "harness/measure/sweep/sweep.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::measure {

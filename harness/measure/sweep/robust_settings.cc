@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/measure/sweep/robust_settings.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
 #include "grammar/base/wording.h"
+#include "harness/measure/sweep/sweep.h"
 #include "harness/show/chart/chart.h"
 
 namespace prehend::measure {

@@ -122,4 +122,62 @@ class SweepProgress {
   bool said_ = false;
 };
 
+// How far each parameter of a grammar may be from its value before the score drops. Tested by
+// tests/program/sweep_test.cc
+
+/// One parameter, while the others keep their values.
+struct Margin {
+  std::string parameter, value;
+  double f1 = 0;         ///< with its value
+  std::string from, to;  ///< the range around the value in which F1 is within the distance of the
+                         ///< best; empty: the value is not in such a range
+  bool open_below = false, open_above = false;  ///< it holds as far as was tried
+  double best = 0;
+  std::string best_at;
+  bool has_effect = false;  ///< some value that was tried has another F1
+  bool near_edge = false;   ///< the next value that was tried, a fifth away, is out of the range
+};
+
+struct Margins {
+  std::vector<Margin> margins;       ///< those with the smallest range first
+  std::vector<std::string> without;  ///< parameters that are zero, and were not tried
+  SweepResult sweep;                 ///< its episodes, and what was left out
+};
+
+/// Tries an eighth to eight times of each value, in steps of 19 or 41 percent. `within` is a share
+/// of F1; `only` these parameters, all if there are none. `request.axes` is not used.
+/// `so_far` is called with the result as it is after each parameter.
+Result<Margins> FindMargins(const std::vector<episode::Take>& takes, SweepRequest request,
+                            double within, const std::vector<std::string>& only = {},
+                            const std::function<void(const Margins&)>& so_far = {});
+
+std::string MarginsText(const Margins& margins, double within);
+std::string MarginsCsv(const Margins& margins);
+
+// Where a sweep is good and stays good, as text, CSV and a heat map. Tested by
+// tests/harness/measure/sweep/robust_settings_test.cc
+
+/// The settings whose score is within a distance of the best, and that hang together with the
+/// chosen one: of all such settings the one that is farthest from any worse one, and from the
+/// border of what was tried; of equals the best, then the first. Without members if no setting has
+/// a score above 0.
+struct RobustSettings {
+  double best = 0;
+  std::size_t chosen = 0;            ///< index of a point
+  std::size_t steps = 0;             ///< how many steps away the nearest worse one is
+  std::vector<std::size_t> members;  ///< indices of points, rising
+};
+RobustSettings FindRobustSettings(const std::vector<Axis>& axes,
+                                  const std::vector<SweepPoint>& points, double within);
+
+std::string CsvText(const std::vector<Axis>& axes, const std::vector<SweepPoint>& points);
+
+/// What it says about the best region, for people.
+std::string RobustSettingsText(const std::vector<Axis>& axes, const SweepResult& result,
+                               double within);
+
+/// The score over one or two axes as SVG; of more axes the others are as in the chosen setting.
+std::string HeatMapSvg(const std::vector<Axis>& axes, const std::vector<SweepPoint>& points,
+                       const RobustSettings& robust);
+
 }  // namespace prehend::measure

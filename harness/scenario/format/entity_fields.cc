@@ -8,8 +8,8 @@
 #include "harness/scenario/format/limits.h"
 #include "harness/scenario/format/scenario_fields.h"
 #include "harness/scenario/format/scenario_formats.h"
-#include "harness/scenario/scenario/classes.h"
 #include "harness/scenario/scenario/colors.h"
+#include "harness/scenario/scenario/scenario.h"
 
 namespace prehend::scenario {
 namespace {

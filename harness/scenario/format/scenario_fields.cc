@@ -123,7 +123,7 @@ ValueFormat<std::string> GrammarsFormat() {
 }
 
 /// In the schema steps and stages are defined once, and a stage may also be a block that is
-/// repeated; see harness/scenario/read/repeat_blocks.h.
+/// repeated; see harness/scenario/read/read_parts.h.
 void DefineScript(Json& schema) {
   Json& items = schema["properties"]["script"]["items"];
   Json stage = items;

@@ -7,12 +7,15 @@
 // tests/harness/episode/run/outcome_test.cc
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "harness/base/yaml/diagnostic_list.h"
+#include "harness/base/yaml/struct_format.h"
 #include "harness/base/yaml/value_format.h"
 #include "harness/scenario/format/scenario_yaml.h"
 #include "harness/scenario/scenario/variations.h"
+#include "physics/motion/script.h"
 
 namespace prehend::scenario {
 
@@ -51,5 +54,20 @@ ValueFormat<StageYaml> StageFormat();
 // harness/scenario/format/trial_fields.cc
 ValueFormat<VariationYaml> VariationFormat();
 ValueFormat<std::vector<ConditionYaml>> OutcomeFormat();
+
+// What people write first in a script, and what is written instead. Tested by
+// tests/harness/scenario/format/scenario_errors_test.cc
+
+/// How steps are repeated.
+inline constexpr const char* kRepeatRemedy =
+    "steps are repeated by a block of their own: '- repeat: 3' and below it 'steps: [..]'";
+
+/// Keys of steps that there are not.
+Remedies StepRemedies();
+
+// What ends a step before its time: "touching(milk)" or "gap(milk) < 5 mm", either with
+// ", or go on". Tested by tests/harness/scenario/format/scenario_errors_test.cc
+
+ValueFormat<physics::Until> UntilFormat();
 
 }  // namespace prehend::scenario

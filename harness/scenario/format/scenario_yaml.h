@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scenario as written, before names are resolved and positions computed.
 // harness/scenario/format/scenario_fields.cc says how each field is called and bounded;
-// harness/scenario/resolve/build_scene.h and harness/scenario/resolve/build_script.h make bodies,
+// harness/scenario/resolve/resolve.h and harness/scenario/resolve/resolve.h make bodies,
 // hands and steps of it.
 #pragma once
 
@@ -240,7 +240,7 @@ struct RecordingYaml : StepTimingYaml {
   double max_gap_s = 0.25;
   double max_jump_m = 0.1;
   std::optional<Located<double>> scale;  ///< metres per unit of a .bvh file
-  // What harness/scenario/read/place_recordings.h makes of the file: poses of the palm or head, or
+  // What harness/scenario/read/read_parts.h makes of the file: poses of the palm or head, or
   // postures of a body.
   std::vector<physics::TimedPose> poses;
   std::vector<physics::TimedPosture> postures;

@@ -9,8 +9,6 @@
 #include "harness/scenario/format/limits.h"
 #include "harness/scenario/format/scenario_fields.h"
 #include "harness/scenario/format/scenario_formats.h"
-#include "harness/scenario/format/step_remedies.h"
-#include "harness/scenario/format/until_format.h"
 
 namespace prehend::scenario {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/scenario/format/step_remedies.h"
-
 #include <sstream>
 #include <utility>
+
+#include "harness/scenario/format/scenario_formats.h"
 
 namespace prehend::scenario {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/scenario/format/until_format.h"
-
 #include <fmt/format.h>
 
 #include <charconv>
 #include <string_view>
+
+#include "harness/scenario/format/scenario_formats.h"
 
 namespace prehend::scenario {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario/read/place_recordings_test.cc
-#include "harness/scenario/read/place_recordings.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,6 +10,7 @@
 #include "harness/scenario/format/limits.h"
 #include "harness/scenario/motion/body_motion.h"
 #include "harness/scenario/motion/hand_motion.h"
+#include "harness/scenario/read/read_parts.h"
 #include "physics/person/skeleton.h"
 
 namespace prehend::scenario {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/scenario/read/read_claims.h"
-
 #include <algorithm>
 #include <string_view>
 #include <utility>
 
-#include "harness/truth/claims/parse_claim.h"
+#include "harness/scenario/read/read_parts.h"
+#include "harness/truth/claims/claim.h"
 
 namespace prehend::scenario {
 namespace {

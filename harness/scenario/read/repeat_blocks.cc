@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/scenario/read/repeat_blocks.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "harness/base/yaml/value_format.h"
 #include "harness/scenario/format/limits.h"
+#include "harness/scenario/read/read_parts.h"
 
 namespace prehend::scenario {
 namespace {

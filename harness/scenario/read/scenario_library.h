@@ -13,7 +13,7 @@
 namespace prehend::scenario {
 
 /// What the names in a scenario can refer to. ProjectLibrary() in
-/// harness/episode/run/project_library.h makes the usual one.
+/// harness/episode/run/find_scenario.h makes the usual one.
 struct ScenarioLibrary {
   std::vector<std::string> grammars;
   std::vector<std::string> hands;

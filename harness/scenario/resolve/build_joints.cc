@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario/resolve/build_joints_test.cc
-#include "harness/scenario/resolve/build_joints.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+
+#include "harness/scenario/resolve/resolve.h"
 
 namespace prehend::scenario {
 namespace {

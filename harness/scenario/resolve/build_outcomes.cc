@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/episode/run/outcome_test.cc
-#include "harness/scenario/resolve/build_outcomes.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "harness/scenario/resolve/resolve.h"
 #include "physics/motion/stage_clock.h"
 
 namespace prehend::scenario {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario/read/read_scenario_test.cc
-#include "harness/scenario/resolve/build_scene.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <map>
 
 #include "harness/scenario/resolve/build_abstract.h"
+#include "harness/scenario/resolve/resolve.h"
 #include "physics/base/random.h"
 #include "physics/scene/fill_vessel.h"
 #include "physics/scene/geometry.h"

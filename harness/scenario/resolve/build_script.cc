@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario/read/read_scenario_test.cc
-#include "harness/scenario/resolve/build_script.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +9,7 @@
 #include "harness/scenario/format/limits.h"
 #include "harness/scenario/format/scenario_fields.h"
 #include "harness/scenario/resolve/build_abstract.h"
-#include "harness/scenario/resolve/build_person_steps.h"
+#include "harness/scenario/resolve/resolve.h"
 #include "harness/scenario/resolve/step_order.h"
 #include "physics/motion/stage_clock.h"
 #include "physics/scene/geometry.h"

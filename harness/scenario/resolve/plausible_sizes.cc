@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/scenario/resolve/plausible_sizes.h"
-
 #include <fmt/format.h>
 
+#include "harness/scenario/resolve/resolve.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/run_limits.h"
 

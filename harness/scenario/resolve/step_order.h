@@ -6,6 +6,7 @@
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/scenario/format/scenario_yaml.h"
 #include "physics/motion/script.h"
+#include "physics/scene/scene.h"
 
 namespace prehend::scenario {
 
@@ -22,5 +23,12 @@ std::optional<physics::Until> UntilOf(const StepYaml& step, const physics::Scene
 void CheckStepOrder(const std::vector<StageYaml>& stages, const std::vector<std::string>& actors,
                     const std::vector<std::string>& persons, const physics::Script& script,
                     DiagnosticList& errors);
+
+// From entries to the steps of persons. Tested by
+// tests/harness/scenario/resolve/build_persons_test.cc
+
+/// Reports steps that are for hands, unknown entities to look at, and limbs that follow a hand.
+physics::PersonStep MakePersonStep(const Named<StepYaml>& step, int person,
+                                   const physics::Scene& scene, DiagnosticList& errors);
 
 }  // namespace prehend::scenario

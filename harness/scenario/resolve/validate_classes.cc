@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario/resolve/classes_test.cc
-#include "harness/scenario/resolve/validate_classes.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "harness/scenario/scenario/classes.h"
+#include "harness/scenario/resolve/resolve.h"
+#include "harness/scenario/scenario/scenario.h"
 
 namespace prehend::scenario {
 namespace {

@@ -7,8 +7,8 @@
 #include <set>
 #include <tuple>
 
-#include "harness/scenario/resolve/build_scene.h"
 #include "harness/scenario/resolve/penetration.h"
+#include "harness/scenario/resolve/resolve.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/joint.h"
 #include "physics/scene/run_limits.h"

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario/resolve/validate_planar_test.cc
-#include "harness/scenario/resolve/validate_planar.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <map>
 
-#include "harness/scenario/resolve/build_scene.h"
-#include "harness/scenario/resolve/build_script.h"
+#include "harness/scenario/resolve/resolve.h"
 #include "physics/scene/planar.h"
 
 namespace prehend::scenario {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario/resolve/validate_put_downs_test.cc
-#include "harness/scenario/resolve/validate_put_downs.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <set>
 
 #include "harness/scenario/resolve/penetration.h"
+#include "harness/scenario/resolve/resolve.h"
 #include "harness/scenario/resolve/step_order.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/joint.h"

@@ -1,15 +1,112 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario/scenario/scenario_test.cc and
 // tests/harness/scenario/read/read_scenario_test.cc
+// Tested by tests/harness/scenario/resolve/classes_test.cc
 #include "harness/scenario/scenario/scenario.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-
-#include "harness/scenario/scenario/own_camera.h"
+#include <charconv>
+#include <cmath>
+#include <set>
 
 namespace prehend::scenario {
+
+namespace {
+
+constexpr double kFarthest_m = 100, kNearest_m = 0.01;
+constexpr double kNarrowest_deg = 5, kWidest_deg = 120;
+
+/// Reads a number and what has to follow it; false if there is something else.
+bool Take(const char*& at, const char* end, double& value) {
+  const auto [stop, error] = std::from_chars(at, end, value);
+  at = stop;
+  return error == std::errc() && std::isfinite(value);
+}
+
+bool Take(const char*& at, const char* end, char wanted) { return at != end && *at++ == wanted; }
+
+bool Take(const char*& at, const char* end, Eigen::Vector3d& place_m) {
+  return Take(at, end, place_m.x()) && Take(at, end, ',') && Take(at, end, place_m.y()) &&
+         Take(at, end, ',') && Take(at, end, place_m.z()) &&
+         place_m.cwiseAbs().maxCoeff() <= kFarthest_m;
+}
+
+/// A body on a joint is neither fixed nor free to be picked up; only a slider or a hinge opens and
+/// closes.
+const char* MobilityOf(const physics::Scene& scene, physics::BodyIndex body) {
+  if (scene.body(body).fixed) return "Fixed";
+  const auto joint = std::ranges::find(scene.joints, body, &physics::Joint::body);
+  if (joint == scene.joints.end()) return "Movable";
+  const bool opens =
+      joint->kind == physics::JointKind::kSlider || joint->kind == physics::JointKind::kHinge;
+  return opens ? "Jointed" : "Attached";
+}
+
+std::vector<std::string> BuiltInClassesOf(const physics::Scene& scene, std::size_t body) {
+  using physics::Abstract;
+  const physics::Body& is = scene.bodies[body];
+  switch (is.abstract) {
+    case Abstract::kRegion:
+      return {"Region", "Abstract", "Entity"};
+    case Abstract::kGazeTarget:
+      return {"GazeTarget", "Abstract", "Entity"};
+    case Abstract::kCamera:
+      return {"Camera", "Abstract", "Entity"};
+    case Abstract::kLight:
+      return {"Light", "Abstract", "Entity"};
+    case Abstract::kNot:
+      break;
+  }
+  if (is.grains) return {"Grains", "Entity"};
+  const bool is_head = std::ranges::any_of(scene.persons, [&](const physics::Person& person) {
+    return person.head == physics::BodyIndex(body);
+  });
+  if (is.kinematic && !is_head) return {"BodyPart", "Entity"};
+  if (!physics::IsThing(is)) return {"Entity"};
+  return {MobilityOf(scene, physics::BodyIndex(body)), "Thing", "Entity"};
+}
+
+}  // namespace
+
+std::optional<OwnCamera> ParseOwnCamera(const std::string& text) {
+  OwnCamera camera;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  if (!Take(at, end, camera.eye_m) || !Take(at, end, ':') || !Take(at, end, camera.look_at_m))
+    return std::nullopt;
+  if (at != end && (!Take(at, end, ':') || !Take(at, end, camera.view_deg))) return std::nullopt;
+  const bool is_view = camera.view_deg >= kNarrowest_deg && camera.view_deg <= kWidest_deg &&
+                       (camera.eye_m - camera.look_at_m).norm() >= kNearest_m;
+  return at == end && is_view ? std::optional(camera) : std::nullopt;
+}
+
+bool IsScenarioBuiltinClass(const std::string& name) {
+  static const std::set<std::string> names = {
+      "Entity",   "Thing",  "Movable",  "Fixed",  "Jointed",    "Attached", "Hand", "Person",
+      "BodyPart", "Grains", "Abstract", "Region", "GazeTarget", "Camera",   "Light"};
+  return names.contains(name);
+}
+
+std::vector<std::string> WithBaseClasses(const std::string& class_name,
+                                         const std::vector<BaseClass>& base_classes) {
+  std::vector<std::string> all = {class_name};
+  while (all.size() <= base_classes.size()) {
+    const auto found = std::ranges::find(base_classes, all.back(), &BaseClass::name);
+    if (found == base_classes.end()) break;
+    all.push_back(found->of);
+  }
+  return all;
+}
+
+std::vector<std::string> ClassesOf(const Scenario& scenario, std::size_t body) {
+  std::vector<std::string> classes =
+      WithBaseClasses(scenario.body_classes[body], scenario.base_classes);
+  for (std::string& given : BuiltInClassesOf(scenario.scene, body))
+    classes.push_back(std::move(given));
+  return classes;
+}
 
 Scenario::Scenario() = default;
 Scenario::Scenario(const Scenario& other) = default;

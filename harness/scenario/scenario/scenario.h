@@ -5,6 +5,7 @@
 // tests/harness/scenario/scenario/scenario_test.cc
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -20,6 +21,22 @@
 #include "physics/scene/scene.h"
 
 namespace prehend::scenario {
+
+// A camera as people type it: where it stands and what it looks at. Tested by
+// tests/harness/scenario/scenario/own_camera_test.cc
+
+struct OwnCamera {
+  Eigen::Vector3d eye_m = Eigen::Vector3d::Zero(), look_at_m = Eigen::Vector3d::UnitX();
+  double view_deg = 33;  ///< vertical field of view
+};
+
+/// For messages and help.
+inline constexpr const char* kOwnCameraForm = "X,Y,Z:X,Y,Z[:DEG]";
+
+/// "0.9,-0.8,1.3:0.2,-0.1,0.9": a place and what is looked at from there, in metres, and perhaps
+/// the vertical field of view, 5 to 120 degrees. Nothing of any other text, of places farther than
+/// 100 m, and of two places that are nearer to each other than 1 cm.
+std::optional<OwnCamera> ParseOwnCamera(const std::string& text);
 
 /// How imperfect sensors see the scene. They change what grammars see, and nothing else. The
 /// default is without errors.
@@ -51,7 +68,7 @@ struct BaseClass {
 
 struct PictureYaml {
   Located<std::string> at;  ///< "reaching.begin", "putting_down.end", or a time: "1.25"; see
-                            ///< harness/episode/run/event_time.h
+                            ///< harness/episode/run/run_scenario.h
   Located<std::string> camera{"three_quarter",
                               {}};  ///< one of CameraWords(), or an entity that is a camera
 };
@@ -99,5 +116,19 @@ std::vector<std::string> CamerasOf(const Scenario& scenario);
 
 /// An error message if there is no such camera.
 std::optional<std::string> WhyNoCamera(const Scenario& scenario, const std::string& camera);
+
+// Classes of entities and their base classes: the built-in ones, and those that a scenario
+// declares. Tested by tests/harness/scenario/resolve/classes_test.cc
+
+/// Whether every scenario has this class; a scenario may not declare one of the same name.
+bool IsScenarioBuiltinClass(const std::string& name);
+
+/// A class and its base classes, the most special first.
+std::vector<std::string> WithBaseClasses(const std::string& class_name,
+                                         const std::vector<BaseClass>& base_classes);
+
+/// All classes of a body of the scenario, most special first: its own and their base classes, then
+/// the built-in ones.
+std::vector<std::string> ClassesOf(const Scenario& scenario, std::size_t body);
 
 }  // namespace prehend::scenario

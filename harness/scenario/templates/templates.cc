@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/scenario/templates/templates.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/yaml/struct_format.h"
+#include "harness/scenario/templates/new_scenario.h"
 
 namespace prehend::scenario {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "harness/base/base/markup.h"
+#include "harness/base/base/quoting.h"
 
 namespace prehend::show {
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/show/explain/nodes.h"
 #include "harness/show/explain/phrasing.h"
 
 namespace prehend::show {

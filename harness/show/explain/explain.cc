@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "harness/show/explain/bindings.h"
+#include "harness/show/explain/query.h"
 #include "harness/show/explain/why_event.h"
 #include "harness/show/explain/why_missing.h"
 #include "harness/truth/timeline/event_text.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "harness/show/explain/nodes.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::show {

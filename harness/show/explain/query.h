@@ -6,8 +6,10 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "grammar/program/program.h"
+#include "grammar/replay_monitor.h"
 #include "harness/base/base/result.h"
 
 namespace prehend::show {
@@ -23,5 +25,15 @@ struct Ask {
 /// open.
 Result<Ask> ParseAsk(const std::string& option, const std::string& text,
                      const grammar::Program& program, const grammar::EntityTable& entity_table);
+
+// The bindings of a rule that could be meant where some of its roles are left open.
+// Tested by tests/harness/show/explain/explain_test.cc
+
+inline constexpr std::size_t kMaxBindings = 64;
+
+/// Those that were looked at while the episode went on; if there is none, those that could have
+/// been. At most kMaxBindings. `wanted`: kNone for whoever.
+std::vector<grammar::InstanceId> BindingsThatFit(grammar::ReplayMonitor& past, grammar::RuleId rule,
+                                                 const grammar::Binding& wanted);
 
 }  // namespace prehend::show

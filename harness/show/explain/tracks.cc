@@ -7,8 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "harness/base/base/csv_cells.h"
-#include "harness/show/explain/nodes.h"
+#include "harness/base/base/quoting.h"
 #include "harness/show/explain/phrasing.h"
 #include "harness/truth/timeline/event_text.h"
 

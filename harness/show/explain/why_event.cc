@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "grammar/base/allen.h"
-#include "harness/show/explain/nodes.h"
 #include "harness/show/explain/phrasing.h"
 #include "harness/truth/timeline/event_text.h"
 

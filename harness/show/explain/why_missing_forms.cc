@@ -7,9 +7,8 @@
 #include <cmath>
 
 #include "grammar/base/allen.h"
-#include "harness/show/explain/bindings.h"
-#include "harness/show/explain/nodes.h"
 #include "harness/show/explain/phrasing.h"
+#include "harness/show/explain/query.h"
 #include "harness/show/explain/why_missing.h"
 #include "harness/truth/timeline/event_text.h"
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "harness/episode/run/event_time.h"
+#include "harness/episode/run/run_scenario.h"
 #include "harness/truth/timeline/event_text.h"
 #include "physics/scene/geometry.h"
 

@@ -10,7 +10,7 @@
 #include <functional>
 #include <map>
 
-#include "harness/scenario/scenario/own_camera.h"
+#include "harness/scenario/scenario/scenario.h"
 
 namespace prehend::show {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/figures/sheet.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "harness/base/base/base64.h"
+#include "harness/base/base/quoting.h"
+#include "harness/show/figures/scene_tiles.h"
 
 namespace prehend::show {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // See harness/show/pictures/pictures.h. Tested by tests/program/render_test.cc
-#include "harness/episode/run/event_time.h"
+#include "harness/episode/run/run_scenario.h"
 #include "harness/show/pictures/pictures.h"
 
 namespace prehend::show {

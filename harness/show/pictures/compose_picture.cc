@@ -10,8 +10,7 @@
 #include <optional>
 #include <set>
 
-#include "harness/episode/run/event_time.h"
-#include "harness/show/pictures/framing.h"
+#include "harness/episode/run/run_scenario.h"
 #include "harness/show/pictures/scenery.h"
 #include "harness/truth/timeline/event_drawings.h"
 

@@ -10,7 +10,6 @@
 #include <iterator>
 
 #include "harness/base/base/atomic_file.h"
-#include "harness/base/base/temporary_folder.h"
 #include "harness/base/process/run_tool.h"
 #include "harness/show/pictures/scene_painter.h"
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/pictures/framing.h"
-
 #include <algorithm>
 
-#include "harness/scenario/scenario/own_camera.h"
+#include "harness/scenario/scenario/scenario.h"
+#include "harness/show/pictures/compose_picture.h"
 #include "harness/show/pictures/scenery.h"
 
 namespace prehend::show {

@@ -8,7 +8,7 @@
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/text_file.h"
-#include "harness/episode/run/event_time.h"
+#include "harness/episode/run/run_scenario.h"
 #include "harness/show/pictures/compose_picture.h"
 #include "harness/show/pictures/pictures.h"
 #include "render/inventory.h"

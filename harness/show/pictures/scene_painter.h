@@ -32,7 +32,7 @@ class ScenePainter {
   DrawnScene Draw(const scenario::Scenario& scenario, const episode::RunResult& run,
                   const scenario::PictureYaml& entry, const PictureFormat& format);
 
-  /// The camera of such a scene as text (harness/scenario/scenario/own_camera.h), for other scenes
+  /// The camera of such a scene as text (harness/scenario/scenario/scenario.h), for other scenes
   /// in the same view.
   static std::string CameraOf(const scenario::Scenario& scenario, const episode::RunResult& run,
                               const scenario::PictureYaml& entry, const PictureFormat& format);

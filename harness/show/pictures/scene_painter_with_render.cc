@@ -3,7 +3,7 @@
 // tests/harness/show/pictures/scene_painter_test.cc
 #include <fmt/format.h>
 
-#include "harness/episode/run/event_time.h"
+#include "harness/episode/run/run_scenario.h"
 #include "harness/show/pictures/compose_picture.h"
 #include "harness/show/pictures/scene_painter.h"
 

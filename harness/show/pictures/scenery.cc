@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include "harness/episode/run/event_time.h"
+#include "harness/episode/run/run_scenario.h"
 #include "harness/scenario/scenario/colors.h"
 #include "physics/scene/geometry.h"
 

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "harness/base/base/base64.h"
+#include "harness/base/base/quoting.h"
 #include "harness/show/pictures/scenery.h"
 
 namespace prehend::show {

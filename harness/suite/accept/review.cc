@@ -9,16 +9,16 @@
 #include <set>
 #include <sstream>
 
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/episode/lacks.h"
-#include "harness/episode/run/project_library.h"
+#include "harness/episode/run/find_scenario.h"
 #include "harness/scenario/read/read_scenario.h"
 #include "harness/suite/check/check_request.h"
 #include "harness/suite/judge/accept_golden.h"
-#include "harness/suite/judge/compare_engines.h"
 #include "harness/suite/judge/judge.h"
-#include "harness/suite/judge/judge_recording.h"
+#include "harness/suite/judge/judges.h"
+#include "harness/suite/judge/other_view.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/golden/golden_files.h"
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 
 namespace prehend::suite {
 

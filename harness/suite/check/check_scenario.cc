@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/episode/episode/open_episode.h"
 #include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/run/run_text.h"
@@ -18,11 +18,8 @@
 #include "harness/suite/check/draw_differences.h"
 #include "harness/suite/check/last_pass.h"
 #include "harness/suite/judge/accept_golden.h"
-#include "harness/suite/judge/compare_engines.h"
-#include "harness/suite/judge/invariants.h"
-#include "harness/suite/judge/judge_golden.h"
-#include "harness/suite/judge/judge_pictures.h"
-#include "harness/suite/judge/judge_recording.h"
+#include "harness/suite/judge/judges.h"
+#include "harness/suite/judge/other_view.h"
 #include "harness/truth/golden/golden_files.h"
 
 namespace prehend::suite {

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "harness/base/base/build_text.h"
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/process/progress_counters.h"
 #include "harness/base/process/wire.h"

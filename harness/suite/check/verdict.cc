@@ -12,7 +12,7 @@
 #include <tuple>
 #include <utility>
 
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "harness/base/base/content_hash.h"
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/timeline/event_text.h"
 

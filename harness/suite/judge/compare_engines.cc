@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/suite/judge/compare_engines_test.cc
-#include "harness/suite/judge/compare_engines.h"
-
 #include <cmath>
 
 #include "harness/episode/run/run_text.h"
+#include "harness/suite/judge/other_view.h"
 
 namespace prehend::suite {
 namespace {

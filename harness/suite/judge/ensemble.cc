@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/judge/ensemble.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "harness/episode/run/run_text.h"
 #include "harness/scenario/transform/transform.h"
 #include "harness/suite/judge/judge.h"
+#include "harness/suite/judge/judges.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {

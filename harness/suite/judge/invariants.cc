@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One function per invariant, and the table that names them. Tested by
 // tests/harness/suite/judge/invariants_test.cc
-#include "harness/suite/judge/invariants.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "grammar/check_laws.h"
 #include "grammar/describe.h"
 #include "harness/episode/sense/entity_table.h"
+#include "harness/suite/judge/judges.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/timeline/event_text.h"
 

@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "harness/episode/run/validate_claims.h"
+#include "harness/episode/run/load_run.h"
 #include "physics/scene/run_limits.h"
 
 namespace prehend::suite {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/judge/judge_golden.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "harness/episode/sense/entity_table.h"
 #include "harness/episode/sense/sensing.h"
 #include "harness/suite/judge/accept_golden.h"
+#include "harness/suite/judge/judges.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/judge/judge_pictures.h"
-
 #include <fmt/format.h>
 
+#include "harness/suite/judge/judges.h"
 #include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/golden/golden_files.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/judge/judge_recording.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -8,6 +6,7 @@
 
 #include "harness/episode/episode/open_episode.h"
 #include "harness/suite/judge/accept_golden.h"
+#include "harness/suite/judge/judges.h"
 #include "harness/truth/golden/golden_files.h"
 
 namespace prehend::suite {

@@ -9,7 +9,6 @@
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/segment.h"
 #include "harness/suite/judge/accept_golden.h"
-#include "harness/suite/judge/compare_engines.h"
 #include "harness/truth/golden/golden_files.h"
 
 namespace prehend::suite {

@@ -8,7 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "harness/base/base/markup.h"
+#include "harness/base/base/quoting.h"
 #include "harness/show/chart/chart.h"
 #include "harness/truth/timeline/event_text.h"
 

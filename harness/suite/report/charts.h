@@ -5,6 +5,7 @@
 
 #include <pugixml.hpp>
 #include <string>
+#include <string_view>
 
 #include "harness/suite/check/explained.h"
 #include "harness/truth/golden/compare.h"
@@ -26,5 +27,17 @@ std::string SignalSvg(const DecidingSignal& signal, grammar::Tick ticks_per_seco
 /// what turned at each boundary, which the page's script shows at the cursor.
 void AddExplanations(pugi::xml_node section, const Explained& explained,
                      grammar::Tick ticks_per_second);
+
+// Texts of the report page, embedded when the program is built: its style and script
+// (harness/suite/report/page), and the script of the 3D replay (harness/suite/report/replay).
+// Tested by tests/harness/suite/report/report_test.cc
+
+std::string_view PageStyle();
+std::string_view PageScript();
+
+/// The script of the 3D replay, deflated, in base64; empty in a build that could not get it.
+std::string_view ReplayBundle();
+/// Why there is none; else empty.
+std::string_view WhyNoReplay();
 
 }  // namespace prehend::suite

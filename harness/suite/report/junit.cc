@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/base/markup.h"
+#include "harness/base/base/quoting.h"
 #include "harness/suite/report/report.h"
 #include "harness/truth/timeline/event_text.h"
 

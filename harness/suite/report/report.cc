@@ -12,11 +12,9 @@
 #include <string_view>
 #include <tuple>
 
-#include "harness/base/base/base64.h"
-#include "harness/base/base/markup.h"
+#include "harness/base/base/quoting.h"
 #include "harness/suite/check/causes.h"
 #include "harness/suite/report/charts.h"
-#include "harness/suite/report/page_texts.h"
 
 namespace prehend::suite {
 namespace {

@@ -11,7 +11,6 @@
 #include "grammar/base/timeline.h"
 #include "grammar/contents.h"
 #include "harness/truth/claims/claim.h"
-#include "harness/truth/claims/parse_claim.h"
 
 namespace prehend::truth {
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A claim is `[QUANTITY] EVENT {RELATION EVENT}`. Tested by
 // tests/harness/truth/claims/parse_claim_test.cc
-#include "harness/truth/claims/parse_claim.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +9,8 @@
 #include <initializer_list>
 #include <optional>
 #include <utility>
+
+#include "harness/truth/claims/claim.h"
 
 namespace prehend::truth {
 namespace {

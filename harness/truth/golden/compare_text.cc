@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "harness/base/base/shell_quote.h"
+#include "harness/base/base/quoting.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/timeline/event_text.h"
 

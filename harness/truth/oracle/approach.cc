@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/truth/oracle/approach.h"
-
 #include <algorithm>
 #include <optional>
 #include <vector>
+
+#include "harness/truth/oracle/touches.h"
 
 namespace prehend::truth {
 

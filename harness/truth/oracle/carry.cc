@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/truth/oracle/carry.h"
-
 #include <optional>
 
-#include "harness/truth/oracle/approach.h"
+#include "harness/truth/oracle/touches.h"
 
 namespace prehend::truth {
 

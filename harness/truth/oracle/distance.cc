@@ -3,10 +3,10 @@
 // the nearest point of one shape to the nearest point of the other to ... converges to a nearest
 // pair. It needs nothing but the nearest point of a shape, and a hundredth of a millimetre is
 // plenty here.
-#include "harness/truth/oracle/distance.h"
-
 #include <algorithm>
 #include <limits>
+
+#include "harness/truth/oracle/evidence.h"
 
 namespace prehend::truth {
 

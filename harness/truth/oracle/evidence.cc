@@ -7,8 +7,6 @@
 #include <cmath>
 #include <ranges>
 
-#include "harness/truth/oracle/distance.h"
-
 namespace prehend::truth {
 
 namespace {

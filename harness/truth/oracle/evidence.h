@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "harness/truth/oracle/recording.h"
+#include "physics/scene/scene.h"
+#include "physics/scene/snapshot.h"
 
 namespace prehend::truth {
 
@@ -62,5 +64,17 @@ class Evidence {
 /// Whether the body's true shape reaches into the hand's region of interest: the sphere ahead of
 /// the palm that touches its centre.
 bool InReachRegion(const Recording& recording, int hand, int body, int frame, double radius_m);
+
+// Distances between true surfaces: boxes, spheres, cylinders, capsules, hulls and what is made of
+// them. Tested by tests/harness/truth/oracle/oracle_test.cc
+
+/// Between the surfaces of the hand (palm and links) and of the body, metres; 0 when they touch or
+/// overlap. Within 0.01 mm.
+double SurfaceDistance(const physics::HandModel& model, const physics::HandState& hand,
+                       const physics::Body& body, const physics::BodyState& state);
+
+/// Of a point from the body, metres; 0 inside.
+double PointDistance(const Eigen::Vector3d& p_W_m, const physics::Body& body,
+                     const physics::BodyState& state);
 
 }  // namespace prehend::truth

@@ -5,10 +5,8 @@
 #include <array>
 #include <utility>
 
-#include "harness/truth/oracle/approach.h"
-#include "harness/truth/oracle/bands.h"
-#include "harness/truth/oracle/carry.h"
 #include "harness/truth/oracle/recording.h"
+#include "harness/truth/oracle/settings.h"
 #include "harness/truth/oracle/touches.h"
 
 namespace prehend::truth {

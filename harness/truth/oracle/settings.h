@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// One choice of the numbers in the definitions. The page of definitions, docs/events.md, gives each
-// a band (harness/truth/oracle/bands.h). Tested by tests/harness/truth/oracle/oracle_test.cc
+// One choice of the numbers in the definitions, and the bands that the page of definitions,
+// docs/events.md, gives them. Tested by tests/harness/truth/oracle/oracle_test.cc
 #pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
 
 namespace prehend::truth {
 
@@ -50,5 +54,22 @@ struct OracleSettings {
 
   double carry_way_m = 0.005;  ///< what gets no farther until it stands again was not carried
 };
+
+// The bands of the definitions' numbers. A definition such as "short gaps are bridged" has no sharp
+// number: any within the band is a fair reading of it. The bands are those of the table in
+// docs/events.md. Tested by tests/harness/truth/oracle/bands_test.cc
+
+struct Band {
+  std::string_view number;  ///< its name in the table of docs/events.md
+  double OracleSettings::*setting = nullptr;
+  double low = 0, high = 0;  ///< SI units, both allowed
+};
+
+/// One per number, in the order of the table.
+std::span<const Band> DefinitionBands();
+
+/// The numbers of the table first; then each number at the low and at the high end of its band, the
+/// others as in the table.
+std::vector<OracleSettings> DefinitionChoices();
 
 }  // namespace prehend::truth

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "harness/base/base/project_paths.h"
-#include "harness/scenario/resolve/build_scene.h"
+#include "harness/scenario/resolve/resolve.h"
 #include "tests/witnesses/closed_form/closed_form.h"
 #include "tests/witnesses/closed_form/closed_form_yaml.h"
 #include "tests/witnesses/closed_form/kinematics.h"

@@ -8,7 +8,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "harness/suite/judge/ensemble.h"
+#include "harness/suite/judge/judges.h"
 
 namespace prehend::witnesses {
 

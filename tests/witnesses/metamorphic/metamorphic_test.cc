@@ -5,7 +5,7 @@
 
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
-#include "harness/truth/claims/parse_claim.h"
+#include "harness/truth/claims/claim.h"
 #include "tests/witnesses/metamorphic/change_entities.h"
 #include "tests/witnesses/metamorphic/move_scenario.h"
 

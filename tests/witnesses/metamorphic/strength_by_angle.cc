@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "harness/episode/run/load_run.h"
-#include "harness/episode/run/outcome.h"
 #include "harness/episode/run/run_trials.h"
 #include "physics/scene/geometry.h"
 #include "physics/simulation.h"

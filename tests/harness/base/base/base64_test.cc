@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/base/base/base64.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/base/base/quoting.h"
 
 namespace prehend {
 namespace {

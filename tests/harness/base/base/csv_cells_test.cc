@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/base/base/csv_cells.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "harness/base/base/quoting.h"
 
 namespace prehend {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Trees become documents that an XML reader or a browser reads back as they were.
-#include "harness/base/base/markup.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/base/base/quoting.h"
 
 namespace prehend {
 namespace {

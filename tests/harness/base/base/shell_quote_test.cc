@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A shell reads back what was quoted.
-#include "harness/base/base/shell_quote.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/base/base/quoting.h"
 
 namespace prehend {
 namespace {

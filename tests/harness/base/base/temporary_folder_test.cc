@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/base/base/temporary_folder.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <fstream>
+
+#include "harness/base/base/atomic_file.h"
 
 namespace prehend {
 namespace {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/base/yaml/located_json.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "harness/base/yaml/located_yaml.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend {

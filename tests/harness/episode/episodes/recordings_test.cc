@@ -8,7 +8,6 @@
 #include <fstream>
 
 #include "harness/episode/episode/open_episode.h"
-#include "harness/episode/episodes/placeholder_scene.h"
 
 namespace prehend::episode {
 namespace {

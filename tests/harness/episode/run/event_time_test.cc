@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/episode/run/event_time.h"
-
 #include <gtest/gtest.h>
 
 #include "grammar/program/program.h"
+#include "harness/episode/run/run_scenario.h"
 
 namespace prehend::episode {
 namespace {

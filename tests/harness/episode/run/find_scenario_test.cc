@@ -9,7 +9,6 @@
 #include <fstream>
 
 #include "harness/base/base/project_paths.h"
-#include "harness/episode/run/project_library.h"
 
 namespace prehend::episode {
 namespace {

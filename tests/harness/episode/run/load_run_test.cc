@@ -5,7 +5,6 @@
 
 #include "grammar/program/program.h"
 #include "harness/episode/run/run_trials.h"
-#include "harness/episode/run/validate_claims.h"
 #include "tests/harness/episode/run/count_reads.h"
 #include "tests/harness/suite/judge/checked_run.h"
 

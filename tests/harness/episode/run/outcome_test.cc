@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a run ended, by name: judged on snapshots made by hand.
-#include "harness/episode/run/outcome.h"
-
 #include <gtest/gtest.h>
 
+#include "harness/episode/run/run_trials.h"
 #include "harness/scenario/read/read_scenario.h"
 #include "physics/scene/compounds.h"
 #include "tests/harness/scenario_fixture.h"

@@ -12,7 +12,6 @@
 
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
-#include "harness/episode/run/validate_claims.h"
 #include "harness/truth/claims/judge_claims.h"
 #include "physics/base/random.h"
 #include "physics/scene/geometry.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Claims about what the scenario or its grammar does not have are refused when they are read;
 // another grammar may lack what they are about.
-#include "harness/episode/run/validate_claims.h"
-
 #include "harness/episode/run/load_run.h"
 #include "tests/harness/suite/judge/checked_run.h"
 

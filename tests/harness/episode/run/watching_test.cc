@@ -11,8 +11,8 @@
 
 #include "harness/episode/run/find_scenario.h"
 #include "harness/episode/run/load_run.h"
-#include "harness/episode/run/outcome.h"
 #include "harness/episode/run/run_scenario.h"
+#include "harness/episode/run/run_trials.h"
 #include "harness/episode/sense/entity_table.h"
 #include "harness/episode/sense/episode_file.h"
 #include "harness/show/pictures/pictures.h"

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The short way to a frame gives what the field tables give, or nothing.
-#include "harness/episode/sense/scan_frame.h"
-
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -9,7 +7,8 @@
 #include <string>
 #include <variant>
 
-#include "harness/base/yaml/located_json.h"
+#include "harness/base/yaml/located_yaml.h"
+#include "harness/episode/sense/episode_format.h"
 
 namespace prehend::episode {
 namespace {

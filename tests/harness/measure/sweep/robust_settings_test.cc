@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/measure/sweep/robust_settings.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include "harness/measure/sweep/sweep.h"
 
 namespace prehend::measure {
 namespace {

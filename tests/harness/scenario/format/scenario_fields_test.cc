@@ -7,7 +7,6 @@
 
 #include "harness/base/base/text_file.h"
 #include "harness/episode/run/find_scenario.h"
-#include "harness/episode/run/project_library.h"
 #include "tests/harness/scenario/format/python_validator.h"
 #include "tests/harness/scenario_fixture.h"
 

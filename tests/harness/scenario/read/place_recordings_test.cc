@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recording steps in a scenario: what becomes of the file, and what is refused.
-#include "harness/scenario/read/place_recordings.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -9,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "harness/scenario/read/read_parts.h"
 #include "physics/motion/trajectory.h"
 #include "tests/harness/scenario_fixture.h"
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Claims keep the place where they were written, and errors in them point at the letter.
-#include "harness/scenario/read/read_claims.h"
-
 #include <gtest/gtest.h>
 
+#include "harness/scenario/read/read_parts.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::scenario {

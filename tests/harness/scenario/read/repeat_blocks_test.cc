@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/scenario/read/repeat_blocks.h"
-
 #include <gtest/gtest.h>
 
 #include "grammar/base/diagnostic.h"
+#include "harness/scenario/read/read_parts.h"
 
 namespace prehend::scenario {
 namespace {

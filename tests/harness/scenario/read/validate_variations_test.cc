@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What can be drawn is tried when the file is read: paths, bounds, and what the rest of the
 // scenario has against them.
-#include "harness/scenario/read/validate_variations.h"
-
 #include <gtest/gtest.h>
 
 #include "harness/scenario/read/read_scenario.h"
+#include "harness/scenario/read/sample_variations.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::scenario {

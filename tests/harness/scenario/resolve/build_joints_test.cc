@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // From YAML to joints, parts and compounds; and everything that is said when they make no sense.
-#include "harness/scenario/resolve/build_joints.h"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "harness/episode/sense/entity_table.h"
 #include "harness/scenario/read/read_scenario.h"
+#include "harness/scenario/resolve/resolve.h"
 #include "physics/scene/geometry.h"
 #include "tests/harness/scenario_fixture.h"
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Persons and trackers in a scenario: what is built from them, and what is refused.
-#include "harness/scenario/resolve/build_persons.h"
-
 #include <gtest/gtest.h>
 
 #include "harness/episode/sense/entity_table.h"
+#include "harness/scenario/resolve/resolve.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::scenario {

@@ -3,7 +3,7 @@
 
 #include "harness/episode/sense/entity_table.h"
 #include "harness/scenario/read/read_scenario.h"
-#include "harness/scenario/resolve/validate_classes.h"
+#include "harness/scenario/resolve/resolve.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::scenario {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Masses and sizes that look like a mistaken unit are warned of, with numbers.
-#include "harness/scenario/resolve/plausible_sizes.h"
-
 #include <gtest/gtest.h>
 
+#include "harness/scenario/resolve/resolve.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::scenario {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a planar world refuses, with its full text.
-#include "harness/scenario/resolve/validate_planar.h"
-
 #include <gtest/gtest.h>
 
 #include "harness/episode/run/find_scenario.h"
-#include "harness/episode/run/project_library.h"
+#include "harness/scenario/resolve/resolve.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::scenario {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Put-downs that cannot end well are refused with their full text; whatever the script does not
 // say is not judged.
-#include "harness/scenario/resolve/validate_put_downs.h"
-
 #include <gtest/gtest.h>
 
+#include "harness/scenario/resolve/resolve.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::scenario {

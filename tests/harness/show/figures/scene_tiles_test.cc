@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "harness/scenario/scenario/own_camera.h"
+#include "harness/scenario/scenario/scenario.h"
 #include "harness/show/pictures/pictures.h"
 #include "tests/harness/show/figures/played.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/figures/sheet.h"
-
 #include <gtest/gtest.h>
 
 #include <pugixml.hpp>
+
+#include "harness/show/figures/scene_tiles.h"
 
 namespace prehend::show {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/scenario/scenario/own_camera.h"
+#include "harness/scenario/scenario/scenario.h"
 #include "harness/show/pictures/pictures.h"
 #include "tests/harness/show/figures/played.h"
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The comparison of engines: it agrees on what is shipped, and it can disagree.
-#include "harness/suite/judge/compare_engines.h"
-
 #include <gtest/gtest.h>
 
 #include "harness/episode/run/load_run.h"
+#include "harness/suite/judge/other_view.h"
 
 namespace prehend::suite {
 namespace {

@@ -2,7 +2,7 @@
 // The facts beside a difference are those of its participants, around its moment.
 #include <gtest/gtest.h>
 
-#include "harness/suite/judge/judge_golden.h"
+#include "harness/suite/judge/judges.h"
 
 namespace prehend::suite {
 namespace {

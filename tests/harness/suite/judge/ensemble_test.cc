@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/judge/ensemble.h"
-
 #include <gtest/gtest.h>
 
 #include "harness/episode/run/run_scenario.h"
-#include "harness/truth/claims/parse_claim.h"
+#include "harness/suite/judge/judges.h"
+#include "harness/truth/claims/claim.h"
 
 namespace prehend::suite {
 namespace {

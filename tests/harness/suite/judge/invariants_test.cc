@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A timeline that is as it should be, and each invariant broken once.
-#include "harness/suite/judge/invariants.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/suite/judge/judges.h"
 
 namespace prehend::suite {
 namespace {

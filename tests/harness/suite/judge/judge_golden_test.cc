@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run judged by its golden and the ground truth: what holds, what differs, what waits.
-#include "harness/suite/judge/judge_golden.h"
-
+#include "harness/suite/judge/judges.h"
 #include "tests/harness/suite/judge/checked_run.h"
 
 namespace prehend::suite {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run that keeps the invariants, and one that does not.
-#include "harness/suite/judge/invariants.h"
+#include "harness/suite/judge/judges.h"
 #include "tests/harness/suite/judge/checked_run.h"
 
 namespace prehend::suite {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures against their goldens, without drawing: what is said, and what is stored. Pixels are
 // compared in tests/program/golden_workflow_test.cc
-#include "harness/suite/judge/judge_pictures.h"
-
 #include "harness/show/pictures/pictures.h"
+#include "harness/suite/judge/judges.h"
 #include "tests/harness/suite/judge/checked_run.h"
 
 namespace prehend::suite {

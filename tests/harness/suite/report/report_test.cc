@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "harness/suite/report/page_texts.h"
+#include "harness/suite/report/charts.h"
 
 namespace prehend::suite {
 namespace {

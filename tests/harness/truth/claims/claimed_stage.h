@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/truth/claims/claim.h"
 #include "harness/truth/claims/judge_claims.h"
-#include "harness/truth/claims/parse_claim.h"
 
 namespace prehend::truth {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every form of a claim, and what is said of a text that is none.
-#include "harness/truth/claims/parse_claim.h"
-
 #include <gtest/gtest.h>
 
 #include <tuple>
+
+#include "harness/truth/claims/claim.h"
 
 namespace prehend::truth {
 namespace {

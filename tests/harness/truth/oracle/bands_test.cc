@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of numbers in docs/events.md owns the numbers: the oracle's bands are its bands, the
 // parameters of the library lie within them.
-#include "harness/truth/oracle/bands.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,6 +14,7 @@
 
 #include "grammar/program/program.h"
 #include "harness/episode/run/load_grammar.h"
+#include "harness/truth/oracle/settings.h"
 
 namespace prehend::truth {
 namespace {

@@ -2,7 +2,7 @@
 // The oracle on hand-made recordings: reaching and fixation.
 #include <gtest/gtest.h>
 
-#include "harness/truth/oracle/distance.h"
+#include "harness/truth/oracle/evidence.h"
 #include "tests/harness/truth/oracle/oracle_stage.h"
 
 namespace prehend::truth {

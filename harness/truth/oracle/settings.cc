@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/truth/oracle/bands.h"
+#include "harness/truth/oracle/settings.h"
 
 #include <array>
 
