@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 #include "grammar/contents.h"
 #include "harness/episode/episodes/schema.h"
 

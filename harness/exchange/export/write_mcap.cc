@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 #include "harness/exchange/export/mcap_writer.h"
 #include "harness/exchange/export/ros_messages.h"
 #include "harness/exchange/export/write_motion.h"

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 #include "harness/exchange/export/byte_writer.h"
 #include "harness/exchange/export/write_motion.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "grammar/base/allen.h"
-#include "grammar/base/tracking.h"
+#include "grammar/base/frame.h"
 #include "tests/grammar/reference/random_meaning.h"
 
 namespace prehend::grammar::testing {
