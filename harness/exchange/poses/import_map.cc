@@ -162,6 +162,13 @@ ValueFormat<TimeUnit> TimeUnits() {
                            {"iso", TimeUnit::kIso}});
 }
 
+ValueFormat<Separator> Separators() {
+  return Choice<Separator>({{"comma", Separator::kComma},
+                            {"semicolon", Separator::kSemicolon},
+                            {"tab", Separator::kTab},
+                            {"space", Separator::kSpace}});
+}
+
 ValueFormat<ImportMap> MapFormat() {
   using M = ImportMap;
   const auto name = Word("[A-Za-z_][A-Za-z0-9_]*", "a name like 'milk_carton'");
@@ -201,11 +208,7 @@ ValueFormat<ImportMap> MapFormat() {
           "Of CSV: the unit of the time column; frame: a number, rate_hz per second; iso: dates.")
       .Optional("rate_hz", &M::rate_hz, Number(0.1, 10'000),
                 "Frames per second. It is compared with the times.")
-      .Optional("separator", &M::separator,
-                Choice<Separator>({{"comma", Separator::kComma},
-                                   {"semicolon", Separator::kSemicolon},
-                                   {"tab", Separator::kTab},
-                                   {"space", Separator::kSpace}}),
+      .Optional("separator", &M::separator, Separators(),
                 "What separates columns; space: any number of blanks.")
       .Optional("decimal", &M::decimal_comma, Choice<bool>({{"point", false}, {"comma", true}}),
                 "What separates the decimals of numbers.")
