@@ -87,10 +87,13 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
   static const std::string kTable = "write its poses to a CSV file: one row a time, named columns";
   static const std::map<std::string, std::string> kOthers = {
       {".db3", "convert it, with the program that comes with MCAP: mcap convert IN.db3 OUT.mcap"},
-      {".npz", "in Python, prehend takes arrays (docs/python.md); or write them as CSV"},
-      {".npy", "in Python, prehend takes arrays (docs/python.md); or write them as CSV"},
+      {".npz",
+       "write its arrays as CSV, or as HDF5 with h5py; Python passes arrays (docs/python.md)"},
+      {".npy",
+       "write its array as CSV, or as HDF5 with h5py; Python passes arrays (docs/python.md)"},
       {".pkl", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
-      {".parquet", "in Python, prehend takes DataFrames (docs/python.md); or write it as CSV"},
+      {".parquet",
+       "write its poses as CSV, or as HDF5 with h5py; Python passes tables (docs/python.md)"},
       {".c3d", "export poses of rigid bodies as CSV; C3D mostly holds single markers"},
       {".fbx", "export it as BVH"},
       {".json", kTable},

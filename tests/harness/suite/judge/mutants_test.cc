@@ -94,7 +94,7 @@ const std::vector<Mutant> kMutants = {
     {"slow put-downs are cut short", "pick_and_place", "put_back   = 3.3 s", "put_back   = 1 s",
      ""},
     {"a put-down ends with the grasp", "pick_and_place",
-     "until supported_by(object, any) begins\n  since in_the_air(hand, object) and in_cylinder",
+     "until landed(hand, object) begins\n  since in_the_air(hand, object) and in_cylinder",
      "until grasping(hand, object) ends\n  since in_the_air(hand, object) and in_cylinder", ""},
     {"a put-down need not come from above", "pick_and_place",
      "from from_above(hand, object) begins", "from nearing(hand, object) begins", ""},
@@ -137,6 +137,8 @@ const char* const kScenarios[] = {
     "slide/quick_lift_seen_slowly_is_no_slide",
     "rates/aside_and_up_is_no_pick_up_at_60_hz",
     "physics/tower_is_knocked_over",
+    "tracking/tremor_of_the_hand_is_no_slide",
+    "tracking/jitter_of_the_tracker_is_no_movement",
 };
 
 /// The mutant's program; no value: the mutation did not apply, or made no grammar.
