@@ -78,7 +78,8 @@ class Recogniser::Talk {
                        {.environment = {"PREHEND_EPISODE=" + episode_->name, "PREHEND_SEED=1"},
                         .is_watched = true});
     if (!problem.empty()) return Break(Rule::kHeader, problem, "");
-    AwaitUntil([&] { return has_header_; }, kAnswer_s, Rule::kHeader,
+    // To the end of a line, so that what was printed with it has come before a frame is sent.
+    AwaitUntil([&] { return has_header_ && process_.out.empty(); }, kAnswer_s, Rule::kHeader,
                fmt::format("no first line within {:g} s", kAnswer_s),
                R"(print {"recogniser": 1, "events": {..}} and flush, before you read a frame)");
     if (!has_header_ && !done_.broken) EndedEarly(Rule::kHeader);
