@@ -208,6 +208,7 @@ const Arrows& ProjectArrows() {
         "harness/show/explain",
         "harness/show/figures",
         "harness/show/pictures",
+        "harness/suite/check",
         "harness/truth/golden",
         "harness/truth/timeline"}},
       {"harness/cli/cli", {"harness/base/base", "harness/cli/command"}},

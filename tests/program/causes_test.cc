@@ -52,6 +52,33 @@ TEST(Causes, ThreeSeededFaultsAreNamedWithTheirValues) {
   const auto json = nlohmann::json::parse(check({"--json", "slide/four*"}).out);
   EXPECT_EQ(json["causes"].size(), 2);
   EXPECT_EQ(json["causes"][0]["effects"][0]["count"], 1);
+
+  // A clause that lost a condition, and a role that is another one, beside them.
+  change(grammar,
+         "picking_up(hand, object), putting_down(hand, object), hovering(hand, object)\n  drawn",
+         "putting_down(hand, object), hovering(hand, object)\n  drawn");
+  change(grammar, "= supported_by(object, any) or slipping",
+         "= supported_by(any, object) or slipping");
+  const Said rules = check({"slide/*"});
+  EXPECT_EQ(rules.exit_code, 1);
+  for (const char* part :
+       {". rule `transporting`: `outside ..` lost `picking_up(hand, object)` in "
+        "grammar/library/pick_and_place.grammar: ",
+        "x transporting begins earlier",
+        ". rule `landed`: `supported_by(object, any)` -> `supported_by(any, object)` in "
+        "grammar/library/pick_and_place.grammar: ",
+        "`slide_distance` 2 cm -> 5 cm in grammar/library/pick_and_place.grammar: "})
+    EXPECT_NE(rules.out.find(part), std::string::npos) << part << "\n" << rules.out;
+  EXPECT_EQ(rules.out.find(root.string() + "/grammar"), std::string::npos) << rules.out;
+
+  const Said differ = Prehend({"grammar", "diff", "pick_and_place", (root / grammar).string()});
+  EXPECT_EQ(differ.exit_code, 1);
+  EXPECT_EQ(differ.out,
+            "rule `landed`: `supported_by(object, any)` -> `supported_by(any, object)`\n"
+            "`reach_radius` 30 cm -> 20 cm\n"
+            "`slide_distance` 2 cm -> 5 cm\n"
+            "rule `transporting`: `outside ..` lost `picking_up(hand, object)`\n");
+  EXPECT_EQ(Prehend({"grammar", "diff", "contact", "contact"}).exit_code, 0);
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ TEST_F(OwnProject, WhatIsOfNoProjectIsNotToBeAccepted) {
   const Said said = In(nowhere, {"check", "cup_is_lifted.yaml", "--no-pictures"});
   EXPECT_EQ(said.exit_code, 5) << said.out << said.err;
   EXPECT_FALSE(Has(said.out, "then accept it")) << said.out;
-  EXPECT_TRUE(fs::exists(nowhere / "build/report/index.html")) << said.out;
+  EXPECT_TRUE(fs::exists(nowhere / "build/report/some/index.html")) << said.out;
   const Said shipped = Do({"check", "milk_carton_wrap", "--no-pictures"});
   EXPECT_FALSE(Has(shipped.out, "then accept it")) << shipped.out;
 }

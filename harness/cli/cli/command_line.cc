@@ -159,6 +159,7 @@ std::vector<Command> AllCommands() {
           Limited(SweepCommand(), kSettings_s),
           Limited(MarginsCommand(), kSettings_s),
           Limited(TracksCommand(), kOne_s),
+          DiffCommand(),
           WatchCommand(),
           Limited(RecogniserCommand(), kOne_s),
           BenchCommand(),

@@ -61,6 +61,7 @@ Command BenchCommand();
 Command ScoreCommand();
 Command ExplainCommand();
 Command TracksCommand();
+Command DiffCommand();
 Command EpisodesCommand();
 Command VerifyCommand();
 Command ReportCommand();

@@ -104,7 +104,7 @@ std::vector<Option> ResultOptions() {
       {
           {.name = "--report",
            .help = "folder for index.html and pictures; default: build/report of the project, "
-                   "or, outside of it, of this folder",
+                   "or, outside of it, of this folder; build/report/some of some scenarios",
            .placeholder = "DIR",
            .is_output = true},
           {.name = "--junit",
@@ -137,9 +137,11 @@ std::uint64_t MemoryLimit_bytes(const ParsedOptions& options) {
 #endif
 }
 
-/// Who is somewhere else than in the project finds the report there.
-std::string DefaultReport(const std::string& root) {
-  return (fs::path(IsCalledIn(root) ? BuildFolder(root) : "build") / "report").string();
+/// Who is somewhere else than in the project finds the report there. A check of some scenarios
+/// leaves the page of the suite alone.
+std::string DefaultReport(const std::string& root, bool of_some) {
+  const fs::path folder = fs::path(IsCalledIn(root) ? BuildFolder(root) : "build") / "report";
+  return (of_some ? folder / "some" : folder).string();
 }
 
 suite::SuiteRequest RequestFrom(const ParsedOptions& options, const CommandContext& context,
@@ -148,7 +150,8 @@ suite::SuiteRequest RequestFrom(const ParsedOptions& options, const CommandConte
       .selection = std::move(selection),
       .changes = {options.Text("--grammar"), options.All("--set")},
       .root = context.root,
-      .report_folder = options.TextOr("--report", DefaultReport(context.root)),
+      .report_folder = options.TextOr(
+          "--report", DefaultReport(context.root, options.Has("names") || options.Has("--filter"))),
       .record_file = options.Text("--record"),
       .today = context.today,
       .pictures = !options.Has("--no-pictures"),

@@ -55,7 +55,11 @@ JoinedGrammars Join(const std::string& joined) {
 
 grammar::CompileResult LoadGrammar(const std::string& root, const std::string& name_or_path,
                                    const grammar::Overrides& overrides,
-                                   std::vector<std::string>* files) {
+                                   std::vector<std::string>* files, const GrammarTexts& instead) {
+  const auto read = [&](const std::string& path) -> Result<std::string> {
+    const auto text = instead.find(path);
+    return text == instead.end() ? ReadTextFile(path) : text->second;
+  };
   const auto note = [files](const std::string& path) {
     if (files) files->push_back(path);
   };
@@ -75,7 +79,7 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
       }
       for (const std::string& candidate : candidates) {
         note(candidate);
-        if (Result<std::string> found = ReadTextFile(candidate))
+        if (Result<std::string> found = read(candidate))
           return grammar::GrammarText{candidate, std::move(*found)};
       }
       return std::nullopt;
@@ -85,7 +89,7 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
   }
   const std::string file = GrammarFile(root, name_or_path);
   note(file);
-  Result<std::string> text = ReadTextFile(file);
+  Result<std::string> text = read(file);
   const std::vector<std::string> known = ProjectLibrary(root).grammars;
   if (!text) {
     const bool is_name = file != name_or_path;
@@ -110,7 +114,7 @@ grammar::CompileResult LoadGrammar(const std::string& root, const std::string& n
                                                     : std::vector{beside, GrammarPath(root, name)};
     for (const std::string& candidate : candidates) {
       note(candidate);
-      Result<std::string> found = ReadTextFile(candidate);
+      Result<std::string> found = read(candidate);
       if (found) return grammar::GrammarText{candidate, std::move(*found)};
       std::error_code error;
       if (fs::symlink_status(candidate, error).type() == fs::file_type::not_found) continue;

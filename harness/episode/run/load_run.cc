@@ -146,7 +146,7 @@ bool IsFieldOfScenario(const std::string& name) {
 Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
                           std::vector<std::string>* files) {
   const auto load_grammar = [&](const std::string& name, const grammar::Overrides& overrides) {
-    return LoadGrammar(root, name, overrides, files);
+    return LoadGrammar(root, name, overrides, files, request.instead);
   };
   return LoadRun(request, root, ProjectLibrary(root, files), load_grammar, files);
 }

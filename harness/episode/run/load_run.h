@@ -12,6 +12,7 @@
 #include "grammar/monitor.h"
 #include "harness/base/base/result.h"
 #include "harness/base/yaml/located_yaml.h"
+#include "harness/episode/run/load_grammar.h"
 #include "harness/scenario/read/scenario_library.h"
 #include "harness/scenario/scenario/scenario.h"
 #include "harness/truth/claims/judge_claims.h"
@@ -23,6 +24,7 @@ struct RunRequest {
   std::string grammar;                ///< name or path; empty: the scenario's own
   std::vector<std::string> settings;  ///< "name=value": a field of the scenario when the name has a
                                       ///< dot or is that of a field, else a parameter
+  GrammarTexts instead = {};          ///< of its grammars
 };
 
 struct LoadedRun {

@@ -12,7 +12,7 @@
 namespace prehend::suite {
 namespace {
 
-constexpr std::size_t kMostParameters = 8;
+constexpr std::size_t kMostUndone = 8;
 constexpr std::size_t kMostNamed = 4;
 
 /// The same difference is not there any more.
@@ -75,13 +75,15 @@ std::string ListOf(const std::vector<const SettingChange*>& changes) {
   return text;
 }
 
-/// What no parameter explains.
+/// What nothing explains that could be undone.
 std::string OtherCause(const PossibleCauses& possible) {
-  std::vector<const SettingChange*> fields;
+  std::vector<const SettingChange*> fields, clauses;
   for (const SettingChange& change : possible.changes) {
-    if (!change.is_parameter) fields.push_back(&change);
+    if (change.of == SettingChange::Of::kField) fields.push_back(&change);
+    if (change.of == SettingChange::Of::kClause) clauses.push_back(&change);
   }
   if (possible.motion_differs && !fields.empty()) return ListOf(fields);
+  fields.insert(fields.begin(), clauses.begin(), clauses.end());
   return possible.other_changes.empty()
              ? ListOf(fields)
              : fmt::format("{}", fmt::join(possible.other_changes, ", "));
@@ -96,25 +98,22 @@ std::vector<Attribution> AttributeDifferences(const truth::Comparison& compariso
   std::vector<Attribution> attributions;
   for (const truth::Pairing* pairing : differing)
     attributions.push_back(Described(*pairing, comparison.ticks_per_second));
-  std::vector<const SettingChange*> parameters;
+  std::vector<const SettingChange*> of_grammar;
   for (const SettingChange& change : possible.changes) {
-    if (change.is_parameter && !change.before.empty() && !change.after.empty() &&
-        parameters.size() < kMostParameters)
-      parameters.push_back(&change);
+    const bool is_whole = change.before.empty() || change.after.empty();
+    if (change.of == SettingChange::Of::kField || of_grammar.size() >= kMostUndone) continue;
+    if (change.of == SettingChange::Of::kClause || !is_whole) of_grammar.push_back(&change);
   }
   const auto undo = [&](const std::vector<const SettingChange*>& undone) {
-    std::vector<std::string> settings;
-    for (const SettingChange* change : undone)
-      settings.push_back(change->name + "=" + change->before);
-    const auto without = compare_with(settings);
+    const auto without = compare_with(undone);
     for (std::size_t i = 0; without && i < differing.size(); ++i) {
       if (attributions[i].because.empty() && IsGone(*differing[i], *without))
         attributions[i].because = ListOf(undone);
     }
   };
-  for (const SettingChange* parameter : parameters) undo({parameter});
+  for (const SettingChange* change : of_grammar) undo({change});
   const auto is_open = [](const Attribution& attribution) { return attribution.because.empty(); };
-  if (parameters.size() > 1 && std::ranges::any_of(attributions, is_open)) undo(parameters);
+  if (of_grammar.size() > 1 && std::ranges::any_of(attributions, is_open)) undo(of_grammar);
   for (Attribution& attribution : attributions) {
     if (is_open(attribution)) attribution.because = OtherCause(possible);
   }

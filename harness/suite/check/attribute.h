@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why each single difference from the golden is there. Each changed parameter is undone by itself,
-// and the recorded motion is segmented once more: what then agrees with the golden was its effect.
-// What differs even with all old parameters is attributed to what else changed. So two causes in
+// Why each single difference from the golden is there. Each changed parameter and each changed
+// clause of a rule is undone by itself, and the recorded motion is segmented once more: what then
+// agrees with the golden was its effect. What differs even with all of them undone is attributed to
+// what else changed. So two causes in
 // one scenario are told apart. Tested by tests/harness/suite/check/attribute_test.cc
 #pragma once
 
@@ -31,12 +32,12 @@ struct PossibleCauses {
   bool motion_differs = false;             ///< it moves differently from the last pass
 };
 
-/// The comparison of the same recorded motion, with these parameters ("reach_radius=30 cm") set
-/// back. Nothing if that cannot be done.
-using CompareWith =
-    std::function<std::optional<truth::Comparison>(const std::vector<std::string>& settings)>;
+/// The comparison of the same recorded motion, with these parameters and clauses set back. Nothing
+/// if that cannot be done.
+using CompareWith = std::function<std::optional<truth::Comparison>(
+    const std::vector<const SettingChange*>& undone)>;
 
-/// One for each of comparison.Differing(), in its order. Undoes at most 8 parameters.
+/// One for each of comparison.Differing(), in its order. Undoes at most 8 changes.
 std::vector<Attribution> AttributeDifferences(const truth::Comparison& comparison,
                                               const PossibleCauses& possible,
                                               const CompareWith& compare_with);

@@ -8,7 +8,9 @@
 
 #include "harness/base/base/build_text.h"
 #include "harness/base/base/content_hash.h"
+#include "harness/base/base/text_file.h"
 #include "harness/episode/run/segment.h"
+#include "harness/suite/check/clauses.h"
 
 namespace prehend::suite {
 namespace {
@@ -67,16 +69,27 @@ std::string FirstCause(const StateTrace& before, const DifferingRun& now) {
   return "the grammar or the golden. Everything moves as in the last passing run";
 }
 
-/// The same motion, with some parameters as they were.
-std::optional<truth::Comparison> CompareWithSettings(const CheckRequest& request,
-                                                     const CheckedRun& checked,
-                                                     const truth::Golden& golden,
-                                                     const std::vector<std::string>& settings) {
+/// The same motion, with some parameters and clauses as they were.
+std::optional<truth::Comparison> CompareWithout(const CheckRequest& request,
+                                                const CheckedRun& checked,
+                                                const truth::Golden& golden,
+                                                const FileHashes& inputs,
+                                                const std::vector<const SettingChange*>& undone) {
   episode::RunRequest changed = request.Run();
-  for (const std::string& setting : settings) {
-    const std::string name = setting.substr(0, setting.find('=') + 1);
-    std::erase_if(changed.settings, [&](const auto& other) { return other.starts_with(name); });
-    changed.settings.push_back(setting);
+  for (const SettingChange* change : undone) {
+    const auto path = std::ranges::find_if(inputs, [&](const auto& one) {
+      return RelativeTo(request.root, one.first) == change->file;
+    });
+    if (change->of == SettingChange::Of::kClause) {
+      if (path == inputs.end()) return std::nullopt;
+      std::string& text = changed.instead[path->first];
+      if (text.empty()) text = ReadTextFile(path->first).value_or("");
+      text = WithClause(text, change->name, change->before);
+    } else {
+      const std::string name = change->name + "=";
+      std::erase_if(changed.settings, [&](const auto& other) { return other.starts_with(name); });
+      changed.settings.push_back(name + change->before);
+    }
   }
   const Result<episode::LoadedRun> loaded = episode::LoadRun(changed, request.root);
   if (!loaded) return std::nullopt;
@@ -149,9 +162,9 @@ void AttributeRun(const CheckRequest& request, const CheckedRun& checked,
   const bool can_undo = request.IsPlayed() && !run.recording.empty();
   verdict.attributions = AttributeDifferences(
       comparison, possible.value_or(PossibleCauses{}),
-      [&](const std::vector<std::string>& settings) -> std::optional<truth::Comparison> {
+      [&](const std::vector<const SettingChange*>& undone) -> std::optional<truth::Comparison> {
         if (!can_undo) return std::nullopt;
-        return CompareWithSettings(request, checked, golden, settings);
+        return CompareWithout(request, checked, golden, verdict.inputs, undone);
       });
 }
 

@@ -267,6 +267,13 @@ void Conclude(const Findings& findings, ScenarioVerdict& verdict) {
   verdict.reason = first.reason;
 }
 
+/// Paths in the project are relative to it.
+void Shorten(std::string& text, const std::string& root) {
+  const std::string folder = root + "/";
+  for (std::size_t at = text.find(folder); at != std::string::npos; at = text.find(folder, at))
+    text.erase(at, folder.size());
+}
+
 ScenarioVerdict Unreadable(const CheckRequest& request, ScenarioVerdict verdict,
                            const grammar::Diagnostics& why) {
   Conclude({{ExitCode::kBadInput, "cannot be read", "", why}}, verdict);
@@ -334,6 +341,7 @@ ScenarioVerdict VerdictOn(CheckedEpisode checked) {
   Findings findings;
   for (const Judge judge : JudgesOf(checked)) Append(findings, judge(checked));
   Conclude(findings, verdict);
+  for (std::string* text : {&verdict.reason, &verdict.details}) Shorten(*text, request.root);
   verdict.details += truth::TextOfUndecided(verdict.claims);
   if (!checked.recording && checked.IsComplete()) {
     Store(checked);

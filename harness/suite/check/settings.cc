@@ -11,6 +11,7 @@
 #include "grammar/describe.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/yaml/located_yaml.h"
+#include "harness/suite/check/clauses.h"
 
 namespace prehend::suite {
 namespace {
@@ -87,6 +88,12 @@ std::string RelativeTo(const std::string& root, const std::string& path) {
   return relative.empty() || relative.starts_with("..") ? path : relative;
 }
 
+std::map<std::string, std::string> GrammarSettings(std::string_view text) {
+  Values values;
+  for (const Clause& clause : ClausesOf(text)) values[clause.name] = clause.text;
+  return values;
+}
+
 Settings SettingsOf(const episode::LoadedRun& loaded, const episode::RunRequest& request,
                     const FileHashes& inputs, const std::string& root) {
   Settings settings;
@@ -94,6 +101,8 @@ Settings SettingsOf(const episode::LoadedRun& loaded, const episode::RunRequest&
   for (const grammar::ProgramParam& param : grammar::Describe(*loaded.program).params)
     settings[RelativeTo(root, param.file)][param.name] = ParameterText(param, request, texts);
   for (const auto& [path, hash] : inputs) {
+    if (path.ends_with(".grammar") && hash != kNoFile)
+      settings[RelativeTo(root, path)].merge(GrammarSettings(ReadTextFile(path).value_or("")));
     if (!path.ends_with(".yaml") || hash == kNoFile) continue;
     if (path == loaded.scenario.file)
       AddValues(loaded.document.root, "", settings[RelativeTo(root, path)]);
@@ -121,12 +130,21 @@ std::vector<SettingChange> ChangesBetween(const Settings& before, const Settings
       const auto found = all.find(name);
       return found == all.end() ? std::string() : found->second;
     };
+    // Of one that was noted without clauses, none is new.
+    const auto is_clause = [](const std::string& name) {
+      return name.find(' ') != std::string::npos;
+    };
+    const bool has_clauses =
+        std::ranges::any_of(old->second, [&](const auto& value) { return is_clause(value.first); });
     for (const std::string& name : names) {
+      if (is_clause(name) && file.ends_with(".grammar") && !has_clauses) continue;
       SettingChange change{.file = file,
                            .name = name,
                            .before = value_in(old->second, name),
                            .after = value_in(values, name),
-                           .is_parameter = file.ends_with(".grammar")};
+                           .of = !file.ends_with(".grammar") ? SettingChange::Of::kField
+                                 : is_clause(name)           ? SettingChange::Of::kClause
+                                                             : SettingChange::Of::kParameter};
       if (change.before != change.after) changes.push_back(std::move(change));
     }
   }
@@ -134,6 +152,14 @@ std::vector<SettingChange> ChangesBetween(const Settings& before, const Settings
 }
 
 std::string ChangeText(const SettingChange& change) {
+  if (change.of == SettingChange::Of::kClause) {
+    const std::size_t space = change.name.find(' ');
+    const std::string clause = change.name.substr(space + 1);
+    const bool is_named = !change.before.empty() && !change.after.empty() && clause != "roles";
+    return fmt::format("rule `{}`:{} {}", change.name.substr(0, space),
+                       is_named ? fmt::format(" `{} ..`", clause) : "",
+                       ClauseChangeText(change.before, change.after));
+  }
   const std::string before = Shortened(change.before), after = Shortened(change.after);
   if (before.empty()) return fmt::format("`{}` added: {}", change.name, after);
   if (after.empty()) return fmt::format("`{}` removed: {}", change.name, before);

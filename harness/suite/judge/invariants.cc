@@ -2,10 +2,12 @@
 // One function per invariant, and the table that names them. Tested by
 // tests/harness/suite/judge/invariants_test.cc
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 
 #include "grammar/check_laws.h"
 #include "grammar/describe.h"
@@ -132,9 +134,11 @@ std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& prog
   return latency;
 }
 
-Findings ViolationFinding(const char* reason, std::string details) {
+Findings ViolationFinding(std::string reason, std::string details) {
   if (details.empty()) return {};
-  return {{.exit_code = ExitCode::kDiffers, .reason = reason, .details = std::move(details)}};
+  return {{.exit_code = ExitCode::kDiffers,
+           .reason = std::move(reason),
+           .details = std::move(details)}};
 }
 
 }  // namespace
@@ -154,10 +158,15 @@ Findings JudgeInvariants(const CheckedRun& checked) {
 Findings JudgeLaws(const CheckedRun& checked) {
   const grammar::Timeline& timeline = checked.result.timeline;
   std::string details;
+  std::set<std::string> names;
   for (const grammar::LawViolation& violation : CheckLaws(
-           *checked.loaded.program, episode::MakeEntityTable(checked.loaded.scenario), timeline))
+           *checked.loaded.program, episode::MakeEntityTable(checked.loaded.scenario), timeline)) {
     details += "violated: " + Text(violation, timeline.ticks_per_second) + "\n";
-  return ViolationFinding("a law of the grammar is violated", std::move(details));
+    names.insert(violation.law->name);
+  }
+  return ViolationFinding(
+      fmt::format("a law of the grammar is violated, {}", fmt::join(names, ", ")),
+      std::move(details));
 }
 
 }  // namespace prehend::suite

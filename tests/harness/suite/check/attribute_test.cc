@@ -25,20 +25,20 @@ const grammar::NamedEvent kSlide = Event("sliding", 100, 200);
 const grammar::NamedEvent kEarlyGrasp = Event("grasping", 190, 290);
 
 const PossibleCauses kThreeChanges = {
-    .changes = {{"a.grammar", "reach_radius", "30 cm", "20 cm", true},
-                {"a.grammar", "slide_distance", "2 cm", "5 cm", true},
-                {"x.yaml", "cup.mass_kg", "0.4", "8", false}},
+    .changes = {{"a.grammar", "reach_radius", "30 cm", "20 cm", SettingChange::Of::kParameter},
+                {"a.grammar", "slide_distance", "2 cm", "5 cm", SettingChange::Of::kParameter},
+                {"x.yaml", "cup.mass_kg", "0.4", "8"}},
     .other_changes = {},
     .motion_differs = true};
 
 /// The late reach and the lost slide follow from the two parameters, the grasp from neither.
-std::optional<truth::Comparison> Undone(const std::vector<std::string>& settings) {
+std::optional<truth::Comparison> Undone(const std::vector<const SettingChange*>& undone) {
   std::vector<grammar::NamedEvent> recognised = {kEarlyGrasp};
-  const auto has = [&](const char* setting) {
-    return std::find(settings.begin(), settings.end(), setting) != settings.end();
+  const auto has = [&](const char* name) {
+    return std::ranges::any_of(undone, [&](const auto* one) { return one->name == name; });
   };
-  recognised.push_back(has("reach_radius=30 cm") ? kReach : kLateReach);
-  if (has("slide_distance=2 cm")) recognised.push_back(kSlide);
+  recognised.push_back(has("reach_radius") ? kReach : kLateReach);
+  if (has("slide_distance")) recognised.push_back(kSlide);
   return ComparedWith(recognised);
 }
 
@@ -59,8 +59,8 @@ TEST(Attribution, ToldApartInOneScenario) {
 }
 
 TEST(Attribution, TwoParametersTogether) {
-  const auto both_needed = [](const std::vector<std::string>& settings) {
-    return std::optional(settings.size() == 2
+  const auto both_needed = [](const std::vector<const SettingChange*>& undone) {
+    return std::optional(undone.size() == 2
                              ? ComparedWith({kReach, kSlide, Event("grasping", 200, 300)})
                              : ComparedWith({kLateReach, kSlide, Event("grasping", 200, 300)}));
   };
@@ -69,8 +69,21 @@ TEST(Attribution, TwoParametersTogether) {
                                       "`slide_distance` 2 cm -> 5 cm in a.grammar"}));
 }
 
+TEST(Attribution, AClauseIsACauseByItself) {
+  PossibleCauses changes = kThreeChanges;
+  changes.changes[1] = {"a.grammar", "sliding while", "while a and b", "while a",
+                        SettingChange::Of::kClause};
+  const auto without = [](const std::vector<const SettingChange*>& undone) {
+    const bool has_both = undone.size() == 1 && undone[0]->of == SettingChange::Of::kClause;
+    return std::optional(has_both ? ComparedWith({kLateReach, kSlide})
+                                  : ComparedWith({kLateReach}));
+  };
+  const auto texts = Texts(AttributeDifferences(*without({}), changes, without));
+  EXPECT_EQ(texts.back(), "sliding missing: rule `sliding`: `while ..` lost `b` in a.grammar");
+}
+
 TEST(Attribution, WithoutAChangedValueTheFileIsNamed) {
-  const auto nothing = [](const std::vector<std::string>&) {
+  const auto nothing = [](const std::vector<const SettingChange*>&) {
     return std::optional<truth::Comparison>();
   };
   const PossibleCauses file = {

@@ -23,11 +23,22 @@ TEST(Settings, OnlyOtherValuesOfFilesThatBothHaveAreChanges) {
   now["x.yaml"]["entities.milk.color"] = "red";
   std::vector<std::string> texts;
   for (const SettingChange& change : ChangesBetween(kBefore, now))
-    texts.push_back(ChangeText(change) + (change.is_parameter ? " (parameter)" : ""));
+    texts.push_back(ChangeText(change) +
+                    (change.of == SettingChange::Of::kParameter ? " (parameter)" : ""));
   EXPECT_EQ(texts,
             (std::vector<std::string>{
                 "`reach_radius` 30 cm -> 20 cm (parameter)", "`entities.milk.at_m` removed: [0, 0]",
                 "`entities.milk.color` added: red", "`entities.milk.mass_kg` 0.4 -> 8"}));
+}
+
+TEST(Settings, AFileThatWasNotedWithoutClausesHasNoNewOnes) {
+  Settings now = kBefore;
+  now["g.grammar"]["carrying while"] = "while held";
+  EXPECT_TRUE(ChangesBetween(kBefore, now).empty());
+  Settings then = now;
+  then["g.grammar"]["carrying while"] = "while held and lifted";
+  ASSERT_EQ(ChangesBetween(then, now).size(), 1u);
+  EXPECT_EQ(ChangeText(ChangesBetween(then, now)[0]), "rule `carrying`: `while ..` lost `lifted`");
 }
 
 TEST(Settings, PathsAreThoseOfTheProject) {
