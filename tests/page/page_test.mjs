@@ -159,7 +159,7 @@ test('zooming keeps the cursor where it is', async () => {
   const section = page.locator('section[id="' + FAILS + '"]');
   await page.evaluate((id) => window.prehendReport.setCursor(id, 1.5), FAILS);
   const bar = section.locator('rect.actual').filter({has: page.locator('title', {hasText: 'picking_up'})});
-  const x = () => section.locator('line.cursor').evaluate((line) => Number(line.getAttribute('x1')));
+  const x = () => section.locator('svg.timeline line.cursor').evaluate((line) => Number(line.getAttribute('x1')));
   const width = () => bar.evaluate((each) => Number(each.getAttribute('width')));
   const [x_before, width_before] = [await x(), await width()];
   await section.locator('.scroll').focus();
@@ -175,6 +175,81 @@ test('zooming keeps the cursor where it is', async () => {
   assert.match(await section.locator('.turned').textContent(), /picking_up\(right_hand, milk\) began/);
   await page.keyboard.press('0');
   assert.ok(Math.abs(await width() - width_before) < 0.01);
+  await close();
+});
+
+test('hatches go with the bars that they belong to', async () => {
+  const {page, close} = await opened({hash: '#' + FAILS});
+  const section = page.locator('section[id="' + FAILS + '"]');
+  await page.evaluate((id) => window.prehendReport.setCursor(id, 0.1), FAILS);
+  const places = () => section.locator('svg.timeline').evaluate((svg) => {
+    const side = (each, which) => each.getBoundingClientRect()[which];
+    const golden = svg.querySelector('rect.golden.differs');
+    const hatch = Array.from(svg.querySelectorAll('path.hatch')).find((each) => each.dataset.begin === golden.dataset.begin);
+    return {golden: side(golden, 'left'), hatch: side(hatch, 'left'), width: side(hatch, 'width'), shown: hatch.style.display};
+  });
+  const whole = await places();
+  await section.locator('.scroll').focus();
+  await page.keyboard.press('+');
+  await page.keyboard.press('+');
+  const near = await places();
+  for (const each of [whole, near]) assert.ok(Math.abs(each.golden - each.hatch) < 2, JSON.stringify(each));
+  assert.equal(near.shown, '');
+  assert.ok(Math.abs(near.width - 4 * whole.width) < 4, `${near.width} of ${whole.width}`);
+  await close();
+});
+
+test('timeline, signal and replay are seen at once and have one cursor', async (context) => {
+  if (!hasReplay) return context.skip('this build has no replay');
+  const {page, close} = await opened({hash: '#' + FAILS + '@0.3000s'});
+  const section = page.locator('section[id="' + FAILS + '"]');
+  await section.locator('.replay canvas').waitFor();
+  const at = (selector) => section.locator(selector).first().evaluate((svg) => {
+    const {left, from, perSecond, end} = svg.dataset, width = svg.viewBox.baseVal.width;
+    const scale = svg.matches('.timeline') ? (width - left - 18) / end : Number(perSecond);
+    return Number(from) + (Number(svg.querySelector('line.cursor').getAttribute('x1')) - left) / scale;
+  });
+  assert.ok(Math.abs(await at('svg.timeline') - 0.3) < 1e-3);
+  assert.ok(Math.abs(await at('svg.signal') - 0.3) < 1e-3);
+  assert.match(await section.locator('.replay .clock').textContent(), /^0\.300 of/);
+  const [timeline, replay] = [await section.locator('svg.timeline').boundingBox(), await section.locator('canvas').boundingBox()];
+  assert.ok(replay.x >= timeline.x + timeline.width, 'side by side');
+  assert.ok(replay.y < timeline.y + timeline.height && timeline.y < replay.y + replay.height, 'at one height');
+  await close();
+});
+
+test('where the golden has a boundary elsewhere, it is shown as a ghost', async (context) => {
+  if (!hasReplay) return context.skip('this build has no replay');
+  const {page, close} = await opened();
+  const ghost = await page.evaluate(async (id) => {
+    const player = await window.prehendReport.openReplay(id);
+    const seen = [];
+    for (const seconds of [0.1, 3]) {
+      player.seek(seconds);
+      seen.push(Boolean(player.world.ghosts && player.world.ghosts.visible));
+    }
+    return seen;
+  }, FAILS);
+  assert.deepEqual(ghost, [true, false]);
+  await close();
+});
+
+test('causes and groups sort the list, Enter jumps to what is found', async () => {
+  const {page, close} = await opened();
+  const shown = () => page.locator('tr[data-of]:visible').count();
+  const failed = await page.locator('tr[data-verdict=failed]').count(), all = await shown();
+  assert.ok(failed < all);
+  await page.locator('button.cause').first().click();
+  assert.equal(await shown(), failed);
+  assert.equal(await page.locator('button.cause').first().textContent(), failed + ' scenarios');
+  await page.locator('button.cause').first().click();
+  await page.locator('#groups').selectOption('by folder');
+  assert.deepEqual((await page.locator('tr.group').allTextContents()), ['body', 'pick_and_place', 'slide', 'support']);
+  await page.keyboard.press('Escape');
+  await page.locator('#search').fill('arm_follows');
+  await page.locator('#search').press('Enter');
+  assert.equal(decodeURI(new URL(page.url()).hash), '#' + BODY);
+  assert.equal(await page.locator('main > section:visible').count(), 1);
   await close();
 });
 
@@ -203,9 +278,7 @@ test('by keyboard: search, next, boundaries, play', async () => {
   assert.ok(await page.evaluate((id) => window.prehendReport.cursorOf(id), FAILS) > first);
   assert.match(page.url(), /@0\.\d{4}s$/);
   if (hasReplay) {
-    await page.locator('section:visible .replay button').focus();
-    await page.keyboard.press('Enter');
-    await page.waitForSelector('.replay canvas');
+    await page.waitForSelector('section:visible .replay canvas');
     await page.locator('.replay canvas').focus();
     await page.keyboard.press('.');
     const moved = await page.evaluate((id) => window.prehendReport.cursorOf(id), FAILS);
@@ -221,7 +294,10 @@ test('layers and views change the picture', async (context) => {
   if (!hasReplay) return context.skip('this build has no replay');
   const {page, close} = await opened();
   await page.evaluate((id) => window.prehendReport.openReplay(id).then((player) => player.seek(2)), BODY);
-  const picture = () => page.evaluate(() => document.querySelector('.replay canvas').toDataURL());
+  const picture = () => page.evaluate(async () => {
+    for (let frame = 0; frame < 2; ++frame) await new Promise(requestAnimationFrame);
+    return document.querySelector('.replay canvas').toDataURL();
+  });
   for (const layer of ['contacts', 'paths', 'gaze', 'body']) {
     const shown = await picture();
     await page.getByLabel(layer, {exact: true}).uncheck();

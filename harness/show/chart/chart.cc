@@ -110,6 +110,12 @@ class Drawing {
     if (dash) Paint(line, "", {{"stroke-dasharray", dash}});
   }
 
+  /// For the script of the page, which zooms.
+  static void AddTimes(pugi::xml_node node, double begin_s, double end_s) {
+    node.append_attribute("data-begin").set_value(Number(begin_s).c_str());
+    node.append_attribute("data-end").set_value(Number(end_s).c_str());
+  }
+
   void DrawRow(const Row& row, double y, double height) {
     Text(row.style, left_ - 8, y + 0.5 * height + 0.35 * format_.text_px, row.name, "end");
     for (const Bar& bar : row.bars) {
@@ -132,8 +138,7 @@ class Drawing {
                     {"fill", ColorText(bar.color)}});
     Paint(node, bar.style, {{"stroke", bar.frame.empty() ? "#FFFFFF" : bar.frame.c_str()}});
     if (InPage()) {
-      node.append_attribute("data-begin").set_value(Number(bar.begin_s).c_str());
-      node.append_attribute("data-end").set_value(Number(bar.end_s).c_str());
+      AddTimes(node, bar.begin_s, bar.end_s);
       AddElement(node, "title", {}, bar.tip);
     }
     if (!bar.frame.empty()) Paint(node, "", {{"stroke-width", "2"}});
@@ -157,8 +162,9 @@ class Drawing {
       path += fmt::format("M{:.2f},{:.2f}L{:.2f},{:.2f}", first, top + tall - (first - from), last,
                           top + tall - (last - from));
     }
-    Paint(AddElement(svg_, "path", {{"d", path}}), "hatch",
-          {{"fill", "none"}, {"stroke", kInk}, {"stroke-width", "1"}});
+    const pugi::xml_node node = AddElement(svg_, "path", {{"d", path}});
+    Paint(node, "hatch", {{"fill", "none"}, {"stroke", kInk}, {"stroke-width", "1"}});
+    if (InPage()) AddTimes(node, hatch.begin_s, hatch.end_s);
   }
 
   /// A dashed line behind everything, with its letter above. Letters at one place are one text.
@@ -329,6 +335,7 @@ std::string ChartForPage(const Chart& chart, const ChartFormat& format, const st
        {"role", "img"},
        {"aria-label", label},
        {"data-left", SvgNumber(drawing.Left())},
+       {"data-from", SvgNumber(chart.from_s)},
        {"data-end", SvgNumber(chart.to_s)},
        {"data-per-second", SvgNumber(drawing.PerSecond())}}));
   return ToText(document, Layout::kAsItIs);

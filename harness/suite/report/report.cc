@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -42,6 +43,14 @@ void AddSummary(pugi::xml_node body, const Tally& tally) {
     AddText(line, ", ");
     add(tally.unchanged, "unchanged", "unchanged");
   }
+  const pugi::xml_node bar =
+      AddElement(body, "div", {{"class", "glance"}, {"aria-hidden", "true"}});
+  for (const auto& [count, name] : {std::pair{tally.failed, "failed"},
+                                    {tally.pending, "pending"},
+                                    {tally.unchanged, "unchanged"},
+                                    {tally.passed, "passed"}})
+    if (count > 0)
+      AddElement(bar, "span", {{"class", name}, {"style", fmt::format("flex-grow:{}", count)}}, "");
 }
 
 /// One column of the table of all scenarios.
@@ -51,15 +60,10 @@ struct Column {
   void (*fill)(pugi::xml_node cell, const ScenarioVerdict& verdict);
 };
 
-void FillVerdict(pugi::xml_node cell, const ScenarioVerdict& verdict) {
+void FillScenario(pugi::xml_node cell, const ScenarioVerdict& verdict) {
   const std::string name(Name(verdict.verdict));
   AddElement(cell, "span", {{"class", "verdict " + name}}, name);
-}
-
-void FillScenario(pugi::xml_node cell, const ScenarioVerdict& verdict) {
   AddElement(cell, "a", {{"href", "#" + verdict.scenario}}, verdict.scenario);
-  AddElement(cell, "br");
-  AddElement(cell, "span", {{"class", "soft"}}, verdict.shows);
 }
 
 /// What the pictures of a moment that differs show.
@@ -73,31 +77,38 @@ std::string DrawnDifferenceText(const DrawnDifference& moment) {
          ": when it should be, when it was recognised, and what moved in between";
 }
 
-void FillReason(pugi::xml_node cell, const ScenarioVerdict& verdict) {
-  AddText(cell, verdict.reason.empty() ? MarginText(verdict) : verdict.reason);
+/// The script of the page draws them.
+void FillEvents(pugi::xml_node cell, const ScenarioVerdict&) {
+  cell.append_attribute("class").set_value("mini");
 }
 
 void FillTime(pugi::xml_node cell, const ScenarioVerdict& verdict) {
-  AddText(cell, fmt::format("{:.2f} s", verdict.seconds));
+  AddText(cell, fmt::format("{:.1f} s", verdict.seconds));
 }
 
 /// From left to right.
-constexpr Column kColumns[] = {{"verdict", false, FillVerdict},
-                               {"scenario", false, FillScenario},
-                               {"result", false, FillReason},
-                               {"time", true, FillTime}};
+constexpr Column kColumns[] = {
+    {"scenario", false, FillScenario}, {"events", false, FillEvents}, {"time", true, FillTime}};
 
 pugi::xml_node AddCell(pugi::xml_node row, const char* kind, const Column& column) {
   return column.is_number ? AddElement(row, kind, {{"class", "number"}}) : AddElement(row, kind);
 }
 
-void AddTable(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {
+void AddTable(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts,
+              const std::vector<Cause>& causes) {
   const pugi::xml_node table = AddElement(body, "table");
   const pugi::xml_node head = AddElement(table, "tr");
   for (const Column& column : kColumns) AddText(AddCell(head, "th", column), column.title);
   AddText(table, kNewLine);
   for (const ScenarioVerdict& verdict : verdicts) {
-    const pugi::xml_node row = AddElement(table, "tr", {{"data-of", verdict.scenario}});
+    std::string numbers;
+    for (std::size_t i = 0; i < causes.size(); ++i)
+      if (std::ranges::binary_search(causes[i].scenarios, verdict.scenario))
+        numbers += fmt::format("{}{}", numbers.empty() ? "" : " ", i + 1);
+    const pugi::xml_node row = AddElement(table, "tr",
+                                          {{"data-of", verdict.scenario},
+                                           {"data-verdict", std::string(Name(verdict.verdict))},
+                                           {"data-causes", numbers}});
     for (const Column& column : kColumns) column.fill(AddCell(row, "td", column), verdict);
     AddText(table, kNewLine);
   }
@@ -153,7 +164,7 @@ class ReplayBox {
 };
 
 void AddCommand(pugi::xml_node parent, const std::string& command) {
-  AddElement(parent, "pre", {{"tabindex", "0"}}, command);
+  AddElement(parent, "pre", {{"class", "command"}, {"tabindex", "0"}}, command);
 }
 
 /// What stands between backticks as code.
@@ -215,25 +226,28 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, bool open,
   for (const std::string& note : verdict.notes)
     AddElement(fold, "p", {{"class", "soft note"}}, note);
   AddReasons(fold, verdict);
+  const pugi::xml_node views = AddElement(fold, "div", {{"class", "views"}});
   if (verdict.comparison) {
-    const pugi::xml_node scroll = AddElement(fold, "div",
+    const pugi::xml_node time = AddElement(views, "div", {{"class", "time"}});
+    const pugi::xml_node scroll = AddElement(time, "div",
                                              {{"class", "scroll"},
                                               {"tabindex", "0"},
                                               {"role", "group"},
                                               {"aria-label", "timeline of " + verdict.scenario}});
     AddMarkup(scroll, TimelineSvg(*verdict.comparison, verdict.ticks + 1, verdict.drawings,
                                   verdict.has_golden));
-    AddElement(fold, "output", {}, "");
+    AddElement(time, "output", {}, "");
   }
+  replays.Add(views, verdict.replay);
   if (verdict.comparison)
-    AddExplanations(fold, verdict.explained, verdict.comparison->ticks_per_second);
+    AddExplanations(AddElement(views, "div", {{"class", "why"}}), verdict.explained,
+                    verdict.comparison->ticks_per_second);
   for (const DrawnDifference& moment : verdict.drawn_differences) {
     const pugi::xml_node pair = AddElement(fold, "div", {{"class", "drawn-difference"}});
     AddElement(pair, "p", {}, DrawnDifferenceText(moment));
     pictures.Add(pair, moment.expected);
     pictures.Add(pair, moment.recognised);
   }
-  replays.Add(fold, verdict.replay);
   if (const std::string text = DetailsText(verdict); !text.empty()) {
     // Where it is explained above, it does not have to be read first.
     pugi::xml_node details = AddElement(fold, "details");
@@ -257,29 +271,61 @@ void AddHead(pugi::xml_node html, const std::string& title) {
   AddElement(head, "style", {}, kStylePlace);
 }
 
-void AddCauses(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {
-  const std::vector<Cause> causes = CausesOf(verdicts);
-  const std::vector<NearLimitPass> near_limit = NearLimitPasses(verdicts);
+/// Where shifts lie, from the least to the most, with their median; all of a cause in one scale.
+void AddShifts(pugi::xml_node parent, const Effect& effect, double most_ms) {
+  if (effect.count < 2 || effect.median_ms == 0) return;
+  const auto x = [&](double shift_ms) {
+    return fmt::format("{:.1f}", 60 + 58 * shift_ms / most_ms);
+  };
+  const pugi::xml_node svg = AddElement(
+      parent, "svg", {{"class", "shifts"}, {"viewBox", "0 0 120 12"}, {"aria-hidden", "true"}});
+  const auto line = [&](const char* style, const std::string& from, const std::string& to, int top,
+                        int bottom) {
+    AddElement(svg, "line",
+               {{"class", style},
+                {"x1", from},
+                {"x2", to},
+                {"y1", std::to_string(top)},
+                {"y2", std::to_string(bottom)}});
+  };
+  line("grid", "60", "60", 0, 12);
+  line("range", x(effect.least_ms), x(effect.most_ms), 6, 6);
+  line("median", x(effect.median_ms), x(effect.median_ms), 2, 10);
+}
+
+void AddCauses(pugi::xml_node body, const std::vector<Cause>& causes,
+               const std::vector<NearLimitPass>& near_limit) {
   if (!causes.empty()) {
     AddElement(body, "h2", {},
                causes.size() == 1 ? "1 cause" : fmt::format("{} causes", causes.size()));
-    AddElement(body, "p", {{"class", "soft"}},
-               "What has changed since these scenarios last passed, from what to what, and what it "
-               "does to the events.");
     const pugi::xml_node list = AddElement(body, "ol", {{"class", "causes"}});
-    for (const Cause& cause : causes) {
+    for (std::size_t i = 0; i < causes.size(); ++i) {
+      const Cause& cause = causes[i];
       const pugi::xml_node item = AddElement(list, "li");
+      const std::size_t count = cause.scenarios.size();
+      AddElement(item, "button",
+                 {{"class", "chip cause"},
+                  {"type", "button"},
+                  {"data-cause", std::to_string(i + 1)},
+                  {"aria-pressed", "false"}},
+                 fmt::format("{} scenario{}", count, count == 1 ? "" : "s"));
       AddSentence(AddElement(item, "strong"), WithArrows(cause.Title()));
-      AddText(item, cause.scenarios.size() == 1
-                        ? ": "
-                        : fmt::format(": {} scenarios, for example ", cause.scenarios.size()));
-      AddElement(item, "a", {{"href", "#" + cause.scenarios.front()}}, cause.scenarios.front());
-      for (std::size_t i = 0; i < std::min(kMostEffects, cause.effects.size()); ++i)
-        AddElement(item, "div", {}, EffectText(cause.effects[i]));
+      double most_ms = 0;
+      for (const Effect& effect : cause.effects)
+        most_ms = std::max({most_ms, std::abs(effect.least_ms), std::abs(effect.most_ms)});
+      for (std::size_t k = 0; k < std::min(kMostEffects, cause.effects.size()); ++k) {
+        const Effect& effect = cause.effects[k];
+        const pugi::xml_node text = AddElement(item, "div");
+        AddText(text, fmt::format("{} x {}", effect.count, EffectText(effect)));
+        AddShifts(text, effect, most_ms);
+      }
       if (cause.effects.size() > kMostEffects)
         AddElement(item, "div", {},
                    fmt::format("and {} more", cause.effects.size() - kMostEffects));
-      AddElement(item, "code", {}, cause.effects.front().command);
+      const pugi::xml_node example = AddElement(item, "div", {{"class", "soft"}});
+      if (count > 1) AddText(example, "for example ");
+      AddElement(example, "a", {{"href", "#" + cause.scenarios.front()}}, cause.scenarios.front());
+      AddCommand(item, cause.effects.front().command);
     }
   }
   if (near_limit.empty()) return;
@@ -293,25 +339,31 @@ void AddTools(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts)
   AddElement(tools, "input",
              {{"id", "search"},
               {"type", "search"},
-              {"placeholder", "search (/), next (n), previous (p)"},
+              {"placeholder", "search (/)"},
               {"aria-label", "search scenarios"}});
   for (const Verdict each : {Verdict::kFailed, Verdict::kFlaky, Verdict::kPending, Verdict::kPassed,
                              Verdict::kUnchanged}) {
     const std::string name(Name(each));
-    if (std::ranges::none_of(verdicts, [&](const auto& of) { return of.verdict == each; }))
-      continue;
+    const auto count = std::ranges::count(verdicts, each, &ScenarioVerdict::verdict);
+    if (count == 0) continue;
     AddElement(
         tools, "button",
         {{"class", "chip"}, {"type", "button"}, {"data-verdict", name}, {"aria-pressed", "false"}},
-        name);
+        fmt::format("{} {}", name, count));
   }
+  const pugi::xml_node groups =
+      AddElement(tools, "select", {{"id", "groups"}, {"aria-label", "how the list is grouped"}});
+  for (const char* by : {"by verdict", "by folder", "by cause"})
+    AddElement(groups, "option", {}, by);
   AddElement(tools, "span", {{"id", "shown"}, {"role", "status"}, {"class", "soft"}}, "");
 }
 
 void AddHeader(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts,
                const ReportHeader& header) {
   const pugi::xml_node made = AddElement(body, "p", {{"class", "soft"}});
-  AddText(made, header.date + ", by ");
+  double seconds = 0;
+  for (const ScenarioVerdict& verdict : verdicts) seconds += verdict.seconds;
+  AddText(made, fmt::format("{}, {:.0f} s of work, by ", header.date, seconds));
   AddElement(made, "code", {}, header.command);
   if (!header.commit.empty()) AddText(made, ", of commit " + header.commit);
   if (!header.machine.empty()) AddText(made, ", on " + header.machine);
@@ -380,27 +432,32 @@ std::string ReportHtml(const std::vector<ScenarioVerdict>& unsorted, const Repor
   document.append_child(pugi::node_doctype).set_value("html");
   const pugi::xml_node html = AddElement(document, "html", {{"lang", "en"}});
   AddHead(html, header.title);
-  const pugi::xml_node body = AddElement(AddElement(html, "body"), "main");
-  AddElement(body, "h1", {}, header.title);
-  AddSummary(body, Count(verdicts));
-  AddHeader(body, verdicts, header);
-  AddCauses(body, verdicts);
-  AddTools(body, verdicts);
-  AddTable(body, verdicts);
-  AddText(body, kNewLine);
-  AddElement(body, "p", {{"class", "soft"}},
-             "In every row of a timeline, the golden is above (pale) and the recognised event "
-             "below; where they differ it is hatched. A click moves the cursor; so do the arrows, "
-             "and b and B to the next and the last boundary.");
+  const pugi::xml_node body = AddElement(html, "body");
+  const pugi::xml_node top = AddElement(body, "header");
+  AddElement(top, "h1", {}, header.title);
+  AddSummary(top, Count(verdicts));
+  AddHeader(top, verdicts, header);
+  const std::vector<Cause> causes = CausesOf(verdicts);
+  AddCauses(top, causes, NearLimitPasses(verdicts));
+  const pugi::xml_node list =
+      AddElement(body, "nav", {{"id", "list"}, {"aria-label", "scenarios"}, {"tabindex", "0"}});
+  AddTools(list, verdicts);
+  AddTable(list, verdicts, causes);
+  const pugi::xml_node sections = AddElement(body, "main");
   if (!WhyNoReplay().empty())
-    AddElement(body, "p", {{"class", "soft"}},
+    AddElement(sections, "p", {{"class", "soft"}},
                fmt::format("3D replay was left out: {}.", WhyNoReplay()));
   PictureBox pictures(header.folder);
   ReplayBox replays;
   for (const ScenarioVerdict& verdict : verdicts) {
     const bool open = !IsGood(verdict) || verdicts.size() == 1;
-    AddSection(body, verdict, open, pictures, replays);
+    AddSection(sections, verdict, open, pictures, replays);
   }
+  AddElement(sections, "p", {{"class", "soft"}},
+             "In every row of a timeline, the golden is above (pale) and the recognised event "
+             "below; where they differ it is hatched. A click moves the cursor; so do the arrows, "
+             "and b and B to the next and the last boundary; n and p choose the next and the "
+             "previous scenario.");
   if (replays.any())
     AddElement(body, "script", {{"type", "text/plain"}, {"id", "replay-bundle"}}, ReplayBundle());
   AddElement(body, "script", {}, kScriptPlace);

@@ -5,12 +5,17 @@
 (function () {
   'use strict';
   const sections = Array.from(document.querySelectorAll('section.scenario'));
+  const rows = Array.from(document.querySelectorAll('tr[data-of]'));
   const search = document.getElementById('search');
-  const chips = Array.from(document.querySelectorAll('button.chip'));
+  const chips = Array.from(document.querySelectorAll('#tools button.chip'));
+  const causes = Array.from(document.querySelectorAll('button.cause'));
   const shown = document.getElementById('shown');
+  const groups = document.getElementById('groups');
+  const wide = window.matchMedia('(min-width: 1100px)');
   document.getElementById('tools').hidden = false;
+  document.documentElement.classList.add('panes');
 
-  function rowOf(section) { return document.querySelector('tr[data-of="' + CSS.escape(section.id) + '"]'); }
+  sections.forEach((section) => { section.row = rows.find((row) => row.dataset.of === section.id); });
   function textOf(section) {
     if (!section.searched) {
       const parts = Array.from(section.querySelectorAll('h2, div.soft, p, pre, text, title'));
@@ -18,9 +23,12 @@
     }
     return section.searched;
   }
+  const isPressed = (button) => button.getAttribute('aria-pressed') === 'true';
   function wanted(section) {
-    const pressed = chips.filter((chip) => chip.getAttribute('aria-pressed') === 'true');
-    if (pressed.length > 0 && !pressed.some((chip) => chip.dataset.verdict === section.dataset.verdict)) return false;
+    const verdicts = chips.filter(isPressed), because = causes.filter(isPressed);
+    if (verdicts.length > 0 && !verdicts.some((chip) => chip.dataset.verdict === section.dataset.verdict)) return false;
+    const of = section.row.dataset.causes.split(' ');
+    if (because.length > 0 && !because.some((cause) => of.includes(cause.dataset.cause))) return false;
     const words = search.value.toLowerCase().split(' ').filter(Boolean);
     return words.length === 0 || words.every((word) => textOf(section).includes(word));
   }
@@ -28,35 +36,105 @@
     let count = 0;
     sections.forEach((section) => {
       const keep = wanted(section);
-      section.hidden = !keep;
-      const row = rowOf(section);
-      if (row) row.hidden = !keep;
+      section.hidden = section.row.hidden = !keep;
       if (keep) count += 1;
     });
+    document.querySelectorAll('#list tr.group').forEach((head) => {
+      let row = head.nextElementSibling;
+      while (row && row.hidden && row.dataset.of) row = row.nextElementSibling;
+      head.hidden = !row || !row.dataset.of;
+    });
     shown.textContent = count + ' of ' + sections.length + ' shown';
+    if (chosen && chosen.hidden) choose(inOrder()[0]);
+  }
+  /// Those that are shown, as the list has them.
+  function inOrder() {
+    return Array.from(document.querySelectorAll('tr[data-of]:not([hidden])'), (row) => document.getElementById(row.dataset.of));
+  }
+  function group() {
+    document.querySelectorAll('#list tr.group').forEach((head) => head.remove());
+    const of = {
+      'by verdict': (row) => row.dataset.verdict,
+      'by folder': (row) => row.dataset.of.split('/').slice(0, -1).join('/') || 'no folder',
+      'by cause': (row) => (row.dataset.causes ? 'cause ' + row.dataset.causes.split(' ')[0] : 'no failure'),
+    }[groups.value];
+    const sorted = new Map();
+    rows.forEach((row) => sorted.set(of(row), [...(sorted.get(of(row)) || []), row]));
+    const names = [...sorted.keys()];
+    if (groups.value !== 'by verdict') names.sort((a, b) => a.localeCompare(b, 'en', {numeric: true}));
+    names.forEach((name) => {
+      const head = document.createElement('tr'), cell = document.createElement('th');
+      head.className = 'group';
+      cell.colSpan = 3;
+      cell.textContent = name;
+      head.append(cell);
+      rows[0].parentNode.append(head, ...sorted.get(name));
+    });
+    filter();
   }
   search.addEventListener('input', filter);
-  chips.forEach((chip) => chip.addEventListener('click', () => {
-    chip.setAttribute('aria-pressed', String(chip.getAttribute('aria-pressed') !== 'true'));
+  groups.addEventListener('change', group);
+  [...chips, ...causes].forEach((chip) => chip.addEventListener('click', () => {
+    chip.setAttribute('aria-pressed', String(!isPressed(chip)));
     filter();
   }));
 
+  /// A timeline as small as a line of the list.
+  sections.forEach((section) => {
+    const link = section.row.querySelector('a');
+    link.replaceChildren(...link.textContent.split(/(?<=[_/])/).flatMap((part) => [part, document.createElement('wbr')]));
+    const svg = timelineOf(section);
+    if (!svg) return;
+    const {width, height} = svg.viewBox.baseVal, left = Number(svg.dataset.left);
+    const small = document.createElementNS(svg.namespaceURI, 'svg');
+    small.setAttribute('viewBox', left + ' 0 ' + (width - left) + ' ' + height);
+    small.setAttribute('preserveAspectRatio', 'none');
+    small.setAttribute('aria-hidden', 'true');
+    svg.querySelectorAll('rect[data-begin], path.hatch').forEach((bar) => small.append(bar.cloneNode()));
+    section.row.querySelector('.mini').append(small);
+    const picture = section.querySelector('img');
+    if (!picture) return;
+    const thumb = picture.cloneNode();
+    thumb.alt = '';
+    section.row.prepend(thumb);
+  });
+  rows.forEach((row) => row.addEventListener('click', (event) => {
+    if (!event.target.closest('a')) row.querySelector('a').click();
+  }));
+
+  // On a wide screen the chosen scenario stands beside the list; else all are below it.
+  let chosen = null;
+  function choose(section) {
+    if (chosen === section) return;
+    if (chosen) chosen.row.removeAttribute('aria-current');
+    sections.forEach((each) => each.classList.toggle('chosen', each === section));
+    chosen = section || null;
+    if (!section) return;
+    section.row.setAttribute('aria-current', 'true');
+    if (!wide.matches) return;
+    section.querySelector('details').open = true;
+    const list = document.getElementById('list'), place = section.row.getBoundingClientRect(), pane = list.getBoundingClientRect();
+    if (place.top < pane.top || place.bottom > pane.bottom) list.scrollTop += place.top - pane.top - pane.height / 3;
+    openReplay(section);
+  }
   function open(section) {
+    choose(section);
     section.querySelector('details').open = true;
     section.querySelector('summary').focus({preventScroll: true});
     section.scrollIntoView({block: 'start'});
   }
-  let at = -1;
+  let at = null;
   function step(by) {
-    const visible = sections.filter((section) => !section.hidden);
+    const visible = inOrder();
     if (visible.length === 0) return;
-    at = Math.min(Math.max(at + by, 0), visible.length - 1);
-    open(visible[at]);
-    history.replaceState(null, '', '#' + encodeURI(visible[at].id));
+    at = visible[Math.min(Math.max(at ? visible.indexOf(at) + by : 0, 0), visible.length - 1)];
+    open(at);
+    history.replaceState(null, '', '#' + encodeURI(at.id));
   }
   document.addEventListener('keydown', (event) => {
     if (event.target === search) {
       if (event.key === 'Escape') { search.value = ''; filter(); search.blur(); }
+      if (event.key === 'Enter') { at = null; step(0); }
       return;
     }
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches('input, select')) return;
@@ -64,13 +142,26 @@
     if (event.key === 'p' || event.key === 'k') step(-1);
     if (event.key === '/') { event.preventDefault(); search.focus(); }
   });
+  document.querySelectorAll('pre.command').forEach((pre) => {
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.className = 'chip copy';
+    button.textContent = 'copy';
+    button.addEventListener('click', async () => {
+      await navigator.clipboard.writeText(pre.textContent);
+      button.textContent = 'copied';
+    });
+    pre.after(button);
+  });
 
   // The part of its time that a timeline shows, in seconds: everything, unless somebody zooms.
   function endOf(svg) { return Number(svg.dataset.end); }
   function shownOf(section) { return section.shown || {from: 0, to: endOf(timelineOf(section))}; }
+  /// As the program drew it, its plot ends so far from its right side.
+  const kRight = 18;
   function perSecond(section) {
     const svg = timelineOf(section), shown = shownOf(section);
-    return endOf(svg) * Number(svg.dataset.perSecond) / (shown.to - shown.from);
+    return (svg.viewBox.baseVal.width - Number(svg.dataset.left) - kRight) / (shown.to - shown.from);
   }
   function xAt(section, seconds) {
     return Number(timelineOf(section).dataset.left) + (seconds - shownOf(section).from) * perSecond(section);
@@ -85,14 +176,18 @@
     layOut(section);
   }
   function layOut(section) {
-    const svg = timelineOf(section), {from, to} = shownOf(section);
-    svg.querySelectorAll('rect[data-begin]').forEach((bar) => {
+    const svg = timelineOf(section), {from, to} = shownOf(section), scale = perSecond(section);
+    svg.querySelectorAll('[data-begin]').forEach((bar) => {
       const begin = Math.max(from, Number(bar.dataset.begin)), end = Math.min(to, Number(bar.dataset.end));
       bar.style.display = begin <= end ? '' : 'none';
+      if (begin > end) return;
+      if (bar.matches('.hatch')) return bar.setAttribute('d', hatched(bar, xAt(section, begin), Math.max(3, (end - begin) * scale)));
       bar.setAttribute('x', xAt(section, begin));
-      bar.setAttribute('width', Math.max(1.5, (end - begin) * perSecond(section)));
+      bar.setAttribute('width', Math.max(1.5, (end - begin) * scale));
     });
-    svg.querySelectorAll('path.hatch').forEach((each) => { each.style.display = to - from < endOf(svg) ? 'none' : ''; });
+    const right = svg.viewBox.baseVal.width - kRight;
+    svg.querySelector('line.base').setAttribute('x2', right);
+    svg.querySelector('text.name').setAttribute('x', (Number(svg.dataset.left) + right) / 2);
     const line = svg.querySelector('line.grid'), label = svg.querySelector('text.axis');
     let step = 1e-3;
     for (const factor of [2, 2.5, 2, 2, 2.5, 2, 2, 2.5, 2, 2, 2.5, 2, 2, 2.5, 2]) if ((to - from) / step > 12) step *= factor;
@@ -108,11 +203,28 @@
     mark(section, section.cursor || 0);
   }
 
-  // One cursor per section, in seconds: a line across its timeline, and the time of its replay.
+  /// The slanted lines of a place that differs, in a frame, as the program draws them.
+  function hatched(path, x, width) {
+    if (!path.place) path.place = path.getAttribute('d').match(/^M[^,]*,([^h]*)h[^v]*v([^h]*)h/).slice(1).map(Number);
+    const [top, tall] = path.place;
+    let d = 'M' + x + ',' + top + 'h' + width + 'v' + tall + 'h' + -width + 'z';
+    for (let from = x - tall + 5; from < x + width; from += 5) {
+      const first = Math.max(from, x), last = Math.min(from + tall, x + width);
+      d += 'M' + first + ',' + (top + tall - (first - from)) + 'L' + last + ',' + (top + tall - (last - from));
+    }
+    return d;
+  }
+  // As wide as there is room, so that its texts keep their size.
+  const watcher = new ResizeObserver((entries) => entries.forEach(({target}) => {
+    const svg = target.querySelector('svg.timeline'), width = svg.clientWidth, {height} = svg.viewBox.baseVal;
+    if (width === 0 || width === svg.viewBox.baseVal.width) return;
+    svg.setAttribute('viewBox', '0 0 ' + width + ' ' + height);
+    layOut(target.closest('section'));
+  }));
+
+  // One cursor per section, in seconds: a line across its timeline and its signals, and the time of its replay.
   function timelineOf(section) { return section.querySelector('svg.timeline[data-per-second]'); }
-  function mark(section, seconds) {
-    const svg = timelineOf(section);
-    if (!svg) return;
+  function cursorIn(svg, x) {
     let line = svg.querySelector('line.cursor');
     if (!line) {
       line = document.createElementNS(svg.namespaceURI, 'line');
@@ -121,12 +233,29 @@
       line.setAttribute('y2', svg.viewBox.baseVal.height);
       svg.appendChild(line);
     }
-    const x = xAt(section, seconds);
     line.setAttribute('x1', x);
     line.setAttribute('x2', x);
     line.setAttribute('visibility', x < Number(svg.dataset.left) - 0.01 || x > svg.viewBox.baseVal.width ? 'hidden' : 'visible');
+  }
+  function mark(section, seconds) {
+    const svg = timelineOf(section);
+    if (!svg) return;
+    cursorIn(svg, xAt(section, seconds));
+    section.querySelectorAll('svg.signal').forEach((signal) => {
+      const {left, from, perSecond, end} = signal.dataset;
+      cursorIn(signal, seconds > Number(end) ? -1 : Number(left) + (seconds - Number(from)) * Number(perSecond));
+    });
+    if (section.player) section.player.ghost(goldenAt(svg, seconds));
     section.querySelector('output').textContent = seconds.toFixed(4) + ' s';
     tellBoundaries(section, seconds);
+  }
+  /// In a hatched place, when the golden has the boundary that is elsewhere here; else null.
+  function goldenAt(svg, seconds) {
+    const times = Array.from(svg.querySelectorAll('rect.golden.differs'), (bar) => [bar.dataset.begin, bar.dataset.end]).flat();
+    for (const {dataset: {begin, end}} of svg.querySelectorAll('path.hatch'))
+      if (Number(begin) <= seconds && seconds <= Number(end) && times.includes(begin) !== times.includes(end))
+        return Number(times.includes(begin) ? begin : end);
+    return null;
   }
   /// What began or ended where the cursor is, and which condition did it.
   function tellBoundaries(section, seconds) {
@@ -183,6 +312,7 @@
       buttons.appendChild(button);
     }
     svg.parentNode.before(buttons);
+    watcher.observe(svg.parentNode);
     svg.parentNode.addEventListener('keydown', (event) => {
       const factor = {'+': 2, '=': 2, '-': 0.5, 0: 0}[event.key];
       if (factor !== undefined) {
@@ -254,11 +384,14 @@
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
     return new Response(stream).text();
   }
-  async function loadPlayer() {
-    if (window.prehendReplay) return;
-    const script = document.createElement('script');
-    script.textContent = await inflated(document.getElementById('replay-bundle').textContent);
-    document.head.appendChild(script);
+  let bundle = null;
+  function loadPlayer() {
+    bundle = bundle || inflated(document.getElementById('replay-bundle').textContent).then((text) => {
+      const script = document.createElement('script');
+      script.textContent = text;
+      document.head.appendChild(script);
+    });
+    return bundle;
   }
   let playing = null;
   async function openReplay(section) {
@@ -268,6 +401,7 @@
     await loadPlayer();
     const data = JSON.parse(await inflated(section.querySelector('script.replay-data').textContent));
     if (section.player) return section.player;
+    if (wide.matches && section !== chosen) return null;  // another one was chosen meanwhile
     if (playing) closeReplay(playing);
     const button = place.querySelector('button');
     const stage = document.createElement('div');
@@ -312,7 +446,7 @@
     const parts = decodeURI(location.hash.slice(1)).split('@');
     const section = document.getElementById(parts[0]);
     if (!section || !section.matches('section.scenario')) return;
-    at = sections.filter((each) => !each.hidden).indexOf(section);
+    at = section;
     open(section);
     const seconds = parseFloat(parts[1]);
     if (!(seconds >= 0)) return;
@@ -320,9 +454,11 @@
     openReplay(section);
   }
   window.addEventListener('hashchange', follow);
+  // Printed are the causes and the list; with a search or a filter, what is shown, in full.
   window.addEventListener('beforeprint', () => {
-    document.querySelectorAll('section.scenario:not([data-verdict=passed]):not([data-verdict=unchanged]) details')
-      .forEach((each) => { each.open = true; });
+    const some = inOrder();
+    document.documentElement.classList.toggle('full', some.length < sections.length || sections.length === 1);
+    some.forEach((section) => section.querySelectorAll('details').forEach((each) => { each.open = true; }));
   });
 
   function sectionOf(id) { return sections.find((section) => section.id === id); }
@@ -330,8 +466,12 @@
     scenarios: () => sections.map((section) => section.id),
     setCursor: (id, seconds) => setCursor(sectionOf(id), seconds),
     cursorOf: (id) => sectionOf(id).cursor || 0,
-    openReplay: (id) => openReplay(sectionOf(id)),
+    openReplay: (id) => {
+      choose(sectionOf(id));
+      return openReplay(sectionOf(id));
+    },
   };
-  filter();
+  group();
+  if (wide.matches) choose(inOrder()[0]);
   follow();
 }());

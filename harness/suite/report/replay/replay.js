@@ -5,9 +5,10 @@
 import {
   AmbientLight, BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, Color, CylinderGeometry, DirectionalLight,
   DoubleSide, EdgesGeometry, FrontSide, GridHelper, Group, HemisphereLight, InstancedMesh, LineBasicMaterial, LineSegments, Matrix4,
-  Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, Quaternion, Scene, SphereGeometry, Vector3,
-  WebGLRenderer, Box3
+  Mesh, MeshBasicMaterial, MeshLambertMaterial, PCFShadowMap, PerspectiveCamera, PlaneGeometry, Quaternion, Scene,
+  ShadowMaterial, SphereGeometry, Vector3, WebGLRenderer, Box3
 } from 'three';
+import {RoundedBoxGeometry} from 'three/addons/geometries/RoundedBoxGeometry.js';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {Line2} from 'three/addons/lines/Line2.js';
 import {LineGeometry} from 'three/addons/lines/LineGeometry.js';
@@ -70,11 +71,20 @@ function geometryOf(shape) {
 function solid(geometry, color, opacity) {
   const group = new Group();
   const clear = opacity < 1;
-  group.add(new Mesh(geometry, new MeshLambertMaterial(
-    {color, transparent: clear, opacity, depthWrite: !clear, side: clear ? DoubleSide : FrontSide})));
+  const mesh = new Mesh(geometry, new MeshLambertMaterial(
+    {color, transparent: clear, opacity, depthWrite: !clear, side: clear ? DoubleSide : FrontSide}));
+  mesh.castShadow = mesh.receiveShadow = !clear;
+  group.add(mesh);
   const edges = new LineBasicMaterial({color: new Color(color).multiplyScalar(0.55), transparent: clear, opacity});
   group.add(new LineSegments(new EdgesGeometry(geometry, 40), edges));
   return group;
+}
+
+/// Of a hand: without edges, as round as it is thin.
+function link(size) {
+  const mesh = new Mesh(new RoundedBoxGeometry(...size, 4, 0.45 * Math.min(...size)), new MeshLambertMaterial({color: SKIN}));
+  mesh.castShadow = mesh.receiveShadow = true;
+  return mesh;
 }
 
 class World {
@@ -87,8 +97,8 @@ class World {
     this.named = [];
     this.scene.add(new HemisphereLight(0xffffff, 0x8d8d8d, 1.6), new AmbientLight(0xffffff, 0.4));
     const sun = new DirectionalLight(0xffffff, 1.6);
-    sun.position.set(-1, -2, 3);
-    this.scene.add(sun);
+    this.sun = sun;
+    this.scene.add(sun, sun.target);
     data.bodies.forEach((body) => this.addBody(body));
     data.legs.forEach((leg) => {
       const mesh = solid(new BoxGeometry(...leg.size), leg.color, 1);
@@ -140,10 +150,10 @@ class World {
 
   addHand(hand) {
     const group = new Group();
-    group.add(solid(new BoxGeometry(...hand.palm), SKIN, 1));
-    hand.links.forEach((link) => {
-      const part = solid(new BoxGeometry(...link.size), SKIN, 1);
-      this.place(part, link.track);
+    group.add(link(hand.palm));
+    hand.links.forEach((one) => {
+      const part = link(one.size);
+      this.place(part, one.track);
       group.add(part);
     });
     group.userData.path = this.place(group, hand.track, hand.name);
@@ -164,7 +174,7 @@ class World {
   addContacts() {
     const most = Math.max(1, ...this.data.contacts.samples.map((points) => points.length / 3));
     this.points = new InstancedMesh(
-      new SphereGeometry(0.005, 12, 8), new MeshBasicMaterial({color: 0xffc400, depthTest: false, transparent: true}), most);
+      new SphereGeometry(0.0025, 8, 6), new MeshBasicMaterial({color: 0xffc400, depthTest: false, transparent: true, opacity: 0.8}), most);
     this.points.frustumCulled = false;
     this.points.renderOrder = 2;
     this.scene.add(this.points);
@@ -183,6 +193,11 @@ class World {
       this.seek(0);
       box.setFromObject(this.scene);
     }
+    for (const [object, track] of this.placed) {  // heads of people
+      if (!this.layers.body.includes(object)) continue;
+      track.set(0, object);
+      box.expandByObject(object);
+    }
     return box.expandByScalar(0.15);
   }
 
@@ -194,7 +209,48 @@ class World {
     grid.position.set(middle.x, middle.y, Math.min(0, lowest) - 0.002);
     grid.material.transparent = true;
     grid.material.opacity = 0.25;
-    this.scene.add(grid);
+    const ground = new Mesh(new PlaneGeometry(8, 8), new ShadowMaterial({opacity: 0.25}));
+    ground.position.copy(grid.position);
+    ground.receiveShadow = true;
+    this.scene.add(grid, ground);
+    const {sun} = this, reach = Math.max(1, this.box.getSize(new Vector3()).length()), view = sun.shadow.camera;
+    sun.target.position.copy(middle);
+    sun.position.copy(middle).add(new Vector3(-1, -2, 4).normalize().multiplyScalar(2 * reach));
+    Object.assign(view, {left: -reach, right: reach, top: reach, bottom: -reach, far: 6 * reach});
+    sun.castShadow = true;
+    sun.shadow.mapSize.set(1024, 1024);
+    sun.shadow.bias = -0.0005;
+    sun.shadow.normalBias = 0.002;
+  }
+
+  /// What moves, pale, as it is at this tick; null: nothing.
+  ghost(tick) {
+    if (tick === null) {
+      if (this.ghosts) this.ghosts.visible = false;
+      return;
+    }
+    if (!this.ghosts) {
+      this.ghosts = new Group();
+      const pale = new MeshLambertMaterial({color: 0x5b7fa6, transparent: true, opacity: 0.35, depthWrite: false});
+      this.shades = this.placed.filter(([object, track]) => object.parent === this.scene && track.moves)
+        .map(([object]) => [object, object.clone()]);
+      for (const [, shade] of this.shades) {
+        shade.traverse((part) => {
+          if (part.isLineSegments) part.visible = false;
+          if (part.isMesh) Object.assign(part, {material: pale, castShadow: false, receiveShadow: false});
+        });
+        this.ghosts.add(shade);
+      }
+      this.scene.add(this.ghosts);
+    }
+    this.ghosts.visible = true;
+    for (const [object, track] of this.placed) track.set(tick, object);
+    const copy = (from, to) => {
+      to.position.copy(from.position);
+      to.quaternion.copy(from.quaternion);
+      from.children.forEach((child, i) => copy(child, to.children[i]));
+    };
+    for (const [object, shade] of this.shades) copy(object, shade);
   }
 
   addPaths() {
@@ -271,6 +327,9 @@ class Player {
       tabindex: '0', role: 'img',
       'aria-label': '3D replay; arrows turn the view, + and - zoom, space plays, comma and full stop step'});
     this.renderer = new WebGLRenderer({canvas: this.canvas, antialias: true, alpha: true, preserveDrawingBuffer: true});
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.renderer.shadowMap.autoUpdate = false;
     this.camera = new PerspectiveCamera(35, 1.6, 0.01, 50);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, this.canvas);
@@ -294,12 +353,20 @@ class Player {
   }
 
   addBar() {
+    const time = element(this.place, 'div', {class: 'scrub'});
+    const phases = element(time, 'div', {class: 'phases', 'aria-hidden': 'true'});
+    for (const hand of this.world.data.hands) {
+      const line = element(phases, 'div', {});
+      for (const {from, to, name, color} of hand.phases)
+        element(line, 'span', {
+          title: name, style: `left:${100 * from / this.world.data.end}%;width:${100 * (to - from) / this.world.data.end}%;background:${color}`});
+    }
+    this.scrubber = element(time, 'input', {
+      type: 'range', min: '0', max: String(this.end_s), step: String(1 / this.rate), value: '0',
+      'aria-label': 'time of the replay, in seconds'});
     const bar = element(this.place, 'div', {class: 'bar', role: 'group', 'aria-label': 'replay'});
     this.button = element(bar, 'button', {type: 'button', class: 'play'}, 'play');
     this.button.addEventListener('click', () => (this.timer ? this.pause() : this.play()));
-    this.scrubber = element(bar, 'input', {
-      type: 'range', min: '0', max: String(this.end_s), step: String(1 / this.rate), value: '0',
-      'aria-label': 'time of the replay, in seconds'});
     this.scrubber.addEventListener('input', () => { this.pause(); this.seek(Number(this.scrubber.value)); });
     this.clock = element(bar, 'span', {class: 'clock'});
     this.speed = element(bar, 'select', {'aria-label': 'speed'});
@@ -389,7 +456,16 @@ class Player {
   /// Shows or hides a layer: regions, contacts, paths, gaze, body, names.
   show(layer, shown) {
     for (const object of this.world.layers[layer]) object.visible = shown;
+    this.renderer.shadowMap.needsUpdate = true;
     if (layer === 'names') this.stage.classList.toggle('nameless', !shown);
+    this.draw();
+  }
+
+  /// Beside everything, what moves as it is at another time, pale; null: not.
+  ghost(seconds) {
+    if (seconds === null && !this.world.ghosts) return;
+    this.world.ghost(seconds === null ? null : seconds * this.rate);
+    this.world.seek(this.time * this.rate);
     this.draw();
   }
 
@@ -397,6 +473,7 @@ class Player {
   seek(seconds) {
     this.time = Math.min(this.end_s, Math.max(0, seconds));
     this.world.seek(this.time * this.rate);
+    this.renderer.shadowMap.needsUpdate = true;
     this.scrubber.value = String(this.time);
     this.clock.textContent = this.time.toFixed(3) + ' of ' + this.end_s.toFixed(1) + ' s';
     this.draw();
@@ -421,15 +498,26 @@ class Player {
     this.button.textContent = 'play';
   }
 
+  /// With the next frame of the browser, whatever changes until then.
   draw() {
+    if (!this.frame) this.frame = requestAnimationFrame(() => this.render());
+  }
+
+  render() {
+    this.frame = 0;
     if (this.gone || !this.labels) return;
     this.renderer.render(this.world.scene, this.camera);
-    const width = this.stage.clientWidth, height = this.canvas.clientHeight, at = new Vector3();
+    const width = this.stage.clientWidth, height = this.canvas.clientHeight, at = new Vector3(), taken = [];
     for (const {label, object} of this.labels) {
       object.getWorldPosition(at).project(this.camera);
       const isIn = Math.abs(at.x) < 1 && Math.abs(at.y) < 1 && at.z < 1 && object.visible;
       label.style.visibility = isIn ? '' : 'hidden';
-      label.style.transform = `translate(${(at.x + 1) / 2 * width}px, ${(1 - at.y) / 2 * height}px) translate(-50%, -170%)`;
+      if (!isIn) continue;
+      const x = (at.x + 1) / 2 * width, half = 4 * label.textContent.length + 4;
+      let y = (1 - at.y) / 2 * height - 34;  // above it, and above those that are there
+      while (taken.some((one) => Math.abs(one.y - y) < 20 && Math.abs(one.x - x) < one.half + half)) y -= 20;
+      taken.push({x, y, half});
+      label.style.transform = `translate(${x}px, ${y}px) translate(-50%, 0)`;
     }
   }
 
