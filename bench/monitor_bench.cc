@@ -16,7 +16,7 @@
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
 #include "harness/episode/run/run_text.h"
-#include "harness/episode/run/segment.h"
+#include "harness/episode/run/segment_recording.h"
 
 namespace prehend::bench {
 namespace {

@@ -20,7 +20,7 @@
 #include "bench/yardsticks/worlds.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/run_text.h"
-#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/episode/sense/sensing.h"
 #include "harness/measure/speed/measure.h"
 #include "harness/truth/timeline/event_text.h"

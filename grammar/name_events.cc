@@ -10,7 +10,7 @@ namespace prehend::grammar {
 
 Timeline NameEvents(const Program& program, const EntityTable& entity_table,
                     const std::vector<Event>& events) {
-  Timeline timeline{.ticks_per_second = entity_table.ticks_per_second, .events = {}};
+  Timeline timeline{.ticks_per_second = entity_table.ticks_per_second};
   timeline.events.reserve(events.size());
   for (const Event& event : events) {
     const Rule& rule = program.rules[event.rule];

@@ -54,7 +54,7 @@ using EventTuple = std::tuple<std::string, std::vector<std::pair<std::string, st
                               grammar::Tick, grammar::Tick, grammar::Tick>;
 
 grammar::Timeline ToTimeline(const std::vector<EventTuple>& events, grammar::Tick per_second) {
-  grammar::Timeline timeline{.ticks_per_second = per_second, .events = {}};
+  grammar::Timeline timeline{.ticks_per_second = per_second};
   for (const auto& [name, roles, begin, end, decided] : events) {
     grammar::NamedEvent& event = timeline.events.emplace_back();
     event.event = name;
@@ -186,9 +186,7 @@ class LiveMonitor {
     if (in_use_.test_and_set())
       throw Error(grammar::Diagnostics{
           {.file = "frames",
-           .place = {},
            .message = "the monitor is in use by another thread",
-           .source_line = {},
            .hint = "a monitor for each thread, or a threading.Lock around it"}});
     const std::unique_ptr<std::atomic_flag, void (*)(std::atomic_flag*)> release(
         &in_use_, [](std::atomic_flag* flag) { flag->clear(); });

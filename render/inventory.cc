@@ -2,7 +2,6 @@
 #include "render/inventory.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <map>

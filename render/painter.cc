@@ -120,7 +120,7 @@ IdImage Painter::DrawIds(const Picture& picture) {
 }
 
 ListedPicture Painter::DrawListed(const Picture& picture) {
-  ListedPicture listed{.image = Draw(picture), .inventory = {}, .things = {}};
+  ListedPicture listed{.image = Draw(picture)};
   if (listed.image.rgb.empty()) return listed;
   const Plan plan = MakePlan(picture, *state_->font);
   listed.things = state_->renderer->RenderIds(plan.list, plan.view);

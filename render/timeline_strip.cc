@@ -182,7 +182,7 @@ void AddLegend(const TimelineStrip& strip, const Font& font, float scale, StripL
     for (const StripBar& bar : lane.bars) {
       const auto same = std::ranges::find(keys, bar.segment.label, &StripKey::name);
       if (LacksItsName(bar) && same == keys.end())
-        keys.push_back({.name = bar.segment.label, .color = bar.color, .box = {}});
+        keys.push_back({.name = bar.segment.label, .color = bar.color});
     }
   }
   std::erase_if(keys, [&](const StripKey& key) {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/measure/speed/measure.h"
 
 namespace prehend::bench {

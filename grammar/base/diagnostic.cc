@@ -116,7 +116,6 @@ Diagnostic DiagnosticAt(std::string_view file, std::string_view text, Place plac
   Diagnostic diagnostic{.file = std::string(file),
                         .place = place,
                         .message = std::move(message),
-                        .source_line = {},
                         .hint = std::move(hint)};
   if (place.line > 0) ShowLine(diagnostic, LineOf(text, place.line), place.column);
   return diagnostic;

@@ -15,7 +15,7 @@ Eigen::Vector3d TurnedToward(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
 Trajectory HipsOf(const std::vector<TimedPosture>& postures) {
   std::vector<TimedPose> poses;
   for (const TimedPosture& timed : postures)
-    poses.push_back({.t_s = timed.t_s, .X_WH = {timed.posture.hips_W_m}, .trigger = {}});
+    poses.push_back({.t_s = timed.t_s, .X_WH = {timed.posture.hips_W_m}});
   return WaypointTrajectory({}, poses);
 }
 
@@ -27,7 +27,7 @@ std::vector<TimedPosture> StartingWith(const Posture& from, std::vector<TimedPos
 }  // namespace
 
 Posture Mix(const Posture& a, const Posture& b, double share) {
-  Posture mixed{.hips_W_m = a.hips_W_m + share * (b.hips_W_m - a.hips_W_m), .directions_W = {}};
+  Posture mixed{.hips_W_m = a.hips_W_m + share * (b.hips_W_m - a.hips_W_m)};
   for (std::size_t i = 0; i < Posture::kDirections; ++i)
     mixed.directions_W[i] = TurnedToward(a.directions_W[i], b.directions_W[i], share);
   return mixed;

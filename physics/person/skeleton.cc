@@ -119,10 +119,8 @@ Arm ArmOf(const Person& person, const BodyTargets& targets, bool right) {
   const double h = person.height_m;
   const Eigen::Quaterniond& q = targets.X_WS.q;
   const BodyTargets::Limb& limb = targets.limbs[right ? 0 : 1];
-  Arm arm{.shoulder = ShoulderOf(person, TorsoOf(person, targets), right),
-          .elbow = {},
-          .wrist = {},
-          .palm_toward = {}};
+  Arm arm{
+      .shoulder = ShoulderOf(person, TorsoOf(person, targets), right), .elbow = {}, .wrist = {}};
   if (targets.posture && !FollowsHand(person, right)) {
     arm.elbow = arm.shoulder + kUpperArm * h * DirectionOf(targets, Posture::kUpperArm, right);
     arm.wrist = arm.elbow + kForearm * h * DirectionOf(targets, Posture::kForearm, right);
@@ -323,7 +321,7 @@ Pose HeadOfPosture(const Person& person, const BodyTargets& targets) {
 Posture PostureOf(const Person& person, const BodyTargets& targets) {
   if (targets.posture) return *targets.posture;
   const Torso torso = TorsoOf(person, targets);
-  Posture posture{.hips_W_m = torso.hips, .directions_W = {}};
+  Posture posture{.hips_W_m = torso.hips};
   auto& directions = posture.directions_W;
   directions[Posture::kTrunk] = torso.trunk_up;
   directions[Posture::kNeck] = torso.neck_up;
@@ -362,7 +360,7 @@ namespace {
 
 /// Targets of a standing person with hanging arms, without the head's pose.
 BodyTargets Resting(const Person& person) {
-  BodyTargets targets{.X_WS = person.X_WS, .limbs = {}, .X_WHead = {}, .posture = {}};
+  BodyTargets targets{.X_WS = person.X_WS};
   for (int limb = 0; limb < 4; ++limb)
     targets.limbs[static_cast<std::size_t>(limb)] = RestOf(limb, person, targets);
   return targets;

@@ -28,7 +28,7 @@ std::optional<Hull::Face> FaceThrough(const Points& points, int a, int b, int c)
   const double longest = std::max({(points[b] - points[a]).norm(), (points[c] - points[a]).norm(),
                                    (points[c] - points[b]).norm()});
   if (normal.norm() <= longest * kOnPlane_m) return std::nullopt;  // collinear
-  Hull::Face face{.corners = {}, .nhat_S = normal.normalized(), .offset_m = 0};
+  Hull::Face face{.nhat_S = normal.normalized(), .offset_m = 0};
   face.offset_m = face.nhat_S.dot(points[a]);
   bool above = false, below = false;
   for (int i = 0; i < static_cast<int>(points.size()); ++i) {
@@ -190,7 +190,6 @@ MadeHull MakeHull(const Points& points_m) {
   Hull hull{.corners_m = points_m,
             .faces = FacesOf(points_m),
             .volume_m3 = 0,
-            .X_SC = {},
             .gyration_m2 = Vector3d::Zero()};
   if (ThicknessOf(hull) < kMinHullThickness_m) {
     return NoHull(-1, "the points lie in a plane, or within 1 mm of one",
@@ -211,7 +210,7 @@ MadeHull MakeHull(const Points& points_m) {
         "leave it out; build a shape that is not convex from 'parts'. The first point is point 0");
   }
   Weigh(hull);
-  return {.hull = std::move(hull), .point = -1, .problem = {}, .remedy = {}};
+  return {.hull = std::move(hull), .point = -1, .problem = {}};
 }
 
 Vector3d NearestIn(const Hull& hull, const Vector3d& p_S) {

@@ -39,7 +39,7 @@ std::vector<std::string> NamesIn(const std::string& text, const std::set<std::st
 bool MayNameEvents(const std::string& path) {
   return path == "harness/suite/report/report.cc" || path == "harness/suite/report/charts.cc" ||
          path == "harness/exchange/poses/import_map.cc" ||
-         path.starts_with("harness/truth/oracle/") || path == "harness/base/base/default_grammar.h";
+         path.starts_with("harness/truth/oracle/") || path == "harness/base/base/project_paths.h";
 }
 
 TEST(EventNames, AreUnknownToTheProgram) {

@@ -8,7 +8,7 @@
 #include <map>
 #include <string>
 
-#include "harness/episode/frames/frame_player.h"
+#include "harness/episode/frames/chunk.h"
 #include "tests/fuzz/recorded_story.h"
 
 namespace {

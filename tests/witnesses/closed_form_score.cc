@@ -10,7 +10,7 @@
 #include <set>
 
 #include "harness/episode/run/run_scenario.h"
-#include "harness/episode/run/segment.h"
+#include "harness/episode/run/segment_recording.h"
 #include "harness/truth/oracle/oracle.h"
 
 namespace prehend::witnesses {

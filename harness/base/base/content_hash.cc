@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The compiler and its flags come from harness/CMakeLists.txt.
 #include "harness/base/base/content_hash.h"
 
 #include <fmt/format.h>
@@ -55,5 +56,7 @@ std::string ProgramHash() {
   dl_iterate_phdr(AddLibrary, &libraries);
   return ContentHash(FileHash("/proc/self/exe") + libraries);
 }
+
+std::string BuildText() { return PREHEND_BUILD; }
 
 }  // namespace prehend

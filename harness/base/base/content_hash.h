@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The content of a file and the identity of the running program as short texts: equal texts mean
 // that nothing changed. (The hash of a physical state is another one: physics/scene/snapshot.h.)
-// Tested by tests/harness/base/base/content_hash_test.cc
+// How this program was compiled. Tested by tests/harness/base/base/content_hash_test.cc,
+// tests/harness/suite/check/attribute_run_test.cc and tests/program/golden_workflow_test.cc
 #pragma once
 
 #include <cstdint>
@@ -28,5 +29,8 @@ FileHashes HashFiles(const std::vector<std::string>& paths);
 
 /// The hash of the running program: of its bytes, and of size and date of each shared library.
 std::string ProgramHash();
+
+/// Compiler, processor and flags: "GNU 12.2.0, x86_64, -O2". Another build may round differently.
+std::string BuildText();
 
 }  // namespace prehend

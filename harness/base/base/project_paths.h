@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where things are: the project's root, and the grammars and hands of its libraries. A project of
 // one's own (docs/projects.md) has its grammars and hands first; what ships with the program comes
-// second. Tested by tests/harness/episode/run/find_scenario_test.cc and
-// tests/program/project_test.cc
+// second. Which grammar segments the episode where none is named: a file of grammar/library/.
+// Tested by tests/harness/episode/run/find_scenario_test.cc, tests/program/project_test.cc and
+// tests/harness/scenario/read/read_scenario_test.cc
 #pragma once
 
 #include <optional>
@@ -58,5 +59,7 @@ std::string Shipped(const std::string& path);
 /// has, in the last one.
 std::string GrammarPath(const std::string& root, const std::string& name);
 std::string HandPath(const std::string& root, const std::string& name);
+
+inline constexpr const char* kDefaultGrammar = "pick_and_place";
 
 }  // namespace prehend

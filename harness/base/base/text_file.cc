@@ -100,7 +100,6 @@ Diagnostic NotText(const std::string& file, std::string_view text, std::size_t o
   return {.file = file,
           .place = {line, 1 + static_cast<int>(offset - line_start)},
           .message = std::move(message),
-          .source_line = {},
           .hint = "is this a text file, saved as UTF-8?"};
 }
 
@@ -185,9 +184,7 @@ std::string StrangeIn(std::string_view value) {
 }
 
 Diagnostics CheckText(const std::string& file, std::string_view text) {
-  if (text.empty())
-    return {
-        {.file = file, .place = {}, .message = "the file is empty", .source_line = {}, .hint = {}}};
+  if (text.empty()) return {{.file = file, .message = "the file is empty"}};
   if (IsUtf16(text)) {
     Diagnostic wide = NotText(file, text, 0, "expected UTF-8, found UTF-16");
     wide.hint = "save it as UTF-8";

@@ -223,8 +223,7 @@ class Pool {
                         .pipe = ends[0],
                         .standard_error = standard_error,
                         .start = Clock::now(),
-                        .killed = false,
-                        .output = {}});
+                        .killed = false});
   }
 
   void KillAll() {
@@ -381,5 +380,16 @@ std::vector<WorkerResult> RunInWorkers(
     const std::function<void()>& meanwhile) {
   return Pool(jobs, limits, interrupt, meanwhile).Run(done);
 }
+
+ProgressCounters::ProgressCounters(std::size_t count) : count_(std::max<std::size_t>(1, count)) {
+  static_assert(Tick::is_always_lock_free);  // otherwise it would not work between processes
+  void* memory = mmap(nullptr, count_ * sizeof(Tick), PROT_READ | PROT_WRITE,
+                      MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) throw std::bad_alloc();
+  ticks_ = static_cast<Tick*>(memory);
+  for (std::size_t i = 0; i < count_; ++i) new (&ticks_[i]) Tick(kNone);
+}
+
+ProgressCounters::~ProgressCounters() { munmap(ticks_, count_ * sizeof(Tick)); }
 
 }  // namespace prehend

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs each job in a process of its own, several at a time. A crash, a hang or a memory blow-up is
-// the result of that job; the other jobs are not affected. The caller must not have threads. Tested
-// by tests/harness/base/process/worker_pool_test.cc
+// the result of that job; the other jobs are not affected. The caller must not have threads. Values
+// on their way from a worker to its parent. A type that goes this way has a to_json and a from_json
+// with all its fields. How far each of several processes has come: counters in memory that a parent
+// shares with the children that it forks. They outlive a child that is killed. Tested by
+// tests/harness/base/process/worker_pool_test.cc and tests/harness/base/process/wire_test.cc
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -58,5 +64,36 @@ struct LimitedEnd {
 /// it throws is thrown again, as std::runtime_error. `time_limit_s` 0: none; `jobs` does not
 /// matter. It dies with this process.
 LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& limits);
+
+/// As CBOR, since JSON has no infinite numbers and refuses bytes that are no UTF-8.
+template <typename T>
+std::string ToWire(const T& value) {
+  const std::vector<std::uint8_t> bytes = nlohmann::json::to_cbor(nlohmann::json(value));
+  return {bytes.begin(), bytes.end()};
+}
+
+/// Throws nlohmann::json::exception if the bytes are not from ToWire() of that type.
+template <typename T>
+T FromWire(const std::string& bytes) {
+  return nlohmann::json::from_cbor(bytes).get<T>();
+}
+
+class ProgressCounters {
+ public:
+  using Tick = std::atomic<std::int64_t>;
+  static constexpr std::int64_t kNone = -1;  ///< the value of each counter at first
+
+  /// Throws std::bad_alloc if the system has no memory to share.
+  explicit ProgressCounters(std::size_t count);
+  ~ProgressCounters();
+  ProgressCounters(const ProgressCounters&) = delete;
+  ProgressCounters& operator=(const ProgressCounters&) = delete;
+
+  Tick& operator[](std::size_t i) { return ticks_[i]; }
+
+ private:
+  std::size_t count_;
+  Tick* ticks_;
+};
 
 }  // namespace prehend

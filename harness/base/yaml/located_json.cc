@@ -154,7 +154,7 @@ class JsonTree : public nlohmann::json_sax<nlohmann::json> {
                       "");
     }
     Label(node);
-    open_.push_back({.node = std::move(node), .key = {}, .key_where = {}, .seen = {}});
+    open_.push_back({.node = std::move(node)});
     return true;
   }
 

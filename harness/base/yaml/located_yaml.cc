@@ -148,8 +148,7 @@ class TreeBuilder : public YAML::EventHandler {
       throw Stop{};
     }
     Label(node);
-    open_.push_back(
-        {.node = std::move(node), .has_key = false, .key = {}, .key_where = {}, .seen = {}});
+    open_.push_back({.node = std::move(node), .has_key = false});
   }
 
   void Close() {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A command of `prehend`: its name, what it accepts, what it does. Each stands in a file of its own
-// and is listed in harness/cli/cli/command_line.cc. Results go to `out`, diagnostics to `err`.
-// Tested by tests/program/command_line_test.cc
+// and is listed in harness/cli/cli/command_line.cc. Results go to `out`, diagnostics to `err`. The
+// episode that was typed, of any kind. What is wrong is reported here; the exit code is left.
+// Tested by tests/program/command_line_test.cc and tests/program/episode_kinds_test.cc
 #pragma once
 
 #include <functional>
@@ -15,9 +16,11 @@
 #include "grammar/base/diagnostic.h"
 #include "harness/base/base/exit_code.h"
 #include "harness/cli/command/options.h"
+#include "harness/episode/episode/episode.h"
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/run/find_scenario.h"
 #include "harness/episode/run/load_run.h"
+#include "harness/suite/judge/other_view.h"
 
 namespace prehend::cli {
 
@@ -112,5 +115,22 @@ ExitCode WarnOfScenariosNotRun(const CommandContext& context);
 
 /// Prints warnings to `err`; nothing when there are none.
 void Warn(const CommandContext& context, const grammar::Diagnostics& warnings);
+
+/// All that was typed for an argument, with --episode.
+tl::expected<std::vector<episode::Take>, ExitCode> FindTakesOrComplain(
+    const std::string& argument, const ParsedOptions& options, const CommandContext& context);
+
+/// The same without what is known beside. What lacks one of `needs` is refused.
+tl::expected<std::vector<episode::EpisodeName>, ExitCode> FindEpisodesOrComplain(
+    const std::string& argument, const ParsedOptions& options, const CommandContext& context,
+    const std::vector<episode::Need>& needs = {});
+
+/// A single one, opened with the grammar and the settings of the command line.
+tl::expected<episode::Episode, ExitCode> OpenEpisodeOrComplain(const std::string& typed,
+                                                               const ParsedOptions& options,
+                                                               const CommandContext& context);
+
+tl::expected<suite::PlayedRun, ExitCode> PlayOrComplain(episode::Episode episode,
+                                                        const CommandContext& context);
 
 }  // namespace prehend::cli

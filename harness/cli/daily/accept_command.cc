@@ -6,7 +6,7 @@
 
 #include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
-#include "harness/episode/episode/lacks.h"
+#include "harness/episode/episode/find_episodes.h"
 #include "harness/suite/accept/accept.h"
 
 namespace prehend::cli {

@@ -7,10 +7,9 @@
 
 #include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
-#include "harness/cli/command/typed_episode.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/show/explain/explain.h"
-#include "harness/show/explain/replay.h"
+#include "harness/show/explain/query.h"
 #include "harness/suite/check/check_scenario.h"
 #include "harness/truth/timeline/event_text.h"
 

@@ -9,7 +9,6 @@
 #include "harness/base/base/atomic_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/picture_options.h"
-#include "harness/cli/command/typed_episode.h"
 #include "harness/show/figures/comparison_sheet.h"
 #include "harness/show/figures/scene_tiles.h"
 #include "harness/show/pictures/svg_file.h"

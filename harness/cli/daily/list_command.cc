@@ -9,7 +9,7 @@
 
 #include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
-#include "harness/episode/episode/lacks.h"
+#include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/run/find_scenario.h"
 #include "harness/scenario/read/read_scenario.h"
 #include "harness/suite/check/select_scenarios.h"

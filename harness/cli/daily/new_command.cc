@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "harness/base/base/atomic_file.h"
-#include "harness/base/base/default_grammar.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"

@@ -11,7 +11,6 @@
 #include "harness/base/base/project_paths.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/picture_options.h"
-#include "harness/cli/command/typed_episode.h"
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/show/figures/figures.h"

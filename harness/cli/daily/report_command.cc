@@ -7,7 +7,7 @@
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
-#include "harness/cli/command/typed_episode.h"
+#include "harness/cli/command/command.h"
 #include "harness/suite/check/run_suite.h"
 #include "harness/suite/report/report.h"
 

@@ -16,7 +16,7 @@
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/run_trials.h"
 #include "harness/suite/check/check_scenario.h"
-#include "harness/suite/judge/judge.h"
+#include "harness/suite/judge/judges.h"
 #include "harness/suite/report/report.h"
 
 namespace prehend::cli {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "harness/base/base/default_grammar.h"
-#include "harness/cli/command/typed_episode.h"
+#include "harness/base/base/project_paths.h"
+#include "harness/cli/command/command.h"
 #include "harness/measure/score/score.h"
 #include "harness/measure/score/score_labels.h"
 #include "harness/measure/score/score_scenarios.h"

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/base/base/project_paths.h"
-#include "harness/base/process/run_tool.h"
+#include "harness/base/process/child_process.h"
 #include "harness/cli/command/command.h"
-#include "harness/show/figures/moment_pictures.h"
+#include "harness/show/figures/moments.h"
 #include "harness/show/pictures/pictures.h"
 #include "harness/truth/timeline/event_text.h"
 

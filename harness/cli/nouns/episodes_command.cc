@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "harness/cli/command/typed_episode.h"
+#include "harness/cli/command/command.h"
 #include "harness/episode/episode/resegment_many.h"
 #include "harness/episode/episodes/episode_file.h"
 #include "harness/truth/timeline/event_text.h"

@@ -3,7 +3,7 @@
 // tests/program/exported.py
 #include <fmt/format.h>
 
-#include "harness/cli/command/typed_episode.h"
+#include "harness/cli/command/command.h"
 #include "harness/exchange/export/export_episode.h"
 
 namespace prehend::cli {

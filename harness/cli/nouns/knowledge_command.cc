@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "harness/cli/command/typed_episode.h"
+#include "harness/cli/command/command.h"
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/exchange/knowledge/write_knowledge.h"
 

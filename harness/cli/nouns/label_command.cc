@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "harness/cli/command/typed_episode.h"
+#include "harness/cli/command/command.h"
 #include "harness/exchange/subtasks/label_episodes.h"
 
 namespace prehend::cli {

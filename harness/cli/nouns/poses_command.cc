@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/command/command.h"
-#include "harness/cli/command/typed_episode.h"
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/run_scenario.h"
 #include "harness/episode/run/run_text.h"

@@ -14,7 +14,7 @@
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/episodes/query_events.h"
-#include "harness/show/figures/moment_pictures.h"
+#include "harness/show/figures/moments.h"
 #include "harness/show/pictures/pictures.h"
 #include "harness/truth/timeline/event_text.h"
 

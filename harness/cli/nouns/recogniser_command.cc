@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "harness/cli/command/command.h"
+#include "harness/episode/episode/episode.h"
 #include "harness/episode/episode/find_episodes.h"
-#include "harness/episode/episode/open_episode.h"
 #include "harness/measure/score/found_events.h"
 
 namespace prehend::cli {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "harness/cli/command/typed_episode.h"
-#include "harness/episode/episode/open_episode.h"
+#include "harness/cli/command/command.h"
+#include "harness/episode/episode/episode.h"
 #include "harness/episode/episode/resegment_many.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/exchange/labels/write_labels.h"

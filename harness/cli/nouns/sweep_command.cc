@@ -8,8 +8,7 @@
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/cli/command/command.h"
-#include "harness/cli/command/typed_episode.h"
-#include "harness/episode/episode/open_episode.h"
+#include "harness/episode/episode/episode.h"
 #include "harness/exchange/labels/read_labels.h"
 #include "harness/measure/sweep/sweep.h"
 #include "harness/show/pictures/svg_file.h"

@@ -9,8 +9,7 @@
 #include "grammar/contents.h"
 #include "harness/base/base/atomic_file.h"
 #include "harness/cli/command/command.h"
-#include "harness/cli/command/typed_episode.h"
-#include "harness/show/explain/replay.h"
+#include "harness/show/explain/query.h"
 #include "harness/show/explain/tracks.h"
 
 namespace prehend::cli {

@@ -13,12 +13,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "harness/cli/command/typed_episode.h"
+#include "harness/cli/command/command.h"
 #include "harness/episode/run/load_grammar.h"
-#include "harness/episode/run/segment.h"
+#include "harness/episode/run/segment_recording.h"
 #include "harness/episode/sense/episode_file.h"
 #include "harness/truth/timeline/event_text.h"
-#include "harness/truth/timeline/timeline_json.h"
 
 namespace prehend::cli {
 namespace {

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // An episode: something with entities, a rate, frames and an end, whatever it came from.
-// OpenEpisode() in harness/episode/episode/open_episode.h opens one; a scenario is simulated when
-// its frames are asked for. Tested by tests/program/episode_kinds_test.cc
+// OpenEpisode() in harness/episode/episode/episode.h opens one; a scenario is simulated when
+// its frames are asked for. The one place that opens an episode, of any kind. Tested by
+// tests/program/episode_kinds_test.cc
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "harness/episode/episodes/load_episode.h"
-#include "harness/episode/run/episode_name.h"
+#include "harness/episode/run/find_scenario.h"
 #include "harness/episode/run/segment_recording.h"
 
 namespace prehend::episode {
@@ -80,5 +82,42 @@ class Episode {
   std::optional<RunResult> played_;                       ///< of a scenario, with its snapshots
   std::optional<std::vector<physics::Snapshot>> sensed_;  ///< of a recorded run, what is due
 };
+
+/// Opens episodes one after another; what several of them need is read once.
+class EpisodeOpener {
+ public:
+  /// `root`: the project's.
+  explicit EpisodeOpener(std::string root) : root_(std::move(root)), loader_(root_) {}
+
+  /// Reads the scenario and the grammar, of a recording its frames, too. `asked`: settings of a
+  /// scenario may be fields of it. `files` receives what a scenario was read from.
+  Result<Episode> Open(const EpisodeName& name, const GrammarChoice& asked = {},
+                       std::vector<std::string>* files = nullptr);
+  /// A recording that is no file.
+  Result<Episode> Open(Recording recording, const EpisodeName& name, const GrammarChoice& choice);
+
+  /// The grammar alone, with other values of its parameters; no frames are read.
+  grammar::CompileResult Compile(const EpisodeName& name, const std::string& asked,
+                                 const grammar::Overrides& parameters);
+
+ private:
+  Result<Episode> OpenLines(const EpisodeName& name, const GrammarChoice& choice);
+  Result<Episode> OpenKept(const EpisodeName& name, const GrammarChoice& choice);
+  Result<EpisodeRow> FindKept(const EpisodeName& name);
+
+  std::string root_;
+  EpisodeLoader loader_;
+  std::shared_ptr<const EpisodeFile> file_;
+  std::optional<EpisodeName> compiled_;  ///< whose own grammar is `own_`
+  LoadedRun own_;
+};
+
+/// Empty if all were played or recorded with the same grammar.
+grammar::Diagnostics WhyNotOneGrammar(std::span<const EpisodeName> episodes,
+                                      const std::string& root);
+
+/// A single one.
+Result<Episode> OpenEpisode(const EpisodeName& name, const GrammarChoice& choice,
+                            const std::string& root, std::vector<std::string>* files = nullptr);
 
 }  // namespace prehend::episode

@@ -8,10 +8,12 @@
 #include <filesystem>
 #include <fstream>
 
+#include "harness/base/base/content_hash.h"
 #include "harness/base/base/quoting.h"
 #include "harness/episode/episodes/episode_file.h"
+#include "harness/episode/episodes/record_episode.h"
+#include "harness/episode/episodes/recordings.h"
 #include "harness/episode/episodes/schema.h"
-#include "harness/episode/run/find_scenario.h"
 #include "harness/episode/sense/episode_file.h"
 
 namespace prehend::episode {
@@ -57,6 +59,27 @@ tl::expected<EpisodeName, NotFound> ScenarioNamed(const std::string& typed,
   return tl::unexpected(std::move(none));
 }
 
+namespace fs = std::filesystem;
+
+/// Plays a scenario into a file. Returns what went wrong.
+grammar::Diagnostics Record(RecordRequest request) {
+  const Result<LoadedRun> loaded = LoadRun(request.run, request.root, &request.files);
+  if (!loaded) return loaded.error();
+  RunRecorder recorder(request, loaded->scenario);
+  PlayScenario(*loaded, {}, &recorder);
+  if (recorder.problem().empty()) return {};
+  return {{.file = request.file, .message = recorder.problem()}};
+}
+
+grammar::Diagnostics Import(const ImportRequest& request) {
+  Result<Recording> recording = ReadRecording(request.source);
+  if (!recording) return recording.error();
+  const auto imported = ImportRecording(request, *recording);
+  if (!imported) return imported.error();
+  if (imported->problem.empty()) return {};
+  return {{.file = request.file, .message = imported->problem}};
+}
+
 }  // namespace
 
 EpisodeKind EpisodeKindOf(const std::string& typed) {
@@ -71,9 +94,7 @@ Result<std::vector<EpisodeName>> EpisodesOf(const std::string& path) {
   if (file->episodes().empty())
     return tl::unexpected(
         grammar::Diagnostics{{.file = path,
-                              .place = {},
                               .message = "has no episodes",
-                              .source_line = {},
                               .hint = "its recording ended before the first one began"}});
   std::vector<EpisodeName> names;
   for (const EpisodeRow& row : file->episodes())
@@ -150,7 +171,7 @@ class TakeFinder {
 
   std::optional<NotFound> AddFile(const std::string& path) {
     const auto entries = ReadTakes(path);
-    if (!entries) return NotFound{.message = {}, .diagnostics = entries.error()};
+    if (!entries) return NotFound{.diagnostics = entries.error()};
     for (const TakeEntry& entry : *entries) {
       if (IsTakesFile(entry.recording))
         return NotFound{.message = path + ": " + entry.recording + " is a file of takes itself"};
@@ -203,6 +224,87 @@ tl::expected<EpisodeName, NotFound> FindEpisode(const std::string& typed, const 
       NotFound{ExitCode::kNothing,
                fmt::format("{} has {} such episodes; --episode selects one, and '{}' shows all",
                            typed, found->size(), CommandText({"episode", "list", typed}))});
+}
+
+EpisodeKeeper::EpisodeKeeper(std::string root, std::string today, std::string folder)
+    : root_(std::move(root)),
+      today_(std::move(today)),
+      folder_(folder.empty() ? temporary_.path().string() : std::move(folder)) {}
+
+Result<EpisodeName> EpisodeKeeper::Keep(const EpisodeName& episode) {
+  if (episode.number) return episode;
+  std::string name = episode.scenario;
+  std::ranges::replace(name, '/', '_');
+  const std::string file = (fs::path(folder_) / (name + ".episodes")).string();
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  fs::remove(file, error);
+  sources_[file] = episode.origin == Origin::kScenario ? episode.scenario : episode.file;
+  grammar::Diagnostics problems =
+      episode.origin == Origin::kRecording
+          ? Import({file, root_, episode.file, "", today_, ProgramHash()})
+          : Record({file, root_, {.scenario_file = episode.file}, {}, today_, ProgramHash()});
+  if (!problems.empty()) return tl::unexpected(std::move(problems));
+  Result<std::vector<EpisodeName>> kept = EpisodesOf(file);
+  if (!kept) return tl::unexpected(std::move(kept.error()));
+  return std::move(kept->front());
+}
+
+Result<std::vector<EpisodeName>> EpisodeKeeper::KeepAll(std::vector<EpisodeName> episodes) {
+  for (EpisodeName& episode : episodes) {
+    Result<EpisodeName> kept = Keep(episode);
+    if (!kept) return tl::unexpected(std::move(kept.error()));
+    episode = std::move(*kept);
+  }
+  return episodes;
+}
+
+std::string EpisodeKeeper::SourceOf(const std::string& file) const {
+  const auto source = sources_.find(file);
+  return source == sources_.end() ? file : source->second;
+}
+
+std::string Lacks(const EpisodeName& episode, Need need) {
+  const bool is_recording = episode.origin == Origin::kRecording;
+  const std::string& file = episode.file;
+  switch (need) {
+    case Need::kScenario:
+      if (episode.origin == Origin::kScenario) return "";
+      return fmt::format("{} {}, so there is no scenario to simulate; '{}' prints its events", file,
+                         is_recording ? "is a recording" : "was simulated before",
+                         CommandText({"episode", "resegment", file}));
+    case Need::kGroundTruth:
+      if (!is_recording) return "";
+      return episode.scenario +
+             " was not simulated, so its physical truth is not known; score it against labels by "
+             "people: --truth (docs/labels.md)";
+    case Need::kRecordedEvents:
+      if (episode.number) return "";
+      return fmt::format("{} has no events that were recorded with it; '{}' keeps them", file,
+                         is_recording ? CommandText({"import", file, "-o", "NAME.episodes"})
+                                      : CommandText({"run", file, "--record", "NAME.episodes"}));
+    case Need::kEpisodeFile:
+      if (episode.number) return "";
+      return fmt::format("{} is not kept in an episode file; '{}' makes one", file,
+                         is_recording ? CommandText({"import", file, "-o", "NAME.episodes"})
+                                      : CommandText({"run", file, "--record", "NAME.episodes"}));
+    case Need::kGolden:
+      if (!episode.number) return "";
+      return is_recording
+                 ? fmt::format(
+                       "{} has no golden: that of a recording lies beside its JSON Lines; '{}'",
+                       file, CommandText({"accept", "NAME.jsonl"}))
+                 : fmt::format("{} has no golden: that of its scenario is accepted by name; '{}'",
+                               file, CommandText({"accept", episode.scenario}));
+  }
+  return "";
+}
+
+std::string Lack(std::span<const EpisodeName> episodes, Need need) {
+  for (const EpisodeName& episode : episodes) {
+    if (std::string lack = Lacks(episode, need); !lack.empty()) return lack;
+  }
+  return "";
 }
 
 }  // namespace prehend::episode

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What was typed -> names of episodes. The one place that looks at a file to find out which kind it
-// is. Tested by tests/program/episode_kinds_test.cc
+// is. What an episode does not have that a command needs. Tested by
+// tests/program/episode_kinds_test.cc
 #pragma once
 
 #include <map>
@@ -67,5 +68,19 @@ class EpisodeKeeper {
   std::string root_, today_, folder_;
   std::map<std::string, std::string> sources_;
 };
+
+/// Facts that not every kind of episode has.
+enum class Need {
+  kScenario,        ///< something that can be simulated
+  kGroundTruth,     ///< what physically happened
+  kRecordedEvents,  ///< what was recognised when it was recorded
+  kEpisodeFile,     ///< to be kept in an episode file
+  kGolden           ///< a place for a golden of its own
+};
+
+/// "", or a sentence: which fact is missing, and what to do.
+std::string Lacks(const EpisodeName& episode, Need need);
+/// Of the first of these that lacks it.
+std::string Lack(std::span<const EpisodeName> episodes, Need need);
 
 }  // namespace prehend::episode

@@ -4,13 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 #include <sstream>
 
-#include "harness/base/process/wire.h"
 #include "harness/base/process/worker_pool.h"
-#include "harness/episode/episode/open_episode.h"
-#include "harness/episode/episodes/write_rows.h"
+#include "harness/episode/episodes/record_episode.h"
 #include "harness/truth/timeline/timeline_wire.h"
 
 namespace prehend::physics {

@@ -3,7 +3,6 @@
 // tests/program/episodes_test.cc
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 

@@ -4,7 +4,6 @@
 // tests/harness/episode/episodes/episode_file_test.cc
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
@@ -105,8 +104,7 @@ template <typename Work>
 auto Guarded(const std::string& file, const Work& work, const std::string& about = "")
     -> Result<std::invoke_result_t<Work>> {
   const auto wrong = [&](const std::string& message) {
-    return tl::unexpected(grammar::Diagnostics{
-        {.file = file, .place = {}, .message = about + message, .source_line = {}, .hint = {}}});
+    return tl::unexpected(grammar::Diagnostics{{.file = file, .message = about + message}});
   };
   try {
     if constexpr (std::is_void_v<std::invoke_result_t<Work>>) {

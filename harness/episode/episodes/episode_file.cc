@@ -8,7 +8,7 @@
 
 #include "harness/base/base/content_hash.h"
 #include "harness/episode/episodes/database.h"
-#include "harness/episode/episodes/write_rows.h"
+#include "harness/episode/episodes/record_episode.h"
 
 namespace prehend::episode {
 namespace {
@@ -117,7 +117,7 @@ Result<KeptTask> EpisodeFile::DescribeTaskOf(const EpisodeRow& episode) const {
         "SELECT task.uuid, shows, task.id FROM task JOIN episode ON episode.task = task.id"
         " WHERE episode.id = ?");
     if (!find.Bind(episode.id).Step()) throw Damage("an episode has no task");
-    KeptTask task{.uuid = find.Uuid(0), .shows = find.Text(1), .assets = {}};
+    KeptTask task{.uuid = find.Uuid(0), .shows = find.Text(1)};
     Statement assets =
         database_.Prepare("SELECT path, hash FROM task_asset WHERE task = ? ORDER BY path");
     assets.Bind(find.Integer(2));
@@ -128,7 +128,7 @@ Result<KeptTask> EpisodeFile::DescribeTaskOf(const EpisodeRow& episode) const {
 
 Result<grammar::Timeline> EpisodeFile::TimelineOf(const EpisodeRow& episode) const {
   return Guarded(path_, [&] {
-    grammar::Timeline timeline{.ticks_per_second = episode.ticks_per_second, .events = {}};
+    grammar::Timeline timeline{.ticks_per_second = episode.ticks_per_second};
     Statement find = database_.Prepare(
         "SELECT id, event, begin_tick, end_tick, decided_tick, open_end FROM event"
         " WHERE episode = ? ORDER BY id");
@@ -178,7 +178,6 @@ Result<std::vector<KeptEntity>> EpisodeFile::EntitiesOf(const EpisodeRow& episod
       const std::int64_t number = find.Integer(0);
       if (number == static_cast<std::int64_t>(entities.size()))
         entities.push_back({.name = find.Text(1),
-                            .classes = {},
                             .part_of = static_cast<int>(find.Integer(2)),
                             .uuid = find.Uuid(4),
                             .mass_kg = find.Double(5),

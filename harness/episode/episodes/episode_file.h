@@ -15,7 +15,7 @@
 #include "harness/base/base/result.h"
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/episodes/task_files.h"
-#include "harness/episode/frames/frame_player.h"
+#include "harness/episode/frames/chunk.h"
 #include "physics/simulation.h"
 
 namespace prehend::episode {

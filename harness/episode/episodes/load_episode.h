@@ -12,7 +12,7 @@
 #include "harness/episode/episodes/episode_file.h"
 #include "harness/episode/run/run_scenario.h"
 #include "harness/episode/sense/episode_file.h"
-#include "harness/scenario/read/scenario_library.h"
+#include "harness/scenario/read/read_scenario.h"
 
 namespace prehend::episode {
 

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/episode/episodes/record_episode.h"
 
-#include "harness/episode/episodes/database.h"
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "harness/base/base/content_hash.h"
 #include "harness/episode/episodes/schema.h"
-#include "harness/episode/episodes/task_files.h"
-#include "harness/episode/episodes/write_rows.h"
-#include "harness/episode/frames/chunk.h"
-#include "harness/episode/run/run_trials.h"
-#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/run/run_text.h"
+#include "harness/episode/sense/episode_format.h"
 
 namespace prehend::episode {
-
 namespace {
 
 const char* EngineName(physics::Engine engine) {
@@ -39,6 +38,69 @@ NewEpisode EpisodeOf(const RecordRequest& request, const scenario::Scenario& sce
           .seed = static_cast<std::int64_t>(scenario.scene.world.seed),
           .program_hash = request.program_hash,
           .recorded_on = request.recorded_on};
+}
+
+void WriteEntities(const Database& database, std::int64_t task, const std::string& uuid,
+                   const grammar::EntityTable& table) {
+  Statement insert = database.Prepare("INSERT INTO entity VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  Statement insert_class = database.Prepare("INSERT INTO entity_class VALUES(?, ?, ?, ?)");
+  for (std::size_t i = 0; i < table.entities.size(); ++i) {
+    const grammar::EntityInfo& entity = table.entities[i];
+    const auto number = static_cast<std::int64_t>(i);
+    insert.Bind(task).Bind(number).Bind(UuidOf(uuid + entity.name)).Bind(entity.name);
+    insert.Bind(entity.classes.front());
+    if (entity.part_of == grammar::kNoEntity)
+      insert.BindNothing();
+    else
+      insert.Bind(entity.part_of);
+    if (entity.mass_kg > 0)
+      insert.Bind(entity.mass_kg);
+    else
+      insert.BindNothing();
+    for (int axis = 0; axis < 3; ++axis) insert.Bind(2 * entity.half_size_m[axis]);
+    insert.Run();
+    for (std::size_t depth = 0; depth < entity.classes.size(); ++depth) {
+      insert_class.Bind(task).Bind(number).Bind(static_cast<std::int64_t>(depth));
+      insert_class.Bind(entity.classes[depth]).Run();
+    }
+  }
+}
+
+void WriteEvents(const Database& database, std::int64_t episode, const grammar::EntityTable& table,
+                 const grammar::Timeline& timeline) {
+  std::map<std::string, std::int64_t> numbers;
+  for (std::size_t i = 0; i < table.entities.size(); ++i)
+    numbers.try_emplace(table.entities[i].name, static_cast<std::int64_t>(i));
+  const auto seconds = [&](grammar::Tick ticks) {
+    return static_cast<double>(ticks) / static_cast<double>(timeline.ticks_per_second);
+  };
+  Statement insert = database.Prepare(
+      "INSERT INTO event(episode, event, begin_tick, end_tick, decided_tick, open_end, begin_s,"
+      " end_s, duration_s) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  Statement insert_role = database.Prepare("INSERT INTO event_role VALUES(?, ?, ?, ?, ?)");
+  Statement insert_value = database.Prepare("INSERT INTO event_value VALUES(?, ?, ?, ?, ?)");
+  for (const grammar::NamedEvent& event : timeline.events) {
+    const grammar::Interval& when = event.interval;
+    insert.Bind(episode).Bind(event.event).Bind(when.begin).Bind(when.end).Bind(event.decided);
+    insert.Bind(event.open_end ? 1 : 0).Bind(seconds(when.begin)).Bind(seconds(when.end));
+    insert.Bind(seconds(when.end - when.begin)).Run();
+    const std::int64_t row = database.LastRow();
+    for (std::size_t i = 0; i < event.roles.size(); ++i) {
+      const grammar::Role& role = event.roles[i];
+      insert_role.Bind(row).Bind(static_cast<std::int64_t>(i)).Bind(role.name).Bind(role.value);
+      const auto entity = numbers.find(role.value);
+      if (entity == numbers.end())
+        insert_role.BindNothing();
+      else
+        insert_role.Bind(entity->second);
+      insert_role.Run();
+    }
+    for (std::size_t i = 0; i < event.values.size(); ++i) {
+      const grammar::NamedValue& value = event.values[i];
+      insert_value.Bind(row).Bind(static_cast<std::int64_t>(i)).Bind(value.name);
+      insert_value.Bind(value.value).Bind(value.unit).Run();
+    }
+  }
 }
 
 }  // namespace
@@ -154,6 +216,79 @@ void EpisodeRecorder::Finish(const RunResult& run) {
 
 std::string WhyNotRecordable(const std::string& file) {
   return ProblemOf(file, [&] { (void)OpenToWrite(file); });
+}
+
+std::int64_t WriteTask(const Database& database, const NewTask& task) {
+  const TaskFiles& files = task.files;
+  const std::string uuid = UuidOf(task.scenario + "\n" + files.Identity());
+  Statement find = database.Prepare("SELECT id FROM task WHERE uuid = ?");
+  if (find.Bind(uuid).Step()) return find.Integer(0);
+  Statement insert = database.Prepare(
+      "INSERT INTO task(uuid, scenario, file, asked_grammar, settings, shows)"
+      " VALUES(?, ?, ?, ?, ?, ?)");
+  insert.Bind(uuid).Bind(task.scenario).Bind(files.run.scenario_file).Bind(files.run.grammar);
+  insert.Bind(nlohmann::json(files.run.settings).dump()).Bind(task.shows).Run();
+  const std::int64_t row = database.LastRow();
+  Compressor compressor;
+  Statement has = database.Prepare("SELECT 1 FROM asset WHERE hash = ?");
+  Statement add = database.Prepare("INSERT INTO asset VALUES(?, ?, ?)");
+  Statement name = database.Prepare("INSERT INTO task_asset VALUES(?, ?, ?)");
+  for (const auto& [path, content] : files.files) {
+    const std::string hash = ContentHash(content);
+    if (!has.Bind(hash).Step()) {
+      add.Bind(hash).Bind(static_cast<std::int64_t>(content.size()));
+      add.BindBytes(compressor.Pack(content)).Run();
+    }
+    has.Reset();
+    name.Bind(row).Bind(path).Bind(hash).Run();
+  }
+  WriteEntities(database, row, uuid, task.entities);
+  return row;
+}
+
+std::int64_t WriteEpisode(const Database& database, std::int64_t task, const NewEpisode& episode) {
+  Statement insert = database.Prepare(
+      "INSERT INTO episode(uuid, task, status, grammar, ticks_per_second, ticks, state_hash,"
+      " outcome, engine, seed, program, program_hash, recorded_on, failure_entity,"
+      " failure_reason, failure_advice) VALUES(?, ?, ?, ?, ?, 0, '', '', ?, ?, ?, ?, ?, '', '',"
+      " '')");
+  insert.Bind(NewUuid()).Bind(task).Bind(kBeingRecorded).Bind(episode.grammar);
+  insert.Bind(episode.ticks_per_second).Bind(episode.engine).Bind(episode.seed);
+  insert.Bind("prehend " PREHEND_VERSION)
+      .Bind(episode.program_hash)
+      .Bind(episode.recorded_on)
+      .Run();
+  return database.LastRow();
+}
+
+void WriteEnd(const Database& database, std::int64_t episode, const char* status,
+              const RunResult& run, const grammar::EntityTable& entities) {
+  WriteEvents(database, episode, entities, run.timeline);
+  Statement note = database.Prepare("INSERT INTO note VALUES(?, ?, ?, ?, ?)");
+  for (std::size_t i = 0; i < run.notes.size(); ++i) {
+    note.Bind(episode).Bind(static_cast<std::int64_t>(i)).Bind(run.notes[i].tick);
+    note.Bind(run.notes[i].hand.number()).Bind(run.notes[i].text).Run();
+  }
+  Statement end = database.Prepare(
+      "UPDATE episode SET status = ?, ticks = ?, state_hash = ?, outcome = ?,"
+      " failure_entity = ?, failure_reason = ?, failure_advice = ? WHERE id = ?");
+  end.Bind(status).Bind(run.ticks).Bind(HashText(run.state_hash)).Bind(run.outcome);
+  end.Bind(run.status.entity).Bind(run.status.reason).Bind(run.status.advice).Bind(episode).Run();
+}
+
+ChunkRows::ChunkRows(const Database& database, std::int64_t episode)
+    : episode_(episode),
+      insert_chunk_(database.Prepare("INSERT INTO chunk VALUES(?, ?, ?, ?)")),
+      insert_part_(database.Prepare(
+          "INSERT INTO part(episode, part, first_tick, data) VALUES(?, ?, ?, ?)")) {}
+
+void ChunkRows::Write(const Chunk& chunk) {
+  insert_chunk_.Bind(episode_).Bind(chunk.first_tick).Bind(chunk.last_tick);
+  insert_chunk_.Bind(static_cast<std::int64_t>(chunk.frames)).Run();
+  for (const ChunkPart& part : chunk.parts) {
+    insert_part_.Bind(episode_).Bind(static_cast<std::int64_t>(part.part)).Bind(chunk.first_tick);
+    insert_part_.BindBytes(part.bytes).Run();
+  }
 }
 
 }  // namespace prehend::episode

@@ -8,11 +8,10 @@
 
 #include "grammar/contents.h"
 #include "harness/episode/episodes/database.h"
+#include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/episodes/schema.h"
-#include "harness/episode/episodes/write_rows.h"
 #include "harness/episode/frames/recorded_frames.h"
 #include "harness/episode/run/load_grammar.h"
-#include "harness/episode/sense/episode_file.h"
 #include "physics/scene/snapshot.h"
 
 namespace prehend::episode {
@@ -24,10 +23,7 @@ constexpr std::size_t kFramesPart = 0;
 grammar::Diagnostics NotRead(const EpisodeFile& file, const EpisodeRow& row,
                              const std::string& message) {
   return {{.file = file.path(),
-           .place = {},
-           .message = fmt::format("episode {} ({}): {}", row.id, row.scenario, message),
-           .source_line = {},
-           .hint = {}}};
+           .message = fmt::format("episode {} ({}): {}", row.id, row.scenario, message)}};
 }
 
 std::string FirstLine(const EpisodeHeader& header) {
@@ -54,7 +50,6 @@ NewTask TaskOf(const ImportRequest& request, const EpisodeHeader& header,
   if (asked.empty() && IsPath(header.grammar)) asked = header.grammar;
   NewTask task{.files = PackTask({request.source, asked, {}}, grammars, request.root),
                .scenario = header.episode,
-               .shows = {},
                .entities = header.entity_table};
   task.files.files[kHeaderFile] = FirstLine(header);
   return task;

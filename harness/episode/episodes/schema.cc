@@ -13,7 +13,6 @@
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/content_hash.h"
-#include "harness/episode/episodes/database.h"
 
 namespace prehend::episode {
 namespace {

@@ -5,7 +5,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "harness/base/base/atomic_file.h"
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/project_paths.h"
 
@@ -36,7 +35,7 @@ std::string TaskFiles::Identity() const {
 TaskFiles PackTask(const RunRequest& run, const std::vector<std::string>& tried,
                    const std::string& root) {
   const fs::path home = fs::absolute(root).lexically_normal();
-  TaskFiles task{.run = run, .files = {}};
+  TaskFiles task{.run = run};
   task.run.scenario_file = Stored(run.scenario_file, home);
   std::error_code error;
   if (run.grammar.find('/') != std::string::npos || run.grammar.ends_with(".grammar"))

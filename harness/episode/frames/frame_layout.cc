@@ -5,8 +5,6 @@
 #include <span>
 #include <tuple>
 
-#include "harness/episode/frames/columns.h"
-
 namespace prehend::episode {
 namespace {
 
@@ -57,11 +55,8 @@ bool IsSide(const FrameLayout& layout, const physics::ContactSide& side) {
 }  // namespace
 
 FrameLayout LayoutOf(const physics::Scene& scene) {
-  FrameLayout layout{.bodies = scene.bodies.size(),
-                     .grains = {},
-                     .joints = scene.joints.size(),
-                     .hands = {},
-                     .gazes = scene.persons.size()};
+  FrameLayout layout{
+      .bodies = scene.bodies.size(), .joints = scene.joints.size(), .gazes = scene.persons.size()};
   for (const physics::Body& body : scene.bodies) {
     if (body.grains) layout.grains.push_back(body.grains->p_WG_m.size());
   }

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "harness/episode/frames/columns.h"
-
 namespace prehend::episode {
 namespace {
 

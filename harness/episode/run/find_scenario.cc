@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/episode/run/find_scenario_test.cc
-// Tested by tests/harness/episode/run/find_scenario_test.cc
 #include "harness/episode/run/find_scenario.h"
 
 #include <fmt/format.h>
@@ -21,7 +20,6 @@
 #include "harness/scenario/read/read_hand_model.h"
 
 namespace prehend::episode {
-
 namespace {
 
 namespace fs = std::filesystem;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds scenarios by name. Tested by tests/harness/episode/run/find_scenario_test.cc
+// Finds scenarios by name. Where an episode is, and what it came from. Tested by
+// tests/harness/episode/run/find_scenario_test.cc and tests/program/episode_kinds_test.cc
 #pragma once
 
 #include <cstdint>
@@ -8,10 +9,26 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/episode/run/episode_name.h"
-#include "harness/scenario/read/scenario_library.h"
+#include "harness/scenario/read/read_scenario.h"
 
 namespace prehend::episode {
+
+enum class Origin {
+  kScenario,     ///< to be simulated
+  kRecordedRun,  ///< was simulated, and is kept in an episode file
+  kRecording     ///< of a tracker or another program: frames as a grammar sees them, no physics
+};
+
+struct EpisodeName {
+  std::string file;                    ///< a scenario, an episode file, or JSON Lines
+  std::optional<std::int64_t> number;  ///< in an episode file
+  std::string scenario;                ///< skill/name; of JSON Lines the name of the file
+  Origin origin = Origin::kScenario;
+  std::string grammar;     ///< that a recording names for itself, or a run was recorded with; or ""
+  std::string asked = {};  ///< a grammar that a file of takes names instead of its own
+
+  bool operator==(const EpisodeName&) const = default;
+};
 
 /// The folder of scenarios/ whose files are examples of errors.
 inline constexpr std::string_view kShowsErrors = "invalid";

@@ -2,7 +2,6 @@
 #include "harness/episode/run/load_run.h"
 
 #include <algorithm>
-#include <functional>
 #include <iterator>
 #include <set>
 #include <utility>
@@ -11,9 +10,8 @@
 #include "harness/episode/run/find_scenario.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/run_scenario.h"
-#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/scenario/format/scenario_fields.h"
-#include "harness/scenario/read/read_scenario.h"
 
 namespace prehend::episode {
 

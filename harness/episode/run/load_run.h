@@ -13,7 +13,7 @@
 #include "harness/base/base/result.h"
 #include "harness/base/yaml/located_yaml.h"
 #include "harness/episode/run/load_grammar.h"
-#include "harness/scenario/read/scenario_library.h"
+#include "harness/scenario/read/read_scenario.h"
 #include "harness/scenario/scenario/scenario.h"
 #include "harness/truth/claims/judge_claims.h"
 

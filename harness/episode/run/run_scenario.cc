@@ -11,7 +11,7 @@
 
 #include "grammar/contents.h"
 #include "grammar/name_events.h"
-#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/episode/sense/sensing.h"
 
 namespace prehend::episode {
@@ -21,7 +21,7 @@ std::optional<EventTime> ParseEventTime(const std::string& text) {
   const auto parsed = std::from_chars(text.data(), text.data() + text.size(), time_s);
   if (parsed.ec == std::errc() && parsed.ptr == text.data() + text.size()) {
     if (!std::isfinite(time_s) || time_s < 0) return std::nullopt;
-    return EventTime{.time_s = time_s, .event = {}};
+    return EventTime{.time_s = time_s};
   }
   for (const char* boundary : {".begin", ".end"}) {
     const std::size_t length = std::char_traits<char>::length(boundary);

@@ -9,7 +9,6 @@
 
 #include "harness/episode/run/load_run.h"
 #include "harness/truth/timeline/event_text.h"
-#include "harness/truth/timeline/timeline_json.h"
 
 namespace prehend::episode {
 namespace {

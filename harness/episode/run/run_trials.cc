@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "harness/base/process/wire.h"
 #include "harness/base/process/worker_pool.h"
 #include "harness/scenario/format/scenario_fields.h"
 #include "harness/scenario/read/sample_variations.h"

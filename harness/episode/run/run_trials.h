@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "harness/episode/run/load_run.h"
-#include "harness/scenario/scenario/variations.h"
+#include "harness/scenario/scenario/scenario.h"
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
 

@@ -7,17 +7,16 @@
 #include <algorithm>
 #include <map>
 #include <utility>
-#include <vector>
 
 #include "grammar/base/frame.h"
 #include "grammar/contents.h"
+#include "grammar/name_events.h"
 #include "grammar/never_recognised.h"
 #include "harness/base/base/text_file.h"
 #include "harness/episode/run/load_grammar.h"
-#include "harness/episode/run/segment.h"
+#include "harness/episode/sense/episode_format.h"
 
 namespace prehend::episode {
-
 namespace {
 
 /// What is not tracked for a while; of what never is, there is a warning of its own.
@@ -164,7 +163,6 @@ Result<SegmentedRecording> SegmentRecording(Recording& recording,
   const grammar::EntityTable& entities = recording.header.entity_table;
   SegmentedRecording segmented{.name = recording.header.episode,
                                .program = program,
-                               .timeline = {},
                                .end = recording.end_tick,
                                .frame_ticks = MedianStep(recording.frames),
                                .says_its_end = recording.says_its_end,
@@ -189,12 +187,46 @@ Result<grammar::Timeline> SegmentFrames(Recording& recording,
   if (!segmentation.problem.empty()) {
     return tl::unexpected(grammar::Diagnostics{
         {.file = file,
-         .place = {},
-         .message = "the grammar cannot segment this recording: " + segmentation.problem,
-         .source_line = {},
-         .hint = {}}});
+         .message = "the grammar cannot segment this recording: " + segmentation.problem}});
   }
   return std::move(segmentation.timeline);
+}
+
+Segmentation Segment(const std::shared_ptr<const grammar::Program>& program,
+                     const grammar::EntityTable& entities, const FrameFeed& play,
+                     const std::function<void(const grammar::Timeline&)>& decided) {
+  grammar::Monitor monitor(program, entities);
+  std::vector<grammar::Event> events;
+  if (!monitor.error().empty())
+    return {grammar::NameEvents(*program, entities, events), monitor.error()};
+  const auto tell = [&] {
+    if (!decided || events.empty()) return;
+    decided(grammar::NameEvents(*program, entities, events));
+    events.clear();
+  };
+  const grammar::Tick end = play([&](const FrameNews& news) {
+    if (const auto* whole = std::get_if<grammar::Frame>(&news))
+      monitor.Advance(*whole, events);
+    else
+      monitor.AdvanceBy(std::get<grammar::FrameChanges>(news), events);
+    tell();
+  });
+  monitor.Finish(end, events);
+  tell();
+  return {grammar::NameEvents(*program, entities, events), monitor.error()};
+}
+
+grammar::Timeline Resegment(const scenario::Scenario& scenario,
+                            std::span<const physics::Snapshot> recording,
+                            std::shared_ptr<const grammar::Program> program, grammar::Tick end) {
+  Sensing sensing(scenario.scene, scenario.sensing);
+  const FrameFeed play = [&](const std::function<void(const FrameNews&)>& take) {
+    for (const physics::Snapshot& snapshot : recording) {
+      if (sensing.Due(snapshot.tick)) take(sensing.SenseChanges(snapshot));
+    }
+    return end;
+  };
+  return Segment(program, MakeEntityTable(scenario), play).timeline;
 }
 
 }  // namespace prehend::episode

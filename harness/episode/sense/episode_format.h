@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lines of an episode file, as structs and their formats: docs/recording-format.md. The reader
-// is harness/episode/sense/read_episode.cc. Tested by
-// tests/harness/episode/sense/episode_file_test.cc
+// is harness/episode/sense/read_episode.cc. What a grammar knows of a scenario before its first
+// frame: the entities, in the order of their indices in a Frame. Tested by
+// tests/harness/episode/sense/episode_file_test.cc,
+// tests/harness/scenario/read/read_scenario_test.cc and tests/harness/episode/sense/sensing_test.cc
 #pragma once
 
 #include <Eigen/Core>
@@ -12,9 +14,12 @@
 #include <variant>
 #include <vector>
 
-#include "harness/base/base/default_grammar.h"
+#include "grammar/base/frame.h"
+#include "harness/base/base/project_paths.h"
 #include "harness/base/yaml/struct_format.h"
 #include "harness/episode/sense/episode_file.h"
+#include "harness/scenario/scenario/scenario.h"
+#include "physics/scene/scene.h"
 
 namespace prehend::episode {
 
@@ -125,5 +130,13 @@ ValueFormat<LineEntry> LineFormat();
 /// of its bounds or a key twice; then `frame` means nothing. Places are not filled in. Memory of
 /// `frame` is used again.
 bool ScanFrame(std::string_view line, FrameEntry& frame);
+
+/// The grasp styles of all hands, each name once, in the order of the hands.
+/// grammar::HandSample::style is an index into this list; a snapshot's style is one into the list
+/// of its own hand.
+std::vector<std::string> StyleNames(const physics::Scene& scene);
+
+/// The entities that can be bound to roles: the scene's bodies (same index), then its hands.
+grammar::EntityTable MakeEntityTable(const scenario::Scenario& scenario);
 
 }  // namespace prehend::episode

@@ -13,7 +13,6 @@
 
 #include "grammar/base/check.h"
 #include "grammar/base/frame.h"
-#include "harness/base/base/text_file.h"
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/base/yaml/located_yaml.h"
 #include "harness/episode/sense/episode_file.h"
@@ -38,7 +37,7 @@ class EpisodeReader {
       : file_(std::move(file)),
         line_format_(LineFormat()),
         keeps_all_(keeps_all),
-        no_document_{.sources = {{file_, ""}}, .root = {}} {}
+        no_document_{.sources = {{file_, ""}}} {}
 
   grammar::Diagnostics diagnostics;
   Recording episode;
@@ -120,7 +119,6 @@ class EpisodeReader {
     diagnostics.push_back({.file = file_,
                            .place = {std::max(line_, 1), 1},
                            .message = std::move(message),
-                           .source_line = {},
                            .hint = std::move(hint)});
   }
 
@@ -182,7 +180,7 @@ class EpisodeReader {
     episode.header.attributes = {.success = header.success, .language = header.language};
     now_.entities.resize(names_.size(), grammar::NotTracked());
     bridge_ = BridgeOf(episode.header);
-    for (const int hand : hands_) now_.hands.push_back({.entity = hand, .collision_spheres = {}});
+    for (const int hand : hands_) now_.hands.push_back({.entity = hand});
     now_.collision_spheres.resize(hands_.size());
     has_ahead_.resize(hands_.size());
     has_spheres_.resize(hands_.size());
@@ -550,30 +548,21 @@ Result<Recording> ReadRecording(const std::string& path) {
   EpisodeReader reader(path);
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
-    reader.diagnostics.push_back(
-        {.file = path,
-         .place = {},
-         .message = std::filesystem::exists(path, error) ? "is not a regular file" : "no such file",
-         .source_line = {},
-         .hint = {}});
+    reader.diagnostics.push_back({.file = path,
+                                  .message = std::filesystem::exists(path, error)
+                                                 ? "is not a regular file"
+                                                 : "no such file"});
     return tl::unexpected(std::move(reader.diagnostics));
   }
   if (const auto size = std::filesystem::file_size(path, error); error || size > kMaxEpisodeBytes) {
     reader.diagnostics.push_back(
-        {.file = path,
-         .place = {},
-         .message = fmt::format("is larger than {} MiB", kMaxEpisodeBytes >> 20),
-         .source_line = {},
-         .hint = {}});
+        {.file = path, .message = fmt::format("is larger than {} MiB", kMaxEpisodeBytes >> 20)});
     return tl::unexpected(std::move(reader.diagnostics));
   }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
-    reader.diagnostics.push_back({.file = path,
-                                  .place = {},
-                                  .message = std::string("cannot be read: ") + std::strerror(errno),
-                                  .source_line = {},
-                                  .hint = {}});
+    reader.diagnostics.push_back(
+        {.file = path, .message = std::string("cannot be read: ") + std::strerror(errno)});
     return tl::unexpected(std::move(reader.diagnostics));
   }
   for (std::string line; reader.diagnostics.empty() && std::getline(stream, line);) {

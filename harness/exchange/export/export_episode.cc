@@ -8,7 +8,7 @@
 #include <map>
 
 #include "harness/base/base/atomic_file.h"
-#include "harness/episode/episode/open_episode.h"
+#include "harness/episode/episode/episode.h"
 #include "harness/exchange/export/write_motion.h"
 
 namespace prehend::exchange {

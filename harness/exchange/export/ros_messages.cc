@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "harness/exchange/export/byte_writer.h"
-#include "harness/scenario/scenario/colors.h"
+#include "harness/scenario/scenario/scenario.h"
 #include "physics/scene/hull.h"
 
 namespace prehend::exchange {

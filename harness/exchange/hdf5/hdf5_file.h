@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // HDF5 files of strangers: groups, shapes, attributes, and numbers of datasets. Nothing but the
 // file itself is read: links to other files, external and virtual datasets, and filters of plugins
-// are errors. What is not asked for is not read. Tested by
-// tests/harness/exchange/hdf5/hdf5_file_test.cc
+// are errors. What is not asked for is not read. Signals that are false, then true for ever, added
+// to an HDF5 file. Tested by tests/harness/exchange/hdf5/hdf5_file_test.cc and
+// tests/program/labels_back.py
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -91,5 +93,15 @@ class Hdf5File {
   std::string path_;
   Hdf5Id file_;
 };
+
+struct Hdf5Signal {
+  std::string dataset;       ///< its groups are made; a dataset of this name is replaced
+  std::size_t first = 0;     ///< row that is true
+  std::size_t rows = 0;      ///< of all
+  bool as_integers = false;  ///< of 64 bits; else truth values, as h5py has them
+};
+
+/// Changes nothing else of the file, and adds no time of day. Returns "", or what went wrong.
+std::string AddSignals(const std::string& path, std::span<const Hdf5Signal> signals);
 
 }  // namespace prehend::exchange

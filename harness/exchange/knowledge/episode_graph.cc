@@ -252,8 +252,7 @@ Result<Vocabulary> Vocabulary::Load() {
   std::string problem;
   const std::vector<Triple> triples = ReadTurtle(*text, problem);
   if (!problem.empty())
-    return tl::unexpected(grammar::Diagnostics{
-        {.file = file, .place = {}, .message = problem, .source_line = {}, .hint = {}}});
+    return tl::unexpected(grammar::Diagnostics{{.file = file, .message = problem}});
   Vocabulary vocabulary;
   vocabulary.text_ = std::move(*text);
   std::map<std::string, EventTerm> terms;  // by their names
@@ -294,7 +293,7 @@ EventTerm Vocabulary::TermOf(const std::string& event) const {
   if (found != events_.end()) return found->second;
   std::string name = "knowrob:" + CamelCase(event);
   if (known_.contains(name)) name += "Event";
-  return {.name = std::move(name), .base = {}, .relation = {}, .concept_name = {}};
+  return {.name = std::move(name), .base = {}};
 }
 
 std::string Vocabulary::PropertyOf(const std::string& role) const {

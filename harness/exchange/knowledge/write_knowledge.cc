@@ -7,8 +7,8 @@
 
 #include "grammar/contents.h"
 #include "harness/base/base/atomic_file.h"
-#include "harness/base/process/run_tool.h"
-#include "harness/episode/episode/open_episode.h"
+#include "harness/base/process/child_process.h"
+#include "harness/episode/episode/episode.h"
 #include "harness/exchange/knowledge/episode_graph.h"
 #include "harness/exchange/knowledge/neem.h"
 
@@ -61,7 +61,7 @@ Result<Poses> FirstPoses(episode::Episode& episode) {
 }
 
 grammar::Diagnostics Problem(const std::string& file, const std::string& message) {
-  return {{.file = file, .place = {}, .message = message, .source_line = {}, .hint = {}}};
+  return {{.file = file, .message = message}};
 }
 
 /// Milliseconds since 1970 at the begin of a day, "2026-11-23"; 0 if it is none.
@@ -91,8 +91,7 @@ class KnowledgeWriter {
     if (!opened) return opened.error();
     file_ = opened->file();
     const episode::EpisodeRow* row = opened->row();
-    EpisodeOfTask episode{
-        .row = *row, .file = fs::absolute(name.file).string(), .timeline = {}, .composed = {}};
+    EpisodeOfTask episode{.row = *row, .file = fs::absolute(name.file).string()};
     auto timeline = opened->Recorded();
     if (!timeline) return timeline.error();
     episode.timeline = std::move(*timeline);
@@ -125,10 +124,8 @@ class KnowledgeWriter {
     if (const auto known = maps_.find(uuid); known != maps_.end()) return &known->second.map;
     auto entities = file_->EntitiesOf(row);
     if (!entities) return tl::unexpected(entities.error());
-    MapOfTask map{.task = std::move(*task),
-                  .scenario = row.scenario,
-                  .entities = std::move(*entities),
-                  .poses = {}};
+    MapOfTask map{
+        .task = std::move(*task), .scenario = row.scenario, .entities = std::move(*entities)};
     Result<Poses> first = FirstPoses(episode);
     if (!first) return tl::unexpected(first.error());
     map.poses = std::move(*first);

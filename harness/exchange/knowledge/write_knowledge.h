@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "harness/base/base/result.h"
-#include "harness/episode/run/episode_name.h"
+#include "harness/episode/run/find_scenario.h"
 
 namespace prehend::exchange {
 

@@ -136,7 +136,7 @@ grammar::Timeline Compared(const grammar::Timeline& timeline, const ComparedRole
     event.values.clear();
     by_label[event.Label()].push_back(std::move(event));
   }
-  grammar::Timeline all{.ticks_per_second = timeline.ticks_per_second, .events = {}};
+  grammar::Timeline all{.ticks_per_second = timeline.ticks_per_second};
   for (auto& [label, events] : by_label) {
     std::ranges::sort(events, {}, [](const grammar::NamedEvent& event) {
       return std::pair(event.interval.begin, event.interval.end);

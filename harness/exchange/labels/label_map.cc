@@ -68,7 +68,7 @@ std::optional<grammar::NamedEvent> EventIn(const std::string& text, const Events
                           near.empty() ? "" : ", like " + near);
     return std::nullopt;
   }
-  grammar::NamedEvent named{.event = name, .roles = {}, .interval = {}};
+  grammar::NamedEvent named{.event = name, .roles = {}};
   if (open == std::string::npos) return named;
   const std::size_t close = text.find(')', open);
   std::vector<std::string> values;
@@ -160,7 +160,7 @@ Meant ByMap(const Label& label, const std::string& text, const LabelMap& map, co
   }
   const Meaning* meaning = Find(map.labels, text, "label", meant);
   if (!meaning || meaning->ignored) return meant;
-  meant.event = {.event = meaning->event, .roles = meaning->roles, .interval = {}};
+  meant.event = {.event = meaning->event, .roles = meaning->roles};
   meant.in_map = meaning->entities;
   if (tier) meant.in_map.insert(tier->entities.begin(), tier->entities.end());
   if (!AddRoles(label, map, tier, *FindEvent(events, meaning->event), meant)) meant.event.reset();
@@ -185,8 +185,7 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
                                       const Events& events) {
   std::vector<TakeRows> takes;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    TakeRows& take =
-        takes.emplace_back(TakeRows{.file = i, .labels = {}, .offset_s = map ? map->offset_s : 0});
+    TakeRows& take = takes.emplace_back(TakeRows{.file = i, .offset_s = map ? map->offset_s : 0});
     for (std::size_t k = 0; k < files[i].labels.size(); ++k) take.labels.push_back(k);
   }
   return Of(std::move(files), map, events, std::move(takes));
@@ -414,7 +413,7 @@ Result<grammar::Timeline> LabelReading::Found(std::size_t take,
                                               const ComparedRoles& compared) const {
   Diagnostics problems =
       Problems(take, entities, static_cast<double>(end) / static_cast<double>(ticks_per_second));
-  grammar::Timeline found{.ticks_per_second = ticks_per_second, .events = {}};
+  grammar::Timeline found{.ticks_per_second = ticks_per_second};
   for (const LabelledEvent& label : events_[take]) {
     if (problems.size() >= kMostComplaints) break;
     const LabelFile& file = files_[takes_[take].file];
@@ -453,7 +452,7 @@ grammar::NamedEvent LabelReading::InTicks(const LabelledEvent& label,
 
 grammar::Timeline LabelReading::Marked(std::size_t take, grammar::Tick ticks_per_second,
                                        grammar::Tick end, bool moments) const {
-  grammar::Timeline marked{.ticks_per_second = ticks_per_second, .events = {}};
+  grammar::Timeline marked{.ticks_per_second = ticks_per_second};
   for (const LabelledEvent& label : events_[take])
     if (moments || !label.IsMoment())
       marked.events.push_back(InTicks(label, ticks_per_second, end));

@@ -487,7 +487,6 @@ Diagnostics ReadFrameLabels(LabelFile& file, const CsvReading& how) {
       file.labels.push_back({.begin_s = at_s(i),
                              .end_s = at_s(i + 1),
                              .text = std::string(lines[i]),
-                             .tier = {},
                              .place = {static_cast<int>(i) + 1, 1}});
   }
   return {};

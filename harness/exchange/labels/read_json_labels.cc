@@ -66,7 +66,7 @@ grammar::Diagnostics ReadJsonLabels(LabelFile& file, double ticks_per_second) {
     const bool is_blank =
         text.substr(begin, end - begin).find_first_not_of(" \t") == std::string_view::npos;
     begin = end + 1;
-    Label label{.text = {}, .tier = {}, .place = {++number, 1}, .roles = {}, .keys = {}};
+    Label label{.place = {++number, 1}, .roles = {}};
     std::string problem;
     if (is_blank) continue;
     if (!line.is_object())

@@ -116,7 +116,7 @@ bool IsTable(const std::string& path) {
 Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv, Backward backward) {
   Result<std::string> text = ReadAnyUtf(path);
   if (!text) return tl::unexpected(std::move(text.error()));
-  LabelFile file{.file = path, .text = std::move(*text), .labels = {}};
+  LabelFile file{.file = path, .text = std::move(*text)};
   const std::string ending = LowerEnding(path);
   Diagnostics problems;
   if (IsTable(path)) {
@@ -153,10 +153,7 @@ Diagnostics ReadGoldenLabels(LabelFile& file) {
     file.labels.push_back({.begin_s = static_cast<double>(line.event.interval.begin) / per_s,
                            .end_s = static_cast<double>(line.event.interval.end) / per_s,
                            .text = line.event.Label(),
-                           .tier = {},
-                           .place = {},
-                           .roles = {},
-                           .keys = {}});
+                           .roles = {}});
   }
   return {};
 }

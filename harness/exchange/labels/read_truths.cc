@@ -88,8 +88,8 @@ class TruthReader {
     std::string problem;
     const std::vector<std::string> paths = PathsFrom(given, problem);
     if (!problem.empty())
-      return tl::unexpected(grammar::Diagnostics{
-          {.file = clock_ ? "--found" : "--truth", .place = {}, .message = problem}});
+      return tl::unexpected(
+          grammar::Diagnostics{{.file = clock_ ? "--found" : "--truth", .message = problem}});
     for (std::size_t i = 0; i < takes_.size(); ++i)
       if (IsTable(paths[i]))
         for (const WantedRows& wanted : WantedOf(takes_[i])) keys_[paths[i]].insert(wanted.column);
@@ -188,7 +188,6 @@ class TruthReader {
     if (!offset_s) offset_s = map_ ? OffsetOf(*map_, names) : std::optional(0.0);
     if (!offset_s)
       problems_.push_back({.file = map_->document.sources.front().name,
-                           .place = {},
                            .message = "offset_s: the map has none of " + names.front()});
     if (take.offset_s) file.warnings.clear();  // by its clock
     const std::vector<WantedRows> wanted = WantedOf(take);
@@ -196,8 +195,7 @@ class TruthReader {
       problems_.push_back(SeveralTakes(file, names.front()));
       return;
     }
-    TakeRows& rows = rows_.emplace_back(
-        TakeRows{.file = *index, .labels = {}, .offset_s = offset_s.value_or(0)});
+    TakeRows& rows = rows_.emplace_back(TakeRows{.file = *index, .offset_s = offset_s.value_or(0)});
     const bool is_table = IsTable(path);
     for (std::size_t i = 0; i < file.empty.size(); ++i)
       if (!is_table || IsWanted(file.empty[i], wanted, path)) without_text_[*index].insert(i);

@@ -127,10 +127,10 @@ class DefinitionReader {
     }
     const std::size_t index = definition_.types.size();
     indices_.emplace(name, index);
-    definition_.types.push_back({.name = name, .fields = {}});
+    definition_.types.push_back({.name = name});
     open_.insert(name);
     const std::string package = name.substr(0, name.find('/'));
-    DefinedType type{.name = name, .fields = {}};
+    DefinedType type{.name = name};
     for (const Line& one : lines) TakeField(one, package, type);
     open_.erase(name);
     definition_.types[index] = std::move(type);

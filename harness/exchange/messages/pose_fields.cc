@@ -186,7 +186,7 @@ class LayoutMaker {
     const DefinedType& type = types_[type_index];
     const std::size_t of_fields = type_index + (in_frame ? types_.size() : 0);
     const std::vector<Role>& roles = layout_.roles[of_fields];
-    layout_.parts.push_back({.type = type_index, .roles = of_fields, .children = {}});
+    layout_.parts.push_back({.type = type_index, .roles = of_fields});
     if (const Shape shape = ShapeOf(type_index, roles, called); shape != Shape::kNone) {
       layout_.parts[index].pose = static_cast<int>(layout_.fields.size());
       layout_.fields.push_back({.steps = steps_, .oriented = shape == Shape::kPose});
@@ -233,7 +233,7 @@ std::vector<Role> RolesOfNumbers(const DefinedType& type) {
 }
 
 PoseLayout LayoutOf(MessageDefinition definition) {
-  PoseLayout layout{.definition = std::move(definition), .fields = {}, .parts = {}};
+  PoseLayout layout{.definition = std::move(definition)};
   LayoutMaker(layout).Make();
   return layout;
 }
@@ -301,7 +301,7 @@ std::vector<std::size_t> FieldsOf(const BodyAddress& address,
 
 std::string AddressOf(const std::string& topic, const std::vector<PoseField>& fields,
                       std::size_t field, const std::vector<std::string>& keys) {
-  BodyAddress address{.steps = {}, .keys = keys};
+  BodyAddress address{.keys = keys};
   const std::vector<PoseField::Step>& steps = fields[field].steps;
   const std::vector<std::size_t> only = {field};
   // With a path, all lists are in it.

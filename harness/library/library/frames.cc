@@ -7,7 +7,7 @@
 
 #include "grammar/monitor.h"
 #include "grammar/name_events.h"
-#include "harness/base/base/default_grammar.h"
+#include "harness/base/base/project_paths.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/sense/episode_file.h"
 #include "harness/episode/sense/episode_format.h"

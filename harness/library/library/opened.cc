@@ -7,7 +7,6 @@
 
 #include "grammar/contents.h"
 #include "harness/base/base/atomic_file.h"
-#include "harness/base/base/default_grammar.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/quoting.h"
 #include "harness/episode/episode/find_episodes.h"
@@ -25,11 +24,8 @@ Error::Error(const Error&) = default;
 Error::~Error() = default;
 
 void Refuse(std::string file, std::string message, std::string hint) {
-  throw Error(grammar::Diagnostics{{.file = std::move(file),
-                                    .place = {},
-                                    .message = std::move(message),
-                                    .source_line = {},
-                                    .hint = std::move(hint)}});
+  throw Error(grammar::Diagnostics{
+      {.file = std::move(file), .message = std::move(message), .hint = std::move(hint)}});
 }
 
 std::string ProjectRoot() {
@@ -50,8 +46,7 @@ const std::string& Grammar::name() const { return grammar::GrammarName(*program_
 
 episode::Episode Episode::Impl::Open() {
   // What a recording names for itself may be nowhere, when somebody asks for its frames only.
-  return Unwrap(
-      shared->opener.Open(name, {.grammar = name.number ? "" : kDefaultGrammar, .settings = {}}));
+  return Unwrap(shared->opener.Open(name, {.grammar = name.number ? "" : kDefaultGrammar}));
 }
 
 episode::Episode& Episode::Impl::Known(episode::Episode& episode) {

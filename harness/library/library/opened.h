@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "harness/base/base/result.h"
-#include "harness/episode/episode/open_episode.h"
+#include "harness/episode/episode/episode.h"
 #include "harness/library/library/episode.h"
 
 namespace prehend {

@@ -14,7 +14,7 @@
 #include "harness/measure/sweep/sweep.h"
 #include "harness/show/chart/chart.h"
 #include "harness/show/explain/explain.h"
-#include "harness/show/explain/replay.h"
+#include "harness/show/explain/query.h"
 #include "harness/show/explain/tracks.h"
 #include "harness/truth/timeline/event_drawings.h"
 #include "harness/truth/timeline/event_text.h"
@@ -64,7 +64,7 @@ Signals SignalsOf(const Episode& episode, const Grammar* grammar,
     show::Tracks tracks =
         show::CollectTracks(*watched.past, std::set<std::string>(only.begin(), only.end()));
     if (!tracks.problem.empty()) Refuse("", tracks.problem);
-    Signals signals{.ticks = std::move(tracks.ticks), .signals = {}};
+    Signals signals{.ticks = std::move(tracks.ticks)};
     for (const show::Track& track : tracks.tracks) {
       Signals::Signal& signal = signals.signals.emplace_back();
       signal.name = track.name;
@@ -138,8 +138,7 @@ std::string ScoreJson(const std::vector<Compared>& episodes, double collar_s) {
 std::string MarginsCsv(const std::vector<std::string>& files, const Grammar& grammar,
                        const std::vector<std::string>& truth, const std::string& map,
                        const std::vector<std::string>& over, double within) {
-  measure::SweepRequest request{
-      .root = ProjectRoot(), .grammar = grammar.name_or_path(), .settings = {}, .axes = {}};
+  measure::SweepRequest request{.root = ProjectRoot(), .grammar = grammar.name_or_path()};
   for (const auto& [name, value] : grammar.parameters())
     request.settings.push_back(name + "=" + value);
   if (const std::string why = measure::SetTruth(truth, request); !why.empty()) Refuse("", why);
@@ -163,7 +162,7 @@ std::string TimelineSvg(const grammar::Timeline& timeline, grammar::Tick end,
   const auto seconds = [&](grammar::Tick tick) {
     return static_cast<double>(tick) / static_cast<double>(timeline.ticks_per_second);
   };
-  show::Chart chart{.title = "", .from_s = 0, .to_s = seconds(end), .rows = {}, .panels = {}};
+  show::Chart chart{.title = "", .from_s = 0, .to_s = seconds(end)};
   for (const grammar::NamedEvent& event : timeline.events) {
     const std::string& hand = truth::RoleValue(event, "hand");
     const std::string name = hand.empty() ? event.event : hand + ": " + event.event;
@@ -178,7 +177,7 @@ std::string TimelineSvg(const grammar::Timeline& timeline, grammar::Tick end,
       return row.name == name && row.bars.back().end_s <= bar.begin_s + 1e-9;
     };
     auto row = std::ranges::find_if(chart.rows, is_free);
-    if (row == chart.rows.end()) row = chart.rows.insert(row, {.name = name, .bars = {}});
+    if (row == chart.rows.end()) row = chart.rows.insert(row, {.name = name});
     row->bars.push_back(std::move(bar));
   }
   std::ranges::stable_sort(chart.rows, {}, &show::Row::name);

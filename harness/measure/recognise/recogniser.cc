@@ -44,9 +44,7 @@ class Recogniser::Talk {
 
   Recognised Watch(const WatchedEpisode& episode) {
     episode_ = &episode;
-    done_ = {.events = {.file = choice_.command, .text = {}, .labels = {}},
-             .broken = {},
-             .covers = std::move(done_.covers)};
+    done_ = {.events = {.file = choice_.command}, .covers = std::move(done_.covers)};
     entities_.clear();
     for (const grammar::EntityInfo& one : episode.entities.entities) entities_.push_back(one.name);
     sent_ = ready_ = -1;
@@ -277,7 +275,7 @@ class Recogniser::Talk {
   }
 
   void TakeEvent(const json& line) {
-    exchange::Label label{.text = {}, .tier = {}, .place = {line_, 1}, .roles = {}, .keys = {}};
+    exchange::Label label{.place = {line_, 1}, .roles = {}};
     const auto per_s = static_cast<double>(episode_->entities.ticks_per_second);
     const std::string problem = exchange::ReadEventLine(line, per_s, label);
     if (!problem.empty()) return Break(Rule::kTicks, problem, "");

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "harness/base/base/default_grammar.h"
+#include "harness/base/base/project_paths.h"
 #include "harness/episode/run/load_grammar.h"
 
 namespace prehend::measure {
@@ -67,7 +67,7 @@ Result<grammar::Timeline> Foreign::Find(const std::vector<episode::Take>& takes,
     episode.covers = std::move(recognised.covers);
     if (recognised.broken) {
       episode.failure = grammar::Format(recognised.broken->what);
-      return grammar::Timeline{.ticks_per_second = rate, .events = {}};
+      return grammar::Timeline{.ticks_per_second = rate};
     }
     said = exchange::AsFound(std::move(recognised.events), takes, asking_.label_map, program);
   }

@@ -366,8 +366,7 @@ std::vector<grammar::Tick> InnerBoundaries(const Segments& segments, grammar::Ti
 LabelledEpisode Labelled(const grammar::Timeline& truth, const grammar::Timeline& found,
                          grammar::Tick ticks) {
   LabelledEpisode episode{.ticks_per_second = static_cast<double>(truth.ticks_per_second),
-                          .whole = {ticks, SegmentsOf(truth), SegmentsOf(found)},
-                          .by_label = {}};
+                          .whole = {ticks, SegmentsOf(truth), SegmentsOf(found)}};
   std::map<std::string, Episode> by_label;
   for (const Segment& segment : episode.whole.truth)
     by_label[segment.label].truth.push_back(segment);

@@ -7,7 +7,7 @@
 #include <functional>
 #include <set>
 
-#include "harness/measure/score/overlap_metrics.h"
+#include "harness/truth/timeline/event_text.h"
 #include "harness/truth/timeline/match_events.h"
 
 namespace prehend::measure {
@@ -25,7 +25,7 @@ double Quantile(std::vector<double> values, double share, Less less = {}) {
 
 /// If `event` is empty, all events.
 grammar::Timeline OfKind(const grammar::Timeline& timeline, const std::string& event) {
-  grammar::Timeline only{.ticks_per_second = timeline.ticks_per_second, .events = {}};
+  grammar::Timeline only{.ticks_per_second = timeline.ticks_per_second};
   for (const NamedEvent& candidate : timeline.events) {
     if (event.empty() || candidate.event == event) only.events.push_back(candidate);
   }
@@ -110,11 +110,7 @@ MeanOfKinds MeanOf(const std::vector<EventScore>& kinds) {
 
 EpisodeRow RowOf(const EpisodeToScore& judged, const std::set<std::string>& kinds,
                  double collar_s) {
-  EpisodeRow row{.episode = judged.scenario,
-                 .person = judged.person,
-                 .set = judged.set,
-                 .total = {},
-                 .hits = {}};
+  EpisodeRow row{.episode = judged.scenario, .person = judged.person, .set = judged.set};
   const LabelledEpisode all = Labelled(judged.truth, judged.found, judged.ticks);
   AddEpisode(judged, all, "", collar_s, row.total);
   EditOfTracks edit;
@@ -126,6 +122,36 @@ EpisodeRow RowOf(const EpisodeToScore& judged, const std::set<std::string>& kind
     row.hits[kind] = HitsByOverlap(of_kind.whole.truth, of_kind.whole.prediction, 0.50);
   }
   return row;
+}
+
+/// Both sides of one label.
+struct TwoSides {
+  Segments truth, found;
+};
+
+/// Both in the order of time, and without overlaps within a side.
+bool AnyOverlaps(const Segments& a, const Segments& b) {
+  for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
+    if (Overlap(i->interval, j->interval) > 0) return true;
+    if (i->interval.end <= j->interval.end)
+      ++i;
+    else
+      ++j;
+  }
+  return false;
+}
+
+void MergeInto(Segments& track, const Segments& more) {
+  track.insert(track.end(), more.begin(), more.end());
+  std::ranges::stable_sort(track, {}, [](const Segment& one) { return one.interval.begin; });
+}
+
+std::string WhoseOf(const grammar::NamedEvent& event) {
+  const std::string& hand = truth::RoleValue(event, "hand");
+  if (!hand.empty()) return hand;
+  std::string roles;
+  for (const grammar::Role& role : event.roles) roles += role.value + ",";
+  return roles;
 }
 
 }  // namespace
@@ -157,13 +183,8 @@ Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& all
     }
   }
   Score score{.grammar = grammar,
-              .events = {},
               .total = ScoreKind(episodes, "", collar_s),
-              .mean = {},
-              .rows = {},
               .episodes = static_cast<int>(episodes.size()),
-              .not_covered = {},
-              .ignored = {},
               .failed = std::move(failed),
               .cpu_share = cpu_s / std::max(1e-9, SecondsOf(all))};
   for (const EpisodeToScore& episode : episodes) {
@@ -186,6 +207,35 @@ Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& all
   for (const EpisodeToScore& episode : episodes)
     score.rows.push_back(RowOf(episode, kinds, collar_s));
   return score;
+}
+
+std::vector<Episode> TracksOf(const grammar::Timeline& truth, const grammar::Timeline& found,
+                              grammar::Tick ticks) {
+  std::map<std::string, std::map<std::string, TwoSides>> by_hand;
+  for (const grammar::NamedEvent& event : truth.events)
+    by_hand[WhoseOf(event)][event.Label()].truth.push_back({event.Label(), event.interval});
+  for (const grammar::NamedEvent& event : found.events)
+    by_hand[WhoseOf(event)][event.Label()].found.push_back({event.Label(), event.interval});
+  std::vector<Episode> all;
+  for (const auto& [hand, labels] : by_hand) {
+    const std::size_t first = all.size();
+    for (const auto& [label, sides] : labels) {
+      auto track = std::find_if(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(),
+                                [&sides = sides](const Episode& one) {
+                                  return !AnyOverlaps(one.truth, sides.truth) &&
+                                         !AnyOverlaps(one.prediction, sides.found);
+                                });
+      if (track == all.end()) track = all.insert(track, Episode{.ticks = ticks});
+      MergeInto(track->truth, sides.truth);
+      MergeInto(track->prediction, sides.found);
+    }
+  }
+  return all;
+}
+
+void EditOfTracks::Add(const std::vector<Episode>& tracks) {
+  for (const Episode& track : tracks) sum_ += EditScore(track.truth, track.prediction);
+  tracks_ += static_cast<int>(tracks.size());
 }
 
 }  // namespace prehend::measure

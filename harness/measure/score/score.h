@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well a grammar recognises events: its timelines against true ones, per kind and in total.
-// Tested by tests/harness/measure/score/score_test.cc
+// Sequences of events without overlaps: what an edit score is about. Tested by
+// tests/harness/measure/score/score_test.cc and tests/harness/measure/score/tracks_test.cc
 #pragma once
 
 #include <map>
@@ -13,9 +14,25 @@
 #include "harness/measure/score/evaluators.h"
 #include "harness/measure/score/further_scores.h"
 #include "harness/measure/score/overlap_metrics.h"
-#include "harness/measure/score/tracks.h"
 
 namespace prehend::measure {
+
+/// The events of one hand, or of those without a hand the events with the same roles, as far as
+/// they overlap on neither side: labels, by the alphabet, each in the first track in which it
+/// overlaps no other one.
+std::vector<Episode> TracksOf(const grammar::Timeline& truth, const grammar::Timeline& found,
+                              grammar::Tick ticks);
+
+/// Mean edit score of tracks; 100 if there are none.
+class EditOfTracks {
+ public:
+  void Add(const std::vector<Episode>& tracks);
+  double Mean() const { return tracks_ > 0 ? sum_ / tracks_ : 100; }
+
+ private:
+  double sum_ = 0;
+  int tracks_ = 0;
+};
 
 /// The true events of one episode, and those that a grammar or somebody else found.
 struct EpisodeToScore {
@@ -53,7 +70,7 @@ struct EventScore {
   Hits overlap_10, overlap_25, overlap_50;
   EventErrors within_collar;
   FrameCounts frames;
-  double edit = 100;  ///< mean over the tracks of the episodes (harness/measure/score/tracks.h)
+  double edit = 100;  ///< mean over the tracks of the episodes (harness/measure/score/score.h)
   FurtherScores further;
   std::vector<double> latency_s;  ///< from an event's end to its decision
 

@@ -7,14 +7,13 @@
 #include <algorithm>
 
 #include "grammar/contents.h"
-#include "harness/base/base/default_grammar.h"
-#include "harness/base/process/wire.h"
+#include "harness/base/base/project_paths.h"
 #include "harness/base/process/worker_pool.h"
-#include "harness/episode/episode/open_episode.h"
+#include "harness/episode/episode/episode.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_text.h"
-#include "harness/episode/run/segment.h"
+#include "harness/episode/run/segment_recording.h"
 #include "harness/truth/claims/judge_claims.h"
 #include "harness/truth/oracle/oracle.h"
 #include "harness/truth/timeline/timeline_wire.h"
@@ -99,8 +98,8 @@ ScenarioOnWire Played(const ScoreRequest& request) {
   const scenario::Scenario& scenario = episode->loaded().scenario;
   const episode::RunResult& run = episode->Played();
   if (run.status.kind != physics::RunStatus::Kind::kCompleted)
-    return {.problem = grammar::Format(grammar::Diagnostic{
-                .file = request.episode.file, .place = {}, .message = episode::StatusText(run)})};
+    return {.problem = grammar::Format(grammar::Diagnostic{.file = request.episode.file,
+                                                           .message = episode::StatusText(run)})};
   const grammar::Tick end = run.ticks + 1;
   std::vector<grammar::Timeline> possible;
   for (const grammar::Timeline& truth :

@@ -6,7 +6,7 @@
 
 #include "grammar/contents.h"
 #include "harness/episode/run/run_scenario.h"
-#include "harness/episode/run/segment.h"
+#include "harness/episode/run/segment_recording.h"
 #include "harness/episode/sense/episode_file.h"
 
 namespace prehend::measure {

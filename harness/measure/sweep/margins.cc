@@ -9,7 +9,7 @@
 #include "grammar/base/quantity.h"
 #include "grammar/base/wording.h"
 #include "grammar/describe.h"
-#include "harness/episode/episode/open_episode.h"
+#include "harness/episode/episode/episode.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/measure/sweep/sweep.h"
 #include "harness/truth/timeline/event_text.h"
@@ -25,7 +25,7 @@ using CompileWith = std::function<grammar::CompileResult(const grammar::Override
 /// The values that the grammar accepts; `own` becomes the index of the parameter's own one.
 Axis AxisOf(const grammar::ProgramParam& param, const grammar::Overrides& fixed,
             const CompileWith& compile, std::size_t& own) {
-  Axis axis{.parameter = param.name, .unit = {}, .values = {}};
+  Axis axis{.parameter = param.name};
   const std::string text = grammar::QuantityText(param.value);
   if (const std::size_t blank = text.find(' '); blank != std::string::npos)
     axis.unit = text.substr(blank + 1);

@@ -173,7 +173,6 @@ std::string HeatMapSvg(const std::vector<Axis>& axes, const std::vector<SweepPoi
   show::Chart chart{.title = down ? "F1 in %, " + down->parameter + " downwards" : "F1 in %",
                     .to_s = static_cast<double>(columns),
                     .rows = std::vector<show::Row>(rows),
-                    .panels = {},
                     .axis = across.parameter +
                             (robust.members.empty()
                                  ? "; every setting scores 0"

@@ -12,11 +12,9 @@
 
 #include "grammar/contents.h"
 #include "harness/base/base/visible_stream.h"
-#include "harness/base/process/progress_counters.h"
-#include "harness/base/process/wire.h"
 #include "harness/base/process/worker_pool.h"
-#include "harness/episode/episode/lacks.h"
-#include "harness/episode/episode/open_episode.h"
+#include "harness/episode/episode/episode.h"
+#include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/exchange/labels/read_labels.h"
 #include "harness/exchange/labels/read_truths.h"
@@ -229,7 +227,7 @@ std::optional<Axis> ParseAxis(const std::string& text, std::string& problem) {
     return std::nullopt;
   }
   problem.clear();
-  Axis axis{.parameter = text.substr(0, equals), .unit = from->second, .values = {}};
+  Axis axis{.parameter = text.substr(0, equals), .unit = from->second};
   for (int i = 0; i < count; ++i)
     axis.values.push_back(from->first + (to->first - from->first) * i / (count - 1));
   return axis;

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "harness/base/yaml/struct_format.h"
-#include "harness/scenario/format/limits.h"
 #include "harness/scenario/format/scenario_formats.h"
 
 namespace prehend::scenario {

@@ -5,10 +5,7 @@
 #include <functional>
 
 #include "harness/base/yaml/struct_format.h"
-#include "harness/scenario/format/limits.h"
-#include "harness/scenario/format/scenario_fields.h"
 #include "harness/scenario/format/scenario_formats.h"
-#include "harness/scenario/scenario/colors.h"
 #include "harness/scenario/scenario/scenario.h"
 
 namespace prehend::scenario {

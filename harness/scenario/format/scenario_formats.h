@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parts of the scenario format, one function per kind of entry. Each file NAME_fields.cc
 // declares the keys of its part; harness/scenario/format/scenario_fields.cc puts them together.
-// Tested by tests/harness/scenario/format/scenario_fields_test.cc,
+// Limits on the size of a scenario, so that a typing error does not cost an hour. Tested by
+// tests/harness/scenario/format/scenario_fields_test.cc,
 // tests/harness/scenario/format/abstract_entities_test.cc,
-// tests/harness/scenario/read/sample_variations_test.cc and
-// tests/harness/episode/run/outcome_test.cc
+// tests/harness/scenario/read/sample_variations_test.cc, tests/harness/episode/run/outcome_test.cc,
+// tests/harness/scenario/read/read_scenario_test.cc and
+// tests/harness/scenario/format/scenario_errors_test.cc
 #pragma once
 
-#include <string>
+#include <cstddef>
 #include <vector>
 
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/base/yaml/struct_format.h"
 #include "harness/base/yaml/value_format.h"
 #include "harness/scenario/format/scenario_yaml.h"
-#include "harness/scenario/scenario/variations.h"
+#include "harness/scenario/scenario/scenario.h"
 #include "physics/motion/script.h"
+#include "physics/scene/run_limits.h"
 
 namespace prehend::scenario {
 
@@ -35,7 +38,7 @@ ValueFormat<physics::Hull> HullFormat();
 ValueFormat<GrainsYaml> GrainsFormat();
 ValueFormat<physics::PlacedShape> PartFormat();
 
-// harness/scenario/format/abstract_fields.cc: entities with a position but no mass.
+// harness/scenario/format/shape_fields.cc: entities with a position but no mass.
 ValueFormat<RegionYaml> RegionFormat();
 ValueFormat<GazeTargetYaml> GazeTargetFormat();
 ValueFormat<CameraYaml> CameraFormat();
@@ -51,7 +54,7 @@ ValueFormat<physics::Eyes> EyesFormat();
 // harness/scenario/format/step_fields.cc: each step is recognised by its action key.
 ValueFormat<StageYaml> StageFormat();
 
-// harness/scenario/format/trial_fields.cc
+// harness/scenario/format/scenario_fields.cc
 ValueFormat<VariationYaml> VariationFormat();
 ValueFormat<std::vector<ConditionYaml>> OutcomeFormat();
 
@@ -69,5 +72,21 @@ Remedies StepRemedies();
 // ", or go on". Tested by tests/harness/scenario/format/scenario_errors_test.cc
 
 ValueFormat<physics::Until> UntilFormat();
+
+/// How far from the origin a scenario may put or send anything.
+inline constexpr double kMaxDistance_m = physics::kMaxDistance_m;
+
+inline constexpr std::size_t kMaxEntities = 10'000;
+inline constexpr std::size_t kMaxActors = 16;
+inline constexpr std::size_t kMaxBeats = 1'000;
+inline constexpr std::size_t kMaxStepsInARow = 200;  // of an actor in one stage
+inline constexpr int kMaxRepeats = 100;
+inline constexpr std::size_t kMaxPoses = 10'000;  ///< in all steps together
+inline constexpr std::size_t kMaxPictures = 32;
+inline constexpr std::size_t kMaxClaims = 64;
+inline constexpr std::size_t kMaxClaimLength = 500;  ///< in bytes
+inline constexpr double kMaxDuration_s = 3'600;
+inline constexpr std::size_t kMaxVariations = 64;
+inline constexpr std::size_t kMaxOutcomes = 16;
 
 }  // namespace prehend::scenario

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "harness/base/base/default_grammar.h"
+#include "harness/base/base/project_paths.h"
 #include "harness/base/yaml/value_format.h"
 #include "harness/scenario/scenario/scenario.h"
 #include "physics/motion/script.h"
@@ -59,7 +59,7 @@ struct EntityYaml {
   Where where;
   Located<std::string> class_name{"Object", {}};
   std::optional<Located<std::string>> part_of;
-  std::optional<Located<std::string>> color;  ///< see harness/scenario/scenario/colors.h
+  std::optional<Located<std::string>> color;  ///< see harness/scenario/scenario/scenario.h
   std::optional<physics::Shape> shape;
   std::vector<physics::PlacedShape> parts;  ///< of a compound
   std::optional<GrainsYaml> grains;

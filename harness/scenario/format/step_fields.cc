@@ -2,12 +2,7 @@
 // Tested by tests/harness/scenario/format/scenario_fields_test.cc
 #include <fmt/format.h>
 
-#include <cmath>
-#include <sstream>
-
 #include "harness/base/yaml/struct_format.h"
-#include "harness/scenario/format/limits.h"
-#include "harness/scenario/format/scenario_fields.h"
 #include "harness/scenario/format/scenario_formats.h"
 
 namespace prehend::scenario {

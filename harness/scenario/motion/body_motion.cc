@@ -167,8 +167,6 @@ class TrackMaker {
     const Vector3d up = Vector3d::UnitY(), left = up.cross(ahead_);
 
     BodySample sample{.t_s = static_cast<double>(frame) * bvh_.frame_time_s,
-                      .posture = {},
-                      .points = {},
                       .place = bvh_.places[frame]};
     sample.posture.hips_W_m = ToOurAxes(hips);
     auto& directions = sample.posture.directions_W;

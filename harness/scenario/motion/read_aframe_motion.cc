@@ -86,8 +86,7 @@ class CaptureReader {
     }
     std::vector<CapturedPose> poses;
     if (!PosesFormat().Read(*written, errors_, poses)) return {};
-    MotionTrack track{.samples = {},
-                      .file = document_.sources.front().name,
+    MotionTrack track{.file = document_.sources.front().name,
                       .text = document_.sources.front().text};
     const double begin_ms = poses.front().timestamp.value;
     double before_ms = begin_ms;

@@ -200,10 +200,8 @@ class CsvReader {
                                    [&](const Column& c) { return c.quantity == quantity; });
       return Place{line_, cells[static_cast<std::size_t>(it - columns_.begin())].column};
     };
-    TrackSample sample{.t_s = row["t"],
-                       .X_RD = {{row["x"], row["y"], row["z"]}},
-                       .trigger = {},
-                       .place = {line_, 1}};
+    TrackSample sample{
+        .t_s = row["t"], .X_RD = {{row["x"], row["y"], row["z"]}}, .place = {line_, 1}};
     if (track.samples.empty()) first_t_s_ = sample.t_s;
     sample.t_s -= first_t_s_;
     if (!track.samples.empty() && sample.t_s <= track.samples.back().t_s)

@@ -7,10 +7,11 @@
 #include <filesystem>
 #include <limits>
 
-#include "harness/scenario/format/limits.h"
+#include "harness/scenario/format/scenario_formats.h"
 #include "harness/scenario/motion/body_motion.h"
 #include "harness/scenario/motion/hand_motion.h"
 #include "harness/scenario/read/read_parts.h"
+#include "harness/scenario/read/read_scenario.h"
 #include "physics/person/skeleton.h"
 
 namespace prehend::scenario {
@@ -108,7 +109,7 @@ grammar::Diagnostics CheckBodyTrack(const BodyTrack& track, const RecordingYaml&
   const TrackLimits limits{std::numeric_limits<double>::infinity(), entry.max_jump_m};
   grammar::Diagnostics odd;
   for (std::size_t i = 0; i < kWatchedPoints.size(); ++i) {
-    MotionTrack point{.samples = {}, .file = track.file, .text = track.text};
+    MotionTrack point{.file = track.file, .text = track.text};
     for (const BodySample& sample : track.samples)
       point.samples.push_back({sample.t_s, {scale * sample.points[i]}, {}, sample.place});
     for (Diagnostic& found : CheckTrack(point, limits)) {

@@ -8,10 +8,11 @@
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/base/yaml/located_yaml.h"
 #include "harness/scenario/format/scenario_yaml.h"
-#include "harness/scenario/read/scenario_library.h"
 #include "harness/truth/claims/claim.h"
 
 namespace prehend::scenario {
+
+struct ScenarioLibrary;
 
 // The claims of a scenario, from their texts. Which events and entities there are is checked when
 // the grammar is known (harness/episode/run/load_run.h). Tested by

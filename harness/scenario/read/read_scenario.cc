@@ -10,15 +10,17 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <string_view>
+#include <utility>
 
 #include "harness/base/base/project_paths.h"
-#include "harness/base/base/text_file.h"
+#include "harness/base/yaml/value_format.h"
 #include "harness/scenario/format/scenario_fields.h"
 #include "harness/scenario/format/scenario_formats.h"
 #include "harness/scenario/read/read_parts.h"
 #include "harness/scenario/read/sample_variations.h"
 #include "harness/scenario/resolve/resolve.h"
-#include "harness/scenario/scenario/colors.h"
+#include "harness/truth/claims/claim.h"
 
 namespace prehend::scenario {
 namespace {
@@ -232,6 +234,90 @@ Result<Scenario> Resolve(const std::string& file, const YamlDocument& document,
   return scenario;
 }
 
+/// What the source has at this place, up to the end of the line.
+std::string_view LineFrom(const Where& where, const YamlDocument& document) {
+  std::string_view rest = document.sources[static_cast<std::size_t>(where.source)].text;
+  for (int line = 1; line < where.place.line; ++line)
+    rest.remove_prefix(std::min(rest.find('\n'), rest.size() - 1) + 1);
+  rest = rest.substr(0, rest.find('\n'));
+  rest.remove_prefix(std::min(static_cast<std::size_t>(where.place.column - 1), rest.size()));
+  return rest;
+}
+
+/// Finds out where the letters of a claim stand in the file; returns what stands behind them in the
+/// line, if that is known.
+std::string_view Locate(truth::Claim& claim, const YamlDocument& document) {
+  std::string_view line = LineFrom(claim.where, document);
+  const bool quoted = line.starts_with('"') || line.starts_with('\'');
+  if (quoted) ++claim.where.place.column;
+  line.remove_prefix(quoted ? 1 : 0);
+  claim.on_one_line = line.starts_with(claim.text);
+  return claim.on_one_line ? line.substr(claim.text.size()) : "";
+}
+
+bool HasOpenBracket(std::string_view claim) {
+  return std::ranges::count(claim, '(') > std::ranges::count(claim, ')');
+}
+
+bool IsBlock(const YamlNode& stage) {
+  return stage.kind == YamlNode::Kind::kMapping &&
+         (stage.Find("repeat") != nullptr || stage.Find("steps") != nullptr);
+}
+
+class Writer {
+ public:
+  Writer(DiagnosticList& errors, std::vector<YamlNode>& stages)
+      : errors_(errors), stages_(stages) {}
+
+  /// False after an error, so that a block inside of a block is reported once.
+  bool Add(const std::vector<YamlNode>& stages) {
+    for (const YamlNode& stage : stages) {
+      if (stages_.size() > kMaxBeats) return true;  // its format reports it
+      if (!IsBlock(stage))
+        stages_.push_back(stage);
+      else if (!AddBlock(stage))
+        return false;
+    }
+    return true;
+  }
+
+ private:
+  static std::string Remedy(const YamlNode& unknown) {
+    if (unknown.kind == YamlNode::Kind::kScalar)
+      return "known: repeat, steps; 'repeat: 3' says how often";
+    return "what is repeated is a list below 'steps:', like '- repeat: 3' and below it "
+           "'steps: [{right_hand: {close_to: 1}}]'";
+  }
+
+  bool AddBlock(const YamlNode& block) {
+    const YamlNode *count = block.Find("repeat"), *steps = block.Find("steps");
+    for (const YamlNode& child : block.children) {
+      if (&child == count || &child == steps) continue;
+      errors_.Add(child.key_where, fmt::format("unknown key '{}' in a repeated block", child.key),
+                  Remedy(child));
+      return false;
+    }
+    if (!count || !steps) {
+      errors_.Add(block.where,
+                  fmt::format("a repeated block needs '{}'", count ? "steps" : "repeat"),
+                  "like {repeat: 3, steps: [..]}");
+      return false;
+    }
+    int times = 0;
+    if (!Integer<int>(1, kMaxRepeats).Read(*count, errors_, times)) return false;
+    if (steps->kind != YamlNode::Kind::kSequence || steps->children.empty()) {
+      errors_.Add(steps->where, "steps: expected a list of stages");
+      return false;
+    }
+    for (int i = 0; i < times; ++i)
+      if (!Add(steps->children)) return false;
+    return true;
+  }
+
+  DiagnosticList& errors_;
+  std::vector<YamlNode>& stages_;
+};
+
 }  // namespace
 
 Result<Scenario> ReadScenario(const std::string& file, YamlDocument document,
@@ -264,6 +350,42 @@ Result<Scenario> ReadScenarioText(const std::string& file, std::string text,
   Result<YamlDocument> document = ParseYaml(file, std::move(text));
   if (!document) return tl::unexpected(std::move(document.error()));
   return ReadScenario(file, std::move(*document), overrides, library);
+}
+
+std::vector<truth::Claim> ReadClaims(const std::vector<Located<std::string>>& written,
+                                     const YamlDocument& document, DiagnosticList& errors) {
+  std::vector<truth::Claim> claims;
+  for (auto text = written.begin(); text != written.end(); ++text) {
+    auto parsed = truth::ParseClaim(text->value);
+    truth::Claim claim = parsed ? std::move(*parsed) : truth::Claim{.text = text->value};
+    claim.where = text->where;
+    const std::string_view behind = Locate(claim, document);
+    if (parsed) {
+      claims.push_back(std::move(claim));
+    } else if (HasOpenBracket(claim.text) && behind.starts_with(',')) {
+      // In a list in brackets YAML ends a claim at its comma.
+      std::string whole = claim.text;
+      while (HasOpenBracket(whole) && text + 1 != written.end()) whole += ", " + (++text)->value;
+      errors.Add(claim.where, "expects: the comma of a claim ends it in '[..]'",
+                 "with quotes: \"" + whole + "\", or one claim per line, each after '- '");
+    } else {
+      errors.Add(truth::PlaceIn(claim, parsed.error().offset), "expects: " + parsed.error().message,
+                 parsed.error().hint);
+    }
+  }
+  return claims;
+}
+
+YamlNode WithoutRepeats(const YamlNode& scenario, DiagnosticList& errors) {
+  YamlNode written = scenario;
+  for (YamlNode& child : written.children) {
+    if (child.key != "script" || child.kind != YamlNode::Kind::kSequence) continue;
+    if (std::ranges::none_of(child.children, IsBlock)) continue;
+    const std::vector<YamlNode> stages = std::move(child.children);
+    child.children.clear();
+    Writer(errors, child.children).Add(stages);
+  }
+  return written;
 }
 
 }  // namespace prehend::scenario

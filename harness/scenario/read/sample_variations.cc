@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <set>
-#include <string>
 
 #include "harness/base/yaml/yaml_scalar.h"
 #include "harness/scenario/format/scenario_fields.h"

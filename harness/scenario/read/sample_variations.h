@@ -6,14 +6,13 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/base/yaml/located_yaml.h"
-#include "harness/scenario/scenario/variations.h"
+#include "harness/scenario/scenario/scenario.h"
 
 namespace prehend::scenario {
 

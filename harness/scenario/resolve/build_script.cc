@@ -6,9 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "harness/scenario/format/limits.h"
-#include "harness/scenario/format/scenario_fields.h"
-#include "harness/scenario/resolve/build_abstract.h"
+#include "harness/scenario/format/scenario_formats.h"
+#include "harness/scenario/resolve/build_styles.h"
 #include "harness/scenario/resolve/resolve.h"
 #include "harness/scenario/resolve/step_order.h"
 #include "physics/motion/stage_clock.h"

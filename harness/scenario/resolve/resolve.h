@@ -7,7 +7,7 @@
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/base/yaml/value_format.h"
 #include "harness/scenario/format/scenario_yaml.h"
-#include "harness/scenario/scenario/variations.h"
+#include "harness/scenario/scenario/scenario.h"
 #include "physics/motion/script.h"
 #include "physics/scene/scene.h"
 

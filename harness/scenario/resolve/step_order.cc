@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include "harness/scenario/resolve/build_abstract.h"
+#include "harness/scenario/resolve/build_styles.h"
 #include "physics/motion/stage_clock.h"
 
 namespace prehend::scenario {

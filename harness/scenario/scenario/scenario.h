@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scenario that is read, checked and resolved: names are indices, entities are bodies, actors are
 // hands and persons. What the file says is ScenarioYaml (harness/scenario/format/scenario_yaml.h);
-// harness/scenario/read/read_scenario.h turns one into the other. Tested by
-// tests/harness/scenario/scenario/scenario_test.cc
+// harness/scenario/read/read_scenario.h turns one into the other. Colours of things in pictures,
+// 0xRRGGBB: by a word ("blue"), by a word in a name (`blue_cup`), or by class. The trials of a
+// scenario: `vary:`, what differs between them, and `outcomes:`, how one can end.
+// harness/scenario/format/scenario_fields.cc declares their keys. Tested by
+// tests/harness/scenario/scenario/scenario_test.cc, tests/harness/scenario/scenario/colors_test.cc,
+// tests/harness/scenario/read/sample_variations_test.cc and
+// tests/harness/episode/run/outcome_test.cc
 #pragma once
 
 #include <Eigen/Core>
@@ -10,17 +15,57 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "grammar/base/frame.h"
-#include "harness/base/base/default_grammar.h"
 #include "harness/base/base/located.h"
-#include "harness/scenario/scenario/variations.h"
+#include "harness/base/base/project_paths.h"
 #include "harness/truth/claims/claim.h"
+#include "physics/base/ids.h"
 #include "physics/motion/script.h"
 #include "physics/scene/scene.h"
 
 namespace prehend::scenario {
+
+/// One sample for all its fields. Exactly one distribution is set.
+struct VariationYaml {
+  Where where;
+  std::vector<std::string> fields;         ///< paths as for --set
+  std::optional<Eigen::Vector2d> uniform;  ///< [min, max]
+  std::optional<Eigen::Vector2d> normal;   ///< [mean, standard deviation]
+  std::optional<Eigen::Vector2d> plus;     ///< uniform, added to the written value
+  std::optional<Eigen::Vector2d> times;    ///< uniform, multiplied with the written value
+  std::optional<std::vector<std::string>> choose;
+};
+
+/// A condition on one entity; it holds when everything that is set holds.
+struct ConditionYaml {
+  Where where;
+  std::string entity;
+  std::optional<double> at_s;                 ///< when; default: at the end
+  std::optional<std::vector<double>> near_m;  ///< its centre is near [x, y] or [x, y, z]
+  double within_m = 0.05;
+  std::optional<double> above_m, below_m;                ///< its centre's height
+  std::optional<double> tilt_below_deg, tilt_above_deg;  ///< since it was placed
+  std::optional<double> slower_than_m_per_s;
+  std::optional<double> joint_above, joint_below;  ///< fraction of its joint's range
+  std::optional<Located<std::string>>
+      inside;        ///< its centre is in the bounding box of this entity ...
+  double share = 1;  ///< ... or, of grains, at least this share of them
+};
+
+/// An outcome whose entities are resolved; it holds when all its conditions do.
+struct Outcome {
+  struct Condition {
+    physics::BodyIndex body = physics::BodyIndex(0);
+    int joint = -1;                  ///< index into Scene::joints
+    physics::BodyIndex vessel = {};  ///< that it must be inside, or none
+    ConditionYaml wanted;
+  };
+  std::string name;
+  std::vector<Condition> conditions;
+};
 
 // A camera as people type it: where it stands and what it looks at. Tested by
 // tests/harness/scenario/scenario/own_camera_test.cc
@@ -130,5 +175,17 @@ std::vector<std::string> WithBaseClasses(const std::string& class_name,
 /// All classes of a body of the scenario, most special first: its own and their base classes, then
 /// the built-in ones.
 std::vector<std::string> ClassesOf(const Scenario& scenario, std::size_t body);
+
+/// The words that `color:` accepts.
+const std::vector<std::string>& ColorWords();
+
+/// Of a word, or of "#RRGGBB"; no value for anything else.
+std::optional<std::uint32_t> ColorOfText(std::string_view text);
+
+/// Of the first colour word among the parts of a name that are joined by underscores.
+std::optional<std::uint32_t> ColorInName(std::string_view name);
+
+/// What things of a class usually look like: cartons are white, cans steel.
+std::optional<std::uint32_t> ColorOfClass(std::string_view class_name);
 
 }  // namespace prehend::scenario

@@ -86,7 +86,7 @@ Scenario WithBystander(Scenario scenario) {
                        double mass_kg) {
     physics::Body body;
     body.name = std::move(name);
-    body.shapes = {{.shape = physics::Box{size_m}, .X_BS = {}}};
+    body.shapes = {{.shape = physics::Box{size_m}}};
     body.fixed = mass_kg == 0;
     body.mass_kg = mass_kg;
     body.X_WB.p_m = p_m;

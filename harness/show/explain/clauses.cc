@@ -81,11 +81,7 @@ Reason Clauses::Measurement(const Clause& clause, const Viewpoint& at,
                             const std::optional<Measured>& before) {
   Reason reason{.mark = Mark::kHeld,
                 .what = ClauseText(past_, at.instance, clause.node),
-                .how = {},
-                .where = {},
-                .tick = past_.TickOf(at.frame),
-                .reading = {},
-                .because = {}};
+                .tick = past_.TickOf(at.frame)};
   const std::optional<Measured> now = Measure(clause.node, at);
   if (IsNotTracked(clause.node, at)) reason.how = "is unknown: what it measures is not tracked";
   if (!now) return reason;
@@ -161,7 +157,6 @@ Reason Clauses::Boundary(InstanceId instance, const CandidateOutcome& outcome, b
                               : "began",
           .where = rule.form() == grammar::Form::kTouching ? "" : Source(rule.file, rule.place),
           .tick = past_.TickOf(frame),
-          .reading = {},
           .because = follow ? follow(instance, outcome, end) : Reasons{}};
 }
 
@@ -190,13 +185,7 @@ Reason Clauses::Reference(InstanceId instance, int slot, FrameNumber frame, bool
   const InstanceId target = past_.Referred(instance, slot);
   if (target == kNone) return Impossible(instance, slot);
   const CandidateOutcome* begun = past_.LastBegun(target, frame);
-  Reason reason{.mark = Mark::kHeld,
-                .what = Label(past_, target),
-                .how = {},
-                .where = {},
-                .tick = {},
-                .reading = {},
-                .because = {}};
+  Reason reason{.mark = Mark::kHeld, .what = Label(past_, target)};
   if (truth && begun != nullptr) {
     if (begun->span.begin.frame == frame) return Boundary(target, *begun, false, follow);
     reason.how = begun->span.begin.frame == 0 ? "held from the first frame on"

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Explanations for programs. Explanations for people: a tree of clauses, aligned; one line per
+// event for all of them. Tested by tests/harness/show/explain/explain_test.cc
 #include "harness/show/explain/explain.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "harness/show/explain/query.h"
+#include "harness/show/explain/phrasing.h"
 #include "harness/show/explain/why_event.h"
 #include "harness/show/explain/why_missing.h"
 #include "harness/truth/timeline/event_text.h"
@@ -41,6 +46,124 @@ Tick TickOf(const Ask& ask, const ReplayMonitor& past) {
 // A time that was read off a table is rounded, so the end counts, too.
 bool Contains(const CandidateOutcome& outcome, Tick tick) {
   return outcome.span.begin.tick <= tick + 1 && tick <= outcome.span.end.tick;
+}
+
+using Json = nlohmann::ordered_json;
+
+const char* Name(Reason::Mark mark) {
+  switch (mark) {
+    case Reason::Mark::kTurned:
+      return "turned";
+    case Reason::Mark::kHeld:
+      return "held";
+    case Reason::Mark::kFailed:
+      return "failed";
+    case Reason::Mark::kNote:
+      return "note";
+  }
+  return "";
+}
+
+double Seconds(Tick tick, Tick ticks_per_second) {
+  return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
+}
+
+// JSON has no infinity.
+Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json ToJson(const Reasons& reasons, Tick ticks_per_second) {
+  Json list = Json::array();
+  for (const Reason& reason : reasons) {
+    Json json = {{"is", Name(reason.mark)}, {"clause", reason.what}, {"text", reason.how}};
+    if (!reason.where.empty()) json["rule"] = reason.where;
+    if (reason.tick) json["tick"] = *reason.tick;
+    if (reason.tick) json["time_s"] = Seconds(*reason.tick, ticks_per_second);
+    if (reason.reading) {
+      json["value"] = Number(reason.reading->value);
+      json["limit"] = Number(reason.reading->limit);
+      json["unit"] = reason.reading->unit;
+    }
+    if (!reason.because.empty()) json["because"] = ToJson(reason.because, ticks_per_second);
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+using Mark = Reason::Mark;
+
+constexpr std::size_t kMaxWidth = 70;  // what stands beyond starts a column of its own
+
+char Sign(Mark mark) {
+  switch (mark) {
+    case Mark::kTurned:
+      return '>';
+    case Mark::kHeld:
+      return '=';
+    case Mark::kFailed:
+      return '-';
+    case Mark::kNote:
+      return ' ';
+  }
+  return ' ';
+}
+
+struct Line {
+  std::string left;
+  std::string right;
+};
+
+void AddLines(const Reasons& reasons, std::size_t indent, std::vector<Line>& lines) {
+  for (const Reason& reason : reasons) {
+    std::string right = reason.how;
+    if (!reason.where.empty() && !reason.because.empty()) right += "  (" + reason.where + ")";
+    lines.push_back({fmt::format("{:{}}{} {}", "", indent, Sign(reason.mark), reason.what), right});
+    AddLines(reason.because, indent + 2, lines);
+  }
+}
+
+std::string Tree(const std::string& title, const Reasons& reasons) {
+  if (reasons.empty()) return "";
+  std::vector<Line> lines;
+  AddLines(reasons, 2, lines);
+  std::size_t width = 0;
+  for (const Line& line : lines) {
+    if (line.left.size() <= kMaxWidth) width = std::max(width, line.left.size());
+  }
+  std::string text = title + "\n";
+  for (const Line& line : lines) {
+    std::string row = fmt::format("{:<{}}  {}", line.left, width, line.right);
+    row.erase(row.find_last_not_of(' ') + 1);
+    text += row + "\n";
+  }
+  return text;
+}
+
+const Reason* FirstTurned(const Reasons& reasons) {
+  for (const Reason& reason : reasons) {
+    if (reason.mark != Mark::kTurned) continue;
+    const Reason* inner = FirstTurned(reason.because);
+    return inner != nullptr ? inner : &reason;
+  }
+  return reasons.empty() ? nullptr : &reasons.front();
+}
+
+// "in_cylinder(..)": the whole clause is in the event's own explanation.
+std::string Short(const std::string& clause) {
+  constexpr std::size_t kLong = 32;
+  const std::size_t open = clause.find('(');
+  if (clause.size() <= kLong || open == std::string::npos) return clause;
+  std::size_t close = open;
+  for (int depth = 0; close < clause.size(); ++close) {
+    depth += clause[close] == '(' ? 1 : clause[close] == ')' ? -1 : 0;
+    if (depth == 0) break;
+  }
+  return clause.substr(0, open) + "(..)" + clause.substr(std::min(close + 1, clause.size()));
+}
+
+std::string Late(const WhyEvent& why, Tick ticks_per_second) {
+  if (why.open_end) return "at the end of the episode";
+  if (why.decided == why.interval.end) return "at its end";
+  return Duration(why.decided - why.interval.end, ticks_per_second) + " after its end";
 }
 
 }  // namespace
@@ -101,6 +224,78 @@ WhyMissing ExplainMissing(ReplayMonitor& past, const Ask& ask) {
   why.event = past.program().rules[ask.rule].name;
   why.because = "no entities of the episode fit its roles";
   return why;
+}
+
+Json ToJson(const WhyEvent& why, Tick ticks_per_second) {
+  return {{"event", why.event},
+          {"rule", why.where},
+          {"begin_tick", why.interval.begin},
+          {"end_tick", why.interval.end},
+          {"begin_s", Seconds(why.interval.begin, ticks_per_second)},
+          {"end_s", Seconds(why.interval.end, ticks_per_second)},
+          {"decided_tick", why.decided},
+          {"open_end", why.open_end},
+          {"began", ToJson(why.began, ticks_per_second)},
+          {"ended", ToJson(why.ended, ticks_per_second)},
+          {"counts", ToJson(why.counted, ticks_per_second)},
+          {"waited", ToJson(why.waited, ticks_per_second)}};
+}
+
+Json ToJson(const WhyMissing& why, Tick ticks_per_second) {
+  Json json = {{"event", why.event}, {"rule", why.where}, {"happened", false}};
+  if (why.expected_at) json["expected_s"] = Seconds(*why.expected_at, ticks_per_second);
+  json["because"] = why.because;
+  json["reasons"] = ToJson(why.reasons, ticks_per_second);
+  Json nearest = Json::array();
+  for (const WhyEvent& other : why.nearest) {
+    nearest.push_back({{"begin_s", Seconds(other.interval.begin, ticks_per_second)},
+                       {"end_s", Seconds(other.interval.end, ticks_per_second)}});
+  }
+  json["happened_at"] = std::move(nearest);
+  return json;
+}
+
+std::string InOneLine(const Reasons& reasons) {
+  const Reason* first = FirstTurned(reasons);
+  if (first == nullptr) return "";
+  return first->how.empty() ? first->what : Short(first->what) + " " + first->how;
+}
+
+std::string Text(const WhyEvent& why, Tick ticks_per_second) {
+  std::string text = fmt::format("{}  {}{}  ({})\n", why.event,
+                                 truth::IntervalText(why.interval, ticks_per_second),
+                                 why.open_end ? ", open end" : "", why.where);
+  text += Tree("  began at " + At(why.interval.begin, ticks_per_second), why.began);
+  text += Tree("  ended at " + At(why.interval.end, ticks_per_second), why.ended);
+  text += Tree("  counts", why.counted);
+  const std::string decided =
+      "  decided at " + At(why.decided, ticks_per_second) + ", " + Late(why, ticks_per_second);
+  return text + (why.waited.empty() ? decided + "\n" : Tree(decided, why.waited));
+}
+
+std::string Text(const WhyMissing& why, Tick ticks_per_second) {
+  std::string text = why.event + " did not happen";
+  if (why.expected_at) text += " at " + At(*why.expected_at, ticks_per_second);
+  text += why.because.empty() ? "\n" : "\n  because " + why.because + "\n";
+  text += Tree("", why.reasons);
+  for (const WhyEvent& other : why.nearest) {
+    text +=
+        fmt::format("  it happened {}\n", truth::IntervalText(other.interval, ticks_per_second));
+  }
+  return text;
+}
+
+std::string Table(const std::vector<WhyEvent>& events, Tick ticks_per_second) {
+  std::vector<std::vector<std::string>> rows = {
+      {"event", "begin_s", "end_s", "began", "ended", "decided"}};
+  for (const WhyEvent& why : events) {
+    rows.push_back({why.event, truth::SecondsText(why.interval.begin, ticks_per_second),
+                    truth::SecondsText(why.interval.end, ticks_per_second), InOneLine(why.began),
+                    InOneLine(why.ended), Late(why, ticks_per_second)});
+  }
+  std::string text;
+  for (const std::string& line : truth::AlignColumns(rows)) text += line + "\n";
+  return text;
 }
 
 }  // namespace prehend::show

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers of `prehend explain`, as values, as text and as JSON.
-// Tested by tests/harness/show/explain/explain_test.cc
+// Answers of `prehend explain`, as values, as text and as JSON. Tested by
+// tests/harness/show/explain/explain_test.cc
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "grammar/replay_monitor.h"
-#include "harness/show/explain/explanation.h"
+#include "harness/show/explain/clauses.h"
 #include "harness/show/explain/query.h"
 
 namespace prehend::show {

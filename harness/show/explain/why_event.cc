@@ -28,13 +28,7 @@ using Mark = Reason::Mark;
 namespace {
 
 Reason Remark(std::string what, std::string how = {}) {
-  return {.mark = Mark::kNote,
-          .what = std::move(what),
-          .how = std::move(how),
-          .where = {},
-          .tick = {},
-          .reading = {},
-          .because = {}};
+  return {.mark = Mark::kNote, .what = std::move(what), .how = std::move(how)};
 }
 
 // The frame, if it needed one.
@@ -284,7 +278,6 @@ Reasons EventReasons::BeginOrEndOfAny(InstanceId instance, FrameNumber frame, bo
            .how = end ? "ended" : "began",
            .where = rule.form() == Form::kTouching ? "" : Source(rule.file, rule.place),
            .tick = past_.TickOf(frame),
-           .reading = {},
            .because = FollowFrom(depth)(member, outcome, end)});
     }
   }
@@ -488,9 +481,7 @@ WhyEvent EventReasons::Explain(InstanceId instance, const CandidateOutcome& outc
                .decided = outcome.decided,
                .open_end = outcome.span.open_end,
                .began = Begin(instance, outcome),
-               .ended = End(instance, outcome),
-               .counted = {},
-               .waited = {}};
+               .ended = End(instance, outcome)};
   if (brief) return why;
   why.counted = Counted(instance, outcome);
   why.waited = Waited(instance, outcome, 0);

@@ -2,8 +2,6 @@
 // Runs that were given up, and the choice of what an event is missing for.
 #include "harness/show/explain/why_missing.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -11,7 +9,6 @@
 #include <set>
 
 #include "harness/show/explain/phrasing.h"
-#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::show {
 
@@ -73,10 +70,7 @@ WhyMissing MissingReasons::Explain(const std::vector<InstanceId>& instances,
   const Rule& rule = past_.RuleOf(nearest);
   WhyMissing why{.event = Label(past_, nearest),
                  .where = Source(rule.file, rule.place),
-                 .expected_at = {},
-                 .because = {},
-                 .reasons = std::move(worst->reasons),
-                 .nearest = {}};
+                 .reasons = std::move(worst->reasons)};
   if (at) why.expected_at = past_.TickOf(*at);
   if (const Reason* failure = FirstFailure(why.reasons)) {
     why.because = failure->what + (failure->how.empty() ? "" : ": " + failure->how);
@@ -92,11 +86,7 @@ WhyMissing MissingReasons::Explain(const std::vector<InstanceId>& instances,
                            .where = why.where,
                            .interval = {outcome.span.begin.tick, outcome.span.end.tick},
                            .decided = outcome.decided,
-                           .open_end = outcome.span.open_end,
-                           .began = {},
-                           .ended = {},
-                           .counted = {},
-                           .waited = {}});
+                           .open_end = outcome.span.open_end});
   }
   return why;
 }
@@ -214,7 +204,7 @@ MissingReasons::Weighed MissingReasons::Weigh(
   if (n.op != grammar::Op::kAnd && n.op != grammar::Op::kOr) return tell({node, truth});
   const bool is_choice = clauses_.IsChoice(node, truth);
   const bool is_fulfilled = past_.Is(truth, node, at);
-  Weighed all{.reasons = {}, .missed = is_choice ? std::numeric_limits<double>::infinity() : 0};
+  Weighed all{.missed = is_choice ? std::numeric_limits<double>::infinity() : 0};
   for (const grammar::NodeId arg : {n.args[0], n.args[1]}) {
     if (is_choice && is_fulfilled && !past_.Is(truth, arg, at)) continue;
     Weighed part = Weigh(arg, at, truth, tell);
@@ -390,7 +380,6 @@ MissingReasons::Cause MissingReasons::OfRun(const CandidateOutcome& outcome, int
              .how = (outcome.If<fate::NothingBack>() != nullptr ? "" : span) + told.how,
              .where = Source(rule.file, rule.place),
              .tick = outcome.span.begin.tick,
-             .reading = {},
              .because = std::move(told.because)};
   const bool has_end =
       outcome.If<fate::TooShort>() != nullptr || outcome.If<fate::TooLong>() != nullptr ||

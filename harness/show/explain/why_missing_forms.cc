@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where there was no run: which clause kept each form from beginning one.
 // Tested by tests/harness/show/explain/why_missing_test.cc
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -34,9 +33,6 @@ Reason Failed(std::string what, std::string how, Reasons because = {}) {
   return {.mark = Mark::kFailed,
           .what = std::move(what),
           .how = std::move(how),
-          .where = {},
-          .tick = {},
-          .reading = {},
           .because = std::move(because)};
 }
 
@@ -120,7 +116,7 @@ FrameNumber MissingReasons::Closest(grammar::NodeId node, Viewpoint at, const Wi
 MissingReasons::Cause MissingReasons::OfClauses(grammar::NodeId node, Viewpoint at,
                                                 const Window& window, int depth) {
   at.frame = Closest(node, at, window);
-  Cause cause{.reasons = {}, .closeness = clauses_.Nearness(node, at, true)};
+  Cause cause{.closeness = clauses_.Nearness(node, at, true)};
   bool followed = false;
   for (const Clauses::Clause& clause : clauses_.Split(node, at, true)) {
     Reason reason = clauses_.Told(clause, at);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <vector>
 
 #include "harness/truth/timeline/event_text.h"
 
@@ -176,7 +175,7 @@ class SceneRows {
   /// In each side's own scene but in one view, and what differs between them.
   TileRow BothAt(const std::string& heading, double first_s, double second_s,
                  const std::vector<std::string>& involved) {
-    TileRow row{.heading = heading, .tiles = {}, .columns = 3, .height_share = kWideScene};
+    TileRow row{.heading = heading, .columns = 3, .height_share = kWideScene};
     format_.camera = ViewAround(std::min(first_s, second_s), std::max(first_s, second_s), involved);
     const std::string one = Draw(first_, first_s, row), other = Draw(second_, second_s, row);
     const SceneDifference difference = DifferenceOf(one, other);
@@ -278,8 +277,7 @@ Sheet ComparisonSheet(const scenario::Scenario& scenario, const Side& first, con
     chart.marks.push_back({.time_s = time_s, .letter = LetterOf(number)});
     return fmt::format("({}) ", LetterOf(number++));
   };
-  TileRow only{
-      .heading = "Only one side has:", .tiles = {}, .columns = 3, .height_share = kWideScene};
+  TileRow only{.heading = "Only one side has:", .columns = 3, .height_share = kWideScene};
   for (const BoundaryDifference& difference : differences) {
     if (number == kMostDifferences) break;
     const std::string letter = mark(difference.Begin_s());

@@ -7,9 +7,7 @@
 #include <limits>
 #include <map>
 
-#include "harness/show/figures/moments.h"
 #include "harness/truth/timeline/event_text.h"
-#include "physics/scene/geometry.h"
 
 namespace prehend::show {
 namespace {
@@ -44,7 +42,7 @@ std::vector<Row> PhaseRows(const scenario::Scenario& scenario, const episode::Ru
                            const Window& window) {
   std::vector<Row> rows;
   for (const physics::Hand& hand : scenario.scene.hands) {
-    Row row{.name = hand.name, .bars = {}};
+    Row row{.name = hand.name};
     for (const NamedEvent& event : run.timeline.events) {
       if (run.drawings.Of(event.event).as == DrawnAs::kPhase && HandOf(run, event) == hand.name &&
           window.Shows(scenario, event))
@@ -62,8 +60,7 @@ Chart PhasesChart(const scenario::Scenario& scenario, const episode::RunResult& 
   Chart chart{.title = scenario.name + ", " + scenario.grammar,
               .from_s = window.from_s,
               .to_s = window.to_s,
-              .rows = PhaseRows(scenario, run, window),
-              .panels = {}};
+              .rows = PhaseRows(scenario, run, window)};
   std::vector<Row> others;
   for (const NamedEvent& event : run.timeline.events) {
     const truth::EventDrawing& drawing = run.drawings.Of(event.event);
@@ -121,8 +118,7 @@ Chart SeriesChart(const scenario::Scenario& scenario, const episode::RunResult& 
   Chart chart{.title = scenario.name + ", " + scenario.grammar,
               .from_s = window.from_s,
               .to_s = window.to_s,
-              .rows = PhaseRows(scenario, run, window),
-              .panels = {}};
+              .rows = PhaseRows(scenario, run, window)};
   const physics::Scene& scene = scenario.scene;
   Panel heights{"height, m", {}}, triggers{"trigger", {}}, forces{"force of touch, N", {}};
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -171,8 +167,7 @@ std::optional<Chart> GazeChart(const scenario::Scenario& scenario, const episode
   Chart chart{.title = scenario.name + ", " + scenario.grammar,
               .from_s = window.from_s,
               .to_s = window.to_s,
-              .rows = PhaseRows(scenario, run, window),
-              .panels = {}};
+              .rows = PhaseRows(scenario, run, window)};
   for (const NamedEvent& event : run.timeline.events) {
     if (run.drawings.Of(event.event).as != DrawnAs::kGrasp) continue;
     const std::string name = HandOf(run, event) + ": " + event.event;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which moments of an episode a figure shows. Tested by tests/harness/show/figures/moments_test.cc
+// Which moments of an episode a figure shows. Pictures of moments in recorded episodes: the world
+// at a time, and the paths of a hand and of a thing over a while. Tested by
+// tests/harness/show/figures/moments_test.cc and tests/program/query_test.cc
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "harness/episode/episodes/query_events.h"
 #include "harness/episode/run/run_scenario.h"
 #include "harness/scenario/scenario/scenario.h"
 
@@ -75,5 +79,31 @@ struct HeldMoment {
 /// The middle of the longest grasp that has a style.
 std::optional<HeldMoment> LongestGrasp(const scenario::Scenario& scenario,
                                        const episode::RunResult& run);
+
+/// More than these are not drawn.
+inline constexpr std::size_t kMostMoments = 100;
+
+struct Moment {
+  std::string file;
+  std::int64_t episode = 0;
+  std::string scenario, name;       ///< of these the picture's name is made
+  double at_s = 0;                  ///< the world at this time
+  double from_s = 0, to_s = 0;      ///< paths between these times
+  std::vector<std::string> of;      ///< of the first hand and the first thing among these
+  std::vector<std::string> marked;  ///< things that get a marker
+};
+
+/// The moment of an answer: when its event begins.
+Moment MomentOf(const episode::EventAnswer& answer);
+
+struct MomentPictures {
+  std::vector<std::string> files;  ///< one per moment; empty: not drawn
+  std::string error;               ///< empty, or why (some) could not be drawn
+};
+
+/// Draws each moment as FOLDER/NUMBER-SCENARIO-NAME.png; makes the folder. `root`: the project's.
+/// Moments of one episode should follow each other, so that it is replayed once.
+MomentPictures DrawMoments(const std::vector<Moment>& moments, const std::string& folder,
+                           const std::string& root);
 
 }  // namespace prehend::show

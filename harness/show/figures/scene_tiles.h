@@ -12,7 +12,7 @@
 #include "harness/episode/run/load_run.h"
 #include "harness/show/chart/chart.h"
 #include "harness/show/figures/moments.h"
-#include "harness/show/pictures/scene_painter.h"
+#include "harness/show/pictures/pictures.h"
 
 namespace prehend::show {
 

@@ -10,7 +10,6 @@
 #include <optional>
 #include <set>
 
-#include "harness/episode/run/run_scenario.h"
 #include "harness/show/pictures/scenery.h"
 #include "harness/truth/timeline/event_drawings.h"
 

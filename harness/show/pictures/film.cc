@@ -10,8 +10,7 @@
 #include <iterator>
 
 #include "harness/base/base/atomic_file.h"
-#include "harness/base/process/run_tool.h"
-#include "harness/show/pictures/scene_painter.h"
+#include "harness/base/process/child_process.h"
 
 namespace prehend::show {
 namespace {

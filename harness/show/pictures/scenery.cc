@@ -3,11 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <set>
 
-#include "harness/episode/run/run_scenario.h"
-#include "harness/scenario/scenario/colors.h"
 #include "physics/scene/geometry.h"
 
 namespace prehend::show {
@@ -94,7 +91,7 @@ struct Feet {
 
 /// Below its corners, its ends or its middle, as it is wide, long or small.
 Feet FeetOf(const physics::LocalBox& box) {
-  Feet feet{.tops_m = {}, .half_m = Eigen::Vector2d::Constant(kLegHalf_m)};
+  Feet feet{.half_m = Eigen::Vector2d::Constant(kLegHalf_m)};
   std::array<std::vector<double>, 2> places;
   for (int axis = 0; axis < 2; ++axis) {
     const double half = box.half_size_m[axis];

@@ -2,7 +2,7 @@
 #include "harness/show/pictures/svg_file.h"
 
 #include "harness/base/base/atomic_file.h"
-#include "harness/base/process/run_tool.h"
+#include "harness/base/process/child_process.h"
 
 namespace prehend::show {
 

@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "harness/base/base/atomic_file.h"
-#include "harness/base/base/build_text.h"
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/quoting.h"
@@ -16,7 +15,6 @@
 #include "harness/suite/check/last_pass.h"
 #include "harness/suite/judge/accept_golden.h"
 #include "harness/suite/judge/compare_with_oracle.h"
-#include "harness/suite/judge/judge.h"
 #include "harness/suite/judge/judges.h"
 #include "harness/suite/judge/other_view.h"
 #include "harness/suite/judge/validate_golden.h"
@@ -348,8 +346,8 @@ Result<AcceptOutcome> AcceptScenario(const episode::ScenarioFile& file,
 
 Result<AcceptOutcome> AcceptRecording(const std::string& file, const AcceptRequest& request) {
   const FolderLock one_at_a_time(request.root);
-  const Result<JudgedRecording> judged = JudgeRecording(
-      {.scenario_file = file, .grammar = request.grammar, .settings = {}}, request.root);
+  const Result<JudgedRecording> judged =
+      JudgeRecording({.scenario_file = file, .grammar = request.grammar}, request.root);
   if (!judged) return tl::unexpected(judged.error());
   const std::string now = Fingerprint(judged->proposed), golden_file = GoldenBeside(file);
   AcceptOutcome outcome{.notes = judged->segmented.missing.warnings};

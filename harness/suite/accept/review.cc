@@ -11,12 +11,10 @@
 
 #include "harness/base/base/quoting.h"
 #include "harness/episode/episode/find_episodes.h"
-#include "harness/episode/episode/lacks.h"
 #include "harness/episode/run/find_scenario.h"
 #include "harness/scenario/read/read_scenario.h"
 #include "harness/suite/check/check_request.h"
 #include "harness/suite/judge/accept_golden.h"
-#include "harness/suite/judge/judge.h"
 #include "harness/suite/judge/judges.h"
 #include "harness/suite/judge/other_view.h"
 #include "harness/truth/golden/compare.h"
@@ -155,8 +153,7 @@ tl::expected<std::vector<Review>, NoSelection> Reviews(const std::vector<std::st
   std::vector<Review> reviews;
   for (const episode::ScenarioFile& file : selection.scenarios) {
     if (is_recording(file)) {
-      if (auto review = ReviewOfRecording(
-              {.scenario_file = file.path, .grammar = grammar, .settings = {}}, root))
+      if (auto review = ReviewOfRecording({.scenario_file = file.path, .grammar = grammar}, root))
         reviews.push_back(std::move(*review));
     } else if (file.origin == episode::Origin::kRecording) {
       return refused(episode::Lacks(NameOf(file), episode::Need::kGolden));

@@ -58,7 +58,6 @@ Attribution Described(const truth::Pairing& pairing, grammar::Tick ticks_per_sec
   return {.event = pairing.event().event,
           .what = WhatDiffers(pairing),
           .shift_ms = is_shift ? truth::MillisecondsOf(most, ticks_per_second) : 0,
-          .because = {},
           .question = truth::QuestionAbout(pairing, ticks_per_second)};
 }
 

@@ -6,10 +6,9 @@
 
 #include <algorithm>
 
-#include "harness/base/base/build_text.h"
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/text_file.h"
-#include "harness/episode/run/segment.h"
+#include "harness/episode/run/segment_recording.h"
 #include "harness/suite/check/clauses.h"
 
 namespace prehend::suite {

@@ -10,7 +10,7 @@
 #include "harness/suite/check/attribute.h"
 #include "harness/suite/check/check_request.h"
 #include "harness/suite/check/last_pass.h"
-#include "harness/suite/judge/judge.h"
+#include "harness/suite/judge/judges.h"
 
 namespace prehend::suite {
 

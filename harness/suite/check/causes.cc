@@ -90,7 +90,7 @@ std::vector<Cause> CausesOf(const std::vector<ScenarioVerdict>& verdicts) {
   }
   std::vector<Cause> causes;
   for (auto& [because, effects] : gathered) {
-    Cause cause{.because = because, .effects = {}, .scenarios = {}};
+    Cause cause{.because = because};
     std::set<std::string> scenarios;
     for (auto& [key, of] : effects) {
       scenarios.insert(of.scenarios.begin(), of.scenarios.end());

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/process/progress_counters.h"
+#include "harness/base/process/worker_pool.h"
 #include "harness/episode/episodes/load_episode.h"
-#include "harness/episode/run/episode_name.h"
+#include "harness/episode/run/find_scenario.h"
 
 namespace prehend::suite {
 

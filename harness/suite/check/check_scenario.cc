@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "harness/base/base/quoting.h"
-#include "harness/episode/episode/open_episode.h"
+#include "harness/episode/episode/episode.h"
 #include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/segment_recording.h"

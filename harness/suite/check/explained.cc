@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/episode/sense/sensing.h"
 #include "harness/show/explain/explain.h"
-#include "harness/show/explain/replay.h"
+#include "harness/show/explain/query.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {
@@ -40,10 +40,7 @@ void AddSignals(const show::Reasons& reasons, grammar::Tick golden_tick,
                             .how = reason.how,
                             .unit = reason.reading->unit,
                             .tick = *reason.tick,
-                            .golden_tick = golden_tick,
-                            .ticks = {},
-                            .values = {},
-                            .limits = {}};
+                            .golden_tick = golden_tick};
       for (const show::Reading::Sample& sample : reason.reading->course) {
         signal.ticks.push_back(sample.tick);
         signal.values.push_back(sample.value);
@@ -60,9 +57,7 @@ ExplainedDifference ExplainDifference(const truth::Pairing& pairing, grammar::Re
   const grammar::Tick per_second = past.entity_table().ticks_per_second;
   const grammar::NamedEvent& event = pairing.actual ? *pairing.actual : *pairing.expected;
   ExplainedDifference difference{
-      .what = fmt::format("{} {}", Name(pairing.agreement), pairing.event().Label()),
-      .text = {},
-      .signals = {}};
+      .what = fmt::format("{} {}", Name(pairing.agreement), pairing.event().Label())};
   std::string question = event.event;
   for (const grammar::Role& role : event.roles)
     if (!truth::IsAttribute(role)) question += " " + role.value;

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/base/base/atomic_file.h"
-#include "physics/scene/snapshot.h"
 
 namespace prehend::suite {
 

@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <random>
 
-#include "harness/base/base/build_text.h"
+#include "harness/base/base/content_hash.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
-#include "harness/base/process/progress_counters.h"
-#include "harness/base/process/wire.h"
+#include "harness/base/process/worker_pool.h"
 #include "harness/show/pictures/pictures.h"
 #include "harness/suite/check/check_scenario.h"
 #include "harness/suite/check/last_pass.h"
@@ -189,7 +187,6 @@ class Suite {
   static ScenarioVerdict OrphanVerdict(const UnreferencedGolden& orphan) {
     ScenarioVerdict verdict{.scenario = orphan.scenario,
                             .file = orphan.files.front().string(),
-                            .shows = {},
                             .verdict = Verdict::kFailed};
     verdict.exit_code = ExitCode::kDiffers;
     verdict.reason = "a golden without scenario";

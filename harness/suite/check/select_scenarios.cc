@@ -11,7 +11,6 @@
 #include <tuple>
 
 #include "harness/episode/episode/find_episodes.h"
-#include "harness/episode/run/find_scenario.h"
 #include "harness/scenario/read/read_scenario.h"
 
 namespace prehend::suite {

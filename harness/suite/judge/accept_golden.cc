@@ -139,7 +139,6 @@ truth::Golden PendingGolden(const std::optional<truth::Golden>& old,
                        {.scenario = scenario,
                         .grammar = grammar,
                         .derived = holds ? derived : RenewedDerivation(derived, OracleLine(truth)),
-                        .acceptance = {},
                         .tolerance = truth.tolerance});
 }
 

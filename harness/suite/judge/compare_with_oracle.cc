@@ -12,7 +12,6 @@
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/oracle/oracle.h"
 #include "harness/truth/timeline/event_text.h"
-#include "harness/truth/timeline/match_events.h"
 
 namespace prehend::suite {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "grammar/check_laws.h"
 #include "grammar/describe.h"
-#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/suite/judge/judges.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/timeline/event_text.h"

@@ -4,15 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <set>
 
 #include "grammar/base/frame.h"
 #include "grammar/contents.h"
 #include "harness/base/base/text_file.h"
-#include "harness/episode/run/find_scenario.h"
-#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/episode/sense/sensing.h"
 #include "harness/truth/golden/golden_files.h"
 #include "harness/truth/timeline/event_text.h"

@@ -48,7 +48,7 @@ class TimelineChart {
       if (is_new) {
         const std::string group = GroupOf(pairing.event(), drawings_);
         first_of.try_emplace(group, rows.size());
-        rows.push_back({.name = label, .bars = {}, .heading = group, .style = "row"});
+        rows.push_back({.name = label, .heading = group, .style = "row"});
       }
       Add(pairing, rows[found->second]);
     }
@@ -115,7 +115,7 @@ class TimelineChart {
 
 Curve CurveOf(const std::string& name, const DecidingSignal& signal,
               const std::vector<double>& values, double per_second) {
-  Curve curve{.name = name, .points = {}, .style = name};
+  Curve curve{.name = name, .style = name};
   for (std::size_t i = 0; i < values.size(); ++i) {
     // Of what stays the same, the ends.
     const bool is_inner =
@@ -131,11 +131,9 @@ Curve CurveOf(const std::string& name, const DecidingSignal& signal,
 std::string TimelineSvg(const truth::Comparison& comparison, Tick end,
                         const truth::EventDrawings& drawings, bool has_golden) {
   const TimelineChart chart(comparison, drawings, has_golden);
-  return show::ChartForPage({.title = "",
-                             .to_s = chart.Seconds(std::max<Tick>(1, end)),
-                             .rows = chart.Rows(),
-                             .panels = {}},
-                            {.width_px = 1000, .page_class = "timeline"}, chart.Label());
+  return show::ChartForPage(
+      {.title = "", .to_s = chart.Seconds(std::max<Tick>(1, end)), .rows = chart.Rows()},
+      {.width_px = 1000, .page_class = "timeline"}, chart.Label());
 }
 
 std::string SignalSvg(const DecidingSignal& signal, Tick ticks_per_second) {
@@ -145,7 +143,6 @@ std::string SignalSvg(const DecidingSignal& signal, Tick ticks_per_second) {
   Chart chart{.title = signal.how,
               .from_s = seconds(first),
               .to_s = seconds(last),
-              .rows = {},
               .panels = {{signal.unit,
                           {CurveOf("value", signal, signal.values, per_second),
                            CurveOf("limit", signal, signal.limits, per_second)}}},

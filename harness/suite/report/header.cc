@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "harness/base/process/run_tool.h"
+#include "harness/base/process/child_process.h"
 #include "harness/suite/report/report.h"
 
 namespace prehend::suite {

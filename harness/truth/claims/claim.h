@@ -16,7 +16,8 @@
 
 namespace prehend::truth {
 
-// Limits of one claim; how many there are and how long, harness/scenario/format/limits.h says.
+// Limits of one claim; how many there are and how long, harness/scenario/format/scenario_formats.h
+// says.
 inline constexpr std::size_t kMaxClaimedEvents = 16;
 inline constexpr int kMaxClaimedNumber = 10'000;
 

@@ -145,8 +145,8 @@ std::vector<ClaimVerdict> JudgeClaims(const std::vector<Claim>& claims, const st
     const std::string place = claim.where.source == 0
                                   ? fmt::format("{}:{}", file, claim.where.place.line)
                                   : std::string("--set");
-    ClaimVerdict& verdict = verdicts.emplace_back(ClaimVerdict{
-        .claim = claim.text, .place = place, .says = kNotJudged, .found = {}, .times = {}});
+    ClaimVerdict& verdict = verdicts.emplace_back(
+        ClaimVerdict{.claim = claim.text, .place = place, .says = kNotJudged});
     const std::vector<ClaimProblem> mismatches = Mismatches(claim, known);
     if (!mismatches.empty()) {
       verdict.found = "not judged: " + mismatches.front().message;

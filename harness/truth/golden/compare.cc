@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names what became of each event, once the matcher has paired those of equal label. Tested by
+// Names what became of each event, once the matcher has paired those of equal label. How events lie
+// to each other, where that differs from the golden. Boundaries jitter by a frame or two, and with
+// them relations like `meets`; so a relation has changed only if some boundary of one event went
+// past one of the other by more than the tolerance. Tested by
 // tests/harness/truth/golden/compare_test.cc
 #include "harness/truth/golden/compare.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <tuple>
 
+#include "grammar/base/allen.h"
 #include "harness/truth/timeline/event_text.h"
 #include "harness/truth/timeline/match_events.h"
 
@@ -216,8 +219,7 @@ class Pairer {
                     .begin_offset = actual.interval.begin - expected.interval.begin,
                     .end_offset = actual.interval.end - expected.interval.end,
                     .tolerance = ToleranceOf(golden_.events[i]),
-                    .changes = Changes(expected, actual),
-                    .pieces = {}};
+                    .changes = Changes(expected, actual)};
     const Tick off = std::max(std::abs(pairing.begin_offset), std::abs(pairing.end_offset));
     if (expected.event != actual.event) {
       pairing.agreement = LineVerdict::kRelabelled;
@@ -237,7 +239,7 @@ class Pairer {
   void AddOnlyExpected(LineVerdict agreement, std::size_t i) {
     expected_taken_[i] = true;
     comparison_.pairings.push_back(
-        {.agreement = agreement, .expected = expected_[i], .actual = {}, .golden_line = i});
+        {.agreement = agreement, .expected = expected_[i], .golden_line = i});
   }
 
   void AddOnlyActual(LineVerdict agreement, std::size_t j) {
@@ -253,6 +255,45 @@ class Pairer {
   Tick ticks_per_second_;
   Comparison comparison_;
 };
+
+/// Values of the roles, sorted; attributes are left out.
+std::vector<std::string> Entities(const NamedEvent& event) {
+  std::vector<std::string> entities;
+  for (const auto& role : event.roles) {
+    if (!IsAttribute(role)) entities.push_back(role.value);
+  }
+  std::ranges::sort(entities);
+  return entities;
+}
+
+/// Both sides exist, each in one piece.
+bool IsWholePair(const Pairing& pairing) {
+  return pairing.expected && pairing.actual && pairing.pieces.empty();
+}
+
+/// Whether two boundaries changed their order, and lie clearly apart in one of the timelines.
+bool Swapped(Tick expected_gap, Tick actual_gap, Tick tolerance) {
+  const auto sign = [](Tick gap) { return (gap > 0) - (gap < 0); };
+  return sign(expected_gap) != sign(actual_gap) &&
+         std::max(std::abs(expected_gap), std::abs(actual_gap)) > tolerance;
+}
+
+bool ClearlyChanged(const Pairing& p, const Pairing& q) {
+  const Tick tolerance = std::max(p.tolerance, q.tolerance);
+  for (const auto of_p : {&Interval::begin, &Interval::end}) {
+    for (const auto of_q : {&Interval::begin, &Interval::end}) {
+      if (Swapped(p.expected->interval.*of_p - q.expected->interval.*of_q,
+                  p.actual->interval.*of_p - q.actual->interval.*of_q, tolerance))
+        return true;
+    }
+  }
+  return false;
+}
+
+std::string Relation(const NamedEvent& a, const NamedEvent& b) {
+  return std::string(
+      grammar::kAllenNames[static_cast<std::size_t>(grammar::Relate(a.interval, b.interval))]);
+}
 
 }  // namespace
 
@@ -314,6 +355,21 @@ int Comparison::Count(LineVerdict agreement) const {
 Comparison Compare(const Golden& expected, const grammar::Timeline& actual,
                    Tick default_tolerance) {
   return Pairer(expected, actual, default_tolerance).Pair();
+}
+
+std::vector<RelationChange> ChangedRelations(const std::vector<Pairing>& pairings) {
+  std::vector<RelationChange> changes;
+  for (std::size_t i = 0; i < pairings.size(); ++i) {
+    for (std::size_t j = i + 1; j < pairings.size(); ++j) {
+      const Pairing &p = pairings[i], &q = pairings[j];
+      if (!IsWholePair(p) || !IsWholePair(q)) continue;
+      if (p.agreement == LineVerdict::kMatched && q.agreement == LineVerdict::kMatched) continue;
+      if (Entities(*p.expected) != Entities(*q.expected) || !ClearlyChanged(p, q)) continue;
+      changes.push_back({p.expected->Label(), q.expected->Label(),
+                         Relation(*p.expected, *q.expected), Relation(*p.actual, *q.actual)});
+    }
+  }
+  return changes;
 }
 
 }  // namespace prehend::truth

@@ -158,7 +158,7 @@ class GoldenReader {
   }
 
   void ReadAcceptance(std::vector<Acceptance>& acceptances) {
-    Acceptance acceptance{.date = std::string(Word()), .reason = {}};
+    Acceptance acceptance{.date = std::string(Word())};
     if (!IsDate(acceptance.date)) {
       column_ -= acceptance.date.size();
       return Complain("expected the date of the acceptance, YYYY-MM-DD");
@@ -290,7 +290,7 @@ class GoldenReader {
     ++column_;
     const std::size_t value_column = column_;
     const std::string_view word = Word();
-    grammar::NamedValue value{.name = name, .unit = {}};
+    grammar::NamedValue value{.name = name};
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value.value);
     if (error != std::errc() || !std::isfinite(value.value))
       return FailAt(value_column, fmt::format("expected a number after '{}~', like 12.5N", name));
@@ -419,11 +419,8 @@ class GoldenReader {
   }
 
   void Complain(std::string message, std::string hint = {}) {
-    grammar::Diagnostic diagnostic{.file = std::string(file_),
-                                   .place = {},
-                                   .message = std::move(message),
-                                   .source_line = {},
-                                   .hint = std::move(hint)};
+    grammar::Diagnostic diagnostic{
+        .file = std::string(file_), .message = std::move(message), .hint = std::move(hint)};
     const int column = static_cast<int>(column_) + 1;
     grammar::ShowLine(diagnostic, line_, column);
     if (line_number_ > 0) diagnostic.place = {line_number_, column};

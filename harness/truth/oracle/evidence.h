@@ -4,7 +4,6 @@
 // serves every choice of numbers. Tested by tests/harness/truth/oracle/oracle_test.cc
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <limits>
 #include <map>

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "harness/truth/oracle/recording.h"
-#include "harness/truth/oracle/settings.h"
 #include "harness/truth/oracle/touches.h"
 
 namespace prehend::truth {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // How events are written for people: seconds, intervals, roles. Goldens, tables, differences and
-// reports share it. Tested by tests/harness/truth/golden/golden_test.cc
+// reports share it. Events as JSON, as `prehend run --json` prints them. Tested by
+// tests/harness/truth/golden/golden_test.cc and tests/harness/episode/run/run_text_test.cc
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -41,5 +43,12 @@ std::vector<std::string> AlignColumns(const std::vector<std::vector<std::string>
 /// Event, begin, end, roles, and "open_end" as cells of a table row.
 std::vector<std::string> EventCells(const grammar::NamedEvent& event,
                                     grammar::Tick ticks_per_second, std::size_t role_columns);
+
+/// {"event", "roles": {..}, "attributes": {..}, "begin_tick", "end_tick", "begin_s", "end_s",
+/// "decided_tick", "open_end"}; attributes are words (style) or numbers in SI units.
+nlohmann::ordered_json EventJson(const grammar::NamedEvent& event, grammar::Tick ticks_per_second);
+
+/// {"ticks_per_second", "events": [..]}
+nlohmann::ordered_json TimelineJson(const grammar::Timeline& timeline);
 
 }  // namespace prehend::truth

@@ -113,7 +113,7 @@ std::vector<LabelMatches> MatchEvents(std::span<const NamedEvent> expected,
 }
 
 Agreement Agree(const grammar::Timeline& truth, const grammar::Timeline& found, Tick collar) {
-  Agreement agreement{.labels = {}, .ticks_per_second = truth.ticks_per_second};
+  Agreement agreement{.ticks_per_second = truth.ticks_per_second};
   for (LabelMatches& matches : MatchEvents(truth.events, found.events, {.collar = collar})) {
     LabelAgreement& label = agreement.labels.emplace_back();
     label.label = std::move(matches.label);
@@ -202,7 +202,7 @@ bool Overlaps(const NamedEvent& a, const NamedEvent& b) {
 
 Agreement AgreeWithin(std::span<const grammar::Timeline> possible, const grammar::Timeline& found,
                       Tick collar) {
-  Agreement agreement{.labels = {}, .ticks_per_second = found.ticks_per_second};
+  Agreement agreement{.ticks_per_second = found.ticks_per_second};
   if (possible.empty()) return agreement;
   std::vector<Allowed> allowed(found.events.size());
   std::map<std::string, LabelAgreement> labels;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Timelines with all their fields, for harness/base/process/wire.h. What people's programs read is
-// in harness/truth/timeline/timeline_json.h. Tested by tests/harness/base/process/wire_test.cc
+// Timelines with all their fields, for harness/base/process/worker_pool.h. What people's programs
+// read is in harness/truth/timeline/event_text.h. Tested by tests/harness/base/process/wire_test.cc
 #pragma once
 
 #include <nlohmann/json.hpp>

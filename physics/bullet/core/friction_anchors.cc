@@ -41,10 +41,7 @@ FrictionAnchors::Drift FrictionAnchors::Add(const btMultiBodySolverConstraint& r
   Anchor now{.a = {row.m_multiBodyA, row.m_multiBodyA ? row.m_linkA : 0, a},
              .b = {row.m_multiBodyB, row.m_multiBodyB ? row.m_linkB : 0, b},
              .p_A = {},
-             .p_B = {},
-             .R_AB = {},
              .turn_A = {0, 0, 0},
-             .nhat_A = {},
              .sticks = true};
   const btTransform X_WA = now.a.Place(), X_WB = now.b.Place();
   const btMatrix3x3& R_WA = X_WA.getBasis();

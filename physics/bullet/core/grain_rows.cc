@@ -83,7 +83,6 @@ GrainRows::Row GrainRows::MakeRow(GrainContact& contact, const btSolverBody& a,
   const btScalar response = 2 * inverse_mass + 2 * radius * radius * inverse_inertia;
   Row row{.a = &a_speeds,
           .b = &b_speeds,
-          .n = {},
           .wanted = wanted,
           .slip = {},
           .normal_mass = 1 / (2 * inverse_mass),

@@ -10,7 +10,7 @@
 
 #include "grammar/contents.h"
 #include "harness/scenario/transform/transform.h"
-#include "harness/suite/judge/judge.h"
+#include "harness/suite/judge/judges.h"
 #include "harness/truth/timeline/event_text.h"
 #include "tests/witnesses/metamorphic/change_entities.h"
 #include "tests/witnesses/metamorphic/move_scenario.h"

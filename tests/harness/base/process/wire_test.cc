@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a worker sends arrives as it was.
-#include "harness/base/process/wire.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "harness/base/process/worker_pool.h"
 #include "harness/truth/timeline/timeline_wire.h"
 
 namespace prehend {

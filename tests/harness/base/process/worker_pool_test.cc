@@ -12,8 +12,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "harness/base/process/progress_counters.h"
-
 namespace prehend {
 namespace {
 

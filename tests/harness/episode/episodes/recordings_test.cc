@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "harness/episode/episode/open_episode.h"
+#include "harness/episode/episode/episode.h"
 
 namespace prehend::episode {
 namespace {

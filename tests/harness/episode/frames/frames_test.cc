@@ -7,7 +7,6 @@
 #include <random>
 
 #include "harness/episode/frames/chunk.h"
-#include "harness/episode/frames/frame_player.h"
 
 namespace prehend::episode {
 namespace {

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/episode/run/load_run.h"
-#include "harness/episode/run/segment.h"
-#include "harness/episode/sense/entity_table.h"
-#include "harness/truth/timeline/timeline_json.h"
+#include "harness/episode/run/segment_recording.h"
+#include "harness/episode/sense/episode_format.h"
+#include "harness/truth/timeline/event_text.h"
 #include "tests/harness/suite/judge/checked_run.h"
 
 namespace prehend::episode {

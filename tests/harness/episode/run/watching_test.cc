@@ -13,10 +13,10 @@
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
 #include "harness/episode/run/run_trials.h"
-#include "harness/episode/sense/entity_table.h"
 #include "harness/episode/sense/episode_file.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/show/pictures/pictures.h"
-#include "harness/truth/timeline/timeline_json.h"
+#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::episode {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <utility>
 
-#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/episode_format.h"
 
 namespace prehend::episode {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sensors with errors: what they change, how much, and that it follows from seed and tick alone.
-#include "harness/episode/sense/sensor_noise.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edit scores are of sequences: hands at the same time are two of them.
-#include "harness/measure/score/tracks.h"
-
 #include <gtest/gtest.h>
 
 #include "harness/measure/score/score.h"

@@ -3,7 +3,7 @@
 // no sense.
 #include <gtest/gtest.h>
 
-#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/scenario/format/scenario_formats.h"
 #include "harness/scenario/read/read_scenario.h"
 #include "physics/scene/geometry.h"

@@ -7,9 +7,9 @@
 
 #include <numbers>
 
-#include "harness/episode/sense/entity_table.h"
-#include "harness/scenario/format/limits.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/scenario/format/scenario_fields.h"
+#include "harness/scenario/format/scenario_formats.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::scenario {

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/scenario/read/read_scenario.h"
 #include "harness/scenario/resolve/resolve.h"
 #include "physics/scene/geometry.h"

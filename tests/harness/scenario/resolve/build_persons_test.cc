@@ -2,7 +2,7 @@
 // Persons and trackers in a scenario: what is built from them, and what is refused.
 #include <gtest/gtest.h>
 
-#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/scenario/resolve/resolve.h"
 #include "tests/harness/scenario_fixture.h"
 

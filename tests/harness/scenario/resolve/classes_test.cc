@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "harness/episode/sense/entity_table.h"
+#include "harness/episode/sense/episode_format.h"
 #include "harness/scenario/read/read_scenario.h"
 #include "harness/scenario/resolve/resolve.h"
 #include "tests/harness/scenario_fixture.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/scenario/resolve/penetration.h"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
+
+#include "harness/scenario/resolve/validate_placement.h"
 
 namespace prehend::scenario {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/scenario/scenario/colors.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/scenario/scenario/scenario.h"
 
 namespace prehend::scenario {
 namespace {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "harness/episode/episode/open_episode.h"
+#include "harness/episode/episode/episode.h"
 #include "harness/show/explain/explain.h"
-#include "harness/show/explain/replay.h"
+#include "harness/show/explain/query.h"
 #include "tests/grammar/scene.h"
 
 namespace prehend::show::testing {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/pictures/scene_painter.h"
-
 #include <gtest/gtest.h>
 
 #include "harness/scenario/scenario/scenario.h"

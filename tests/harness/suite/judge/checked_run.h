@@ -10,7 +10,7 @@
 #include <string>
 
 #include "harness/base/base/atomic_file.h"
-#include "harness/suite/judge/judge.h"
+#include "harness/suite/judge/judges.h"
 
 namespace prehend::suite {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A run whose claims hold, and one that contradicts two of three.
 #include "harness/suite/check/check_scenario.h"
-#include "harness/suite/judge/judge.h"
+#include "harness/suite/judge/judges.h"
 #include "tests/harness/suite/judge/checked_run.h"
 
 namespace prehend::suite {

@@ -8,7 +8,7 @@
 #include "harness/episode/run/find_scenario.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
-#include "harness/episode/run/segment.h"
+#include "harness/episode/run/segment_recording.h"
 
 namespace prehend::suite {
 
