@@ -33,7 +33,7 @@ void CollectNecessary(const Program& program, NodeId index, std::vector<int>& re
   const Node& node = program.nodes[index];
   if (node.op == Op::kHolds || node.op == Op::kSensorSet) {
     references.push_back(node.slot);
-  } else if (node.op == Op::kAnd) {
+  } else if (node.op == Op::kAnd || node.op == Op::kKnown) {
     CollectNecessary(program, node.args[0], references, at_moments);
     CollectNecessary(program, node.args[1], references, at_moments);
   } else if (node.op == Op::kBegins || node.op == Op::kEnds) {

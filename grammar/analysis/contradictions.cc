@@ -57,6 +57,7 @@ Op Negated(Op op) {
 bool Bounds::Add(NodeId index, bool negated) {
   const Node& node = program_.nodes[index];
   if (node.op == Op::kNot) return Add(node.args[0], !negated);
+  if (node.op == Op::kKnown && !negated && !Add(node.args[0])) return false;
   if (node.op == Op::kAnd || node.op == Op::kOr) {
     if ((node.op == Op::kAnd) != negated)
       return Add(node.args[0], negated) && Add(node.args[1], negated);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Needs: no absence of what may have happened out of sight. Algorithm: which roles a rule sees by
+// Needs: no absence of what may have happened out of sight, and nothing false there that must be
+// known. Algorithm: which roles a rule sees by
 // poses follows from its nodes and from the rules it refers to, which the schedule has before it.
 // `during` gets a condition for each role; a composition gets another absence, of a hidden rule
-// that holds while an entity is lost. Tested by tests/grammar/engine/tracking_test.cc
+// that holds while an entity is lost; what `known` denies of a rule gets "or it is lost". Tested by
+// tests/grammar/engine/tracking_test.cc
 #include "grammar/analysis/require_sight.h"
 
 #include <limits>
@@ -25,6 +27,7 @@ class Sight {
       const auto* from_to = program_.rules[index].If<FromToRule>();
       if (from_to != nullptr && from_to->absence) RequireOfFromTo(index);
       if (program_.rules[index].If<ComposeRule>() != nullptr) RequireOfComposition(index);
+      DoubtUnseen(index);
     }
     program_.schedule.insert(program_.schedule.begin(), made_.begin(), made_.end());
   }
@@ -79,6 +82,43 @@ class Sight {
                                .file = rule.file,
                                .place = rule.place};
     return tracked;
+  }
+
+  // In `known ..`, where something is denied of a rule: it is not false where it is out of sight.
+  // What stands around it is made anew, as parts come before what is made of them.
+  NodeId DoubtUnseen(RuleId index, NodeId node, bool known, bool denied) {
+    if (node == kNone) return node;
+    Node asked = program_.nodes[node];
+    const bool is_edge = asked.op == Op::kBegins || asked.op == Op::kEnds;
+    denied = !is_edge && asked.op != Op::kKnown && denied != (asked.op == Op::kNot);
+    known = known || asked.op == Op::kKnown;
+    for (NodeId& arg : asked.args) arg = DoubtUnseen(index, arg, known, denied);
+    const bool is_doubted = known && denied && asked.op == Op::kHolds;
+    if (!is_doubted && asked.args == program_.nodes[node].args) return node;
+    NodeId made = program_.nodes.push_back(asked);
+    program_.notes.resize(program_.nodes.size());
+    program_.notes[made] = program_.notes[node];
+    const Rule& rule = program_.rules[index];
+    const RoleSet roles = is_doubted ? OfNode(rule, node) : 0;
+    for (int role = 0; role < kMaxRoles; ++role) {
+      if ((roles >> role & 1U) == 0) continue;
+      const NodeId lost = program_.nodes.push_back(
+          {.op = Op::kNot, .args = {Tracked(rule, role), kNone, kNone, kNone}});
+      made = program_.nodes.push_back({.op = Op::kOr, .args = {made, lost, kNone, kNone}});
+    }
+    return made;
+  }
+
+  void DoubtUnseen(RuleId index) {
+    Rule& rule = program_.rules[index];
+    std::vector<NodeId*> asked = {&rule.requirement};
+    if (auto* holds = std::get_if<WhileRule>(&rule.of_form))
+      asked.insert(asked.end(), {&holds->condition, &holds->until});
+    if (auto* from_to = std::get_if<FromToRule>(&rule.of_form))
+      asked.insert(asked.end(), {&from_to->from, &from_to->to, &from_to->during});
+    if (auto* back = std::get_if<UntilSinceRule>(&rule.of_form))
+      asked.insert(asked.end(), {&back->until, &back->since});
+    for (NodeId* const node : asked) *node = DoubtUnseen(index, *node, false, false);
   }
 
   void RequireOfFromTo(RuleId index) {

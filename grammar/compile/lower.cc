@@ -361,7 +361,7 @@ Lowering::Typed Lowering::LowerName(const Expr& expr) {
 }
 
 Lowering::Typed Lowering::LowerUnary(const Expr& expr) {
-  if (expr.text == "not") return LowerNot(expr);
+  if (expr.text != "-") return LowerNot(expr);
   Typed arg = Number(expr.args[0]);
   if (arg.bad) return arg;
   const Node node = symbols_.program.nodes[arg.node];

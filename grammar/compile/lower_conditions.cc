@@ -67,8 +67,12 @@ Lowering::Typed Lowering::Decided(Verdict verdict, std::vector<int> because) {
 }
 
 Lowering::Typed Lowering::LowerNot(const Expr& expr) {
-  const Typed arg = TruthValue(expr.args[0]);
+  Typed arg = TruthValue(expr.args[0]);
   if (arg.bad) return arg;
+  if (expr.text == "known") {
+    arg.node = Add({.op = Op::kKnown, .args = {arg.node, kNone, kNone, kNone}});
+    return arg;
+  }
   return {.node = Add({.op = Op::kNot, .args = {arg.node, kNone, kNone, kNone}}),
           .type = Type::kTruth,
           .verdict = Opposite(arg.verdict),

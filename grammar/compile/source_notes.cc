@@ -18,7 +18,7 @@ constexpr std::size_t kMaxText = 200;  // bytes; a longer one is cut, it would n
 // definition, not its call.
 void Lowering::Note(const Expr& expr, const Typed& typed) {
   const bool is_chain =
-      expr.kind == Expr::Kind::kChain || (expr.kind == Expr::Kind::kUnary && expr.text == "not");
+      expr.kind == Expr::Kind::kChain || (expr.kind == Expr::Kind::kUnary && expr.text != "-");
   if (is_chain || checking_ || typed.node == kNone) return;
   IdVector<NodeId, NodeNote>& notes = symbols_.program.notes;
   notes.resize(symbols_.program.nodes.size());
@@ -81,7 +81,7 @@ std::string Lowering::TextOf(const Expr& expr) {
       if (expr.text == ast::kAtLeast) return expr.text + " " + joined(" of ", false);
       return expr.text + "(" + joined(", ", false) + ")";
     case Expr::Kind::kUnary:
-      return expr.text + (expr.text == "not" ? " " : "") + Bracketed(expr.args[0]);
+      return expr.text + (expr.text == "-" ? "" : " ") + Bracketed(expr.args[0]);
     case Expr::Kind::kBinary: {
       const bool is_comparison =
           std::string_view("<>=!").find(expr.text[0]) != std::string_view::npos;

@@ -46,6 +46,7 @@ std::vector<DrawnFact> FactsOf(const EntityInfo& entity) {
       {.name = "y", .most = kMostNumber, .says_all_along = true},
       {.name = "z", .most = kMostNumber, .says_all_along = true},
       {.name = "shakes", .marks = true},
+      {.name = "lost", .marks = true},
       {.name = "grip", .most = 10, .marks = true, .says_all_along = true},
       {.name = "joint", .most = 20, .says_all_along = true},
       {.name = "percent", .most = kMostNumber, .says_all_along = true},

@@ -59,7 +59,10 @@ Frame DrawnFrames::At(Tick tick) {
     if (drawn_.entity_table[i].classes.front() == "Hand")
       hands_.push_back({.entity = static_cast<int>(i)});
   }
-  for (const DrawnRow& row : drawn_.facts) Apply(row, tick);
+  for (const bool lost : {false, true}) {  // whatever the other rows say
+    for (const DrawnRow& row : drawn_.facts)
+      if (row.name.ends_with(" lost") == lost) Apply(row, tick);
+  }
   for (HandSample& hand : hands_) {
     collision_spheres_[hand.entity] = {.p_W_m = looks_[hand.entity].p_WB_m, .radius_m = 0};
     hand.collision_spheres = {&collision_spheres_[hand.entity], 1};
@@ -94,6 +97,8 @@ void DrawnFrames::Apply(const DrawnRow& row, Tick tick) {
                         kDrawnTicksPerSecond;
   } else if (what == "shakes") {
     if (cell == '#') Shake(looks_[Id(who)], static_cast<double>(tick) / kDrawnTicksPerSecond);
+  } else if (what == "lost") {
+    if (cell == '#') looks_[Id(who)] = NotTracked();
   } else if (what == "grip") {
     for (HandSample& hand : hands_) {
       if (hand.entity == Id(who)) hand.trigger = cell == '#' ? 1 : Digit(cell) / 10.0;

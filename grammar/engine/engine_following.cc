@@ -359,6 +359,7 @@ Engine::Bound Engine::BoundOf(NodeId index, RuleInstance& instance) {
     const Bound left = opposite(BoundOf(node.args[0], instance));
     return opposite(IsSettled(left) ? left : Both(left, opposite(BoundOf(node.args[1], instance))));
   }
+  if (node.op == Op::kKnown) return BoundOf(node.args[0], instance);
   if (node.op == Op::kNot) return opposite(BoundOf(node.args[0], instance));
   if (node.op == Op::kBegins || node.op == Op::kEnds) {
     const Bound of = BoundOf(node.args[0], instance);

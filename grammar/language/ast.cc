@@ -144,7 +144,7 @@ std::string Dump(const Expr& expr) {
     case Expr::Kind::kCall:
       return expr.text + "(" + Joined(expr.args, ", ") + ")";
     case Expr::Kind::kUnary:
-      return "(" + expr.text + (expr.text == "not" ? " " : "") + Dump(expr.args[0]) + ")";
+      return "(" + expr.text + (expr.text == "-" ? "" : " ") + Dump(expr.args[0]) + ")";
     case Expr::Kind::kBinary:
     case Expr::Kind::kChain:
       return "(" + Joined(expr.args, " " + expr.text + " ") + ")";

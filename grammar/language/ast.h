@@ -22,7 +22,7 @@ struct Expr {
     kName,      ///< a role, a parameter, or `any`; `any Cup` has the class as its arg
     kText,      ///< "in quotes"
     kCall,      ///< text(args)
-    kUnary,     ///< text is `not` or `-`
+    kUnary,     ///< text is `not`, `known` or `-`
     kBinary,    ///< text is an arithmetic operator or a comparison
     kChain,     ///< text is `and` or `or`; two or more args
     kEdge,      ///< text is `begins` or `ends`

@@ -80,9 +80,10 @@ Expr ExpressionParser::ParseEdge() {
 
 Expr ExpressionParser::ParseNot() {
   const Place place = Peek().place;
-  if (!Accept("not")) return ParseComparison();
+  if (!At("not") && !At("known")) return ParseComparison();
   const Nested nested(*this);
-  return Make(Expr::Kind::kUnary, place, "not", Args(ParseNot()));
+  std::string word = Take().text;
+  return Make(Expr::Kind::kUnary, place, std::move(word), Args(ParseNot()));
 }
 
 Expr ExpressionParser::ParseComparison() {

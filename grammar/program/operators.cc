@@ -30,7 +30,7 @@ constexpr OverInterval::Part Begun(Op op, double number = 0) {
 // The signals and tests stand in the order in which they are listed.
 // clang-format off
 constexpr Operator kTraits[] = {
-    Inner(Op::kAnd), Inner(Op::kOr), Inner(Op::kNot), Inner(Op::kBegins), Inner(Op::kEnds),
+    Inner(Op::kAnd), Inner(Op::kOr), Inner(Op::kNot), Inner(Op::kKnown), Inner(Op::kBegins), Inner(Op::kEnds),
     Inner(Op::kLess), Inner(Op::kLessEqual), Inner(Op::kGreater), Inner(Op::kGreaterEqual),
     Inner(Op::kEqual), Inner(Op::kNotEqual), Inner(Op::kOwns), Inner(Op::kIsA),
     {.op = Op::kHolds, .type = T::kTruth, .asks = S::kTouching, .name = "touching",

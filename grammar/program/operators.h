@@ -23,6 +23,7 @@ namespace prehend::grammar {
 //
 //   kHolds, kOwns        whether reference `slot` is true; kOwns: of a rule with AnyRule::one, for
 //                        roles[0]
+//   kKnown               args[0] is true; in it, a rule is unknown where it is out of sight
 //   kBegins, kEnds       args[0] becomes true, false here; of a reference, an interval does
 //   kSensorSet           the set named `name`, or without a name the `number`th
 //   kDistanceAlong       along roles[1], of the piece of roles[0] that was at args[0] in it and at
@@ -39,7 +40,7 @@ namespace prehend::grammar {
 //                        from the first or second: `number`
 // clang-format off
 #define PREHEND_TRUTHS(X)                                                                         \
-  X(kAnd) X(kOr) X(kNot) X(kLess) X(kLessEqual) X(kGreater) X(kGreaterEqual) X(kEqual)            \
+  X(kAnd) X(kOr) X(kNot) X(kKnown) X(kLess) X(kLessEqual) X(kGreater) X(kGreaterEqual) X(kEqual)            \
   X(kNotEqual) X(kHolds) X(kBegins) X(kEnds) X(kInSphere) X(kSolidInSphere) X(kInCylinder)        \
   X(kInside) X(kNearest) X(kOwns) X(kPartOf) X(kIsA) X(kGazed) X(kSensorSet)
 #define PREHEND_MADE_NUMBERS(X)                                                                   \
@@ -66,7 +67,7 @@ inline constexpr std::size_t kOperators = PREHEND_OPERATORS(PREHEND_ONE);
 
 inline bool IsComparison(Op op) { return op >= Op::kLess && op <= Op::kNotEqual; }
 /// Made of truth values, from frame to frame where it is a moment.
-inline bool IsLogic(Op op) { return op <= Op::kNot || op == Op::kBegins || op == Op::kEnds; }
+inline bool IsLogic(Op op) { return op <= Op::kKnown || op == Op::kBegins || op == Op::kEnds; }
 /// Of a comparison, whether it is true.
 inline bool Compares(Op op, double a, double b) {
   return op == Op::kLess           ? a < b

@@ -51,6 +51,11 @@ Kleene Evaluator::Truth(NodeId index, const View& view) const {
       inner.negated = !view.negated;
       return Not(Truth(node.args[0], inner));
     }
+    case Op::kKnown: {
+      View inner = view;
+      inner.negated = false;
+      return Truth(node.args[0], inner);
+    }
     case Op::kHolds:
       return Holds(node.slot, view);
     case Op::kBegins:

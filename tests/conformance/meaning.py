@@ -68,26 +68,29 @@ class Meaning:
         return self.ticks[i], end, i, j, end
 
     # Of a call: those of its rule; of anything else, the longest in which it is true.
-    def of(self, expr, env, at=None):
+    def of(self, expr, env, at=None, known=False):
         is_rule = expr[0] == "call" and expr[1] in self.rules and all(name != "any" for name, _ in expr[2:])
-        return self.intervals(expr[1], self.called(expr, env)[0]) if is_rule else self.runs(self.truth(expr, env, at))
+        return self.intervals(expr[1], self.called(expr, env)[0]) if is_rule else self.runs(self.truth(expr, env, at, known))
 
     # By frame: True, False, or None where nobody knows it. `at`: the frame of @begin and @end.
-    def truth(self, expr, env, at=None):
+    # `known`: in it, a rule is unknown where there is no sight of it.
+    def truth(self, expr, env, at=None, known=False):
         op, args, n = expr[0], expr[1:], range(self.n)
         if op in ("begins", "ends"):
-            edges = [one[2] if op == "begins" else one[3] for one in self.of(args[0], env, at)]
+            edges = [one[2] if op == "begins" else one[3] for one in self.of(args[0], env, at, known)]
             return [i in edges for i in n]
-        if op == "call" and expr[1] in self.rules:
-            return self.inside([one for who in self.called(expr, env) for one in self.intervals(expr[1], who)])
-        if op == "at least":
-            each = [self.inside(self.intervals(args[1][1], who)) for who in self.called(args[1], env)]
-            return [sum(holds[i] for holds in each) >= args[0] for i in n]
+        if op == "known":
+            return [value is True for value in self.truth(args[0], env, at, True)]
+        if op == "at least" or op == "call" and expr[1] in self.rules:
+            least, call = args if op == "at least" else (1, expr)
+            each = [self.inside(self.intervals(call[1], who)) for who in self.called(call, env)]
+            lost = self.lost(call, env) if known else [False] * self.n
+            return [sum(holds[i] for holds in each) >= least or (None if lost[i] else False) for i in n]
         if op == "call":
             return [frozenset(dict(env)[name] for name, _ in args[1:]) in self.touches[i] for i in n]
         if op in ("and", "or", "not"):
             order = [False, None, True]
-            sides = [[order.index(value) for value in self.truth(arg, env, at)] for arg in args]
+            sides = [[order.index(value) for value in self.truth(arg, env, at, known)] for arg in args]
             least = {"and": min, "or": max, "not": lambda *side: 2 - side[0]}[op]
             return [order[least(values) if op != "not" else least(*values)] for values in zip(*sides)]
         sides = zip(*(self.number(arg, env, at) for arg in args))
@@ -120,7 +123,7 @@ class Meaning:
         walk = [value for key, value in rule.items() if key not in ("roles", "name", "is")]
         while walk:
             part = walk.pop()
-            if isinstance(part, tuple) and part and part[0] in ("call", "and", "or", "not", "begins", "ends", "<", "<=", ">", ">="):
+            if isinstance(part, tuple) and part and part[0] in ("call", "and", "or", "not", "known", "begins", "ends", "<", "<=", ">", ">="):
                 yield part
             elif isinstance(part, (tuple, list)):
                 walk += part

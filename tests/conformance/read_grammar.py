@@ -58,8 +58,8 @@ class Parser:
         if level == 2:
             inner = self.expr(3)
             return (self.word(), inner) if self.words[0] in ("begins", "ends") else inner
-        if level == 3 and self.take("not"):
-            return "not", self.expr(3)
+        if level == 3 and self.words[0] in ("not", "known"):
+            return self.word(), self.expr(3)
         if level == 3:
             left = self.sum()
             return (self.word(), left, self.sum()) if self.words[0][:1] in ("<", ">") and self.words[0] else left

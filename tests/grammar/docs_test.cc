@@ -62,7 +62,7 @@ TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
   EXPECT_EQ(RunExamples("cookbook.md"), 15);
   EXPECT_EQ(RunExamples("drawings.md"), 1);
   EXPECT_EQ(RunExamples("grammar-language.md"), 7);
-  EXPECT_EQ(RunExamples("semantics.md"), 7);
+  EXPECT_EQ(RunExamples("semantics.md"), 8);
 }
 
 }  // namespace

@@ -43,8 +43,8 @@ void CollectSignals(const Program& program, grammar::NodeId node, std::vector<Si
   } else if (IsRegion(n.op)) {
     signals.push_back({node, Signal::What::kDistance});
     if (n.op == Op::kInCylinder) signals.push_back({node, Signal::What::kHeight});
-  } else if (n.op == Op::kAnd || n.op == Op::kOr || n.op == Op::kNot || n.op == Op::kBegins ||
-             n.op == Op::kEnds) {
+  } else if (n.op == Op::kAnd || n.op == Op::kOr || n.op == Op::kNot || n.op == Op::kKnown ||
+             n.op == Op::kBegins || n.op == Op::kEnds) {
     CollectSignals(program, n.args[0], signals);
     CollectSignals(program, n.args[1], signals);
   }

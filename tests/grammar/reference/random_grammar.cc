@@ -166,6 +166,7 @@ class Maker {
   Term Condition(int depth, const std::string& anchor = "") {
     const unsigned choice = Below(depth > 0 ? 10 : 5);
     if (Below(12) == 0) return Rising(anchor);
+    if (depth > 0 && Below(10) == 0) return Known(Condition(depth - 1, anchor));
     switch (choice) {
       case 0:
       case 1:
@@ -199,6 +200,7 @@ class Maker {
   // What can begin and end: it has no moments in it.
   Term State(const std::string& anchor) {
     if (Below(12) == 0) return Rising(anchor);
+    if (Below(12) == 0) return Known(State(anchor));
     switch (Below(6)) {
       case 0:
         return {.kind = Kind::kHigh, .value = static_cast<int>(Below(3)), .anchor = anchor};
@@ -211,6 +213,12 @@ class Maker {
       default:
         return rules_.empty() ? Touch() : CallOfSome();
     }
+  }
+
+  // More often something that is denied: of that alone it says something.
+  Term Known(Term of) {
+    if (Below(3) != 0) of = {.kind = Kind::kNot, .args = {std::move(of)}};
+    return {.kind = Kind::kKnown, .args = {std::move(of)}};
   }
 
   // Known only when the window is over.
@@ -289,6 +297,8 @@ class Writer {
                Head(term.which, rules_[term.which].roles, term.named, false);
       case Kind::kNot:
         return "(not " + TermText(term.args[0]) + ")";
+      case Kind::kKnown:
+        return "(known " + TermText(term.args[0]) + ")";
       case Kind::kEdge:
         return "(" + TermText(term.args[0]) + (term.begins ? " begins)" : " ends)");
       default:

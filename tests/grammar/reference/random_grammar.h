@@ -68,7 +68,7 @@ inline constexpr unsigned kP = 1;
 
 /// A truth value made of facts and rules.
 struct Term {
-  enum class Kind { kTouch, kHigh, kRising, kOfWindow, kRule, kAnd, kOr, kNot, kEdge };
+  enum class Kind { kTouch, kHigh, kRising, kOfWindow, kRule, kAnd, kOr, kNot, kKnown, kEdge };
   Kind kind = Kind::kHigh;
   int which = 0;       ///< kTouch: role; kRule: rule
   unsigned named = 0;  ///< kRule: roles that are named; the others are `any`

@@ -44,9 +44,13 @@ class Meaning {
   Runs While(const Stream& stream) const { return reference::While(stream, e_.ticks, 0); }
 
   // Where it is true; neither unknown nor false is enough.
-  Stream Truth(const Term& term, int p, int anchor) const { return Truths(term, p, anchor).is; }
+  // `in_known`: a rule is unknown where it is out of sight.
+  Stream Truth(const Term& term, int p, int anchor, bool in_known = false) const {
+    return Truths(term, p, anchor, in_known).is;
+  }
 
-  reference::Truths Truths(const Term& term, int p, int anchor) const {
+  reference::Truths Truths(const Term& term, int p, int anchor, bool in_known) const {
+    const auto of = [&](std::size_t arg) { return Truths(term.args[arg], p, anchor, in_known); };
     const auto compared = [&](double more, bool strictly, const auto& value) {
       const double base = term.anchor.empty() ? 0 : value(std::min(anchor, n_ - 1));
       reference::Truths truths{Stream(n_), Stream(n_)};
@@ -72,23 +76,24 @@ class Meaning {
         const bool anybody = (rules_[term.which].roles & kP & ~term.named) != 0;
         const Stream own =
             reference::Truth(reference::RunsOf(found_[term.which][anybody ? 0 : p]), n_);
-        if (term.at_least > 1)
-          return known(
-              reference::And(own, reference::Truth(reference::RunsOf(found_[term.which][1]), n_)));
-        return known(anybody ? reference::Or(own, reference::Truth(
-                                                      reference::RunsOf(found_[term.which][1]), n_))
-                             : own);
+        const Stream other = reference::Truth(reference::RunsOf(found_[term.which][1]), n_);
+        const Stream is = term.at_least > 1 ? reference::And(own, other)
+                          : anybody         ? reference::Or(own, other)
+                                            : own;
+        return {is, in_known ? reference::Or(is, OutOfSight(term)) : is};
       }
       case Kind::kAnd:
-        return reference::And(Truths(term.args[0], p, anchor), Truths(term.args[1], p, anchor));
+        return reference::And(of(0), of(1));
       case Kind::kOr:
-        return reference::Or(Truths(term.args[0], p, anchor), Truths(term.args[1], p, anchor));
+        return reference::Or(of(0), of(1));
       case Kind::kNot:
-        return reference::Not(Truths(term.args[0], p, anchor));
+        return reference::Not(of(0));
+      case Kind::kKnown:
+        return known(Truth(term.args[0], p, anchor, true));
       case Kind::kEdge: {
         const Term& arg = term.args[0];
         const bool has_intervals = arg.kind == Kind::kRule || arg.kind == Kind::kTouch;
-        const Runs runs = has_intervals ? CallRuns(arg, p) : While(Truth(arg, p, anchor));
+        const Runs runs = has_intervals ? CallRuns(arg, p) : While(Truth(arg, p, anchor, in_known));
         return known(term.begins ? reference::Begins(runs, n_) : reference::Ends(runs, n_));
       }
     }
