@@ -38,7 +38,7 @@ std::vector<std::string> NamesIn(const std::string& text, const std::set<std::st
 /// has an attribute of the name of an event, and maps of imports have keys of such names, too.
 bool MayNameEvents(const std::string& path) {
   return path == "harness/suite/report/report.cc" || path == "harness/suite/report/charts.cc" ||
-         path == "harness/exchange/poses/import_map.cc" ||
+         path == "harness/exchange/poses/import_map_format.cc" ||
          path.starts_with("harness/truth/oracle/") || path == "harness/base/base/project_paths.h";
 }
 

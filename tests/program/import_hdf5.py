@@ -221,7 +221,7 @@ def test_faults(folder, demos):
     check(done.returncode == 2 and "the file is cut off" in done.stderr, "cut: " + done.stderr)
     done = imported(os.path.join(folder, "isaac_raw.hdf5"), raw, folder, os.path.join(folder, "many.jsonl"))
     check(done.returncode == 2 and "has 20 demonstrations: -o NAME.episodes" in done.stderr, "many: " + done.stderr)
-    for ending, remedy in (("npz", "h5py"), ("pkl", "run code"), ("parquet", "CSV")):
+    for ending, remedy in (("npy", "savez"), ("pkl", "run code"), ("parquet", "CSV")):
         path = os.path.join(folder, "take." + ending)
         open(path, "wb").write(b"\x89")
         done = imported(path, raw, folder, "--check")

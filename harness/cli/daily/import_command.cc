@@ -167,7 +167,8 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
                     "expected either -o, the recording to write, or --check, to write nothing");
   if (const auto format = exchange::PoseFormatOf(poses); options.Has("--map") && !format)
     return Complain(context, format.error());
-  if (episode::EpisodeKindOf(poses) == episode::EpisodeKind::kJsonLines)
+  if (episode::EpisodeKindOf(poses) == episode::EpisodeKind::kJsonLines &&
+      !(options.Has("--map") && exchange::IsJsonOfPoses(poses)))
     return ImportLines(poses, options, context);
   const Result<exchange::PoseFormat> format = exchange::PoseFormatOf(poses);
   const bool is_hdf5 = format && *format == exchange::PoseFormat::kHdf5;
@@ -213,21 +214,22 @@ Command ImportCommand() {
       .examples = {"import poses.csv --map bodies.yaml --check",
                    "import poses.csv --map bodies.yaml -o take.jsonl",
                    "episode resegment take.jsonl", "import take.jsonl -o takes.episodes"},
-      .options = {{.name = "poses",
-                   .help = "a file with poses of hands and things, CSV, BVH, MCAP, a bag or HDF5 "
-                           "(docs/motion-capture.md), or a recording (docs/recording-format.md)",
-                   .required = true},
-                  {.name = "--map",
-                   .help = "of poses, what the file means: unit, axes, times, columns, bodies",
-                   .placeholder = "MAP.yaml"},
-                  OutputOption(
-                      "the recording (docs/recording-format.md), -: standard output; or an episode "
-                      "file, NAME.episodes, to which it is added (docs/episodes.md)"),
-                  {.name = "--check",
-                   .help = "write nothing; show what the file has, and what a grammar will miss"},
-                  {.name = "--grammar",
-                   .help = "the grammar to look with; default: that of the map",
-                   .placeholder = "GRAMMAR"}},
+      .options =
+          {{.name = "poses",
+            .help = "a file with poses of hands and things: CSV, BVH, MCAP, a bag, HDF5, JSON or "
+                    ".npz (docs/motion-capture.md), or a recording (docs/recording-format.md)",
+            .required = true},
+           {.name = "--map",
+            .help = "of poses, what the file means: unit, axes, times, columns, bodies",
+            .placeholder = "MAP.yaml"},
+           OutputOption(
+               "the recording (docs/recording-format.md), -: standard output; or an episode "
+               "file, NAME.episodes, to which it is added (docs/episodes.md)"),
+           {.name = "--check",
+            .help = "write nothing; show what the file has, and what a grammar will miss"},
+           {.name = "--grammar",
+            .help = "the grammar to look with; default: that of the map",
+            .placeholder = "GRAMMAR"}},
       .run = RunImport};
 }
 

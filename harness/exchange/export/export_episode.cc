@@ -26,7 +26,7 @@ std::string WriteMotion(const Motion& motion, const std::string& file) {
   if (ending == ".csv") WriteCsv(motion, output.stream());
   if (ending == ".mcap") metadata = WriteMcap(motion, beside.filename(), output.stream());
   std::string problem = output.Commit();
-  if (problem.empty() && (ending == ".csv" || ending == ".mcap"))
+  if (problem.empty() && ending != ".jsonl")
     problem = WriteTextFile(file + ".map.yaml", MapText(motion, ending));
   if (problem.empty() && ending == ".csv")
     problem = WriteTextFile(beside.replace_extension(".events.csv"), EventsCsv(motion));

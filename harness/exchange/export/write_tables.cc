@@ -107,6 +107,8 @@ std::string MapText(const Motion& motion, const std::string& ending) {
         "quaternion_order: wxyz\ntime_unit: s\n"
         "columns: {time: t, body: entity, position: [x, \"y\", z], "
         "quaternion: [qw, qx, qy, qz]}\n";
+  else if (ending == ".npz")
+    text += "quaternion_order: wxyz\nt: t_s\ntime_unit: s\nmissing: [nan]\n";
   else
     text += "mcap: {world: " + quoted(WorldName(motion.table())) + "}\n";
   text += "entities:\n";
@@ -114,7 +116,12 @@ std::string MapText(const Motion& motion, const std::string& ending) {
     const grammar::EntityInfo& entity = motion.table().entities[i];
     if (!IsTrackerBody(entity) || motion.seen[i].looks < 2) continue;
     const std::string& own = entity.classes.front();
-    text += fmt::format("  {0}: {{from: {0}, size_m: {1}", quoted(entity.name),
+    const std::string at =
+        ending == ".npz"
+            ? fmt::format("position: \"position_m[{}:{}]\", quaternion: \"quaternion_wxyz[{}:{}]\"",
+                          3 * i, 3 * i + 3, 4 * i, 4 * i + 4)
+            : "from: " + quoted(entity.name);
+    text += fmt::format("  {}: {{{}, size_m: {}", quoted(entity.name), at,
                         YamlVector(2 * entity.half_size_m));
     if (!entity.p_BC_m.isZero(0)) text += ", offset_m: " + YamlVector(entity.p_BC_m);
     if (own == "Hand")

@@ -4,7 +4,7 @@
 // tests/program/import_hdf5.py
 #pragma once
 
-#include "harness/exchange/poses/read_hdf5_poses.h"
+#include "harness/exchange/arrays/read_hdf5_poses.h"
 
 namespace prehend::exchange {
 

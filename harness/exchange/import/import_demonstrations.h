@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/exchange/arrays/read_hdf5_poses.h"
 #include "harness/exchange/import/import_poses.h"
-#include "harness/exchange/poses/read_hdf5_poses.h"
 
 namespace prehend::exchange {
 

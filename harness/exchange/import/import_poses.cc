@@ -12,6 +12,7 @@
 #include "grammar/base/frame.h"
 #include "grammar/base/wording.h"
 #include "harness/base/yaml/diagnostic_list.h"
+#include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/import/openings.h"
 #include "harness/exchange/import/plausibility.h"
 #include "harness/exchange/import/rest_poses.h"
@@ -479,7 +480,9 @@ Result<Imported> ImportPoses(const std::string& poses_path, const std::string& m
   const Result<MapFile> map = *format == PoseFormat::kCsv ? ReadMapOfTable(map_path, poses_path)
                                                           : ReadImportMap(map_path, *format);
   if (!map) return tl::unexpected(map.error());
-  constexpr std::array kReaders = {ReadCsvPoses, ReadBvhPoses, ReadMcapPoses};
+  using Reader = Result<PoseFile> (*)(const std::string&, const MapFile&);
+  constexpr std::array<Reader, 6> kReaders = {ReadCsvPoses, ReadBvhPoses,  ReadMcapPoses,
+                                              nullptr,      ReadJsonPoses, ReadNpzPoses};
   Result<PoseFile> poses = kReaders.at(static_cast<std::size_t>(*format))(poses_path, *map);
   if (!poses) return tl::unexpected(poses.error());
   return ImportPoses(std::move(*poses), *map);

@@ -20,7 +20,7 @@
 namespace prehend::exchange {
 
 /// What is imported, by the ending of its name. Bags of ROS 1 hold messages as MCAP files do.
-enum class PoseFormat { kCsv, kBvh, kMcap, kHdf5 };
+enum class PoseFormat { kCsv, kBvh, kMcap, kHdf5, kJson, kNpz };
 enum class LengthUnit { kMetre, kCentimetre, kMillimetre, kInch };
 enum class TimeUnit { kSecond, kMillisecond, kMicrosecond, kNanosecond, kFrame, kIso };
 enum class Lost { kRefuse, kHold, kUnknown };
@@ -90,8 +90,9 @@ struct SubtaskLabel {
 /// One entity of the recording.
 struct MappedEntity {
   std::optional<Located<std::string>> from;  ///< the body in the file
-  /// Of HDF5, datasets, with their columns: "obs/object[0:3]". `from` is the first of them.
-  std::optional<Located<std::string>> pose, position, quaternion, euler, axis_angle;
+  /// Of HDF5 and NumPy, arrays, with their columns: "obs/object[0:3]"; of JSON, paths in a frame.
+  /// `from` is the first of them.
+  std::optional<Located<std::string>> pose, position, quaternion, euler, axis_angle, rotation;
   std::optional<Located<std::string>> first;  ///< its pose before the first row
   int shift = 0;                              ///< frames by which the rows come later
   std::optional<Eigen::Vector3d> at_m;        ///< of what no tracker sees
@@ -127,7 +128,9 @@ struct ImportMap {
   std::optional<Located<QuaternionOrder>> quaternion_order;
   std::optional<Located<std::string>> euler_order;
   std::optional<Located<bool>> angles_in_degrees;
-  std::optional<Located<TimeUnit>> time_unit;  ///< of CSV only
+  std::optional<Located<TimeUnit>> time_unit;  ///< of CSV; of `t`
+  std::optional<Located<std::string>> frames;  ///< of JSON: the path to them; none: the lines
+  std::optional<Located<std::string>> t;       ///< of JSON and NumPy: the times
   std::optional<Located<double>> rate_hz;
   Separator separator = Separator::kComma;
   bool decimal_comma = false;
@@ -149,6 +152,8 @@ struct ImportMap {
 
   bool IsSure(Warning warning) const;
   double MetresPerUnit() const;
+  /// Of `time_unit`.
+  double SecondsPerUnit() const;
   /// Of `columns`.
   OrientationFormat Orientation() const;
   /// From the file's axes to those of which `axes` is z: of positions, and of bodies' own axes.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
 #include <map>
 
 #include "harness/base/base/text_file.h"
@@ -79,24 +80,31 @@ std::string EndingOf(const std::string& poses_path) {
 
 bool IsBag(const std::string& poses_path) { return EndingOf(poses_path) == ".bag"; }
 
+bool IsJsonOfPoses(const std::string& poses_path) {
+  const Result<PoseFormat> format = PoseFormatOf(poses_path);
+  std::ifstream file(poses_path, std::ios::binary);
+  std::string head(200, ' ');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return format && *format == PoseFormat::kJson &&
+         head.substr(0, head.find('\n')).find("\"recording\":") == std::string::npos;
+}
+
 Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
   const std::string ending = EndingOf(poses_path);
   if (ending == ".bvh") return PoseFormat::kBvh;
   if (ending == ".hdf5" || ending == ".h5") return PoseFormat::kHdf5;
+  if (ending == ".json" || ending == ".jsonl" || ending == ".ndjson") return PoseFormat::kJson;
+  if (ending == ".npz") return PoseFormat::kNpz;
   if (ending == ".mcap" || ending == ".bag") return PoseFormat::kMcap;
   static const std::string kTable = "write its poses to a CSV file: one row a time, named columns";
   static const std::map<std::string, std::string> kOthers = {
       {".db3", "convert it, with the program that comes with MCAP: mcap convert IN.db3 OUT.mcap"},
-      {".npz",
-       "write its arrays as CSV, or as HDF5 with h5py; Python passes arrays (docs/python.md)"},
-      {".npy",
-       "write its array as CSV, or as HDF5 with h5py; Python passes arrays (docs/python.md)"},
+      {".npy", "write it with its times and others as .npz: numpy.savez"},
       {".pkl", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
       {".parquet",
        "write its poses as CSV, or as HDF5 with h5py; Python passes tables (docs/python.md)"},
       {".c3d", "export poses of rigid bodies as CSV; C3D mostly holds single markers"},
       {".fbx", "export it as BVH"},
-      {".json", kTable},
       {".pickle", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
       {".mat", kTable},
       {".xlsx", "save the sheet as CSV"},
@@ -110,8 +118,8 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
   return tl::unexpected(grammar::Diagnostics{
       {.file = ReadableName(poses_path),
        .place = {},
-       .message =
-           fmt::format("files {} are not read; CSV, BVH, MCAP, bags of ROS 1 and HDF5 are", ending),
+       .message = fmt::format(
+           "files {} are not read; CSV, BVH, MCAP, bags of ROS, HDF5, JSON and .npz are", ending),
        .source_line = {},
        .hint = other->second}});
 }

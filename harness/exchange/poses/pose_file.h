@@ -76,6 +76,9 @@ Result<PoseFile> ReadBvhPoses(const std::string& path, const MapFile& map);
 /// Topics of poses, and coordinate frames of a tree of transforms, each a body.
 Result<PoseFile> ReadMcapPoses(const std::string& path, const MapFile& map);
 
+/// JSON that is no recording of our own: the file's name and its first line say so.
+bool IsJsonOfPoses(const std::string& poses_path);
+
 bool IsBag(const std::string& poses_path);
 
 /// A kind of file that is not read is an error that says what helps.

@@ -29,24 +29,6 @@ constexpr std::size_t kMostHeaderBytes = 100'000;
 constexpr std::size_t kLeastSteps = 20;
 constexpr int kMostPreamble = 100;  ///< lines in which the names of the columns are looked for
 
-double SecondsPer(const ImportMap& map) {
-  switch (map.time_unit->value) {
-    case TimeUnit::kSecond:
-      return 1;
-    case TimeUnit::kMillisecond:
-      return 1e-3;
-    case TimeUnit::kMicrosecond:
-      return 1e-6;
-    case TimeUnit::kNanosecond:
-      return 1e-9;
-    case TimeUnit::kIso:
-      return 1;
-    case TimeUnit::kFrame:
-      break;
-  }
-  return 1 / map.rate_hz->value;
-}
-
 std::string WithBody(const std::string& column, const std::string& body) {
   const std::size_t at = column.find("{}");
   return at == std::string::npos ? column : std::string(column).replace(at, 2, body);
@@ -377,7 +359,7 @@ class CsvPoseReader {
       const auto time = TimeOf(cells[*time_seat_]);
       if (!time) return;
       if (first_time_ == std::nullopt) first_time_ = *time;
-      t_s = (*time - *first_time_) * SecondsPer(map_);
+      t_s = (*time - *first_time_) * map_.SecondsPerUnit();
     } else {
       t_s = static_cast<double>(rows_of_[name]++) / map_.rate_hz->value;
     }
@@ -390,7 +372,7 @@ class CsvPoseReader {
                       fmt::format("the times{} must increase from row to row: {:.6g} s after the "
                                   "first row comes after {:.6g} s",
                                   has_bodies ? " of '" + name + "'" : "", t_s, before->second));
-    if (!is_first && time_seat_) CountStep((t_s - before->second) / SecondsPer(map_));
+    if (!is_first && time_seat_) CountStep((t_s - before->second) / map_.SecondsPerUnit());
     before->second = t_s;
     poses.first_s = std::min(poses.first_s, t_s);
     poses.last_s = std::max(poses.last_s, t_s);
