@@ -146,15 +146,16 @@ std::string DefaultReport(const std::string& root, bool of_some) {
 
 suite::SuiteRequest RequestFrom(const ParsedOptions& options, const CommandContext& context,
                                 suite::ScenarioSelection selection) {
+  const bool of_some = options.Has("names") || options.Has("--filter");
   suite::SuiteRequest request{
       .selection = std::move(selection),
       .changes = {options.Text("--grammar"), options.All("--set")},
       .root = context.root,
-      .report_folder = options.TextOr(
-          "--report", DefaultReport(context.root, options.Has("names") || options.Has("--filter"))),
+      .report_folder = options.TextOr("--report", DefaultReport(context.root, of_some)),
       .record_file = options.Text("--record"),
       .today = context.today,
       .pictures = !options.Has("--no-pictures"),
+      .all_pictures = of_some,
       .replays = ReplaysOf(options),
       .only_changed = options.Has("--changed"),
       .repeat = options.IntOr("--repeat", 1),

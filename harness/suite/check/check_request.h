@@ -24,6 +24,7 @@ struct CheckRequest {
   Replays replays = Replays::kNone;  ///< kFailures: of what has not passed
   bool explain = false;              ///< what has a golden and does not pass
   bool pictures = true;
+  bool all_pictures = true;  ///< also of what passed and is compared with no golden picture
   bool leave_nothing_behind = false;  ///< no pending golden, no trace; only the verdict
   bool in_project = true;             ///< below scenarios/, so that it may have a golden
   std::string record_file;            ///< an episode file that gets the run; or empty

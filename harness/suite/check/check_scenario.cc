@@ -38,6 +38,8 @@ struct CheckedEpisode {
   std::string engine_difference = {};
   std::vector<PictureComparison> pictures = {};
 
+  bool is_good = true;  ///< nothing has been found so far
+
   bool IsComplete() const { return run.result.status.kind == physics::RunStatus::Kind::kCompleted; }
 };
 
@@ -54,6 +56,9 @@ using Judge = Findings (*)(CheckedEpisode& checked);
 Findings Pictures(CheckedEpisode& checked) {
   const CheckRequest& request = checked.request;
   if (!request.pictures || !show::CanDrawPictures()) return {};
+  const bool is_compared =
+      request.in_project && !truth::GoldenFiles(request.root).PicturesOf(request.id).empty();
+  if (!request.all_pictures && checked.is_good && !is_compared) return {};
   const scenario::Scenario& scenario = checked.run.loaded.scenario;
   const fs::path folder = fs::path(request.report_folder) / "pictures" / scenario.skill;
   std::error_code error;
@@ -158,9 +163,10 @@ Findings GoldenBesideRecording(CheckedEpisode& checked) {
   return findings;
 }
 
-constexpr Judge kOfRuns[] = {Pictures, Invariants,     Limits,      Laws,
-                             Claims,   GoldenAndTruth, OtherEngine, UnrequestedPictures};
-constexpr Judge kOfFailedRuns[] = {Pictures, EndOfRun};
+/// Pictures come last, since of a suite they show what has not passed.
+constexpr Judge kOfRuns[] = {
+    Invariants, Limits, Laws, Claims, GoldenAndTruth, OtherEngine, UnrequestedPictures, Pictures};
+constexpr Judge kOfFailedRuns[] = {EndOfRun, Pictures};
 constexpr Judge kOfRecordings[] = {GoldenBesideRecording};
 
 /// Those that can judge this episode: of a recording only its golden, of a run that failed only
@@ -339,7 +345,10 @@ ScenarioVerdict VerdictOn(CheckedEpisode checked) {
     verdict.ticks = run.ticks;
   }
   Findings findings;
-  for (const Judge judge : JudgesOf(checked)) Append(findings, judge(checked));
+  for (const Judge judge : JudgesOf(checked)) {
+    Append(findings, judge(checked));
+    checked.is_good = findings.empty();
+  }
   Conclude(findings, verdict);
   for (std::string* text : {&verdict.reason, &verdict.details}) Shorten(*text, request.root);
   verdict.details += truth::TextOfUndecided(verdict.claims);

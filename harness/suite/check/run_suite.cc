@@ -113,6 +113,7 @@ class Suite {
         .replays = turn.repetition == 0 ? request_.replays : Replays::kNone,
         .explain = turn.repetition == 0,
         .pictures = request_.pictures && turn.repetition == 0,
+        .all_pictures = request_.all_pictures,
         .leave_nothing_behind = Changed() || turn.repetition > 0 || !IsRemembered(turn.scenario),
         .in_project = InProject(turn.scenario),
         .record_file = turn.repetition == 0 ? request_.record_file : "",

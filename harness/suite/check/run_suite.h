@@ -25,6 +25,7 @@ struct SuiteRequest {
   std::string record_file;  ///< an episode file that gets the first run of each; or empty
   std::string today;        ///< YYYY-MM-DD, for that file
   bool pictures = true;
+  bool all_pictures = true;  ///< also of what passed and is compared with no golden picture
   Replays replays = Replays::kNone;
   bool only_changed = false;  ///< skip what passed and depends on nothing that changed since
   int repeat = 1;
