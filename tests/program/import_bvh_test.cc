@@ -177,12 +177,12 @@ TEST_F(ImportBvh, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
 
 TEST_F(ImportBvh, FilesThatAreNotReadSayWhatHelps) {
   WriteFile(folder_ / "map.yaml", kMap);
-  for (const char* name : {"take.c3d", "take.DB3", "take.npy", "take.parquet", "take.pkl"}) {
+  for (const char* name : {"take.fbx", "take.DB3", "take.npy", "take.parquet", "take.pkl"}) {
     WriteFile(folder_ / name, "x");
     const Said said = Prehend(
         {"import", (folder_ / name).string(), "--map", (folder_ / "map.yaml").string(), "--check"});
     EXPECT_EQ(said.exit_code, 2);
-    EXPECT_NE(said.err.find("are not read; CSV, BVH, MCAP, bags of ROS, HDF5, JSON and .npz are"),
+    EXPECT_NE(said.err.find("are not read; CSV, BVH, MCAP, bags of ROS, HDF5, JSON, .npz and C3D are"),
               std::string::npos)
         << said.err;
   }

@@ -217,7 +217,7 @@ Command ImportCommand() {
       .options =
           {{.name = "poses",
             .help = "a file with poses of hands and things: CSV, BVH, MCAP, a bag, HDF5, JSON or "
-                    ".npz (docs/motion-capture.md), or a recording (docs/recording-format.md)",
+                    ".npz, C3D (docs/motion-capture.md), or a recording (docs/recording-format.md)",
             .required = true},
            {.name = "--map",
             .help = "of poses, what the file means: unit, axes, times, columns, bodies",

@@ -16,6 +16,8 @@ inline constexpr std::size_t kMostJsonFrames = 1'000'000;
 
 /// JSON, or lines of it. One frame is kept at a time.
 Result<PoseFile> ReadJsonPoses(const std::string& path, const MapFile& map);
+/// The points of C3D. The file says some of what a map says: its map is read with it.
+Result<PoseFile> ReadC3dPoses(const std::string& path, const std::string& map_path, MapFile& map);
 /// The arrays of NumPy's savez.
 Result<PoseFile> ReadNpzPoses(const std::string& path, const MapFile& map);
 

@@ -62,6 +62,7 @@ class Importer {
     }
     JudgeJumps();
     for (std::size_t i = 0; i < tracks_.size(); ++i) AddTrack(map_.entities[i], tracks_[i]);
+    imported_.openings = file_.quality;
     for (const OpeningSeries& opening : file_.openings) AddOpening(opening);
     if (std::ranges::all_of(imported_.entities, [](const EntityReport& report) {
           return report.from.empty() || report.extent.diagonal().norm() < kUnmoved_m;
@@ -477,6 +478,12 @@ class Importer {
 Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path) {
   const Result<PoseFormat> format = PoseFormatOf(poses_path);
   if (!format) return tl::unexpected(format.error());
+  if (*format == PoseFormat::kC3d) {  // it says its unit and rate
+    MapFile map;
+    Result<PoseFile> poses = ReadC3dPoses(poses_path, map_path, map);
+    if (!poses) return tl::unexpected(poses.error());
+    return ImportPoses(std::move(*poses), map);
+  }
   const Result<MapFile> map = *format == PoseFormat::kCsv ? ReadMapOfTable(map_path, poses_path)
                                                           : ReadImportMap(map_path, *format);
   if (!map) return tl::unexpected(map.error());

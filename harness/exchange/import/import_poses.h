@@ -29,7 +29,7 @@ struct EntityReport {
 struct Imported {
   episode::Recording episode;
   std::vector<EntityReport> entities;
-  std::string openings;  ///< of each grip and joint a line
+  std::string openings;  ///< of each body made of markers, grip and joint a line
   double duration_s = 0;
   std::vector<std::string> warnings;  ///< one line each
 };

@@ -40,7 +40,8 @@ void CheckOrientation(const ImportMap& map, DiagnosticList& errors) {
   const Columns& columns = map.columns;
   std::vector<std::string> upright;
   for (const Named<MappedEntity>& entity : map.entities) {
-    if (columns.Orientation().empty() && entity.value.from && SaysAxes(entity.value))
+    if (columns.Orientation().empty() && entity.value.from && entity.value.markers.empty() &&
+        SaysAxes(entity.value))
       upright.push_back(entity.name);
   }
   if (!upright.empty())
@@ -121,7 +122,7 @@ void CheckOpenings(const Named<MappedEntity>& entity, PoseFormat format, Diagnos
   for (const auto* opening : {&e.grip, &e.joint}) {
     if (!*opening) continue;
     const Where& where = (*opening)->where;
-    if (format == PoseFormat::kBvh || format == PoseFormat::kMcap)
+    if (format == PoseFormat::kBvh || format == PoseFormat::kMcap || format == PoseFormat::kC3d)
       errors.Add(where, "files of this kind have poses only: grip and joint are read from CSV");
     if ((*opening)->open == (*opening)->closed)
       errors.Add(where, fmt::format("'open' and 'closed' are both {:g}", (*opening)->open),
@@ -228,6 +229,9 @@ void CheckMap(const ImportMap& map, PoseFormat format, const YamlNode& root,
     tracked = tracked || e.from;
     CheckDatasets(entity, format, errors);
     CheckOpenings(entity, format, errors);
+    if (!e.markers.empty() && !is_csv && format != PoseFormat::kC3d)
+      errors.Add(e.markers.front().where,
+                 "'markers' are of tables and of C3D; this file is neither");
     if (e.part_of && std::ranges::find(names, e.part_of->value) == names.end())
       errors.AddUnknownName(e.part_of->where,
                             fmt::format("no entity is called '{}'", e.part_of->value),
@@ -271,17 +275,19 @@ void JoinCalls(YamlNode& label) {
 
 }  // namespace
 
+std::string NamesOf(const std::vector<Located<std::string>>& all) {
+  std::vector<std::string> names;
+  for (const Located<std::string>& name : all) names.push_back(name.value);
+  return fmt::format("{}", fmt::join(names, " + "));
+}
+
 double Opening::FractionOf(std::span<const double> numbers) const {
   double sum = 0;
   for (const double number : numbers) sum += sum_abs ? std::abs(number) : number;
   return (sum - closed) / (open - closed);
 }
 
-std::string Opening::Names() const {
-  std::vector<std::string> names;
-  for (const Located<std::string>& name : from) names.push_back(name.value);
-  return fmt::format("{}", fmt::join(names, " + "));
-}
+std::string Opening::Names() const { return NamesOf(from); }
 
 bool ImportMap::IsSure(Warning warning) const {
   return std::ranges::find(sure, warning) != sure.end();
@@ -364,6 +370,7 @@ Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format,
     for (Named<MappedEntity>& entity : file.map.entities) {
       MappedEntity& e = entity.value;
       if (e.pose || e.position) e.from = e.pose ? e.pose : e.position;
+      if (!e.markers.empty()) e.from = {NamesOf(e.markers), e.markers.front().where};
     }
     if (complete) complete(file.document.root.where, file.map, errors);
     CheckMap(file.map, format, file.document.root, errors);

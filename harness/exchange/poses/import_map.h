@@ -20,7 +20,7 @@
 namespace prehend::exchange {
 
 /// What is imported, by the ending of its name. Bags of ROS 1 hold messages as MCAP files do.
-enum class PoseFormat { kCsv, kBvh, kMcap, kHdf5, kJson, kNpz };
+enum class PoseFormat { kCsv, kBvh, kMcap, kHdf5, kJson, kNpz, kC3d };
 enum class LengthUnit { kMetre, kCentimetre, kMillimetre, kInch };
 enum class TimeUnit { kSecond, kMillisecond, kMicrosecond, kNanosecond, kFrame, kIso };
 enum class Lost { kRefuse, kHold, kUnknown };
@@ -66,6 +66,9 @@ struct Hdf5Keys {
   int skip = 0;  ///< frames at the beginning
 };
 
+/// "left + right"
+std::string NamesOf(const std::vector<Located<std::string>>& all);
+
 /// Numbers of the file that say how far a gripper or a joint is open.
 struct Opening {
   Where where;
@@ -93,6 +96,9 @@ struct MappedEntity {
   /// Of HDF5 and NumPy, arrays, with their columns: "obs/object[0:3]"; of JSON, paths in a frame.
   /// `from` is the first of them.
   std::optional<Located<std::string>> pose, position, quaternion, euler, axis_angle, rotation;
+  /// Of tables and C3D: it is made of these; `from` is their names.
+  std::vector<Located<std::string>> markers;
+  double residual_m = 0.01;                   ///< the farthest that markers may be off their shape
   std::optional<Located<std::string>> first;  ///< its pose before the first row
   int shift = 0;                              ///< frames by which the rows come later
   std::optional<Eigen::Vector3d> at_m;        ///< of what no tracker sees

@@ -138,10 +138,17 @@ ValueFormat<MappedEntity> EntityFormat() {
       .Optional("axis_angle", &E::axis_angle, Text(500), "its axis times its angle, or")
       .Optional("rotation", &E::rotation, Text(500),
                 "four numbers of a quaternion, three angles or nine of a matrix.")
+      .Optional(
+          "markers", &E::markers, ListOf(WithPlace(Text(200)), 3, 100),
+          "Of tables and C3D: the markers that are on it, the body's name in the place of {}.")
+      .Optional(
+          "residual_m", &E::residual_m, Number(0, 10),
+          "How far its markers may be off their shape, or the tracker's error be; beyond that "
+          "it is not tracked.")
       .Optional("first", &E::first, Text(500), "Of HDF5: its pose before the first row.")
       .Optional("shift", &E::shift, Integer<int>(-10, 10),
                 "Of HDF5: its rows count so many frames later: 1 of what is written after actions.")
-      .ExactlyOneOf({"from", "at_m", "pose", "position"})
+      .ExactlyOneOf({"from", "at_m", "pose", "position", "markers"})
       .AtMostOneOf({"quaternion", "euler", "axis_angle", "rotation", "pose"})
       .AtMostOneOf({"upright_at_s", "axes_quat_wxyz"})
       .format();

@@ -95,6 +95,7 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
   if (ending == ".hdf5" || ending == ".h5") return PoseFormat::kHdf5;
   if (ending == ".json" || ending == ".jsonl" || ending == ".ndjson") return PoseFormat::kJson;
   if (ending == ".npz") return PoseFormat::kNpz;
+  if (ending == ".c3d") return PoseFormat::kC3d;
   if (ending == ".mcap" || ending == ".bag") return PoseFormat::kMcap;
   static const std::string kTable = "write its poses to a CSV file: one row a time, named columns";
   static const std::map<std::string, std::string> kOthers = {
@@ -103,7 +104,6 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
       {".pkl", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
       {".parquet",
        "write its poses as CSV, or as HDF5 with h5py; Python passes tables (docs/python.md)"},
-      {".c3d", "export poses of rigid bodies as CSV; C3D mostly holds single markers"},
       {".fbx", "export it as BVH"},
       {".pickle", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
       {".mat", kTable},
@@ -112,6 +112,8 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
       {".ods", "save the sheet as CSV"},
       {".zip", "unpack it"},
       {".gz", "unpack it"},
+      {".zst", "unpack it"},
+      {".zstd", "unpack it"},
       {".7z", "unpack it"}};
   const auto other = kOthers.find(ending);
   if (other == kOthers.end()) return PoseFormat::kCsv;
@@ -119,7 +121,8 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
       {.file = ReadableName(poses_path),
        .place = {},
        .message = fmt::format(
-           "files {} are not read; CSV, BVH, MCAP, bags of ROS, HDF5, JSON and .npz are", ending),
+           "files {} are not read; CSV, BVH, MCAP, bags of ROS, HDF5, JSON, .npz and C3D are",
+           ending),
        .source_line = {},
        .hint = other->second}});
 }

@@ -46,6 +46,8 @@ struct PoseFile {
   std::string file;
   std::string text;                     ///< of the file, for messages
   std::vector<PoseBody> bodies;         ///< those of the map, in its order
+  std::vector<PoseBody> markers;        ///< of which bodies are made
+  std::string quality;                  ///< of each of these a line
   std::vector<OpeningSeries> openings;  ///< those of OpeningsOf(), in this order
   std::vector<std::string> unused;      ///< names of bodies that the map does not mention
   episode::EpisodeAttributes attributes;

@@ -15,6 +15,7 @@
 #include "grammar/base/wording.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
+#include "harness/exchange/poses/marker_bodies.h"
 #include "harness/exchange/poses/pose_file.h"
 #include "harness/exchange/poses/table_layout.h"
 
@@ -37,6 +38,7 @@ std::string WithBody(const std::string& column, const std::string& body) {
 /// Where the values of a body stand in a row.
 struct Seats {
   std::vector<std::size_t> position, orientation;
+  std::optional<std::size_t> error;  ///< of its orientation and position, as the tracker says
 };
 
 class CsvPoseReader {
@@ -51,7 +53,19 @@ class CsvPoseReader {
     orientation_ = map_.Orientation();
     poses.bodies = BodiesOf(map_, map_errors_);
     poses.openings = OpeningsOf(map_);
-    for (std::size_t i = 0; i < poses.bodies.size(); ++i) index_.emplace(poses.bodies[i].name, i);
+    poses.markers = MarkersOf(map_);
+    for (const Named<MappedEntity>& entity : map_.entities) {
+      const MappedEntity& e = entity.value;
+      for (const Located<std::string>& marker : e.markers)
+        index_.emplace(marker.value, Wanted{.from = marker});
+      if (e.from && e.markers.empty())
+        index_.emplace(e.from->value,
+                       Wanted{.from = *e.from, .most_error = e.residual_m / map_.MetresPerUnit()});
+    }
+    for (auto* all : {&poses.bodies, &poses.markers})
+      for (PoseBody& body : *all)
+        if (const auto wanted = index_.find(body.name); wanted != index_.end())
+          wanted->second.body = &body;
     poses.has_orientations = !map_.columns.Orientation().empty();
     if (!map_.columns.quaternion.empty()) poses.quaternion_order = orientation_.order;
   }
@@ -91,7 +105,15 @@ class CsvPoseReader {
     if (poses.rows < 2)
       return Complain({line_, 1},
                       grammar::CountOf(poses.rows, "row") + "; a recording has at least 2");
-    RefuseAbsentBodies(poses, map_, map_errors_);
+    ComposeMarkers(map_, poses, map_errors_);
+    if (map_errors_.empty()) RefuseAbsentBodies(poses, map_, map_errors_);
+    for (const auto& [name, wanted] : index_) {
+      const double m = map_.MetresPerUnit();
+      const std::string left_out =
+          wanted.errors.Text(name, layout_ ? fmt::format("markers, by '{}',", layout_->error) : "",
+                             poses.file, m, wanted.most_error * m);
+      if (!left_out.empty()) poses.notes.push_back(left_out);
+    }
     CheckTimes();
   }
 
@@ -253,12 +275,11 @@ class CsvPoseReader {
       shared_ = SeatsOf("");
       return;
     }
-    for (const Named<MappedEntity>& entity : map_.entities) {
-      if (!entity.value.from) continue;
-      const std::string& body = entity.value.from->value;
+    for (auto& [body, wanted] : index_) {
+      const Where where = wanted.from.where;
       if (columns.IsOfOneBody() && body != stem_) {
         map_errors_.AddUnknownName(
-            entity.value.from->where,
+            where,
             fmt::format("no body is called '{}': no column has a body's name, so the file is of "
                         "one body, which is called as the file, '{}'",
                         body, stem_),
@@ -269,14 +290,14 @@ class CsvPoseReader {
             return seats_by_name_.contains(WithBody(column.value, body));
           })) {
         map_errors_.AddUnknownName(
-            entity.value.from->where,
+            where,
             layout_ ? fmt::format("no body is called '{}' in {}", body, layout_->name)
                     : fmt::format("no body is called '{}': the file has no column '{}'", body,
                                   WithBody(columns.position.front().value, body)),
             body, BodiesOfHeader());
         continue;
       }
-      wide_.push_back(SeatsOf(body));
+      wanted.seats = SeatsOf(body);
     }
     for (const std::string& body : BodiesOfHeader()) {
       if (!index_.contains(body)) poses.unused.push_back(body);
@@ -320,6 +341,8 @@ class CsvPoseReader {
       seats.position.push_back(SeatOf(column, WithBody(column.value, body)));
     const bool turns =
         !layout_ || map_.columns.IsOfOneBody() || std::ranges::count(layout_->turning, body) > 0;
+    const auto error = seats_by_name_.find(body + " " + (layout_ ? layout_->error : ""));
+    if (layout_ && turns && error != seats_by_name_.end()) seats.error = error->second;
     for (const Located<std::string>& column : map_.columns.Orientation())
       if (turns) seats.orientation.push_back(SeatOf(column, WithBody(column.value, body)));
     return seats;
@@ -382,12 +405,11 @@ class CsvPoseReader {
         TakeOpening(cells, opening_seats_[i], t_s, poses.openings[i]);
     }
     if (!has_bodies) {
-      for (std::size_t i = 0; i < wide_.size(); ++i)
-        TakePose(cells, wide_[i], t_s, poses.bodies[i]);
+      for (auto& [body, wanted] : index_) TakePose(cells, wanted.seats, t_s, wanted);
       return;
     }
     const auto body = index_.find(name);
-    if (body != index_.end()) return TakePose(cells, shared_, t_s, poses.bodies[body->second]);
+    if (body != index_.end()) return TakePose(cells, shared_, t_s, body->second);
     if (std::ranges::find(poses.unused, name) == poses.unused.end() && poses.unused.size() < 1000)
       poses.unused.push_back(name);
   }
@@ -417,7 +439,17 @@ class CsvPoseReader {
     return cell.text.empty() || std::ranges::find(map_.missing, cell.text) != map_.missing.end();
   }
 
-  void TakePose(const std::vector<CsvCell>& cells, const Seats& seats, double t_s, PoseBody& body) {
+  /// What the map asks for.
+  struct Wanted {
+    Located<std::string> from;
+    PoseBody* body = nullptr;
+    double most_error = 0;  ///< in the file's unit
+    MarkerErrors errors = {};
+    Seats seats = {};
+  };
+
+  void TakePose(const std::vector<CsvCell>& cells, const Seats& seats, double t_s, Wanted& wanted) {
+    PoseBody& body = *wanted.body;
     std::vector<std::size_t> all = seats.position;
     all.insert(all.end(), seats.orientation.begin(), seats.orientation.end());
     const auto missing = [&](std::size_t seat) { return IsMissing(cells[seat]); };
@@ -447,6 +479,10 @@ class CsvPoseReader {
                         orientation_.form == OrientationForm::kQuaternion
                             ? "are these the four columns of one body's orientation?"
                             : "");
+    }
+    if (seats.error && !IsMissing(cells[*seats.error])) {
+      const auto error = Number(cells[*seats.error]);
+      if (!error || !wanted.errors.Take(*error, wanted.most_error, t_s, line_)) return;
     }
     body.samples.push_back(sample);
   }
@@ -491,8 +527,8 @@ class CsvPoseReader {
   int line_ = 0;
   std::vector<std::string> names_;
   std::map<std::string, std::size_t> seats_by_name_;
-  std::map<std::string, int> twice_;          ///< names of several columns -> place of the last
-  std::map<std::string, std::size_t> index_;  ///< of bodies
+  std::map<std::string, int> twice_;     ///< names of several columns -> place of the last
+  std::map<std::string, Wanted> index_;  ///< bodies and markers
   std::optional<std::size_t> time_seat_;
   std::vector<std::size_t> body_seats_;
   std::map<std::string, std::size_t> rows_of_;  ///< by body, of files without times
@@ -500,7 +536,6 @@ class CsvPoseReader {
   std::map<std::string, double> last_times_s_;  ///< by body; of a row with all bodies under ""
   std::size_t steps_ = 0, whole_steps_ = 0, unit_steps_ = 0;  ///< of times
   Seats shared_;
-  std::vector<Seats> wide_;
   std::vector<std::vector<std::size_t>> opening_seats_;  ///< of each of the openings
 };
 

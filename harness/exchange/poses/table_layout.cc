@@ -44,17 +44,6 @@ void SetColumns(std::vector<Located<std::string>>& columns, std::initializer_lis
 
 bool IsNumber(std::string_view text) { return NumberOf(text, true).has_value(); }
 
-std::optional<LengthUnit> UnitCalled(std::string name) {
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-  static const std::map<std::string, LengthUnit> kUnits = {
-      {"m", LengthUnit::kMetre},       {"meters", LengthUnit::kMetre},
-      {"cm", LengthUnit::kCentimetre}, {"centimeters", LengthUnit::kCentimetre},
-      {"mm", LengthUnit::kMillimetre}, {"millimeters", LengthUnit::kMillimetre},
-      {"inches", LengthUnit::kInch},   {"in", LengthUnit::kInch}};
-  const auto found = kUnits.find(name);
-  return found == kUnits.end() ? std::nullopt : std::optional(found->second);
-}
-
 /// Those with a column that ends so.
 std::vector<std::string> BodiesWith(const TableLayout& layout, const std::string& ending) {
   std::vector<std::string> bodies;
@@ -68,7 +57,9 @@ std::optional<TableLayout> MotiveOf(const Lines& lines) {
   std::size_t axes = 1;
   while (axes < lines.size() && !lines[axes].starts_with("Frame,")) ++axes;
   if (axes < 4 || axes >= lines.size()) return std::nullopt;
-  TableLayout layout{.name = "a CSV file of Motive", .first_row = static_cast<int>(axes) + 2};
+  TableLayout layout{.name = "a CSV file of Motive",
+                     .first_row = static_cast<int>(axes) + 2,
+                     .error = "Mean Marker Error"};
   std::map<std::string, std::string> says;
   const std::vector<std::string> first = Words(lines.front(), Separator::kComma);
   for (std::size_t i = 0; i + 1 < first.size(); i += 2) says[first[i]] = first[i + 1];
@@ -206,7 +197,8 @@ std::vector<std::string> QualisysColumns(const std::vector<std::string>& bodies,
 
 std::optional<TableLayout> QualisysOf(const Lines& lines) {
   if (!lines.front().starts_with("NO_OF_FRAMES\t")) return std::nullopt;
-  TableLayout layout{.name = "a TSV file of Qualisys", .separator = Separator::kTab};
+  TableLayout layout{
+      .name = "a TSV file of Qualisys", .separator = Separator::kTab, .error = "Residual"};
   std::vector<std::string> bodies;
   std::size_t row = 0;
   for (; row < lines.size() && !lines[row].empty(); ++row) {
@@ -399,6 +391,17 @@ void Complete(TableLayout& layout, Where where, ImportMap& map, DiagnosticList& 
 
 }  // namespace
 
+std::optional<LengthUnit> UnitCalled(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  static const std::map<std::string, LengthUnit> kUnits = {
+      {"m", LengthUnit::kMetre},       {"meters", LengthUnit::kMetre},
+      {"cm", LengthUnit::kCentimetre}, {"centimeters", LengthUnit::kCentimetre},
+      {"mm", LengthUnit::kMillimetre}, {"millimeters", LengthUnit::kMillimetre},
+      {"inches", LengthUnit::kInch},   {"in", LengthUnit::kInch}};
+  const auto found = kUnits.find(name);
+  return found == kUnits.end() ? std::nullopt : std::optional(found->second);
+}
+
 std::optional<TableLayout> LayoutOf(std::string_view text) {
   const Lines lines = HeadOf(text);
   if (lines.empty()) return std::nullopt;
@@ -408,9 +411,13 @@ std::optional<TableLayout> LayoutOf(std::string_view text) {
 }
 
 Result<MapFile> ReadMapOfTable(const std::string& path, const std::string& table) {
-  std::optional<TableLayout> layout = LayoutOfFile(table);
-  Result<MapFile> file = ReadImportMap(
-      path, PoseFormat::kCsv, [&](Where where, ImportMap& map, DiagnosticList& errors) {
+  return ReadMapWith(path, PoseFormat::kCsv, LayoutOfFile(table));
+}
+
+Result<MapFile> ReadMapWith(const std::string& path, PoseFormat format,
+                            std::optional<TableLayout> layout) {
+  Result<MapFile> file =
+      ReadImportMap(path, format, [&](Where where, ImportMap& map, DiagnosticList& errors) {
         if (layout && layout->yields && !map.columns.position.empty()) layout.reset();
         if (layout) Complete(*layout, where, map, errors);
       });

@@ -30,12 +30,20 @@ struct TableLayout {
   std::optional<std::string> euler_order;
   std::optional<bool> angles_in_degrees;
   bool zero_is_missing = false;
+  std::string error;  ///< how the tracker's error of a body is called
   std::vector<std::string> notes;
 };
+
+/// "mm", "Meters"
+std::optional<LengthUnit> UnitCalled(std::string name);
 
 /// By the first lines of a file.
 std::optional<TableLayout> LayoutOf(std::string_view text);
 
+/// With what a file says of itself, if it says anything; where the map says otherwise, that is an
+/// error.
+Result<MapFile> ReadMapWith(const std::string& path, PoseFormat format,
+                            std::optional<TableLayout> layout);
 /// With what the file `table` says of itself; where the map says otherwise, that is an error.
 Result<MapFile> ReadMapOfTable(const std::string& path, const std::string& table);
 
