@@ -4,7 +4,6 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
-
 namespace prehend {
 
 Interrupt::Interrupt() {

@@ -2,8 +2,8 @@
 // Pictures of a recorded run: what the scenario asks for, composed from the recording and its
 // timeline; scenes as PNGs in memory, for sheets, comparisons and films that are put together of
 // several. Built with the render room (harness/show/pictures/pictures_with_render.cc) or without it
-// (harness/show/pictures/pictures_without_render.cc). Tested by tests/program/acceptance_test.cc and
-// tests/harness/show/pictures/scene_painter_test.cc
+// (harness/show/pictures/pictures_without_render.cc). Tested by tests/program/acceptance_test.cc
+// and tests/harness/show/pictures/scene_painter_test.cc
 #pragma once
 
 #include <cstdint>
