@@ -38,8 +38,9 @@ TEST_F(Figure, ChartsAreVectorsOrPixels) {
   EXPECT_TRUE(Has(ReadFile(Path("a.svg")), "milk_carton_wrap, pick_and_place"));
   EXPECT_EQ(ReadFile(Path("a.pdf")).substr(0, 4), "%PDF");
   EXPECT_EQ(ReadFile(Path("a.png")).substr(1, 3), "PNG");
-  ASSERT_EQ(
-      Do({"plate", "-o", Path("b.svg"), "--from", "1", "--to", "2", "--transparent"}).exit_code, 0);
+  ASSERT_EQ(Do({"plate", "-o", Path("b.svg"), "--from", "1", "--to", "2", "--look", "transparent"})
+                .exit_code,
+            0);
   EXPECT_FALSE(Has(ReadFile(Path("b.svg")), "\"100%\""));
 }
 

@@ -499,7 +499,7 @@ TEST(Import, TheOtherDocumentedFilesHaveTheSameEvents) {
 }
 
 TEST(Import, TheSchemaOfMapsIsJson) {
-  const Said said = Prehend({"scenario", "schema", "--import-map"});
+  const Said said = Prehend({"scenario", "schema", "import-map"});
   EXPECT_EQ(said.exit_code, 0);
   EXPECT_NE(said.out.find("\"quaternion_order\""), std::string::npos);
 }

@@ -95,7 +95,7 @@ def check_kind(folder, kind, ends_in):
         names = sorted(file["data"], key=lambda name: int(name[5:]))
     edges = {name: edges_of(episodes, name) for name in names}
     whole = [name for name in names if edges[name][1] is not None]
-    told = said("episode", "label", episodes, "--map", map_path, "--write", labelled, code=0 if len(whole) == len(names) else 1)
+    told = said("episode", "label", episodes, "--map", map_path, "-o", labelled, code=0 if len(whole) == len(names) else 1)
     assert open(source, "rb").read() == bytes_before
     assert f"{len(whole)} of {len(names)} episodes are labelled" in told, told
     after = datasets(labelled)
@@ -116,7 +116,7 @@ def check_kind(folder, kind, ends_in):
                 assert f"{name} is left without labels: {why} of grasping cube_1" in told
                 assert f"data/{name}/{group}/subtask_term_signals/place_1" not in after
     again = os.path.join(folder, "again.hdf5")
-    said("episode", "label", episodes, "--map", map_path, "--write", again, code=0 if len(whole) == len(names) else 1)
+    said("episode", "label", episodes, "--map", map_path, "-o", again, code=0 if len(whole) == len(names) else 1)
     assert open(again, "rb").read() == open(labelled, "rb").read()
     if shutil.which("h5diff"):
         words = ["h5diff", "-q"] + [word for name in sorted(new) for word in ("--exclude-path", "/" + name)]
@@ -161,18 +161,18 @@ def check_faults(folder, episodes, map_path):
                            (LABELS[:LABELS.index("text:")], "", "the map has no 'labels'")):
         with open(wrong, "w", encoding="utf-8") as file:
             file.write(text.replace(old, new))
-        assert told in said("episode", "label", episodes, "--map", wrong, "--write", out, code=2), told
+        assert told in said("episode", "label", episodes, "--map", wrong, "-o", out, code=2), told
     with open(wrong, "w", encoding="utf-8") as file:  # true from the first frame on
         file.write(text.replace("at: begin, of: grasping, object: cube_1", "at: begin, of: supported_by, object: cube_2"))
-    assert "grasp_1 would be true in the first frame" in said("episode", "label", episodes, "--map", wrong, "--write", out, code=1)
+    assert "grasp_1 would be true in the first frame" in said("episode", "label", episodes, "--map", wrong, "-o", out, code=1)
     os.remove(out)
     source = map_path.replace(".yaml", ".hdf5")
-    assert "original" in said("episode", "label", episodes, "--map", map_path, "--write", source, code=2)
+    assert "original" in said("episode", "label", episodes, "--map", map_path, "-o", source, code=2)
     said("episode", "label", episodes, "--map", map_path, code=2)
-    said("episode", "label", episodes, "--map", map_path, "--write", out, "--to", "csv", code=2)
+    said("episode", "label", episodes, "--map", map_path, "-o", out, "--to", "csv", code=2)
     assert not os.path.exists(out)
     os.rename(source, source + ".away")
-    said("episode", "label", episodes, "--map", map_path, "--write", out, code=2)
+    said("episode", "label", episodes, "--map", map_path, "-o", out, code=2)
     os.rename(source + ".away", source)
 
 

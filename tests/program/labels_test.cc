@@ -253,7 +253,7 @@ TEST_F(Labelled, ASweepMeasuresLabelsAsScoreDoes) {
             "right with any of them, so none is the best\n"
             "F1: an event is right if both boundaries are within 50 ms\n"
             "counted: 2 labels of 1 take\n");
-  const Said svg = sweep({"--collar-ms", "50", "--picture", Path("sweep.svg")});
+  const Said svg = sweep({"--collar-ms", "50", "-o", Path("sweep.svg")});
   EXPECT_EQ(svg.exit_code, 0) << svg.err;
   EXPECT_FALSE(Has(ReadFile(Path("sweep.svg")), "#d00"));
   EXPECT_TRUE(Has(ReadFile(Path("sweep.svg")), "every setting scores 0"));

@@ -32,16 +32,16 @@ nlohmann::json Asked(const std::string& file, std::vector<std::string> words) {
 TEST(Query, TheThreeQuestionsOfThePaperAreAnswered) {
   const std::string file = ThreeEpisodes("paper_questions");
   // 1. When was an object of this class slid?
-  const auto slid = Asked(file, {"--event", "sliding", "--class", "object=MilkCarton"});
+  const auto slid = Asked(file, {"--event", "sliding", "--role", "object=MilkCarton"});
   ASSERT_FALSE(slid.empty());
   for (const auto& answer : slid) {
     EXPECT_EQ(answer["scenario"], "slide/hop_divides_a_slide");
     EXPECT_EQ(answer["roles"]["object"], "milk");
   }
-  EXPECT_TRUE(Asked(file, {"--event", "sliding", "--class", "object=Cup"}).empty());
+  EXPECT_TRUE(Asked(file, {"--event", "sliding", "--role", "object=Cup"}).empty());
   // 2. When was a handle grasped that is a part of a drawer?
-  const auto grasped = Asked(
-      file, {"--event", "grasping", "--class", "object=Handle", "--part-of", "object=drawer"});
+  const auto grasped =
+      Asked(file, {"--event", "grasping", "--role", "object=Handle", "--part-of", "object=drawer"});
   ASSERT_EQ(grasped.size(), 1u);
   EXPECT_EQ(grasped[0]["scenario"], "furniture/drawer_is_opened_with_hook");
   EXPECT_TRUE(Asked(file, {"--event", "grasping", "--part-of", "object=table"}).empty());
@@ -157,7 +157,7 @@ TEST(Query, EachAnswerIsDrawn) {
   EXPECT_EQ(bad.exit_code, 2);
   EXPECT_NE(bad.err.find(file + " is what is read"), std::string::npos) << bad.err;
   const auto answers =
-      Asked(file, {"--event", "*ing", "--class", "any=Handle", "--show", folder.string()});
+      Asked(file, {"--event", "*ing", "--role", "any=Handle", "--show", folder.string()});
   ASSERT_GT(answers.size(), 1u);
   std::set<std::uintmax_t> sizes;
   for (const auto& answer : answers) {
@@ -177,7 +177,7 @@ TEST(Query, UnknownNamesAreNamed) {
   const auto file = (FreshFolder("query_names") / "a.episodes").string();
   ASSERT_EQ(Prehend({"run", "milk_carton_wrap", "--record", file}).exit_code, 0);
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {"--role", "hnd=right_hand"}, {"--class", "hnd=Hand"}, {"--part-of", "hnd=table"}}) {
+           {"--role", "hnd=right_hand"}, {"--role", "hnd=Hand"}, {"--part-of", "hnd=table"}}) {
     const Said said = Prehend({"episode", "query", file, words[0], words[1]});
     EXPECT_EQ(said.exit_code, 2);
     EXPECT_EQ(said.err,

@@ -131,7 +131,7 @@ TEST_F(Recognisers, WhatRepeatsTheGrammarHasItsTable) {
     }
   }
   const Said said = Score(take, Program(RepeatsWatch(kGrammar, events.dump())),
-                          {"--grammar", kGrammar, "--online", "--json"});
+                          {"--grammar", kGrammar, "--pace", "online", "--json"});
   ASSERT_EQ(said.exit_code, 0) << said.err;
   const json both = json::parse(said.out)["grammars"];
   ASSERT_EQ(both.size(), 2u);
@@ -176,7 +176,10 @@ TEST_F(Recognisers, BrokenOnesAreNamedAndNothingIsLeft) {
       {"another version", "print('{\"recogniser\": 2}')\n", "says no \"recogniser\": 1"},
       {"unknown fact", Python("", "", "'touch'"), "did you mean 'touches'?"},
       {"silent", Python("    time.sleep(60)\n"), "no end within 1 s", {limit, "1"}},
-      {"silent online", Python("    continue\n"), "no answer to tick", {limit, "1", "--online"}},
+      {"silent online",
+       Python("    continue\n"),
+       "no answer to tick",
+       {limit, "1", "--pace", "online"}},
       {"endless",
        Python("    while True: say({'begin': 'x'})\n"),
        "no end within 1 s|it has printed more than 64 MiB",
@@ -293,7 +296,7 @@ TEST_F(Recognisers, ATrySaysRuleByRule) {
     return Prehend(more);
   };
   const std::string distance = std::string("python3 -B ") + kExamples + "distance.py";
-  const Said good = tried(distance, {"--online"});
+  const Said good = tried(distance, {"--pace", "online"});
   EXPECT_EQ(good.exit_code, 0) << good.out << good.err;
   EXPECT_EQ(Has(good.out, "met        again: "), "");
   EXPECT_EQ(good.out.find("not "), good.out.find("not give up")) << good.out;
@@ -312,7 +315,7 @@ TEST_F(Recognisers, RealTimeKeepsThePaceOfTheRecording) {
   const std::string take = Take();
   const auto begin = std::chrono::steady_clock::now();
   const Said said = Score(take, Program(Python("    if count == 20: time.sleep(0.3)\n")),
-                          {"--real-time", "--json"});
+                          {"--pace", "real_time", "--json"});
   const double took_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   ASSERT_EQ(said.exit_code, 0) << said.err;

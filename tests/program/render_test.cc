@@ -126,8 +126,8 @@ TEST_F(RenderScenes, RegionsOfInterestAreDrawnWhenAsked) {
     EXPECT_EQ(Do(options).exit_code, 0);
     return ReadFile(Path(name));
   };
-  EXPECT_NE(picture("a.png", {}), picture("b.png", {"--regions"}));
-  EXPECT_EQ(Do({"--strip", "--regions"}).exit_code, 2);
+  EXPECT_NE(picture("a.png", {}), picture("b.png", {"--look", "regions"}));
+  EXPECT_EQ(Do({"--strip", "--look", "regions"}).exit_code, 2);
 }
 
 TEST_F(RenderScenes, TheOtherEngineHasScenesOfItsOwn) {
@@ -140,8 +140,9 @@ TEST_F(RenderScenes, TheOtherEngineHasScenesOfItsOwn) {
 
 TEST_F(RenderScenes, ATransparentGroundIsInTheFile) {
   ASSERT_EQ(Do({"--at", "1", "--size", "64x64", "-o", Path("a.png")}).exit_code, 0);
-  ASSERT_EQ(Do({"--at", "1", "--size", "64x64", "--transparent", "-o", Path("b.png")}).exit_code,
-            0);
+  ASSERT_EQ(
+      Do({"--at", "1", "--size", "64x64", "--look", "transparent", "-o", Path("b.png")}).exit_code,
+      0);
   constexpr std::size_t kColorType = 25;  // in the header of a PNG
   EXPECT_EQ(ReadFile(Path("a.png"))[kColorType], 2) << "RGB";
   EXPECT_EQ(ReadFile(Path("b.png"))[kColorType], 6) << "RGB with alpha";

@@ -29,7 +29,7 @@ TEST(Sweep, IsEqualToItsSingleRuns) {
                     png = (folder / "sweep.png").string();
   const Said swept =
       Prehend({"grammar", "sweep", file, "--over", "lift_rise=1cm..41cm:3", "--over",
-               "reach_min=50ms..150ms:2", "--truth", "recorded", "-o", csv, "--picture", png});
+               "reach_min=50ms..150ms:2", "--truth", "recorded", "-o", csv, "-o", png});
   ASSERT_EQ(swept.exit_code, 0) << swept.err;
   EXPECT_NE(swept.out.find("6 settings on 2 episodes"), std::string::npos) << swept.out;
   EXPECT_EQ(ReadFile(png).substr(1, 3), "PNG");

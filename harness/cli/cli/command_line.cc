@@ -55,17 +55,16 @@ ExitCode Run(const ChosenCommand& chosen, const std::vector<std::string>& words)
   const auto root = FindProjectRoot();
   if (!root) {
     const char* const home = std::getenv("PREHEND_HOME");
-    return Complain(context, ExitCode::kBadInput,
-                    home && *home ? "PREHEND_HOME is " + ShellQuoted(ReadableName(home)) +
-                                        ", which has neither prehend.yaml nor grammar/library"
-                                  : std::string("the project's folder was not found (it has "
-                                                "prehend.yaml or grammar/library); go there or set "
-                                                "PREHEND_HOME"));
+    return Refuse(context, home && *home
+                               ? "PREHEND_HOME is " + ShellQuoted(ReadableName(home)) +
+                                     ", which has neither prehend.yaml nor grammar/library"
+                               : std::string("the project's folder was not found (it has "
+                                             "prehend.yaml or grammar/library); go there or set "
+                                             "PREHEND_HOME"));
   }
   if (ReadableName(*root) != *root)
-    return Complain(context, ExitCode::kBadInput,
-                    "the name of the project's folder, " + ReadableName(*root) +
-                        ", holds what is no printable text; rename it");
+    return Refuse(context, "the name of the project's folder, " + ReadableName(*root) +
+                               ", holds what is no printable text; rename it");
   context.root = *root;
   for (const auto& refusal : {RefuseSmallStack(), RefuseUnreadableFolders(*root),
                               RefuseOutputsThatAreInputs(*root, *chosen.command, chosen.options)}) {
@@ -197,19 +196,33 @@ ProgramDescription DescribeProgram(const std::string& version) {
                        {"schema", "scenario schema"}},
       .old_options = {{"validate --watch", "--on-save"},
                       {"check --time-limit", "--time-limit-s"},
+                      {"new --verb", "--like"},
                       {"render --only", "--hand"},
+                      {"render --theme", "--look"},
+                      {"render --transparent", "--look=transparent"},
+                      {"render --regions", "--look=regions"},
                       {"figure --only", "--hand"},
+                      {"figure --theme", "--look"},
+                      {"figure --transparent", "--look=transparent"},
+                      {"figure --regions", "--look=regions"},
                       {"score --events", "--event"},
                       {"score --differences", "--verbose"},
+                      {"score --online", "--pace=online"},
+                      {"score --real-time", "--pace=real_time"},
                       {"episode resegment --compare", "--against"},
                       {"episode resegment --labels", "--output"},
                       {"episode resegment --events", "--event"},
+                      {"episode label --write", "--output"},
+                      {"episode query --class", "--role"},
                       {"episode query --scenario", "--episode"},
                       {"episode query --from-s", "--from"},
                       {"episode query --until-s", "--to"},
                       {"episode knowledge --to", "--also"},
                       {"episode ask --seconds", "--time-limit-s"},
-                      {"grammar margins --only", "--over"}},
+                      {"grammar margins --only", "--over"},
+                      {"grammar sweep --picture", "--output"},
+                      {"grammar recogniser --online", "--pace=online"},
+                      {"scenario schema --import-map", "import-map"}},
   };
 }
 

@@ -78,7 +78,7 @@ tl::expected<episode::ScenarioFile, ExitCode> FindScenarioOrComplain(
   if (!found) return tl::unexpected(Complain(context, found.error()));
   const episode::EpisodeName& first = found->front();
   if (const std::string lack = episode::Lacks(first, episode::Need::kScenario); !lack.empty())
-    return tl::unexpected(Complain(context, ExitCode::kBadInput, lack));
+    return tl::unexpected(Refuse(context, lack));
   return episode::ScenarioAt(episode::ListScenarios(context.root), first.file);
 }
 
@@ -132,6 +132,10 @@ ExitCode WarnOfScenariosNotRun(const CommandContext& context) {
   return files.empty() || !context.in_ci ? ExitCode::kAgrees : ExitCode::kBadInput;
 }
 
+ExitCode Refuse(const CommandContext& context, const std::string& message) {
+  return Complain(context, ExitCode::kBadInput, message);
+}
+
 void Warn(const CommandContext& context, const grammar::Diagnostics& warnings) {
   if (!warnings.empty()) context.err << Format(warnings);
 }
@@ -150,7 +154,7 @@ tl::expected<std::vector<episode::EpisodeName>, ExitCode> FindEpisodesOrComplain
   if (!found) return tl::unexpected(Complain(context, found.error()));
   for (const episode::Need need : needs) {
     if (const std::string lack = episode::Lack(*found, need); !lack.empty())
-      return tl::unexpected(Complain(context, ExitCode::kBadInput, lack));
+      return tl::unexpected(Refuse(context, lack));
   }
   return std::move(*found);
 }

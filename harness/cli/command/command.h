@@ -6,10 +6,8 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <ostream>
 #include <string>
-#include <string_view>
 #include <tl/expected.hpp>
 #include <vector>
 
@@ -97,6 +95,9 @@ tl::expected<episode::ScenarioFile, ExitCode> FindScenarioOrComplain(const std::
 /// Prints "prehend: MESSAGE" to `err`, of a failure also the command that shows it again, and
 /// returns `code`.
 ExitCode Complain(const CommandContext& context, ExitCode code, const std::string& message);
+
+/// The same of bad input.
+ExitCode Refuse(const CommandContext& context, const std::string& message);
 
 ExitCode Complain(const CommandContext& context, const episode::NotFound& none);
 

@@ -2,6 +2,7 @@
 #include "harness/cli/command/options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -40,6 +41,37 @@ ValueRule IntegersFrom(std::int64_t least, std::int64_t most) {
 }
 
 ValueRule NumbersFrom(double least, double most) { return RuleFor("a number", least, most); }
+
+ValueRule OneOf(const std::vector<std::string>& words) {
+  return {.problem = [words](const std::string& value) {
+    if (std::ranges::count(words, value) > 0) return std::string();
+    std::string wanted = fmt::format("{}", fmt::join(words, ", "));
+    if (const std::size_t last = wanted.rfind(", "); last != wanted.npos)
+      wanted.replace(last, 2, " or ");
+    return fmt::format("found '{}', wanted {}", value, wanted);
+  }};
+}
+
+ValueRule SomeOf(const std::vector<std::string>& words) {
+  return {fmt::format("{}", fmt::join(words, ", ")), [words](const std::string& value) {
+            for (const std::string& word : WordsOf(value)) {
+              if (std::ranges::count(words, word) == 0)
+                return fmt::format("found '{}', wanted some of {}, with commas between them", word,
+                                   fmt::join(words, ", "));
+            }
+            return std::string();
+          }};
+}
+
+std::vector<std::string> WordsOf(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return words;
+}
 
 std::vector<Option> InGroup(const std::string& group, std::vector<Option> options) {
   for (Option& option : options) option.group = group;
@@ -196,9 +228,13 @@ Option MemoryLimitOption() {
 
 Option JsonOption() { return {.name = "--json", .help = "print JSON instead of text"}; }
 
-Option OnlineOption() {
-  return {.name = "--online",
-          .help = "a program gets its next frame when it has answered the last one"};
+Option PaceOption() {
+  return {.name = "--pace",
+          .help =
+              "online: a program gets its next frame when it has answered the last one; real_time: "
+              "when its time comes; default: at once",
+          .placeholder = "online|real_time",
+          .rule = OneOf({"online", "real_time"})};
 }
 
 Option RecogniserLimitOption() {

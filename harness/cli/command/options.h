@@ -22,6 +22,12 @@ struct ValueRule {
 /// Numbers from `least` to `most`, both included; whole ones only, or any.
 ValueRule IntegersFrom(std::int64_t least, std::int64_t most);
 ValueRule NumbersFrom(double least, double most);
+/// One of these words; some of them, with commas between them.
+ValueRule OneOf(const std::vector<std::string>& words);
+ValueRule SomeOf(const std::vector<std::string>& words);
+
+/// The words between commas.
+std::vector<std::string> WordsOf(const std::string& text);
 
 /// One thing that can be typed. A name with dashes is an option, any other name is an argument,
 /// which is recognised by its place. An option without placeholder is a flag.
@@ -82,7 +88,7 @@ Option EpisodeFilesArgument();  ///< "files": no others
 Option EpisodeOption();         ///< one of an episode file
 Option EpisodesOption();        ///< some of episode files
 Option GrammarOption();
-Option OnlineOption();           ///< of a recogniser
+Option PaceOption();             ///< of a recogniser
 Option RecogniserLimitOption();  ///< for an episode
 Option SettingsOption();         ///< of a grammar and a scenario
 Option ParametersOption();       ///< of a grammar alone

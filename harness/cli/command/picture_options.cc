@@ -9,12 +9,8 @@
 namespace prehend::cli {
 namespace {
 
-ValueRule Themes() {
-  return {"light or print", [](const std::string& value) {
-            return value == "light" || value == "print"
-                       ? std::string()
-                       : fmt::format("expected light or print, found '{}'", value);
-          }};
+bool Looks(const ParsedOptions& options, const char* word) {
+  return options.Has("--look") && std::ranges::count(WordsOf(options.Text("--look")), word) > 0;
 }
 
 }  // namespace
@@ -46,23 +42,21 @@ std::vector<Option> LookOptions() {
            .help = "scale of all text; default: 1",
            .placeholder = "SCALE",
            .rule = NumbersFrom(0.3, 5)},
-          {.name = "--theme",
-           .help = "light, or print: on white paper",
-           .placeholder = "THEME",
-           .rule = Themes()},
-          {.name = "--transparent", .help = "without a ground: for slides and posters"},
-          {.name = "--regions",
-           .help = "the regions of interest of what hands do at the moment, and a star above "
-                   "each thing that a hand may be reaching for"}};
+          {.name = "--look",
+           .help = "print: on white paper; transparent: without a ground, for slides and posters; "
+                   "regions: with the regions of interest of what hands do at the moment, and a "
+                   "star above each thing that a hand may be reaching for",
+           .placeholder = "LOOK,..",
+           .rule = SomeOf({"print", "transparent", "regions"})}};
 }
 
 show::PictureFormat FormatOfOptions(const ParsedOptions& options) {
   show::PictureFormat format{.text_scale = options.NumberOr("--text", 1),
-                             .print = options.Text("--theme") == "print",
-                             .transparent = options.Has("--transparent"),
+                             .print = Looks(options, "print"),
+                             .transparent = Looks(options, "transparent"),
                              .only = options.Text("--hand"),
                              .of = options.Text("--of"),
-                             .regions = options.Has("--regions")};
+                             .regions = Looks(options, "regions")};
   if (options.Has("--from")) format.from_s = options.NumberOr("--from", 0);
   if (options.Has("--to")) format.to_s = options.NumberOr("--to", 0);
   return format;
@@ -112,17 +106,7 @@ show::SceneFormat SceneFormatOf(const ParsedOptions& options, const std::string&
           .picture = FormatOfOptions(options),
           .chart = {.width_px = width_px,
                     .text_px = 12 * options.NumberOr("--text", 1),
-                    .transparent = options.Has("--transparent")}};
-}
-
-std::vector<std::string> WordsOf(const std::string& text) {
-  std::vector<std::string> words;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    words.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return words;
+                    .transparent = Looks(options, "transparent")}};
 }
 
 }  // namespace prehend::cli

@@ -14,7 +14,7 @@ namespace prehend::cli {
 
 /// --from, --to, --hand, --of.
 std::vector<Option> PartOptions();
-/// --camera, --text, --theme, --transparent, --regions.
+/// --camera, --text, --look.
 std::vector<Option> LookOptions();
 
 /// What these options say; the rest is as of a picture.
@@ -32,8 +32,5 @@ show::Window WindowOf(const ParsedOptions& options, const episode::RunResult& ru
 /// `camera`: unless another one is asked for; `width_px`: of the drawing.
 show::SceneFormat SceneFormatOf(const ParsedOptions& options, const std::string& camera,
                                 double width_px);
-
-/// The words between commas.
-std::vector<std::string> WordsOf(const std::string& text);
 
 }  // namespace prehend::cli

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend accept: what a person decides. Tested by tests/program/golden_workflow_test.cc
+// prehend accept: what a person decides. prehend review: what is to be accepted. Tested by
+// tests/program/golden_workflow_test.cc
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/suite/accept/accept.h"
+#include "harness/suite/accept/review.h"
 
 namespace prehend::cli {
 namespace {
@@ -51,9 +54,7 @@ std::string Refusal(const ParsedOptions& options, bool is_recording) {
 /// One of the project, or the exit code when what was typed can have no golden.
 tl::expected<episode::ScenarioFile, ExitCode> ScenarioWithGolden(const std::string& typed,
                                                                  const CommandContext& context) {
-  const auto refuse = [&](const std::string& why) {
-    return tl::unexpected(Complain(context, ExitCode::kBadInput, why));
-  };
+  const auto refuse = [&](const std::string& why) { return tl::unexpected(Refuse(context, why)); };
   if (episode::EpisodeKindOf(typed) == episode::EpisodeKind::kEpisodeFile) {
     const auto kept = episode::FindEpisodes({&typed, 1}, "", context.root);
     if (!kept) return tl::unexpected(Complain(context, kept.error()));
@@ -71,8 +72,7 @@ tl::expected<episode::ScenarioFile, ExitCode> ScenarioWithGolden(const std::stri
 
 ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) {
   if (context.in_ci)
-    return Complain(context, ExitCode::kBadInput,
-                    "accept is disabled where CI is set: a golden is a person's decision");
+    return Refuse(context, "accept is disabled where CI is set: a golden is a person's decision");
   const std::string typed = options.Text("scenario");
   std::error_code error;
   const bool is_recording = episode::EpisodeKindOf(typed) == episode::EpisodeKind::kJsonLines &&
@@ -81,7 +81,7 @@ ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) 
   if (!is_recording) scenario = ScenarioWithGolden(typed, context);
   if (!scenario) return scenario.error();
   const std::string refusal = Refusal(options, is_recording);
-  if (!refusal.empty()) return Complain(context, ExitCode::kBadInput, refusal);
+  if (!refusal.empty()) return Refuse(context, refusal);
   const auto text_of = [&](const char* name) {
     return options.Has(name) ? std::optional(options.Text(name)) : std::nullopt;
   };
@@ -102,6 +102,17 @@ ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) 
   context.out << outcome->text;
   return outcome->problem.empty() ? outcome->code
                                   : Complain(context, outcome->code, outcome->problem);
+}
+
+ExitCode RunReview(const ParsedOptions& options, const CommandContext& context) {
+  const auto reviews =
+      suite::Reviews(options.All("names"), options.Text("--grammar"), context.root);
+  if (!reviews) return Complain(context, reviews.error().exit_code, reviews.error().why);
+  if (options.Has("--json"))
+    context.out << suite::ReviewsJson(*reviews).dump(2) << "\n";
+  else
+    context.out << suite::ReviewsText(*reviews);
+  return reviews->empty() ? ExitCode::kAgrees : ExitCode::kPending;
 }
 
 }  // namespace
@@ -149,6 +160,24 @@ Command AcceptCommand() {
                    .help =
                        "accept the pictures, not the events; they are kept beside the timeline"}},
       .run = RunAccept};
+}
+
+Command ReviewCommand() {
+  return {
+      .name = "review",
+      .summary = "Show what is pending, and how it differs from the goldens",
+      .examples = {"review", "review milk_carton_wrap 'slide/*'"},
+      .options = {{.name = "names",
+                   .help =
+                       "names, skill/name, globs, or files of recordings of trackers; default: all "
+                       "that is pending",
+                   .repeatable = true},
+                  {.name = "--grammar",
+                   .help =
+                       "of recordings of trackers: this grammar instead of the one that they name",
+                   .placeholder = "NAME|FILE"},
+                  JsonOption()},
+      .run = RunReview};
 }
 
 }  // namespace prehend::cli

@@ -86,11 +86,6 @@ std::string RecordProblem(const std::string& file) {
   return episode::IsEpisodeFile(file) ? "" : "found '" + file + "', wanted a file NAME.episodes";
 }
 
-std::string ReplayProblem(const std::string& word) {
-  if (word == "failures" || word == "all" || word == "none") return "";
-  return "found '" + word + "', wanted failures, all or none";
-}
-
 /// A page that cannot show replays gets none.
 suite::Replays ReplaysOf(const ParsedOptions& options) {
   const std::string word = options.TextOr("--replay", "failures");
@@ -121,7 +116,7 @@ std::vector<Option> ResultOptions() {
            .help = "of which scenarios the page has a 3D replay: failures (the default), "
                    "all, none",
            .placeholder = "WHICH",
-           .rule = {.range = {}, .problem = ReplayProblem}},
+           .rule = OneOf({"failures", "all", "none"})},
           {.name = "--verbose",
            .help = "print the details of every failure, also of more than ten"},
           JsonOption(),
@@ -314,13 +309,12 @@ std::string WhyNotPlayed(const suite::ScenarioSelection& selection, const Parsed
 
 ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--changed") && (options.Has("--grammar") || options.Has("--set"))) {
-    return Complain(context, ExitCode::kBadInput,
-                    "--changed compares files; it cannot be combined with --grammar or --set");
+    return Refuse(context,
+                  "--changed compares files; it cannot be combined with --grammar or --set");
   }
   const std::string junit = options.Text("--junit");
   if (junit == "-" && options.Has("--json")) {
-    return Complain(context, ExitCode::kBadInput,
-                    "--junit - contradicts --json: both would be printed");
+    return Refuse(context, "--junit - contradicts --json: both would be printed");
   }
   const ExitCode strays = options.Has("names") ? ExitCode::kAgrees : WarnOfScenariosNotRun(context);
   if (strays != ExitCode::kAgrees) return strays;
@@ -328,14 +322,14 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
       suite::SelectScenarios(options.All("names"), options.All("--filter"), context.root);
   if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
   const std::string cannot = WhyNotPlayed(*selection, options);
-  if (!cannot.empty()) return Complain(context, ExitCode::kBadInput, cannot);
+  if (!cannot.empty()) return Refuse(context, cannot);
   if (options.Has("--shard")) {
     suite::KeepShard(*suite::ParseShard(options.Text("--shard")), *selection);
   }
   const suite::SuiteRequest request = RequestFrom(options, context, std::move(*selection));
   const std::string page = (fs::path(request.report_folder) / "index.html").string();
   std::string problem = WhyNotWritten(options, page);
-  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, problem);
+  if (!problem.empty()) return Refuse(context, problem);
   Interrupt interrupt;
   const std::vector<suite::ScenarioVerdict> verdicts =
       suite::RunSuite(request, ProgressOn(context), &interrupt);

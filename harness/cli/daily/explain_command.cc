@@ -10,7 +10,6 @@
 #include "harness/episode/run/run_text.h"
 #include "harness/show/explain/explain.h"
 #include "harness/show/explain/query.h"
-#include "harness/suite/check/check_scenario.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::cli {
@@ -98,8 +97,7 @@ ExitCode Answer(const ParsedOptions& options, const CommandContext& context,
 
 ExitCode RunExplain(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--event") && options.Has("--expected")) {
-    return Complain(context, ExitCode::kBadInput,
-                    "--event contradicts --expected; give one of them");
+    return Refuse(context, "--event contradicts --expected; give one of them");
   }
   auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
   if (!episode) return episode.error();
@@ -114,7 +112,7 @@ ExitCode RunExplain(const ParsedOptions& options, const CommandContext& context)
     *ask = *read;
   }
   const show::Watched watched = show::Watch(*episode);
-  if (!watched.problem.empty()) return Complain(context, ExitCode::kBadInput, watched.problem);
+  if (!watched.problem.empty()) return Refuse(context, watched.problem);
   const ExitCode code =
       Answer(options, context, episode->loaded().scenario.name, question, *watched.past);
   if (watched.failure.empty() || code != ExitCode::kAgrees) return code;

@@ -38,14 +38,14 @@ constexpr Kind kKinds[] = {
      "height of what moves, trigger and force of each hand, over time"},
     {"gaze", "gaze/eyes_lead_the_hand", 3, "what a person sees, for how long, and how far it is"}};
 
-const Kind* KindOf(const std::string& name) {
-  const auto kind = std::ranges::find(kKinds, name, [](const Kind& one) { return one.name; });
-  return kind == std::end(kKinds) ? nullptr : kind;
+const Kind& KindOf(const std::string& name) {
+  return *std::ranges::find(kKinds, name, [](const Kind& one) { return one.name; });
 }
 
-std::string KindProblem(const std::string& name) {
-  if (KindOf(name)) return "";
-  return "found '" + name + "', wanted keyframes, phases, grasps, plate or gaze";
+std::vector<std::string> KindNames() {
+  std::vector<std::string> names;
+  for (const Kind& kind : kKinds) names.emplace_back(kind.name);
+  return names;
 }
 
 std::string KindHelp() {
@@ -115,12 +115,10 @@ tl::expected<std::vector<show::KeyMoment>, ExitCode> MomentsOf(const Kind& kind,
   const show::Window window = WindowOf(options, run);
   if (options.Has("--at")) {
     auto moments = show::NamedMoments(WordsOf(options.Text("--at")), *played.loaded.program, run);
-    if (!moments)
-      return tl::unexpected(Complain(context, ExitCode::kBadInput, "--at: " + moments.error()));
+    if (!moments) return tl::unexpected(Refuse(context, "--at: " + moments.error()));
     if (moments->size() > kMostScenes)
-      return tl::unexpected(Complain(
-          context, ExitCode::kBadInput,
-          fmt::format("--at: found {} moments, wanted at most {}", moments->size(), kMostScenes)));
+      return tl::unexpected(Refuse(context, fmt::format("--at: found {} moments, wanted at most {}",
+                                                        moments->size(), kMostScenes)));
     return std::move(*moments);
   }
   const auto count = static_cast<std::size_t>(options.IntOr("--scenes", kind.scenes));
@@ -178,16 +176,16 @@ std::string WhyNot(const Kind& kind, const ParsedOptions& options) {
 }
 
 ExitCode RunFigure(const ParsedOptions& options, const CommandContext& context) {
-  const Kind& kind = *KindOf(options.Text("kind"));
+  const Kind& kind = KindOf(options.Text("kind"));
   std::string problem = WhyNot(kind, options);
   if (problem.empty()) problem = WhyNotWritable(options.Text("--output"));
-  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, problem);
+  if (!problem.empty()) return Refuse(context, problem);
   const std::string typed = options.TextOr("EPISODE", kind.scenario);
   if (std::string_view(kind.name) == "grasps") return DrawGrasps(typed, options, context);
   const auto played = PlayTyped(typed, options, context);
   if (!played) return played.error();
   problem = WhyNotShown(options, played->loaded.scenario, played->run);
-  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, problem);
+  if (!problem.empty()) return Refuse(context, problem);
   return kind.HasChart() ? DrawChart(kind, *played, options, context)
                          : DrawKeyFrames(*played, options, context);
 }
@@ -201,13 +199,10 @@ Command FigureCommand() {
       .examples = {"figure keyframes -o keyframes.png",
                    "figure phases slide/hop_divides_a_slide -o phases.pdf",
                    "figure phases milk_carton_wrap --against original_2020 -o two.pdf",
-                   "figure plate --from 1 --to 4 -o plate.svg --transparent",
+                   "figure plate --from 1 --to 4 -o plate.svg --look transparent",
                    "figure gaze suite.episodes --episode gaze/eyes_lead_the_hand -o gaze.png"},
       .options = Joined(
-          {{.name = "kind",
-            .help = KindHelp(),
-            .rule = {.range = {}, .problem = KindProblem},
-            .required = true},
+          {{.name = "kind", .help = KindHelp(), .rule = OneOf(KindNames()), .required = true},
            {.name = "EPISODE",
             .help = "a scenario, an episode file or a recording; for grasps a glob of scenarios"},
            EpisodeOption(),

@@ -37,7 +37,7 @@ ExitCode WriteRecording(episode::Recording& recording, const std::string& output
                         const CommandContext& context) {
   if (episode::IsEpisodeFile(output)) {
     if (const std::string problem = episode::WhyNotRecordable(output); !problem.empty())
-      return Complain(context, ExitCode::kBadInput, problem);
+      return Refuse(context, problem);
     const auto imported = episode::ImportRecording({.file = output,
                                                     .root = context.root,
                                                     .source = source,
@@ -50,7 +50,7 @@ ExitCode WriteRecording(episode::Recording& recording, const std::string& output
     return Complain(context, ExitCode::kFailure, imported->problem);
   }
   AtomicFile file(output);
-  if (!file.problem().empty()) return Complain(context, ExitCode::kBadInput, file.problem());
+  if (!file.problem().empty()) return Refuse(context, file.problem());
   episode::EpisodeWriter writer(file.stream(), recording.header);
   for (episode::EpisodeFrame& frame : recording.frames) writer.Write(frame.View());
   if (recording.says_its_end) writer.Finish(recording.end_tick);
@@ -63,11 +63,11 @@ ExitCode ImportLines(const std::string& file, const ParsedOptions& options,
                      const CommandContext& context) {
   const std::string& output = options.Text("--output");
   if (options.Has("--map"))
-    return Complain(context, ExitCode::kBadInput,
-                    "--map is for poses; " + file + " is a recording, which says what it means");
+    return Refuse(context,
+                  "--map is for poses; " + file + " is a recording, which says what it means");
   if (!options.Has("--check") && !episode::IsEpisodeFile(output))
-    return Complain(context, ExitCode::kBadInput,
-                    file + " is a recording already; -o NAME.episodes keeps it as an episode");
+    return Refuse(context,
+                  file + " is a recording already; -o NAME.episodes keeps it as an episode");
   Result<episode::Recording> recording = episode::ReadRecording(file);
   if (!recording) return Complain(context, recording.error());
   const std::string grammar = options.Text("--grammar");
@@ -112,9 +112,8 @@ ExitCode ImportDemonstrations(const std::string& path, const ParsedOptions& opti
   if (!import) return Complain(context, import.error());
   const std::size_t count = import->groups().size();
   if (!check && count > 1 && !episode::IsEpisodeFile(output))
-    return Complain(
-        context, ExitCode::kBadInput,
-        fmt::format("{} has {} demonstrations: -o NAME.episodes keeps them all", path, count));
+    return Refuse(context, fmt::format("{} has {} demonstrations: -o NAME.episodes keeps them all",
+                                       path, count));
   if (const grammar::Diagnostics wrong = import->WrongInMap(); !wrong.empty())
     return Complain(context, wrong);
   OnceEach warnings(context.err);
@@ -163,8 +162,8 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
   const std::string output = options.Text("--output"), poses = options.Text("poses");
   const bool check = options.Has("--check");
   if (check == !output.empty())
-    return Complain(context, ExitCode::kBadInput,
-                    "expected either -o, the recording to write, or --check, to write nothing");
+    return Refuse(context,
+                  "expected either -o, the recording to write, or --check, to write nothing");
   if (const auto format = exchange::PoseFormatOf(poses); options.Has("--map") && !format)
     return Complain(context, format.error());
   if (episode::EpisodeKindOf(poses) == episode::EpisodeKind::kJsonLines &&
@@ -179,10 +178,9 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
     return ExitCode::kAgrees;
   }
   if (!options.Has("--map"))
-    return Complain(context, ExitCode::kBadInput,
-                    fmt::format("{} needs --map, a file that says what it means "
-                                "(docs/motion-capture.md){}",
-                                poses, is_hdf5 ? "; --check alone proposes one" : ""));
+    return Refuse(context, fmt::format("{} needs --map, a file that says what it means "
+                                       "(docs/motion-capture.md){}",
+                                       poses, is_hdf5 ? "; --check alone proposes one" : ""));
   if (is_hdf5) return ImportDemonstrations(poses, options, context);
   auto imported = exchange::ImportPoses(poses, options.Text("--map"));
   if (!imported) return Complain(context, imported.error());

@@ -35,12 +35,12 @@ ExitCode RunList(const ParsedOptions& options, const CommandContext& context) {
   if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
   for (const episode::ScenarioFile& file : selection->scenarios) {
     if (file.episode)
-      return Complain(context, ExitCode::kBadInput,
-                      "list shows scenarios; '" + CommandText({"episode", "list", file.path}) +
-                          "' shows what an episode file has");
+      return Refuse(context, "list shows scenarios; '" +
+                                 CommandText({"episode", "list", file.path}) +
+                                 "' shows what an episode file has");
     if (const std::string lack = episode::Lacks(NameOf(file), episode::Need::kScenario);
         !lack.empty())
-      return Complain(context, ExitCode::kBadInput, lack);
+      return Refuse(context, lack);
     Result<scenario::Scenario> read = scenario::ReadScenario(file.path, {}, library);
     std::ranges::copy(ErrorsOf(read), std::back_inserter(diagnostics));
     scenario::Scenario scenario;

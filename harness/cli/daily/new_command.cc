@@ -3,6 +3,7 @@
 // tests/program/command_line_test.cc and tests/program/project_test.cc
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "harness/base/base/atomic_file.h"
@@ -80,9 +81,8 @@ ExitCode MakeProject(const std::string& typed, const CommandContext& context) {
   std::error_code error;
   if (fs::exists(folder, error) &&
       !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
-    return Complain(context, ExitCode::kBadInput,
-                    "--project: found " + ReadableName(typed) +
-                        ", which is not empty; wanted a new or an empty folder");
+    return Refuse(context, "--project: found " + ReadableName(typed) +
+                               ", which is not empty; wanted a new or an empty folder");
   for (const char* name : kProjectFiles) {
     const Result<std::string> text =
         name == kSchema ? scenario::ScenarioSchema()
@@ -124,8 +124,8 @@ tl::expected<TypedName, ExitCode> ReadName(const std::string& typed,
       (slash == typed.npos || episode::IsScenarioName(words.skill)))
     return words;
   const std::string fitting = slash == typed.npos ? AsName(words.name) : "";
-  return tl::unexpected(Complain(
-      context, ExitCode::kBadInput,
+  return tl::unexpected(Refuse(
+      context,
       "'" + typed +
           "' is not a scenario name; wanted a small letter, then small letters, digits and '_', at "
           "most 64 in all, like " +
@@ -136,27 +136,23 @@ tl::expected<TypedName, ExitCode> ReadName(const std::string& typed,
 /// What the new scenario starts from: another one, or a template by its name.
 tl::expected<Model, ExitCode> ModelFor(const std::string& name, const ParsedOptions& options,
                                        const CommandContext& context) {
-  if (options.Has("--like")) {
-    if (options.Has("--verb"))
-      return tl::unexpected(Complain(context, ExitCode::kBadInput,
-                                     "--like starts from a scenario, --verb from a template: give "
-                                     "one of them"));
-    const auto like = FindScenarioOrComplain(options.Text("--like"), context);
+  const std::string typed = options.Text("--like");
+  const std::vector<std::string> verbs = scenario::VerbNames(context.root);
+  if (!typed.empty() && std::ranges::count(verbs, typed) == 0) {
+    if (!grammar::NearestName(typed, verbs).empty() &&
+        !episode::FindEpisodes({&typed, 1}, "", context.root))
+      return tl::unexpected(Refuse(context, "--like: " + scenario::WhyNoVerb(typed, verbs)));
+    const auto like = FindScenarioOrComplain(typed, context);
     if (!like) return tl::unexpected(like.error());
     Result<std::string> read = ReadTextFile(like->path);
     if (!read) return tl::unexpected(Complain(context, read.error()));
     return Model{.path = like->path,
                  .text = std::move(*read),
-                 .skill = like->skill.empty() ? kDefaultSkill : like->skill,
-                 .made = {}};
+                 .skill = like->skill.empty() ? kDefaultSkill : like->skill};
   }
-  const std::string verb = options.Has("--verb") ? options.Text("--verb") : "";
-  if (const std::string problem = scenario::WhyNoVerb(verb, scenario::VerbNames(context.root));
-      !problem.empty())
-    return tl::unexpected(Complain(context, ExitCode::kBadInput, "--verb: " + problem));
   const Result<scenario::Templates> templates = scenario::ReadTemplates(context.root);
   if (!templates) return tl::unexpected(Complain(context, templates.error()));
-  scenario::NewScenario made = scenario::ComposeScenario(*templates, name, verb);
+  scenario::NewScenario made = scenario::ComposeScenario(*templates, name, typed);
   const auto path = std::filesystem::path(context.root) / "scenarios" / kDefaultSkill / "name.yaml";
   return Model{
       .path = path.string(), .text = made.text, .skill = kDefaultSkill, .made = std::move(made)};
@@ -189,7 +185,7 @@ ExitCode WriteHere(const Model& model, const std::string& name, const CommandCon
   const fs::path path = fs::current_path() / (name + ".yaml");
   std::error_code error;
   if (fs::symlink_status(path, error).type() != fs::file_type::not_found)
-    return Complain(context, ExitCode::kBadInput, "this file exists: " + path.string());
+    return Refuse(context, "this file exists: " + path.string());
   auto text = Composed(model, path, context);
   if (!text) return ExitCode::kBadInput;
   const std::string schema = (fs::path(context.root) / "scenarios/scenario.schema.json").string();
@@ -203,15 +199,15 @@ ExitCode WriteHere(const Model& model, const std::string& name, const CommandCon
 
 ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--project")) {
-    if (options.Has("name") || options.Has("--like") || options.Has("--verb"))
-      return Complain(context, ExitCode::kBadInput,
-                      "--project makes a project, not a scenario: leave out the other words");
+    if (options.Has("name") || options.Has("--like"))
+      return Refuse(context,
+                    "--project makes a project, not a scenario: leave out the other words");
     return MakeProject(options.Text("--project"), context);
   }
   if (!options.Has("name"))
-    return Complain(context, ExitCode::kBadInput,
-                    "the name of the scenario is missing, like 'new cup_is_lifted'; for a project "
-                    "of your own: --project DIR");
+    return Refuse(context,
+                  "the name of the scenario is missing, like 'new cup_is_lifted'; for a project "
+                  "of your own: --project DIR");
   const auto typed = ReadName(options.Text("name"), context);
   if (!typed) return typed.error();
   const std::string& name = typed->name;
@@ -221,17 +217,16 @@ ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
   if (skill == episode::kShowsErrors || skill == episode::kTemplates) {
     const std::string holds =
         skill == episode::kTemplates ? "templates of 'new'" : "examples of errors";
-    return Complain(context, ExitCode::kBadInput,
-                    "scenarios/" + skill + "/ holds " + holds +
-                        ", which no command reads as scenarios; choose another folder, like " +
-                        std::string(kDefaultSkill) + "/" + name);
+    return Refuse(context,
+                  "scenarios/" + skill + "/ holds " + holds +
+                      ", which no command reads as scenarios; choose another folder, like " +
+                      std::string(kDefaultSkill) + "/" + name);
   }
   if (!IsOwnProject(context.root) && !IsCalledIn(context.root))
     return WriteHere(*model, name, context);
   for (const episode::ScenarioFile& scenario : episode::ListScenarios(context.root)) {
     if (scenario.name == name)
-      return Complain(context, ExitCode::kBadInput,
-                      "a scenario of this name exists: " + scenario.path);
+      return Refuse(context, "a scenario of this name exists: " + scenario.path);
   }
   const auto path = std::filesystem::path(context.root) / "scenarios" / skill / (name + ".yaml");
   const auto text = Composed(*model, path, context);
@@ -248,7 +243,7 @@ Command NewCommand() {
   return {
       .name = "new",
       .summary = "Write a commented scenario that does what its name says, or a project",
-      .examples = {"new bottle_is_shaken", "new first_try --verb pour",
+      .examples = {"new bottle_is_shaken", "new first_try --like pour",
                    "new slide/carton_slides_far --like carton_slides_then_is_transported",
                    "new --project my_kitchen"},
       .options = {{.name = "name",
@@ -256,14 +251,11 @@ Command NewCommand() {
                        "what the scenario claims, like bottle_is_shaken; or skill/name. The verb "
                        "and the thing are taken from it. In a folder of no project the file is "
                        "written there"},
-                  {.name = "--verb",
-                   .help = fmt::format(
-                       "what happens, if the name does not say so: {}",
-                       fmt::join(scenario::VerbNames(FindProjectRoot().value_or("")), ", ")),
-                   .placeholder = "VERB"},
                   {.name = "--like",
-                   .help = "start from this scenario instead of a template",
-                   .placeholder = "SCENARIO"},
+                   .help = fmt::format(
+                       "start from this scenario; or what happens, if the name does not say so: {}",
+                       fmt::join(scenario::VerbNames(FindProjectRoot().value_or("")), ", ")),
+                   .placeholder = "SCENARIO|VERB"},
                   {.name = "--project",
                    .help = "make a project of your own in this new folder (docs/projects.md)",
                    .placeholder = "DIR"}},

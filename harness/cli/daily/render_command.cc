@@ -11,7 +11,6 @@
 #include "harness/base/base/project_paths.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/picture_options.h"
-#include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/show/figures/figures.h"
 #include "harness/show/pictures/film.h"
@@ -63,18 +62,10 @@ constexpr Part kParts[] = {
     {"strip", &show::PictureFormat::strip}, {"ghosts", &show::PictureFormat::ghosts},
     {"paths", &show::PictureFormat::paths}, {"gaze", &show::PictureFormat::gaze}};
 
-ValueRule PartsOfPicture() {
-  return {"title, labels, strip, ghosts, paths, gaze", [](const std::string& value) {
-            for (const std::string& word : WordsOf(value)) {
-              const auto is = [&](const Part& part) { return word == part.name; };
-              if (std::ranges::none_of(kParts, is))
-                return fmt::format(
-                    "expected some of title, labels, strip, ghosts, paths, gaze, "
-                    "with commas between them, found '{}'",
-                    word);
-            }
-            return std::string();
-          }};
+std::vector<std::string> PartNames() {
+  std::vector<std::string> names;
+  for (const Part& part : kParts) names.emplace_back(part.name);
+  return names;
 }
 
 show::PictureFormat FormatOf(const ParsedOptions& options) {
@@ -140,10 +131,9 @@ struct Product {
   const char* option;
   std::vector<const char*> unused;
 };
-const Product kProducts[] = {
-    {"--strip", {"--at", "--sheet", "--json", "--size", "--camera", "--theme", "--regions"}},
-    {"--against", {"--at", "--sheet", "--json", "--size", "--without"}},
-    {"--film", {"--at", "--sheet", "--json", "--output"}}};
+const Product kProducts[] = {{"--strip", {"--at", "--sheet", "--json", "--size", "--camera"}},
+                             {"--against", {"--at", "--sheet", "--json", "--size", "--without"}},
+                             {"--film", {"--at", "--sheet", "--json", "--output"}}};
 
 /// Why these options do not go together, or "".
 std::string WhyNotTogether(const ParsedOptions& options) {
@@ -155,6 +145,10 @@ std::string WhyNotTogether(const ParsedOptions& options) {
     for (const char* option : product.unused) {
       if (options.Has(option)) return fmt::format("{} does not go with {}", option, asked);
     }
+  }
+  for (const std::string& look : WordsOf(options.Text("--look"))) {
+    if (options.Has("--strip") && !look.empty() && look != "transparent")
+      return fmt::format("--look {} does not go with --strip", look);
   }
   for (const char* of_film : {"--fps", "--speed"}) {
     if (options.Has(of_film) && !options.Has("--film"))
@@ -171,7 +165,7 @@ tl::expected<suite::PlayedRun, ExitCode> Play(const ParsedOptions& options,
   auto played = PlayOrComplain(std::move(*episode), context);
   if (!played) return played;
   const std::string why = WhyNotShown(options, played->loaded.scenario, played->run);
-  if (!why.empty()) return tl::unexpected(Complain(context, ExitCode::kBadInput, why));
+  if (!why.empty()) return tl::unexpected(Refuse(context, why));
   return played;
 }
 
@@ -216,7 +210,7 @@ ExitCode RenderComparison(const ParsedOptions& options, const CommandContext& co
 ExitCode RenderFilm(const ParsedOptions& options, const CommandContext& context) {
   const std::string path = options.Text("--film");
   if (const std::string why = show::WhyNoFilm(path); !why.empty())
-    return Complain(context, ExitCode::kBadInput, "--film: " + why);
+    return Refuse(context, "--film: " + why);
   const auto played = Play(options, context);
   if (!played) return played.error();
   const episode::LoadedRun& loaded = played->loaded;
@@ -227,7 +221,7 @@ ExitCode RenderFilm(const ParsedOptions& options, const CommandContext& context)
                               .frames_per_s = options.NumberOr("--fps", 30),
                               .speed = options.NumberOr("--speed", 1)};
   if (const std::string why = show::WhyTooLong(film); !why.empty())
-    return Complain(context, ExitCode::kBadInput, "--film: " + why);
+    return Refuse(context, "--film: " + why);
   show::PictureFormat format = FormatOf(options);
   if (!options.Has("--size")) format.width_px = 960, format.height_px = 540;
   format.ghosts = false;
@@ -249,7 +243,7 @@ ExitCode RenderPictures(const ParsedOptions& options, const CommandContext& cont
   for (const std::string& why :
        {show::WhyNotChosen(choice, asked, loaded->scenario, *loaded->program),
         WhyNoPart(FormatOf(options), loaded->scenario), WhyNoSheet(options, asked.size())}) {
-    if (!why.empty()) return Complain(context, ExitCode::kBadInput, why);
+    if (!why.empty()) return Refuse(context, why);
   }
   if (!asked.empty()) loaded->scenario.pictures = std::move(asked);
   if (loaded->scenario.pictures.empty()) {
@@ -310,7 +304,7 @@ std::string WhyNoOutput(const ParsedOptions& options) {
 
 ExitCode RunRender(const ParsedOptions& options, const CommandContext& context) {
   for (const std::string& why : {WhyNotTogether(options), WhyNoOutput(options)})
-    if (!why.empty()) return Complain(context, ExitCode::kBadInput, why);
+    if (!why.empty()) return Refuse(context, why);
   if (options.Has("--strip")) return RenderStrip(options, context);
   if (options.Has("--against")) return RenderComparison(options, context);
   if (options.Has("--film")) return RenderFilm(options, context);
@@ -377,7 +371,7 @@ Command RenderCommand() {
                   {.name = "--without",
                    .help = "leave these out",
                    .placeholder = "PART,..",
-                   .rule = PartsOfPicture(),
+                   .rule = SomeOf(PartNames()),
                    .repeatable = true},
                   GrammarOption(),
                   SettingsOption(),

@@ -6,7 +6,6 @@
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/quoting.h"
-#include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/suite/check/run_suite.h"
 #include "harness/suite/report/report.h"
@@ -22,7 +21,7 @@ ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) 
   if (!chosen) return chosen.error();
   const std::string page = options.TextOr("--output", kDefaultPage);
   std::string problem = WhyNotWritable(page);
-  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, "--output: " + problem);
+  if (!problem.empty()) return Refuse(context, "--output: " + problem);
 
   const std::vector<episode::ScenarioFile> all = episode::ListScenarios(context.root);
   suite::ScenarioSelection selection;

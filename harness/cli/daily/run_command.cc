@@ -8,7 +8,6 @@
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/quoting.h"
-#include "harness/base/base/text_file.h"
 #include "harness/base/base/visible_stream.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episodes/record_episode.h"
@@ -51,10 +50,9 @@ ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& re
   const std::string file = options.Text("--record");
   if (options.Has("--record")) {
     if (!episode::IsEpisodeFile(file))
-      return Complain(context, ExitCode::kBadInput,
-                      "--record: many trials need an episode file, NAME.episodes");
+      return Refuse(context, "--record: many trials need an episode file, NAME.episodes");
     if (const std::string problem = episode::WhyNotRecordable(file); !problem.empty())
-      return Complain(context, ExitCode::kBadInput, "--record: " + problem);
+      return Refuse(context, "--record: " + problem);
     settings.play = [&](int trial, const episode::RunRequest& varied) {
       return episode::RecordTrial(trial, varied, RecordingOf(varied, {}, options, context));
     };
@@ -149,8 +147,7 @@ ExitCode PlayOne(const episode::ScenarioFile& file, const episode::RunRequest& r
   std::optional<episode::RunRecorder> recorder;
   if (options.Has("--record")) {
     recorder.emplace(RecordingOf(request, files, options, context), loaded->scenario);
-    if (!recorder->problem().empty())
-      return Complain(context, ExitCode::kBadInput, "--record: " + recorder->problem());
+    if (!recorder->problem().empty()) return Refuse(context, "--record: " + recorder->problem());
   }
   const episode::RunResult run = episode::PlayScenario(
       *loaded, {.record = options.Has("--report"), .measure = options.Has("--measure")},
@@ -174,8 +171,7 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
   const auto file = FindScenarioOrComplain(options.Text("scenario"), context);
   if (!file) return file.error();
   episode::RunRequest request = RequestOf(options, file->path);
-  if (const std::string why = WhyRefused(options); !why.empty())
-    return Complain(context, ExitCode::kBadInput, why);
+  if (const std::string why = WhyRefused(options); !why.empty()) return Refuse(context, why);
   if (options.Has("--trials")) return CountTrials(options, request, context);
   if (options.Has("--trial")) {
     auto varied = episode::RequestOfTrial(request, context.root, options.IntOr("--trial", 1));

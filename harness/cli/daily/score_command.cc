@@ -52,11 +52,10 @@ exchange::Backward BackwardFrom(const ParsedOptions& options) {
 /// Grammars, files and programs, in this order.
 measure::Asking AskingFrom(const ParsedOptions& options, const CommandContext& context) {
   measure::Asking asking{
-      .sources = {},
       .label_map = options.Text("--map"),
-      .pace = options.Has("--online")      ? measure::Pace::kOnline
-              : options.Has("--real-time") ? measure::Pace::kRealTime
-                                           : measure::Pace::kOffline,
+      .pace = options.Text("--pace") == "online"      ? measure::Pace::kOnline
+              : options.Text("--pace") == "real_time" ? measure::Pace::kRealTime
+                                                      : measure::Pace::kOffline,
       .time_limit_s = options.NumberOr("--recogniser-limit-s", kRecogniserLimit_s)};
   for (const std::string& name : options.All("--grammar"))
     asking.sources.push_back({measure::Source::Kind::kGrammar, name});
@@ -87,18 +86,15 @@ ExitCode RunLabelFiles(const ParsedOptions& options, const CommandContext& conte
 ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) {
   for (const char* other : {"--filter", "--event"}) {
     if (options.Has(other))
-      return Complain(
-          context, ExitCode::kBadInput,
-          fmt::format("--truth compares what the labels mean: {} does not apply", other));
+      return Refuse(context,
+                    fmt::format("--truth compares what the labels mean: {} does not apply", other));
   }
   if (!options.Has("names"))
-    return Complain(context, ExitCode::kBadInput,
-                    "--truth: which recordings? score take1.jsonl --truth take1.csv");
+    return Refuse(context, "--truth: which recordings? score take1.jsonl --truth take1.csv");
   if (std::ranges::all_of(options.All("names"), exchange::IsLabelFile)) {
     if (options.Has("--found") || options.Has("--recogniser"))
-      return Complain(
-          context, ExitCode::kBadInput,
-          "--found and --recogniser: of which recordings? score take1.jsonl --found ..");
+      return Refuse(context,
+                    "--found and --recogniser: of which recordings? score take1.jsonl --found ..");
     return RunLabelFiles(options, context);
   }
   auto takes = FindTakesOrComplain("names", options, context);
@@ -128,7 +124,7 @@ ExitCode RunScenarios(const measure::Asking& asking, const measure::NotCovered& 
   for (const episode::ScenarioFile& file : selection->scenarios) {
     if (const std::string lack = episode::Lacks(NameOf(file), episode::Need::kGroundTruth);
         !lack.empty())
-      return Complain(context, ExitCode::kBadInput, lack);
+      return Refuse(context, lack);
     requests.push_back(
         {NameOf(file), episode::IdOf(file), context.root, &asking, events, settings});
   }
@@ -153,8 +149,6 @@ ExitCode RunScenarios(const measure::Asking& asking, const measure::NotCovered& 
 }
 
 ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
-  if (options.Has("--online") && options.Has("--real-time"))
-    return Complain(context, ExitCode::kBadInput, "--online or --real-time, not both");
   const bool has_takes = std::ranges::any_of(options.All("names"), [](const std::string& typed) {
     return episode::IsTakesFile(typed) || episode::IsTakesFile(typed + "/takes.yaml");
   });
@@ -171,12 +165,11 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   const bool has_others = options.Has("--found") || options.Has("--recogniser");
   for (const char* of_labels : {"--map", "--episode", "--skip-bad-labels"}) {
     if (options.Has(of_labels) && !(has_others && of_labels == std::string("--map")))
-      return Complain(context, ExitCode::kBadInput,
-                      fmt::format("{} needs --truth: where are the labels?", of_labels));
+      return Refuse(context, fmt::format("{} needs --truth: where are the labels?", of_labels));
   }
   const std::vector<std::string> events = measure::EventsIn(options.All("--event"));
   if (const std::string unknown = measure::UnknownEvent(events); !unknown.empty())
-    return Complain(context, ExitCode::kBadInput, unknown);
+    return Refuse(context, unknown);
   const Result<measure::NotCovered> not_covered =
       measure::CompileToScore(context.root, asking.sources, *settings, events);
   if (!not_covered) return Complain(context, not_covered.error());
@@ -224,8 +217,7 @@ Command ScoreCommand() {
                         "(docs/recognisers.md), a grammar, or files:FOLDER; may be repeated",
                 .placeholder = "CMD",
                 .repeatable = true},
-               OnlineOption(),
-               {.name = "--real-time", .help = "a program gets its frames when their time comes"},
+               PaceOption(),
                RecogniserLimitOption(),
                JsonOption()},
               TruthOptions(

@@ -140,7 +140,7 @@ ExitCode RunAsk(const ParsedOptions& options, const CommandContext& context) {
   const std::string folder = options.Text("folder");
   const bool shows = options.Has("--show");
   if (shows && !show::CanDrawPictures())
-    return Complain(context, ExitCode::kBadInput, "--show: this build draws no pictures");
+    return Refuse(context, "--show: this build draws no pictures");
   Answered answered = AskSwipl(folder, options.Text("query"), options.IntOr("--most", kDefaultMost),
                                options.NumberOr("--time-limit-s", kDefaultAsk_s));
   for (const std::string& note : answered.notes) context.err << "prehend: " << note << "\n";
@@ -162,7 +162,7 @@ ExitCode RunAsk(const ParsedOptions& options, const CommandContext& context) {
     }
   }
   const bool is_refused = !answered.problem.empty() && answered.answers.empty();
-  if (is_refused) return Complain(context, ExitCode::kBadInput, answered.problem);
+  if (is_refused) return Refuse(context, answered.problem);
   if (options.Has("--json"))
     context.out << Json(answered.answers).dump(2) << "\n";
   else
@@ -171,7 +171,7 @@ ExitCode RunAsk(const ParsedOptions& options, const CommandContext& context) {
     for (const std::string& file : drawn.files)
       if (!file.empty()) context.out << file << "\n";
   }
-  if (!answered.problem.empty()) return Complain(context, ExitCode::kBadInput, answered.problem);
+  if (!answered.problem.empty()) return Refuse(context, answered.problem);
   if (!drawn.error.empty()) return Complain(context, ExitCode::kFailure, "--show: " + drawn.error);
   return answered.answers.empty() ? ExitCode::kNothing : ExitCode::kAgrees;
 }

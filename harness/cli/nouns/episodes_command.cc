@@ -3,7 +3,6 @@
 // against their state hashes. Tested by tests/program/episodes_test.cc
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/command/command.h"
@@ -36,8 +35,7 @@ ExitCode RunEpisodes(const ParsedOptions& options, const CommandContext& context
   for (const std::string& path : options.All("files")) {
     if (episode::EpisodeKindOf(path) != episode::EpisodeKind::kEpisodeFile) {
       const auto other = episode::FindEpisodes({&path, 1}, "", context.root);
-      return other ? Complain(context, ExitCode::kBadInput,
-                              episode::Lack(*other, episode::Need::kEpisodeFile))
+      return other ? Refuse(context, episode::Lack(*other, episode::Need::kEpisodeFile))
                    : Complain(context, other.error());
     }
     const auto file = episode::EpisodeFile::Open(path);

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// prehend scenario poses: where everything is at a moment, as a scenario would say it. Tested by
-// tests/program/poses_test.cc
+// prehend scenario poses: where everything is at a moment, as a scenario would say it. prehend
+// scenario schema. Tested by tests/program/poses_test.cc and tests/program/command_line_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "harness/cli/command/command.h"
-#include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/run_scenario.h"
 #include "harness/episode/run/run_text.h"
+#include "harness/exchange/poses/import_map.h"
+#include "harness/scenario/format/scenario_fields.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::cli {
@@ -117,8 +118,7 @@ ExitCode RunPoses(const ParsedOptions& options, const CommandContext& context) {
   if (!episode) return episode.error();
   const std::string at = options.TextOr("--at", "0");
   if (const auto problem = episode::WhyNoEventTime(at, *episode->program()))
-    return Complain(context, ExitCode::kBadInput,
-                    "--at: " + problem->message + "; " + problem->hint);
+    return Refuse(context, "--at: " + problem->message + "; " + problem->hint);
   const auto played = PlayOrComplain(std::move(*episode), context);
   if (!played) return played.error();
   const episode::RunResult& run = played->run;
@@ -135,6 +135,12 @@ ExitCode RunPoses(const ParsedOptions& options, const CommandContext& context) {
     context.out << PosesJson(scenario, now, time_s).dump(2) << "\n";
   else
     PrintPoses(scenario, now, time_s, context.out);
+  return ExitCode::kAgrees;
+}
+
+ExitCode RunSchema(const ParsedOptions& options, const CommandContext& context) {
+  context.out << (options.Has("import-map") ? exchange::ImportMapSchema()
+                                            : scenario::ScenarioSchema());
   return ExitCode::kAgrees;
 }
 
@@ -156,6 +162,18 @@ Command PosesCommand() {
                   SettingsOption(),
                   JsonOption()},
       .run = RunPoses};
+}
+
+Command SchemaCommand() {
+  return {.name = "scenario schema",
+          .summary = "Print the JSON Schema of scenario files",
+          .examples = {"scenario schema > scenarios/scenario.schema.json",
+                       "scenario schema import-map"},
+          .options = {{.name = "import-map",
+                       .help = "that word: the schema of the maps of 'prehend import' "
+                               "(docs/motion-capture.md)",
+                       .rule = OneOf({"import-map"})}},
+          .run = RunSchema};
 }
 
 }  // namespace prehend::cli

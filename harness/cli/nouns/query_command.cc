@@ -184,8 +184,7 @@ std::string RelationProblem(const std::string& text) {
 EventQuestion EventQuestionOf(const ParsedOptions& options) {
   EventQuestion question{.scenario = options.Text("--episode"), .event = options.Text("--event")};
   for (const auto& [option, conditions] :
-       {std::pair{"--role", &question.roles}, std::pair{"--class", &question.classes},
-        std::pair{"--part-of", &question.parts_of}}) {
+       {std::pair{"--role", &question.roles}, std::pair{"--part-of", &question.parts_of}}) {
     for (const std::string& text : options.All(option))
       conditions->push_back(*episode::ParseRoleCondition(text));
   }
@@ -205,8 +204,7 @@ EventQuestion EventQuestionOf(const ParsedOptions& options) {
 /// Why no event can have one of the roles that are asked for, or "".
 std::string UnknownRole(const EventQuestion& question, const std::set<std::string>& known) {
   for (const auto& [option, conditions] :
-       {std::pair{"--role", &question.roles}, std::pair{"--class", &question.classes},
-        std::pair{"--part-of", &question.parts_of}}) {
+       {std::pair{"--role", &question.roles}, std::pair{"--part-of", &question.parts_of}}) {
     for (const episode::RoleCondition& condition : *conditions) {
       if (known.empty() || condition.role == "any" || known.contains(condition.role)) continue;
       const std::vector<std::string> names(known.begin(), known.end());
@@ -221,13 +219,12 @@ std::string UnknownRole(const EventQuestion& question, const std::set<std::strin
 
 ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
   if (options.Has("--json") && options.Has("--csv"))
-    return Complain(context, ExitCode::kBadInput, "--json contradicts --csv; give one of them");
+    return Refuse(context, "--json contradicts --csv; give one of them");
   const std::vector<std::string> columns = ColumnsOf(options);
   if (!columns.empty() && (options.Has("--show") || options.Has("--parts")))
-    return Complain(context, ExitCode::kBadInput,
-                    "--count-by contradicts --show and --parts; give one of them");
+    return Refuse(context, "--count-by contradicts --show and --parts; give one of them");
   if (options.Has("--show") && !show::CanDrawPictures())
-    return Complain(context, ExitCode::kBadInput, "--show: this build draws no pictures");
+    return Refuse(context, "--show: this build draws no pictures");
   const EventQuestion question = EventQuestionOf(options);
   std::vector<EventAnswer> answers;
   episode::KnownNames known;
@@ -245,9 +242,9 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
     answers.insert(answers.end(), found->begin(), found->end());
   }
   if (const std::string why = UnknownRole(question, known.roles); !why.empty())
-    return Complain(context, ExitCode::kBadInput, why);
+    return Refuse(context, why);
   if (const std::string why = UnknownColumn(columns, known.roles); !why.empty())
-    return Complain(context, ExitCode::kBadInput, why);
+    return Refuse(context, why);
   const std::vector<std::string> events(known.events.begin(), known.events.end());
   if (const std::string near = grammar::NearestName(question.event, events);
       answers.empty() && !known.events.contains(question.event) && !near.empty())
@@ -276,7 +273,7 @@ Option RoleOption(const std::string& name, const std::string& help,
   return {.name = name,
           .help = help + "; may be repeated",
           .placeholder = placeholder,
-          .rule = {.range = {}, .problem = RoleProblem},
+          .rule = {.problem = RoleProblem},
           .repeatable = true};
 }
 
@@ -291,18 +288,19 @@ Command QueryCommand() {
       .name = "episode query",
       .summary = "Find events in recorded episodes",
       .examples =
-          {"episode query suite.episodes --event sliding --class object=CerealBox",
-           "episode query suite.episodes --event grasping --class object=Handle --part-of "
+          {"episode query suite.episodes --event sliding --role object=CerealBox",
+           "episode query suite.episodes --event grasping --role object=Handle --part-of "
            "object=Door",
            "episode query suite.episodes --event pick_and_place --parts --json",
            "episode query *.episodes --event sliding --relation 'meets transporting' --csv",
            "episode query suite.episodes --event grasping --count-by style,object_class",
-           "episode query suite.episodes --event grasping --class object=Handle --show shown"},
+           "episode query suite.episodes --event grasping --role object=Handle --show shown"},
       .options = {EpisodesArgument(),
                   {.name = "--event", .help = "its name, or a glob", .placeholder = "NAME"},
-                  RoleOption("--role", "who or what has a role (of any role: any=NAME)",
+                  RoleOption("--role",
+                             "who or what has a role: an entity, or what is of this class, "
+                             "directly or not (of any role: any=NAME)",
                              "ROLE=NAME"),
-                  RoleOption("--class", "of which class it is, directly or not", "ROLE=CLASS"),
                   RoleOption("--part-of",
                              "of what it is a part, directly or not: an entity or a class",
                              "ROLE=NAME"),
@@ -315,7 +313,7 @@ Command QueryCommand() {
                            "(before, meets, overlaps, starts, inside, finishes, equals, ..); "
                            "may be repeated",
                    .placeholder = "'RELATION EVENT'",
-                   .rule = {.range = {}, .problem = RelationProblem},
+                   .rule = {.problem = RelationProblem},
                    .repeatable = true},
                   EpisodesOption(),
                   {.name = "--with",

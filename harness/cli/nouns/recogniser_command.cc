@@ -20,7 +20,7 @@ constexpr const char* kRules[] = {
     "lines: each is a JSON object in UTF-8 of at most 1 MiB that the protocol has",
     "events: each is one of the first line, with its roles and entities of the episode",
     "ticks: they are whole numbers, and no event ends after what it has got",
-    "ready: with --online it answers each frame",
+    "ready: with --pace online it answers each frame",
     "error: it does not give up",
     "end: it ends in time, with exit code 0",
     "again: it prints the same lines for the same episode"};
@@ -33,7 +33,9 @@ ExitCode RunRecogniser(const ParsedOptions& options, const CommandContext& conte
   if (!episode) return Complain(context, episode.error());
   const measure::RecogniserChoice choice{
       .command = options.Text("COMMAND"),
-      .pace = options.Has("--online") ? measure::Pace::kOnline : measure::Pace::kOffline,
+      .pace = options.Text("--pace") == "online"      ? measure::Pace::kOnline
+              : options.Text("--pace") == "real_time" ? measure::Pace::kRealTime
+                                                      : measure::Pace::kOffline,
       .time_limit_s = kRecogniserLimit_s};
   const measure::WatchedEpisode watched = measure::Watched(*episode);
   const Recognised once = measure::Recogniser(choice).Recognise(watched);
@@ -47,8 +49,9 @@ ExitCode RunRecogniser(const ParsedOptions& options, const CommandContext& conte
     const bool is_broken =
         is_last ? !once.broken && !is_same : once.broken && once.broken->rule == one;
     // What comes after the line at which it was ended was not seen.
-    const bool is_tried =
-        once.broken ? one == Rule::kHeader : one != Rule::kReady || options.Has("--online");
+    const bool is_tried = once.broken
+                              ? one == Rule::kHeader
+                              : one != Rule::kReady || choice.pace == measure::Pace::kOnline;
     context.out << fmt::format("{:9}  {}\n",
                                is_broken  ? "not met"
                                : is_tried ? "met"
@@ -68,7 +71,7 @@ Command RecogniserCommand() {
   return {.name = "grammar recogniser",
           .summary = "Try whether a program of yours can be scored",
           .examples = {"grammar recogniser 'python3 reco.py' take1.jsonl",
-                       "grammar recogniser ./reco take1.jsonl --online"},
+                       "grammar recogniser ./reco take1.jsonl --pace online"},
           .options = {{.name = "COMMAND",
                        .help = "a program that reads frames and prints events, for the shell "
                                "(docs/recognisers.md)",
@@ -77,7 +80,7 @@ Command RecogniserCommand() {
                        .help = "a recording, an episode file or a scenario",
                        .required = true},
                       EpisodeOption(),
-                      OnlineOption()},
+                      PaceOption()},
           .run = RunRecogniser};
 }
 

@@ -55,8 +55,8 @@ Result<std::string> WithName(const fs::path& file, const std::string& key, const
     text->replace(at + (at == 0 ? 0 : 1), line.size(), key + to);
     return text;
   }
-  return tl::unexpected(grammar::Diagnostics{
-      {.file = file.string(), .place = {}, .message = "no line '" + key + from + "'"}});
+  return tl::unexpected(
+      grammar::Diagnostics{{.file = file.string(), .message = "no line '" + key + from + "'"}});
 }
 
 /// Moves a file, its new text instead of the old. "" or what went wrong.
@@ -72,9 +72,9 @@ std::string Move(const fs::path& from, const fs::path& to, const std::string& te
 ExitCode RunRename(const ParsedOptions& options, const CommandContext& context) {
   const auto found = FindScenarioOrComplain(options.Text("OLD"), context);
   if (!found) return found.error();
-  Renamed renamed{.from = *found, .id = {}, .skill = {}, .name = {}, .path = {}};
+  Renamed renamed{.from = *found, .skill = {}, .name = {}};
   std::string problem = WhyNotRenamed(options.Text("NEW"), context.root, renamed);
-  if (!problem.empty()) return Complain(context, ExitCode::kBadInput, problem);
+  if (!problem.empty()) return Refuse(context, problem);
   const std::string id = episode::IdOf(*found);
   const auto text = WithName(found->path, "scenario: ", found->name, renamed.name);
   if (!text) return Complain(context, text.error());

@@ -108,9 +108,8 @@ std::string LabelsProblem(const std::string& file) {
 ExitCode WriteLabels(const std::vector<episode::EpisodeName>& selected,
                      const ParsedOptions& options, const CommandContext& context) {
   if (selected.size() != 1)
-    return Complain(
-        context, ExitCode::kBadInput,
-        fmt::format("--output writes labels of one recording; {} are selected", selected.size()));
+    return Refuse(context, fmt::format("--output writes labels of one recording; {} are selected",
+                                       selected.size()));
   Result<episode::Episode> episode = episode::OpenEpisode(
       selected.front(), {options.Text("--grammar"), options.All("--set")}, context.root);
   if (!episode) return Complain(context, episode.error());
@@ -125,13 +124,12 @@ ExitCode RunResegment(const ParsedOptions& options, const CommandContext& contex
   if (options.Has("--output")) {
     for (const char* other : {"--against", "--json", "--jobs"}) {
       if (options.Has(other))
-        return Complain(context, ExitCode::kBadInput,
-                        fmt::format("--output writes a file of labels: {} does not apply", other));
+        return Refuse(context,
+                      fmt::format("--output writes a file of labels: {} does not apply", other));
     }
   }
   if (options.Has("--event") && !options.Has("--output"))
-    return Complain(context, ExitCode::kBadInput,
-                    "--event chooses what --output FILE writes; --output is missing");
+    return Refuse(context, "--event chooses what --output FILE writes; --output is missing");
   const std::vector<episode::Need> needs =
       options.Has("--against") ? std::vector<episode::Need>{episode::Need::kRecordedEvents}
                                : std::vector<episode::Need>{};
@@ -139,10 +137,6 @@ ExitCode RunResegment(const ParsedOptions& options, const CommandContext& contex
   if (!selected) return selected.error();
   return options.Has("--output") ? WriteLabels(*selected, options, context)
                                  : ResegmentEpisodes(*selected, options, context);
-}
-
-std::string CompareProblem(const std::string& value) {
-  return value == "recorded" ? "" : "found '" + value + "', wanted recorded";
 }
 
 }  // namespace
@@ -162,7 +156,7 @@ Command ResegmentCommand() {
                    .help = "print only how the events differ from those that were recognised when "
                            "the episode was recorded",
                    .placeholder = "recorded",
-                   .rule = {.range = {}, .problem = CompareProblem}},
+                   .rule = OneOf({"recorded"})},
                   JobsOption("episodes"),
                   GrammarOption(),
                   ParametersOption(),

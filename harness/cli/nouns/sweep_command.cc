@@ -3,7 +3,6 @@
 // tests/program/sweep_test.cc
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 
 #include "harness/base/base/atomic_file.h"
@@ -28,14 +27,13 @@ constexpr double kDefaultMargin_percent = 1;
 
 /// What both commands have in common. Nothing, after a complaint.
 std::optional<measure::SweepRequest> RequestFrom(const ParsedOptions& options,
-                                                 const std::vector<const char*>& outputs,
                                                  const CommandContext& context) {
   measure::SweepRequest request{.root = context.root,
                                 .grammar = options.Text("--grammar"),
                                 .settings = options.All("--set"),
                                 .axes = {}};
   if (const std::string why = measure::SetTruth(options.All("--truth"), request); !why.empty()) {
-    Complain(context, ExitCode::kBadInput, why);
+    Refuse(context, why);
     return std::nullopt;
   }
   request.label_map = options.Text("--map");
@@ -44,10 +42,10 @@ std::optional<measure::SweepRequest> RequestFrom(const ParsedOptions& options,
   request.by_overlap = request.truth == measure::Truth::kLabels && !options.Has("--collar-ms");
   request.skip_bad_labels = options.Has("--skip-bad-labels");
   request.jobs = options.IntOr("--jobs", CoreCount());
-  for (const char* output : outputs) {
-    const std::string why = options.Has(output) ? WhyNotWritable(options.Text(output)) : "";
+  for (const std::string& output : options.All("--output")) {
+    const std::string why = WhyNotWritable(output);
     if (why.empty()) continue;
-    Complain(context, ExitCode::kBadInput, std::string(output) + ": " + why);
+    Refuse(context, "--output: " + why);
     return std::nullopt;
   }
   return request;
@@ -62,8 +60,8 @@ tl::expected<std::vector<episode::Take>, ExitCode> TakesFrom(const ParsedOptions
   if (!takes) return takes;
   const auto of_test = std::erase_if(*takes, [](const auto& take) { return take.set == "test"; });
   if (takes->empty())
-    return tl::unexpected(Complain(context, ExitCode::kBadInput,
-                                   "all takes are of the set 'test', which nothing is tuned on"));
+    return tl::unexpected(
+        Refuse(context, "all takes are of the set 'test', which nothing is tuned on"));
   if (of_test > 0)
     context.err << fmt::format("prehend: left out: {} take{} of the set test\n", of_test,
                                of_test == 1 ? "" : "s");
@@ -74,8 +72,7 @@ tl::expected<std::vector<episode::Take>, ExitCode> TakesFrom(const ParsedOptions
   for (const char* of_labels : {"--map", "--skip-bad-labels"}) {
     if (request.truth == measure::Truth::kLabels || !options.Has(of_labels)) continue;
     return tl::unexpected(
-        Complain(context, ExitCode::kBadInput,
-                 fmt::format("{} needs labels: --truth FILE or FOLDER", of_labels)));
+        Refuse(context, fmt::format("{} needs labels: --truth FILE or FOLDER", of_labels)));
   }
   if (request.grammar.empty()) {
     const auto why = episode::WhyNotOneGrammar(EpisodesOf(*takes), context.root);
@@ -90,13 +87,11 @@ std::optional<ExitCode> ComplainOf(const measure::SweepResult& result,
                                    const measure::SweepRequest& request,
                                    const CommandContext& context) {
   if (result.IsRefused(request))
-    return Complain(context, ExitCode::kBadInput,
-                    (result.unread.empty() ? result.left_out : result.unread).front());
+    return Refuse(context, (result.unread.empty() ? result.left_out : result.unread).front());
   context.err << result.label_warning;
   for (const std::string& line : result.left_out)
     context.err << "prehend: left out: " << line << "\n";
-  if (result.episodes == 0)
-    return Complain(context, ExitCode::kBadInput, "no episode has events to compare with");
+  if (result.episodes == 0) return Refuse(context, "no episode has events to compare with");
   return std::nullopt;
 }
 
@@ -109,7 +104,7 @@ auto WithProgress(measure::SweepRequest& request, std::size_t episodes,
 }
 
 ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context) {
-  auto request = RequestFrom(options, {"--output"}, context);
+  auto request = RequestFrom(options, context);
   if (!request) return ExitCode::kBadInput;
   const auto takes = TakesFrom(options, *request, context);
   if (!takes) return takes.error();
@@ -130,10 +125,10 @@ ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context)
 }
 
 ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
-  auto request = RequestFrom(options, {"--output", "--picture"}, context);
+  auto request = RequestFrom(options, context);
   if (!request) return ExitCode::kBadInput;
   if (const std::string why = measure::SetAxes(options.All("--over"), *request); !why.empty())
-    return Complain(context, ExitCode::kBadInput, why);
+    return Refuse(context, why);
   const auto takes = TakesFrom(options, *request, context);
   if (!takes) return takes.error();
   const auto result = WithProgress(*request, takes->size(), context,
@@ -144,13 +139,18 @@ ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
   const double within = options.NumberOr("--within", kDefaultWithin_percent) / 100;
   const std::string csv = measure::CsvText(request->axes, result->points);
   std::string problem;
-  if (options.Has("--output")) problem = WriteTextFile(options.Text("--output"), csv);
-  if (problem.empty() && options.Has("--picture"))
-    problem = show::WriteDrawing(
-        options.Text("--picture"),
-        measure::HeatMapSvg(request->axes, result->points,
-                            measure::FindRobustSettings(request->axes, result->points, within)));
-  if (!options.Has("--output")) context.out << csv;
+  bool is_printed = true;
+  for (const std::string& file : options.All("--output")) {
+    const bool is_map = show::WhyNoDrawingFile(file).empty();
+    is_printed = is_printed && is_map;
+    if (!problem.empty()) continue;
+    problem = is_map ? show::WriteDrawing(
+                           file, measure::HeatMapSvg(request->axes, result->points,
+                                                     measure::FindRobustSettings(
+                                                         request->axes, result->points, within)))
+                     : WriteTextFile(file, csv);
+  }
+  if (is_printed) context.out << csv;
   context.out << measure::RobustSettingsText(request->axes, *result, within);
   return problem.empty() ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, problem);
 }
@@ -193,12 +193,16 @@ Command MarginsCommand() {
 }
 
 Command SweepCommand() {
+  Option output = OutputOption(
+      "the CSV file; default: print it. NAME.svg, NAME.png or NAME.pdf: a heat map of one or two "
+      "parameters; may be repeated");
+  output.repeatable = true;
   return {
       .name = "grammar sweep",
       .summary = "Try a grammar's parameters on recorded episodes",
       .examples =
           {"grammar sweep suite.episodes --over reach_radius=10cm..50cm:9 -o sweep.csv",
-           "grammar sweep suite.episodes --over lift_rise=2cm..8cm:7 --truth golden --picture "
+           "grammar sweep suite.episodes --over lift_rise=2cm..8cm:7 --truth golden -o "
            "map.png",
            "grammar sweep *.episodes --over reach_radius=10cm..50cm:9 --over lift_rise=2cm..8cm:7"},
       .options = SweepOptions(
@@ -210,12 +214,7 @@ Command SweepCommand() {
             .repeatable = true},
            WithinOption("the robust settings: their F1 is within so many percent of the best; "
                         "default: 0.5"),
-           OutputOption("the CSV file; default: print it"),
-           {.name = "--picture",
-            .help = "a heat map of one or two parameters: NAME.svg, NAME.png or NAME.pdf",
-            .placeholder = "FILE",
-            .rule = {.range = {}, .problem = show::WhyNoDrawingFile},
-            .is_output = true}}),
+           std::move(output)}),
       .run = RunSweep};
 }
 

@@ -35,30 +35,28 @@ ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) 
   if (output == "-") output.clear();
   const bool as_json = options.Has("--json") || output.ends_with(".json");
   if (!output.empty() && !output.ends_with(".json") && !output.ends_with(".csv")) {
-    return Complain(
-        context, ExitCode::kBadInput,
+    return Refuse(
+        context,
         fmt::format("--output: found '{}', wanted a file that ends with .csv or .json", output));
   }
   if (options.Has("--json") && output.ends_with(".csv")) {
-    return Complain(context, ExitCode::kBadInput,
-                    "--json contradicts an --output that ends with .csv");
+    return Refuse(context, "--json contradicts an --output that ends with .csv");
   }
   auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
   if (!episode) return episode.error();
   const std::vector<std::string> only = options.All("--only");
   const std::string unknown = UnknownTrack(only, *episode->program());
-  if (!unknown.empty()) return Complain(context, ExitCode::kBadInput, unknown);
+  if (!unknown.empty()) return Refuse(context, unknown);
 
   // Found out before the episode is played.
   std::optional<AtomicFile> file;
   if (!output.empty()) file.emplace(output);
-  if (file && !file->problem().empty())
-    return Complain(context, ExitCode::kBadInput, "--output: " + file->problem());
+  if (file && !file->problem().empty()) return Refuse(context, "--output: " + file->problem());
 
   const show::Watched watched = show::Watch(*episode);
-  if (!watched.problem.empty()) return Complain(context, ExitCode::kBadInput, watched.problem);
+  if (!watched.problem.empty()) return Refuse(context, watched.problem);
   const show::Tracks tracks = show::CollectTracks(*watched.past, {only.begin(), only.end()});
-  if (!tracks.problem.empty()) return Complain(context, ExitCode::kBadInput, tracks.problem);
+  if (!tracks.problem.empty()) return Refuse(context, tracks.problem);
   std::ostream& out = file ? file->stream() : context.out;
   if (as_json) {
     show::WriteJson(tracks, episode->loaded().scenario.name, GrammarName(*episode->program()), out);

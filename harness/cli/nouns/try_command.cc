@@ -87,7 +87,7 @@ ExitCode RunTry(const ParsedOptions& options, const CommandContext& context) {
     const grammar::GrammarText file{ReadableName(path), *text};
     for (DrawnEpisode& drawn : grammar::ReadDrawings(file, wrong)) {
       std::ranges::move(CheckExpected(*compiled.program, drawn, file), std::back_inserter(wrong));
-      all.push_back({.file = file.file, .drawn = std::move(drawn), .wanted = {}, .found = {}});
+      all.push_back({.file = file.file, .drawn = std::move(drawn)});
     }
   }
   if (!wrong.empty()) return Complain(context, wrong);

@@ -90,8 +90,7 @@ class LineWatcher {
           Print(decided, options.Has("--json"), context_.out);
         });
     if (!watched.problem.empty())
-      return Complain(context_, ExitCode::kBadInput,
-                      "the grammar cannot segment this recording: " + watched.problem);
+      return Refuse(context_, "the grammar cannot segment this recording: " + watched.problem);
     return End();
   }
 
@@ -114,7 +113,7 @@ class LineWatcher {
   }
 
   ExitCode EndsTooEarly() const {
-    return Complain(context_, ExitCode::kBadInput, name_ + " ended before its first frame");
+    return Refuse(context_, name_ + " ended before its first frame");
   }
 
   ExitCode End() const {
@@ -129,9 +128,8 @@ class LineWatcher {
           "prehend: {} ended after line {} without 'end_tick': what was open ends there\n", name_,
           line_);
     if (skipped_ == 0) return ExitCode::kAgrees;
-    return Complain(
-        context_, ExitCode::kBadInput,
-        fmt::format("{} faulty {} skipped", skipped_, skipped_ == 1 ? "line was" : "lines were"));
+    return Refuse(context_, fmt::format("{} faulty {} skipped", skipped_,
+                                        skipped_ == 1 ? "line was" : "lines were"));
   }
 
   const std::string name_;
@@ -158,8 +156,7 @@ ExitCode WatchEpisode(const ParsedOptions& options, const CommandContext& contex
         Print(decided, options.Has("--json"), context.out);
       });
   if (!watched.problem.empty())
-    return Complain(context, ExitCode::kBadInput,
-                    "the grammar cannot segment this episode: " + watched.problem);
+    return Refuse(context, "the grammar cannot segment this episode: " + watched.problem);
   return end.failure.empty() ? ExitCode::kAgrees
                              : Complain(context, ExitCode::kFailure, end.failure);
 }
@@ -177,16 +174,13 @@ ExitCode RunWatch(const ParsedOptions& options, const CommandContext& context) {
   const std::string typed = options.Text("EPISODE");
   if (IsNoLines(typed)) return WatchEpisode(options, context);
   if (options.Has("--episode"))
-    return Complain(context, ExitCode::kBadInput,
-                    fmt::format("--episode needs episode files; {} is none", typed));
+    return Refuse(context, fmt::format("--episode needs episode files; {} is none", typed));
   if (typed == "-") return LineWatcher("standard input", context).Watch(std::cin, options);
   std::error_code error;
   if (std::filesystem::is_directory(typed, error))
-    return Complain(context, ExitCode::kBadInput, typed + " is a directory, not a file");
+    return Refuse(context, typed + " is a directory, not a file");
   std::ifstream file(typed, std::ios::binary);
-  if (!file)
-    return Complain(context, ExitCode::kBadInput,
-                    typed + ": cannot be read: " + std::strerror(errno));
+  if (!file) return Refuse(context, typed + ": cannot be read: " + std::strerror(errno));
   return LineWatcher(typed, context).Watch(file, options);
 }
 

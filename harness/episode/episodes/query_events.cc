@@ -51,13 +51,9 @@ class Asker {
     if (question_.from_s && begin < *question_.from_s) return false;
     if (question_.until_s && end > *question_.until_s) return false;
     return AllHold(question_.roles, event,
-                   [](const std::string& value, const std::string& wanted) {
-                     return Fits(wanted, value);
-                   }) &&
-           AllHold(question_.classes, event,
                    [&](const std::string& value, const std::string& wanted) {
                      const KeptEntity* entity = Find(value);
-                     return entity && IsA(*entity, wanted);
+                     return Fits(wanted, value) || (entity && IsA(*entity, wanted));
                    }) &&
            AllHold(question_.parts_of, event,
                    [&](const std::string& value, const std::string& wanted) {

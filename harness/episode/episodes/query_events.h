@@ -21,8 +21,7 @@ struct RoleCondition {
 /// What must hold of an event. Names of events, entities and classes may be globs.
 struct EventQuestion {
   std::string scenario, event;                  ///< empty: any
-  std::vector<RoleCondition> roles;             ///< its value, or the entity's name
-  std::vector<RoleCondition> classes;           ///< the entity's class, or a base class
+  std::vector<RoleCondition> roles;             ///< its value: an entity, or a class that it has
   std::vector<RoleCondition> parts_of;          ///< an entity, or its class, of which it is a part
   std::optional<double> at_least_s, at_most_s;  ///< duration
   std::optional<double> from_s, until_s;        ///< the event lies between them

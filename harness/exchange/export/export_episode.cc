@@ -37,13 +37,6 @@ std::string WriteMotion(const Motion& motion, const std::string& file) {
 
 }  // namespace
 
-std::string EndingOf(const std::string& format) {
-  for (const char* known : {"mcap", "csv", "jsonl", "npz"}) {
-    if (format == known) return "." + format;
-  }
-  return "";
-}
-
 tl::expected<std::vector<Exported>, episode::NotFound> ExportEpisodes(
     const std::vector<episode::EpisodeName>& episodes, const ExportRequest& request) {
   const bool is_file = request.output.ends_with(request.ending);

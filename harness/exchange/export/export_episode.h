@@ -11,12 +11,9 @@
 
 namespace prehend::exchange {
 
-/// "mcap" -> ".mcap"; "": there is no such format.
-std::string EndingOf(const std::string& format);
-
 struct ExportRequest {
   std::string root;    ///< the project's
-  std::string ending;  ///< of the files
+  std::string ending;  ///< of the files: .mcap, .csv, .jsonl or .npz
   std::string output;  ///< a folder, or of one episode a file with this ending
   episode::GrammarChoice choice;
 };

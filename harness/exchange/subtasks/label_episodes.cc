@@ -164,7 +164,7 @@ tl::expected<std::vector<Subtasks>, episode::NotFound> LabelEpisodes(
     all.back().source = source;
     if (source != all.front().source && !request.hdf5.empty())
       return Refused(
-          fmt::format("--write: the episodes are of {} and of {}; label those of one "
+          fmt::format("--output: the episodes are of {} and of {}; label those of one "
                       "file at a time",
                       all.front().source, source));
   }
@@ -177,7 +177,7 @@ tl::expected<std::vector<Subtasks>, episode::NotFound> LabelEpisodes(
     if (!file) return tl::unexpected(episode::NotFound{.diagnostics = file.error()});
     std::error_code error;
     if (std::filesystem::equivalent(source, request.hdf5, error))
-      return Refused("--write: " + request.hdf5 + " is the original; name another file");
+      return Refused("--output: " + request.hdf5 + " is the original; name another file");
     std::vector<Hdf5Signal> signals;
     for (Subtasks& one : all) {
       if (one.missing.empty()) AddSignalsOf(*file, map->map, one, signals);

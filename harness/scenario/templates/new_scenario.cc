@@ -357,7 +357,7 @@ NewScenario ComposeScenario(const Templates& templates, std::string_view name,
     for (const VerbTemplate& other : templates.verbs) known.push_back(other.name);
     std::ranges::sort(known);
     made.note =
-        fmt::format("the name has no verb that 'new' knows, so this is '{}'; choose by --verb: {}",
+        fmt::format("the name has no verb that 'new' knows, so this is '{}'; choose by --like: {}",
                     verb.name, fmt::join(known, ", "));
   }
   std::vector<std::string> things;

@@ -23,7 +23,7 @@ inline constexpr const char* kDefaultVerb = "carry";
 
 /// A scenario whose thing is not named yet: its texts have marks like @thing@.
 struct VerbTemplate {
-  std::string name;                ///< as --verb takes it
+  std::string name;                ///< as --like takes it
   std::string path;                ///< of its file
   std::vector<std::string> words;  ///< of a scenario's name, of which one is enough,
   std::vector<std::string> also;   ///< and of these one, too; empty: none is needed
@@ -50,7 +50,7 @@ struct Templates {
   std::vector<ThingTemplate> things, in, on;
 };
 
-/// The names of all verbs, as `--verb` takes them, sorted.
+/// The names of all verbs, as `--like` takes them, sorted.
 std::vector<std::string> VerbNames(const std::string& root);
 
 Result<Templates> ReadTemplates(const std::string& root);
