@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line: dispatches to a command, reports usage errors, prints help.
-// Tested by tests/program/command_line_test.cc
+// The command line: says what must hold before any command runs, dispatches to one, reports usage
+// errors, prints help. Tested by tests/program/command_line_test.cc and
+// tests/program/preconditions_test.cc
 #pragma once
 
 #include <string>
