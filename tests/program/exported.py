@@ -148,6 +148,40 @@ def check_gaps(folder):
     assert np.isnan(np.load(folder / "gaps.npz")["position_m"][80, 1]).all()
 
 
+def openings_of(lines):
+    """(tick, grip of each hand, position and fraction of each joint), where they are not 0 all the time."""
+    hands, joints, rows = {}, {}, []
+    for line in lines[1:]:
+        if "end_tick" in line:
+            continue
+        hands.update({name: hand["trigger"] for name, hand in line.get("hands", {}).items() if "trigger" in hand})
+        for name, sample in line["samples"].items():
+            if sample:
+                joints[name] = (sample.get("joint_position", 0), sample.get("joint_fraction", 0))
+        rows.append((dict(hands), {name: joint for name, joint in joints.items() if joint != (0, 0)}))
+    return rows
+
+
+def check_openings(folder):
+    """Grips and joints, by the map beside a table."""
+    seen = 0
+    for scenario in ("milk_carton_wrap", *sorted(glob.glob("scenarios/furniture/*.yaml"))[:3]):
+        kept, name = folder / "o.jsonl", folder / "o.csv"
+        said("run", scenario, "--record", kept, ok=(0, 1))
+        said("episode", "export", kept, "--to", "csv", "-o", name)
+        said("import", name, "--map", f"{name}.map.yaml", "-o", folder / "back.jsonl")
+        there, back = ([json.loads(line) for line in open(folder / one, encoding="utf-8")] for one in ("o.jsonl", "back.jsonl"))
+        known = set(back[0]["entities"])
+        for (hands, joints), (hands2, joints2) in zip(openings_of(there), openings_of(back), strict=True):
+            for hand, grip in hands.items():
+                assert abs(grip - hands2.get(hand, 0)) < 1e-9, (scenario, hand, grip, hands2)
+            for thing, joint in joints.items():
+                if thing in known:
+                    assert np.abs(np.subtract(joint, joints2.get(thing, (0, 0)))).max() < 1e-9, (scenario, thing, joint, joints2)
+                    seen += 1
+    assert seen > 100, seen
+
+
 def main():
     every = [file for file in sorted(glob.glob("scenarios/*/*.yaml"))
              if "\nscenario:" in "\n" + pathlib.Path(file).read_text(encoding="utf-8")]
@@ -160,6 +194,7 @@ def main():
         folder = pathlib.Path(where)
         check_uuids(folder)
         check_gaps(folder)
+        check_openings(folder)
         events = 0
         for file in chosen:
             name = pathlib.Path(file).stem

@@ -121,8 +121,8 @@ Json HandJson(const grammar::HandSample& hand, const grammar::EntityTable& entit
 Json TouchJson(const grammar::Touch& touch, const grammar::EntityTable& entity_table) {
   Json json = {{"a", entity_table.entities[touch.a].name},
                {"b", entity_table.entities[touch.b].name},
-               {"up_on_a", touch.up_on_a},
-               {"up_on_b", touch.up_on_b},
+               {"up_on_a", std::clamp(touch.up_on_a, -1.0, 1.0)},  // a unit vector's, nearly
+               {"up_on_b", std::clamp(touch.up_on_b, -1.0, 1.0)},
                {"force_n", touch.normal_force_n},
                {"vertical_speed_m_per_s", touch.vertical_speed_m_per_s}};
   if (!touch.nhat_BA_W.isZero()) {

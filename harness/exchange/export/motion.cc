@@ -51,13 +51,16 @@ void Motion::LookAtAll() {
       Seen& of = seen[i];
       of.has_joint = of.has_joint || look.joint_position != 0 || look.joint_fraction != 0;
       if (!grammar::IsTracked(look)) continue;
-      if (of.looks++ == 0) of.first = look;
+      if (of.looks++ == 0) of.first = of.shut = of.open = look;
+      if (look.joint_fraction < of.shut.joint_fraction) of.shut = look;
+      if (look.joint_fraction > of.open.joint_fraction) of.open = look;
       of.moves = of.moves || look.p_WB_m != of.first.p_WB_m ||
                  look.q_WB.coeffs() != of.first.q_WB.coeffs();
     }
     for (const grammar::HandSample& hand : frame.hands) {
       Seen& of = seen[static_cast<std::size_t>(hand.entity)];
       const grammar::EntitySample& look = frame.entities[static_cast<std::size_t>(hand.entity)];
+      of.most_grip = std::max(of.most_grip, hand.trigger);
       if (!of.ahead_B && grammar::IsTracked(look))
         of.ahead_B = look.q_WB.conjugate() * hand.ahead_W;
     }

@@ -41,6 +41,8 @@ class Motion {
     bool moves = false;
     bool has_joint = false;                  ///< it is somewhere else than at 0
     grammar::EntitySample first;             ///< look
+    grammar::EntitySample shut, open;        ///< of a joint: the least and the most open look
+    double most_grip = 0;                    ///< of a hand
     std::optional<Eigen::Vector3d> ahead_B;  ///< of a hand: where it reaches, in its own frame
   };
   std::vector<Seen> seen;  ///< by entity

@@ -26,6 +26,23 @@ std::string YamlVector(const Eigen::Vector3d& v) {
   return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
 }
 
+/// `grip` and `joint` of a map, in columns of WriteCsv().
+std::string OpeningText(const Motion::Seen& of) {
+  std::string text;
+  if (of.most_grip > 0) text += ", grip: {from: grip, open: 0, closed: 1}";
+  if (!of.has_joint) return text;
+  const auto& [at, fraction] = std::pair(of.shut.joint_position, of.shut.joint_fraction);
+  const double way = of.open.joint_fraction - fraction;
+  double closed = fraction == 0 ? at : 0, open = fraction == 0 ? at + 1 : at / fraction;
+  if (way > 0) {
+    const double full = (of.open.joint_position - at) / way;
+    closed = at - fraction * full;
+    open = of.open.joint_fraction == 1 ? of.open.joint_position : closed + full;
+  }
+  return text +
+         fmt::format(", joint: {{from: joint_position, open: {}, closed: {}}}", open, closed);
+}
+
 }  // namespace
 
 void WriteLines(const Motion& motion, std::ostream& out) {
@@ -128,7 +145,10 @@ std::string MapText(const Motion& motion, const std::string& ending) {
       text += ", hand: true";
     else
       text += ", class: " + quoted(own);
-    if (std::ranges::find(entity.classes, "Fixed") != entity.classes.end()) text += ", fixed: true";
+    const bool has_joint = ending == ".csv" && motion.seen[i].has_joint;
+    if (!has_joint && std::ranges::find(entity.classes, "Fixed") != entity.classes.end())
+      text += ", fixed: true";
+    if (ending == ".csv") text += OpeningText(motion.seen[i]);
     if (const auto& ahead = motion.seen[i].ahead_B)
       text += ", ahead: " + YamlVector(ahead->normalized());
     text += "}\n";
