@@ -182,8 +182,9 @@ TEST_F(ImportBvh, FilesThatAreNotReadSayWhatHelps) {
     const Said said = Prehend(
         {"import", (folder_ / name).string(), "--map", (folder_ / "map.yaml").string(), "--check"});
     EXPECT_EQ(said.exit_code, 2);
-    EXPECT_NE(said.err.find("are not read; CSV, BVH, MCAP, bags of ROS, HDF5, JSON, .npz and C3D are"),
-              std::string::npos)
+    EXPECT_NE(
+        said.err.find("are not read; CSV, BVH, MCAP, bags of ROS, HDF5, JSON, .npz and C3D are"),
+        std::string::npos)
         << said.err;
   }
 }

@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "harness/exchange/hdf5/hdf5_file.h"
-#include "harness/exchange/poses/import_map_format.h"
 
 namespace prehend::exchange {
 namespace {

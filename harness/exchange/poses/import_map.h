@@ -196,4 +196,7 @@ Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format,
 /// The JSON Schema of maps, as text.
 std::string ImportMapSchema();
 
+/// Its keys (harness/exchange/poses/import_map_format.cc).
+ValueFormat<ImportMap> MapFormat();
+
 }  // namespace prehend::exchange

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/program/import_test.cc
-#include "harness/exchange/poses/import_map_format.h"
+#include "harness/exchange/poses/import_map.h"
 
 namespace prehend::exchange {
 namespace {
