@@ -84,6 +84,29 @@ def edges_of(episodes, name):
     return to_frame(begin), to_frame(min(ends)) if ends else None
 
 
+def check_goldens(folder):
+    """Each demonstration of a file has a golden of its own, beside the file."""
+    made.isaac(os.path.join(folder, "few.hdf5"), made.demonstrations(PREHEND, 4))
+    with open(os.path.join(folder, "few.yaml"), "w", encoding="utf-8") as out:
+        out.write(made.MAPS["isaac_raw"])
+    file, page = os.path.join(folder, "few.episodes"), ("--report", os.path.join(folder, "page"))
+    said("import", os.path.join(folder, "few.hdf5"), "--map", os.path.join(folder, "few.yaml"), "-o", file)
+    assert "next: prehend review " + file in said("check", file, *page, code=5)
+    waiting = json.loads(said("review", file, "--json", code=5))["pending"]
+    assert len(waiting) == 4 and {one["kind"] for one in waiting} == {"new"}, waiting
+    assert "demonstration demo_0" in waiting[0]["text"], waiting[0]
+    os.environ["CI"] = ""
+    said("accept", file, "--reviewed", "0123456789abcdef", "--reason", "seen", code=1)
+    said("accept", file, "--reviewed", waiting[2]["fingerprint"], "--reason", "seen")
+    assert sorted(os.listdir(os.path.join(folder, "few.timelines"))) == ["demo_2.timeline"]
+    said("accept", file, "--reason", "seen")
+    assert len(os.listdir(os.path.join(folder, "few.timelines"))) == 4
+    said("check", file, *page)
+    said("review", file)
+    assert "4 passed" in said("report", file, "-o", os.path.join(folder, "page.html"))
+    said("check", file, *page, "--set", "hold_moves=9m/s", code=1)
+
+
 def check_kind(folder, kind, ends_in):
     source, map_path = os.path.join(folder, kind + ".hdf5"), os.path.join(folder, kind + ".yaml")
     with open(map_path, "a", encoding="utf-8") as out:
@@ -179,6 +202,7 @@ def check_faults(folder, episodes, map_path):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         made.write_all(folder, made.demonstrations(PREHEND))
+        check_goldens(folder)
         for kind, ends in (("isaac_raw", isaac_ends), ("isaac_annotated", isaac_ends), ("mimicgen", mimicgen_ends),
                            ("robosuite", mimicgen_ends)):
             found = check_kind(folder, kind, ends)

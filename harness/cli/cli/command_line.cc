@@ -209,10 +209,10 @@ constexpr const char* kFooter =
   --time-limit-s S      After most commands: seconds that it may take; 0: no limit; default: 600,
                         of many episodes 3600, of sweeps 86400, of each scenario in 'check' 120,
                         of a question in 'episode ask' 10, with --trials or --on-save none
+  -j,--jobs N           Where many are looked at: so many at a time; default: one per core
   --memory-limit-mb MB  Memory that it may take; 0: no limit; default: 4000, in 'check' 1000
 
-Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 simulation or internal failure,
-4 nothing was selected or found, 5 goldens wait for acceptance.
+Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 failure, 4 nothing found, 5 goldens wait.
 The project is $PREHEND_HOME, or the nearest folder with a prehend.yaml, or the program's checkout.)";
 
 }  // namespace

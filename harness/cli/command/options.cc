@@ -192,12 +192,13 @@ Option OutputOption(const std::string& help, const std::string& placeholder) {
           .is_output = true};
 }
 
-Option JobsOption(const std::string& of_what) {
+Option JobsOption() {
   return {.name = "--jobs",
-          .help = of_what + " at a time; default: one per core",
+          .help = {},
           .placeholder = "N",
           .other_name = "-j",
-          .rule = IntegersFrom(1, kMaxJobs)};
+          .rule = IntegersFrom(1, kMaxJobs),
+          .unlisted = true};
 }
 
 Option FilterOption() {

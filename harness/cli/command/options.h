@@ -93,9 +93,9 @@ Option RecogniserLimitOption();  ///< for an episode
 Option SettingsOption();         ///< of a grammar and a scenario
 Option ParametersOption();       ///< of a grammar alone
 Option OutputOption(const std::string& help, const std::string& placeholder = "FILE");
-Option JobsOption(const std::string& of_what);
+Option JobsOption();
 Option FilterOption();
-/// The program's help tells of both limits and of their defaults.
+/// The program's help tells of --jobs, both limits and of their defaults.
 Option TimeLimitOption(double least_s, double most_s);
 Option MemoryLimitOption();
 Option JsonOption();

@@ -11,6 +11,7 @@
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/suite/accept/accept.h"
 #include "harness/suite/accept/review.h"
+#include "harness/suite/judge/judges.h"
 
 namespace prehend::cli {
 namespace {
@@ -55,11 +56,6 @@ std::string Refusal(const ParsedOptions& options, bool is_recording) {
 tl::expected<episode::ScenarioFile, ExitCode> ScenarioWithGolden(const std::string& typed,
                                                                  const CommandContext& context) {
   const auto refuse = [&](const std::string& why) { return tl::unexpected(Refuse(context, why)); };
-  if (episode::EpisodeKindOf(typed) == episode::EpisodeKind::kEpisodeFile) {
-    const auto kept = episode::FindEpisodes({&typed, 1}, "", context.root);
-    if (!kept) return tl::unexpected(Complain(context, kept.error()));
-    return refuse(episode::Lack(*kept, episode::Need::kGolden));
-  }
   if (typed.find_first_of("*?[") != std::string::npos)
     return refuse("'" + typed +
                   "' may match several scenarios; accept takes one scenario at a time, by name");
@@ -70,16 +66,46 @@ tl::expected<episode::ScenarioFile, ExitCode> ScenarioWithGolden(const std::stri
   return file;
 }
 
+/// Recordings: one, or all demonstrations of an episode file; with `reviewed` those that yield it.
+ExitCode AcceptRecordings(const std::string& typed, const suite::AcceptRequest& request,
+                          const CommandContext& context) {
+  const auto names = episode::FindEpisodes({&typed, 1}, "", context.root);
+  if (!names) return Complain(context, names.error());
+  std::string problem;
+  ExitCode worst = ExitCode::kAgrees;
+  std::size_t others = 0;
+  for (const episode::EpisodeName& name : *names) {
+    const Result<suite::AcceptOutcome> outcome = suite::AcceptRecording(name, request);
+    if (!outcome) return Complain(context, outcome.error());
+    const bool is_other = outcome->code == ExitCode::kDiffers && ++others < names->size();
+    if (is_other) continue;
+    context.err << outcome->notes;
+    context.out << outcome->text;
+    if (outcome->problem.empty()) continue;
+    problem = outcome->problem;
+    worst = outcome->code;
+  }
+  return problem.empty() ? worst : Complain(context, worst, problem);
+}
+
 ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) {
   if (context.in_ci)
     return Refuse(context, "accept is disabled where CI is set: a golden is a person's decision");
   const std::string typed = options.Text("scenario");
   std::error_code error;
-  const bool is_recording = episode::EpisodeKindOf(typed) == episode::EpisodeKind::kJsonLines &&
-                            std::filesystem::exists(typed, error);
+  const episode::EpisodeKind kind = episode::EpisodeKindOf(typed);
+  const bool is_recording =
+      (kind == episode::EpisodeKind::kJsonLines || kind == episode::EpisodeKind::kEpisodeFile) &&
+      std::filesystem::exists(typed, error);
   tl::expected<episode::ScenarioFile, ExitCode> scenario;
   if (!is_recording) scenario = ScenarioWithGolden(typed, context);
   if (!scenario) return scenario.error();
+  if (kind == episode::EpisodeKind::kEpisodeFile && is_recording) {
+    const auto kept = episode::FindEpisodes({&typed, 1}, "", context.root);
+    if (!kept) return Complain(context, kept.error());
+    const std::string lack = suite::LacksGolden(kept->front(), context.root);
+    if (!lack.empty()) return Complain(context, ExitCode::kBadInput, lack);
+  }
   const std::string refusal = Refusal(options, is_recording);
   if (!refusal.empty()) return Refuse(context, refusal);
   const auto text_of = [&](const char* name) {
@@ -94,9 +120,8 @@ ExitCode RunAccept(const ParsedOptions& options, const CommandContext& context) 
                                      .unsteady = text_of("--unsteady"),
                                      .exact = options.Has("--exact"),
                                      .pictures = options.Has("--pictures")};
-  const Result<suite::AcceptOutcome> outcome = is_recording
-                                                   ? suite::AcceptRecording(typed, request)
-                                                   : suite::AcceptScenario(*scenario, request);
+  if (is_recording) return AcceptRecordings(typed, request, context);
+  const Result<suite::AcceptOutcome> outcome = suite::AcceptScenario(*scenario, request);
   if (!outcome) return Complain(context, outcome.error());
   context.err << outcome->notes;
   context.out << outcome->text;
@@ -130,35 +155,35 @@ Command AcceptCommand() {
            "accept milk_carton_wrap --pictures --reason \"the carton is seen in the hand\"",
            "accept takes/take1.jsonl --reason \"compared with the video\"",
            "accept takes/take1.jsonl --grammar my.grammar --reason \"compared with the video\""},
-      .options = {{.name = "scenario",
-                   .help = "a name, skill/name, or the file of a recording of a tracker",
-                   .required = true},
-                  {.name = "--reason",
-                   .help = "why this is right; is written into the golden",
-                   .placeholder = "TEXT"},
-                  {.name = "--derived",
-                   .help = "how the events follow from the definitions, one line each; the "
-                           "physical oracle's derivation is added; may be repeated",
-                   .placeholder = "TEXT",
-                   .repeatable = true},
-                  {.name = "--reviewed",
-                   .help = "accept only what 'review' printed with this fingerprint",
-                   .placeholder = "FINGERPRINT",
-                   .rule = {.problem = FingerprintProblem}},
-                  {.name = "--grammar",
-                   .help =
-                       "of a recording of a tracker: this grammar instead of the one that it names",
-                   .placeholder = "NAME|FILE"},
-                  {.name = "--exact",
-                   .help = "take over boundaries that moved within their tolerance, too: after a "
-                           "change that moved many, or the next small one fails"},
-                  {.name = "--unsteady",
-                   .help = "why the events may differ after a metamorphic transform, which "
-                           "accept does; is written into the golden; without it they may not",
-                   .placeholder = "TEXT"},
-                  {.name = "--pictures",
-                   .help =
-                       "accept the pictures, not the events; they are kept beside the timeline"}},
+      .options =
+          {{.name = "scenario",
+            .help = "a name, skill/name, or the file of a recording of a tracker, of episodes all "
+                    "demonstrations",
+            .required = true},
+           {.name = "--reason",
+            .help = "why this is right; is written into the golden",
+            .placeholder = "TEXT"},
+           {.name = "--derived",
+            .help = "how the events follow from the definitions, one line each; the "
+                    "physical oracle's derivation is added; may be repeated",
+            .placeholder = "TEXT",
+            .repeatable = true},
+           {.name = "--reviewed",
+            .help = "accept only what 'review' printed with this fingerprint",
+            .placeholder = "FINGERPRINT",
+            .rule = {.problem = FingerprintProblem}},
+           {.name = "--grammar",
+            .help = "of a recording of a tracker: this grammar instead of the one that it names",
+            .placeholder = "NAME|FILE"},
+           {.name = "--exact",
+            .help = "take over boundaries that moved within their tolerance, too: after a "
+                    "change that moved many, or the next small one fails"},
+           {.name = "--unsteady",
+            .help = "why the events may differ after a metamorphic transform, which "
+                    "accept does; is written into the golden; without it they may not",
+            .placeholder = "TEXT"},
+           {.name = "--pictures",
+            .help = "accept the pictures, not the events; they are kept beside the timeline"}},
       .run = RunAccept};
 }
 

@@ -65,7 +65,7 @@ std::vector<Option> SelectionOptions() {
 std::vector<Option> RunningOptions() {
   return InGroup("How they run",
                  {
-                     JobsOption("scenarios"),
+                     JobsOption(),
                      TimeLimitOption(0.1, 86400),
                      MemoryLimitOption(),
                      {.name = "--repeat",
@@ -369,7 +369,7 @@ Command CheckCommand() {
   return {.name = "check",
           .summary = "Run scenarios and compare them with their goldens: the regression suite",
           .examples = {"check", "check milk_carton_wrap 'slide/*' my/scenario.yaml",
-                       "check --filter tag:smoke --filter '!reach/*' --no-pictures --jobs 1",
+                       "check --filter tag:smoke --filter '!reach/*' --no-pictures -j 1",
                        "check --changed", "check --record suite.episodes --no-pictures",
                        "check --shard 2/3 --junit verdicts.xml", "check 'slide/*' --repeat 10",
                        "check --grammar my/rules.grammar --json"},

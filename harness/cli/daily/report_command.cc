@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/quoting.h"
+#include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
+#include "harness/suite/check/failures.h"
 #include "harness/suite/check/run_suite.h"
 #include "harness/suite/report/report.h"
 
@@ -44,9 +47,21 @@ ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) 
   problem = WriteTextFile(page, suite::ReportHtml(verdicts, header));
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   const suite::Tally tally = suite::Count(verdicts);
-  context.out << fmt::format("{}: {} episode{}, {} passed, {} failed, {} without golden\n", page,
-                             verdicts.size(), verdicts.size() == 1 ? "" : "s", tally.passed,
-                             tally.failed, tally.pending);
+  const suite::Failures failures = suite::FailuresOf(verdicts);
+  if (options.Has("--json")) {
+    nlohmann::ordered_json json = {{"page", page},
+                                   {"episodes", verdicts.size()},
+                                   {"passed", tally.passed},
+                                   {"failed", tally.failed},
+                                   {"pending", tally.pending}};
+    json["demonstrations"] = suite::FailuresJson(failures);
+    context.out << json.dump(2) << "\n";
+  } else {
+    context.out << fmt::format("{}: {} episode{}, {} passed, {} failed, {} without golden\n", page,
+                               verdicts.size(), verdicts.size() == 1 ? "" : "s", tally.passed,
+                               tally.failed, tally.pending)
+                << suite::FailuresText(failures);
+  }
   // What differs or ended badly is on the page; what cannot be read is not.
   const auto unread =
       std::ranges::find(verdicts, ExitCode::kBadInput, &suite::ScenarioVerdict::exit_code);
@@ -65,7 +80,7 @@ Command ReportCommand() {
                        "report suite.episodes --episode 'slide/*' --grammar my/rules.grammar"},
           .options = {EpisodesArgument(), EpisodesOption(),
                       OutputOption(fmt::format("the page; default: {}", kDefaultPage)),
-                      JobsOption("episodes"), GrammarOption(), SettingsOption()},
+                      JobsOption(), GrammarOption(), SettingsOption(), JsonOption()},
           .run = RunReport};
 }
 

@@ -208,7 +208,7 @@ Command RunCommand() {
             .help = "simulate variation K only",
             .placeholder = "K",
             .rule = IntegersFrom(1, kMaxTrials)},
-           JobsOption("trials"),
+           JobsOption(),
            JsonOption(),
            {.name = "--record",
             .help = "write the episode to FILE: NAME.episodes holds many episodes and all of each; "

@@ -116,13 +116,12 @@ ExitCode RunVerify(const ParsedOptions& options, const CommandContext& context) 
 }  // namespace
 
 Command VerifyCommand() {
-  return {
-      .name = "episode verify",
-      .summary = "Read every frame of recorded episodes again and check them by their hashes",
-      .examples = {"episode verify suite.episodes",
-                   "episode verify suite.episodes --episode 'slide/*'"},
-      .options = {EpisodeFilesArgument(), EpisodesOption(), JobsOption("episodes"), JsonOption()},
-      .run = RunVerify};
+  return {.name = "episode verify",
+          .summary = "Read every frame of recorded episodes again and check them by their hashes",
+          .examples = {"episode verify suite.episodes",
+                       "episode verify suite.episodes --episode 'slide/*'"},
+          .options = {EpisodeFilesArgument(), EpisodesOption(), JobsOption(), JsonOption()},
+          .run = RunVerify};
 }
 
 }  // namespace prehend::cli

@@ -157,7 +157,7 @@ Command ResegmentCommand() {
                            "the episode was recorded",
                    .placeholder = "recorded",
                    .rule = OneOf({"recorded"})},
-                  JobsOption("episodes"),
+                  JobsOption(),
                   GrammarOption(),
                   ParametersOption(),
                   {.name = "--output",

@@ -158,7 +158,7 @@ ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
 /// What both commands take, and what is theirs alone.
 std::vector<Option> SweepOptions(const std::vector<Option>& own) {
   std::vector<Option> options = {EpisodesArgument(), GrammarOption(), ParametersOption(),
-                                 EpisodesOption(), JobsOption("episodes")};
+                                 EpisodesOption(), JobsOption()};
   options = Joined(
       options,
       TruthOptions(

@@ -69,12 +69,16 @@ Result<RunResult> Episode::Run(bool frames) {
     return played_ ? *played_ : RunScenario(loaded_.scenario, loaded_.program, {.record = frames});
   Result<SegmentedRecording> segmented = SegmentRecorded();
   if (!segmented) return tl::unexpected(std::move(segmented.error()));
+  return RunOf(std::move(*segmented), frames);
+}
+
+RunResult Episode::RunOf(SegmentedRecording segmented, bool frames) {
   RunResult run;
   run.status.kind = physics::RunStatus::Kind::kCompleted;
   run.ticks = recording_->end_tick - 1;
   run.is_unfinished = !recording_->says_its_end;
-  missing_ = std::move(segmented->missing);
-  run.timeline = std::move(segmented->timeline);
+  missing_ = std::move(segmented.missing);
+  run.timeline = std::move(segmented.timeline);
   run.drawings = truth::EventDrawings(*loaded_.program);
   run.state_hash = HashOfFrames(*recording_);
   for (std::size_t i = 0; frames && i < recording_->frames.size(); ++i)

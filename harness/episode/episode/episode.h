@@ -47,6 +47,8 @@ class Episode {
   const MissingFacts& missing() const { return missing_; }
   /// The same of a recording, with what it does not have of what the grammar asks for.
   Result<SegmentedRecording> SegmentRecorded();
+  /// Run() of a recording that is segmented.
+  RunResult RunOf(SegmentedRecording segmented, bool frames);
   /// What was recognised when it was recorded; of a scenario, what its run recognises.
   Result<grammar::Timeline> Recorded();
 

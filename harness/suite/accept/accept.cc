@@ -344,12 +344,13 @@ Result<AcceptOutcome> AcceptScenario(const episode::ScenarioFile& file,
   return request.pictures ? acceptance.Pictures() : acceptance.Events();
 }
 
-Result<AcceptOutcome> AcceptRecording(const std::string& file, const AcceptRequest& request) {
+Result<AcceptOutcome> AcceptRecording(const episode::EpisodeName& name,
+                                      const AcceptRequest& request) {
   const FolderLock one_at_a_time(request.root);
-  const Result<JudgedRecording> judged =
-      JudgeRecording({.scenario_file = file, .grammar = request.grammar}, request.root);
+  const Result<JudgedRecording> judged = JudgeRecording(name, request.grammar, request.root);
   if (!judged) return tl::unexpected(judged.error());
-  const std::string now = Fingerprint(judged->proposed), golden_file = GoldenBeside(file);
+  const std::string &file = name.file, &golden_file = judged->golden_file;
+  const std::string now = Fingerprint(judged->proposed);
   AcceptOutcome outcome{.notes = judged->segmented.missing.warnings};
   const auto refuse = [&](ExitCode code, std::string why) {
     outcome.code = code;
@@ -371,10 +372,12 @@ Result<AcceptOutcome> AcceptRecording(const std::string& file, const AcceptReque
   }
   const truth::Golden golden =
       AcceptedRecording(*judged, request.derived, {request.today, request.reason});
+  std::error_code error;
+  if (name.number) fs::create_directories(fs::path(golden_file).parent_path(), error);
   const std::string problem = truth::WriteGoldenFile(golden_file, golden);
   if (!problem.empty()) return refuse(ExitCode::kFailure, problem);
-  outcome.text = ReviewText(*judged, CommandAbout("explain", file, {request.grammar, {}})) +
-                 "accepted: " + golden_file + "\n";
+  const CheckRequest about{.episode = name, .changes = {request.grammar, {}}, .id = file};
+  outcome.text = ReviewText(*judged, ExplainCommand(about)) + "accepted: " + golden_file + "\n";
   return outcome;
 }
 

@@ -36,6 +36,7 @@ Result<AcceptOutcome> AcceptScenario(const episode::ScenarioFile& file,
                                      const AcceptRequest& request);
 
 /// The golden of a recording lies beside it; nothing is simulated, so nothing is transformed.
-Result<AcceptOutcome> AcceptRecording(const std::string& file, const AcceptRequest& request);
+Result<AcceptOutcome> AcceptRecording(const episode::EpisodeName& name,
+                                      const AcceptRequest& request);
 
 }  // namespace prehend::suite

@@ -103,19 +103,18 @@ void AddReviews(const episode::ScenarioFile& file, const std::string& root, bool
 
 /// A recording, judged now: what it yields is not kept, since judging it again costs little.
 /// Nothing if it agrees with the golden beside it.
-std::optional<Review> ReviewOfRecording(const episode::RunRequest& request,
-                                        const std::string& root) {
-  const std::string& file = request.scenario_file;
-  Review review{.id = file, .kind = "unreadable"};
-  const Result<JudgedRecording> judged = JudgeRecording(request, root);
+std::optional<Review> ReviewOfRecording(const episode::EpisodeName& name,
+                                        const std::string& grammar, const std::string& root) {
+  const CheckRequest about{.episode = name, .changes = {grammar, {}}, .id = name.file};
+  Review review{.id = name.file, .kind = "unreadable"};
+  const Result<JudgedRecording> judged = JudgeRecording(name, grammar, root);
   review.text = Format(ErrorsOf(judged));
   if (!judged) return review;
   if (judged->Agrees()) return std::nullopt;
   review.kind = judged->golden ? "changed" : "new";
-  review.text =
-      judged->segmented.missing.warnings +
-      ReviewText(*judged, CommandAbout("explain", file, {request.grammar, request.settings}));
-  review.grammar = request.grammar;
+  review.text = (name.number ? "demonstration " + judged->segmented.name + "\n" : "") +
+                judged->segmented.missing.warnings + ReviewText(*judged, ExplainCommand(about));
+  review.grammar = grammar;
   review.fingerprint = Fingerprint(judged->proposed);
   return review;
 }
@@ -144,19 +143,22 @@ tl::expected<std::vector<Review>, NoSelection> Reviews(const std::vector<std::st
   const auto is_recording = [](const episode::ScenarioFile& file) {
     return episode::EpisodeKindOf(file.path) == episode::EpisodeKind::kJsonLines;
   };
+  const auto no_scenario = [&](const episode::ScenarioFile& file) {
+    return is_recording(file) || file.origin == episode::Origin::kRecording;
+  };
   if (!grammar.empty() &&
-      (patterns.empty() || !std::ranges::all_of(selection.scenarios, is_recording)))
+      (patterns.empty() || !std::ranges::all_of(selection.scenarios, no_scenario)))
     return refused(
         "--grammar concerns recordings; the golden of a scenario is of the grammar that it names");
   std::vector<std::string> pending = truth::GoldenFiles(root).ListPending();
   const std::vector<truth::KeptPicture> pictures = truth::GoldenFiles(root).PendingPictures();
   std::vector<Review> reviews;
   for (const episode::ScenarioFile& file : selection.scenarios) {
-    if (is_recording(file)) {
-      if (auto review = ReviewOfRecording({.scenario_file = file.path, .grammar = grammar}, root))
-        reviews.push_back(std::move(*review));
-    } else if (file.origin == episode::Origin::kRecording) {
-      return refused(episode::Lacks(NameOf(file), episode::Need::kGolden));
+    const bool is_kept = file.origin == episode::Origin::kRecording && !is_recording(file);
+    if (is_recording(file) || is_kept) {
+      auto review = ReviewOfRecording(NameOf(file), grammar, root);
+      if (is_kept && review && review->kind == "unreadable") return refused(review->text);
+      if (review) reviews.push_back(std::move(*review));
     } else {
       AddReviews(file, root, std::erase(pending, episode::IdOf(file)) > 0, pictures, reviews);
     }

@@ -17,6 +17,7 @@ enum class Replays { kNone, kFailures, kAll };
 
 struct CheckRequest {
   episode::EpisodeName episode;
+  std::string file_hash;             ///< FileHash() of an episode file; "": not known yet
   episode::GrammarChoice changes;    ///< settings of a scenario may be fields of it
   std::string id;                    ///< skill/name, or the path of what is outside the project
   std::string root;                  ///< the project's

@@ -43,13 +43,6 @@ struct CheckedEpisode {
   bool IsComplete() const { return run.result.status.kind == physics::RunStatus::Kind::kCompleted; }
 };
 
-/// Where the golden of a recording is: beside the file that it comes from. "" if that is not known,
-/// since the recording cannot be read.
-std::string GoldenOfRecording(const CheckRequest& request, const scenario::Scenario* scenario) {
-  if (!request.episode.number) return GoldenBeside(request.episode.file);
-  return scenario ? (fs::path(request.root) / GoldenBeside(scenario->file)).string() : "";
-}
-
 using Judge = Findings (*)(CheckedEpisode& checked);
 
 /// Draws into the folder of the report, and compares with the goldens of pictures.
@@ -141,8 +134,9 @@ Findings UnrequestedPictures(CheckedEpisode& checked) {
 Findings GoldenBesideRecording(CheckedEpisode& checked) {
   const CheckRequest& request = checked.request;
   ScenarioVerdict& verdict = checked.verdict;
-  Result<JudgedRecording> judged = JudgeSegmented(
-      std::move(*checked.recording), GoldenOfRecording(request, &checked.run.loaded.scenario));
+  Result<JudgedRecording> judged =
+      JudgeSegmented(std::move(*checked.recording),
+                     GoldenOf(request.episode, checked.run.loaded.scenario, request.root));
   if (!judged) return {{ExitCode::kBadInput, "cannot be read", "", judged.error()}};
   verdict.ticks = judged->segmented.end;
   verdict.has_golden = judged->golden.has_value();
@@ -201,14 +195,18 @@ std::vector<std::string> FilesOfGolden(const CheckRequest& request,
 ScenarioVerdict BlankVerdict(const CheckRequest& request, const scenario::Scenario* scenario,
                              std::vector<std::string> files) {
   if (request.episode.origin == episode::Origin::kRecording)
-    files = {request.episode.file, GoldenOfRecording(request, scenario)};
+    files = {request.episode.file,
+             scenario ? GoldenOf(request.episode, *scenario, request.root) : ""};
   else
     std::ranges::move(FilesOfGolden(request, scenario), std::back_inserter(files));
+  if (!request.file_hash.empty()) std::erase(files, request.episode.file);
+  FileHashes inputs = HashFiles(files);
+  if (!request.file_hash.empty()) inputs[request.episode.file] = request.file_hash;
   return {.scenario = request.id,
           .shows = {},
           .explain = ExplainCommand(request),
           .command = RepeatCommand(request),
-          .inputs = HashFiles(files)};
+          .inputs = std::move(inputs)};
 }
 
 CheckedEpisode ToBeChecked(const CheckRequest& request, episode::LoadedRun loaded,
@@ -287,24 +285,26 @@ ScenarioVerdict Unreadable(const CheckRequest& request, ScenarioVerdict verdict,
   return verdict;
 }
 
-/// Of the file that a recording was imported from; `otherwise` if it is gone.
-std::string ReviewCommandOf(const fs::path& recording, const std::string& otherwise) {
-  std::error_code error;
-  if (!fs::exists(recording, error)) return otherwise;
-  const fs::path from_here = fs::proximate(recording, error);
-  const bool is_below = !from_here.empty() && *from_here.begin() != "..";
-  return CommandText({"review", (is_below ? from_here : recording).string()});
-}
-
 /// What to do about a verdict: repeat it, or review what is pending, or look at a run that failed.
 std::string NextCommand(const CheckedEpisode& checked) {
   const CheckRequest& request = checked.request;
   const std::string again = RepeatCommand(request);
   const bool is_pending = checked.verdict.verdict == Verdict::kPending;
   if (checked.recording && is_pending) {
-    // `review` and `accept` take the recording itself, beside which its golden lies.
-    if (request.episode.number)
-      return ReviewCommandOf(fs::path(request.root) / checked.run.loaded.scenario.file, again);
+    // `review` and `accept` take what the golden is named after: of one of many in a file, all.
+    if (request.episode.number) {
+      const std::string golden =
+          GoldenOf(request.episode, checked.run.loaded.scenario, request.root);
+      const fs::path source = fs::path(request.root) / checked.run.loaded.scenario.file;
+      if (fs::path(golden).parent_path().extension() == ".timelines")
+        return CommandText({"review", request.episode.file});
+      std::error_code error;
+      const fs::path from_here = fs::proximate(source, error);
+      const bool is_below = !from_here.empty() && *from_here.begin() != "..";
+      return fs::exists(source, error)
+                 ? CommandText({"review", (is_below ? from_here : source).string()})
+                 : again;
+    }
     return request.changes.settings.empty() ? CommandAbout("review", request.id, request.changes)
                                             : again;
   }
@@ -378,10 +378,14 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   if (episode->recording()) {
     auto segmented = episode->SegmentRecorded();
     if (!segmented) return Unreadable(request, std::move(checked.verdict), segmented.error());
+    checked.verdict.demonstration = DemonstrationOf(*episode->recording(), segmented->timeline,
+                                                    truth::EventDrawings(*segmented->program));
+    if (request.episode.number && request.replays != Replays::kNone)
+      checked.run.result = episode->RunOf(*segmented, /*frames=*/true);
     checked.recording = std::move(*segmented);
     if (episode->row()) checked.verdict.state_hash = episode->row()->state_hash;
   }
-  if (!episode->recording() || (request.episode.number && request.replays != Replays::kNone)) {
+  if (!episode->recording()) {
     Result<episode::RunResult> run = episode->Run(/*frames=*/true);
     if (!run) return Unreadable(request, std::move(checked.verdict), run.error());
     checked.run.result = std::move(*run);

@@ -32,7 +32,10 @@ class Suite {
         records_(request.root),
         program_(ProgramHash()),
         costs_(records_.ReadCosts()),
-        runs_(scenarios_.size()) {}
+        runs_(scenarios_.size()) {
+    for (const episode::ScenarioFile& file : scenarios_)  // once, however many episodes it has
+      if (file.episode && !hashes_.contains(file.path)) hashes_[file.path] = FileHash(file.path);
+  }
 
   std::vector<ScenarioVerdict> Run(const SuiteProgress& progress, Interrupt* interrupt) {
     const std::vector<Turn> turns = Turns();
@@ -104,8 +107,10 @@ class Suite {
   }
 
   CheckRequest RequestOf(const Turn& turn) const {
+    const auto hash = hashes_.find(scenarios_[turn.scenario].path);
     return {
         .episode = NameOf(scenarios_[turn.scenario]),
+        .file_hash = hash == hashes_.end() ? "" : hash->second,
         .changes = request_.changes,
         .id = Id(turn.scenario),
         .root = request_.root,
@@ -201,6 +206,7 @@ class Suite {
   const LastPasses records_;
   const std::string program_;
   LastPasses::Costs costs_;
+  FileHashes hashes_;                               ///< of episode files
   std::vector<std::vector<ScenarioVerdict>> runs_;  ///< per scenario, in the order they ended
 };
 

@@ -16,6 +16,7 @@
 #include "harness/suite/check/attribute.h"
 #include "harness/suite/check/explained.h"
 #include "harness/suite/check/settings.h"
+#include "harness/suite/judge/demonstration.h"
 #include "harness/truth/claims/judge_claims.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/timeline/event_drawings.h"
@@ -76,6 +77,7 @@ struct ScenarioVerdict {
   FileHashes inputs;  ///< every file that decides what the verdict is, as it was before the run
   std::vector<ReportedPicture> pictures;
   std::vector<DrawnDifference> drawn_differences;  ///< at most kMostDrawnDifferences
+  std::optional<Demonstration> demonstration;      ///< of a robot, by a recording
   Explained explained;                             ///< of what has a golden and did not pass
   std::string replay;  ///< ReplayData() (harness/show/replay/replay_data.h), or empty
   std::string

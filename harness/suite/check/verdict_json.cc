@@ -55,13 +55,16 @@ namespace prehend::suite {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportedPicture, file, caption)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DrawnDifference, what, expected, recognised, in_golden, in_run)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Mishap, tick, what, object, question, is_miss)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Handling, event, hand, object, support, begin, end, open_end)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Demonstration, success, ticks_per_second, end, handled, mishaps)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Attribution, event, what, shift_ms, because, question)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, file, shows, verdict, exit_code,
                                    reason, errors, details, notes, claims, comparison, has_golden,
                                    drawings, explain, cause, attributions, settings, command,
                                    state_hash, ticks, seconds, peak_memory_kib, inputs, pictures,
                                    not_recorded, picture_differences, drawn_differences, explained,
-                                   replay)
+                                   demonstration, replay)
 
 namespace {
 

@@ -9,7 +9,9 @@
 #include <set>
 #include <utility>
 
+#include "harness/base/base/atomic_file.h"
 #include "harness/episode/episode/episode.h"
+#include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/sense/episode_format.h"
 #include "harness/episode/sense/sensing.h"
 #include "harness/suite/judge/accept_golden.h"
@@ -33,6 +35,15 @@ constexpr int kToleratedFrames = 2;
 
 grammar::Tick ToleranceOf(const episode::SegmentedRecording& segmented) {
   return kToleratedFrames * segmented.frame_ticks;
+}
+
+bool IsHdf5(const std::filesystem::path& source) {
+  return source.extension() == ".hdf5" || source.extension() == ".h5";
+}
+
+std::string LackOf(const episode::EpisodeName& name, episode::Episode& opened) {
+  const bool has_place = opened.recording() && IsHdf5(opened.loaded().scenario.file);
+  return !name.number || has_place ? "" : episode::Lacks(name, episode::Need::kGolden);
 }
 
 truth::Golden Propose(const JudgedRecording& judged, std::vector<std::string> derived,
@@ -214,26 +225,37 @@ std::string DifferenceContext(const scenario::Scenario& scenario,
   return text;
 }
 
-std::string GoldenBeside(const std::string& recording) {
-  return std::filesystem::path(recording).replace_extension(".timeline").string();
+std::string GoldenOf(const episode::EpisodeName& name, const scenario::Scenario& scenario,
+                     const std::string& root) {
+  namespace fs = std::filesystem;
+  fs::path source = name.number ? fs::path(root) / scenario.file : fs::path(name.file);
+  if (!name.number || !IsHdf5(source)) return source.replace_extension(".timeline").string();
+  return (source.replace_extension(".timelines") / (FileNameOf(scenario.name) + ".timeline"))
+      .string();
 }
 
-Result<JudgedRecording> JudgeRecording(const episode::RunRequest& request,
+std::string LacksGolden(const episode::EpisodeName& name, const std::string& root) {
+  Result<episode::Episode> opened = episode::OpenEpisode(name, {}, root);
+  return opened ? LackOf(name, *opened) : Format(opened.error());
+}
+
+Result<JudgedRecording> JudgeRecording(const episode::EpisodeName& name, const std::string& grammar,
                                        const std::string& root) {
-  Result<episode::Episode> recording =
-      episode::OpenEpisode({.file = request.scenario_file, .origin = episode::Origin::kRecording},
-                           {request.grammar, request.settings}, root);
+  Result<episode::Episode> recording = episode::OpenEpisode(name, {grammar, {}}, root);
   if (!recording) return tl::unexpected(std::move(recording.error()));
+  if (const std::string lack = LackOf(name, *recording); !lack.empty())
+    return tl::unexpected(grammar::Diagnostics{{.file = name.file, .place = {}, .message = lack}});
   Result<episode::SegmentedRecording> segmented = recording->SegmentRecorded();
   if (!segmented) return tl::unexpected(std::move(segmented.error()));
-  return JudgeSegmented(std::move(*segmented), GoldenBeside(request.scenario_file));
+  return JudgeSegmented(std::move(*segmented), GoldenOf(name, recording->loaded().scenario, root));
 }
 
 Result<JudgedRecording> JudgeSegmented(episode::SegmentedRecording segmented,
                                        const std::string& golden_file) {
   auto golden = truth::ReadGoldenFile(golden_file, segmented.name);
   if (!golden) return tl::unexpected(std::move(golden.error()));
-  JudgedRecording judged{.segmented = std::move(segmented), .golden = std::move(*golden)};
+  JudgedRecording judged{
+      .segmented = std::move(segmented), .golden = std::move(*golden), .golden_file = golden_file};
   const grammar::Timeline& timeline = judged.segmented.timeline;
   const truth::Golden none{.ticks_per_second = timeline.ticks_per_second};
   judged.comparison =

@@ -18,6 +18,7 @@
 #include "grammar/check_laws.h"
 #include "grammar/describe.h"
 #include "harness/base/base/exit_code.h"
+#include "harness/episode/run/find_scenario.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
 #include "harness/episode/run/segment_recording.h"
@@ -114,18 +115,25 @@ struct JudgedRecording {
   episode::SegmentedRecording segmented;
   std::optional<truth::Golden> golden;
   truth::Comparison comparison;  ///< with the golden, or with an empty one
+  std::string golden_file;
   truth::Golden
       proposed;  ///< what the recording yields now, with what people wrote into the golden
 
   bool Agrees() const { return golden && comparison.Agrees(); }
 };
 
-/// Where the golden of a recording is.
-std::string GoldenBeside(const std::string& recording);
+/// Where the golden of a recording is: beside the file that it comes from. Of a demonstration in an
+/// HDF5 file, demos.timelines/demo_3.timeline.
+std::string GoldenOf(const episode::EpisodeName& name, const scenario::Scenario& scenario,
+                     const std::string& root);
 
-/// `request.scenario_file` is the recording. A line of the golden without a tolerance of its own
-/// has that of two frames.
-Result<JudgedRecording> JudgeRecording(const episode::RunRequest& request, const std::string& root);
+/// "", or why what is kept in an episode file has none: only demonstrations have.
+std::string LacksGolden(const episode::EpisodeName& name, const std::string& root);
+
+/// `grammar`: instead of its own, or "". A line of the golden without a tolerance of its own has
+/// that of two frames.
+Result<JudgedRecording> JudgeRecording(const episode::EpisodeName& name, const std::string& grammar,
+                                       const std::string& root);
 /// The same of one that is segmented, with this golden.
 Result<JudgedRecording> JudgeSegmented(episode::SegmentedRecording segmented,
                                        const std::string& golden_file);

@@ -15,6 +15,7 @@
 
 #include "harness/base/base/quoting.h"
 #include "harness/suite/check/causes.h"
+#include "harness/suite/check/failures.h"
 #include "harness/suite/report/charts.h"
 
 namespace prehend::suite {
@@ -334,6 +335,30 @@ void AddCauses(pugi::xml_node body, const std::vector<Cause>& causes,
   AddElement(fold, "pre", {{"tabindex", "0"}}, NearLimitText(near_limit));
 }
 
+/// Each with a link to its moment, in the replay, too.
+void AddFailures(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {
+  const Failures failures = FailuresOf(verdicts);
+  if (failures.failed == 0) return;
+  AddElement(
+      body, "h2", {},
+      fmt::format("{} of {} demonstrations failed", failures.failed, failures.demonstrations));
+  AddElement(body, "p", {{"class", "soft"}},
+             "What went wrong first, and when; a click shows the moment.");
+  const pugi::xml_node list = AddElement(body, "ol", {{"class", "causes failures"}});
+  for (const Failure& group : failures.groups) {
+    const pugi::xml_node item = AddElement(list, "li");
+    AddElement(item, "strong", {}, fmt::format("{}: {}", group.because, group.takes.size()));
+    const pugi::xml_node takes = AddElement(item, "div");
+    for (const FailedTake& take : group.takes) {
+      AddElement(takes, "a", {{"href", fmt::format("#{}@{:.4f}s", take.scenario, take.at_s)}},
+                 fmt::format("{} {:.2f} s", take.scenario, take.at_s));
+      AddText(takes, " ");
+    }
+    if (!group.takes.front().command.empty())
+      AddElement(item, "code", {}, group.takes.front().command);
+  }
+}
+
 void AddTools(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {
   const pugi::xml_node tools = AddElement(body, "div", {{"id", "tools"}, {"hidden", "hidden"}});
   AddElement(tools, "input",
@@ -437,6 +462,7 @@ std::string ReportHtml(const std::vector<ScenarioVerdict>& unsorted, const Repor
   AddElement(top, "h1", {}, header.title);
   AddSummary(top, Count(verdicts));
   AddHeader(top, verdicts, header);
+  AddFailures(top, verdicts);
   const std::vector<Cause> causes = CausesOf(verdicts);
   AddCauses(top, causes, NearLimitPasses(verdicts));
   const pugi::xml_node list =
