@@ -57,6 +57,22 @@ TEST(JoinedGrammars, AllOfThemWatchAScenarioAndItsEpisode) {
   EXPECT_EQ(line.exit_code, 0) << line.err;
 }
 
+TEST(JoinedGrammars, AreValidated) {
+  const auto folder = FreshFolder("joined_validated");
+  WriteFile(folder / "shaking.grammar", kShaking);
+  const std::string own = (folder / "shaking.grammar").string();
+  for (const std::string& joined :
+       {std::string("pick_and_place+furniture"), "pick_and_place+" + own, own + "+furniture"}) {
+    const Said said = Prehend({"validate", "--grammar", joined});
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    EXPECT_TRUE(said.out.starts_with("ok: " + joined + "\n")) << said.out;
+  }
+  EXPECT_EQ(Prehend({"validate", "pick_and_place+" + own}).exit_code, 0) << "by its place";
+  const Said unknown = Prehend({"validate", "--grammar", "pick_and_place+furnitur"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("furnitur"), std::string::npos) << unknown.err;
+}
+
 TEST(JoinedGrammars, EachThatIsUnknownIsNamed) {
   const auto folder = FreshFolder("joined_bad");
   const std::string file = (folder / "shake.yaml").string();

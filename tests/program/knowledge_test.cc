@@ -466,6 +466,32 @@ TEST(Knowledge, EveryAnswerIsPrinted) {
   }
 }
 
+TEST(Knowledge, CirclesOfAFileEndAndListsHaveNames) {
+  const fs::path kb = FreshFolder("knowledge_in_circles");
+  fs::copy(ThreeDays().kb, kb, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  const std::string below = " <http://www.w3.org/2000/01/rdf-schema#subClassOf> ",
+                    part = " <http://knowrob.org/kb/knowrob.owl#partOf> ";
+  const auto iri = [](const char* name) {
+    return std::string("<http://knowrob.org/kb/knowrob.owl#") + name + ">";
+  };
+  WriteFile(kb / "prehend.ttl",
+            ReadFile(kb / "prehend.ttl") + "\n" + iri("Thing") + below + iri("MilkCarton") + ".\n" +
+                iri("MilkCarton") + below + iri("MilkCarton") + ".\n" + iri("a") + part + iri("b") +
+                ".\n" + iri("b") + part + iri("a") + ".\n" + iri("c") + part + iri("c") + ".\n");
+  for (const char* query :
+       {"entity(O, [an, object, [type, 'MilkCarton']])",
+        "entity(O, [an, object, [name, milk], [type, T]])", "holds(part_of(X, Y))",
+        "holds(part_of(knowrob:a, Y))", "holds(part_of(X, knowrob:c))"}) {
+    const Said said = Prehend({"episode", "ask", kb.string(), query, "--time-limit-s", "8"});
+    EXPECT_EQ(said.exit_code, 0) << query << ": " << said.err;
+  }
+  EXPECT_EQ(Answers(kb.string(), "holds(part_of(knowrob:a, Y))", "Y"), (Words{"b", "a"}));
+  const Said list = Prehend(
+      {"episode", "ask", kb.string(), "findall(O, entity(O, [an, object, [name, milk]]), L)"});
+  EXPECT_NE(list.out.find("[milk"), std::string::npos) << list.out;
+  EXPECT_EQ(list.out.find("http"), std::string::npos) << list.out;
+}
+
 TEST(Knowledge, HostileQueriesAreRefusedOrStopped) {
   const Recorded& days = ThreeDays();
   for (const auto& [query, why] : std::vector<std::pair<std::string, std::string>>{

@@ -34,7 +34,8 @@ struct Validated {
 /// With the parameters that `--set` gives.
 Validated ValidateGrammar(const std::string& name_or_path, const ParsedOptions& options,
                           const std::string& root) {
-  Validated validated{.file = episode::GrammarFile(root, name_or_path)};
+  const bool is_joined = name_or_path.find('+') != std::string::npos;  // a file may be called so
+  Validated validated{.file = is_joined ? name_or_path : episode::GrammarFile(root, name_or_path)};
   Result<grammar::Overrides> settings = episode::ParameterSettings(options.All("--set"));
   if (!settings) {
     validated.diagnostics = std::move(settings.error());
@@ -89,7 +90,9 @@ Validated ValidateOrphan(const suite::UnreferencedGolden& orphan) {
 /// After reporting that there is no such file or scenario, the exit code.
 tl::expected<Validated, ExitCode> Validate(const std::string& typed, const ParsedOptions& options,
                                            const CommandContext& context) {
-  if (typed.ends_with(".grammar")) return ValidateGrammar(typed, options, context.root);
+  const bool is_grammar = options.All("files").empty() && options.Has("--grammar");
+  if (is_grammar || typed.ends_with(".grammar"))
+    return ValidateGrammar(typed, options, context.root);
   if (typed.ends_with(".timeline")) {
     Validated validated{.file = typed, .diagnostics = {}};
     validated.diagnostics = suite::ValidateGoldenFile(typed, context.root, validated.inputs);
@@ -120,8 +123,7 @@ nlohmann::ordered_json ToJson(const Validated& validated) {
 std::vector<std::string> Names(const ParsedOptions& options, const CommandContext& context) {
   std::vector<std::string> names = options.All("files");
   if (!names.empty()) return names;
-  if (options.Has("--grammar"))
-    return {episode::GrammarFile(context.root, options.Text("--grammar"))};
+  if (options.Has("--grammar")) return {options.Text("--grammar")};
   for (const episode::ScenarioFile& file : episode::ListScenarios(context.root))
     names.push_back(episode::IdOf(file));
   return names;

@@ -91,6 +91,11 @@ std::string CellOf(const Json& value) {
     for (const Json& part : value.value("parts", Json::array())) text += " " + CellOf(part);
     return text;
   }
+  if (value.is_array()) {
+    std::vector<std::string> cells;
+    for (const Json& one : value) cells.push_back(CellOf(one));
+    return fmt::format("[{}]", fmt::join(cells, ", "));
+  }
   if (value.is_number_float()) return fmt::format("{:.4f}", value.get<double>());
   return value.is_string() ? value.get<std::string>() : value.dump();
 }

@@ -175,7 +175,7 @@ of_type(E, [type, Type]) :- class_named(Type, Class), instance(E, Class).
 % The most special of its classes. That a thing can be moved is said of it besides.
 own_class(E, Class) :-
     findall(C, a_class(E, C), Classes),
-    findall(C, ( member(C, Classes), \+ ( member(D, Classes), D \== C, below(C, D) ) ), Lowest),
+    findall(C, ( member(C, Classes), \+ ( member(D, Classes), D \== C, below(C, D), \+ below(D, C) ) ), Lowest),
     name(knowrob, 'Thing', Thing),
     findall(C, ( member(C, Lowest), \+ below(Thing, C) ), Named),
     ( Named == [] -> member(Class, Lowest) ; member(Class, Named) ).
@@ -198,8 +198,10 @@ recorded(Type) :- name(knowrob, Type, Class), once(instance(_, Class)).
 instance(E, Class) :- var(E), !, distinct(E, ( below(Class, C), said(E, rdf:type, C) )).
 instance(E, Class) :- once(( below(Class, C), said(E, rdf:type, C) )).
 
-below(Class, Class).
-below(Class, Below) :- said(C, rdfs:subClassOf, Class), below(C, Below).
+% A file of somebody else may say that a class is below itself, or a thing part of itself.
+below(Class, Below) :- below(Class, Below, [Class]).
+below(Class, Class, _).
+below(Class, Below, Seen) :- said(C, rdfs:subClassOf, Class), \+ memberchk(C, Seen), below(C, Below, [C | Seen]).
 
 field(E, [Key, Value]) :-
     property(Key, Property),
@@ -383,10 +385,11 @@ related(Relation, Key, S, O) :-
     ;   compound(Relation), Relation =.. [Key, S, O], Key \== (:) -> true
     ;   throw(refused("found ~q, wanted a relation of two, like part_of(X, Y)"-[Relation]))
     ).
-related(Property, S, O) :- name(knowrob, partOf, Property), !, part_of(S, O, Property).
+related(Property, S, O) :- name(knowrob, partOf, Property), !, part_of(S, O, Property, []).
 related(Property, S, O) :- rdf3(S, Property, O), O \== 'http://www.w3.org/2002/07/owl#NamedIndividual'.
-part_of(S, O, Property) :- rdf3(S, Property, O).
-part_of(S, O, Property) :- rdf3(S, Property, Between), part_of(Between, O, Property).
+part_of(S, O, Property, _) :- rdf3(S, Property, O).
+part_of(S, O, Property, Seen) :-
+    rdf3(S, Property, Between), \+ memberchk(Between, Seen), part_of(Between, O, Property, [Between | Seen]).
 
 % --- pictures --------------------------------------------------------------------------------------------------------
 
