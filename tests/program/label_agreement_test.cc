@@ -51,6 +51,17 @@ TEST_F(Agreement, ACopyThatIsMovedIsOffByAsMuch) {
   }
 }
 
+TEST_F(Agreement, CollarsOfEachEventAreMeasured) {
+  // Reaches are 100 ms apart at most, holds 240 ms.
+  const std::string anna = File("anna.csv", Rows(0)),
+                    ben = File("ben.csv",
+                               "0.5,1.3,reach,right\n1.24,3.0,hold,right\n3.5,4.05,reach,right\n"
+                               "4.1,6.01,hold,right\n");
+  const Said text = Prehend({"score", ben, "--truth", anna});
+  const std::string line = "in a map: collar_ms: {hold: 240, reach: 100}  # 95 % of the boundaries";
+  EXPECT_NE(text.out.find(line), std::string::npos) << text.out;
+}
+
 TEST_F(Agreement, KappaIsOfFrames) {
   // Of 10 s 4 s are marked by both, 1 s by each alone: 0.8 agree, 0.5 by chance.
   const std::string anna = File("a.csv", "0,5,hold,right\n9.9,10,rest,right\n"),

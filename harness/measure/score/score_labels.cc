@@ -277,6 +277,17 @@ std::string LabelScoresText(const LabelScores& scores, double collar_s, bool dif
     for (const EventScore& event : score.events)
       text += fmt::format(" {} {:.2f},", event.event, event.frames.Kappa());
     text += fmt::format(" all {:.2f}\n", score.total.frames.Kappa());
+    std::string collars;  // 95 % of the boundaries of an event are at most so far apart
+    for (const EventScore& event : score.events) {
+      BoundaryErrors both = event.begin;
+      both.seconds.insert(both.seconds.end(), event.end.seconds.begin(), event.end.seconds.end());
+      if (both.seconds.empty()) continue;
+      const double apart_ms = 1000 * std::abs(both.QuantileByMagnitude(0.95));
+      collars += fmt::format("{}{}: {:g}", collars.empty() ? "" : ", ", event.event,
+                             std::max(1.0, std::ceil(apart_ms - 1e-6)));
+    }
+    text += fmt::format("in a map: collar_ms: {{{}}}  # 95 % of the boundaries of {}\n", collars,
+                        score.grammar);
   }
   text += scores.counted.Text();
   if (scores.HasHands()) {
