@@ -224,6 +224,8 @@ bool Engine::MayRest(const RuleInstance& instance) {
     case Form::kTouching:
       return !instance.open && instances_.GuardRests(instance);
   }
+  // Where it ends is the frame of the gap, which must be there still when somebody asks about it.
+  if (instance.in_gap && rule.uses_looks) return false;
   const bool time_makes_certain = rule.referenced && !MayComeToNothing(instance);
   const RuleTicks& ticks = TicksOf(instance);
   if (instance.open && rule.referenced && rule.lasting_most_s >= 0 &&
