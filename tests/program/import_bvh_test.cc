@@ -177,7 +177,7 @@ TEST_F(ImportBvh, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
 
 TEST_F(ImportBvh, FilesThatAreNotReadSayWhatHelps) {
   WriteFile(folder_ / "map.yaml", kMap);
-  for (const char* name : {"take.fbx", "take.DB3", "take.npy", "take.parquet", "take.pkl"}) {
+  for (const char* name : {"take.fbx", "take.XLSX", "take.npy", "take.parquet", "take.pkl"}) {
     WriteFile(folder_ / name, "x");
     const Said said = Prehend(
         {"import", (folder_ / name).string(), "--map", (folder_ / "map.yaml").string(), "--check"});

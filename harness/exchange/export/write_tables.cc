@@ -127,7 +127,7 @@ std::string MapText(const Motion& motion, const std::string& ending) {
   else if (ending == ".npz")
     text += "quaternion_order: wxyz\nt: t_s\ntime_unit: s\nmissing: [nan]\n";
   else
-    text += "mcap: {world: " + quoted(WorldName(motion.table())) + "}\n";
+    text += "mcap: {clock: log, world: " + quoted(WorldName(motion.table())) + "}\n";
   text += "entities:\n";
   for (std::size_t i = 0; i < motion.seen.size(); ++i) {
     const grammar::EntityInfo& entity = motion.table().entities[i];

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/messages/log_file.h"
@@ -48,29 +49,19 @@ std::string NameOf(const Facts& facts) {
   return ReadableBodyName(facts.name_space) + "/" + facts.ids;
 }
 
-class BinaryDecoder {
+/// Bytes of a message, by the definition of its type.
+class MessageBytes {
  public:
-  BinaryDecoder(const PoseLayout& layout, bool ros1, std::string_view data,
-                const std::vector<bool>& wanted, std::vector<MessagePose>& poses)
-      : layout_(layout), ros1_(ros1), wanted_(wanted), poses_(poses), reader_{.bytes = data} {}
+  MessageBytes(const MessageDefinition& definition, bool ros1, std::string_view data)
+      : definition_(definition), ros1_(ros1), reader_{.bytes = data} {}
 
-  std::string Decode() {
-    if (!ros1_) TakeEncapsulation();
-    Facts facts;
-    if (Ok()) TakePart(0, facts);
-    if (problem_.empty() && !reader_.ok) return "it is cut off, or not of its type";
-    if (problem_.empty() && reader_.left() > 7)
-      return fmt::format("{} bytes too many for its type", reader_.left());
-    return problem_;
-  }
-
- private:
+ protected:
   bool Ok() const { return reader_.ok && problem_.empty(); }
   void Fail(std::string why) {
     if (Ok()) problem_ = std::move(why);
   }
 
-  const DefinedType& TypeOf(std::size_t index) const { return layout_.definition.types[index]; }
+  const DefinedType& TypeOf(std::size_t index) const { return definition_.types[index]; }
 
   /// Which byte is first, and how far numbers are aligned: RTPS 2.5, 10.2.
   void TakeEncapsulation() {
@@ -172,6 +163,139 @@ class BinaryDecoder {
     if (!ros1_) reader_.Bytes(1);
   }
 
+  void TakeHeader(const DefinedField& field, Facts& facts) {
+    for (const DefinedField& inner : TypeOf(field.type).fields) {
+      if (!Ok()) return;
+      const bool one = inner.many == Many::kOne;
+      if (one && inner.basic == Basic::kTime && inner.name == "stamp")
+        facts.stamp_ns = TakeTime();
+      else if (one && inner.basic == Basic::kText && inner.name == "frame_id")
+        facts.frame = TakeText();
+      else
+        Skip(inner);
+    }
+  }
+
+  const MessageDefinition& definition_;
+  const bool ros1_;
+  ByteReader reader_;
+  bool second_version_ = false;  ///< of CDR
+  std::string problem_;
+};
+
+/// One number of a message.
+class NumberDecoder : public MessageBytes {
+ public:
+  NumberDecoder(const MessageDefinition& definition, bool ros1, std::string_view data,
+                const BodyAddress& address)
+      : MessageBytes(definition, ros1, data), address_(address) {}
+
+  std::string Decode(std::vector<double>& numbers, std::optional<std::int64_t>& stamp_ns) {
+    if (!ros1_) TakeEncapsulation();
+    if (Ok()) TakeMessage(TypeOf(0), 0);
+    if (problem_.empty() && !reader_.ok) return "it is cut off, or not of its type";
+    stamp_ns = facts_.stamp_ns;
+    if (!problem_.empty()) return problem_;
+    std::size_t index = 0;
+    if (!address_.keys.empty()) {
+      const std::string& key = address_.keys.back();
+      const auto name = std::ranges::find(facts_.names, key);
+      const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
+      const bool is_number = error == std::errc() && end == key.data() + key.size();
+      if (name != facts_.names.end())
+        index = static_cast<std::size_t>(name - facts_.names.begin());
+      else if (!is_number)
+        return "";
+    } else if (found_.size() > 1) {
+      return fmt::format("it has {} numbers there; TOPIC[NAME], or TOPIC[0], says which",
+                         found_.size());
+    }
+    if (index < found_.size()) numbers.push_back(found_[index]);
+    return "";
+  }
+
+ private:
+  static bool IsNumber(const DefinedField& field) { return field.basic < Basic::kTime; }
+
+  /// The field that is meant, if the address names none: the list "position", else the only number.
+  std::string OnlyField(const DefinedType& type) const {
+    std::string only;
+    for (const DefinedField& field : type.fields) {
+      if (field.name == "position" && IsNumber(field)) return field.name;
+      if (!IsNumber(field)) continue;
+      if (!only.empty()) return "";
+      only = field.name;
+    }
+    return only;
+  }
+
+  void TakeMessage(const DefinedType& type, std::size_t depth) {
+    const bool is_named = depth < address_.steps.size();
+    const std::string wanted = is_named ? address_.steps[depth].field : OnlyField(type);
+    const auto has = std::ranges::find(type.fields, wanted, &DefinedField::name);
+    if (has == type.fields.end() ||
+        (IsNumber(*has) ? depth + 1 < address_.steps.size()
+                        : has->basic != Basic::kMessage || has->many != Many::kOne))
+      return Fail(fmt::format("its type {} has no number '{}'; it has {}", type.name,
+                              is_named ? wanted : "", FieldsOf(type)));
+    for (const DefinedField& field : type.fields) {
+      if (!Ok()) return;
+      if (&field == &*has && IsNumber(field)) {
+        const std::uint32_t count = TakeCount(field);
+        for (std::uint32_t i = 0; i < count && Ok(); ++i) found_.push_back(TakeNumber(field.basic));
+      } else if (&field == &*has) {
+        TakeMessage(TypeOf(field.type), depth + 1);
+      } else if (field.basic == Basic::kText && field.many == Many::kAny &&
+                 field.name.find("name") != std::string::npos) {
+        const std::uint32_t count = TakeCount(field);
+        for (std::uint32_t i = 0; i < count && Ok(); ++i) facts_.names.push_back(TakeText());
+      } else if (field.basic == Basic::kMessage && field.many == Many::kOne &&
+                 TypeOf(field.type).name == "std_msgs/Header") {
+        TakeHeader(field, facts_);
+      } else {
+        Skip(field);
+      }
+    }
+  }
+
+  double TakeNumber(Basic basic) {
+    if (basic == Basic::kFloat32 || basic == Basic::kFloat64) return TakeReal(basic);
+    return basic == Basic::kBool ? reader_.Number<std::uint8_t>() : std::stod(TakeInteger(basic));
+  }
+
+  static std::string FieldsOf(const DefinedType& type) {
+    std::string all;
+    for (const DefinedField& field : type.fields)
+      if (IsNumber(field) || field.basic == Basic::kMessage)
+        all += (all.empty() ? "" : ", ") + field.name;
+    return all.empty() ? "none" : all;
+  }
+
+  const BodyAddress& address_;
+  Facts facts_;
+  std::vector<double> found_;
+};
+
+class BinaryDecoder : public MessageBytes {
+ public:
+  BinaryDecoder(const PoseLayout& layout, bool ros1, std::string_view data,
+                const std::vector<bool>& wanted, std::vector<MessagePose>& poses)
+      : MessageBytes(layout.definition, ros1, data),
+        layout_(layout),
+        wanted_(wanted),
+        poses_(poses) {}
+
+  std::string Decode() {
+    if (!ros1_) TakeEncapsulation();
+    Facts facts;
+    if (Ok()) TakePart(0, facts);
+    if (problem_.empty() && !reader_.ok) return "it is cut off, or not of its type";
+    if (problem_.empty() && reader_.left() > 7)
+      return fmt::format("{} bytes too many for its type", reader_.left());
+    return problem_;
+  }
+
+ private:
   /// Fields x, y, z and w, or an array in this order.
   void TakeNumbers(const DefinedField& field, Facts& facts, bool orientation) {
     if (field.basic != Basic::kMessage) {
@@ -191,19 +315,6 @@ class BinaryDecoder {
       if (known == type) return roles;
     }
     return numbers_.emplace_back(type, RolesOfNumbers(TypeOf(type))).second;
-  }
-
-  void TakeHeader(const DefinedField& field, Facts& facts) {
-    for (const DefinedField& inner : TypeOf(field.type).fields) {
-      if (!Ok()) return;
-      const bool one = inner.many == Many::kOne;
-      if (one && inner.basic == Basic::kTime && inner.name == "stamp")
-        facts.stamp_ns = TakeTime();
-      else if (one && inner.basic == Basic::kText && inner.name == "frame_id")
-        facts.frame = TakeText();
-      else
-        Skip(inner);
-    }
   }
 
   void TakeField(const DefinedField& field, Role role, Facts& facts) {
@@ -328,17 +439,20 @@ class BinaryDecoder {
   }
 
   const PoseLayout& layout_;
-  const bool ros1_;
   const std::vector<bool>& wanted_;
   std::vector<MessagePose>& poses_;
-  ByteReader reader_;
-  bool second_version_ = false;  ///< of CDR
   std::uint32_t unwanted_ = 0, wanted_count_ = 0;
   std::vector<std::pair<std::size_t, std::vector<Role>>> numbers_;  ///< of types
-  std::string problem_;
 };
 
 }  // namespace
+
+std::string DecodeBinaryNumber(const MessageDefinition& definition, bool ros1,
+                               std::string_view data, const BodyAddress& address,
+                               std::vector<double>& numbers,
+                               std::optional<std::int64_t>& stamp_ns) {
+  return NumberDecoder(definition, ros1, data, address).Decode(numbers, stamp_ns);
+}
 
 std::string DecodeBinaryPoses(const PoseLayout& layout, bool ros1, std::string_view data,
                               const std::vector<bool>& wanted, std::vector<MessagePose>& poses) {

@@ -44,7 +44,7 @@ LogFile::LogFile(std::istream& in, std::uint64_t size, const TakesMessage& take,
 }
 
 void LogFile::Fail(std::string_view why) {
-  if (ok()) problem_ = fmt::format("at byte {}: {}", record_at_, why);
+  if (ok()) problem_ = fmt::format("{} {}: {}", place_, record_at_, why);
 }
 
 std::string LogFile::Take(std::uint64_t count) {

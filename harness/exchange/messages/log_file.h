@@ -60,6 +60,11 @@ class LogFile {
 
   /// Problems are told at this place.
   void BeginRecord() { record_at_ = at_; }
+  /// Likewise, of a table: from 0.
+  void BeginRow(std::uint64_t row) {
+    record_at_ = row;
+    place_ = "in message";
+  }
   void Fail(std::string_view why);
   /// The next bytes. Fewer at the end of the file.
   std::string Take(std::uint64_t count);
@@ -91,6 +96,7 @@ class LogFile {
   std::map<std::uint32_t, LogChannel> channels_;
   std::set<std::string, std::less<>> definitions_;
   std::size_t definition_bytes_ = 0;
+  const char* place_ = "at byte";
   std::string problem_;
 };
 
@@ -103,6 +109,11 @@ std::string ReadMcap(std::istream& in, std::uint64_t size, const TakesMessage& t
 /// whose messages are encoded as "ros1".
 std::string ReadBag(std::istream& in, std::uint64_t size, const TakesMessage& take,
                     const HearsOfChannel& channels);
+
+/// The same of a bag of ROS 2 in SQLite (.db3, rosbag2's schema): of files before Iron, without
+/// definitions of types, of which only those of known types are read.
+std::string ReadDb3(const std::string& path, std::istream& in, std::uint64_t size,
+                    const TakesMessage& take, const HearsOfChannel& channels);
 
 // Numbers and texts from bytes, one after another, as MCAP, CDR and ROS 1 lay them out. What would
 // be read behind the end is 0 or "", and `ok` says so. Tested by tests/program/import_mcap_test.cc

@@ -66,6 +66,25 @@ std::shared_ptr<const MessageReader> MessageReaders::Of(const LogChannel& channe
   return known->second.first;
 }
 
+std::string MessageReaders::Definition(const LogChannel& channel, MessageDefinition& definition) {
+  const std::string type = PlainTypeName(channel.schema);
+  const std::string& encoding = channel.message_encoding;
+  const std::string why = fmt::format("{} ({})", type.empty() ? "no schema" : ReadableName(type),
+                                      ReadableName(encoding));
+  const bool ros1 = encoding == "ros1";
+  if (!ros1 && encoding != "cdr") return why;
+  const bool has_text =
+      channel.schema_encoding == (ros1 ? "ros1msg" : "ros2msg") && !channel.definition.empty();
+  if (!has_text && TextOfKnownType(type, ros1).empty())
+    return why + (channel.definition.empty()
+                      ? ", whose definition is not in the file"
+                      : fmt::format(", whose definition is in '{}', which is not read",
+                                    ReadableName(channel.schema_encoding.substr(0, 40))));
+  const std::string problem =
+      ReadDefinition(type, has_text ? channel.definition : std::string_view(), ros1, definition);
+  return problem.empty() ? "" : why + "; " + problem;
+}
+
 std::shared_ptr<const MessageReader> MessageReaders::Make(const LogChannel& channel,
                                                           std::string& why) {
   auto reader = std::make_shared<MessageReader>();
@@ -83,22 +102,10 @@ std::shared_ptr<const MessageReader> MessageReaders::Make(const LogChannel& chan
     reader->fields_ = &FieldsOf(content);
     return reader;
   }
-  const bool ros1 = encoding == "ros1";
-  if (!ros1 && encoding != "cdr") return nullptr;
-  const bool has_text =
-      channel.schema_encoding == (ros1 ? "ros1msg" : "ros2msg") && !channel.definition.empty();
-  if (!has_text && TextOfKnownType(type, ros1).empty()) {
-    why += channel.definition.empty()
-               ? ", whose definition is not in the file"
-               : fmt::format(", whose definition is in '{}', which is not read",
-                             ReadableName(channel.schema_encoding.substr(0, 40)));
-    return nullptr;
-  }
   MessageDefinition definition;
-  const std::string problem =
-      ReadDefinition(type, has_text ? channel.definition : std::string_view(), ros1, definition);
-  if (!problem.empty()) {
-    why += "; " + problem;
+  const bool ros1 = encoding == "ros1";
+  if (std::string problem = Definition(channel, definition); !problem.empty()) {
+    why = std::move(problem);
     return nullptr;
   }
   auto layout = std::make_shared<const PoseLayout>(LayoutOf(std::move(definition)));

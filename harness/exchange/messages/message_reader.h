@@ -48,6 +48,8 @@ class MessageReaders {
  public:
   /// Whether its messages are transforms of tf, which may join bodies that a map names.
   static bool IsOfFrames(const LogChannel& channel);
+  /// The definition of the type of its messages, as CDR or ROS 1. Returns why there is none, or "".
+  static std::string Definition(const LogChannel& channel, MessageDefinition& definition);
   /// Null if its messages are not read, or have no pose: then `why` says so.
   std::shared_ptr<const MessageReader> Of(const LogChannel& channel, std::string& why);
 

@@ -118,6 +118,14 @@ struct MessagePose {
   Eigen::Vector4d xyzw = Eigen::Vector4d(0, 0, 0, 1);  ///< the fields x, y, z, w as they are
 };
 
+/// Of a message of this type, the numbers of a field: "position" of a list beside the texts "name",
+/// by one of them or from 0: {field, key}; a single number by its name: "gripper.width". Without a
+/// field, that of a type that has only one list, or only one number. Appends nothing if the message
+/// has no such element. Returns what is wrong with the message or with the address, or "".
+std::string DecodeBinaryNumber(const MessageDefinition& definition, bool ros1,
+                               std::string_view data, const BodyAddress& address,
+                               std::vector<double>& numbers, std::optional<std::int64_t>& stamp_ns);
+
 enum class JsonContent {
   kPose,        ///< foxglove.PoseInFrame, geometry_msgs/PoseStamped
   kPoses,       ///< foxglove.PosesInFrame, geometry_msgs/PoseArray

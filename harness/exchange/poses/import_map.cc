@@ -121,7 +121,7 @@ void CheckOpenings(const Named<MappedEntity>& entity, PoseFormat format, Diagnos
   for (const auto* opening : {&e.grip, &e.joint}) {
     if (!*opening) continue;
     const Where& where = (*opening)->where;
-    if (format == PoseFormat::kBvh || format == PoseFormat::kMcap || format == PoseFormat::kC3d)
+    if (format == PoseFormat::kBvh || format == PoseFormat::kC3d)
       errors.Add(where, "files of this kind have poses only: grip and joint are read from CSV");
     if ((*opening)->open == (*opening)->closed)
       errors.Add(where, fmt::format("'open' and 'closed' are both {:g}", (*opening)->open),

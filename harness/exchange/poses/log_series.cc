@@ -59,7 +59,9 @@ LogSeries::LogSeries(const ImportMap& map, std::uint64_t file_bytes)
       order_(map.quaternion_order ? map.quaternion_order->value : QuaternionOrder::kXyzw),
       file_bytes_(file_bytes),
       most_poses_(std::min<std::uint64_t>(kMostPoses, kPosesOfAnyFile + file_bytes / 4)),
-      nan_is_missing_(std::ranges::find(map.missing, "nan") != map.missing.end()) {}
+      nan_is_missing_(std::ranges::find(map.missing, "nan") != map.missing.end()) {
+  openings.resize(OpeningsOf(map).size());
+}
 
 void LogSeries::TakeChannel(const LogChannel& channel) {
   std::string why;
@@ -75,7 +77,56 @@ void LogSeries::TakeChannel(const LogChannel& channel) {
     topic.of_frames = MessageReaders::IsOfFrames(channel);
     Ask(channel.topic, topic);
   }
+  AskOpenings(channel, source);
   sources_.emplace(&channel, std::move(source));
+}
+
+void LogSeries::AskOpenings(const LogChannel& channel, Source& source) {
+  const std::vector<OpeningSeries> series = OpeningsOf(map_);
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    LogOpening& opening = openings[i];
+    const auto& from = series[i].Of(map_).from;
+    const bool is_of_topic = std::ranges::all_of(
+        from, [&](const Located<std::string>& one) { return IsOfTopic(one.value, channel.topic); });
+    // Of "/a" and "/a:b" the longer one is meant.
+    if (!is_of_topic || channel.topic.size() < opening.topic.size()) continue;
+    opening.topic = channel.topic;
+    opening.addresses.clear();
+    for (const Located<std::string>& one : from)
+      if (const auto address =
+              ParseBodyAddress(std::string_view(one.value).substr(channel.topic.size())))
+        opening.addresses.push_back(*address);
+    source.definition = {};
+    opening.why_not = opening.addresses.size() < from.size()
+                          ? "expected TOPIC, TOPIC[NAME] or TOPIC:FIELD"
+                          : MessageReaders::Definition(channel, source.definition);
+    if (opening.why_not.empty()) source.openings.push_back(i);
+  }
+}
+
+std::string LogSeries::TakeOpenings(const LogMessage& message, const Source& source) {
+  for (const std::size_t i : source.openings) {
+    LogOpening& opening = openings[i];
+    if (opening.topic != message.channel.topic) continue;
+    std::vector<double> numbers;
+    std::optional<std::int64_t> stamp_ns;
+    for (const BodyAddress& address : opening.addresses) {
+      const bool ros1 = message.channel.message_encoding == "ros1";
+      std::string why =
+          DecodeBinaryNumber(source.definition, ros1, message.data, address, numbers, stamp_ns);
+      if (!why.empty()) return why;
+    }
+    if (numbers.size() < opening.addresses.size()) continue;  // of other joints
+    opening.numbers.insert_or_assign(TimeOf(message, stamp_ns), std::move(numbers));
+    if (++poses_ > most_poses_) return "too many values of grips and joints";
+  }
+  return "";
+}
+
+std::int64_t LogSeries::TimeOf(const LogMessage& message,
+                               std::optional<std::int64_t> stamp_ns) const {
+  if (map_.mcap.clock == Clock::kHeader && stamp_ns) return *stamp_ns;
+  return map_.mcap.clock == Clock::kPublish ? message.publish_ns : message.log_ns;
 }
 
 /// What the map says of it.
@@ -100,8 +151,8 @@ void LogSeries::Ask(const std::string& topic_name, LogTopic& topic) {
 
 std::string LogSeries::TakeMessage(const LogMessage& message) {
   const Source& source = sources_.at(&message.channel);
-  if (!source.reader) return "";
-  const std::string why = TakePoses(message, source);
+  std::string why = source.openings.empty() ? "" : TakeOpenings(message, source);
+  if (why.empty() && source.reader) why = TakePoses(message, source);
   if (why.empty()) return "";
   return fmt::format("a message of '{}', logged at {:.6f} s: {}",
                      ReadableName(message.channel.topic), InSeconds(message.log_ns), why);
@@ -185,15 +236,12 @@ std::string LogSeries::TakePose(const LogMessage& message, const MessagePose& po
     return fmt::format("'{}' is in the frame '{}', and before it was in '{}'", name, frame,
                        link.parent);
   }
-  std::int64_t ns = map_.mcap.clock == Clock::kPublish ? message.publish_ns : message.log_ns;
-  if (map_.mcap.clock == Clock::kHeader && pose.stamp_ns) {
-    ns = *pose.stamp_ns;
-    if (ns == 0 && !fixed)
-      return fmt::format(
-          "'{}' has the time 0 in its header; if it has no clock, the map says "
-          "mcap: {{clock: log}}",
-          name);
-  }
+  const std::int64_t ns = TimeOf(message, pose.stamp_ns);
+  if (map_.mcap.clock == Clock::kHeader && pose.stamp_ns && ns == 0 && !fixed)
+    return fmt::format(
+        "'{}' has the time 0 in its header; if it has no clock, the map says "
+        "mcap: {{clock: log}}",
+        name);
   if (ns < 0 || ns > kLast_ns)
     return fmt::format("'{}' has the time {:.0f} s; expected one of the years 1970 to 2116", name,
                        static_cast<double>(static_cast<std::uint64_t>(ns)) * 1e-9);

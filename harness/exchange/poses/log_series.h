@@ -96,6 +96,15 @@ class LogSeries {
 
   QuaternionOrder quaternion_order() const { return order_; }
 
+  /// Grips and joints of the map: what messages say of them, with their times.
+  struct LogOpening {
+    std::string topic;
+    std::vector<BodyAddress> addresses;  ///< in it, of each `from`
+    std::string why_not;                 ///< its messages are not read
+    std::map<std::int64_t, std::vector<double>> numbers;
+  };
+  std::vector<LogOpening> openings;  ///< of OpeningsOf()
+
   std::map<std::string, LogTopic> topics;
   std::map<std::string, FrameLink> named;  ///< bodies with names of their own
   FrameTree tree;
@@ -105,10 +114,16 @@ class LogSeries {
     std::shared_ptr<const MessageReader> reader;
     LogTopic* topic = nullptr;
     bool other_type = false;  ///< than the topic's first channel
+    std::vector<std::size_t> openings;
+    MessageDefinition definition;  ///< if there are some
   };
 
   std::string TakePoses(const LogMessage& message, const Source& source);
   void Ask(const std::string& topic_name, LogTopic& topic);
+  /// The time of a message that counts.
+  std::int64_t TimeOf(const LogMessage& message, std::optional<std::int64_t> stamp_ns) const;
+  void AskOpenings(const LogChannel& channel, Source& source);
+  std::string TakeOpenings(const LogMessage& message, const Source& source);
   void Look(const MessagePose& pose, LogTopic& topic);
   std::string TakeAsked(const LogMessage& message, const MessagePose& pose, LogTopic& topic);
   std::string TakePose(const LogMessage& message, const MessagePose& pose, const std::string& name,

@@ -79,6 +79,7 @@ std::string EndingOf(const std::string& poses_path) {
 }  // namespace
 
 bool IsBag(const std::string& poses_path) { return EndingOf(poses_path) == ".bag"; }
+bool IsDb3(const std::string& poses_path) { return EndingOf(poses_path) == ".db3"; }
 
 bool IsJsonOfPoses(const std::string& poses_path) {
   const Result<PoseFormat> format = PoseFormatOf(poses_path);
@@ -96,10 +97,9 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
   if (ending == ".json" || ending == ".jsonl" || ending == ".ndjson") return PoseFormat::kJson;
   if (ending == ".npz") return PoseFormat::kNpz;
   if (ending == ".c3d") return PoseFormat::kC3d;
-  if (ending == ".mcap" || ending == ".bag") return PoseFormat::kMcap;
+  if (ending == ".mcap" || ending == ".bag" || ending == ".db3") return PoseFormat::kMcap;
   static const std::string kTable = "write its poses to a CSV file: one row a time, named columns";
   static const std::map<std::string, std::string> kOthers = {
-      {".db3", "convert it, with the program that comes with MCAP: mcap convert IN.db3 OUT.mcap"},
       {".npy", "write it with its times and others as .npz: numpy.savez"},
       {".pkl", "pickles run code when they are read: write its arrays as HDF5 with h5py"},
       {".parquet",

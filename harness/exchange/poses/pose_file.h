@@ -82,6 +82,7 @@ Result<PoseFile> ReadMcapPoses(const std::string& path, const MapFile& map);
 bool IsJsonOfPoses(const std::string& poses_path);
 
 bool IsBag(const std::string& poses_path);
+bool IsDb3(const std::string& poses_path);
 
 /// A kind of file that is not read is an error that says what helps.
 Result<PoseFormat> PoseFormatOf(const std::string& poses_path);

@@ -48,6 +48,7 @@ class McapPoseReader {
       : map_(map.map), map_errors_(map.document) {
     poses.file = path;
     poses.bodies = BodiesOf(map_, map_errors_);
+    poses.openings = OpeningsOf(map_);
   }
 
   void Read() {
@@ -58,10 +59,13 @@ class McapPoseReader {
     std::ifstream in(poses.file, std::ios::binary);
     LogSeries series(map_, size);
     series_ = &series;
-    const auto read = IsBag(poses.file) ? ReadBag : ReadMcap;
-    const std::string why = read(
-        in, size, [&series](const LogMessage& message) { return series.TakeMessage(message); },
-        [&series](const LogChannel& channel) { series.TakeChannel(channel); });
+    const TakesMessage take = [&](const LogMessage& message) {
+      return series.TakeMessage(message);
+    };
+    const HearsOfChannel tell = [&](const LogChannel& channel) { series.TakeChannel(channel); };
+    const std::string why = IsDb3(poses.file)   ? ReadDb3(poses.file, in, size, take, tell)
+                            : IsBag(poses.file) ? ReadBag(in, size, take, tell)
+                                                : ReadMcap(in, size, take, tell);
     if (!why.empty()) return Fail(why);
     poses.quaternion_order = series.quaternion_order();
     if (map_errors_.empty()) FindBodies();
@@ -346,6 +350,37 @@ class McapPoseReader {
       for (const TimedPose& pose : all[i])
         poses.bodies[i].samples.push_back(
             {.t_s = Seconds(pose.ns - *first), .p = pose.p, .q = pose.q});
+    }
+    AddOpenings(*first, *last);
+  }
+
+  void AddOpenings(std::int64_t first, std::int64_t last) {
+    for (std::size_t i = 0; i < poses.openings.size(); ++i) {
+      const LogSeries::LogOpening& read = series_->openings[i];
+      const Opening& said = poses.openings[i].Of(map_);
+      const Located<std::string>& from = said.from.front();
+      if (read.topic.empty() || !read.why_not.empty() || read.numbers.empty()) {
+        std::vector<std::string> topics;
+        for (const auto& [name, topic] : series_->topics) topics.push_back(name);
+        if (read.topic.empty())
+          map_errors_.AddUnknownName(
+              from.where,
+              fmt::format("no topic has '{}'{}", said.Names(),
+                          said.from.size() > 1 ? ", or they are of several topics" : ""),
+              from.value, topics);
+        else
+          map_errors_.Add(from.where,
+                          fmt::format("'{}' is not read: {}", said.Names(),
+                                      read.why_not.empty() ? "no message has it" : read.why_not));
+        continue;
+      }
+      // The last value before the first pose holds there.
+      auto at = read.numbers.upper_bound(first);
+      if (at != read.numbers.begin()) --at;
+      for (; at != read.numbers.end() && at->first <= last; ++at)
+        if (const double open = said.FractionOf(at->second); std::isfinite(open))
+          poses.openings[i].samples.push_back(
+              {.t_s = Seconds(std::max(at->first, first) - first), .open = open});
     }
   }
 
