@@ -221,6 +221,8 @@ GrammarDescription Describe(const Program& program) {
          .watched = Watched(program, rule),
          .bytes_per_binding = BytesPerBinding(rule),
          .bytes_per_interval = rule.referenced ? sizeof(Span) : 0,
+         .bytes_per_begin =
+             rule.form() == Form::kFromTo && rule.As<FromToRule>().each ? sizeof(Moment) : 0,
          .bytes_per_part = rule.form() == Form::kCompose ? sizeof(Span) : 0});
   }
   for (const Law& law : program.laws) description.laws.push_back({law.Head(), law.says});
@@ -236,6 +238,8 @@ std::string Text(const GrammarDescription& description) {
     if (rule.bytes_per_interval > 0)
       text +=
           ", and " + std::to_string(rule.bytes_per_interval) + " for each of its recent intervals";
+    if (rule.bytes_per_begin > 0)
+      text += ", and " + std::to_string(rule.bytes_per_begin) + " for each A that waits for B";
     if (rule.bytes_per_part > 0)
       text += ", and " + std::to_string(rule.bytes_per_part) +
               " for each interval of a part that waits for others";

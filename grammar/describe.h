@@ -26,6 +26,7 @@ struct RuleDescription {
   std::string watched;  ///< which bindings cost time: "pairs that touch", "every hand and object"
   std::size_t bytes_per_binding = 0;   ///< at most, besides its intervals
   std::size_t bytes_per_interval = 0;  ///< kept for as long as poses are, if others ask for them
+  std::size_t bytes_per_begin = 0;     ///< of `from each`: per begin that waits for an end
   std::size_t bytes_per_part = 0;      ///< of a composition: per interval that waits for others
 };
 

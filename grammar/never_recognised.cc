@@ -77,8 +77,11 @@ class FactsJudge {
     const auto& composition = rule.As<ComposeRule>();
     std::string_view some;
     for (int part = 0; part < composition.count; ++part) {
-      const std::string_view why =
-          NeverOfReference(rule, composition.parts[static_cast<std::size_t>(part)]);
+      std::string_view why;
+      for (const int slot : composition.ChoicesFor(part)) {
+        why = NeverOfReference(rule, slot);
+        if (why.empty()) break;
+      }
       if (why.empty() == (composition.at_least > 0)) return why;
       if (some.empty()) some = why;
     }

@@ -296,7 +296,8 @@ void MarkReferenced(Program& program, RuleId index) {
 void MarkFirstParts(Program& program, RuleId index) {
   const auto* composition = program.rules[index].If<ComposeRule>();
   if (composition == nullptr || !program.rules[index].referenced) return;
-  for (std::size_t part = 0; part < composition->may_begin(); ++part) {
+  for (std::size_t part = 0; part < composition->parts.size(); ++part) {
+    if (!composition->MayBegin(part)) continue;
     const auto slot = static_cast<std::size_t>(composition->parts[part]);
     program.rules[program.rules[index].references[slot].rule].referenced = true;
   }

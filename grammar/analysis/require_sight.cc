@@ -148,10 +148,9 @@ class Sight {
         const RuleRole who = program_.rules[index].roles[static_cast<std::size_t>(role)];
         const RuleId lost = WhileLost(who, program_.rules[index]);
         Rule& rule = program_.rules[index];
-        auto& parts = rule.As<ComposeRule>().parts;
-        rule.As<ComposeRule>().absences.push_back(
-            {.part = static_cast<int>(parts.size()), .left = absence.left, .right = absence.right});
-        parts.push_back(static_cast<int>(rule.references.size()));
+        auto& whole = rule.As<ComposeRule>();
+        const int part = whole.AddPart(static_cast<int>(rule.references.size()));
+        whole.absences.push_back({.part = part, .left = absence.left, .right = absence.right});
         rule.references.push_back({.rule = lost, .roles = {role, kNone, kNone, kNone}});
       }
     }

@@ -22,6 +22,7 @@ class CompositionLowering {
   void Run() {
     const std::size_t before = lowering_.complaints();
     std::vector<std::string> labels;
+    std::vector<std::vector<int>> calls;  // by part
     if (d_.parts.size() > kMaxParts) {
       return lowering_.Complain(d_.parts[kMaxParts].place,
                                 "more than " + std::to_string(kMaxParts) + " parts",
@@ -32,13 +33,16 @@ class CompositionLowering {
         lowering_.Complain(part.place, "the label '" + part.label + "' is used twice");
       }
       labels.push_back(part.label);
-      const int reference = lowering_.RuleCall(part.call);
-      if (reference == kNone) continue;
-      Composition().parts.push_back(reference);
+      calls.push_back({});
+      for (const ast::Expr& call : part.calls) calls.back().push_back(lowering_.RuleCall(call));
     }
-    if (labels.size() != Composition().parts.size()) return;
+    for (const std::vector<int>& part : calls) {
+      if (std::ranges::find(part, kNone) != part.end()) return;
+      Composition().AddPart(part.front());
+    }
     Composition().count = static_cast<int>(labels.size());
     Composition().hull = d_.all_of;
+    Composition().first = d_.first_of_equals;
     const auto find = [&](const std::string& label, Place place) {
       const auto found = std::ranges::find(labels, label);
       if (found == labels.end()) {
@@ -62,8 +66,13 @@ class CompositionLowering {
       const int reference = lowering_.RuleCall(absence.call);
       if (reference == kNone || lowering_.complaints() != before) return;
       Composition().absences.push_back(
-          {.part = static_cast<int>(Composition().parts.size()), .left = left, .right = right});
-      Composition().parts.push_back(reference);
+          {.part = Composition().AddPart(reference), .left = left, .right = right});
+    }
+    for (std::size_t part = 0; part < calls.size(); ++part) {
+      for (std::size_t i = 1; i < calls[part].size(); ++i) {
+        Composition().AddPart(calls[part][i], static_cast<int>(part));
+        Composition().has_choices = true;
+      }
     }
     if (d_.all_of) LowerAllOf();
     if (lowering_.complaints() == before) CheckRelations();
@@ -73,6 +82,13 @@ class CompositionLowering {
  private:
   ComposeRule& Composition() { return program_.rules[index_].As<ComposeRule>(); }
 
+  // Both name an event.
+  bool Share(int left, int right) {
+    const std::vector<int> some = Composition().ChoicesFor(left);
+    return std::ranges::any_of(Composition().ChoicesFor(right),
+                               [&](int one) { return std::ranges::find(some, one) != some.end(); });
+  }
+
   // What is named twice happens twice.
   void LowerAllOf() {
     if (d_.within) {
@@ -81,7 +97,7 @@ class CompositionLowering {
     }
     for (int left = 0; left < Composition().count; ++left) {
       for (int right = left + 1; right < Composition().count; ++right) {
-        if (Composition().parts[left] != Composition().parts[right]) continue;
+        if (!Share(left, right)) continue;
         ComposeRule::Clause other{
             .left = left,
             .right = right,
@@ -177,7 +193,9 @@ class CompositionLowering {
     AllenNetwork network(parts);
     for (int left = 0; left < parts; ++left) {
       for (int right = left + 1; right < parts; ++right) {  // intervals of one event do not overlap
-        if (composition.parts[left] == composition.parts[right])
+        const bool is_sure =
+            composition.ChoicesFor(left).size() == 1 && composition.ChoicesFor(right).size() == 1;
+        if (is_sure && Share(left, right))
           network.Constrain(left, right, kApart | Bit(Allen::kEquals));
       }
     }

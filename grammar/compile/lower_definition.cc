@@ -27,6 +27,9 @@ class DefinitionLowering {
   void Run() {
     LowerForm();
     LowerModifiers();
+    if (d_.each && (!Here().anchors.empty() || Here().style_role != kNone))
+      lowering_.Complain(d_.place, "'each' keeps no values of where A was",
+                         "leave out 'each', or what speaks of the begin");
   }
 
  private:
@@ -143,10 +146,9 @@ class DefinitionLowering {
     if (!d_.gap) {
       const double within_s = lowering_.Span(*d_.within, "'within'");
       if (!all_calls) return;
-      As<ComposeRule>() = {.parts = counted,
-                           .count = static_cast<int>(counted.size()),
-                           .at_least = whole,
-                           .within_s = within_s};
+      As<ComposeRule>() = {
+          .count = static_cast<int>(counted.size()), .at_least = whole, .within_s = within_s};
+      for (const int one : counted) As<ComposeRule>().AddPart(one);
       return;
     }
     const NodeId condition = all_calls ? lowering_.Truth(AnyOf(d_.repeated), {}) : NodeId();
@@ -164,8 +166,17 @@ class DefinitionLowering {
                         .to = to,
                         .during = during,
                         .or_drop = d_.or_drop || d_.absence,
-                        .absence = d_.absence};
+                        .absence = d_.absence,
+                        .each = d_.each};
     CheckBegin();
+    if (d_.each && d_.absence) {
+      lowering_.Complain(d_.place, "'each' is for what comes: from each A to B within t",
+                         "leave out 'each': some A has no answer only if from A without B within t "
+                         "finds one");
+    } else if (d_.each && !d_.within) {
+      lowering_.Complain(d_.place, "without a limit, one B ends what each A began",
+                         "say how long each may wait: from each A to B within 2 s");
+    }
     if (d_.within) LowerWithin(*d_.within);
   }
 

@@ -139,7 +139,11 @@ bool Combinations::Link::MayFit(const Span& span, const ToCome& to_come) const {
 bool Combinations::HasPartner(const Span& span, const Link& link, const Choices& others) const {
   auto other = std::ranges::lower_bound(others, span.begin.tick - link.behind, {},
                                         [](const Span* one) { return one->end.tick; });
-  for (; other != others.end() && (*other)->begin.tick <= span.end.tick + link.ahead; ++other) {
+  for (; other != others.end(); ++other) {
+    if ((*other)->begin.tick > span.end.tick + link.ahead) {
+      if (!rule_->has_choices) break;
+      continue;
+    }
     const bool fits = std::ranges::all_of(links_, [&](const Link& all) {
       return all.part != link.part || all.other != link.other || all.Fit(span, **other);
     });
@@ -177,8 +181,10 @@ bool Combinations::IsHopeless(std::size_t part, const Span& span,
     const std::vector<Span>& others = state_->parts[link.other];
     auto other = std::ranges::lower_bound(others, span.begin.tick - link.behind, {},
                                           [](const Span& one) { return one.end.tick; });
-    for (; other != others.end() && other->begin.tick <= span.end.tick + link.ahead; ++other) {
-      if (link.Fit(span, *other)) return false;
+    for (; other != others.end(); ++other) {
+      const bool is_far = other->begin.tick > span.end.tick + link.ahead;
+      if (is_far && !rule_->has_choices) break;
+      if (!is_far && link.Fit(span, *other)) return false;
     }
     return true;
   });
@@ -204,7 +210,9 @@ bool Combinations::MakeConsistent(AllChoices& choices) const {
     const auto keep = [&](Choices& some, const auto& fits) {
       changed |= std::erase_if(some, [&](const Span* span) { return !fits(*span); }) > 0;
     };
-    const Tick first_begin = choices.front().front()->begin.tick;
+    const Span* const first = *std::ranges::min_element(
+        choices.front(), {}, [](const Span* span) { return span->begin.tick; });
+    const Tick first_begin = first->begin.tick;
     keep(choices[count_ - 1], [&](const Span& span) { return span.end.tick > first_begin; });
     if (choices[count_ - 1].empty()) return false;
     const Tick last_end = choices[count_ - 1].back()->end.tick;
@@ -302,7 +310,8 @@ std::optional<Span> Combinations::Best(std::size_t part, const Span& newest) {
   if (!CanComplete(choices_, 0)) return std::nullopt;
   if (rule_->hull) return BestHull(newest);
   const Span& last = ChooseLeast(count_ - 1, [](const Span& span) { return span.end.tick; });
-  const Span& first = ChooseLeast(0, [](const Span& span) { return -span.begin.tick; });
+  const Span& first =
+      ChooseLeast(0, [this](const Span& span) { return rule_->BySkip(span.begin.tick); });
   return Span{.begin = first.begin,
               .end = last.end,
               .open_end = last.open_end,

@@ -263,6 +263,7 @@ class Engine final {
   void NotifyCompositions(const RuleInstance& part, const Span& span);
   FrameNumber Settled(const RuleInstance& instance) const;
   FrameNumber PartsSettled(const RuleInstance& composition) const;
+  FrameNumber SettledOfNone(const Reference& reference, const Binding& whole) const;
   bool LacksAPart(const RuleInstance& composition) const;
   static std::string WhyTooMany(const Rule& composition);
   static Moment Earlier(Moment a, Moment b) { return b.tick < a.tick ? b : a; }

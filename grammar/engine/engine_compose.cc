@@ -51,11 +51,12 @@ void Engine::NotifyCompositions(const RuleInstance& part, const Span& span) {
       instances_.EnsureAll(part_of.rule, entities, notified_);
       for (const InstanceId index : notified_) {
         auto& state = instances_[index].As<ComposeState>();
-        std::vector<Span>& spans = state.parts[part_of.part];
+        const int list = whole.As<ComposeRule>().lists[static_cast<std::size_t>(part_of.part)];
+        std::vector<Span>& spans = state.parts[static_cast<std::size_t>(list)];
         const auto later = std::ranges::upper_bound(
             spans, span.end.tick, {}, [](const Span& other) { return other.end.tick; });
         spans.insert(later, span)->judged = false;
-        if (part_of.part < whole.As<ComposeRule>().count) ++state.unjudged;
+        if (list < whole.As<ComposeRule>().count) ++state.unjudged;
         if (Remembered(state) > kMostRememberedSpans) error_ = WhyTooMany(whole);
         Wake(index);
       }
@@ -109,7 +110,8 @@ Moment Engine::BeginsFrom(const Reference& reference, const Binding& whole) cons
 Moment Engine::PartsBeginFrom(RuleId rule, const Binding& entities) const {
   const auto& composition = program_->rules[rule].As<ComposeRule>();
   Moment from = NextFrame();
-  for (std::size_t part = 0; part < composition.may_begin(); ++part) {
+  for (std::size_t part = 0; part < composition.parts.size(); ++part) {
+    if (!composition.MayBegin(part)) continue;
     const auto slot = static_cast<std::size_t>(composition.parts[part]);
     from = Earlier(from, BeginsFrom(program_->rules[rule].references[slot], entities));
   }
@@ -127,12 +129,17 @@ Moment Engine::BackFrom(RuleId rule) const {
 void Engine::NoteWhatIsToCome(const RuleInstance& composition, FrameNumber settled) {
   to_come_.clear();
   const FrameNumber last = std::min(settled, history_.now());
-  for (const int slot : RuleOf(composition).As<ComposeRule>().parts) {
-    const Reference& reference = RuleOf(composition).references[static_cast<std::size_t>(slot)];
+  const auto& rule = RuleOf(composition).As<ComposeRule>();
+  for (std::size_t part = 0; part < rule.parts.size(); ++part) {
+    const auto slot = static_cast<std::size_t>(rule.parts[part]);
+    const Reference& reference = RuleOf(composition).references[slot];
     const bool composed = program_->rules[reference.rule].form() == Form::kCompose;
     to_come_.push_back(
         {.begins_from = BeginsFrom(reference, composition.entities).tick,
          .ends_after = composed || last < history_.first() ? -1 : history_.At(last).tick});
+    Combinations::ToCome& all = to_come_[static_cast<std::size_t>(rule.lists[part])];
+    all.begins_from = std::min(all.begins_from, to_come_.back().begins_from);
+    all.ends_after = std::min(all.ends_after, to_come_.back().ends_after);
   }
 }
 
@@ -149,12 +156,38 @@ FrameNumber Engine::Settled(const RuleInstance& instance) const {
   return settled;
 }
 
+// Of a composition that is not made yet: its first interval may be on its way.
+FrameNumber Engine::SettledOfNone(const Reference& reference, const Binding& whole) const {
+  FrameNumber settled = kNever;
+  const auto* rule = program_->rules[reference.rule].If<ComposeRule>();
+  if (rule == nullptr) return settled;
+  Binding entities = kUnbound;
+  for (std::size_t i = 0; i < program_->rules[reference.rule].roles.size(); ++i)
+    entities[i] = whole[static_cast<std::size_t>(reference.roles[i])];
+  for (const int slot : rule->parts) {
+    const Reference& part =
+        program_->rules[reference.rule].references[static_cast<std::size_t>(slot)];
+    Binding of_part = kUnbound;
+    for (std::size_t i = 0; i < program_->rules[part.rule].roles.size(); ++i)
+      of_part[i] = entities[static_cast<std::size_t>(part.roles[i])];
+    const InstanceId index = instances_.Find(part.rule, of_part);
+    settled = std::min(settled,
+                       index != kNone ? Settled(instances_[index]) : SettledOfNone(part, entities));
+  }
+  return settled;
+}
+
 FrameNumber Engine::PartsSettled(const RuleInstance& composition) const {
   FrameNumber settled = finishing_ ? kNever : history_.now();
   const auto& rule = RuleOf(composition).As<ComposeRule>();
   for (const int part : rule.parts) {
     const InstanceId index = instances_.Find(composition, part);
-    if (index != kNone) settled = std::min(settled, Settled(instances_[index]));
+    if (index != kNone) {
+      settled = std::min(settled, Settled(instances_[index]));
+    } else if (rule.has_choices) {
+      const Reference& reference = RuleOf(composition).references[static_cast<std::size_t>(part)];
+      settled = std::min(settled, SettledOfNone(reference, composition.entities));
+    }
   }
   // What must be absent may have begun long before it is out.
   for (const ComposeRule::Absence& absence : rule.absences) {
@@ -262,9 +295,10 @@ std::optional<Span> Engine::NextComposed(RuleInstance& instance, FrameNumber set
     for (std::size_t part = 0; part < state.parts.size(); ++part) {
       if (part >= static_cast<std::size_t>(rule.count)) break;
       std::vector<Span>& spans = state.parts[part];
-      for (auto one = spans.rbegin(); one != spans.rend() && !one->judged; ++one) {
+      for (auto one = spans.rbegin(); one != spans.rend(); ++one) {
         Span& span = *one;
-        if (span.Complete().frame > settled) continue;
+        if (span.judged && !rule.has_choices) break;
+        if (span.judged || span.Complete().frame > settled) continue;
         if (!newest.empty() && span.Complete().tick < newest.front().second->Complete().tick)
           newest.clear();
         if (newest.empty() || span.Complete().tick == newest.front().second->Complete().tick)
@@ -280,7 +314,7 @@ std::optional<Span> Engine::NextComposed(RuleInstance& instance, FrameNumber set
       const std::optional<Span> one = combinations_.Best(part, *span);
       const auto key = [&](const Span& whole) {
         return rule.hull ? std::pair(-whole.begin.tick, whole.end.tick)
-                         : std::pair(whole.end.tick, -whole.begin.tick);
+                         : std::pair(whole.end.tick, rule.BySkip(whole.begin.tick));
       };
       if (one && (!best || key(*one) < key(*best))) best = one;
     }

@@ -265,7 +265,10 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
       Note(instance, fate::Dropped{frame}, {instance.begin, history_.At(frame)});
       instance.open = false;
     }
-    return true;
+    if (!rule.each || !instance.open) return true;
+    const Kleene opens = evaluator_.Truth(rule.from, view);
+    if (opens == Kleene::kTrue) instance.As<FromToState>().waiting.PushBack() = history_.At(frame);
+    return opens != Kleene::kUnknown;
   }
   Kleene opens = evaluator_.Truth(rule.from, view);
   if (opens == Kleene::kFalse) return true;
@@ -284,18 +287,26 @@ bool Engine::StepFromTo(RuleInstance& instance, FrameNumber frame) {
   if (rule.during != kNone) opens = And(opens, evaluator_.Truth(rule.during, begin));
   if (opens != Kleene::kFalse) opens = And(opens, Not(evaluator_.Truth(rule.to, begin)));
   if (opens == Kleene::kFalse) return true;
+  if (rule.each) instance.As<FromToState>().waiting.Clear();
   return opens == Kleene::kTrue && anchored && Open(instance, frame);
 }
 
-// An open run whose deadline has passed: without the end that it waited for it is dropped; of a
-// `without` it is an interval.
+// An open run whose deadline has passed: without the end that it waited for it is dropped, and with
+// `each` the next one that waits takes its place; of a `without` it is an interval.
 bool Engine::MeetDeadline(RuleInstance& instance, Moment now) {
   const FromToRule& rule = RuleOf(instance).As<FromToRule>();
   const Tick deadline = instance.begin.tick + TicksOf(instance).within;
   if (now.tick < deadline || (now.tick == deadline && !rule.absence)) return true;
   if (!rule.absence) {
-    Note(instance, fate::TooLate{}, {instance.begin, {now.frame, deadline}});
-    instance.open = false;
+    RingBuffer<Moment>& waiting = instance.As<FromToState>().waiting;
+    do {
+      const Tick too_late = instance.begin.tick + TicksOf(instance).within;
+      Note(instance, fate::TooLate{}, {instance.begin, {now.frame, too_late}});
+      instance.open = rule.each && !waiting.empty();
+      if (!instance.open) return true;
+      instance.begin = waiting.front();
+      waiting.PopFront();
+    } while (now.tick > instance.begin.tick + TicksOf(instance).within);
     return true;
   }
   const bool just_in_time = now.tick - instance.begin.tick <= TicksOf(instance).in_time;

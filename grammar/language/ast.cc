@@ -32,10 +32,10 @@ std::string DumpUntil(const Definition& d) {
 }
 
 std::string DumpCompose(const Definition& d) {
-  std::string text = d.all_of ? "all of " : "compose ";
+  std::string text = d.all_of ? "all of " : d.first_of_equals ? "compose first " : "compose ";
   for (const Part& part : d.parts) {
     text += (&part == &d.parts.front() ? "" : ", ") + part.label +
-            (part.label.empty() ? "" : ": ") + Dump(part.call);
+            (part.label.empty() ? "" : ": ") + Joined(part.calls, " or ");
   }
   std::string comma = " where ";
   for (const Relation& relation : d.relations) {
@@ -57,8 +57,8 @@ std::string DumpForm(const Definition& d) {
     case Definition::Form::kWhile:
       return "while " + Dump(d.first) + (d.until ? " until " + Dump(*d.until) : "");
     case Definition::Form::kFromTo: {
-      std::string text =
-          "from " + Dump(d.first) + (d.absence ? " without " : " to ") + Dump(d.second);
+      std::string text = (d.each ? "from each " : "from ") + Dump(d.first) +
+                         (d.absence ? " without " : " to ") + Dump(d.second);
       if (d.within) text += " within " + Dump(*d.within);
       if (d.during) text += " during " + Dump(*d.during) + (d.or_drop ? " or drop" : "");
       return text;

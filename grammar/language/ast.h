@@ -82,11 +82,11 @@ struct Confirmation {
   Expr within;
 };
 
-/// `label: event(roles)` of a composition; of `all of`, the label may be left out.
+/// `label: event(roles) or event(roles)` of a composition; of `all of`, the label may be left out.
 struct Part {
   std::string label;
   Place place;
-  Expr call;
+  std::vector<Expr> calls;  ///< an interval of one of them
 };
 
 /// `left relation [within t]|relation [within t] right` between two labels of a composition.
@@ -122,6 +122,7 @@ struct Definition {
   Expr second;                 ///< to B, without B, since F
   std::optional<Expr> until;   ///< while A until B
   bool absence = false;        ///< from A without B
+  bool each = false;           ///< from each A to B
   std::optional<Expr> within;  ///< from .. within t, all of .. within t, repeat .. within t
   std::optional<Expr> during;
   bool or_drop = false;  ///< `during G or drop`
@@ -134,7 +135,8 @@ struct Definition {
   std::vector<Part> parts;
   std::vector<Relation> relations;
   std::vector<Absence> absences;
-  bool all_of = false;  ///< kCompose: all of E, F
+  bool all_of = false;           ///< kCompose: all of E, F
+  bool first_of_equals = false;  ///< kCompose: compose first a: E, ..
 
   std::optional<Expr> bridging;
   std::optional<OnePer> one_per;

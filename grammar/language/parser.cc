@@ -195,6 +195,7 @@ class Parser : public LawParser {
 
   void ParseFromTo(Definition& definition) {
     definition.form = Definition::Form::kFromTo;
+    definition.each = Accept("each");
     definition.first = ParseExpr();
     definition.absence = Accept("without");
     if (!definition.absence)
@@ -265,13 +266,24 @@ class Parser : public LawParser {
     approach.idle = ParseSum();
   }
 
+  // E or F
+  std::vector<Expr> ParseChoice() {
+    std::vector<Expr> calls;
+    do {
+      calls.push_back(ParsePostfix());
+    } while (Accept("or"));
+    return calls;
+  }
+
   void ParseCompose(Definition& definition) {
     definition.form = Definition::Form::kCompose;
+    definition.first_of_equals = At("first") && !At(":", 1);  // it may be a label, too
+    if (definition.first_of_equals) SkipOne();
     do {
       const Place place = Peek().place;
       std::string label = ExpectName("a label");
       Expect(":", "a composition labels its parts: compose reach: reaching(hand, object), ...");
-      definition.parts.push_back({std::move(label), place, ParsePostfix()});
+      definition.parts.push_back({std::move(label), place, ParseChoice()});
     } while (Accept(","));
     Expect("where", "say how the parts follow each other: where reach before|meets grasp, ...");
     ParseRelations(definition);
@@ -288,7 +300,7 @@ class Parser : public LawParser {
         label = ExpectName("a label");
         SkipOne();
       }
-      definition.parts.push_back({std::move(label), place, ParsePostfix()});
+      definition.parts.push_back({std::move(label), place, ParseChoice()});
     } while (Accept(","));
     if (Accept("where")) ParseRelations(definition);
     Expect("within", "say how long all of it lasts at most: all of E, F within 60 s");
@@ -325,9 +337,7 @@ class Parser : public LawParser {
   void ParseRepeat(Definition& definition) {
     constexpr const char* kExample = "repeat stroke(hand, object) at least 3, gap at most 0.3 s";
     definition.form = Definition::Form::kRepeat;
-    do {
-      definition.repeated.push_back(ParsePostfix());
-    } while (Accept("or"));
+    definition.repeated = ParseChoice();
     Expect("at", kExample);
     Expect("least", kExample);
     definition.at_least = ParseSumBefore("gap");

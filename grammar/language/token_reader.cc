@@ -10,12 +10,12 @@ namespace {
 
 constexpr std::array<std::string_view, 8> kItemWords = {"grammar",   "use",   "param",     "define",
                                                         "condition", "event", "symmetric", "law"};
-constexpr std::array<std::string_view, 37> kOtherWords = {
+constexpr std::array<std::string_view, 38> kOtherWords = {
     "while",       "from",     "to",       "during",    "until",   "since",  "at",     "most",
     "back",        "rest",     "of",       "outside",   "compose", "where",  "repeat", "otherwise",
     "bridging",    "lasting",  "requires", "confirmed", "by",      "within", "with",   "without",
     "approaching", "receding", "slower",   "than",      "begins",  "ends",   "and",    "or",
-    "not",         "any",      "style",    "drawn",     "known"};
+    "not",         "any",      "style",    "drawn",     "known",   "each"};
 
 /// Words of other languages, and what to write here instead.
 struct Habit {

@@ -128,6 +128,7 @@ struct FromToRule {
   NodeId during;         ///< kNone: nothing has to hold
   bool or_drop = false;  ///< an interval that does not reach `to` is dropped
   bool absence = false;  ///< `without`: an interval that reaches `to` is dropped
+  bool each = false;     ///< `from each`: what comes too late for one may be in time for the next
   double within_s = -1;  ///< how long to wait for `to`; negative: forever
 };
 
@@ -187,16 +188,37 @@ struct ComposeRule {
     int left = 0;
     int right = 0;
   };
-  std::vector<int> parts;  ///< references; behind them those of `absences`
-  int count = 0;           ///< of the parts that must be there
+  std::vector<int> parts;    ///< references; behind them those of `absences` and other choices
+  std::vector<int> lists;    ///< by part: the one for which its intervals can stand
+  int count = 0;             ///< of the parts that must be there
+  bool has_choices = false;  ///< `a: E or F`: the intervals of a part may overlap
+  bool first = false;        ///< `compose first`: of equals the one that begins first
+  /// By default for itself; returns its number.
+  int AddPart(int reference, int list = kNone) {
+    parts.push_back(reference);
+    lists.push_back(list == kNone ? static_cast<int>(lists.size()) : list);
+    return lists.back();
+  }
   std::vector<Clause> clauses;
   std::vector<Absence> absences;
   bool hull = false;  ///< `all of`: from where the first of them begins to where the last one ends
   int at_least = 0;   ///< `repeat .. within`: so many intervals of the parts; 0: one of each
   double within_s = 0;  ///< `hull` or `at_least`: all of it lasts at most so long
-  /// The parts with which it may begin.
+  /// The parts with which it may begin: so many.
   std::size_t may_begin() const {
     return hull || at_least > 0 ? static_cast<std::size_t>(count) : 1;
+  }
+  /// Of those that are equal otherwise the one with the least is taken.
+  Tick BySkip(Tick begin) const { return first ? begin : -begin; }
+  bool MayBegin(std::size_t part) const {
+    return static_cast<std::size_t>(lists[part]) < may_begin();
+  }
+  /// References that can stand for a part.
+  std::vector<int> ChoicesFor(int part) const {
+    std::vector<int> choices;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (lists[i] == part) choices.push_back(parts[i]);
+    return choices;
   }
 };
 

@@ -47,7 +47,8 @@ bool IdleQueue::CanBeFreed(const RuleInstance& instance) const {
 // remembered.
 bool IdleQueue::MayOverlap(const RuleInstance& instance) const {
   const auto& composition = RuleOf(instance).As<ComposeRule>();
-  for (std::size_t part = 0; part < composition.may_begin(); ++part) {
+  for (std::size_t part = 0; part < composition.parts.size(); ++part) {
+    if (!composition.MayBegin(part)) continue;
     const InstanceId index = instances_.Find(instance, composition.parts[part]);
     if (index == kNone) continue;
     const RuleInstance& first = instances_[index];

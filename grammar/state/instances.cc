@@ -21,8 +21,9 @@ FormState StateFor(Form form) {
       return UntilSinceState();
     case Form::kCompose:
       return ComposeState();
-    case Form::kWhile:
     case Form::kFromTo:
+      return FromToState();
+    case Form::kWhile:
     case Form::kRestOf:
       break;
   }
@@ -63,9 +64,10 @@ RuleInstances::RuleInstances(const Program& program, const EntityTable& entity_t
     // Compositions that nobody asks for are made when a part has an interval for them.
     const auto* composition = rule.If<ComposeRule>();
     if (composition != nullptr && rule.referenced) {
-      for (std::size_t part = 0; part < composition->may_begin(); ++part)
-        guarded_[rule.references[composition->parts[part]].rule].push_back(
-            {index, composition->parts[part]});
+      for (std::size_t part = 0; part < composition->parts.size(); ++part)
+        if (composition->MayBegin(part))
+          guarded_[rule.references[composition->parts[part]].rule].push_back(
+              {index, composition->parts[part]});
     } else if (rule.guard != kNone && composition == nullptr) {
       guarded_[rule.references[rule.guard].rule].push_back({index, rule.guard});
     }
@@ -348,13 +350,11 @@ bool RuleInstances::GuardRests(const RuleInstance& instance) const {
   if (rule.guard == kNone) return false;
   if (rule.form() == Form::kCompose) {
     const auto& composition = rule.As<ComposeRule>();
-    return std::all_of(
-        composition.parts.begin(),
-        composition.parts.begin() + static_cast<std::ptrdiff_t>(composition.may_begin()),
-        [&](int slot) {
-          const InstanceId part = instance.references[slot];
-          return part == kNone || rests(part);
-        });
+    for (std::size_t i = 0; i < composition.parts.size(); ++i) {
+      const InstanceId part = instance.references[composition.parts[i]];
+      if (composition.MayBegin(i) && part != kNone && !rests(part)) return false;
+    }
+    return true;
   }
   const InstanceId guard = instance.references[rule.guard];
   return guard == kNone || rests(guard);

@@ -112,6 +112,12 @@ struct UntilSinceState {
   void Reset() { last_end = 0; }
 };
 
+/// An instance of `from .. to`.
+struct FromToState {
+  RingBuffer<Moment> waiting;  ///< `each`: the begins after that of the open run
+  void Reset() { waiting.Clear(); }
+};
+
 /// An instance of a composition.
 struct ComposeState {
   FrameNumber last_end = 0;              ///< end of the previous one
@@ -134,7 +140,8 @@ struct NoState {
   void Reset() {}
 };
 
-using FormState = std::variant<NoState, TouchingState, AnyState, UntilSinceState, ComposeState>;
+using FormState =
+    std::variant<NoState, TouchingState, AnyState, UntilSinceState, ComposeState, FromToState>;
 
 /// The head stands first, in the order in which a frame needs it: what every look at an instance
 /// needs shares a line of the cache or two.

@@ -134,7 +134,7 @@ class Meaning:
     def intervals(self, name, binding):
         rule = self.rules[name]
         env, ticks, n = tuple(zip((role for role, _ in rule["roles"]), binding)), self.ticks, self.n
-        form = next(key for key in rule if key not in ("is", "name", "(", "roles", ")"))
+        form = next(key for key in rule if key not in ("is", "name", "(", "roles", ")", "first"))
         found = [one for one in getattr(self, form.split()[0] + "_")(rule, env)
                  if rule.get("lasting", 0) * self.tps <= one[1] - one[0] <= rule.get("most", Fraction(10**9)) * self.tps]
         if "requires" in rule:
@@ -170,7 +170,21 @@ class Meaning:
             joined[-1:] = [self.frames(joined[-1][2], one[3])] if near else joined[-1:] + [one]
         return joined
 
+    def from_each(self, rule, env):
+        on, off = self.truth(rule["from each"], env), self.truth(rule["to"], env)
+        holds = self.truth(rule["during"], env) if "during" in rule else [True] * self.n
+        waits = [on[i] is True and holds[i] is True and off[i] is not True for i in range(self.n)]
+
+        def until(i):
+            j = self.first(range(i + 1, self.n), lambda j: off[j] is True or holds[j] is not True)
+            i = self.first(range(i, j), lambda k: waits[k] and self.ticks[j] - self.ticks[k] <= rule["within"] * self.tps)
+            return j + 1, i < j and ("or drop" not in rule or j < self.n and off[j] is True) and self.frames(i, j)
+
+        return self.one_by_one(waits, until)
+
     def from_(self, rule, env):
+        if "from each" in rule:
+            return self.from_each(rule, env)
         ticks, n, absent = self.ticks, self.n, "without" in rule
         within = rule["within"] * self.tps if "within" in rule else 10**9
 
@@ -213,16 +227,17 @@ class Meaning:
         parts = rule["compose"] if "compose" in rule else rule["all of"]
         where = {label: place for place, (label, _) in enumerate(parts)}
         found = []
-        for chosen in product(*(self.of(call, env) for _, call in parts)):
+        for chosen in product(*([one for call in calls for one in self.of(call, env)] for _, calls in parts)):
             hull, begins, ends = "all of" in rule, [one[0] for one in chosen], [one[1] for one in chosen]
             first, last = (min(chosen), max(chosen, key=lambda one: one[1])) if hull else (chosen[0], chosen[-1])
             whole = (first[0], last[1], first[2], last[3], max(one[4] for one in chosen))
-            twice = any(parts[i][1] == parts[k][1] and chosen[i] == chosen[k] for i in range(len(parts)) for k in range(i))
+            twice = any(set(parts[i][1]) & set(parts[k][1]) and chosen[i] == chosen[k] for i in range(len(parts)) for k in range(i))
             if whole[0] >= whole[1] or hull and (twice or whole[1] - whole[0] > rule["within"] * self.tps):
                 continue
             if all(self.relates(relation, chosen, where, env) for relation in rule.get("where", [])):
                 found.append(whole)
-        order = (lambda one: (one[4], -one[0], one[1])) if "all of" in rule else lambda one: (one[4], one[1], -one[0])
+        sign = 1 if rule.get("first") else -1
+        order = (lambda one: (one[4], -one[0], one[1])) if "all of" in rule else lambda one: (one[4], one[1], sign * one[0])
         return self.taken(sorted(found, key=order))
 
     all_ = compose_

@@ -27,9 +27,11 @@ class Parser:
 
     def rule(self):
         rule = {"is": self.word(), "name": self.word(), "(": self.take("("), "roles": self.list(self.role), ")": self.take(")")}
+        if self.words[0] == "compose":
+            rule["first"] = self.words[1:2] == ["first"] and self.words[2] != ":" and bool(self.words.pop(1))
         calls, expr, time = lambda: self.list(self.primary), self.expr, lambda: Fraction(self.word()) * UNITS[self.word()]
         is_time = lambda: self.words[1][0] in "0123456789."
-        clauses = {"while": expr, "until": expr, "from": expr, "to": lambda: time() if rule.get("lasting") else expr(),
+        clauses = {"while": expr, "until": expr, "from each": expr, "from": expr, "to": lambda: time() if rule.get("lasting") else expr(),
                    "without": expr, "within": lambda: time() if "confirmed by" not in rule else self.primary(),
                    "during": expr, "or drop": bool, "since": expr, "at most": time, "back": bool, "rest of": calls,
                    "outside": calls, "compose": lambda: self.list(self.part), "all of": lambda: self.list(self.part),
@@ -46,7 +48,7 @@ class Parser:
         return self.word(), self.take(":") and self.word()
 
     def part(self):
-        return (self.word() if self.words[1] == ":" else None), (self.take(":"), self.primary())[1]
+        return (self.word() if self.words[1] == ":" else None), (self.take(":"), self.list(self.primary, "or"))[1]
 
     def relation(self):
         if self.take("without"):

@@ -58,7 +58,7 @@ int RunExamples(const std::string& page) {
 }
 
 TEST(Docs, EveryExampleRecognisesWhatIsDrawnBelowIt) {
-  EXPECT_EQ(RunExamples("grammar-tutorial.md"), 27);
+  EXPECT_EQ(RunExamples("grammar-tutorial.md"), 30);
   EXPECT_EQ(RunExamples("cookbook.md"), 15);
   EXPECT_EQ(RunExamples("drawings.md"), 1);
   EXPECT_EQ(RunExamples("grammar-language.md"), 7);

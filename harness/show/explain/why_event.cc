@@ -290,8 +290,13 @@ bool EventReasons::ChooseParts(InstanceId instance, const CandidateOutcome& whol
   if (composition.at_least > 0) return AllInside(instance, whole, chosen);
   const std::size_t part = chosen.size(), count = static_cast<std::size_t>(composition.count);
   if (part == count) return !composition.hull || Spans(chosen, whole);
-  const InstanceId target = past_.Referred(instance, composition.parts[part]);
-  for (const CandidateOutcome& outcome : past_.OutcomesOf(target)) {
+  std::vector<const CandidateOutcome*> candidates;
+  for (const int slot : composition.ChoicesFor(static_cast<int>(part))) {
+    for (const CandidateOutcome& outcome : past_.OutcomesOf(past_.Referred(instance, slot)))
+      candidates.push_back(&outcome);
+  }
+  for (const CandidateOutcome* candidate : candidates) {
+    const CandidateOutcome& outcome = *candidate;
     const bool begins = composition.hull
                             ? outcome.span.begin.frame >= whole.span.begin.frame
                             : part > 0 || outcome.span.begin.frame == whole.span.begin.frame;
@@ -299,7 +304,7 @@ bool EventReasons::ChooseParts(InstanceId instance, const CandidateOutcome& whol
                           ? outcome.span.end.frame <= whole.span.end.frame
                           : part + 1 < count || outcome.span.end.frame == whole.span.end.frame;
     if (!outcome.IsInterval() || !begins || !ends) continue;
-    chosen.push_back(&outcome);
+    chosen.push_back(candidate);
     const auto ticks = [&](int i) {
       return grammar::Interval{chosen[i]->span.begin.tick, chosen[i]->span.end.tick};
     };

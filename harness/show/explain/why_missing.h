@@ -83,6 +83,7 @@ class MissingReasons {
   std::optional<Cause> OfLaterEnd(grammar::InstanceId instance, grammar::FrameNumber at, int depth);
   Cause OfRest(grammar::InstanceId instance, const Window& window, int depth);
   Cause OfAny(grammar::InstanceId instance, const Window& window, int depth);
+  std::vector<grammar::Interval> IntervalsFor(grammar::InstanceId composition, int part);
   Cause OfCompose(grammar::InstanceId instance, const Window& window, int depth);
   Cause OfFact(grammar::InstanceId instance, const Window& window);
 

@@ -234,7 +234,8 @@ MissingReasons::Cause MissingReasons::OfMoment(grammar::NodeId node, InstanceId 
 MissingReasons::Cause MissingReasons::OfFromTo(InstanceId instance, const Window& window,
                                                int depth) {
   const Rule& rule = past_.RuleOf(instance);
-  const auto& [opens, closes, during, or_drop, absence, within_s] = rule.As<grammar::FromToRule>();
+  const auto& [opens, closes, during, or_drop, absence, each, within_s] =
+      rule.As<grammar::FromToRule>();
   // The last moment that should have begun it.
   const FrameNumber until = window.at.value_or(window.last);
   FrameNumber from = until;
@@ -421,6 +422,17 @@ std::string Text(const grammar::ComposeRule::Clause& clause) {
 
 }  // namespace
 
+// That can stand for a part of a composition.
+std::vector<grammar::Interval> MissingReasons::IntervalsFor(InstanceId composition, int part) {
+  std::vector<grammar::Interval> intervals;
+  const auto& rule = past_.RuleOf(composition).As<grammar::ComposeRule>();
+  for (const int slot : rule.ChoicesFor(part)) {
+    for (const CandidateOutcome& one : past_.OutcomesOf(past_.Referred(composition, slot)))
+      if (one.IsInterval()) intervals.push_back({one.span.begin.tick, one.span.end.tick});
+  }
+  return intervals;
+}
+
 MissingReasons::Cause MissingReasons::OfCompose(InstanceId instance, const Window& window,
                                                 int depth) {
   const Rule& rule = past_.RuleOf(instance);
@@ -436,13 +448,17 @@ MissingReasons::Cause MissingReasons::OfCompose(InstanceId instance, const Windo
                          {});
   reason.where = Source(rule.file, rule.place);
   std::vector<InstanceId> parts;
+  const auto is_never = [&](int slot) {
+    return past_.LastBegun(past_.Referred(instance, slot), past_.frames()) == nullptr;
+  };
   bool complete = true;
   for (const int slot : composition.parts) {
+    const int list = composition.lists[parts.size()];
     parts.push_back(past_.Referred(instance, slot));
     if (parts.back() == kNone) return {{std::move(reason)}, 0};
-    const bool is_absent = static_cast<int>(parts.size()) > composition.count;
+    const bool is_absent = list >= composition.count;
     Reason part = Intervals(parts.back(), is_absent ? "must not lie between" : "was there");
-    if (!is_absent && past_.LastBegun(parts.back(), past_.frames()) == nullptr) {
+    if (!is_absent && std::ranges::all_of(composition.ChoicesFor(list), is_never)) {
       part.mark = Mark::kFailed;
       if (complete) part.because = OfInstance(parts.back(), window, depth + 1).reasons;
       complete = false;
@@ -451,20 +467,15 @@ MissingReasons::Cause MissingReasons::OfCompose(InstanceId instance, const Windo
   }
   for (const grammar::ComposeRule::Clause& clause : composition.clauses) {
     if (!complete) break;
-    const auto ticks = [](const CandidateOutcome& outcome) {
-      return grammar::Interval{outcome.span.begin.tick, outcome.span.end.tick};
-    };
     const grammar::Relations wanted =
         clause.In([this](double seconds) { return past_.AtMostTicks(seconds); });
     bool holds = false;
     std::string relation;
-    for (const CandidateOutcome& left : past_.OutcomesOf(parts[clause.left])) {
-      for (const CandidateOutcome& right : past_.OutcomesOf(parts[clause.right])) {
-        if (!left.IsInterval() || !right.IsInterval()) continue;
-        holds |= wanted.Fit(ticks(left), ticks(right));
-        const grammar::Allen is = grammar::Relate(ticks(left), ticks(right));
-        const grammar::Tick gap =
-            std::max(ticks(right).begin - ticks(left).end, ticks(left).begin - ticks(right).end);
+    for (const grammar::Interval& left : IntervalsFor(instance, clause.left)) {
+      for (const grammar::Interval& right : IntervalsFor(instance, clause.right)) {
+        holds |= wanted.Fit(left, right);
+        const grammar::Allen is = grammar::Relate(left, right);
+        const grammar::Tick gap = std::max(right.begin - left.end, left.begin - right.end);
         relation = grammar::kAllenNames[static_cast<std::size_t>(is)];
         if (gap > 0)
           relation += ", " + QuantityText(clauses_.Seconds(gap), grammar::kSeconds) + " apart";

@@ -218,6 +218,29 @@ TEST(Compose, BoundariesMayBeEqualGiveOrTakeATime) {
   EXPECT_EQ(found("started_by within 10 ms", "...######.", "..##......"), "[3,4) ");
 }
 
+TEST(Compose, TakesTheNearestPartnerOrTheFirst) {
+  const std::string rest = "a: a(h, c), b: b(h, t) where a before b";
+  const std::string a = ".#.#.#...........#....", b = ".........#..#.......#.";
+  EXPECT_EQ(Found("compose " + rest, a, b, 100), "[5,10) [17,21) ");
+  EXPECT_EQ(Found("compose first " + rest, a, b, 100), "[1,10) [17,21) ");
+  const std::string soon = "a: a(h, c), b: b(h, t) where a before within 50 ms b";
+  EXPECT_EQ(Found("compose first " + soon, a, b, 100), "[3,10) [17,21) ");
+}
+
+// Of the two that can stand for a part, intervals may overlap.
+TEST(Compose, AnIntervalOfEitherStandsForThePart) {
+  const std::string both = "compose a: a(h, c) or b(h, t), b: b(h, t) where a before b";
+  EXPECT_EQ(Found(both, "..#.......", "......#...", 100), "[2,7) ");
+  EXPECT_EQ(Found(both, "..........", "..#...#...", 100), "[2,7) ");
+  EXPECT_EQ(Found(both, ".#####....", "..#...#...", 100), "[2,7) ");
+  EXPECT_EQ(
+      Found("all of a(h, c) or b(h, t), b(h, t) within 50 ms", "..........", "..#...#...", 100),
+      "[2,7) ");
+  EXPECT_EQ(
+      Found("all of a(h, c) or b(h, t), b(h, t) within 50 ms", "..........", "..#.......", 100),
+      "");
+}
+
 // One rule finds plate, cup and knife in each of the six orders, and reaches over all three.
 TEST(Compose, FindsAllOfThemInAnyOrder) {
   const auto program = testing::CompileText(R"(

@@ -87,6 +87,51 @@ TEST(Forms, RepeatCountsWhatFollowsInTime) {
 
 // Who asks for what is repeated knows of it as soon as there are enough, not where the last one
 // ends.
+// It rests in the gap, wakes, and must wait for another one to know whether it goes on.
+TEST(Forms, WhoRestsInAGapRemembersWhereItBegan) {
+  Scene scene;
+  const auto program = testing::CompileText(
+      "grammar t\ncondition firm(hand: Hand, cup: Cup) while touching(hand, cup) lasting 30 ms\n"
+      "event e(hand: Hand, cup: Cup, tray: Movable) while firm(hand, cup) and height(hand) < 9 m "
+      "and touching(hand, tray) bridging 80 ms requires height(cup) < 9 m\n");
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  for (Tick tick = 0; tick < 300; tick += 2) {
+    scene.touches.clear();
+    if (tick < 40 || (tick >= 100 && tick < 150)) {
+      for (const int whom : {Scene::kCup, Scene::kTray})
+        scene.touches.push_back({.a = Scene::kHand, .b = whom});
+    }
+    monitor.Advance(scene.At(tick), events);
+  }
+  monitor.Finish(300, events);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].interval, (Interval{0, 150}));
+}
+
+TEST(Forms, WhatIsTooLateForOneMayBeInTimeForTheNext) {
+  const std::string rule =
+      "condition tap(hand: Hand, tray: Movable) while touching(hand, tray)\n"
+      "event e(hand: Hand, tray: Movable) from each tap(hand, tray) begins to "
+      "not touching(hand, tray) begins within 10 ms\n";
+  EXPECT_EQ(Drummed(rule, {{10, 15}}), "[10,15)@15 x0 ");
+  EXPECT_EQ(Drummed(rule, {{10, 21}}), "");
+  const std::string answered =
+      "condition tap(hand: Hand, tray: Movable) while touching(hand, tray) lasting 0 ms to 3 ms\n"
+      "condition press(hand: Hand, tray: Movable) while touching(hand, tray) lasting 5 ms\n"
+      "event e(hand: Hand, tray: Movable) from ";
+  const std::string to = "tap(hand, tray) ends to press(hand, tray) begins within 10 ms\n";
+  const std::vector<Interval> touches = {{10, 12}, {18, 20}, {22, 24}, {29, 40}};
+  EXPECT_EQ(Drummed(answered + to, touches), "[24,29)@33 x0 ");
+  EXPECT_EQ(Drummed(answered + "each " + to, touches), "[20,29)@33 x0 ");
+  EXPECT_EQ(Drummed(answered + "each " + to, {{10, 12}, {18, 20}}), "");
+  EXPECT_EQ(Drummed(answered + "each " + to, {{10, 12}, {80, 82}, {93, 95}}), "[95,100)@100 x0 ");
+  EXPECT_EQ(Drummed(answered + "each " + to.substr(0, to.size() - 1) +
+                        " during not touching(hand, tray) or drop\n",
+                    touches),
+            "[24,29)@33 x0 ");
+}
+
 TEST(Forms, RepeatIsKnownWhenThereAreEnough) {
   const std::string text =
       "condition thrice(h: Hand, c: Cup) repeat touching(h, c) at least 3, gap at most 5 ms\n"

@@ -52,6 +52,13 @@ TEST(Parser, BindsOperatorsAsDocumented) {
        "rest of a(x) outside b(x, any), c(x) lasting 1 s"},
       {"compose p: a(x), q: b(x) where p before|meets q",
        "compose p: a(x), q: b(x) where p before|meets q"},
+      {"from each a(x) begins to known not b(x) begins within 1 s",
+       "from each (a(x) begins) to ((known (not b(x))) begins) within 1 s"},
+      {"compose first p: a(x) or b(x), q: c(x) where p before q",
+       "compose first p: a(x) or b(x), q: c(x) where p before q"},
+      {"compose first: a(x), q: b(x) where first before q",
+       "compose first: a(x), q: b(x) where first before q"},
+      {"all of a(x) or b(x), q: c(x) within 1 s", "all of a(x) or b(x), q: c(x) within 1 s"},
       {"while a(x) bridging 60 ms requires rise(x) > 1 confirmed by b(x) within c(x) with style = "
        "style(x)",
        "while a(x) bridging 0.06 s requires (rise(x) > 1) confirmed by b(x) within c(x) with style "

@@ -62,6 +62,7 @@ class Maker {
     rule.roles = RolesOf(rule.first) | RolesOf(rule.second) | RolesOf(rule.during) |
                  RolesOf(rule.requirement) | RolesOf(rule.by) | RolesOf(rule.episode);
     for (const Term& call : rule.calls) rule.roles |= RolesOf(call);
+    for (const auto& [part, call] : rule.choices) rule.roles |= RolesOf(call);
     rules_.push_back(std::move(rule));
   }
 
@@ -94,16 +95,19 @@ class Maker {
       if (rule.idles && Sometimes()) rule.still_over = 1 + static_cast<Tick>(Below(9));
       return;
     }
-    rule.second = Moment("begin");
+    rule.from_each = rule.form == Form::kFromTo && Sometimes();
+    const std::string begin = rule.from_each ? "" : "begin";
+    rule.second = Moment(begin);
     rule.has_during = Sometimes();
-    if (rule.has_during) rule.during = Condition(2, "begin");
+    if (rule.has_during) rule.during = Condition(2, begin);
     rule.or_drop = rule.form == Form::kFromTo && rule.has_during && Below(2) == 0;
-    if (rule.form == Form::kWithout || Sometimes()) rule.within = 1 + static_cast<Tick>(Below(9));
+    if (rule.form == Form::kWithout || rule.from_each || Sometimes())
+      rule.within = 1 + static_cast<Tick>(Below(9));
   }
 
   void MakeConditionsOfTheWhole(RandomRule& rule) {
     rule.has_requirement = Sometimes();
-    rule.requires_at_end = Below(2) == 0;
+    rule.requires_at_end = rule.from_each || Below(2) == 0;
     if (rule.has_requirement)
       rule.requirement = Condition(2, rule.requires_at_end ? "end" : "begin");
     rule.is_confirmed = !rules_.empty() && Below(5) == 0;
@@ -133,6 +137,8 @@ class Maker {
   void MakeCompose(RandomRule& rule) {
     const unsigned parts = 1 + Below(3);
     for (unsigned i = 0; i < parts; ++i) rule.calls.push_back(Call());
+    if (Sometimes()) rule.choices.emplace_back(Below(parts), Call());
+    rule.takes_first = rule.form == Form::kCompose && Sometimes();
     if (rule.form == Form::kAllOf) rule.within = 1 + static_cast<Tick>(Below(30));
     rule.has_absence = parts > 1 && Sometimes();
     if (rule.has_absence) {
@@ -323,7 +329,7 @@ class Writer {
         break;
       case Form::kFromTo:
       case Form::kWithout:
-        text += " from " + TermText(rule.first) +
+        text += (rule.from_each ? " from each " : " from ") + TermText(rule.first) +
                 (rule.form == Form::kWithout ? " without " : " to ") + TermText(rule.second) +
                 (rule.within < 0               ? ""
                  : rule.form == Form::kWithout ? " within " + at_least(rule.within)
@@ -340,7 +346,7 @@ class Writer {
         for (std::size_t i = 2; i < rule.calls.size(); ++i) text += ", " + TermText(rule.calls[i]);
         break;
       case Form::kCompose:
-        text += " compose " + ComposeText(rule);
+        text += (rule.takes_first ? " compose first " : " compose ") + ComposeText(rule);
         break;
       case Form::kAllOf:
         text += " all of " + ComposeText(rule) + " within " + at_most(rule.within);
@@ -384,6 +390,8 @@ class Writer {
     std::string text;
     for (std::size_t i = 0; i < rule.calls.size(); ++i) {
       text += (i == 0 ? "a" : ", a") + std::to_string(i) + ": " + TermText(rule.calls[i]);
+      for (const auto& [part, call] : rule.choices)
+        if (part == i) text += " or " + TermText(call);
     }
     std::string comma = " where ";
     const auto label = [](std::size_t part) { return "a" + std::to_string(part); };

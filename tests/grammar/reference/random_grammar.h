@@ -103,6 +103,9 @@ struct RandomRule {
   bool halves = false;  ///< its durations are half a tick off what they are in whole ticks
   std::vector<Term>
       calls;  ///< kRest: the whole and the others; kCompose, kAllOf: the parts; kRepeat: whom
+  std::vector<std::pair<std::size_t, Term>> choices;  ///< likewise: `or` this for the part
+  bool takes_first = false;                           ///< kCompose
+  bool from_each = false;                             ///< kFromTo
   std::vector<Clause> clauses;
   bool has_absence = false;  ///< kCompose, kAllOf: nothing of `during` between two of the parts
   std::size_t left = 0, right = 0;

@@ -115,7 +115,9 @@ class Meaning {
            needs(rule.has_during || rule.has_absence, rule.during) ||
            needs(rule.has_requirement, rule.requirement) || needs(rule.is_confirmed, rule.by) ||
            needs(rule.is_confirmed, rule.episode) || rule.approaches || rule.one_per ||
-           std::ranges::any_of(rule.calls, [&](const Term& call) { return NeedsSight(call); });
+           std::ranges::any_of(rule.calls, [&](const Term& call) { return NeedsSight(call); }) ||
+           std::ranges::any_of(rule.choices,
+                               [&](const auto& one) { return NeedsSight(one.second); });
   }
   static bool HasSecond(const RandomRule& rule) {
     return rule.has_second || rule.form != Form::kWhile;
@@ -187,6 +189,9 @@ class Meaning {
                                        : reference::While(on, e_.ticks, rule.bridging));
       }
       case Form::kFromTo:
+        if (rule.from_each)
+          return InTicks(reference::FromEachTo(Truth(rule.first, p, 0), Truth(rule.second, p, 0),
+                                               during.at(0), rule.or_drop, e_.ticks, rule.within));
         return InTicks(reference::FromTo(Truth(rule.first, p, 0), AnchoredTruth(rule.second, p),
                                          during, rule.or_drop, e_.ticks, rule.within));
       case Form::kWithout:
@@ -240,15 +245,16 @@ class Meaning {
   Found FindComposed(const RandomRule& rule, int p) const {
     std::vector<Found> parts;
     for (const Term& call : rule.calls) parts.push_back(Intervals(call, p));
+    for (const auto& [part, call] : rule.choices) {
+      for (const reference::Timed& one : Intervals(call, p)) parts[part].push_back(one);
+    }
     const bool all_of = rule.form == Form::kAllOf;
     const Found absent = rule.has_absence ? Intervals(rule.during, p) : Found();
     const Found unseen = rule.has_absence ? InTicks(While(OutOfSight(rule.during))) : Found();
     const auto fits = [&](const std::vector<Interval>& chosen) {
       for (std::size_t i = 0; all_of && i < chosen.size(); ++i) {
         for (std::size_t k = 0; k < i; ++k) {
-          const bool same_event = rule.calls[i].which == rule.calls[k].which &&
-                                  rule.calls[i].named == rule.calls[k].named;
-          if (same_event && chosen[i] == chosen[k]) return false;
+          if (Share(rule, i, k) && chosen[i] == chosen[k]) return false;
         }
       }
       return std::ranges::all_of(rule.clauses,
@@ -259,7 +265,23 @@ class Meaning {
              reference::NothingBetween(absent, chosen[rule.left], chosen[rule.right]) &&
              reference::NothingBetween(unseen, chosen[rule.left], chosen[rule.right]);
     };
-    return all_of ? reference::AllOf(parts, fits, rule.within) : reference::Compose(parts, fits);
+    return all_of ? reference::AllOf(parts, fits, rule.within)
+                  : reference::Compose(parts, fits, rule.takes_first);
+  }
+
+  // Two parts name an event.
+  static bool Share(const RandomRule& rule, std::size_t i, std::size_t k) {
+    const auto calls = [&](std::size_t part) {
+      std::vector<Term> all = {rule.calls[part]};
+      for (const auto& [of, call] : rule.choices)
+        if (of == part) all.push_back(call);
+      return all;
+    };
+    for (const Term& one : calls(i)) {
+      for (const Term& other : calls(k))
+        if (one.which == other.which && one.named == other.named) return true;
+    }
+    return false;
   }
 
   Found Find(const RandomRule& rule, int p) const {

@@ -97,6 +97,23 @@ Runs FromTo(const Stream& from, const Anchored& to, const Anchored& during, bool
   return runs;
 }
 
+Runs FromEachTo(const Stream& from, const Stream& to, const Stream& during, bool or_drop,
+                const Ticks& ticks, Tick within) {
+  Runs runs;
+  const int frames = static_cast<int>(from.size());
+  const auto waits = [&](int i) { return from[i] && during[i] && !to[i]; };
+  for (int i = 0; i < frames; ++i) {
+    if (!waits(i)) continue;
+    int end = i + 1;
+    while (end < frames && !to[end] && during[end]) ++end;
+    while (i < end && (!waits(i) || ticks[end] - ticks[i] > within)) ++i;
+    const bool reached = end < frames && to[end];
+    if (i < end && (reached || !or_drop)) runs.push_back({i, end});
+    i = end;
+  }
+  return runs;
+}
+
 std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, const Anchored& during,
                                const Ticks& ticks, double within) {
   std::vector<Timed> found;
@@ -356,7 +373,8 @@ std::vector<Timed> TakeInOrder(std::vector<Timed> all, const Key& key) {
 }  // namespace
 
 std::vector<Timed> Compose(const std::vector<std::vector<Timed>>& parts,
-                           const std::function<bool(const std::vector<Interval>&)>& fits) {
+                           const std::function<bool(const std::vector<Interval>&)>& fits,
+                           bool takes_first) {
   std::vector<Timed> all;
   ForEachChoice(parts, [&](const std::vector<Timed>& chosen) {
     const Timed& first = chosen.front();
@@ -366,8 +384,9 @@ std::vector<Timed> Compose(const std::vector<std::vector<Timed>>& parts,
                    {first.ticks.begin, last.ticks.end},
                    CompletedAt(chosen)});
   });
-  return TakeInOrder(std::move(all), [](const Timed& one) {
-    return std::tuple(one.completed, one.ticks.end, -one.ticks.begin);
+  return TakeInOrder(std::move(all), [&](const Timed& one) {
+    return std::tuple(one.completed, one.ticks.end,
+                      takes_first ? one.ticks.begin : -one.ticks.begin);
   });
 }
 

@@ -74,6 +74,11 @@ struct Timed {
 std::vector<Timed> InTicks(const Runs& runs, const Ticks& ticks);
 Runs RunsOf(const std::vector<Timed>& timed);
 
+/// `from each from to to within within during during`: for each `to` the first `from` that waits
+/// for it, and is not too far back.
+Runs FromEachTo(const Stream& from, const Stream& to, const Stream& during, bool or_drop,
+                const Ticks& ticks, Tick within);
+
 /// `from .. without .. within [during]`; `within` in ticks, and perhaps not a whole number of them.
 std::vector<Timed> FromWithout(const Stream& from, const Anchored& without, const Anchored& during,
                                const Ticks& ticks, double within);
@@ -95,7 +100,8 @@ Runs UntilSince(const Stream& until, const Anchored& since, const Ticks& ticks, 
 
 /// `compose`: `fits` judges one interval of each part.
 std::vector<Timed> Compose(const std::vector<std::vector<Timed>>& parts,
-                           const std::function<bool(const std::vector<Interval>&)>& fits);
+                           const std::function<bool(const std::vector<Interval>&)>& fits,
+                           bool takes_first = false);
 /// `all of`: at most `within` ticks long.
 std::vector<Timed> AllOf(const std::vector<std::vector<Timed>>& parts,
                          const std::function<bool(const std::vector<Interval>&)>& fits,
