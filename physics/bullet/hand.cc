@@ -120,12 +120,12 @@ void BulletHand::SetJoints(const std::vector<double>& joints) {
 
 void BulletHand::Drive(const HandCommand& command, double dt_s, double gravity_m_per_s2) {
   command_ = command;
-  DrivePalm(command.target, dt_s, gravity_m_per_s2);
+  DrivePalm(command, dt_s, gravity_m_per_s2);
   DriveJoints(model_.styles[static_cast<std::size_t>(command.style)], command.target.trigger, dt_s);
 }
 
-void BulletHand::DrivePalm(const TargetState& target, double dt_s, double gravity_m_per_s2) {
-  const Wrench wrench = pids_.Output(PalmState(), target, dt_s);
+void BulletHand::DrivePalm(const HandCommand& command, double dt_s, double gravity_m_per_s2) {
+  const Wrench wrench = pids_.Output(PalmState(), command.target, dt_s, command.lets_go);
   // The arm carries the hand's own weight, so that the PIDs feel only what the hand holds.
   const Eigen::Vector3d up(0, 0, gravity_m_per_s2);
   multibody_->addBaseForce(ToBullet(Eigen::Vector3d(wrench.force_n + up * model_.palm_mass_kg)));

@@ -45,7 +45,7 @@ class BulletHand {
   void MakeCollider(int link, std::unique_ptr<btCollisionShape> shape, int group);
   void MakeMotors();
   void SetJoints(const std::vector<double>& joints);
-  void DrivePalm(const TargetState& target, double dt_s, double gravity_m_per_s2);
+  void DrivePalm(const HandCommand& command, double dt_s, double gravity_m_per_s2);
   BodyState PalmState() const;
   void DriveJoints(const GraspStyle& style, double trigger, double dt_s);
 

@@ -30,6 +30,8 @@ constexpr double kAhead_s = 0.01;
 /// A hand that closes around what stands does not push it aside: its target comes to the palm with
 /// this time constant. When it has closed it stays there.
 constexpr double kSoft_s = 0.05;
+/// What interpolates between two equal poses is not the same to the last bit.
+constexpr double kSamePlace = 1e-9;
 /// A grip from here on is meant to hold something.
 constexpr double kClosed = 0.5;
 /// A hand that reaches less than this share of the force is noted.
@@ -237,7 +239,8 @@ bool IsHeldBack(const Scene& scene, const Snapshot& now, HandIndex hand) {
 bool ScriptPlayer::Rests(const HandState& hand) const {
   if (hand.placing || hand.pressing) return false;
   const Pose now = hand.motion.At(MotionTime(hand)).X_WH, &end = hand.target.X_WH;
-  return now.p_m == end.p_m && now.q.coeffs() == end.q.coeffs();
+  return (now.p_m - end.p_m).norm() < kSamePlace &&
+         (now.q.coeffs() - end.q.coeffs()).norm() < kSamePlace;
 }
 
 bool ScriptPlayer::Grips(const HandState& hand) const {
@@ -252,9 +255,11 @@ void ScriptPlayer::GiveWay(const Snapshot& now) {
     HandState& hand = hands_[h];
     hand.yields_m_per_s.setZero();
     hand.yields_rad_per_s.setZero();
+    hand.lets_go = false;
     if (!Rests(hand)) continue;
     if (hand.took && hand.closes) KeepStanding(h, now);
     if (!IsHeldBack(scene_, now, HandIndex(h))) continue;
+    hand.lets_go = Grips(hand) && !hand.closes;
     const HandModel& model = scene_.hands[h].model;
     const Pose &target = TargetOf(hand).X_WH, &palm = now.hands[h].palm.X_WB;
     const auto share = [&](const PidGains& gains) {

@@ -16,9 +16,9 @@ class VectorPid {
   explicit VectorPid(const PidGains& gains) : gains_(gains) {}
 
   /// Force or torque for this tick. `error` is target minus value, `rate_error` is target rate
-  /// minus value rate.
+  /// minus value rate. `fades`: what balances an error fades away.
   Eigen::Vector3d Output(const Eigen::Vector3d& error, const Eigen::Vector3d& rate_error,
-                         double dt_s);
+                         double dt_s, bool fades = false);
 
  private:
   PidGains gains_;
@@ -36,7 +36,9 @@ class PalmPids {
   explicit PalmPids(const HandModel& model)
       : translation_(model.translation), rotation_(model.rotation) {}
 
-  Wrench Output(const BodyState& palm, const TargetState& target, double dt_s);
+  /// `lets_go`: of a hand that is to stay where it is when its fingers hold it no longer.
+  Wrench Output(const BodyState& palm, const TargetState& target, double dt_s,
+                bool lets_go = false);
 
  private:
   VectorPid translation_, rotation_;

@@ -522,7 +522,8 @@ const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
   if (!problem_.empty() || (settling_ && tick_in_stage_ == settle_ticks)) return nullptr;
   ++tick_in_stage_;
   for (const HandState& hand : hands_) {
-    HandCommand& command = commands_.emplace_back(HandCommand{TargetOf(hand), hand.style});
+    HandCommand& command =
+        commands_.emplace_back(HandCommand{TargetOf(hand), hand.style, hand.lets_go});
     double& height_m = command.target.X_WH.p_m.z();
     if (hand.placing) height_m = hand.placing->HeightOf(height_m);
     if (hand.pressing) command.target.X_WH.p_m += hand.pressing->depth_m * hand.pressing->along_W;

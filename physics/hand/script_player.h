@@ -120,6 +120,7 @@ class ScriptPlayer {
     std::string written_at = {};  ///< the present step
     bool closes = false;          ///< with the present step the trigger rises
     bool took = false;            ///< what stands, and it has not moved on since
+    bool lets_go = false;         ///< it opens, held back by what it holds
     std::optional<GripNote> grip_note = std::nullopt;
   };
   class Resolver;

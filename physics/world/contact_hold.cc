@@ -11,6 +11,9 @@ namespace {
 
 /// A contact survives this many ticks without an impulse: 8 ms at 480 Hz.
 constexpr int kHoldTicks = 4;
+/// One that pressed for longer than a blow also lasts until its surfaces are so far apart.
+constexpr int kBlowTicks = 10;
+constexpr double kApart_m = 0.0005;
 
 }  // namespace
 
@@ -33,17 +36,23 @@ void TouchingPairs::BeginTick(const std::vector<char>& rests) {
     for (std::size_t i = 0; i < rests.size(); ++i) rested_[i] &= rests[i];
     if (MovePairs(resting_, pairs_, false)) ShareResting();
   }
-  for (auto& [key, pair] : pairs_) pair.seen = false;
+  for (auto& [key, pair] : pairs_) pair.seen = pair.near = false;
 }
 
 void TouchingPairs::Add(ContactPoint point) {
-  if (point.normal_impulse_n_s <= 0) return;
+  if (point.normal_impulse_n_s <= 0) {
+    if (point.distance_m > kApart_m) return;
+    const auto known = pairs_.find(std::minmax(point.a, point.b));
+    if (known != pairs_.end()) known->second.near = true;
+    return;
+  }
   if (point.b < point.a) {
     std::swap(point.a, point.b);
     point.nhat_BA_W = -point.nhat_BA_W;
   }
   Pair& pair = pairs_[{point.a, point.b}];
-  if (!pair.seen) pair = {.points = {}, .quiet_ticks = 0, .seen = true};
+  if (!pair.seen)
+    pair = {.points = {}, .pressed_ticks = pair.pressed_ticks + 1, .seen = true, .near = pair.near};
   pair.points.push_back(point);
 }
 
@@ -53,7 +62,8 @@ void TouchingPairs::EndTick() {
       std::sort(pair.points.begin(), pair.points.end(), ComesBefore);
       continue;
     }
-    ++pair.quiet_ticks;
+    const bool lasts = pair.near && pair.pressed_ticks > kBlowTicks;
+    pair.quiet_ticks = lasts ? 0 : pair.quiet_ticks + 1;
     for (ContactPoint& point : pair.points) point.normal_impulse_n_s = 0;
   }
   std::erase_if(pairs_, [](const auto& entry) { return entry.second.quiet_ticks > kHoldTicks; });

@@ -2,8 +2,10 @@
 // Defines contact, the same for every engine. Two surfaces are in contact in a tick in which
 // momentum passed between them, whatever their distance was before and after it: a bounce is over
 // within one tick. A contact lasts until no impulse has passed for a few ticks, because the impulse
-// of a resting contact flickers. Contacts between two resting bodies do not change and cost no
-// time. Tested by tests/physics/world/world_test.cc, tests/physics/world/bounce_test.cc
+// of a resting contact flickers. What has pressed for longer than a blow also lasts until the
+// surfaces are half a millimetre apart: the first micrometres of a slow lift take long, and how
+// long is chance. Contacts between two resting bodies do not change and cost no time. Tested by
+// tests/physics/world/contact_hold_test.cc, tests/physics/world/bounce_test.cc
 #pragma once
 
 #include <map>
@@ -25,8 +27,8 @@ class TouchingPairs {
   void BeginTick(const std::vector<char>& rests);
   /// Whether both rest and did so in the tick before: then there is no point to add.
   bool Rest(const ContactSide& a, const ContactSide& b) const { return Rests(a) && Rests(b); }
-  /// Adds a contact point of the engine; a point without impulse is ignored. The sides may be in
-  /// any order.
+  /// Adds a contact point of the engine. A point without impulse begins no contact; it makes one
+  /// last while it is near. The sides may be in any order.
   void Add(ContactPoint point);
   /// Call after the last point of the tick.
   void EndTick();
@@ -36,8 +38,9 @@ class TouchingPairs {
  private:
   struct Pair {
     std::vector<ContactPoint> points;  ///< of the last tick with an impulse
-    int quiet_ticks = 0;
+    int pressed_ticks = 0, quiet_ticks = 0;
     bool seen = false;  ///< in the present tick
+    bool near = false;  ///< in the present tick, without an impulse
   };
   using Pairs = std::map<std::pair<ContactSide, ContactSide>, Pair>;
 

@@ -14,7 +14,8 @@ namespace prehend::physics {
 /// Command to one hand for one tick.
 struct HandCommand {
   TargetState target;
-  int style = 0;  ///< index into HandModel::styles
+  int style = 0;         ///< index into HandModel::styles
+  bool lets_go = false;  ///< it opens around what stands: its arm is to push no longer
 };
 
 /// A line of sight: the path of a sphere.

@@ -33,5 +33,15 @@ TEST(VectorPidTest, TheIntegralIsFrozenWhileSaturatedAndBoundedAfterwards) {
   EXPECT_NEAR(patient.Output({0, 0, 0}, {0, 0, 0}, 0.1).x(), 10, 1e-9);
 }
 
+TEST(VectorPidTest, WhatBalancesAnErrorFades) {
+  const Eigen::Vector3d error(0.1, 0, 0), still(0, 0, 0);
+  VectorPid pid({.proportional = 100, .derivative = 10, .integral = 50, .limit = 20});
+  double output_n = pid.Output(error, still, 0.002).x();
+  EXPECT_GT(output_n, 9);
+  for (int i = 0; i < 100; ++i) output_n = pid.Output(error, still, 0.002, true).x();
+  EXPECT_LT(output_n, 0.6) << "0.2 s later";
+  EXPECT_GT(pid.Output({0.11, 0, 0}, still, 0.002).x(), 1) << "it still holds its place";
+}
+
 }  // namespace
 }  // namespace prehend::physics

@@ -113,6 +113,54 @@ TEST(Holding, WhatIsPutDownLandsFlatAndIsNotPushed) {
   }
 }
 
+TEST(Holding, AHandThatLetsGoStaysWhereItIs) {
+  // The hand is turned, and has pushed the thing 2 mm into its place.
+  for (const Approach approach : {Approach::kSide, Approach::kAbove}) {
+    Simulation simulation(MakeScene(Tabletop{.shape = Cylinder{0.033, 0.12}, .mass_kg = 0.3}),
+                          MakeScript({.style = "wrap", .approach = approach}));
+    std::optional<Eigen::Vector3d> let_go_m;
+    double farthest_m = 0;
+    while (simulation.Step()) {
+      const Snapshot& now = simulation.snapshot();
+      const bool touches = std::ranges::any_of(now.contacts, [](const ContactPoint& contact) {
+        return contact.b.hand != kNone || contact.a.hand != kNone;
+      });
+      const double trigger = now.hands[0].trigger;
+      if (now.tick < 3 * 480 || trigger == 0 || trigger == 1) continue;
+      EXPECT_FALSE(let_go_m && touches) << "at tick " << now.tick;
+      if (!touches && !let_go_m) let_go_m = now.hands[0].palm.X_WB.p_m;
+      if (let_go_m)
+        farthest_m = std::max(farthest_m, (now.hands[0].palm.X_WB.p_m - *let_go_m).norm());
+    }
+    EXPECT_TRUE(let_go_m);
+    EXPECT_LT(farthest_m, 0.0008);
+  }
+}
+
+/// The last tick in which a cube that is lifted touches the table.
+std::int64_t LeavesTheTable(double moved_m) {
+  const Tabletop tabletop{.shape = Box{{0.04, 0.04, 0.04}},
+                          .mass_kg = 0.1,
+                          .at_m = {0.2 + moved_m, 0.1},
+                          .hand_at_m = {-0.2 + moved_m, -0.2, 1.05}};
+  Simulation simulation(MakeScene(tabletop), Hold("wrap", Approach::kAbove, 0.15));
+  std::int64_t last = 0;
+  while (simulation.Step() && simulation.snapshot().tick < 2 * 480)
+    for (const ContactPoint& contact : simulation.snapshot().contacts)
+      if (contact.a.body == BodyIndex(kTable) && contact.b.body == BodyIndex(kObject))
+        last = simulation.snapshot().tick;
+  return last;
+}
+
+TEST(Holding, WhenALiftBeginsIsNoChance) {
+  // The hand gives way while it closes. Its orientation at rest is interpolated, and the same but
+  // for the last bit.
+  const std::int64_t here = LeavesTheTable(0);
+  for (const double moved_m : {1e-6, 1e-3, 0.05})
+    EXPECT_NEAR(static_cast<double>(LeavesTheTable(moved_m)), static_cast<double>(here), 8)
+        << moved_m;
+}
+
 /// Tilt of a carton, degrees, when it is put down after the hand has turned it by 6 degrees.
 double TiltAtTheLanding(std::optional<bool> keep_upright) {
   Script script;

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// When a contact ends, told from points as an engine reports them.
+#include "physics/world/contact_hold.h"
+
+#include <gtest/gtest.h>
+
+namespace prehend::physics {
+namespace {
+
+constexpr double kNear_m = 0.0004, kFar_m = 0.0006;
+
+/// Two bodies of which the first is fixed.
+class ContactHold : public testing::Test {
+ protected:
+  bool TouchAfterTick(double impulse_n_s, double distance_m) {
+    pairs_.BeginTick({1, 0});
+    pairs_.Add({.a = {.body = BodyIndex(0)},
+                .b = {.body = BodyIndex(1)},
+                .distance_m = distance_m,
+                .normal_impulse_n_s = impulse_n_s});
+    pairs_.EndTick();
+    Snapshot snapshot;
+    pairs_.Describe(snapshot);
+    return !snapshot.contacts.empty();
+  }
+  void Press(int ticks) {
+    for (int i = 0; i < ticks; ++i) EXPECT_TRUE(TouchAfterTick(0.01, 0));
+  }
+  /// Of these ticks without an impulse, how many are contacts.
+  int TicksThatTouch(int ticks, double distance_m) {
+    int count = 0;
+    for (int i = 0; i < ticks; ++i) count += TouchAfterTick(0, distance_m) ? 1 : 0;
+    return count;
+  }
+
+  TouchingPairs pairs_;
+};
+
+TEST_F(ContactHold, NearnessAloneIsNone) { EXPECT_EQ(TicksThatTouch(20, kNear_m), 0); }
+
+TEST_F(ContactHold, WhatHasPressedTouchesUntilItIsApart) {
+  Press(20);
+  EXPECT_EQ(TicksThatTouch(300, kNear_m), 300);
+  EXPECT_EQ(TicksThatTouch(20, kFar_m), 4);
+}
+
+TEST_F(ContactHold, ABlowIsOverHoweverNearTheTwoStay) {
+  Press(5);
+  EXPECT_EQ(TicksThatTouch(20, kNear_m), 4);
+}
+
+TEST_F(ContactHold, AFlickerOfTheForceEndsNothing) {
+  for (int i = 0; i < 5; ++i) {
+    Press(3);
+    EXPECT_EQ(TicksThatTouch(3, kFar_m), 3);
+  }
+}
+
+}  // namespace
+}  // namespace prehend::physics
