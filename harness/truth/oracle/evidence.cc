@@ -119,11 +119,13 @@ class EvidenceReader {
       Vector3d centre_W_m = held.X_WB.p_m;
       if (sum.weight > 0) {
         centre_W_m = sum.centre_W_m / sum.weight;
-        if (const double force = sum.impulse_n_s.norm(); force > 0) {
-          bearing.up = sum.impulse_n_s.z() / force;
-          nhat_S = by.X_WB.q.inverse() * (sum.impulse_n_s / force);
-        }
         bearing.share = ShareOf(object, sum.impulse_n_s.z() / (frame - first_frame + 1));
+      }
+      if (const double force = sum.impulse_n_s.norm(); force > 0) {
+        bearing.up = sum.impulse_n_s.z() / force;
+        nhat_S = by.X_WB.q.inverse() * (sum.impulse_n_s / force);
+      } else if (bearing.touching && frame > 0) {
+        bearing.up = bearings[frame - 1].up;  // no force passes, and they have not parted yet
       }
       // Of a contact that rests, a snapshot repeats the last tick, whose impulse may be next to
       // none: what sleeps is borne as it was before it fell asleep.

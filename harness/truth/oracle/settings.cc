@@ -14,6 +14,7 @@ std::span<const Band> DefinitionBands() {
       Band{"support share", &S::support_share, 0.001, 0.10},
       Band{"support settled", &S::support_speed_m_per_s, 0.01, 0.04},
       Band{"support minimum", &S::support_minimum_s, 0.015, 0.030},
+      Band{"grip minimum", &S::grasp_minimum_s, 0.015, 0.030},
       Band{"grip command", &S::commanded_trigger, 0.2, 0.4},
       Band{"hook force", &S::hook_force_n, 15, 25},
       Band{"hook slip", &S::hook_slip_m_per_s, 0.2, 0.4},

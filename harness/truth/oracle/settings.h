@@ -18,6 +18,7 @@ struct OracleSettings {
   double support_share = 0.02;          ///< of the object's weight that is borne, at least
   double support_speed_m_per_s = 0.02;  ///< vertical, of the object's middle or of its load
   double support_minimum_s = 0.02;      ///< a blow is over sooner
+  double grasp_minimum_s = 0.02;        ///< a brush of two sensor sets is over sooner
   double commanded_trigger = 0.3;       ///< from here on the grip is commanded, 0..1
   int grasp_sensor_sets = 2;            ///< of one hand on the object
   double hook_force_n = 20;             ///< what pulls with this holds on with one sensor set

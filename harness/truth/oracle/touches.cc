@@ -5,14 +5,15 @@ namespace prehend::truth {
 
 namespace {
 
-/// From where it is at rest on what bears it until that does no more: it may tip or roll in
-/// between. What is over in a moment was a blow.
+/// From where it is at rest on what bears its weight until they part or that is no longer below: it
+/// may tip or roll in between, and a hand may take the weight. What is over in a moment was a blow.
 Spans SupportsOf(const std::vector<Bearing>& bearings, const Recording& recording,
                  const OracleSettings& settings) {
   std::vector<bool> borne;
-  for (const Bearing& bearing : bearings)
-    borne.push_back(bearing.touching && bearing.up >= settings.support_up &&
-                    bearing.share >= settings.support_share);
+  for (const Bearing& bearing : bearings) {
+    const bool bears = bearing.share >= settings.support_share || (!borne.empty() && borne.back());
+    borne.push_back(bearing.touching && bearing.up >= settings.support_up && bears);
+  }
   Spans spans;
   for (Span span : WhereTrue(borne)) {
     while (!span.empty() && bearings[span.begin].vertical_m_per_s > settings.support_speed_m_per_s)
@@ -97,7 +98,8 @@ Touches FindTouches(const Evidence& evidence, const OracleSettings& settings) {
     for (const Span& squeeze : WhereGripIsCommanded(recording, settings, hand)) {
       for (Span span : Within(tight, squeeze)) {
         while (!span.empty() && !gripped[span.begin]) ++span.begin;
-        if (!span.empty()) touches.grasps.push_back({hand, body, span, span.begin});
+        if (recording.Lasts_s(span) >= settings.grasp_minimum_s)
+          touches.grasps.push_back({hand, body, span, span.begin});
       }
     }
   }
