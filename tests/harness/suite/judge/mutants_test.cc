@@ -46,6 +46,7 @@ const std::vector<Mutant> kMutants = {
     {"three sides are a grasp", "grasp", "grip_sides   = 2", "grip_sides   = 3", ""},
     {"the grip counts when it is closed", "grasp", "grip_on      = 0.3", "grip_on      = 0.9", ""},
     {"the grip does not count", "grasp", "trigger(hand) < grip_on or ", "", ""},
+    {"a brush is a grasp", "grasp", "\n  lasting grip_min", "", ""},
     {"grasps are bridged too long", "grasp", "grasp_bridge = 60 ms", "grasp_bridge = 200 ms",
      "no finger of a scenario loses an object for so long while the grip is commanded; the closed "
      "form grasp_ends_with_a_long_loss kills it (tests/witnesses/closed_forms_test.cc)"},
@@ -139,6 +140,7 @@ const char* const kScenarios[] = {
     "slide/quick_lift_seen_slowly_is_no_slide",
     "rates/aside_and_up_is_no_pick_up_at_60_hz",
     "physics/tower_is_knocked_over",
+    "tracking/jitter_of_a_millimetre_leaves_one_reach_and_one_grasp",
 };
 
 /// The mutant's program; no value: the mutation did not apply, or made no grammar.
