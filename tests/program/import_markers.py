@@ -14,7 +14,7 @@ import sys
 
 import numpy as np
 
-from import_arrays import (CUP, CUPS, FRAMES, HAND, HANDS, RATE, TABLE, TIMES, check_damage, expect_refused, folder,
+from import_arrays import (CUP, CUPS, FRAMES, HAND, HANDS, RATE, TABLE, TIMES, check_damage, documented, expect_refused, folder,
                            import_file, recording, run)
 
 SHAPE = np.array([[0.05, 0.02, 0.03], [-0.04, 0.03, 0.01], [0.0, -0.05, 0.02], [0.01, 0.02, -0.05]])  # of the cup, about its markers' mean
@@ -301,6 +301,9 @@ def check_c3d():
     lost[150:155, 5] = np.nan
     for real in (True, False):
         expect_made("take.c3d", C3d(85, real).write(lost, NAMES), "axes: z_up\n" + entities(), within=2e-6 if real else 2e-3)
+    lost = [f"s:{n}" for n in ("cup_1", "cup_2", "cup_3", "x", "RHand", "y", "z")]
+    said = import_file("take.c3d", C3d(84, True).write(POINTS, lost), documented('"s:cup_1"'))
+    assert said.returncode == 0 and "cup: 3 markers" in said.stdout and "in the file" not in said.stderr, said.stderr
     whole = C3d(84, True).write(POINTS, NAMES)
     for content, map_text, *why in (
             (whole, "axes: z_up\nrate_hz: 100\n" + entities(), "'rate_hz' contradicts the file"),

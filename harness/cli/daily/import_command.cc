@@ -167,7 +167,7 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
   if (const auto format = exchange::PoseFormatOf(poses); options.Has("--map") && !format)
     return Complain(context, format.error());
   if (episode::EpisodeKindOf(poses) == episode::EpisodeKind::kJsonLines &&
-      !(options.Has("--map") && exchange::IsJsonOfPoses(poses)))
+      !((options.Has("--map") || !poses.ends_with(".jsonl")) && exchange::IsJsonOfPoses(poses)))
     return ImportLines(poses, options, context);
   const Result<exchange::PoseFormat> format = exchange::PoseFormatOf(poses);
   const bool is_hdf5 = format && *format == exchange::PoseFormat::kHdf5;

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/arrays/read_array_poses.h: the points of C3D files, each a body without
-// orientation, or a marker of one. Tested by tests/program/import_markers.py
+// See harness/exchange/arrays/read_array_poses.h. C3D (https://www.c3d.org) has points and their
+// labels, in integers or floating point, of Intel, MIPS and DEC processors: bodies without
+// orientation, or markers of bodies. Analog channels, forces and events are not read. Tested by
+// tests/program/import_markers.py
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <map>
 
-#include "harness/exchange/arrays/c3d_file.h"
+#include "harness/base/base/text_file.h"
 #include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/arrays/row_poses.h"
 #include "harness/exchange/poses/marker_bodies.h"
@@ -13,6 +19,224 @@
 
 namespace prehend::exchange {
 namespace {
+
+constexpr std::size_t kBlock = 512;
+constexpr std::size_t kMostNumbers = 16'000'000;  ///< of points, in all frames
+constexpr std::size_t kEventsKey = 149;  ///< the word of the header that says it has events
+constexpr std::uint16_t kHasEvents = 12345;
+
+std::string Trimmed(std::string text) {
+  text.resize(std::min(text.find('\0'), text.size()));
+  text.erase(text.find_last_not_of(' ') + 1);
+  text.erase(0, std::min(text.find_first_not_of(' '), text.size()));
+  return ReadableName(text);
+}
+
+class C3dFile {
+ public:
+  std::vector<std::string> labels;  ///< of each point; "*17": it has none
+  std::size_t frames = 0;
+  double rate_hz = 0;
+  std::string unit;                ///< "mm"; "": not said
+  std::vector<std::string> notes;  ///< what is not read
+
+  /// Takes the whole file. Returns what is wrong, with the byte at which it was seen, or "".
+  std::string Load(std::string bytes) {
+    bytes_ = std::move(bytes);
+    if (bytes_.size() < 2 * kBlock || bytes_[1] != 0x50)
+      return "at byte 1: it is no C3D file: its second byte is not 0x50";
+    const std::size_t parameters_at = kBlock * (static_cast<unsigned char>(bytes_[0]) - 1u);
+    if (bytes_[0] == 0 || parameters_at + kBlock > bytes_.size())
+      return "at byte 0: its parameters would begin behind its end: is it cut off?";
+    const auto code = static_cast<unsigned char>(bytes_[parameters_at + 3]);
+    if (code < 84 || code > 86)
+      return fmt::format(
+          "at byte {}: it is of the processor {}; 84 (Intel), 85 (DEC) and 86 (MIPS) are read",
+          parameters_at + 3, code);
+    processor_ = static_cast<Processor>(code);
+    const std::size_t blocks = static_cast<unsigned char>(bytes_[parameters_at + 2]);
+    const std::size_t end =
+        std::min(bytes_.size(), parameters_at + kBlock * std::max<std::size_t>(blocks, 1));
+    if (std::string why = LoadParameters(parameters_at + 4, end); !why.empty()) return why;
+    points_ = static_cast<std::size_t>(std::clamp(NumberOf("POINT:USED", Word(2)), 0.0, 65535.0));
+    scale_ = NumberOf("POINT:SCALE", Real(12));
+    is_real_ = scale_ < 0;
+    rate_hz = NumberOf("POINT:RATE", Real(20));
+    if (!(rate_hz > 0) || !std::isfinite(rate_hz)) rate_hz = Real(20);
+    data_at_ = kBlock * (std::max<std::size_t>(Word(16), 1) - 1);
+    frame_bytes_ = (std::size_t{4} * points_ + Word(4)) * (is_real_ ? 4 : 2);
+    if (points_ == 0) return "it has no points: no markers";
+    if (!std::isfinite(scale_) || (!is_real_ && scale_ == 0))
+      return fmt::format("at byte 12: its points are scaled by {}", scale_);
+    frames = FramesSaid();
+    if (frames * points_ > kMostNumbers / 3)
+      return fmt::format("{} frames of {} points; at most {} numbers are read", frames, points_,
+                         kMostNumbers);
+    const std::size_t data = bytes_.size() - std::min(bytes_.size(), data_at_);
+    if (data_at_ < kBlock || data / frame_bytes_ < frames)
+      return fmt::format("at byte {}: it is cut off: {} frames of {} bytes are said, {} are there",
+                         data_at_, frames, frame_bytes_, data / frame_bytes_);
+    TakeLabels(points_);
+    if (const auto units = parameters_.find("POINT:UNITS");
+        units != parameters_.end() && !units->second.texts.empty())
+      unit = units->second.texts.front();
+    if (Word(4) > 0) notes.push_back(fmt::format("{} analog values a frame are not read", Word(4)));
+    if (Word(2 * kEventsKey) == kHasEvents || NumberOf("EVENT:USED", 0) > 0)
+      notes.emplace_back("its events are not read: score takes labels from a file of their own");
+    return "";
+  }
+
+  /// None: not seen.
+  std::optional<Eigen::Vector3d> At(std::size_t frame, std::size_t point) const {
+    const std::size_t size = is_real_ ? 4 : 2,
+                      at = data_at_ + frame * frame_bytes_ + point * 4 * size;
+    Eigen::Vector3d p;
+    for (int i = 0; i < 3; ++i) {
+      const std::size_t place = at + static_cast<std::size_t>(i) * size;
+      p[i] = is_real_ ? Real(place) : static_cast<std::int16_t>(Word(place)) * scale_;
+    }
+    const double residual =
+        is_real_ ? Real(at + 12) : static_cast<double>(static_cast<std::int16_t>(Word(at + 6)));
+    if (residual < 0 || !p.allFinite()) return std::nullopt;
+    return p;
+  }
+
+ private:
+  enum class Processor { kIntel = 84, kDec = 85, kMips = 86 };
+  /// A value of the parameter section: numbers, or texts.
+  struct Parameter {
+    std::vector<double> numbers;
+    std::vector<std::string> texts;
+  };
+
+  std::uint16_t Word(std::size_t at) const {
+    const auto first = static_cast<unsigned char>(bytes_[at]),
+               second = static_cast<unsigned char>(bytes_[at + 1]);
+    return static_cast<std::uint16_t>(processor_ == Processor::kMips ? first << 8 | second
+                                                                     : second << 8 | first);
+  }
+
+  double Real(std::size_t at) const {
+    const std::uint32_t first = Word(at), second = Word(at + 2);
+    // DEC's words stand the other way round, and its exponent is 2 more.
+    const bool is_low_first = processor_ == Processor::kIntel;
+    const auto bits = is_low_first ? second << 16 | first : first << 16 | second;
+    return std::bit_cast<float>(bits) * (processor_ == Processor::kDec ? 0.25 : 1.0);
+  }
+
+  std::string LoadParameters(std::size_t at, std::size_t end) {
+    std::map<int, std::string> groups;
+    std::vector<std::pair<std::string, std::pair<int, std::size_t>>> found;
+    while (at + 2 <= end) {
+      const std::size_t begin = at;
+      const auto length = static_cast<std::size_t>(std::abs(static_cast<signed char>(bytes_[at])));
+      const int group = static_cast<signed char>(bytes_[at + 1]);
+      if (length == 0 || group == 0) break;
+      if (at + 4 + length > end)
+        return fmt::format("at byte {}: a parameter that ends behind its section", begin);
+      std::string name = bytes_.substr(at + 2, length);
+      std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::toupper(c); });
+      at += 2 + length;
+      const std::size_t next = Word(at);
+      if (group < 0)
+        groups[-group] = name;
+      else
+        found.push_back({name, {group, at + 2}});
+      if (next == 0) break;
+      if (next < 2) return fmt::format("at byte {}: a parameter that is followed by itself", begin);
+      at += next;
+    }
+    for (const auto& [name, place] : found)
+      if (std::string why = TakeParameter(groups[place.first] + ":" + name, place.second, end);
+          !why.empty())
+        return why;
+    return "";
+  }
+
+  std::string TakeParameter(const std::string& name, std::size_t at, std::size_t end) {
+    if (!name.starts_with("POINT:") && !name.starts_with("TRIAL:") && name != "EVENT:USED")
+      return "";
+    const std::string cut =
+        fmt::format("at byte {}: the parameter {} ends behind its section", at, ReadableName(name));
+    if (at + 2 > end) return cut;
+    const int kind = static_cast<signed char>(bytes_[at]);
+    const auto width = static_cast<std::size_t>(std::abs(kind));
+    const std::size_t dimensions = static_cast<unsigned char>(bytes_[at + 1]);
+    if ((width != 1 && width != 2 && width != 4) || dimensions > 7)
+      return fmt::format("at byte {}: the parameter {} is of the kind {}, with {} dimensions", at,
+                         ReadableName(name), kind, dimensions);
+    at += 2 + dimensions;
+    if (at > end) return cut;
+    std::size_t count = 1;
+    for (std::size_t i = 0; i < dimensions; ++i) {
+      count *= static_cast<unsigned char>(bytes_[at - dimensions + i]);
+      if (count * width > end - at) return cut;
+    }
+    if (count * width > end - at) return cut;
+    Parameter& parameter = parameters_[name];
+    if (kind == -1) {
+      const std::size_t each =
+          dimensions == 0 ? 1 : static_cast<unsigned char>(bytes_[at - dimensions]);
+      for (std::size_t i = 0; each > 0 && i + each <= count; i += each)
+        parameter.texts.push_back(Trimmed(bytes_.substr(at + i, each)));
+      return "";
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t place = at + i * width;
+      parameter.numbers.push_back(
+          width == 4   ? Real(place)
+          : width == 2 ? static_cast<double>(static_cast<std::int16_t>(Word(place)))
+                       : static_cast<double>(static_cast<unsigned char>(bytes_[place])));
+    }
+    return "";
+  }
+
+  double NumberOf(const std::string& parameter, double otherwise) const {
+    const auto found = parameters_.find(parameter);
+    if (found == parameters_.end() || found->second.numbers.empty()) return otherwise;
+    const double value = found->second.numbers.front();
+    // Counts are written as if they had no sign.
+    return value < 0 && parameter.ends_with(":USED") ? value + 65536 : value;
+  }
+
+  void TakeLabels(std::size_t points) {
+    for (int i = 1;; ++i) {
+      const auto found =
+          parameters_.find(i == 1 ? "POINT:LABELS" : fmt::format("POINT:LABELS{}", i));
+      if (found == parameters_.end()) break;
+      labels.insert(labels.end(), found->second.texts.begin(), found->second.texts.end());
+    }
+    labels.resize(points);
+    for (std::size_t i = 0; i < points; ++i)
+      if (labels[i].empty()) labels[i] = fmt::format("*{}", i + 1);
+  }
+
+  /// The header counts to 65,535; of longer files other places say it.
+  std::size_t FramesSaid() const {
+    const std::size_t first = Word(6), last = Word(8);
+    const auto field = [&](const char* name) -> std::size_t {
+      const auto found = parameters_.find(name);
+      if (found == parameters_.end() || found->second.numbers.size() < 2) return 0;
+      const auto word = [](double v) { return static_cast<std::size_t>(v < 0 ? v + 65536 : v); };
+      return word(found->second.numbers[0]) + 65536 * word(found->second.numbers[1]);
+    };
+    const std::size_t begin = field("TRIAL:ACTUAL_START_FIELD"),
+                      end = field("TRIAL:ACTUAL_END_FIELD");
+    if (begin > 0 && end >= begin) return end - begin + 1;
+    const double many = NumberOf("POINT:LONG_FRAMES", 0);
+    if (many >= 1 && many < 1e9) return static_cast<std::size_t>(many);
+    const double few = NumberOf("POINT:FRAMES", 0);
+    if (last == 65535 && few != 0) return static_cast<std::size_t>(few < 0 ? few + 65536 : few);
+    return last >= first ? last - first + 1 : 0;
+  }
+
+  std::string bytes_;
+  Processor processor_ = Processor::kIntel;
+  std::map<std::string, Parameter> parameters_;  ///< "POINT:LABELS"
+  std::size_t data_at_ = 0, frame_bytes_ = 0, points_ = 0;
+  double scale_ = 1;
+  bool is_real_ = false;
+};
 
 /// Its positions, of a body or a marker of the map.
 void TakePoint(const C3dFile& file, const Located<std::string>& from, const ImportMap& map,

@@ -213,9 +213,9 @@ class JsonRows : public RowSource {
       begin = end + 1;
       ++line_;
     }
-    if (count_ == 0 && !map_.frames)
+    if (count_ + left_out_ == 0 && !map_.frames)
       return {grammar::DiagnosticAt(file_, text_, {1, 1}, "there is no frame in it", "")};
-    if (count_ == 0)
+    if (count_ + left_out_ == 0)
       errors_.AddUnknownName(
           map_.frames->where, fmt::format("nothing is at '{}'", map_.frames->value),
           steps < frames.size() ? frames[steps].key : "", {names.begin(), names.end()});
@@ -247,6 +247,11 @@ class JsonRows : public RowSource {
                 .values = path.values};
   }
 
+  std::string Note() const override {
+    return left_out_ == 0 ? ""
+                          : fmt::format("{} of {} frames have nothing that the map asks for",
+                                        left_out_, count_ + left_out_);
+  }
   std::vector<int> Lines() const override { return lines_; }
   std::string Columns(const std::string&, std::size_t) const override { return ""; }
 
@@ -273,6 +278,16 @@ class JsonRows : public RowSource {
       for (const auto& [key, member] : frame.items())
         if (members_.size() < 20)
           members_.push_back(ReadableName(key) + (member.is_array() ? "[*]" : ""));
+    bool has_any = !map_.t;
+    for (AskedPath& path : asked_) {
+      JsonMiss miss;
+      if (FindInJson(frame, path.parts.front(), miss))
+        has_any = true;
+      else if (path.found == 0 && miss.steps >= path.miss.steps)
+        path.miss = std::move(miss);
+    }
+    left_out_ += has_any ? 0 : 1;
+    if (!has_any) return "";  // the head of a log
     for (AskedPath& path : asked_) {
       if (std::string why = TakePath(frame, path); !why.empty())
         return fmt::format("frame {}: {}", count_, why);
@@ -288,7 +303,6 @@ class JsonRows : public RowSource {
     for (const JsonPath& part : path.parts) {
       JsonMiss miss;
       const Json* const value = FindInJson(frame, part, miss);
-      if (!value && miss.steps >= path.miss.steps && path.found == 0) path.miss = std::move(miss);
       has_all = has_all && value && !value->is_null();
       path.found += value ? 1 : 0;
       if (!has_all) break;
@@ -359,7 +373,7 @@ class JsonRows : public RowSource {
   const ImportMap& map_;
   DiagnosticList errors_;
   std::vector<AskedPath> asked_;  ///< the time first
-  std::size_t count_ = 0, numbers_ = 0;
+  std::size_t count_ = 0, left_out_ = 0, numbers_ = 0;
   int line_ = 1;
   bool line_is_of_frame_ = false;
   std::vector<int> lines_;

@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
 
 #include "harness/base/base/text_file.h"
@@ -89,23 +90,18 @@ std::string ReadNumpy(std::string_view bytes, NumpyArray& array) {
 }
 
 double NumberAt(const NumpyArray& array, std::size_t index) {
-  ByteReader reader{.bytes = array.data,
-                    .at = index * static_cast<std::size_t>(array.bytes),
-                    .big_endian = array.big_endian};
+  const auto bytes = static_cast<std::size_t>(array.bytes);
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < bytes; ++i)
+    bits = bits << 8 | static_cast<unsigned char>(
+                           array.data[index * bytes + (array.big_endian ? i : bytes - 1 - i)]);
   if (array.kind == 'f')
-    return array.bytes == 4 ? static_cast<double>(reader.Number<float>()) : reader.Number<double>();
-  const bool is_signed = array.kind == 'i';
-  switch (array.bytes) {
-    case 1:
-      return is_signed ? reader.Number<std::int8_t>() : reader.Number<std::uint8_t>();
-    case 2:
-      return is_signed ? reader.Number<std::int16_t>() : reader.Number<std::uint16_t>();
-    case 4:
-      return is_signed ? reader.Number<std::int32_t>() : reader.Number<std::uint32_t>();
-    default:
-      return is_signed ? static_cast<double>(reader.Number<std::int64_t>())
-                       : static_cast<double>(reader.Number<std::uint64_t>());
-  }
+    return bytes == 8 ? std::bit_cast<double>(bits)
+                      : std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+  const std::size_t unused = 64 - 8 * bytes;
+  return array.kind == 'i'
+             ? static_cast<double>(static_cast<std::int64_t>(bits << unused) >> unused)
+             : static_cast<double>(bits);
 }
 
 class NpzRows : public RowSource {

@@ -49,6 +49,7 @@ class RowPoseReader {
       poses_.notes.push_back(fmt::format("it has only {}, {:.2f} s",
                                          grammar::CountOf(frames_, "frame"), poses_.last_s));
     if (orders_ && !others_) poses_.quaternion_order = map_.quaternion_order->value;
+    if (std::string note = source_.Note(); !note.empty()) poses_.notes.push_back(std::move(note));
     RefuseAbsentBodies(poses_, map_, errors_);
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
     return std::move(poses_);

@@ -32,6 +32,8 @@ class RowSource {
   virtual std::vector<int> Lines() const { return {}; }
   /// How a map says which columns of a row it means: "NAME[0:3]"; "": it cannot.
   virtual std::string Columns(const std::string& name, std::size_t width) const;
+  /// What a user should know, or "".
+  virtual std::string Note() const { return ""; }
   bool nan_is_missing = false;  ///< whatever the map says
   bool knows_angles = false;    ///< three angles turn about the fixed x, then y, then z, in radians
 };

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
 
@@ -332,6 +333,13 @@ std::optional<TableLayout> RowsOf(const Lines& lines) {
   return layout;
 }
 
+template <class T>
+bool IsAlike(const T& a, const T& b) {
+  return a == b;
+}
+/// Rates are written with few digits.
+bool IsAlike(double a, double b) { return std::abs(a / b - 1) < 1e-3; }
+
 /// What the file says, where the map is silent; otherwise they must agree.
 template <class T>
 void Agree(const std::optional<T>& of_file, std::optional<Located<T>>& of_map, const char* key,
@@ -339,7 +347,7 @@ void Agree(const std::optional<T>& of_file, std::optional<Located<T>>& of_map, c
   if (!of_file) return;
   if (!of_map)
     of_map = Located<T>{*of_file, where};
-  else if (of_map->value != *of_file)
+  else if (!IsAlike(of_map->value, *of_file))
     errors.Add(of_map->where,
                fmt::format("'{}' contradicts the file: {} says otherwise", key, layout.name),
                fmt::format("leave '{}' out", key));
