@@ -120,14 +120,14 @@ TEST_F(ImportBag, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
 
 TEST_F(ImportBag, TopicsOfTypesThatAreNotReadAreNamedWithTheirTypes) {
   std::string records = BagConnection(0, "/markers", "vicon_bridge/Markers") +
-                        BagConnection(1, "/odom", "nav_msgs/Odometry");
+                        BagConnection(1, "/plan", "nav_msgs/Path");
   const Said said = Import(BagHead() + records + BagMessage(0, kEpoch_ns, "some bytes"));
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_NE(
       said.err.find(
           "map.yaml:7:15: error: the file has no topic of a type that is read, so no 'mug'; it "
           "has '/markers': vicon_bridge/Markers (ros1), whose definition is not in the file, "
-          "'/odom': nav_msgs/Odometry (ros1), whose definition is not in the file\n"),
+          "'/plan': nav_msgs/Path (ros1), whose definition is not in the file\n"),
       std::string::npos)
       << said.err;
   EXPECT_NE(
