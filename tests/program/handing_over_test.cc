@@ -18,7 +18,7 @@ using Spans =
 
 Spans In(const Said& said) {
   EXPECT_EQ(said.exit_code, 0) << said.err;
-  const auto json = nlohmann::json::parse(said.out);
+  const auto json = nlohmann::ordered_json::parse(said.out);
   const double rate = json["ticks_per_second"].get<double>();
   Spans spans;
   for (const auto& event : json["events"]) {

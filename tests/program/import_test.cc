@@ -446,7 +446,9 @@ TEST(Import, EachCommandOfThePageRuns) {
     std::vector<std::string> words;
     std::istringstream in(line.substr(std::string("prehend ").size()));
     for (std::string word; in >> std::quoted(word);)
-      words.push_back(word.ends_with(".jsonl") || word == "demonstrations.episodes"
+      words.push_back(word.find('/') == std::string::npos &&
+                              (word.ends_with(".jsonl") || word.ends_with(".yaml") ||
+                               word.ends_with(".episodes"))
                           ? (folder / word).string()
                           : word);
     const Said said = Prehend(words, {"CI="});
@@ -559,7 +561,8 @@ TEST(Import, WhatARecordingDoesNotHaveIsSaid) {
       "prehend: " + lines + " is a recording already; -o NAME.episodes keeps it as an episode\n");
   EXPECT_EQ(Prehend({"import", (folder / "poses.csv").string(), "-o", takes}).err,
             "prehend: " + (folder / "poses.csv").string() +
-                " needs --map, a file that says what it means (docs/motion-capture.md)\n");
+                " needs --map, a file that says what it means (docs/motion-capture.md); --propose "
+                "writes a first one\n");
   EXPECT_EQ(Prehend({"import", lines, "-o", "/proc/nowhere/takes.episodes"}).exit_code, 2);
 }
 

@@ -3,10 +3,14 @@
 // Tested by tests/program/import_test.cc
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <functional>
 #include <map>
+#include <set>
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/content_hash.h"
+#include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/episodes/recordings.h"
@@ -15,6 +19,7 @@
 #include "harness/episode/run/segment_recording.h"
 #include "harness/exchange/import/import_demonstrations.h"
 #include "harness/exchange/import/import_poses.h"
+#include "harness/exchange/import/propose_map.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::cli {
@@ -62,9 +67,11 @@ ExitCode WriteRecording(episode::Recording& recording, const std::string& output
 ExitCode ImportLines(const std::string& file, const ParsedOptions& options,
                      const CommandContext& context) {
   const std::string& output = options.Text("--output");
-  if (options.Has("--map"))
-    return Refuse(context,
-                  "--map is for poses; " + file + " is a recording, which says what it means");
+  for (const char* option : {"--map", "--propose"})
+    if (options.Has(option))
+      return Refuse(context, fmt::format("{} is for poses; {} is a recording, which says what it "
+                                         "means",
+                                         option, file));
   if (!options.Has("--check") && !episode::IsEpisodeFile(output))
     return Refuse(context,
                   file + " is a recording already; -o NAME.episodes keeps it as an episode");
@@ -103,32 +110,51 @@ class OnceEach {
   std::map<std::string, std::pair<std::string, std::size_t>> said_;
 };
 
-/// Each demonstration becomes an episode. One that is damaged is left out, and named.
-ExitCode ImportDemonstrations(const std::string& path, const ParsedOptions& options,
-                              const CommandContext& context) {
+/// Several recordings of one kind: demonstrations of a file, or files of takes.
+struct Batch {
+  std::string noun;
+  std::vector<std::string> names;  ///< groups, or files
+  std::function<Result<exchange::Imported>(const std::string& name)> import;
+  std::string file;  ///< of demonstrations; else each name is one
+
+  const std::string& SourceOf(const std::string& name) const { return file.empty() ? name : file; }
+};
+
+/// Where one of several goes: the episode file, or a file of its own in the folder.
+std::string OutputOf(const std::string& output, const Batch& batch, const std::string& episode) {
+  if (episode::IsEpisodeFile(output) || !batch.file.empty()) return output;
+  return (std::filesystem::path(output) / (FileNameOf(episode) + ".jsonl")).string();
+}
+
+/// Each becomes an episode. One that is damaged is left out, and named.
+ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
+                     const CommandContext& context) {
   const std::string output = options.Text("--output"), grammar = options.Text("--grammar");
   const bool check = options.Has("--check");
-  const auto import = exchange::DemonstrationImport::Open(path, options.Text("--map"));
-  if (!import) return Complain(context, import.error());
-  const std::size_t count = import->groups().size();
-  if (!check && count > 1 && !episode::IsEpisodeFile(output))
-    return Refuse(context, fmt::format("{} has {} demonstrations: -o NAME.episodes keeps them all",
-                                       path, count));
-  if (const grammar::Diagnostics wrong = import->WrongInMap(); !wrong.empty())
-    return Complain(context, wrong);
   OnceEach warnings(context.err);
-  std::vector<std::vector<std::string>> table = {{"episode", "frames", "seconds", "success"}};
+  std::vector<std::vector<std::string>> table = {
+      {"episode", "frames", "seconds", batch.file.empty() ? "lost_s" : "success"}};
   std::string first, left_out;
+  std::set<std::string> taken;
   ExitCode exit_code = ExitCode::kAgrees;
-  for (const std::string& group : import->groups()) {
-    auto imported = import->Import(group);
+  const auto leave_out = [&](const std::string& name, const std::string& why) {
+    if (!why.empty()) warnings.Say("prehend: left out: " + why);
+    left_out += (left_out.empty() ? "; left out: " : ", ") + name;
+  };
+  for (const std::string& name : batch.names) {
+    auto imported = batch.import(name);
     if (!imported) {
       for (const grammar::Diagnostic& error : imported.error())
-        warnings.Say("prehend: left out: " + error.message);
-      left_out += (left_out.empty() ? "; left out: " : ", ") + group;
+        warnings.Say("prehend: left out: " +
+                     (batch.file.empty() ? grammar::Format({error}) : error.message));
+      leave_out(name, "");
       continue;
     }
     episode::Recording& episode = imported->episode;
+    if (!taken.insert(episode.header.episode).second) {
+      leave_out(name, fmt::format("{}: a second one is called '{}'", name, episode.header.episode));
+      continue;
+    }
     for (const std::string& warning : imported->warnings)
       warnings.Say("warning: " + episode.header.episode + ": " + warning);
     if (first.empty()) {
@@ -140,48 +166,126 @@ ExitCode ImportDemonstrations(const std::string& path, const ParsedOptions& opti
     }
     if (!check) {
       if (episode::IsEpisodeFile(output)) episode::BridgeLooks(episode);
-      const ExitCode written = WriteRecording(episode, output, path, grammar, context);
+      const ExitCode written =
+          WriteRecording(episode, OutputOf(output, batch, episode.header.episode),
+                         batch.SourceOf(name), grammar, context);
       if (written != ExitCode::kAgrees) return written;
     }
     const auto& success = episode.header.attributes.success;
+    double lost_s = 0;
+    for (const exchange::EntityReport& one : imported->entities) lost_s += one.lost_s;
     table.push_back({episode.header.episode, std::to_string(episode.frames.size()),
                      fmt::format("{:.2f}", imported->duration_s),
-                     !success   ? "-"
-                     : *success ? "yes"
-                                : "no"});
+                     batch.file.empty() ? fmt::format("{:.2f}", lost_s)
+                     : !success         ? "-"
+                     : *success         ? "yes"
+                                        : "no"});
   }
+  if (table.size() == 1 && batch.file.empty()) exit_code = ExitCode::kBadInput;
   if (exit_code == ExitCode::kAgrees && !left_out.empty()) exit_code = ExitCode::kDiffers;
   if (output == "-") return exit_code;
-  context.out << first << "\n";
+  if (!first.empty()) context.out << first << "\n";
   for (const std::string& line : truth::AlignColumns(table)) context.out << line << "\n";
-  context.out << fmt::format("{} of {} demonstrations{}\n", table.size() - 1, count, left_out);
+  context.out << fmt::format("{} of {} {}{}\n", table.size() - 1, batch.names.size(), batch.noun,
+                             left_out);
   return exit_code;
 }
 
-ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) {
-  const std::string output = options.Text("--output"), poses = options.Text("poses");
-  const bool check = options.Has("--check");
-  if (check == !output.empty())
-    return Refuse(context,
-                  "expected either -o, the recording to write, or --check, to write nothing");
-  if (const auto format = exchange::PoseFormatOf(poses); options.Has("--map") && !format)
-    return Complain(context, format.error());
-  if (episode::EpisodeKindOf(poses) == episode::EpisodeKind::kJsonLines &&
-      !((options.Has("--map") || !poses.ends_with(".jsonl")) && exchange::IsJsonOfPoses(poses)))
-    return ImportLines(poses, options, context);
-  const Result<exchange::PoseFormat> format = exchange::PoseFormatOf(poses);
-  const bool is_hdf5 = format && *format == exchange::PoseFormat::kHdf5;
-  if (is_hdf5 && check && !options.Has("--map")) {
-    const Result<std::string> map = exchange::ProposedMap(poses);
-    if (!map) return Complain(context, map.error());
+ExitCode ImportDemonstrations(const std::string& path, const ParsedOptions& options,
+                              const CommandContext& context) {
+  const auto import = exchange::DemonstrationImport::Open(path, options.Text("--map"));
+  if (!import) return Complain(context, import.error());
+  const std::size_t count = import->groups().size();
+  if (!options.Has("--check") && count > 1 && !episode::IsEpisodeFile(options.Text("--output")))
+    return Refuse(context, fmt::format("{} has {} demonstrations: -o NAME.episodes keeps them all",
+                                       path, count));
+  if (const grammar::Diagnostics wrong = import->WrongInMap(); !wrong.empty())
+    return Complain(context, wrong);
+  return ImportBatch({.noun = "demonstrations",
+                      .names = import->groups(),
+                      .import = [&](const std::string& group) { return import->Import(group); },
+                      .file = path},
+                     options, context);
+}
+
+/// Files of takes, one map for all; of a folder those whose names end as such files do.
+ExitCode ImportTakes(const std::vector<std::string>& typed, const ParsedOptions& options,
+                     const CommandContext& context) {
+  const std::string output = options.Text("--output"), map = options.Text("--map");
+  Batch batch{.noun = "takes",
+              .import = [&](const std::string& file) { return exchange::ImportPoses(file, map); }};
+  std::error_code error;
+  for (const std::string& name : typed) {
+    if (!std::filesystem::is_directory(name, error)) {
+      batch.names.push_back(name);
+      continue;
+    }
+    std::vector<std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(name, error))
+      if (exchange::IsNamedAsPoses(entry.path().string())) files.push_back(entry.path().string());
+    if (files.empty())
+      return Complain(context, ExitCode::kNothing, name + " has no files of poses");
+    std::ranges::sort(files);
+    batch.names.insert(batch.names.end(), files.begin(), files.end());
+  }
+  if (output == "-") return Refuse(context, "several takes do not go to standard output");
+  if (const auto read = ReadYamlFile(map); !read) return Complain(context, read.error());
+  if (!output.empty() && !episode::IsEpisodeFile(output)) {
+    std::filesystem::create_directories(output, error);
+    if (!std::filesystem::is_directory(output, error))
+      return Refuse(context,
+                    fmt::format("-o {}: of several takes it is a folder or NAME.episodes", output));
+  }
+  return ImportBatch(batch, options, context);
+}
+
+/// Prints a first map, or writes it.
+ExitCode ProposeMap(const std::string& poses, const ParsedOptions& options,
+                    const CommandContext& context) {
+  if (options.Has("--map")) return Refuse(context, "--propose writes a map; it takes none");
+  const Result<std::string> map = exchange::ProposedMap(poses);
+  if (!map) return Complain(context, map.error());
+  const std::string output = options.Text("--output");
+  if (output.empty() || output == "-") {
     context.out << *map;
     return ExitCode::kAgrees;
   }
+  AtomicFile file(output);
+  if (!file.problem().empty()) return Refuse(context, file.problem());
+  file.stream() << *map;
+  if (const std::string problem = file.Commit(); !problem.empty())
+    return Complain(context, ExitCode::kFailure, problem);
+  context.out << fmt::format("{0}: fill in what it says, then: {1}\n", output,
+                             CommandText({"import", poses, "--map", output, "--check"}));
+  return ExitCode::kAgrees;
+}
+
+ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) {
+  const std::vector<std::string>& typed = options.All("poses");
+  const std::string output = options.Text("--output"), poses = typed.front();
+  const bool check = options.Has("--check"), propose = options.Has("--propose");
+  std::error_code error;
+  const bool several = typed.size() > 1 || std::filesystem::is_directory(poses, error);
+  if (!propose && check == !output.empty())
+    return Refuse(context,
+                  "expected either -o, the recording to write, or --check, to write nothing");
+  if (several && propose) return Refuse(context, "--propose looks at one file");
+  if (several && options.Has("--map")) return ImportTakes(typed, options, context);
+  if (const auto format = exchange::PoseFormatOf(poses);
+      (options.Has("--map") || propose || several) && !format)
+    return Complain(context, format.error());
+  if (episode::EpisodeKindOf(poses) == episode::EpisodeKind::kJsonLines && !several &&
+      !((options.Has("--map") || propose || !poses.ends_with(".jsonl")) &&
+        exchange::IsJsonOfPoses(poses)))
+    return ImportLines(poses, options, context);
+  if (propose || (check && !options.Has("--map") && !several))
+    return ProposeMap(poses, options, context);
   if (!options.Has("--map"))
     return Refuse(context, fmt::format("{} needs --map, a file that says what it means "
-                                       "(docs/motion-capture.md){}",
-                                       poses, is_hdf5 ? "; --check alone proposes one" : ""));
-  if (is_hdf5) return ImportDemonstrations(poses, options, context);
+                                       "(docs/motion-capture.md); --propose writes a first one",
+                                       poses));
+  if (exchange::PoseFormatOf(poses) == exchange::PoseFormat::kHdf5)
+    return ImportDemonstrations(poses, options, context);
   auto imported = exchange::ImportPoses(poses, options.Text("--map"));
   if (!imported) return Complain(context, imported.error());
   episode::Recording& episode = imported->episode;
@@ -209,25 +313,30 @@ Command ImportCommand() {
   return {
       .name = "import",
       .summary = "Make a recording of a tracker's poses, or an episode of a recording",
-      .examples = {"import poses.csv --map bodies.yaml --check",
+      .examples = {"import poses.csv --propose -o bodies.yaml",
+                   "import poses.csv --map bodies.yaml --check",
                    "import poses.csv --map bodies.yaml -o take.jsonl",
                    "episode resegment take.jsonl", "import take.jsonl -o takes.episodes"},
-      .options =
-          {{.name = "poses",
-            .help = "a file with poses of hands and things: CSV, BVH, MCAP, a bag, HDF5, JSON or "
-                    ".npz, C3D (docs/motion-capture.md), or a recording (docs/recording-format.md)",
-            .required = true},
-           {.name = "--map",
-            .help = "of poses, what the file means: unit, axes, times, columns, bodies",
-            .placeholder = "MAP.yaml"},
-           OutputOption(
-               "the recording (docs/recording-format.md), -: standard output; or an episode "
-               "file, NAME.episodes, to which it is added (docs/episodes.md)"),
-           {.name = "--check",
-            .help = "write nothing; show what the file has, and what a grammar will miss"},
-           {.name = "--grammar",
-            .help = "the grammar to look with; default: that of the map",
-            .placeholder = "GRAMMAR"}},
+      .options = {{.name = "poses",
+                   .help = "files with poses of hands and things: CSV, BVH, MCAP, a bag, HDF5, "
+                           "JSON, .npz or C3D (docs/motion-capture.md), folders of them, or a "
+                           "recording (docs/recording-format.md)",
+                   .required = true,
+                   .repeatable = true},
+                  {.name = "--map",
+                   .help = "of poses, what the file means: unit, axes, times, columns, bodies",
+                   .placeholder = "MAP.yaml"},
+                  OutputOption(
+                      "the recording (docs/recording-format.md), -: standard output; or an episode "
+                      "file, NAME.episodes, to which it is added (docs/episodes.md); of several "
+                      "takes a folder; of --propose the map"),
+                  {.name = "--propose",
+                   .help = "write a first map for the file, in which sizes are to be filled in"},
+                  {.name = "--check",
+                   .help = "write nothing; show what the file has, and what a grammar will miss"},
+                  {.name = "--grammar",
+                   .help = "the grammar to look with; default: that of the map",
+                   .placeholder = "GRAMMAR"}},
       .run = RunImport};
 }
 

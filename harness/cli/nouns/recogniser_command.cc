@@ -26,8 +26,7 @@ constexpr const char* kRules[] = {
     "again: it prints the same lines for the same episode"};
 
 ExitCode RunRecogniser(const ParsedOptions& options, const CommandContext& context) {
-  const auto name =
-      episode::FindEpisode(options.Text("EPISODE"), options.Text("--episode"), context.root);
+  const auto name = episode::FindEpisode(options.Text("EPISODE"), "", context.root);
   if (!name) return Complain(context, name.error());
   auto episode = episode::OpenEpisode(*name, {}, context.root);
   if (!episode) return Complain(context, episode.error());
@@ -77,9 +76,8 @@ Command RecogniserCommand() {
                                "(docs/recognisers.md)",
                        .required = true},
                       {.name = "EPISODE",
-                       .help = "a recording, an episode file or a scenario",
+                       .help = "a recording, an episode file of one or a scenario",
                        .required = true},
-                      EpisodeOption(),
                       PaceOption()},
           .run = RunRecogniser};
 }

@@ -265,7 +265,7 @@ Result<PoseFile> ReadC3dPoses(const std::string& path, const std::string& map_pa
     return tl::unexpected(ErrorOfFile(path, why));
   TableLayout layout{.name = "a C3D file", .unit = UnitCalled(file.unit)};
   if (file.rate_hz > 0) layout.rate_hz = file.rate_hz;
-  Result<MapFile> read = ReadMapWith(map_path, PoseFormat::kC3d, layout);
+  Result<MapFile> read = ReadMapWith(ReadYamlFile(map_path), PoseFormat::kC3d, layout);
   if (!read) return tl::unexpected(std::move(read.error()));
   map = std::move(*read);
   DiagnosticList errors(map.document);

@@ -191,7 +191,7 @@ class Proposal {
 
 }  // namespace
 
-Result<std::string> ProposedMap(const std::string& path) {
+Result<std::string> ProposedMapOfDemonstrations(const std::string& path) {
   const auto file = Hdf5File::Open(path);
   if (!file) return tl::unexpected(file.error());
   auto groups = GuessGroups(*file);

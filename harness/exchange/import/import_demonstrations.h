@@ -29,6 +29,6 @@ class DemonstrationImport {
 
 /// What the first demonstration has, as comments, and a map for it, as far as names tell; sizes,
 /// and often the rate, are not in such files.
-Result<std::string> ProposedMap(const std::string& path);
+Result<std::string> ProposedMapOfDemonstrations(const std::string& path);
 
 }  // namespace prehend::exchange

@@ -39,12 +39,16 @@ std::string EpisodeName(const ImportMap& map, const std::string& path) {
   return name;
 }
 
+Eigen::Quaterniond Quaternion(const Eigen::Vector4d& wxyz) {
+  return Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
+}
+
 class Importer {
  public:
   Importer(const PoseFile& file, const MapFile& map, Implausible implausible)
       : file_(file),
+        map_file_(map),
         map_(map.map),
-        document_(map.document),
         errors_(map.document),
         unit_is_doubtful_(implausible.unit),
         world_is_doubtful_(implausible.world) {
@@ -52,7 +56,9 @@ class Importer {
   }
 
   Result<Imported> Import() {
-    Describe();
+    imported_.duration_s = file_.last_s;
+    imported_.episode.header = HeaderOf(map_file_, file_.file);
+    imported_.episode.header.attributes = file_.attributes;
     for (const Named<MappedEntity>& entity : map_.entities) {
       Track& track = tracks_.emplace_back();
       if (entity.value.at_m)
@@ -77,6 +83,7 @@ class Importer {
     WarnOfRestPoses();
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
     WarnOfNoOrientations();
+    WarnOfSizes();
     for (const std::string& body : file_.unused)
       Warn(fmt::format("the file has '{}', which the map does not mention", body));
     for (const std::string& note : file_.notes) Warn(note);
@@ -107,37 +114,15 @@ class Importer {
     if (!tilt.empty()) Warn(std::move(tilt));
   }
 
-  void Describe() {
-    imported_.duration_s = file_.last_s;
-    episode::EpisodeHeader& header = imported_.episode.header;
-    header.episode = EpisodeName(map_, file_.file);
-    header.grammar = map_.grammar.value;
-    if (document_.root.Find("grammar"))
-      header.grammar_named = ErrorAt(document_, map_.grammar.where);
-    header.bridge_s = map_.bridge_s;
-    header.attributes = file_.attributes;
-    header.entity_table.ticks_per_second = map_.ticks_per_second;
-    for (const Named<MappedEntity>& entity : map_.entities) {
-      const MappedEntity& e = entity.value;
-      grammar::EntityInfo& info = header.entity_table.entities.emplace_back();
-      info.name = entity.name;
-      info.half_size_m = e.size_m / 2;
-      if (e.part_of)
-        info.part_of = static_cast<int>(
-            std::ranges::find(map_.entities, e.part_of->value, &Named<MappedEntity>::name) -
-            map_.entities.begin());
-      if (e.hand) {
-        info.classes = {"Hand", "Entity"};
-        info.sensor_sets = {"fingers", "thumb", "palm"};
-      } else {
-        info.classes = {e.class_name,
-                        e.joint     ? "Jointed"
-                        : e.part_of ? "Attached"
-                        : e.fixed   ? "Fixed"
-                                    : "Movable",
-                        "Thing", "Entity"};
-      }
-    }
+  void WarnOfSizes() {
+    std::vector<std::string> names;
+    for (const Named<MappedEntity>& entity : map_.entities)
+      if (entity.value.guesses_size) names.push_back("'" + entity.name + "'");
+    if (!names.empty())
+      Warn(
+          fmt::format("size_m is unknown, and to be filled in, of {}: a box as such things often "
+                      "are is assumed",
+                      fmt::join(names, ", ")));
   }
 
   const PoseBody& BodyOf(const MappedEntity& entity) const {
@@ -258,10 +243,6 @@ class Importer {
     }
   }
 
-  static Eigen::Quaterniond Quaternion(const Eigen::Vector4d& wxyz) {
-    return Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
-  }
-
   /// At upright_at_s, as in the file.
   static Eigen::Quaterniond OrientationThen(const PoseBody& body, const MappedEntity& entity) {
     const double t_s = entity.upright_at_s->value;
@@ -271,19 +252,12 @@ class Importer {
   }
 
   std::vector<TimedPose> Converted(const PoseBody& body, const MappedEntity& entity) const {
-    const Eigen::Quaterniond turn = map_.WorldTurn(), axes = map_.AxesTurn();
-    const double scale = map_.MetresPerUnit();
-    const auto upright = [&](const Eigen::Quaterniond& q) { return turn * q * axes.conjugate(); };
-    Eigen::Quaterniond rest = Eigen::Quaterniond::Identity();
-    if (entity.upright_at_s) rest = upright(OrientationThen(body, entity)).conjugate();
+    std::optional<Eigen::Quaterniond> upright;
+    if (entity.upright_at_s) upright = OrientationThen(body, entity);
     std::vector<TimedPose> poses;
     for (const PoseSample& sample : body.samples) {
-      const Eigen::Quaterniond q =
-          entity.axes_quat_wxyz
-              ? (turn * sample.q * Quaternion(entity.axes_quat_wxyz->value)).normalized()
-              : (upright(sample.q) * rest).normalized();
-      poses.push_back(
-          {.t_s = sample.t_s, .p = turn * (sample.p * scale) + q * entity.offset_m, .q = q});
+      const PoseSample at = InRecording(sample, entity, map_, upright);
+      poses.push_back({.t_s = at.t_s, .p = at.p, .q = at.q});
     }
     return poses;
   }
@@ -460,8 +434,8 @@ class Importer {
   }
 
   const PoseFile& file_;
+  const MapFile& map_file_;
   const ImportMap& map_;
-  const YamlDocument& document_;
   DiagnosticList errors_;
   bool unit_is_doubtful_ = false, world_is_doubtful_ = false;
   Imported imported_;
@@ -475,6 +449,66 @@ class Importer {
 
 }  // namespace
 
+episode::EpisodeHeader HeaderOf(const MapFile& file, const std::string& poses_path) {
+  const ImportMap& map = file.map;
+  episode::EpisodeHeader header;
+  header.episode = EpisodeName(map, poses_path);
+  header.grammar = map.grammar.value;
+  if (file.document.root.Find("grammar"))
+    header.grammar_named = ErrorAt(file.document, map.grammar.where);
+  header.bridge_s = map.bridge_s;
+  header.entity_table.ticks_per_second = map.ticks_per_second;
+  for (const Named<MappedEntity>& entity : map.entities) {
+    const MappedEntity& e = entity.value;
+    grammar::EntityInfo& info = header.entity_table.entities.emplace_back();
+    info.name = entity.name;
+    info.half_size_m = e.size_m / 2;
+    if (e.part_of)
+      info.part_of = static_cast<int>(
+          std::ranges::find(map.entities, e.part_of->value, &Named<MappedEntity>::name) -
+          map.entities.begin());
+    if (e.hand) {
+      info.classes = {"Hand", "Entity"};
+      info.sensor_sets = {"fingers", "thumb", "palm"};
+    } else {
+      info.classes = {e.class_name,
+                      e.joint     ? "Jointed"
+                      : e.part_of ? "Attached"
+                      : e.fixed   ? "Fixed"
+                                  : "Movable",
+                      "Thing", "Entity"};
+    }
+  }
+  return header;
+}
+
+PoseSample InRecording(const PoseSample& sample, const MappedEntity& entity, const ImportMap& map,
+                       const std::optional<Eigen::Quaterniond>& upright) {
+  const Eigen::Quaterniond turn = map.WorldTurn(), axes = map.AxesTurn();
+  const auto turned = [&](const Eigen::Quaterniond& q) { return turn * q * axes.conjugate(); };
+  PoseSample at = sample;
+  at.q = entity.axes_quat_wxyz
+             ? (turn * sample.q * Quaternion(entity.axes_quat_wxyz->value)).normalized()
+             : (turned(sample.q) *
+                (upright ? turned(*upright).conjugate() : Eigen::Quaterniond::Identity()))
+                   .normalized();
+  at.p = turn * (sample.p * map.MetresPerUnit()) + at.q * entity.offset_m;
+  return at;
+}
+
+Result<MapFile> ReadMapFor(const std::string& poses_path, PoseFormat format,
+                           Result<YamlDocument> map) {
+  return format == PoseFormat::kCsv ? ReadMapOfTable(std::move(map), poses_path)
+                                    : ReadImportMap(std::move(map), format);
+}
+
+Result<PoseFile> ReadPoses(const std::string& poses_path, PoseFormat format, const MapFile& map) {
+  using Reader = Result<PoseFile> (*)(const std::string&, const MapFile&);
+  constexpr std::array<Reader, 6> kReaders = {ReadCsvPoses, ReadBvhPoses,  ReadMcapPoses,
+                                              nullptr,      ReadJsonPoses, ReadNpzPoses};
+  return kReaders.at(static_cast<std::size_t>(format))(poses_path, map);
+}
+
 Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path) {
   const Result<PoseFormat> format = PoseFormatOf(poses_path);
   if (!format) return tl::unexpected(format.error());
@@ -484,13 +518,16 @@ Result<Imported> ImportPoses(const std::string& poses_path, const std::string& m
     if (!poses) return tl::unexpected(poses.error());
     return ImportPoses(std::move(*poses), map);
   }
-  const Result<MapFile> map = *format == PoseFormat::kCsv ? ReadMapOfTable(map_path, poses_path)
-                                                          : ReadImportMap(map_path, *format);
+  if (*format == PoseFormat::kHdf5)
+    return tl::unexpected(grammar::Diagnostics{
+        {.file = ReadableName(poses_path),
+         .place = {},
+         .message = "demonstrations in HDF5 are imported alone: all of one file in one call",
+         .source_line = {},
+         .hint = {}}});
+  const Result<MapFile> map = ReadMapFor(poses_path, *format, ReadYamlFile(map_path));
   if (!map) return tl::unexpected(map.error());
-  using Reader = Result<PoseFile> (*)(const std::string&, const MapFile&);
-  constexpr std::array<Reader, 6> kReaders = {ReadCsvPoses, ReadBvhPoses,  ReadMcapPoses,
-                                              nullptr,      ReadJsonPoses, ReadNpzPoses};
-  Result<PoseFile> poses = kReaders.at(static_cast<std::size_t>(*format))(poses_path, *map);
+  Result<PoseFile> poses = ReadPoses(poses_path, *format, *map);
   if (!poses) return tl::unexpected(poses.error());
   return ImportPoses(std::move(*poses), *map);
 }

@@ -34,6 +34,18 @@ struct Imported {
   std::vector<std::string> warnings;  ///< one line each
 };
 
+/// The map as it is for this file of poses, and its poses.
+Result<MapFile> ReadMapFor(const std::string& poses_path, PoseFormat format,
+                           Result<YamlDocument> map);
+Result<PoseFile> ReadPoses(const std::string& poses_path, PoseFormat format, const MapFile& map);
+
+/// Of its recording.
+episode::EpisodeHeader HeaderOf(const MapFile& map, const std::string& poses_path);
+/// Where the entity is in the recording. `upright`: how it is turned in the file where it stands as
+/// it is described.
+PoseSample InRecording(const PoseSample& sample, const MappedEntity& entity, const ImportMap& map,
+                       const std::optional<Eigen::Quaterniond>& upright);
+
 /// What the file has, as its map says.
 Result<Imported> ImportPoses(PoseFile poses, const MapFile& map);
 /// Reads, checks and converts. Nothing comes of a file with errors.

@@ -38,7 +38,8 @@ Implausible FindImplausible(const PoseFile& poses, const MapFile& map);
 /// One for each guess: they have no signs if all is as the map says.
 Guess GuessUnit(const PoseFile& poses, const ImportMap& map);
 Guess GuessPlace(const PoseFile& poses, const ImportMap& map);
-Guess GuessAxes(const PoseFile& poses, const ImportMap& map);
+/// `any_sign`: one is enough, where nothing was said before.
+Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign = false);
 Guess GuessOrder(const PoseFile& poses, const ImportMap& map);
 Guess GuessHandedness(const PoseFile& poses, const ImportMap& map);
 

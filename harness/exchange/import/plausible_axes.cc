@@ -134,7 +134,7 @@ class WayUp {
 
 }  // namespace
 
-Guess GuessAxes(const PoseFile& poses, const ImportMap& map) {
+Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign) {
   Guess guess{map.UpWhere(), Warning::kAxes, {}, {}};
   const Eigen::Vector3d up = map.Up();
   int nearest = 0;  // of the file's axes to up
@@ -184,7 +184,8 @@ Guess GuessAxes(const PoseFile& poses, const ImportMap& map) {
       signs.push_back(fmt::format("what is set down anew has turned about {}", "xyz"[axis]));
     }
     // One alone is worth a word if it is told again and again.
-    if (signs.size() < guess.signs.size() || signs.size() < (poses.stature || told >= 3 ? 1U : 2U))
+    if (signs.size() < guess.signs.size() ||
+        signs.size() < (any_sign || poses.stature || told >= 3 ? 1U : 2U))
       continue;
     guess.signs = std::move(signs);
     guess.remedy = fmt::format("axes: {}_up", "xyz"[axis]);

@@ -357,9 +357,12 @@ Eigen::Vector3d ImportMap::Mirrored(Eigen::Vector3d v) const {
   return v;
 }
 
-Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format,
+Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format) {
+  return ReadImportMap(ReadYamlFile(path), format);
+}
+
+Result<MapFile> ReadImportMap(Result<YamlDocument> document, PoseFormat format,
                               const Completion& complete) {
-  Result<YamlDocument> document = ReadYamlFile(path);
   if (!document) return tl::unexpected(std::move(document.error()));
   MapFile file{.document = std::move(*document), .map = {}};
   DiagnosticList errors(file.document);
@@ -370,6 +373,11 @@ Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format,
       MappedEntity& e = entity.value;
       if (e.pose || e.position) e.from = e.pose ? e.pose : e.position;
       if (!e.markers.empty()) e.from = {NamesOf(e.markers), e.markers.front().where};
+      e.guesses_size = e.size_m.hasNaN();
+      if (e.guesses_size)
+        e.size_m = e.hand    ? Eigen::Vector3d(0.1, 0.09, 0.03)
+                   : e.fixed ? Eigen::Vector3d(1.2, 0.8, 0.04)
+                             : Eigen::Vector3d(0.1, 0.1, 0.1);
     }
     if (complete) complete(file.document.root.where, file.map, errors);
     CheckMap(file.map, format, file.document.root, errors);

@@ -107,6 +107,7 @@ struct MappedEntity {
   bool fixed = false;
   std::string class_name = "Object";
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
+  bool guesses_size = false;  ///< the map says that it is unknown
   /// From the markers' origin to the entity's, in the body's frame, z up, metres.
   Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
   std::optional<Located<double>> upright_at_s;  ///< when it stands as it is described, not turned
@@ -149,7 +150,8 @@ struct ImportMap {
   double smooth_s = 0;  ///< poses are means over so long, where nothing was lost
   std::vector<Warning> sure;
   std::int64_t ticks_per_second = 10'000;
-  Columns columns;  ///< of CSV only
+  bool is_draft = false;  ///< bodies without poses are no error, and all others are `unused`
+  Columns columns;        ///< of CSV only
   McapKeys mcap;
   Hdf5Keys hdf5;
   std::vector<Named<MappedEntity>> entities;
@@ -190,8 +192,9 @@ struct MapFile {
 using Completion = std::function<void(Where, ImportMap&, DiagnosticList&)>;
 
 /// For a file of this format. Errors have their places.
-Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format,
+Result<MapFile> ReadImportMap(Result<YamlDocument> document, PoseFormat format,
                               const Completion& complete = {});
+Result<MapFile> ReadImportMap(const std::string& path, PoseFormat format);
 
 /// The JSON Schema of maps, as text.
 std::string ImportMapSchema();

@@ -2,6 +2,8 @@
 // Tested by tests/program/import_test.cc
 #include "harness/exchange/poses/import_map.h"
 
+#include <cmath>
+
 namespace prehend::exchange {
 namespace {
 
@@ -101,6 +103,19 @@ ValueFormat<Opening> OpeningFormat(const char* noun) {
       .format();
 }
 
+/// Three edges, or the word: not a number then, until it is known what it is of.
+ValueFormat<Eigen::Vector3d> SizeFormat() {
+  const auto edges = Vector<3>(0, kMaxPosition_m);
+  const auto unknown = Choice<int>({{"unknown", 0}});
+  return ValueFormat<Eigen::Vector3d>(
+      {.schema = AnyOf({edges.schema(), unknown.schema()}),
+       .read = [edges](const YamlNode& node, DiagnosticList& errors, void* value) {
+         if (node.text != "unknown") return edges.erased().read(node, errors, value);
+         static_cast<Eigen::Vector3d*>(value)->setConstant(std::nan(""));
+         return true;
+       }});
+}
+
 ValueFormat<MappedEntity> EntityFormat() {
   using E = MappedEntity;
   return StructFormat<E>("entity")
@@ -113,8 +128,8 @@ ValueFormat<MappedEntity> EntityFormat() {
       .Optional("fixed", &E::fixed, Flag(), "It never moves.")
       .Optional("class", &E::class_name, Word("[A-Z][A-Za-z0-9]*", "a class name like 'Cup'"),
                 "What it is; not of hands.")
-      .Required("size_m", &E::size_m, Vector<3>(0, kMaxPosition_m),
-                "The edges of its bounding box.")
+      .Required("size_m", &E::size_m, SizeFormat(),
+                "The edges of its bounding box; unknown: as such things often are.")
       .Optional("offset_m", &E::offset_m, Vector<3>(-10, 10),
                 "From the origin of its markers to its centre, in the body's frame, z up.")
       .Optional("upright_at_s", &E::upright_at_s, Number(0, 1e6),

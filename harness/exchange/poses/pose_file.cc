@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -44,7 +45,7 @@ const Opening& OpeningSeries::Of(const ImportMap& map) const {
 
 void RefuseAbsentBodies(const PoseFile& poses, const ImportMap& map, DiagnosticList& errors) {
   for (const Named<MappedEntity>& entity : map.entities) {
-    if (!entity.value.from) continue;
+    if (!entity.value.from || map.is_draft) continue;
     const Located<std::string>& from = *entity.value.from;
     const std::size_t count =
         std::ranges::find(poses.bodies, from.value, &PoseBody::name)->samples.size();
@@ -88,6 +89,15 @@ bool IsJsonOfPoses(const std::string& poses_path) {
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   return format && *format == PoseFormat::kJson &&
          head.substr(0, head.find('\n')).find("\"recording\":") == std::string::npos;
+}
+
+bool IsNamedAsPoses(const std::string& path) {
+  constexpr std::array kTables = {".csv", ".tsv", ".txt", ".trc", ".tum"};
+  const Result<PoseFormat> format = PoseFormatOf(path);
+  if (!format) return false;
+  if (*format == PoseFormat::kCsv)
+    return std::ranges::find(kTables, EndingOf(path)) != kTables.end();
+  return *format != PoseFormat::kJson || IsJsonOfPoses(path);
 }
 
 Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {

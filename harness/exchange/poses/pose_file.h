@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,6 +74,23 @@ void MirrorPoses(const ImportMap& map, PoseFile& poses);
 
 /// Errors name the place, in the map or in the file of poses; at most a dozen.
 Result<PoseFile> ReadCsvPoses(const std::string& path, const MapFile& map);
+/// Lines of a table while they come; the first ones are its head.
+class PoseLines {
+ public:
+  /// `head`: the lines up to the first row of poses; they are taken, too, after that.
+  PoseLines(const std::string& name, std::string head, const MapFile& map);
+  /// Returns what is wrong with the line. Its time, if it is a row, and what it says of bodies and
+  /// openings are known until the next one.
+  grammar::Diagnostics Take(const std::string& line) { return take_(line, row_s_); }
+  const std::optional<double>& row_s() const { return row_s_; }
+  const PoseFile& poses() const { return *poses_; }
+
+ private:
+  std::function<grammar::Diagnostics(const std::string&, std::optional<double>&)> take_;
+  const PoseFile* poses_ = nullptr;
+  std::optional<double> row_s_;
+};
+
 /// The joints of skeletons, each a body.
 Result<PoseFile> ReadBvhPoses(const std::string& path, const MapFile& map);
 /// Topics of poses, and coordinate frames of a tree of transforms, each a body.
@@ -83,6 +101,9 @@ bool IsJsonOfPoses(const std::string& poses_path);
 
 bool IsBag(const std::string& poses_path);
 bool IsDb3(const std::string& poses_path);
+
+/// Whether it is called as files of poses usually are; others are not looked for in folders.
+bool IsNamedAsPoses(const std::string& path);
 
 /// A kind of file that is not read is an error that says what helps.
 Result<PoseFormat> PoseFormatOf(const std::string& poses_path);

@@ -61,6 +61,7 @@ Result<PoseFile> ReadBvhPoses(const std::string& path, const MapFile& map) {
   }
   if (!errors.empty()) return tl::unexpected(errors.Sorted());
 
+  if (map.map.is_draft) poses.unused = names;
   poses.stature = StatureOf(*bvh);
   poses.rows = bvh->rows.size();
   poses.last_s = static_cast<double>(bvh->rows.size() - 1) * bvh->frame_time_s;

@@ -72,29 +72,18 @@ class CsvPoseReader {
 
   void Read() {
     const std::string_view text = poses.text;
-    const int header_line = layout_ ? 0 : HeaderLine();
-    if (layout_) TakeLayout();
-    if (!map_errors_.empty()) return;
-    for (std::size_t begin = 0; begin < text.size() && problems_.size() < kMostComplaints;) {
+    TakeHead();
+    bool goes_on = map_errors_.empty();
+    for (std::size_t begin = 0;
+         goes_on && begin < text.size() && problems_.size() < kMostComplaints;) {
       const std::size_t end = std::min(text.find('\n', begin), text.size());
-      std::string_view line = text.substr(begin, end - begin);
-      if (line.ends_with('\r')) line.remove_suffix(1);
+      const std::string_view line = text.substr(begin, end - begin);
       begin = end + 1;
-      if (++line_ < (layout_ ? layout_->first_row : header_line)) continue;
-      if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-      if (line_ == header_line) {
-        TakeHeader(HeaderCells(line));
-        if (!problems_.empty()) return;
-      } else if (line.find_first_not_of(" \t") != std::string_view::npos &&
-                 !line.starts_with('#')) {
-        TakeRow(TableCellsOf(line, map_.separator), begin >= text.size());
-      } else if (layout_ && layout_->ends_at_blank && poses.rows > 0) {
-        break;
-      }
-      if (!map_errors_.empty()) return;
+      goes_on = TakeLine(line, begin >= text.size());
     }
-    if (line_ < header_line)
-      Complain({1, 1}, fmt::format("{} lines; the header is on line {}", line_, header_line));
+    if (!map_errors_.empty()) return;
+    if (line_ < header_line_)
+      Complain({1, 1}, fmt::format("{} lines; the header is on line {}", line_, header_line_));
     if (!problems_.empty()) return;
     for (PoseBody& body : poses.bodies)
       for (PoseSample& sample : body.samples) sample.t_s -= poses.first_s;
@@ -117,6 +106,48 @@ class CsvPoseReader {
     CheckTimes();
   }
 
+  /// Where the names of the columns are, of `poses.text`.
+  void TakeHead() {
+    header_line_ = layout_ ? 0 : HeaderLine();
+    if (layout_) TakeLayout();
+  }
+
+  /// False if no other line is to be read.
+  bool TakeLine(std::string_view line, bool is_last) {
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (++line_ < (layout_ ? layout_->first_row : header_line_)) return true;
+    if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+    if (line_ == header_line_) {
+      TakeHeader(HeaderCells(line));
+      return problems_.empty() && map_errors_.empty();
+    }
+    if (line.find_first_not_of(" \t") != std::string_view::npos && !line.starts_with('#'))
+      TakeRow(TableCellsOf(line, map_.separator), is_last);
+    else if (layout_ && layout_->ends_at_blank && poses.rows > 0)
+      return false;
+    return map_errors_.empty();
+  }
+
+  /// From now on each line is all that is known: times need not increase, and nothing is kept.
+  void Stream() {
+    streams_ = true;
+    for (const auto& entity : map_.entities)
+      if (entity.value.from && map_.columns.IsOfOneBody()) stem_ = entity.value.from->value;
+  }
+  /// What is wrong with the next line. `row_s`: its time, if it is a row.
+  Diagnostics TakeNext(const std::string& line, std::optional<double>& row_s) {
+    for (PoseBody& body : poses.bodies) body.samples.clear();
+    for (OpeningSeries& opening : poses.openings) opening.samples.clear();
+    poses.text = line;
+    poses.unused.clear();
+    const std::size_t rows = poses.rows;
+    TakeLine(poses.text, /*is_last=*/false);
+    Diagnostics problems = Problems();
+    problems_.clear();
+    row_s = poses.rows > rows ? std::optional(row_s_) : std::nullopt;
+    return problems;
+  }
+
   Diagnostics Problems() const {
     Diagnostics all = map_errors_.Sorted();
     all.insert(all.end(), problems_.begin(), problems_.end());
@@ -127,8 +158,11 @@ class CsvPoseReader {
 
  private:
   void Complain(Place place, std::string message, std::string hint = {}) {
+    const int line = place.line;
+    if (streams_) place.line = 1;  // of the text
     problems_.push_back(
         grammar::DiagnosticAt(poses.file, poses.text, place, std::move(message), std::move(hint)));
+    problems_.back().place.line = line;
   }
 
   /// What the map says; or, of lines with '#' at the top, the one with the names.
@@ -389,14 +423,14 @@ class CsvPoseReader {
     const Place place{line_, time_seat_ ? cells[*time_seat_].column : 1};
     const bool has_bodies = !body_seats_.empty();
     // One body after the other is as good as one time after the other.
-    const auto [before, is_first] = last_times_s_.try_emplace(name, t_s);
-    if (!is_first && (has_bodies ? t_s < before->second : t_s <= before->second))
+    const auto [before, is_first] = last_times_s_.try_emplace(streams_ ? "" : name, t_s);
+    if (!is_first && !streams_ && (has_bodies ? t_s < before->second : t_s <= before->second))
       return Complain(place,
                       fmt::format("the times{} must increase from row to row: {:.6g} s after the "
                                   "first row comes after {:.6g} s",
                                   has_bodies ? " of '" + name + "'" : "", t_s, before->second));
     if (!is_first && time_seat_) CountStep((t_s - before->second) / map_.SecondsPerUnit());
-    before->second = t_s;
+    before->second = row_s_ = t_s;
     poses.first_s = std::min(poses.first_s, t_s);
     poses.last_s = std::max(poses.last_s, t_s);
     ++poses.rows;
@@ -522,9 +556,11 @@ class CsvPoseReader {
   DiagnosticList map_errors_;
   Diagnostics problems_;
   const TableLayout* const layout_;
-  const std::string stem_;
+  std::string stem_;
   OrientationFormat orientation_;
-  int line_ = 0;
+  int line_ = 0, header_line_ = 0;
+  bool streams_ = false;
+  double row_s_ = 0;  ///< of the last row
   std::vector<std::string> names_;
   std::map<std::string, std::size_t> seats_by_name_;
   std::map<std::string, int> twice_;     ///< names of several columns -> place of the last
@@ -540,6 +576,16 @@ class CsvPoseReader {
 };
 
 }  // namespace
+
+PoseLines::PoseLines(const std::string& name, std::string head, const MapFile& map) {
+  const auto reader = std::make_shared<CsvPoseReader>(name, std::move(head), map);
+  reader->Stream();
+  reader->TakeHead();
+  poses_ = &reader->poses;
+  take_ = [reader](const std::string& line, std::optional<double>& row_s) {
+    return reader->TakeNext(line, row_s);
+  };
+}
 
 Result<PoseFile> ReadCsvPoses(const std::string& path, const MapFile& map) {
   Result<std::string> text = ReadTextFile(path, kMaxPoseFileBytes);

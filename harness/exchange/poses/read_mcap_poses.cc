@@ -188,6 +188,7 @@ class McapPoseReader {
       if (!topic.of_frames) unused.push_back(topic.Names(name, /*unasked_only=*/true));
     }
     for (const std::vector<std::string>& names : unused) {
+      if (map_.is_draft) poses.unused.insert(poses.unused.end(), names.begin(), names.end());
       if (!names.empty())
         note(fmt::format("the file has {}, which the map does not mention", Listed(names)));
     }

@@ -293,10 +293,11 @@ std::optional<TableLayout> EurocOf(const Lines& lines) {
   };
   layout.columns.time = {"timestamp", {}};
   layout.columns.position = {column("p_", "_x"), column("p_", "_y"), column("p_", "_z")};
-  layout.columns.quaternion = {column("q_", "_w"), column("q_", "_x"), column("q_", "_y"),
-                               column("q_", "_z")};
   layout.unit = LengthUnit::kMetre;
   layout.time_unit = TimeUnit::kNanosecond;
+  if (column("q_", "_w").value.empty()) return layout;  // of a tracker of one point
+  layout.columns.quaternion = {column("q_", "_w"), column("q_", "_x"), column("q_", "_y"),
+                               column("q_", "_z")};
   layout.quaternion_order = QuaternionOrder::kWxyz;
   return layout;
 }
@@ -306,10 +307,12 @@ std::optional<TableLayout> RowsOf(const Lines& lines) {
   std::size_t row = 0;
   while (row < lines.size() && (lines[row].empty() || lines[row].starts_with('#'))) ++row;
   if (row == lines.size()) return std::nullopt;
-  const auto words = Words(lines[row], Separator::kSpace);
+  const Separator separator =
+      lines[row].find(',') == std::string_view::npos ? Separator::kSpace : Separator::kComma;
+  const auto words = Words(lines[row], separator);
   if (!std::ranges::all_of(words, IsNumber)) return std::nullopt;
   TableLayout layout{.yields = true,
-                     .separator = Separator::kSpace,
+                     .separator = separator,
                      .first_row = static_cast<int>(row) + 1,
                      .unit = LengthUnit::kMetre,
                      .says_unit = false};
@@ -353,13 +356,13 @@ void Agree(const std::optional<T>& of_file, std::optional<Located<T>>& of_map, c
                fmt::format("leave '{}' out", key));
 }
 
-/// Of a file; none of one that cannot be read.
-std::optional<TableLayout> LayoutOfFile(const std::string& path) {
+/// Of a file; nothing of one that cannot be read.
+std::string HeadOfFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string head(kHeadBytes, '\0');
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
-  return LayoutOf(head);
+  return head;
 }
 
 void Complete(TableLayout& layout, Where where, ImportMap& map, DiagnosticList& errors) {
@@ -418,14 +421,18 @@ std::optional<TableLayout> LayoutOf(std::string_view text) {
   return std::nullopt;
 }
 
-Result<MapFile> ReadMapOfTable(const std::string& path, const std::string& table) {
-  return ReadMapWith(path, PoseFormat::kCsv, LayoutOfFile(table));
+Result<MapFile> ReadMapOfTable(Result<YamlDocument> document, const std::string& table) {
+  return ReadMapOfHead(std::move(document), HeadOfFile(table));
 }
 
-Result<MapFile> ReadMapWith(const std::string& path, PoseFormat format,
+Result<MapFile> ReadMapOfHead(Result<YamlDocument> document, std::string_view head) {
+  return ReadMapWith(std::move(document), PoseFormat::kCsv, LayoutOf(head));
+}
+
+Result<MapFile> ReadMapWith(Result<YamlDocument> document, PoseFormat format,
                             std::optional<TableLayout> layout) {
-  Result<MapFile> file =
-      ReadImportMap(path, format, [&](Where where, ImportMap& map, DiagnosticList& errors) {
+  Result<MapFile> file = ReadImportMap(
+      std::move(document), format, [&](Where where, ImportMap& map, DiagnosticList& errors) {
         if (layout && layout->yields && !map.columns.position.empty()) layout.reset();
         if (layout) Complete(*layout, where, map, errors);
       });

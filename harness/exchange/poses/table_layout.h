@@ -42,9 +42,11 @@ std::optional<TableLayout> LayoutOf(std::string_view text);
 
 /// With what a file says of itself, if it says anything; where the map says otherwise, that is an
 /// error.
-Result<MapFile> ReadMapWith(const std::string& path, PoseFormat format,
+Result<MapFile> ReadMapWith(Result<YamlDocument> document, PoseFormat format,
                             std::optional<TableLayout> layout);
 /// With what the file `table` says of itself; where the map says otherwise, that is an error.
-Result<MapFile> ReadMapOfTable(const std::string& path, const std::string& table);
+Result<MapFile> ReadMapOfTable(Result<YamlDocument> document, const std::string& table);
+/// Likewise of a table that begins so.
+Result<MapFile> ReadMapOfHead(Result<YamlDocument> document, std::string_view head);
 
 }  // namespace prehend::exchange

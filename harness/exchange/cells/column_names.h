@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the names of the columns of a table of poses say: where positions, orientations, times and
+// names of bodies stand. Tested by tests/harness/exchange/cells/column_names_test.cc
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "harness/exchange/cells/orientation.h"
+#include "harness/exchange/cells/table_cells.h"
+
+namespace prehend::exchange {
+
+struct NamedColumns {
+  Separator separator = Separator::kComma;
+  bool decimal_comma = false;
+  int header_line = 1;
+  std::string time;               ///< "": no column is called so
+  std::string time_unit;          ///< as a map says it
+  std::string time_doubt;         ///< "", or why it could be another one
+  std::string unit;               ///< of positions, if their names say it
+  std::vector<std::string> keys;  ///< columns with names of bodies
+  /// '{}' stands for the body's name, unless a row or the file is of one.
+  std::vector<std::string> position, orientation;
+  OrientationForm form = OrientationForm::kQuaternion;
+  bool in_degrees = false;          ///< of angles: some are larger than a turn in radians
+  std::vector<std::string> others;  ///< columns that are none of these
+};
+
+/// By the first lines of a table; nothing if no three columns are called x, y and z.
+std::optional<NamedColumns> ColumnsOf(std::string_view text);
+
+}  // namespace prehend::exchange

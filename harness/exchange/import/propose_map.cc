@@ -1,0 +1,444 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/import/propose_map.h.
+//
+// The map is written as text, read as any map is, and tried on the file: once to see which bodies
+// it has, once to look at how they move, and at last for the warnings of the import.
+#include "harness/exchange/import/propose_map.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "harness/base/base/text_file.h"
+#include "harness/exchange/cells/column_names.h"
+#include "harness/exchange/import/import_demonstrations.h"
+#include "harness/exchange/import/import_poses.h"
+#include "harness/exchange/import/plausibility.h"
+#include "harness/exchange/poses/table_layout.h"
+
+namespace prehend::exchange {
+namespace {
+
+constexpr std::size_t kMostEntities = 40, kLongestName = 200;
+constexpr double kTableMoves_m = 0.02;  ///< what stays within is fixed, if it is called a table
+constexpr double kFromZero_m = 0.05;    ///< from a pose that stands for none
+
+std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+
+std::string QuotedList(const std::vector<std::string>& texts) {
+  std::vector<std::string> quoted;
+  for (const std::string& text : texts) quoted.push_back(Quoted(text));
+  return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
+/// "global:LeftHand_2" -> left, hand, 2.
+std::vector<std::string> WordsIn(const std::string& name) {
+  std::vector<std::string> words(1);
+  char before = ' ';
+  for (const char c : name) {
+    const bool is_letter = std::isalpha(static_cast<unsigned char>(c)) != 0,
+               is_digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
+    const bool begins = (std::isupper(static_cast<unsigned char>(c)) &&
+                         std::islower(static_cast<unsigned char>(before))) ||
+                        (is_digit && !std::isdigit(static_cast<unsigned char>(before)));
+    if ((begins || !(is_letter || is_digit)) && !words.back().empty()) words.emplace_back();
+    if (is_letter || is_digit)
+      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    before = c;
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+/// A body of the file, as the map will have it.
+struct Draft {
+  std::string from, name;
+  bool hand = false, fixed = false;
+  std::optional<double> upright_at_s;
+
+  std::string Line() const {
+    std::string text = fmt::format("  {}: {{from: {}", name, Quoted(from));
+    if (hand) text += ", hand: true";
+    if (!hand) text += ", class: " + ClassOf();
+    if (fixed) text += ", fixed: true";
+    if (upright_at_s) text += fmt::format(", upright_at_s: {:g}", *upright_at_s);
+    return text + ", size_m: unknown}\n";
+  }
+
+ private:
+  /// "milk_carton_2" -> MilkCarton.
+  std::string ClassOf() const {
+    std::string text;
+    for (std::string word : WordsIn(name)) {
+      if (!text.empty() && std::isdigit(static_cast<unsigned char>(word[0]))) continue;
+      word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
+      text += word;
+    }
+    return text;
+  }
+};
+
+using Words = std::vector<std::string>;
+
+bool AnyOf(const Words& words, const std::set<std::string>& of) {
+  return std::ranges::any_of(words, [&](const std::string& word) {
+    const bool side = word.size() > 3 && (word[0] == 'l' || word[0] == 'r');
+    return of.contains(word) || (side && of.contains(word.substr(1)));
+  });
+}
+
+/// A bone of a skeleton that is no hand.
+bool IsBone(const Words& words) {
+  return AnyOf(words, {"hip",   "hips",  "ab",     "chest",  "neck",  "head",  "shoulder",
+                       "uarm",  "farm",  "arm",    "thigh",  "shin",  "leg",   "foot",
+                       "toe",   "spine", "ankle",  "knee",   "calf",  "elbow", "pelvis",
+                       "thumb", "index", "middle", "collar", "pinky", "ring",  "finger"});
+}
+
+bool IsHand(const Words& words) {
+  return AnyOf(words, {"hand", "glove", "wrist", "palm", "lh", "rh", "gripper", "eef", "ee", "tcp",
+                       "righthand", "lefthand"}) &&
+         !IsBone(words);
+}
+
+bool IsTable(const Words& words) {
+  return AnyOf(words, {"table", "desk", "shelf", "bench", "counter", "worktop", "floor", "rack"});
+}
+
+class MapProposer {
+ public:
+  MapProposer(std::string path, PoseFormat format) : path_(std::move(path)), format_(format) {}
+
+  Result<std::string> Propose() {
+    if (format_ == PoseFormat::kCsv)
+      if (grammar::Diagnostics why = TakeHead(); !why.empty()) return tl::unexpected(why);
+    if (layout_) head_ = layout_->name;
+    if (format_ == PoseFormat::kBvh || head_.ends_with("of Motive") || head_.ends_with("TRC file"))
+      axes_ = "axes: y_up", axes_why_ = "as such files have it, unless exported otherwise";
+    if (format_ == PoseFormat::kMcap) unit_why_ = axes_why_ = "as ROS has it";
+    if (head_.ends_with("KITTI"))
+      axes_ = "up: [0, -1, 0]", axes_why_ = "of a camera that looks ahead";
+    if (const grammar::Diagnostics why = FindBodies(); !why.empty()) return tl::unexpected(why);
+    // What is guessed of how they move asks for the next guess: the unit, then the axes.
+    for (int guesses = 0; guesses < 4; ++guesses) {
+      Result<MapFile> map = Read();
+      if (!map) return tl::unexpected(map.error());
+      map->map.is_draft = true;
+      Result<PoseFile> poses = ReadPoses(path_, format_, *map);
+      if (!poses) return tl::unexpected(poses.error());
+      if (!Improve(*poses, map->map)) break;
+    }
+    Try();
+    return MapText(true);
+  }
+
+ private:
+  grammar::Diagnostics TakeHead() {
+    const Result<std::string> text = ReadTextFile(path_, kMaxPoseFileBytes);
+    if (!text) return text.error();
+    layout_ = LayoutOf(*text);
+    if (layout_) {
+      says_unit_ = layout_->unit && layout_->says_unit;
+      if (layout_->unit && !says_unit_)
+        unit_ = *layout_->unit == LengthUnit::kMillimetre ? "unit: mm" : "unit: m";
+      if (!layout_->columns.axis_angle.empty())
+        doubts_.push_back(
+            "three angles are read as axis times angle; if they are Euler angles, "
+            "the map says euler_order: XYZ");
+      needs_rate_ = !layout_->columns.time && !layout_->rate_hz;
+      return {};
+    }
+    columns_ = ColumnsOf(*text);
+    if (!columns_)
+      return {{.file = ReadableName(path_),
+               .place = {},
+               .message = "no columns are called x, y and z of something, and its head is not one "
+                          "of those that are known",
+               .source_line = {},
+               .hint = "the map says which columns have what: docs/motion-capture.md"}};
+    if (!columns_->unit.empty()) unit_ = "unit: " + columns_->unit, unit_why_ = "";
+    says_unit_ = false;
+    needs_rate_ = columns_->time.empty() || columns_->time_unit == "frame";
+    if (!columns_->others.empty())
+      doubts_.push_back(
+          fmt::format("columns that are left aside: {}", fmt::join(columns_->others, ", ")));
+    return {};
+  }
+
+  /// By a map without entities: then none of them is used.
+  grammar::Diagnostics FindBodies() {
+    bodies_ = {{.from = "?", .name = "body"}};
+    Result<MapFile> map = Read();
+    if (!map) return map.error();
+    map->map.entities.clear();
+    map->map.is_draft = true;
+    const Result<PoseFile> poses = ReadPoses(path_, format_, *map);
+    if (!poses) return poses.error();
+    std::vector<std::string> names = poses->unused;
+    if (format_ == PoseFormat::kCsv && map->map.columns.IsOfOneBody())
+      names = {std::filesystem::path(path_).stem().string()};
+    bodies_.clear();
+    std::set<std::string> taken;
+    const bool has_skeleton = std::ranges::count_if(names, [](const std::string& name) {
+                                return IsBone(WordsIn(name));
+                              }) >= 5;
+    for (const std::string& name : names) {
+      const Words words = WordsIn(name);
+      if (name.size() > kLongestName || words.empty() || bodies_.size() >= kMostEntities ||
+          (has_skeleton && IsBone(words)))
+        aside_.push_back(name);
+      else
+        bodies_.push_back(DraftOf(name, taken));
+    }
+    if (bodies_.empty())
+      return {{.file = ReadableName(path_),
+               .place = {},
+               .message = "it has no bodies with poses",
+               .source_line = {},
+               .hint = {}}};
+    return {};
+  }
+
+  static Draft DraftOf(const std::string& from, std::set<std::string>& taken) {
+    const std::size_t last = from.find_last_of("[:");
+    Words words = WordsIn(last == std::string::npos ? from : from.substr(last + 1));
+    const bool is_side = words.size() == 1 && (words[0] == "left" || words[0] == "right");
+    if (words.empty() || is_side || taken.contains(fmt::format("{}", fmt::join(words, "_"))))
+      words = WordsIn(from);
+    Draft draft{.from = from, .hand = IsHand(words)};
+    draft.name = fmt::format("{}", fmt::join(words, "_"));
+    for (const char* side : {"right", "left"}) {
+      const std::string name = side + std::string("_hand");
+      const std::string letter(1, side[0]);
+      if (draft.hand && !taken.contains(name) &&
+          AnyOf(words, {side, letter, letter + "h", letter + "hand", side + std::string("hand")}))
+        draft.name = name;
+    }
+    if (std::isdigit(static_cast<unsigned char>(draft.name[0]))) draft.name = "body_" + draft.name;
+    const std::string name = draft.name;
+    for (int i = 2; !taken.insert(draft.name).second; ++i)
+      draft.name = fmt::format("{}_{}", name, i);
+    return draft;
+  }
+
+  /// Whether anything was guessed anew.
+  bool Improve(const PoseFile& poses, ImportMap& map) {
+    std::vector<Draft> present;
+    for (std::size_t i = 0; i < poses.bodies.size(); ++i)
+      if (poses.bodies[i].samples.size() >= 2) present.push_back(bodies_[i]);
+    if (present.empty() || present.size() < bodies_.size()) {
+      for (const Draft& body : bodies_)
+        if (std::ranges::find(present, body.from, &Draft::from) == present.end())
+          doubts_.push_back("'" + body.from + "' is never tracked");
+      bodies_ = present;
+      return !present.empty();
+    }
+    const auto guessed = [](std::string& key, const Guess& guess) {
+      if (guess.signs.empty() || guess.remedy == key || !guess.remedy.starts_with(key.substr(0, 4)))
+        return false;
+      key = guess.remedy;
+      return true;
+    };
+    if (poses.stature && unit_why_ == "not in the file") {
+      constexpr std::array<std::pair<const char*, double>, 4> kHeightUnits = {
+          {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"inch", 0.0254}}};
+      const double height = poses.stature->norm();
+      const auto fits = std::ranges::find_if(kHeightUnits, [&](const auto& unit) {
+        return height * unit.second > 0.8 && height * unit.second < 2.2;
+      });
+      unit_ = fits != kHeightUnits.end() ? fmt::format("unit: {}", fits->first)
+                                         : fmt::format("metres_per_unit: {:.4g}", 1.6 / height);
+      unit_why_ = fmt::format("from feet to head {:.2f} m",
+                              height * (fits != kHeightUnits.end() ? fits->second : 1.6 / height));
+      return true;
+    }
+    if (!says_unit_ && guessed(unit_, GuessUnit(poses, map))) {
+      unit_why_ = "by how far and how fast hands move";
+      return true;
+    }
+    if (const Guess axes = GuessAxes(poses, map, /*any_sign=*/true); guessed(axes_, axes)) {
+      axes_why_ = axes.signs.front();
+      return true;
+    }
+    if (std::string order = "quaternion_order: " + order_;
+        !order_.empty() && poses.quaternion_order && guessed(order, GuessOrder(poses, map))) {
+      order_ = order.substr(order.find(' ') + 1);
+      return true;
+    }
+    LookAt(poses, map);
+    return false;
+  }
+
+  /// Where things stand upright; what is a table; whether 0, 0, 0 is a place.
+  void LookAt(const PoseFile& poses, const ImportMap& map) {
+    const double scale = map.MetresPerUnit();
+    const MotionSeen seen = MotionIn(poses, map, scale);
+    bool has_table = false;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      Draft& body = bodies_[i];
+      const std::vector<PoseSample>& samples = poses.bodies[i].samples;
+      const auto rest = std::ranges::find_if(
+          seen.rests, [&](const Rest& one) { return one.body == i && one.stands; });
+      if (poses.has_orientations && !poses.stature && rest != seen.rests.end())
+        body.upright_at_s = std::round(10 * seen.look_s * static_cast<double>(rest->begin)) / 10;
+      Eigen::AlignedBox3d extent;
+      for (std::size_t k = 0; k < samples.size(); ++k) {
+        extent.extend(samples[k].p);
+        for (const std::size_t next : {k - 1, k + 1})
+          zeros_ = zeros_ || (samples[k].p.isZero(0) && next < samples.size() &&
+                              samples[next].p.norm() * scale > kFromZero_m);
+      }
+      body.fixed = !body.hand && extent.diagonal().norm() * scale < kTableMoves_m &&
+                   IsTable(WordsIn(body.name));
+      has_table = has_table || body.fixed;
+      hands_ = hands_ || body.hand;
+    }
+    if (!has_table) GuessTable(seen, map.WorldTurn());
+  }
+
+  /// Below the lowest places at which things rest.
+  void GuessTable(const MotionSeen& seen, const Eigen::Quaterniond& turn) {
+    constexpr double kLevel_m = 0.05, kHalf_m = 0.05, kMargin_m = 0.3;  // of a size that is unknown
+    Eigen::AlignedBox3d all, low;
+    for (const Rest& rest : seen.rests)
+      if (rest.stands) all.extend(turn * rest.p_m);
+    for (const Rest& rest : seen.rests)
+      if (const Eigen::Vector3d p = turn * rest.p_m;
+          rest.stands && p.z() < all.min().z() + kLevel_m)
+        low.extend(p);
+    if (low.isEmpty()) return;
+    const Eigen::Vector3d middle = low.center(), size = low.sizes().array() + 2 * kMargin_m;
+    table_ = fmt::format(
+        "table: {{at_m: [{:.2f}, {:.2f}, {:.2f}], fixed: true, class: Table, size_m: [{:.1f}, "
+        "{:.1f}, 0.04]}}",
+        middle.x(), middle.y(), low.min().z() - kHalf_m - 0.02, size.x(), size.y());
+  }
+
+  /// Imports, and keeps what was doubtful.
+  void Try() {
+    imported_.clear();
+    const Result<MapFile> map = Read();
+    if (!map) return;
+    Result<PoseFile> poses = ReadPoses(path_, format_, *map);
+    if (!poses) return;
+    const Result<Imported> imported = ImportPoses(std::move(*poses), *map);
+    if (!imported) {
+      for (const grammar::Diagnostic& error : imported.error())
+        imported_.push_back(error.message + (error.hint.empty() ? "" : "; " + error.hint));
+      return;
+    }
+    for (const std::string& warning : imported->warnings)
+      if (!warning.starts_with("size_m is unknown") && !warning.ends_with("does not mention"))
+        imported_.push_back(warning);
+    summary_ =
+        fmt::format("{:.1f} s, {} frames", imported->duration_s, imported->episode.frames.size());
+  }
+
+  Result<MapFile> Read() const {
+    return ReadMapFor(path_, format_, ParseYaml("the proposed map", MapText(false)));
+  }
+
+  static std::string Key(const std::string& line, const std::string& why) {
+    return fmt::format("{:<24}{}\n", line, why.empty() ? "" : "# " + why);
+  }
+
+  std::string MapText(bool commented) const {
+    std::string text;
+    if (commented) {
+      text += fmt::format(
+          "# Proposed from {}{}. Fill in: {}each size_m, the edges of its box along "
+          "x, y and z (up), in metres,\n# like [0.08, 0.08, 0.1]. Are names, classes "
+          "and hands right?\n",
+          Comment(std::filesystem::path(path_).filename().string()),
+          head_.empty() ? "" : ", " + head_, needs_rate_ ? "rate_hz; " : "");
+      if (!summary_.empty()) text += "# " + summary_ + "\n";
+    }
+    text += "import: 1\n";
+    if (!says_unit_) text += Key(unit_, unit_why_);
+    text += Key(axes_, axes_why_);
+    if (!order_.empty() && format_ == PoseFormat::kMcap)
+      text += "quaternion_order: " + order_ + "\n";
+    if (needs_rate_) text += Key("rate_hz: 30", "fill in: nothing in the file says it");
+    text += ColumnsText();
+    if (zeros_) text += Key("zero_is_missing: true", "bodies jump to exactly 0, 0, 0");
+    text += "lost: unknown\nentities:\n";
+    for (const Draft& body : bodies_) text += body.Line();
+    if (!table_.empty()) text += fmt::format("  {}  # guessed, below what rests\n", table_);
+    if (!commented) return text;
+    if (!hands_)
+      text += "# doubt: no body is called a hand; who moves things has hand: true, and no class\n";
+    for (const auto* list : {&doubts_, &imported_})
+      for (const std::string& doubt : *list) text += "# doubt: " + Comment(doubt) + "\n";
+    if (!aside_.empty())
+      text += "# also in the file: " + Comment(fmt::format("{}", fmt::join(aside_, ", "))) + "\n";
+    return text;
+  }
+
+  std::string ColumnsText() const {
+    if (!columns_) return "";
+    const NamedColumns& c = *columns_;
+    std::string text;
+    if (c.separator != Separator::kComma)
+      text += fmt::format("separator: {}\n", c.separator == Separator::kSemicolon ? "semicolon"
+                                             : c.separator == Separator::kTab     ? "tab"
+                                                                                  : "space");
+    if (c.decimal_comma) text += "decimal: comma\n";
+    if (c.header_line > 1) text += fmt::format("header_line: {}\n", c.header_line);
+    if (!c.time.empty()) text += Key("time_unit: " + c.time_unit, c.time_doubt);
+    const bool quaternion = c.form == OrientationForm::kQuaternion;
+    if (!c.orientation.empty())
+      text += quaternion ? "quaternion_order: xyzw\n"
+                         : Key("euler_order: XYZ", "fill in: the order of the turns") +
+                               Key(c.in_degrees ? "angle_unit: deg" : "angle_unit: rad",
+                                   "by their values");
+    text += "columns:\n";
+    if (!c.time.empty()) text += "  time: " + Quoted(c.time) + "\n";
+    if (!c.keys.empty()) text += "  body: " + QuotedList(c.keys) + "\n";
+    text += "  position: " + QuotedList(c.position) + "\n";
+    if (!c.orientation.empty())
+      text += (quaternion ? "  quaternion: " : "  euler: ") + QuotedList(c.orientation) + "\n";
+    return text + "missing: [nan, NaN, \"null\"]\n";
+  }
+
+  /// Of a file: in one line.
+  static std::string Comment(std::string text) {
+    std::ranges::replace(text, '\n', ' ');
+    return ReadableName(text);
+  }
+
+  const std::string path_;
+  const PoseFormat format_;
+  std::optional<TableLayout> layout_;
+  std::optional<NamedColumns> columns_;
+  std::string head_, summary_, table_, order_;
+  std::string unit_ = "unit: m", unit_why_ = "not in the file", axes_ = "axes: z_up",
+              axes_why_ = "not in the file";
+  bool says_unit_ = false, needs_rate_ = false, zeros_ = false, hands_ = false;
+  std::vector<Draft> bodies_;
+  std::vector<std::string> aside_, doubts_, imported_;
+};
+
+}  // namespace
+
+Result<std::string> ProposedMap(const std::string& poses_path) {
+  const Result<PoseFormat> format = PoseFormatOf(poses_path);
+  if (!format) return tl::unexpected(format.error());
+  if (*format == PoseFormat::kHdf5) return ProposedMapOfDemonstrations(poses_path);
+  if (*format > PoseFormat::kHdf5)
+    return tl::unexpected(grammar::Diagnostics{
+        {.file = ReadableName(poses_path),
+         .place = {},
+         .message =
+             "maps are proposed for CSV, BVH, MCAP, bags and HDF5, not for files of its kind",
+         .source_line = {},
+         .hint = "docs/motion-capture.md has maps for JSON, .npz and C3D"}});
+  return MapProposer(poses_path, *format).Propose();
+}
+
+}  // namespace prehend::exchange

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/exchange/cells/column_names.h"
+
+#include <gtest/gtest.h>
+
+namespace prehend::exchange {
+namespace {
+
+using Names = std::vector<std::string>;
+
+NamedColumns Of(const std::string& text) {
+  const auto columns = ColumnsOf(text);
+  EXPECT_TRUE(columns) << text;
+  return columns.value_or(NamedColumns{});
+}
+
+TEST(ColumnNames, AreSpelledInManyWays) {
+  const struct {
+    const char* head;
+    Names position, orientation;
+  } all[] = {
+      {"t,Cup_x,Cup_y,Cup_z,Hand_x,Hand_y,Hand_z", {"{}_x", "{}_y", "{}_z"}, {}},
+      {"t,left_hand_x,left_hand_y,left_hand_z,right_hand_x,right_hand_y,right_hand_z",
+       {"{}_x", "{}_y", "{}_z"},
+       {}},
+      {"t,Cup X,Cup Y,Cup Z,Cup QX,Cup QY,Cup QZ,Cup QW,B X,B Y,B Z,B QX,B QY,B QZ,B QW",
+       {"{} X", "{} Y", "{} Z"},
+       {"{} QX", "{} QY", "{} QZ", "{} QW"}},
+      {"t,CupPosX,CupPosY,CupPosZ,HandPosX,HandPosY,HandPosZ", {"{}PosX", "{}PosY", "{}PosZ"}, {}},
+      {"t,x_cup,y_cup,z_cup,x_hand,y_hand,z_hand", {"x_{}", "y_{}", "z_{}"}, {}},
+      {"t,cup.pose.position.x,cup.pose.position.y,cup.pose.position.z,cup.pose.orientation.x,"
+       "cup.pose.orientation.y,cup.pose.orientation.z,cup.pose.orientation.w,h.pose.position.x,"
+       "h.pose.position.y,h.pose.position.z,h.pose.orientation.x,h.pose.orientation.y,"
+       "h.pose.orientation.z,h.pose.orientation.w",
+       {"{}.position.x", "{}.position.y", "{}.position.z"},
+       {"{}.orientation.x", "{}.orientation.y", "{}.orientation.z", "{}.orientation.w"}},
+      // Of one body: as they are.
+      {"time,pos_x,pos_y,pos_z,qw,qx,qy,qz", {"pos_x", "pos_y", "pos_z"}, {"qx", "qy", "qz", "qw"}},
+  };
+  for (const auto& one : all) {
+    const NamedColumns columns = Of(std::string(one.head) + "\n0,1,2,3\n");
+    EXPECT_EQ(columns.position, one.position) << one.head;
+    EXPECT_EQ(columns.orientation, one.orientation) << one.head;
+    EXPECT_EQ(columns.header_line, 1);
+  }
+}
+
+TEST(ColumnNames, TimesAndTheirUnits) {
+  const std::string head = ",x,y,z\n";
+  const auto unit = [&](const std::string& name, const std::string& first,
+                        const std::string& second) {
+    return Of(name + head + first + ",0,0,0\n" + second + ",0,0,0\n").time_unit;
+  };
+  EXPECT_EQ(unit("t", "0", "0.01"), "s");
+  EXPECT_EQ(unit("time_ms", "0", "0.01"), "ms");
+  EXPECT_EQ(unit("Time (Seconds)", "0", "0.01"), "s");
+  EXPECT_EQ(unit("timestamp", "1000", "1016"), "ms");
+  EXPECT_EQ(unit("timestamp", "1000000", "1016000"), "us");
+  EXPECT_EQ(unit("timestamp [ns]", "0", "1"), "ns");
+  EXPECT_EQ(unit("timestamp", "1403636579758555392", "1403636579763555328"), "ns");
+  EXPECT_EQ(unit("time", "2026-01-31T10:00:00.25Z", "2026-01-31T10:00:00.26Z"), "iso");
+  EXPECT_EQ(unit("Frame", "0", "1"), "frame");
+  EXPECT_EQ(Of("a,x,y,z\n1,1,1,1\n").time, "");
+}
+
+TEST(ColumnNames, SeparatorsHeadsKeysAndUnits) {
+  const NamedColumns own = Of("# by us\n\nt;name;x [mm];y [mm];z [mm];note\n0,5;a;1,5;2;3;-\n");
+  EXPECT_EQ(own.separator, Separator::kSemicolon);
+  EXPECT_TRUE(own.decimal_comma);
+  EXPECT_EQ(own.header_line, 3);
+  EXPECT_EQ(own.unit, "mm");
+  EXPECT_EQ(own.keys, Names{"name"});
+  EXPECT_EQ(own.others, Names{"note"});
+  const NamedColumns landmarks = Of("frame,hand,landmark,x,y,z\n0,Left,0,1,2,3\n0,Left,1,1,2,3\n");
+  EXPECT_EQ(landmarks.keys, (Names{"hand", "landmark"}));
+  EXPECT_EQ(Of("t x y z rx ry rz\n0 1 2 3 90 0 0\n").form, OrientationForm::kEuler);
+  EXPECT_TRUE(Of("t x y z rx ry rz\n0 1 2 3 90 0 0\n").in_degrees);
+  EXPECT_FALSE(ColumnsOf("when,what\n1,2\n"));
+  EXPECT_FALSE(ColumnsOf("1,2,3\n4,5,6\n"));
+  EXPECT_FALSE(ColumnsOf(""));
+}
+
+}  // namespace
+}  // namespace prehend::exchange

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// A first map that writes itself, for each layout that is known: `import --check` accepts it as it
+// is, and once the sizes are filled in, the recording is that of the map that a person would write.
+// Takes of a folder, with one map.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/program/import_csv.h"
+#include "tests/program/layout_files.h"
+#include "tests/program/mcap_writer.h"
+
+namespace prehend::house {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The map that is proposed; `--check` accepts it and says what is to be filled in.
+std::string Proposed(const fs::path& folder, const std::string& file, const std::string& bytes) {
+  WriteFile(folder / file, bytes);
+  const std::string poses = (folder / file).string(), map = (folder / "first.yaml").string();
+  const Said said = Prehend({"import", poses, "--propose", "-o", map});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(said.err, "");
+  if (said.exit_code != 0) return "";
+  EXPECT_EQ(Prehend({"import", poses, "--check"}).out, ReadFile(map));
+  EXPECT_EQ(Prehend({"import", poses, "--propose"}).out, ReadFile(map));
+  const Said check = Prehend({"import", poses, "--map", map, "--check"});
+  EXPECT_EQ(check.exit_code, 0) << ReadFile(map) << check.err;
+  EXPECT_NE(check.err.find("size_m is unknown, and to be filled in, of "), std::string::npos)
+      << check.err;
+  return ReadFile(map);
+}
+
+/// Sizes as a person fills them in; what the tracker does not see is the table.
+std::string FilledIn(std::string map) {
+  const std::vector<std::pair<std::string, std::string>> sizes = {{"hand", "[0, 0, 0]"},
+                                                                  {"cup", "[0.08, 0.08, 0.1]"}};
+  std::string filled;
+  std::istringstream lines(map);
+  for (std::string line; std::getline(lines, line);) {
+    for (const auto& [name, size] : sizes)
+      if (line.find("  " + name) == 0 && line.find("size_m: unknown") != std::string::npos)
+        line = Replaced(line, "unknown", size);
+    if (line.starts_with("  table: "))
+      line = "  table: {at_m: [0, 0, 0.7], fixed: true, class: Table, size_m: [2.0, 1.0, 0.04]}";
+    filled += line + "\n";
+  }
+  return filled;
+}
+
+/// From the file to its events, as the docs say it.
+std::string EventsOf(const std::string& file, const std::string& bytes) {
+  const auto folder = FreshFolder("propose");
+  const std::string map = (folder / "first.yaml").string(), poses = (folder / file).string(),
+                    take = (folder / "take.jsonl").string();
+  WriteFile(map, FilledIn(Proposed(folder, file, bytes)));
+  const Said import = Prehend({"import", poses, "--map", map, "-o", take});
+  EXPECT_EQ(import.exit_code, 0) << ReadFile(map) << import.err;
+  const auto said = nlohmann::json::parse(Prehend({"episode", "resegment", take, "--json"}).out);
+  std::vector<std::string> events;
+  for (const auto& event : said["events"])
+    events.push_back(event["event"].get<std::string>() + " " + event["roles"].dump());
+  std::ranges::sort(events);
+  std::string text;
+  for (const std::string& event : events) text += event + "\n";
+  EXPECT_NE(text.find("picking_up"), std::string::npos) << ReadFile(map) << text;
+  EXPECT_NE(text.find("transporting"), std::string::npos) << ReadFile(map) << text;
+  return text;
+}
+
+TEST(ImportPropose, EachLayoutHasAFirstMapThatGivesTheSameEvents) {
+  const std::string events = EventsOf("take.csv", MotiveCsv({}));
+  EXPECT_EQ(EventsOf("take.csv", MotiveCsv({.version = "1.25", .labels = true, .end = "\r\n"})),
+            events);
+  EXPECT_EQ(EventsOf("take.csv", MotiveCsv({.unit = "Millimeters", .scale = 1000})), events);
+  EXPECT_EQ(EventsOf("take.csv", MotiveCsv({.rotation = "XYZ"})), events);
+  EXPECT_EQ(EventsOf("take.csv", ViconCsv("Objects", "Quaternion")), events);
+  EXPECT_EQ(EventsOf("take.csv", ViconCsv("Segments", "Helical", "deg")), events);
+  EXPECT_EQ(EventsOf("take.tsv", QualisysTsv({.six = true})), events);
+  // Without orientations.
+  EXPECT_EQ(EventsOf("take.csv", ViconCsv("Trajectories", "")), events);
+  EXPECT_EQ(EventsOf("take.tsv", QualisysTsv({})), events);
+  EXPECT_EQ(EventsOf("take.trc", Trc("Cup\t\t\tHand\t\t", "mm", 1000, "\n")), events);
+}
+
+/// A table of the story; the cells of a pose as `pose` writes them.
+std::string Plain(const std::string& head, const std::string& separator,
+                  const std::function<std::string(int)>& before, double scale, bool y_up,
+                  const std::string& turn) {
+  return head + "\n" + Rows([&](int i) {
+           return before(i) + Three(CupAt(i / kRate_hz), scale, separator, y_up) + turn +
+                  separator + Three(HandAt(i / kRate_hz), scale, separator, y_up) + turn;
+         });
+}
+
+TEST(ImportPropose, PlainTablesAreKnownByTheNamesOfTheirColumns) {
+  const std::string events = EventsOf("take.csv", MotiveCsv({}));
+  const auto seconds = [](const char* separator) {
+    return [=](int i) { return Text(i / kRate_hz) + separator; };
+  };
+  EXPECT_EQ(EventsOf("take.csv", Plain("t,Cup_x,Cup_y,Cup_z,Hand_x,Hand_y,Hand_z", ",",
+                                       seconds(","), 1, false, "")),
+            events);
+  // Millimetres, y up, tabs, milliseconds, quaternions.
+  EXPECT_EQ(EventsOf("take.tsv",
+                     Plain(
+                         "Timestamp_ms\tCup.pos.x\tCup.pos.y\tCup.pos.z\tCup.rot.x\tCup.rot.y\t"
+                         "Cup.rot.z\tCup.rot.w\tHand.pos.x\tHand.pos.y\tHand.pos.z\tHand.rot.x\t"
+                         "Hand.rot.y\tHand.rot.z\tHand.rot.w",
+                         "\t", [](int i) { return Text(1000 * i / kRate_hz, "%.3f") + "\t"; }, 1000,
+                         true, "\t0\t0\t0\t1")),
+            events);
+  EXPECT_EQ(EventsOf("take.csv", Plain(
+                                     "frame;CupX;CupY;CupZ;HandX;HandY;HandZ", ";",
+                                     [](int i) { return std::to_string(i) + ";"; }, 1, false, "")
+                                     .c_str())
+                .empty(),
+            false);  // at 30 Hz until the rate is filled in
+  std::string rows = "time_s,name,x,y,z,comment\n";
+  for (int i = 0; i < kFrames; ++i)
+    for (const char* body : {"Cup", "Hand"})
+      rows += Text(i / kRate_hz) + "," + body + "," +
+              Three(body[0] == 'C' ? CupAt(i / kRate_hz) : HandAt(i / kRate_hz), 1, ",") + ",\n";
+  EXPECT_EQ(EventsOf("take.csv", rows), events);
+}
+
+TEST(ImportPropose, WhatIsDoubtfulIsSaid) {
+  const auto folder = FreshFolder("propose");
+  const std::string lost =
+      Proposed(folder, "a.csv", MotiveCsv({.lost_from = 100, .lost_until = 200}));
+  EXPECT_NE(lost.find("# doubt: 'Hand' is not tracked for 1.683 s"), std::string::npos) << lost;
+  EXPECT_NE(lost.find("axes: y_up"), std::string::npos) << lost;
+  const std::string lab =
+      Proposed(folder, "lab.csv",
+               Plain(
+                   "t,quality,Cup_x,Cup_y,Cup_z,Wand_x,Wand_y,Wand_z", ",",
+                   [](int i) { return Text(i / kRate_hz) + ",1,"; }, 1, true, ""));
+  EXPECT_NE(lab.find("# doubt: no body is called a hand"), std::string::npos) << lab;
+  EXPECT_NE(lab.find("# doubt: columns that are left aside: quality"), std::string::npos) << lab;
+  std::string table = Proposed(folder, "b.csv", MotiveCsv({}));
+  EXPECT_NE(table.find("  table: {at_m: ["), std::string::npos) << table;
+  EXPECT_NE(table.find("# guessed, below what rests"), std::string::npos) << table;
+  const std::string still =
+      Proposed(folder, "kitti.txt",
+               Rows([](int i) { return "1 0 0 " + Text(0.01 * i) + " 0 1 0 0 0 0 1 0.8"; }));
+  EXPECT_NE(still.find("rate_hz: 30             # fill in"), std::string::npos) << still;
+}
+
+TEST(ImportPropose, SkeletonsAndMessages) {
+  const auto folder = FreshFolder("propose");
+  const std::string docs = PREHEND_SOURCE_DIR "/docs/motion_capture/";
+  const std::string bvh = Proposed(folder, "take.bvh", ReadFile(docs + "take.bvh"));
+  EXPECT_NE(bvh.find("unit: cm"), std::string::npos) << bvh;
+  EXPECT_NE(bvh.find("  right_hand: {from: \"RightHand\", hand: true, size_m: unknown}"),
+            std::string::npos)
+      << bvh;
+  EXPECT_EQ(bvh.find("  right_arm: "), std::string::npos) << bvh;
+  const std::string mcap = Proposed(folder, "run.mcap", ReadFile(docs + "run.mcap"));
+  EXPECT_NE(mcap.find("from: \"carton\""), std::string::npos) << mcap;
+  EXPECT_NE(mcap.find("from: \"glove\", hand: true"), std::string::npos) << mcap;
+}
+
+TEST(ImportPropose, NoMapWithoutColumnsAndNothingIsReplaced) {
+  const auto folder = FreshFolder("propose");
+  const std::string poses = (folder / "a.csv").string(), map = (folder / "m.yaml").string();
+  WriteFile(poses, "when,what\n1,2\n2,3\n");
+  const Said said = Prehend({"import", poses, "--propose", "-o", map});
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_NE(said.err.find("no columns are called x, y and z"), std::string::npos) << said.err;
+  EXPECT_FALSE(fs::exists(map));
+  EXPECT_EQ(Prehend({"import", poses, "--propose", "--map", map}).exit_code, 2);
+  EXPECT_EQ(Prehend({"import", poses, "--propose", "-o", poses}).exit_code, 2);
+  EXPECT_EQ(ReadFile(poses), "when,what\n1,2\n2,3\n");
+}
+
+TEST(ImportPropose, TakesOfAFolderWithOneMap) {
+  const auto folder = FreshFolder("propose");
+  fs::create_directory(folder / "takes");
+  const std::string map = (folder / "map.yaml").string(), takes = (folder / "takes").string();
+  for (const char* name : {"a", "b", "d"})
+    WriteFile(folder / "takes" / (name + std::string(".csv")), MotiveCsv({}));
+  WriteFile(folder / "takes" / "c.csv", MotiveCsv({}).substr(0, 9000));
+  WriteFile(folder / "takes" / "notes.md", "Lunch at noon.\n");
+  WriteFile(map, FilledIn(Proposed(folder, "first.csv", MotiveCsv({}))));
+  const std::string out = (folder / "out").string();
+  const Said said = Prehend({"import", takes, "--map", map, "-o", out});
+  EXPECT_EQ(said.exit_code, 1) << said.err;
+  EXPECT_NE(said.err.find("left out: "), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("c.csv:"), std::string::npos) << said.err;
+  EXPECT_NE(said.out.find("\na        301     5.00     0.00\n"), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find("3 of 4 takes; left out: " + takes + "/c.csv"), std::string::npos)
+      << said.out;
+  for (const char* name : {"a", "b", "d"})
+    EXPECT_TRUE(fs::exists(folder / "out" / (name + std::string(".jsonl"))));
+  EXPECT_FALSE(fs::exists(folder / "out" / "c.jsonl"));
+  // Into one episode file, and nowhere.
+  const std::string episodes = (folder / "all.episodes").string();
+  EXPECT_EQ(Prehend({"import", takes + "/a.csv", takes + "/b.csv", "--map", map, "-o", episodes})
+                .exit_code,
+            0);
+  const Said list = Prehend({"episode", "list", episodes});
+  EXPECT_NE(list.out.find("\n"), std::string::npos);
+  EXPECT_EQ(Prehend({"import", takes, "--map", map, "--check"}).exit_code, 1);
+  // A map that is wrong for all.
+  WriteFile(map, "import: 1\naxes: y_up\nentities:\n  mug: {from: Mug, size_m: [0.1, 0.1, 0.1]}\n");
+  EXPECT_EQ(Prehend({"import", takes, "--map", map, "-o", out + "2"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace prehend::house
