@@ -173,6 +173,15 @@ TEST(ImportPropose, NoMapWithoutColumnsAndNothingIsReplaced) {
   EXPECT_EQ(Prehend({"import", poses, "--propose", "--map", map}).exit_code, 2);
   EXPECT_EQ(Prehend({"import", poses, "--propose", "-o", poses}).exit_code, 2);
   EXPECT_EQ(ReadFile(poses), "when,what\n1,2\n2,3\n");
+  for (const char* other : {"a.json", "a.jsonl", "a.npz", "a.c3d"}) {
+    WriteFile(folder / other, "{}\n");
+    const Said refused = Prehend({"import", (folder / other).string(), "--propose", "-o", map});
+    EXPECT_EQ(refused.exit_code, 2) << other;
+    EXPECT_NE(refused.err.find("maps are proposed for CSV, BVH, MCAP, bags and HDF5"),
+              std::string::npos)
+        << other << refused.err;
+    EXPECT_FALSE(fs::exists(map)) << other;
+  }
 }
 
 TEST(ImportPropose, TakesOfAFolderWithOneMap) {
@@ -203,6 +212,17 @@ TEST(ImportPropose, TakesOfAFolderWithOneMap) {
   const Said list = Prehend({"episode", "list", episodes});
   EXPECT_NE(list.out.find("\n"), std::string::npos);
   EXPECT_EQ(Prehend({"import", takes, "--map", map, "--check"}).exit_code, 1);
+  // One take of a folder goes to a folder, too; demonstrations go alone.
+  fs::create_directory(folder / "one");
+  WriteFile(folder / "one" / "a.csv", MotiveCsv({}));
+  const std::string one = (folder / "one").string();
+  EXPECT_EQ(Prehend({"import", one, "--map", map, "-o", out + "1"}).exit_code, 0);
+  EXPECT_TRUE(fs::exists(out + "1/a.jsonl"));
+  WriteFile(folder / "one" / "demos.h5", "");
+  const Said mixed = Prehend({"import", one, "--map", map, "--check"});
+  EXPECT_EQ(mixed.exit_code, 1);
+  EXPECT_NE(mixed.err.find("demonstrations in HDF5 are imported alone"), std::string::npos)
+      << mixed.err;
   // A map that is wrong for all.
   WriteFile(map, "import: 1\naxes: y_up\nentities:\n  mug: {from: Mug, size_m: [0.1, 0.1, 0.1]}\n");
   EXPECT_EQ(Prehend({"import", takes, "--map", map, "-o", out + "2"}).exit_code, 2);

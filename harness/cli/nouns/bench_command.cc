@@ -43,9 +43,11 @@ nlohmann::ordered_json FigureJson(const measure::SpeedFigure& f) {
 }
 
 ExitCode RunBench(const ParsedOptions& options, const CommandContext& context) {
-  auto episode = OpenEpisodeOrComplain(options.TextOr("EPISODE", "pick_and_place/milk_carton_wrap"),
-                                       options, context);
-  if (!episode) return episode.error();
+  const auto name = episode::FindEpisode(
+      options.TextOr("EPISODE", "pick_and_place/milk_carton_wrap"), "", context.root);
+  if (!name) return Complain(context, name.error());
+  auto episode = episode::OpenEpisode(*name, {options.Text("--grammar"), {}}, context.root);
+  if (!episode) return Complain(context, episode.error());
   std::vector<std::vector<std::string>> rows = {
       {"what", "takes", "per", "per_second", "events/s", "times_real_time", "of_physics"}};
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -73,9 +75,7 @@ Command BenchCommand() {
           .options = {{.name = "EPISODE",
                        .help = "a scenario, an episode file or a recording whose frames are "
                                "watched; default: milk_carton_wrap"},
-                      EpisodeOption(),
                       GrammarOption(),
-                      SettingsOption(),
                       {.name = "--quick",
                        .help = "one run instead of five: shows that it runs, not how fast"},
                       JsonOption()},

@@ -12,11 +12,15 @@
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <sstream>
 
 #include "harness/cli/command/command.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/segment_recording.h"
 #include "harness/episode/sense/episode_file.h"
+#include "harness/exchange/live/live_poses.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::cli {
@@ -55,15 +59,55 @@ void Print(const grammar::Timeline& decided, bool as_json, std::ostream& out) {
   out.flush();
 }
 
-constexpr double kMostAhead_s = 10;
-constexpr std::size_t kSaid = 2;  ///< faults of a kind that are said when they come
+/// Prints what has begun to hold, or holds no more, and is not certain.
+episode::OpenEvents PrintOpen(bool as_json, grammar::Tick rate, std::ostream& out) {
+  const auto describe = [=](const grammar::Timeline& open) {
+    std::string lines;
+    for (const grammar::NamedEvent& event : open.events) {
+      nlohmann::ordered_json json = {{"event", event.event}, {"begin_tick", event.interval.begin}};
+      std::string text = event.event + "  " + truth::SecondsText(event.interval.begin, rate);
+      for (std::size_t i = 0; i < event.roles.size(); ++i) {
+        if (truth::IsAttribute(event.roles[i])) continue;
+        json["roles"][event.roles[i].name] = event.roles[i].value;
+        text += "  " + truth::RoleText(event, i);
+      }
+      if (as_json) text = json.dump(), text.pop_back();  // more follows
+      lines += text + "\n";
+    }
+    return lines;
+  };
+  const auto take = [=, &out, before = std::set<std::string>()](grammar::Tick now,
+                                                                const std::string& open) mutable {
+    std::set<std::string> holds;
+    std::istringstream lines(open);
+    for (std::string line; std::getline(lines, line);) holds.insert(line);
+    const auto print = [&](const std::string& line, bool is_open) {
+      out << (as_json ? fmt::format("{},\"at_tick\":{},\"open\":{},\"certain\":false}}\n", line,
+                                    now, is_open)
+                      : fmt::format("{}  {}  {}, not certain\n", truth::SecondsText(now, rate),
+                                    line, is_open ? "holds" : "no more"));
+    };
+    for (const std::string& line : before)
+      if (!holds.contains(line)) print(line, false);
+    for (const std::string& line : holds)
+      if (!before.contains(line)) print(line, true);
+    out.flush();
+    before = std::move(holds);
+  };
+  return {.describe = describe, .take = take};
+}
 
-/// Lines of a recording, as they come. Faulty ones are reported and left out.
+constexpr double kMostAhead_s = 10;
+constexpr std::size_t kMostKinds = 100;  ///< of faults that are counted apart
+
+/// Lines of a recording, or with a map those of a table of poses, as they come. Faulty ones are
+/// reported and left out.
 class LineWatcher {
  public:
-  LineWatcher(const std::string& name, const CommandContext& context)
+  LineWatcher(const std::string& name, const std::string& map, const CommandContext& context)
       : name_(name), context_(context), stream_(name) {
     stream_.DoubtFrames(kMostAhead_s);
+    if (!map.empty()) live_.emplace(name, map);
   }
 
   ExitCode Watch(std::istream& in, const ParsedOptions& options) {
@@ -78,37 +122,49 @@ class LineWatcher {
         stream_.header(), options.Text("--grammar"), context_.root, *settings);
     if (!compiled.program) return Complain(context_, compiled.diagnostics);
     Warn(context_, episode::Warnings(*compiled.program, entities));
+    for (const std::string& note : live_ ? live_->notes() : std::vector<std::string>())
+      context_.err << "warning: " << note << "\n";
     const episode::Segmentation watched = episode::Segment(
         compiled.program, entities,
         [&](const std::function<void(const episode::FrameNews&)>& take) {
-          while (context_.out && Take(in)) {
-            if (stream_.frame()) take(stream_.frame()->View());
-          }
+          do {
+            if (HasFrame()) take(stream_.frame()->View());
+          } while (context_.out && Take(in));
           return std::max<grammar::Tick>(stream_.end_tick(), 1);
         },
         [&](const grammar::Timeline& decided) {
           Print(decided, options.Has("--json"), context_.out);
-        });
+        },
+        options.Has("--open")
+            ? PrintOpen(options.Has("--json"), entities.ticks_per_second, context_.out)
+            : episode::OpenEvents{});
     if (!watched.problem.empty())
       return Refuse(context_, "the grammar cannot segment this recording: " + watched.problem);
     return End();
   }
 
  private:
-  /// The next line. False at the end.
+  bool HasFrame() { return live_ ? live_->has_frame() : stream_.frame() != nullptr; }
+
+  /// The next line; after the last one, what it has not finished. False at the end.
   bool Take(std::istream& in) {
     std::string line;
     std::size_t bytes = 0;
-    if (!NextLine(in, line, bytes)) return false;
+    if (ended_) return false;
+    ended_ = !NextLine(in, line, bytes);
+    if (ended_ && !live_) return false;
     ++line_;
     if (bytes > episode::kMaxEpisodeLineBytes)
       line = "a line of " + std::to_string(bytes) + " bytes";
-    wrong_ = stream_.Take(line);
-    if (wrong_.empty() || !stream_.has_header()) return true;
+    wrong_ = !live_   ? stream_.Take(line)
+             : ended_ ? live_->Finish(stream_)
+                      : live_->Take(line, stream_);
+    if (wrong_.empty() || !stream_.has_header()) return !ended_ || stream_.has_header();
     ++skipped_;
     std::string kind = wrong_.front().message;
     std::erase_if(kind, [](unsigned char c) { return std::isdigit(c) || c == '.'; });
-    if (++faults_[kind] <= kSaid) context_.err << grammar::Format(wrong_) << std::flush;
+    if (faults_.size() >= kMostKinds && !faults_.contains(kind)) kind = "others";
+    if (++faults_[kind] == 1) context_.err << grammar::Format(wrong_) << std::flush;
     return true;
   }
 
@@ -120,10 +176,10 @@ class LineWatcher {
     if (stream_.end_tick() == 0) return EndsTooEarly();
     context_.err << stream_.gaps();
     for (const auto& [kind, count] : faults_) {
-      if (count > kSaid)
+      if (count > 1)
         context_.err << fmt::format("prehend: {}: {} lines in all: {}\n", name_, count, kind);
     }
-    if (!stream_.says_its_end())
+    if (!stream_.says_its_end() && !live_)
       context_.err << fmt::format(
           "prehend: {} ended after line {} without 'end_tick': what was open ends there\n", name_,
           line_);
@@ -135,6 +191,8 @@ class LineWatcher {
   const std::string name_;
   const CommandContext& context_;
   episode::EpisodeStream stream_;
+  std::optional<exchange::LivePoses> live_;  ///< with a map
+  bool ended_ = false;
   grammar::Diagnostics wrong_;  ///< with the last line
   std::size_t line_ = 0, skipped_ = 0;
   std::map<std::string, std::size_t> faults_;  ///< by message, without its numbers
@@ -144,6 +202,8 @@ class LineWatcher {
 ExitCode WatchEpisode(const ParsedOptions& options, const CommandContext& context) {
   auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
   if (!episode) return episode.error();
+  if (options.Has("--map"))
+    return Refuse(context, "--map is for tables of poses; an episode says what it means");
   Warn(context, episode->loaded().warnings);
   episode::Episode::End end;
   const episode::Segmentation watched = episode::Segment(
@@ -152,9 +212,10 @@ ExitCode WatchEpisode(const ParsedOptions& options, const CommandContext& contex
         end = episode->EachFrame([&](const grammar::Frame& frame) { take(frame); });
         return end.tick;
       },
-      [&](const grammar::Timeline& decided) {
-        Print(decided, options.Has("--json"), context.out);
-      });
+      [&](const grammar::Timeline& decided) { Print(decided, options.Has("--json"), context.out); },
+      options.Has("--open")
+          ? PrintOpen(options.Has("--json"), episode->entities().ticks_per_second, context.out)
+          : episode::OpenEvents{});
   if (!watched.problem.empty())
     return Refuse(context, "the grammar cannot segment this episode: " + watched.problem);
   return end.failure.empty() ? ExitCode::kAgrees
@@ -175,13 +236,14 @@ ExitCode RunWatch(const ParsedOptions& options, const CommandContext& context) {
   if (IsNoLines(typed)) return WatchEpisode(options, context);
   if (options.Has("--episode"))
     return Refuse(context, fmt::format("--episode needs episode files; {} is none", typed));
-  if (typed == "-") return LineWatcher("standard input", context).Watch(std::cin, options);
+  const std::string map = options.Text("--map");
+  if (typed == "-") return LineWatcher("standard input", map, context).Watch(std::cin, options);
   std::error_code error;
   if (std::filesystem::is_directory(typed, error))
     return Refuse(context, typed + " is a directory, not a file");
   std::ifstream file(typed, std::ios::binary);
   if (!file) return Refuse(context, typed + ": cannot be read: " + std::strerror(errno));
-  return LineWatcher(typed, context).Watch(file, options);
+  return LineWatcher(typed, map, context).Watch(file, options);
 }
 
 }  // namespace
@@ -191,11 +253,17 @@ Command WatchCommand() {
       .name = "grammar watch",
       .summary = "Print events while a recording is written, each when it is decided",
       .examples = {"grammar watch - --grammar pick_and_place_from_motion",
-                   "grammar watch tracker.fifo --json"},
+                   "grammar watch - --map map.yaml --open", "grammar watch tracker.fifo --json"},
       .options = {{.name = "EPISODE",
-                   .help = "lines of a recording (docs/recording-format.md): -, standard input, a "
-                           "pipe or a file;\nor an episode file, or a scenario",
+                   .help =
+                       "lines of a recording (docs/recording-format.md), or with --map of a table "
+                       "of poses: -,\nstandard input, a pipe or a file; or an episode file, or a "
+                       "scenario",
                    .required = true},
+                  {.name = "--map",
+                   .help = "what the lines of a table of poses mean, as in 'import'",
+                   .placeholder = "MAP.yaml"},
+                  {.name = "--open", .help = "also print what holds now and is not certain"},
                   EpisodeOption(),
                   GrammarOption(),
                   ParametersOption(),

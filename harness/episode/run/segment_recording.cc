@@ -13,6 +13,7 @@
 #include "grammar/name_events.h"
 #include "grammar/never_recognised.h"
 #include "harness/base/base/text_file.h"
+#include "harness/base/process/worker_pool.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/sense/episode_format.h"
 
@@ -194,7 +195,8 @@ Result<grammar::Timeline> SegmentFrames(Recording& recording,
 
 Segmentation Segment(const std::shared_ptr<const grammar::Program>& program,
                      const grammar::EntityTable& entities, const FrameFeed& play,
-                     const std::function<void(const grammar::Timeline&)>& decided) {
+                     const std::function<void(const grammar::Timeline&)>& decided,
+                     const OpenEvents& open) {
   grammar::Monitor monitor(program, entities);
   std::vector<grammar::Event> events;
   if (!monitor.error().empty())
@@ -204,12 +206,28 @@ Segmentation Segment(const std::shared_ptr<const grammar::Program>& program,
     decided(grammar::NameEvents(*program, entities, events));
     events.clear();
   };
+  const auto every = static_cast<grammar::Tick>(OpenEvents::kEvery_s *
+                                                static_cast<double>(entities.ticks_per_second));
+  grammar::Tick next = 0;
+  const auto tell_open = [&](grammar::Tick now) {
+    if (!open.take || now < next) return;
+    next = now + every;
+    const auto end_here = [&] {
+      monitor.Finish(now + 1, events);
+      std::erase_if(events, [](const grammar::Event& event) { return !event.open_end; });
+      return open.describe(grammar::NameEvents(*program, entities, events));
+    };
+    const WorkerResult found = RunInWorkers({end_here}, {.time_limit_s = 10}).front();
+    if (found.finished) open.take(now, found.output);
+  };
   const grammar::Tick end = play([&](const FrameNews& news) {
-    if (const auto* whole = std::get_if<grammar::Frame>(&news))
+    const auto* whole = std::get_if<grammar::Frame>(&news);
+    if (whole)
       monitor.Advance(*whole, events);
     else
       monitor.AdvanceBy(std::get<grammar::FrameChanges>(news), events);
     tell();
+    tell_open(whole ? whole->tick : std::get<grammar::FrameChanges>(news).tick);
   });
   monitor.Finish(end, events);
   tell();

@@ -70,10 +70,19 @@ struct Segmentation {
   std::string problem;  ///< empty, or why the grammar cannot be evaluated; then nothing is played
 };
 
+/// What holds now, as far as is known: what would be open if the episode ended with this frame.
+/// That is found in a process of its own, as it changes what is known.
+struct OpenEvents {
+  static constexpr double kEvery_s = 0.05;
+  std::function<std::string(const grammar::Timeline&)> describe;    ///< there
+  std::function<void(grammar::Tick now, const std::string&)> take;  ///< what was described, here
+};
+
 /// What the grammar recognises. `decided`, if there is one, gets events as soon as they are.
 Segmentation Segment(const std::shared_ptr<const grammar::Program>& program,
                      const grammar::EntityTable& entities, const FrameFeed& play,
-                     const std::function<void(const grammar::Timeline&)>& decided = {});
+                     const std::function<void(const grammar::Timeline&)>& decided = {},
+                     const OpenEvents& open = {});
 
 /// What another grammar recognises in the same episode, without simulating it again. `recording`
 /// has a snapshot per tick, of which those are sensed that are due.

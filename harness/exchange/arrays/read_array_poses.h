@@ -14,6 +14,8 @@ inline constexpr std::size_t kMostJsonValues = 4'000'000;   ///< of a frame
 inline constexpr std::size_t kMostRowNumbers = 16'000'000;  ///< of all that a map asks for
 inline constexpr std::size_t kMostJsonFrames = 1'000'000;
 
+/// The joints of skeletons, each a body.
+Result<PoseFile> ReadBvhPoses(const std::string& path, const MapFile& map);
 /// JSON, or lines of it. One frame is kept at a time.
 Result<PoseFile> ReadJsonPoses(const std::string& path, const MapFile& map);
 /// The points of C3D. The file says some of what a map says: its map is read with it.

@@ -13,6 +13,7 @@
 #include "grammar/base/wording.h"
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/exchange/arrays/read_array_poses.h"
+#include "harness/exchange/arrays/row_poses.h"
 #include "harness/exchange/import/openings.h"
 #include "harness/exchange/import/plausibility.h"
 #include "harness/exchange/import/rest_poses.h"
@@ -519,12 +520,8 @@ Result<Imported> ImportPoses(const std::string& poses_path, const std::string& m
     return ImportPoses(std::move(*poses), map);
   }
   if (*format == PoseFormat::kHdf5)
-    return tl::unexpected(grammar::Diagnostics{
-        {.file = ReadableName(poses_path),
-         .place = {},
-         .message = "demonstrations in HDF5 are imported alone: all of one file in one call",
-         .source_line = {},
-         .hint = {}}});
+    return tl::unexpected(ErrorOfFile(
+        poses_path, "demonstrations in HDF5 are imported alone: all of one file in one call"));
   const Result<MapFile> map = ReadMapFor(poses_path, *format, ReadYamlFile(map_path));
   if (!map) return tl::unexpected(map.error());
   Result<PoseFile> poses = ReadPoses(poses_path, *format, *map);

@@ -16,6 +16,7 @@
 #include <set>
 
 #include "harness/base/base/text_file.h"
+#include "harness/exchange/arrays/row_poses.h"
 #include "harness/exchange/cells/column_names.h"
 #include "harness/exchange/import/import_demonstrations.h"
 #include "harness/exchange/import/import_poses.h"
@@ -196,12 +197,7 @@ class MapProposer {
       else
         bodies_.push_back(DraftOf(name, taken));
     }
-    if (bodies_.empty())
-      return {{.file = ReadableName(path_),
-               .place = {},
-               .message = "it has no bodies with poses",
-               .source_line = {},
-               .hint = {}}};
+    if (bodies_.empty()) return ErrorOfFile(path_, "it has no bodies with poses");
     return {};
   }
 
@@ -431,13 +427,10 @@ Result<std::string> ProposedMap(const std::string& poses_path) {
   if (!format) return tl::unexpected(format.error());
   if (*format == PoseFormat::kHdf5) return ProposedMapOfDemonstrations(poses_path);
   if (*format > PoseFormat::kHdf5)
-    return tl::unexpected(grammar::Diagnostics{
-        {.file = ReadableName(poses_path),
-         .place = {},
-         .message =
-             "maps are proposed for CSV, BVH, MCAP, bags and HDF5, not for files of its kind",
-         .source_line = {},
-         .hint = "docs/motion-capture.md has maps for JSON, .npz and C3D"}});
+    return tl::unexpected(ErrorOfFile(
+        poses_path,
+        "maps are proposed for CSV, BVH, MCAP, bags and HDF5; docs/motion-capture.md has some for "
+        "JSON, .npz and C3D"));
   return MapProposer(poses_path, *format).Propose();
 }
 

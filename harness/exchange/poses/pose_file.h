@@ -91,8 +91,6 @@ class PoseLines {
   std::optional<double> row_s_;
 };
 
-/// The joints of skeletons, each a body.
-Result<PoseFile> ReadBvhPoses(const std::string& path, const MapFile& map);
 /// Topics of poses, and coordinate frames of a tree of transforms, each a body.
 Result<PoseFile> ReadMcapPoses(const std::string& path, const MapFile& map);
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-#include "harness/exchange/poses/pose_file.h"
+#include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/scenario/motion/read_bvh.h"
 
 namespace prehend::exchange {

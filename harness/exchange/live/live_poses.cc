@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "harness/exchange/live/live_poses.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "harness/exchange/import/import_poses.h"
+#include "harness/exchange/poses/table_layout.h"
+
+namespace prehend::exchange {
+namespace {
+
+constexpr std::size_t kMostHeadLines = 200;
+
+/// Mostly numbers, or cells of what is not tracked.
+bool IsRow(std::string_view line) {
+  if (line.starts_with('#')) return false;
+  for (const Separator separator :
+       {Separator::kComma, Separator::kSemicolon, Separator::kTab, Separator::kSpace}) {
+    const std::vector<CsvCell> cells = TableCellsOf(line, separator);
+    std::size_t numbers = 0, blanks = 0;
+    for (const CsvCell& cell : cells) {
+      blanks += cell.text.empty();
+      numbers += !cell.text.empty() && NumberOf(cell.text, true).has_value();
+    }
+    if (numbers >= 3 && 10 * (numbers + blanks) >= 6 * cells.size()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+grammar::Diagnostics LivePoses::Take(const std::string& line, episode::EpisodeStream& stream) {
+  has_frame_ = false;
+  ++line_;
+  if (lines_) {
+    grammar::Diagnostics wrong = lines_->Take(line);
+    if (!wrong.empty() || !lines_->row_s()) return wrong;
+    return TakeRow(stream);
+  }
+  head_ += line + "\n";
+  const auto count = static_cast<std::size_t>(line_);
+  const bool in_head = head_.starts_with("PathFileType") && count < 6;  // of TRC: numbers in it
+  if (!in_head && IsRow(line)) return Begin(stream);
+  if (count < kMostHeadLines && head_.size() < kMaxPoseFileBytes / 256) return {};
+  return {{.file = name_,
+           .place = {line_, 1},
+           .message = fmt::format("no row of poses in the first {} lines", line_),
+           .source_line = {},
+           .hint = {}}};
+}
+
+grammar::Diagnostics LivePoses::Begin(episode::EpisodeStream& stream) {
+  Result<MapFile> map = ReadMapOfHead(ReadYamlFile(map_path_), head_);
+  if (!map) return map.error();
+  map_ = std::move(*map);
+  DiagnosticList errors(map_->document);
+  for (const Named<MappedEntity>& entity : map_->map.entities) {
+    const auto& upright = entity.value.upright_at_s;
+    if (upright && upright->value > 0)
+      errors.Add(upright->where, "while poses come, upright_at_s can only be 0: their first one",
+                 "axes_quat_wxyz holds for all takes; `import` prints it");
+    if (!entity.value.markers.empty())
+      errors.Add(entity.value.from->where,
+                 "the shape of markers is learned from a whole file; while poses come, a body is "
+                 "'from' one of the table");
+  }
+  if (map_->map.smooth_s > 0 || map_->map.outlier == OutlierRule::kLost)
+    notes_.emplace_back(
+        "smooth_s and outlier need poses that are still to come: they do nothing here");
+  if (!errors.empty()) return errors.Sorted();
+  const std::size_t count = map_->map.entities.size();
+  samples_.resize(count);
+  triggers_.resize(count);
+  upright_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) samples_[i].not_tracked = true;
+  lines_.emplace(name_, head_, *map_);
+  std::istringstream head(head_);
+  for (std::string line; std::getline(head, line);)
+    if (grammar::Diagnostics wrong = lines_->Take(line); !wrong.empty()) return wrong;
+  std::ostringstream first;
+  episode::EpisodeWriter(first, HeaderOf(*map_, name_));
+  grammar::Diagnostics wrong = stream.Take(first.str().substr(0, first.str().find('\n')));
+  if (wrong.empty() && lines_->row_s()) wrong = TakeRow(stream);
+  return wrong;
+}
+
+/// A row with all bodies is a frame. Of rows with one each, those of a time are, and it is whole
+/// once it has all bodies, or another time has come.
+grammar::Diagnostics LivePoses::TakeRow(episode::EpisodeStream& stream) {
+  const ImportMap& map = map_->map;
+  const double row_s = *lines_->row_s();
+  grammar::Diagnostics wrong;
+  if (frame_s_ && *frame_s_ != row_s) wrong = Emit(stream);
+  frame_s_ = row_s;
+  const PoseFile& poses = lines_->poses();
+  bool is_whole = true;
+  for (std::size_t i = 0; i < map.entities.size(); ++i) {
+    const MappedEntity& e = map.entities[i].value;
+    if (!e.from) continue;
+    const PoseBody& body = *std::ranges::find(poses.bodies, e.from->value, &PoseBody::name);
+    if (!body.samples.empty()) Add(i, body.samples.back());
+    is_whole = is_whole && !samples_[i].not_tracked;
+  }
+  AddOpenings();
+  if (map.columns.body.empty() || (is_whole && !has_frame_)) {
+    const grammar::Diagnostics more = Emit(stream);
+    wrong.insert(wrong.end(), more.begin(), more.end());
+  }
+  return wrong;
+}
+
+void LivePoses::Add(std::size_t entity, PoseSample sample) {
+  const ImportMap& map = map_->map;
+  const MappedEntity& e = map.entities[entity].value;
+  if (map.is_left_handed) {
+    sample.p = map.Mirrored(sample.p);
+    sample.q.vec() = -map.Mirrored(sample.q.vec());
+  }
+  if (e.upright_at_s && !upright_[entity]) upright_[entity] = sample.q;
+  const PoseSample at = InRecording(sample, e, map, upright_[entity]);
+  samples_[entity] = {
+      .at_m = at.p,
+      .quat_wxyz = Located<Eigen::Vector4d>{{at.q.w(), at.q.x(), at.q.y(), at.q.z()}, {}}};
+}
+
+void LivePoses::AddOpenings() {
+  const ImportMap& map = map_->map;
+  for (const OpeningSeries& opening : lines_->poses().openings) {
+    if (opening.samples.empty()) continue;
+    const double open = opening.samples.back().open;
+    if (opening.is_grip) {
+      triggers_[opening.entity] = 1 - std::clamp(open, 0.0, 1.0);
+      continue;
+    }
+    const Opening& said = opening.Of(map);
+    samples_[opening.entity].joint_fraction = std::clamp(open, 0.0, 1.0);
+    samples_[opening.entity].joint_position = said.closed + open * (said.open - said.closed);
+  }
+}
+
+grammar::Diagnostics LivePoses::Emit(episode::EpisodeStream& stream) {
+  const ImportMap& map = map_->map;
+  episode::FrameEntry frame;
+  frame.tick.value = std::llround(*frame_s_ * static_cast<double>(map.ticks_per_second));
+  for (std::size_t i = 0; i < map.entities.size(); ++i) {
+    const Named<MappedEntity>& entity = map.entities[i];
+    const MappedEntity& e = entity.value;
+    episode::SampleEntry& sample = samples_[i];
+    if (e.at_m) {
+      sample.not_tracked = false;
+      sample.at_m = *e.at_m;
+      sample.quat_wxyz = Located<Eigen::Vector4d>{e.quat_wxyz, {}};
+    }
+    if (!sample.not_tracked || map.lost != Lost::kHold)
+      frame.samples.push_back({entity.name, {}, sample});
+    if (e.from) sample.not_tracked = true;
+    if (!e.hand || (!e.ahead && !triggers_[i])) continue;
+    episode::HandEntry& hand =
+        frame.hands.emplace_back(Named<episode::HandEntry>{.name = entity.name}).value;
+    hand.trigger = triggers_[i].value_or(0);
+    if (e.ahead && frame.samples.back().name == entity.name &&
+        frame.samples.back().value.quat_wxyz) {
+      const Eigen::Vector4d& q = frame.samples.back().value.quat_wxyz->value;
+      hand.ahead = Eigen::Quaterniond(q[0], q[1], q[2], q[3]) * e.ahead->value.normalized();
+    }
+  }
+  frame_s_.reset();
+  grammar::Diagnostics wrong = stream.Take(frame);
+  for (grammar::Diagnostic& one : wrong) one.place.line = line_;
+  has_frame_ = has_frame_ || stream.frame() != nullptr;
+  return wrong;
+}
+
+grammar::Diagnostics LivePoses::Finish(episode::EpisodeStream& stream) {
+  has_frame_ = false;
+  return frame_s_ ? Emit(stream) : grammar::Diagnostics{};
+}
+
+}  // namespace prehend::exchange

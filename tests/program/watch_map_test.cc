@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lines of a table of poses while they come, by the map of an import: the events are those of the
+// file imported at once. What holds now, before it is certain.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "tests/program/import_csv.h"
+#include "tests/program/layout_files.h"
+
+namespace prehend::house {
+namespace {
+
+using Json = nlohmann::json;
+
+std::vector<Json> Lines(const std::string& text) {
+  std::vector<Json> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(Json::parse(line));
+  return lines;
+}
+
+const std::string kEntities =
+    "entities:\n  table: {at_m: [0, 0, 0.7], fixed: true, class: Table, size_m: [2.0, 1.0, 0.04]}\n"
+    "  cup: {from: Cup, class: Cup, size_m: [0.08, 0.08, 0.1]}\n"
+    "  hand: {from: Hand, hand: true, size_m: [0, 0, 0]}\n";
+
+struct Watched {
+  Said said;
+  std::filesystem::path folder;
+};
+
+Watched Watch(const std::string& bytes, const std::string& map,
+              const std::vector<std::string>& more = {"--json"}) {
+  Watched watched{.said = {}, .folder = FreshFolder("watch_map")};
+  WriteFile(watched.folder / "poses.csv", bytes);
+  WriteFile(watched.folder / "map.yaml", "import: 1\n" + map);
+  std::vector<std::string> words = {"grammar", "watch", (watched.folder / "poses.csv").string(),
+                                    "--map", (watched.folder / "map.yaml").string()};
+  words.insert(words.end(), more.begin(), more.end());
+  watched.said = Prehend(words);
+  return watched;
+}
+
+/// Event and roles of each, with begin and end in ticks.
+std::multiset<std::string> Events(const std::vector<Json>& events) {
+  std::multiset<std::string> all;
+  for (const Json& event : events)
+    all.insert(event["event"].get<std::string>() + event["roles"].dump() + " " +
+               event["begin_tick"].dump() + " " + event["end_tick"].dump());
+  return all;
+}
+
+void ExpectTheEventsOfImport(const std::string& bytes, const std::string& map) {
+  const Watched watched = Watch(bytes, map);
+  EXPECT_EQ(watched.said.exit_code, 0) << watched.said.err;
+  EXPECT_EQ(watched.said.err, "");
+  const std::string take = (watched.folder / "take.jsonl").string();
+  const Said import = Prehend({"import", (watched.folder / "poses.csv").string(), "--map",
+                               (watched.folder / "map.yaml").string(), "-o", take});
+  ASSERT_EQ(import.exit_code, 0) << import.err;
+  const Json all = Json::parse(Prehend({"episode", "resegment", take, "--json"}).out)["events"];
+  EXPECT_GT(all.size(), 8u);
+  EXPECT_EQ(Events(Lines(watched.said.out)), Events({all.begin(), all.end()}));
+}
+
+const std::string kMap =
+    "unit: m\naxes: z_up\ntime_unit: s\ncolumns: {time: t, position: [\"{}_x\", \"{}_y\", "
+    "\"{}_z\"]}\n" +
+    kEntities;
+
+std::string Row(int i, double ahead_s = 0) {
+  return Text(i / kRate_hz + ahead_s) + "," + Three(CupAt(i / kRate_hz), 1, ",") + "," +
+         Three(HandAt(i / kRate_hz), 1, ",");
+}
+
+std::string Csv(const std::function<std::string(int)>& row) {
+  return "t,Cup_x,Cup_y,Cup_z,Hand_x,Hand_y,Hand_z\n" + Rows(row);
+}
+
+TEST(WatchMap, GivesTheEventsOfTheSameTableImported) {
+  ExpectTheEventsOfImport(Csv([](int i) { return Row(i); }), kMap);
+  ExpectTheEventsOfImport(MotiveCsv({}), "axes: y_up\n" + kEntities);
+  ExpectTheEventsOfImport(
+      MotiveCsv({.unit = "Millimeters", .rotation = "XYZ", .scale = 1000, .end = "\r\n"}),
+      "axes: y_up\n" + Replaced(kEntities, "0.1]}\n  hand", "0.1], upright_at_s: 0}\n  hand"));
+  std::string rows = "frame,name,x,y,z\n";
+  for (int i = 0; i < kFrames; ++i)
+    for (const char* body : {"Cup", "Hand"})
+      rows += std::to_string(i) + "," + body + "," +
+              Three(body[0] == 'C' ? CupAt(i / kRate_hz) : HandAt(i / kRate_hz), 1, ",") + "\n";
+  ExpectTheEventsOfImport(
+      rows,
+      "unit: m\naxes: z_up\ntime_unit: frame\nrate_hz: 60\ncolumns: {time: frame, body: name, "
+      "position: [x, 'y', z]}\n" +
+          kEntities);
+}
+
+TEST(WatchMap, FaultyRowsAreNamedOnceOfAKindAndLeftOut) {
+  const std::string all = Watch(Csv([](int i) { return Row(i); }), kMap).said.out;
+  const Watched watched = Watch(Csv([](int i) {
+                                  if (i == 60) return Row(i) + "\n" + Row(i, 9'000'000);
+                                  return i > 100 && i < 105 ? Row(i) + "\n1.5,,oh,2,3,4,5" : Row(i);
+                                }),
+                                kMap);
+  EXPECT_EQ(watched.said.exit_code, 2);
+  EXPECT_EQ(watched.said.out, all) << watched.said.err;
+  EXPECT_NE(watched.said.err.find("poses.csv:63:"), std::string::npos) << watched.said.err;
+  EXPECT_NE(watched.said.err.find("s after the one before is left out"), std::string::npos)
+      << watched.said.err;
+  EXPECT_NE(watched.said.err.find("poses.csv:105:"), std::string::npos) << watched.said.err;
+  EXPECT_EQ(watched.said.err.find("poses.csv:107:"), std::string::npos) << watched.said.err;
+  EXPECT_NE(watched.said.err.find("4 lines in all"), std::string::npos) << watched.said.err;
+  EXPECT_NE(watched.said.err.find("5 faulty lines were skipped"), std::string::npos)
+      << watched.said.err;
+}
+
+TEST(WatchMap, AMapThatIsWrongIsAnErrorAtOnce) {
+  const std::string csv = Csv([](int i) { return Row(i); });
+  const auto refused = [&](const std::string& map, const std::string& why) {
+    const Watched watched = Watch(csv, map);
+    EXPECT_EQ(watched.said.exit_code, 2);
+    EXPECT_EQ(watched.said.out, "");
+    EXPECT_NE(watched.said.err.find(why), std::string::npos) << watched.said.err;
+  };
+  refused(Replaced(kMap, "from: Cup", "from: Mug"), "no body is called 'Mug'");
+  refused(Replaced(kMap, "time: t", "time: when"), "no column is called 'when'");
+  refused(Replaced(kMap, "axes: z_up", "axes: up"), "map.yaml:3:7");
+  refused(Replaced(kMap, "from: Cup", "markers: [Cup, Hand, Lid]"),
+          "the shape of markers is learned from a whole file");
+  const Said none = Prehend({"grammar", "watch", "milk_carton_wrap", "--map", "map.yaml"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("--map is for tables of poses"), std::string::npos) << none.err;
+}
+
+TEST(WatchMap, WhatHoldsIsPrintedWithinATenthOfASecond) {
+  const Watched watched = Watch(Csv([](int i) { return Row(i); }), kMap, {"--json", "--open"});
+  EXPECT_EQ(watched.said.exit_code, 0) << watched.said.err;
+  std::vector<Json> certain, open;
+  for (const Json& line : Lines(watched.said.out))
+    (line.contains("certain") ? open : certain).push_back(line);
+  EXPECT_EQ(Events(certain),
+            Events(Lines(Watch(Csv([](int i) { return Row(i); }), kMap).said.out)));
+  ASSERT_FALSE(open.empty());
+  std::set<std::string> named;
+  for (const Json& line : open) {
+    EXPECT_EQ(line["certain"], false);
+    if (line["open"] == true) named.insert(line["event"].get<std::string>());
+  }
+  EXPECT_TRUE(named.contains("grasping")) << watched.said.out;
+  EXPECT_TRUE(named.contains("supported_by")) << watched.said.out;
+  // The carton lies on the table from the first frame on: that is known at once, and certain only
+  // after the lift.
+  EXPECT_EQ(open.front()["event"], "contact");
+  EXPECT_LE(open.front()["at_tick"].get<int>(), 1000);
+  for (const Json& event : certain) {
+    if (event["event"] != "grasping") continue;
+    const auto seen = std::find_if(open.begin(), open.end(), [&](const Json& line) {
+      return line["event"] == "grasping" && line["open"] == true;
+    });
+    ASSERT_NE(seen, open.end());
+    EXPECT_LE((*seen)["at_tick"].get<int>() - event["begin_tick"].get<int>(), 2000)
+        << *seen << event;
+  }
+}
+
+}  // namespace
+}  // namespace prehend::house
