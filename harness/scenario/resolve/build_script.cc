@@ -153,6 +153,8 @@ struct StepMaker {
   physics::PoseFrame FrameOf(const Located<std::string>& name) const {
     std::vector<std::string> known{kWorldFrame, kHandFrame};
     known.insert(known.end(), entities.begin(), entities.end());
+    for (std::size_t i = entities.size(); i < scene.bodies.size(); ++i)
+      known.push_back(scene.bodies[i].name);  // of persons
     for (const physics::Hand& hand : scene.hands)
       if (hand.name != written.name) known.push_back(hand.name);
     if (std::ranges::count(known, name.value) > 1)

@@ -72,6 +72,17 @@ TEST(PersonsTest, StepsAreUnderstood) {
   EXPECT_TRUE(read->script.stages[0].steps.empty());
 }
 
+TEST(PersonsTest, WayPointsMayBeRelativeToHerHeadAndToHerParts) {
+  const auto errors = [](const std::string& where) {
+    return ErrorsAbout(WithActor(
+        "{person: body, at_m: [-0.9, 0, 0]}",
+        "right_hand: {poses: [{t_s: 1, at_m: [0.1, 0, 0]}], relative_to: " + where + "}"));
+  };
+  EXPECT_EQ(errors("anna"), "");
+  EXPECT_EQ(errors("anna_chest"), "");
+  EXPECT_NE(errors("anna_cheast").find("did you mean 'anna_chest'?"), std::string::npos);
+}
+
 struct Bad {
   const char* name;
   const char* actor;
