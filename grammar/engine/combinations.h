@@ -8,9 +8,8 @@
 // longer fits anything (arc consistency: A. Mackworth, "Consistency in networks of relations",
 // Artificial Intelligence 8 (1977)). Where the relations form no circle, no choice is ever taken
 // back (E. Freuder, "A sufficient condition for backtrack-free search", JACM 29 (1982)). Intervals
-// of one part do not overlap, unless it has choices, so in a list by time those that can fit another
-// one stand together.
-// Tested by tests/grammar/engine/compose_test.cc
+// of one part do not overlap, unless it has choices, so in a list by time those that can fit
+// another one stand together. Tested by tests/grammar/engine/compose_test.cc
 #pragma once
 
 #include <array>
