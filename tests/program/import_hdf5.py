@@ -200,6 +200,14 @@ def test_faults(folder, demos):
             at_row(cube, row, np.array([[1, 0, 0, far], [0, 1, 0, far], [0, 0, 1, far], [0, 0, 0, 1]]))(file)
     planted.expect("exploding", exploding, 0, "demo_3", "m and", "6 of 6 demonstrations")
 
+    # Physics explodes for good: up along y and down again, far away, until the end.
+    def bursting(file):
+        rows = file[cube].shape[0]
+        for row in range(20, rows):
+            far = 115 * abs(np.sin(row))
+            at_row(cube, row, np.array([[1, 0, 0, 0], [0, 1, 0, far], [0, 0, 1, 0.8], [0, 0, 0, 1]]))(file)
+    planted.expect("bursting", bursting, 0, "demo_3", "cube_1' jumps 14 times, here 104", "6 of 6 demonstrations")
+
     def short(file):
         for name in ("eef_pose/franka", "object_pose/cube_1", "object_pose/cube_2"):
             path = "data/demo_3/obs/datagen_info/" + name

@@ -15,8 +15,11 @@ namespace {
 constexpr double kMost_m_per_s2 = 100, kMost_rad_per_s2 = 600;
 constexpr double kLeast_m = 0.015, kLeast_rad = 0.26;  ///< less is noise
 constexpr double kFaster = 3;                          ///< than it is before, or afterwards
+constexpr double kNothing_m_per_s = 50;  ///< is so fast; what explodes is, and goes on so
 constexpr double kComesBack_s = 0.25;
 constexpr std::size_t kFewFrames = 5, kNeighbours = 2;
+constexpr double kPassing_m = 0.04;  ///< bodies that pass each other do not get so near
+constexpr double kSameTime_s = 1e-6;
 constexpr double kSamePlace = 0.3;  ///< of the way that it jumps
 
 double Degrees(double rad) { return rad * 180 / static_cast<double>(EIGEN_PI); }
@@ -29,11 +32,12 @@ class JumpFinder {
     JumpsOfTrack found;
     for (std::size_t i = 1; i < poses_.size(); ++i) {
       const bool sets_off = SetsOff(i), stays = Stays(i);
-      if (!sets_off && !stays) continue;
+      const bool is_wild = Way_m(i) > std::max(kLeast_m, kNothing_m_per_s * Seconds(i));
+      if (!sets_off && !stays && !is_wild) continue;
       if (const auto end = sets_off ? ComesBack(i) : std::nullopt) {
         found.outliers.push_back(OutlierIn(i, *end));
         i = *end;
-      } else if (sets_off && stays) {
+      } else if (is_wild || (sets_off && stays)) {
         found.jumps.push_back({i, Way_m(i), Degrees(Turn_rad(i))});
       }
     }
@@ -104,16 +108,6 @@ class JumpFinder {
   const std::vector<TimedPose>& poses_;
 };
 
-/// All steps that set off or come back, as jumps.
-std::vector<Jump> AllJumps(const std::vector<TimedPose>& poses, const JumpsOfTrack& found) {
-  std::vector<Jump> jumps = found.jumps;
-  for (const Outlier& outlier : found.outliers)
-    for (const std::size_t at : {outlier.begin, outlier.end})
-      jumps.push_back({at, (poses[at].p - poses[at - 1].p).norm(), 0});
-  std::ranges::sort(jumps, {}, &Jump::at);
-  return jumps;
-}
-
 }  // namespace
 
 JumpsOfTrack FindJumps(const std::vector<TimedPose>& poses) { return JumpFinder(poses).Find(); }
@@ -121,29 +115,30 @@ JumpsOfTrack FindJumps(const std::vector<TimedPose>& poses) { return JumpFinder(
 std::vector<Exchange> FindExchanges(const std::vector<const std::vector<TimedPose>*>& tracks,
                                     std::vector<JumpsOfTrack>& found) {
   std::vector<Exchange> exchanges;
-  std::vector<std::vector<Jump>> all;
-  for (std::size_t i = 0; i < tracks.size(); ++i) all.push_back(AllJumps(*tracks[i], found[i]));
+  const auto erase = [&](std::size_t body, std::size_t at) {
+    std::erase_if(found[body].jumps, [&](const Jump& jump) { return jump.at == at; });
+  };
   for (std::size_t a = 0; a < tracks.size(); ++a) {
     for (std::size_t b = a + 1; b < tracks.size(); ++b) {
+      const std::vector<TimedPose>&ours = *tracks[a], &theirs = *tracks[b];
       std::vector<double> times_s;
-      for (const Jump& one : all[a]) {
-        const TimedPose &now = (*tracks[a])[one.at], &last = (*tracks[a])[one.at - 1];
-        const auto other = std::ranges::find_if(all[b], [&](const Jump& jump) {
-          const TimedPose &theirs = (*tracks[b])[jump.at], &before = (*tracks[b])[jump.at - 1];
-          const double near_m = std::max(kLeast_m, kSamePlace * one.way_m);
-          return std::abs(theirs.t_s - now.t_s) < 1e-6 && (now.p - before.p).norm() < near_m &&
-                 (theirs.p - last.p).norm() < near_m;
-        });
-        if (other == all[b].end()) continue;
-        times_s.push_back(now.t_s);
-        const std::size_t at_a = one.at, at_b = other->at;
-        std::erase_if(found[a].jumps, [&](const Jump& jump) { return jump.at == at_a; });
-        std::erase_if(found[b].jumps, [&](const Jump& jump) { return jump.at == at_b; });
+      for (std::size_t i = 1, k = 1; i < ours.size(); ++i) {
+        while (k < theirs.size() && theirs[k].t_s < ours[i].t_s - kSameTime_s) ++k;
+        if (k >= theirs.size()) break;
+        const double way_m = (ours[i].p - ours[i - 1].p).norm();
+        const double near_m = std::max(kLeast_m, kSamePlace * way_m);
+        if (way_m < kPassing_m || std::abs(theirs[k].t_s - ours[i].t_s) > kSameTime_s ||
+            (ours[i].p - theirs[k - 1].p).norm() > near_m ||
+            (theirs[k].p - ours[i - 1].p).norm() > near_m)
+          continue;
+        times_s.push_back(ours[i].t_s);
+        erase(a, i);
+        erase(b, k);
       }
       // The first begins it, the second ends it.
       for (std::size_t i = 0; i < times_s.size(); i += 2)
         exchanges.push_back(
-            {a, b, times_s[i], i + 1 < times_s.size() ? times_s[i + 1] : tracks[a]->back().t_s});
+            {a, b, times_s[i], i + 1 < times_s.size() ? times_s[i + 1] : ours.back().t_s});
     }
   }
   return exchanges;

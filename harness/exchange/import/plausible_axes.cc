@@ -25,11 +25,18 @@ constexpr double kTurned_deg = 15, kAbout_deg = 20;
 constexpr double kInHand_m = 0.015;  ///< in the hand that carries it, root mean square
 constexpr double kWaits_m = 0.005;
 constexpr double kCarried_m_per_s = 7;
+constexpr double kNowhere_m = 0.5, kThere_m = 0.15;  ///< from what the map places
+constexpr double kUprightMost_deg = 10, kAskew_deg = 30;
 constexpr double kBeside_m = 0.05;  ///< a right hand from a left one
 
 double DegreesFrom(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::acos(std::clamp(std::abs(a.normalized().dot(b)), 0.0, 1.0)) *
          (180 / static_cast<double>(EIGEN_PI));
+}
+
+/// How far its own up is from `up`.
+double TiltOf(const Eigen::Quaterniond& q, const Eigen::Vector3d& up) {
+  return std::acos(std::clamp((q * up).dot(up), -1.0, 1.0)) * (180 / static_cast<double>(EIGEN_PI));
 }
 
 /// Of all that could tell, how much speaks for it and how much against it.
@@ -147,6 +154,8 @@ Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign) {
   double unused = 0;
   std::string nothing;
   const Votes lifts = way.Lifts(up, unused, nothing), turns = way.Turns(up);
+  const Approach here = NearestApproach(poses, map, map.MetresPerUnit());
+  const double here_m = here.place ? here.distance_m : 0;
   for (const int axis : {1, 2, 0}) {
     if (axis == nearest) continue;
     const Eigen::Vector3d other = Eigen::Vector3d::Unit(axis);
@@ -177,6 +186,14 @@ Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign) {
       told += 2 * other_tops.yes;
       signs.push_back(fmt::format("with {} up, what stands would have what the map places below it",
                                   "xyz"[axis]));
+    }
+    if (const double near_m = NearestApproach(poses, upright, map.MetresPerUnit()).distance_m;
+        here_m > kNowhere_m && near_m < kThere_m) {
+      told += 3;
+      signs.push_back(fmt::format(
+          "with {} up, something tracked comes to what the map places, to which nothing "
+          "comes nearer than {:.2f} m now",
+          "xyz"[axis], here_m));
     }
     const Votes other_turns = way.Turns(other);
     if (turns.Deny() && other_turns.Agree()) {
@@ -253,8 +270,24 @@ Guess GuessOrder(const PoseFile& poses, const ImportMap& map) {
         fmt::format("things slip by {:.0f} mm in the hands that carry them, in the other order by "
                     "{:.0f} mm",
                     1e3 * *slips_m, 1e3 * *other_m));
+  // What stands, is carried and carries mostly stays upright.
+  std::vector<double> askew_deg, other_askew_deg;
+  for (const std::vector<BodyLook>& looks : seen.looks) {
+    for (const BodyLook& look : looks) {
+      if (!look.p_m.allFinite()) continue;
+      askew_deg.push_back(TiltOf(look.q, map.Up()));
+      other_askew_deg.push_back(TiltOf(Reordered(look.q, is_wxyz), map.Up()));
+    }
+  }
+  const double askew = Median(std::move(askew_deg)),
+               other_askew = Median(std::move(other_askew_deg));
+  const bool is_askew = !looks_so && askew > kAskew_deg && other_askew < kUprightMost_deg;
+  if (is_askew)
+    guess.signs.push_back(fmt::format(
+        "bodies are {:.0f} degrees away from upright (median), in the other order {:.0f}", askew,
+        other_askew));
   // Turns alone are few.
-  if (!looks_so && !slips && guess.signs.size() == 1) guess.signs.clear();
+  if (!looks_so && !slips && !is_askew && guess.signs.size() == 1) guess.signs.clear();
   return guess;
 }
 
