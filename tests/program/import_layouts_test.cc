@@ -3,8 +3,10 @@
 // become the same recording; what is wrong with one is said as it is.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <sstream>
 
 #include "tests/program/import_csv.h"
 #include "tests/program/layout_files.h"
@@ -215,6 +217,119 @@ TEST(ImportLayouts, FilesOfOneBody) {
                 "columns: {time: time, position: [x, 'y', z], euler: [rz, ry, rx]}\n");
   ExpectRefused("take.txt", rows(tum, " "), "axes: z_up\n" + Entities(),
                 "which is called as the file, 'take'");
+}
+
+/// Whether the cup is read, 301 poses at 60 Hz, or refused for this reason.
+void ExpectCup(const std::string& file, const std::string& bytes, const std::string& map,
+               const std::string& why = {}) {
+  const Said said = ImportFile(FreshFolder("layouts"), file, bytes,
+                               "import: 1\naxes: z_up\nentities:\n  cup: {from: take, class: Cup, "
+                               "size_m: [0.08, 0.08, 0.1]}\n" +
+                                   map,
+                               {"--check"});
+  EXPECT_EQ(said.exit_code, why.empty() ? 0 : 2) << file << said.err;
+  if (why.empty())
+    EXPECT_NE(said.out.find("301    60.0 "), std::string::npos) << said.out << said.err;
+  else
+    EXPECT_NE(said.err.find(why), std::string::npos) << said.err;
+}
+
+std::string WithCrLf(const std::string& text) {
+  std::string all;
+  for (const char c : text) all += c == '\n' ? "\r\n" : std::string(1, c);
+  return all;
+}
+
+std::string Separated(std::string text, char by) {
+  std::ranges::replace(text, ' ', by);
+  return text;
+}
+
+TEST(ImportLayouts, VariantsOfEuroc) {
+  const auto row = [](int i, const std::string& more) {
+    return std::to_string(1403636579758555392 + std::llround(i / kRate_hz * 1e9)) + "," +
+           Three(CupAt(i / kRate_hz), 1, ",") + more;
+  };
+  const auto rows = [&](const std::string& more) {
+    return Rows([&](int i) { return row(i, more); });
+  };
+  const std::string head = "#timestamp [ns],p_x [m],p_y [m],p_z [m],q_w [],q_x [],q_y [],q_z []\n",
+                    still = ",1,0,0,0";
+  ExpectCup("take.csv", head + rows(still), "");
+  ExpectCup("take.csv", WithCrLf(head + rows(still)), "");
+  ExpectCup("take.csv", "\xEF\xBB\xBF" + head + rows(still), "");
+  ExpectCup(
+      "take.csv",
+      "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
+      "q_RS_z [], v_RS_R_x [m s^-1], b_w_RS_S_x [rad s^-1]\n" +
+          rows(still + ",0,0"),
+      "");
+  ExpectCup("take.csv", "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m]\n" + rows(""), "");
+  ExpectCup("take.csv", head + rows(still), "unit: mm\n", "contradicts the file");
+  ExpectCup("take.csv", (head + rows(still)).substr(0, 9000), "", "is the file cut off?");
+  ExpectCup("take.csv", head + rows(",0,0,0,0"), "", "expected a unit quaternion");
+  std::string gap = head;
+  for (int i = 0; i < kFrames; ++i)
+    if (i < 100 || i > 150) gap += row(i, still) + "\n";
+  ExpectCup("take.csv", gap, "", "is not tracked for 0.867 s");
+}
+
+TEST(ImportLayouts, VariantsOfTumAndKitti) {
+  const auto tum = [](const char* time, const std::string& turn) {
+    return Rows([&](int i) {
+      return Text(1767225600 + i / kRate_hz, time) + " " + Three(CupAt(i / kRate_hz), 1, " ") +
+             turn;
+    });
+  };
+  const std::string plain = tum("%.6f", " 0 0 0 1");
+  ExpectCup("take.txt", tum("%.18e", " 0 0 0 1"), "");
+  ExpectCup("take.txt", WithCrLf("# t\n" + plain), "");
+  ExpectCup("take.txt", Separated(plain, '\t'), "");
+  ExpectCup("take.csv", Separated(plain, ','), "");
+  ExpectCup("take.txt", "# a\n" + plain + "# the end\n", "");
+  ExpectCup("take.txt", tum("%.6f", " 0 0 0 0"), "", "expected a unit quaternion");
+  ExpectCup("take.txt", plain + "1767225600.5 0 0 0.8 0 0 0 1\n", "", "the times must increase");
+  ExpectCup("take.txt", plain.substr(0, 9000), "", "is the file cut off?");
+  const auto kitti = [](const std::string& first, const char* number = "%.6f") {
+    return Rows([&](int i) {
+      const Row r = CupAt(i / kRate_hz);
+      return first + " 0 0 " + Text(r.x, number) + " 0 1 0 " + Text(r.y, number) + " 0 0 1 " +
+             Text(r.z, number);
+    });
+  };
+  const std::string rate = "rate_hz: 60\n";
+  ExpectCup("take.txt", kitti("1"), rate);
+  ExpectCup("take.txt", kitti("1.000000e+00", "%e"), rate);
+  ExpectCup("take.txt", WithCrLf("# poses\n" + kitti("1")), rate);
+  ExpectCup("take.txt", Separated(kitti("1"), '\t'), rate);
+  ExpectCup("take.csv", Separated(kitti("1"), ','), rate);
+  ExpectCup("take.txt", kitti("1"), "", "neither columns.time nor rate_hz");
+  ExpectCup("take.txt", kitti("2"), rate, "expected a rotation matrix");
+  ExpectCup("take.txt", kitti("-1"), rate, "one that mirrors");
+}
+
+TEST(ImportLayouts, VariantsOfTrc) {
+  const std::string map = "axes: y_up\n" + Entities(), names = "Cup\t\t\tHand\t\t";
+  const auto lost = [&](int from, int until, const char* blank) {
+    std::istringstream lines(Trc(names, "mm", 1000, "\n"));
+    std::string all;
+    int row = -6;
+    for (std::string line; std::getline(lines, line); ++row) {
+      if (row >= from && row < until) {
+        for (int k = 0; k < 3; ++k) line.resize(line.rfind('\t'));
+        for (int k = 0; k < 3; ++k) line += std::string("\t") + blank;
+      }
+      all += line + "\n";
+    }
+    return all;
+  };
+  ExpectCarried("take.trc", WithCrLf(Trc(names, "mm", 1000, "\n")), map);
+  ExpectCarried("take.trc", Trc(names, "cm", 100, "\n"), map);
+  ExpectCarried("take.trc", lost(2, 5, ""), map);
+  ExpectCarried("take.trc", lost(2, 5, "NaN"), map);
+  ExpectRefused("take.trc", lost(100, 200, ""), map, "'Hand' is not tracked for");
+  ExpectRefused("take.trc", Trc(names, "mm", 1000, "\n"), "axes: y_up\n" + Entities("Cup", "Wrist"),
+                "no body is called 'Wrist' in a TRC file");
 }
 
 TEST(ImportLayouts, RowsOfBodiesWithoutTimesAndWithTwoNames) {

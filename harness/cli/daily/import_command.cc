@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/content_hash.h"
@@ -126,6 +127,12 @@ std::string OutputOf(const std::string& output, const Batch& batch, const std::s
   return (std::filesystem::path(output) / (FileNameOf(episode) + ".jsonl")).string();
 }
 
+double LostSeconds(const exchange::Imported& imported) {
+  double lost_s = 0;
+  for (const exchange::EntityReport& one : imported.entities) lost_s += one.lost_s;
+  return lost_s;
+}
+
 /// Each becomes an episode. One that is damaged is left out, and named.
 ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
                      const CommandContext& context) {
@@ -134,20 +141,19 @@ ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
   OnceEach warnings(context.err);
   std::vector<std::vector<std::string>> table = {
       {"episode", "frames", "seconds", batch.file.empty() ? "lost_s" : "success"}};
-  std::string first, left_out;
+  std::string first, left_out, last;
   std::set<std::string> taken;
   ExitCode exit_code = ExitCode::kAgrees;
   const auto leave_out = [&](const std::string& name, const std::string& why) {
-    if (!why.empty()) warnings.Say("prehend: left out: " + why);
-    left_out += (left_out.empty() ? "; left out: " : ", ") + name;
+    warnings.Say("prehend: left out: " + why);
+    if (std::exchange(last, name) != name)
+      left_out += (left_out.empty() ? "; left out: " : ", ") + name;
   };
   for (const std::string& name : batch.names) {
     auto imported = batch.import(name);
     if (!imported) {
       for (const grammar::Diagnostic& error : imported.error())
-        warnings.Say("prehend: left out: " +
-                     (batch.file.empty() ? grammar::Format({error}) : error.message));
-      leave_out(name, "");
+        leave_out(name, batch.file.empty() ? grammar::Format({error}) : error.message);
       continue;
     }
     episode::Recording& episode = imported->episode;
@@ -172,11 +178,9 @@ ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
       if (written != ExitCode::kAgrees) return written;
     }
     const auto& success = episode.header.attributes.success;
-    double lost_s = 0;
-    for (const exchange::EntityReport& one : imported->entities) lost_s += one.lost_s;
     table.push_back({episode.header.episode, std::to_string(episode.frames.size()),
                      fmt::format("{:.2f}", imported->duration_s),
-                     batch.file.empty() ? fmt::format("{:.2f}", lost_s)
+                     batch.file.empty() ? fmt::format("{:.2f}", LostSeconds(*imported))
                      : !success         ? "-"
                      : *success         ? "yes"
                                         : "no"});

@@ -256,7 +256,7 @@ Command WatchCommand() {
                    "grammar watch - --map map.yaml --open", "grammar watch tracker.fifo --json"},
       .options = {{.name = "EPISODE",
                    .help =
-                       "lines of a recording (docs/recording-format.md), or with --map of a table "
+                       "lines of a recording (docs/recording-format.md), or with --map those of a "
                        "of poses: -,\nstandard input, a pipe or a file; or an episode file, or a "
                        "scenario",
                    .required = true},
