@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr long kMostLines = 106'060;
+constexpr long kMostLines = 111'200;
 constexpr long kMostLinesPerRoom = 3500;
 
 /// Of the product, by folder; what npm installs is not ours.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/program/import_test.cc
-#include "harness/exchange/poses/import_map.h"
-
 #include <cmath>
+
+#include "harness/exchange/poses/import_map.h"
 
 namespace prehend::exchange {
 namespace {
