@@ -70,7 +70,8 @@ TEST_F(CommandLine, UsageErrorsEndWithASuggestion) {
        "--json\n  see: prehend run --help\n"},
       {"run", 2, "prehend: the argument 'scenario' is missing\n  see: prehend run --help\n"},
       {"scenario schema more", 2,
-       "prehend: unexpected argument 'more'\n  see: prehend scenario schema --help\n"},
+       "prehend: import-map: found 'more', wanted import-map\n"
+       "  see: prehend scenario schema --help\n"},
       {"check --jobs none", 2,
        "prehend: --jobs: found 'none', wanted a whole number from 1 to 256\n  see: prehend check "
        "--help\n"},
@@ -183,7 +184,8 @@ TEST_F(CommandLine, PrintedCommandsHaveTheNameThatTheProgramWasCalledBy) {
             "prehend: no scenario 'carton_rest'; did you mean 'carton_rests'? ('./run list' shows "
             "all)\n  again: ./run run carton_rests\n");
   EXPECT_EQ(Prehend({"scenario", "schema", "more"}, environment).err,
-            "prehend: unexpected argument 'more'\n  see: ./run scenario schema --help\n");
+            "prehend: import-map: found 'more', wanted import-map\n"
+            "  see: ./run scenario schema --help\n");
   const Said help = Prehend({"list", "--help"}, environment);
   EXPECT_NE(help.out.find("\n  ./run list --json\n"), std::string::npos) << help.out;
 }

@@ -61,7 +61,7 @@ TEST_F(DerivationTest, ABoundaryOutsideItsBandDoesNot) {
       << OracleLine(late);
   Find("picking_up").interval.end -= 40;
   EXPECT_NE(GroundTruthText(Compared())
-                .find(" begins 43.8 ms earlier than recognised and ends 58.3 ms later than "
+                .find(" begins 43.8 ms earlier than recognised and ends 56.2 ms later than "
                       "recognised (recognised "),
             std::string::npos)
       << GroundTruthText(Compared());
