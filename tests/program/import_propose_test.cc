@@ -174,7 +174,7 @@ TEST(ImportPropose, NoMapWithoutColumnsAndNothingIsReplaced) {
   EXPECT_EQ(Prehend({"import", poses, "--propose", "-o", poses}).exit_code, 2);
   EXPECT_EQ(ReadFile(poses), "when,what\n1,2\n2,3\n");
   for (const char* other : {"a.json", "a.jsonl", "a.npz", "a.c3d"}) {
-    WriteFile(folder / other, "{}\n");
+    WriteFile(folder / other, other[2] == 'j' ? "{}\n" : "PK");
     const Said refused = Prehend({"import", (folder / other).string(), "--propose", "-o", map});
     EXPECT_EQ(refused.exit_code, 2) << other;
     EXPECT_NE(refused.err.find("maps are proposed for CSV, BVH, MCAP, bags and HDF5"),
