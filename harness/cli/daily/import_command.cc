@@ -20,7 +20,6 @@
 #include "harness/episode/run/segment_recording.h"
 #include "harness/exchange/import/import_demonstrations.h"
 #include "harness/exchange/import/import_poses.h"
-#include "harness/exchange/import/propose_map.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::cli {

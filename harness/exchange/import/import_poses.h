@@ -55,4 +55,8 @@ Result<Imported> ImportPoses(const std::string& poses_path, const std::string& m
 /// says that.
 std::string ImportTable(const Imported& imported);
 
+/// A first map for a file, which `import` accepts: bodies, units, axes and times as they are known
+/// or guessed; sizes are `unknown`; what is doubtful is said in comments.
+Result<std::string> ProposedMap(const std::string& poses_path);
+
 }  // namespace prehend::exchange

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/propose_map.h.
+// See harness/exchange/import/import_poses.h.
 //
 // The map is written as text, read as any map is, and tried on the file: once to see which bodies
 // it has, once to look at how they move, and at last for the warnings of the import.
-#include "harness/exchange/import/propose_map.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -427,10 +426,10 @@ Result<std::string> ProposedMap(const std::string& poses_path) {
   if (!format) return tl::unexpected(format.error());
   if (*format == PoseFormat::kHdf5) return ProposedMapOfDemonstrations(poses_path);
   if (*format > PoseFormat::kHdf5)
-    return tl::unexpected(ErrorOfFile(
-        poses_path,
-        "maps are proposed for CSV, BVH, MCAP, bags and HDF5; docs/motion-capture.md has some for "
-        "JSON, .npz and C3D"));
+    return tl::unexpected(ErrorOfFile(poses_path,
+                                      "needs --map; maps are proposed for CSV, BVH, MCAP, bags and "
+                                      "HDF5, and docs/motion-capture.md "
+                                      "has some for JSON, .npz and C3D"));
   return MapProposer(poses_path, *format).Propose();
 }
 
