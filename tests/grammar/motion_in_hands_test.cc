@@ -127,32 +127,6 @@ TEST(MotionInHands, AFastHandOverSlipsAndIsAGraspOfEachHand) {
   ExpectSpans(found.at("grasping(taker, bottle)"), {{2.2, 4.5}}, 0.1);
 }
 
-// A rod 1.1 m up in the air is carried from 1 to 2 s. Then the hand moves 7 cm along it, and
-// carries it on at 3.5 s; or it lets go, and the rod falls; or another hand carries it on.
-TEST(MotionInHands, AGripThatIsShiftedInMidAirLetsGoOfNothing) {
-  const auto grasps = [](bool falls, bool is_taken) {
-    const auto found = Recognise(
-        testing::CompileLibrary("pick_and_place_from_motion"),
-        {Thing("rod", {0.05, 0.02, 0.02}), Hand("hand"), Hand("other")}, 6, [=](double s) {
-          const double on_m = 0.3 * Smooth(s, 3.5, 4.7), fallen_s = std::max(0.0, s - 2.5);
-          Vector3d rod(0.3 * Smooth(s, 1, 2), 0, 1.1 + 0.1 * Smooth(s, 1, 2));
-          const Vector3d hand =
-              rod - Vector3d(0.1 + (falls ? 0 : 0.07 * Smooth(s, 1.9, 2.5)), 0, 0);
-          const Vector3d other = rod + Vector3d(0.1 + 0.6 * (1 - Smooth(s, 1, 2.8)), 0, 0);
-          if (falls) rod.z() = std::max(0.02, rod.z() - 9.81 / 2 * fallen_s * fallen_s);
-          const Vector3d on(falls ? 0 : on_m, 0, 0);
-          return std::vector<Pose>{{rod + on},
-                                   {hand + (is_taken ? Vector3d(0, 0, 0) : on)},
-                                   {other + (is_taken ? on : Vector3d(0, 0, 0))}};
-        });
-    return found.contains("grasping(hand, rod)") ? found.at("grasping(hand, rod)")
-                                                 : std::vector<Span>();
-  };
-  ExpectSpans(grasps(false, false), {{1.1, 6}}, 0.15);
-  ExpectSpans(grasps(true, false), {{1.1, 2.6}}, 0.15);
-  ExpectSpans(grasps(false, true), {{1.1, 3.6}}, 0.2);
-}
-
 // A board of 60 cm turns by 90 degrees about the palm that holds its edge. From the markers on the
 // wrist, 12 cm behind the palm, its middle gets 10 cm nearer; no gap opens.
 TEST(MotionInHands, ALargeThingThatTurnsInTheHandStaysInIt) {
