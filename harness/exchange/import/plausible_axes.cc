@@ -270,10 +270,11 @@ Guess GuessOrder(const PoseFile& poses, const ImportMap& map) {
         fmt::format("things slip by {:.0f} mm in the hands that carry them, in the other order by "
                     "{:.0f} mm",
                     1e3 * *slips_m, 1e3 * *other_m));
-  // What stands, is carried and carries mostly stays upright.
+  // What stands, is carried and carries mostly stays upright; of some the map says when.
   std::vector<double> askew_deg, other_askew_deg;
-  for (const std::vector<BodyLook>& looks : seen.looks) {
-    for (const BodyLook& look : looks) {
+  for (std::size_t body = 0; body < seen.looks.size(); ++body) {
+    if (seen.entities[body]->upright_at_s || seen.entities[body]->axes_quat_wxyz) continue;
+    for (const BodyLook& look : seen.looks[body]) {
       if (!look.p_m.allFinite()) continue;
       askew_deg.push_back(TiltOf(look.q, map.Up()));
       other_askew_deg.push_back(TiltOf(Reordered(look.q, is_wxyz), map.Up()));
