@@ -97,7 +97,7 @@ def main():
             os.remove(path("many.episodes"))
         spent = {"import": cpu_s("import", path("many.hdf5"), "--map", path("many.yaml"), "-o", path("many.episodes")),
                  "judge": cpu_s("episode", "resegment", path("many.episodes"), "--json"),
-                 "label": cpu_s("episode", "label", path("many.episodes"), "--map", path("many.yaml"), "--write", path("out.hdf5")),
+                 "label": cpu_s("episode", "label", path("many.episodes"), "--map", path("many.yaml"), "-o", path("out.hdf5")),
                  "report": cpu_s("report", path("many.episodes"), "-o", path("many.html"))}
         print(", ".join("%s %.2f s" % one for one in spent.items()) +
               "; report is %.1f times judging" % (spent["report"] / spent["judge"]))
