@@ -47,9 +47,7 @@ const std::vector<Mutant> kMutants = {
     {"the grip counts when it is closed", "grasp", "grip_on      = 0.3", "grip_on      = 0.9", ""},
     {"the grip does not count", "grasp", "trigger(hand) < grip_on or ", "", ""},
     {"a brush is a grasp", "grasp", "\n  lasting grip_min", "", ""},
-    {"grasps are bridged too long", "grasp", "grasp_bridge = 60 ms", "grasp_bridge = 200 ms",
-     "no finger of a scenario loses an object for so long while the grip is commanded; the closed "
-     "form grasp_ends_with_a_long_loss kills it (tests/witnesses/closed_forms_test.cc)"},
+    {"grasps are bridged too long", "grasp", "grasp_bridge = 60 ms", "grasp_bridge = 200 ms", ""},
     {"a small retreat restarts the reach", "pick_and_place", "reach_slack  = 25 mm",
      "reach_slack  = 5 mm", ""},
     {"idling is reaching", "pick_and_place", "reach_idle   = 0.5 s", "reach_idle   = 5 s", ""},
@@ -61,9 +59,7 @@ const std::vector<Mutant> kMutants = {
     {"a reach needs no grasp", "pick_and_place",
      "  confirmed by grasping(hand, object) within contact(hand, object)\n", "", ""},
     {"trembling is sliding", "pick_and_place",
-     "\n    and drift_along(object, support, slide_window) >= slide_speed", "",
-     "contacts of a hand stick, so nothing that it squeezes in a scenario trembles; the corpus "
-     "draws a cup that does"},
+     "\n    and drift_along(object, support, slide_window) >= slide_speed", "", ""},
     {"a jerk is a slide", "pick_and_place", "\n  lasting slide_jerk", "", ""},
     {"short slides are none", "pick_and_place", "slide_distance = 2 cm", "slide_distance = 6 cm",
      ""},
