@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the program weighs: lines of the product, in sum and in each inner room, have a ceiling.
-// What goes above pays by removing something; whoever removes lowers the ceiling.
+// What goes above pays by removing something; whoever removes lowers the ceiling. Python over the
+// package has a ceiling of its own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,12 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr long kMostLines = 111'200;
+constexpr long kMostLines = 110'000;
+constexpr long kMostLinesOfPython = 1'300;
 constexpr long kMostLinesPerRoom = 3500;
 
+using Languages = std::set<std::string>;
+
 /// Of the product, by folder; what npm installs is not ours.
-std::map<std::string, long> LinesByRoom() {
-  const std::set<std::string> languages = {".cc", ".h", ".js", ".mjs", ".pl", ".py", ".pyi"};
+std::map<std::string, long> LinesByRoom(const Languages& languages) {
   std::map<std::string, long> lines;
   for (const char* top : {"grammar", "harness", "physics", "render", "python"}) {
     const fs::path folder = fs::path(PREHEND_SOURCE_DIR) / top;
@@ -38,21 +41,32 @@ std::map<std::string, long> LinesByRoom() {
   return lines;
 }
 
-TEST(Weight, IsBelowItsCeiling) {
+/// Printed, by wing.
+long SumOf(const char* what, const Languages& languages, long most) {
   std::map<std::string, long> by_top;
   long sum = 0;
-  for (const auto& [room, lines] : LinesByRoom()) {
+  for (const auto& [room, lines] : LinesByRoom(languages)) {
     by_top[room.substr(0, room.find('/'))] += lines;
     sum += lines;
   }
-  std::printf("product: %ld lines, at most %ld\n", sum, kMostLines);
+  std::printf("%s: %ld lines, at most %ld\n", what, sum, most);
   for (const auto& [top, lines] : by_top) std::printf("  %s: %ld\n", top.c_str(), lines);
-  EXPECT_GT(sum, 50'000) << "the source tree was not found";
-  EXPECT_LE(sum, kMostLines) << "remove as much as you add, or make it smaller";
+  return sum;
+}
+
+const Languages kProgram = {".cc", ".h", ".js", ".mjs", ".pl"}, kPython = {".py", ".pyi"};
+
+TEST(Weight, IsBelowItsCeiling) {
+  const long program = SumOf("program", kProgram, kMostLines);
+  EXPECT_GT(program, 50'000) << "the source tree was not found";
+  EXPECT_LE(program, kMostLines) << "remove as much as you add, or make it smaller";
+  EXPECT_LE(SumOf("Python", kPython, kMostLinesOfPython), kMostLinesOfPython);
 }
 
 TEST(Weight, OfARoomIsBelowItsCeiling) {
-  for (const auto& [room, lines] : LinesByRoom()) EXPECT_LE(lines, kMostLinesPerRoom) << room;
+  for (const Languages& languages : {kProgram, kPython})
+    for (const auto& [room, lines] : LinesByRoom(languages))
+      EXPECT_LE(lines, kMostLinesPerRoom) << room;
 }
 
 }  // namespace
