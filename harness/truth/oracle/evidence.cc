@@ -44,9 +44,8 @@ class EvidenceReader {
       for (const auto& points : recording_.frames[frame].AllContacts())
         for (const physics::ContactPoint& point : points) ReadPoint(point, frame, sets);
       for (const auto& [pair, bits] : sets) {
-        std::vector<std::uint8_t>& counts = evidence_.sensor_sets[pair];
-        counts.resize(recording_.size());
-        counts[frame] = static_cast<std::uint8_t>(std::popcount(bits));
+        evidence_.sensor_sets[pair].resize(recording_.size());
+        evidence_.sensor_sets[pair][frame] = bits;
       }
     }
     for (const auto& [pair, pushes] : pushes_) ReadBearing(pair, pushes);

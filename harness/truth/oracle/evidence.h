@@ -36,8 +36,8 @@ class Evidence {
 
   /// Entities a < b that ever touch, and in which frames.
   std::map<Pair, std::vector<bool>> touching;
-  /// Of (hand index, body): how many sensor sets touch, by frame.
-  std::map<Pair, std::vector<std::uint8_t>> sensor_sets;
+  /// Of (hand index, body): which sensor sets touch, one bit each, by frame.
+  std::map<Pair, std::vector<std::uint32_t>> sensor_sets;
   /// Of (hand index, body): the normal force between them, newtons, by frame.
   std::map<Pair, std::vector<double>> forces_n;
   /// Of (object, support), the object movable, the support a thing: by frame.

@@ -2,11 +2,13 @@
 #include "harness/truth/oracle/settings.h"
 
 #include <array>
+#include <numbers>
 
 namespace prehend::truth {
 
 std::span<const Band> DefinitionBands() {
   using S = OracleSettings;
+  constexpr double kDegree = std::numbers::pi / 180;
   static constexpr std::array kBands = {
       Band{"contact gap", &S::contact_bridge_s, 0.080, 0.120},
       Band{"grip gap", &S::grasp_bridge_s, 0.045, 0.080},
@@ -19,6 +21,8 @@ std::span<const Band> DefinitionBands() {
       Band{"hook force", &S::hook_force_n, 15, 25},
       Band{"hook slip", &S::hook_slip_m_per_s, 0.2, 0.4},
       Band{"grip opening", &S::opening_per_s, 0.7, 1.5},
+      Band{"press force", &S::press_force_n, 1, 4},
+      Band{"press facing", &S::press_facing_rad, 110 * kDegree, 130 * kDegree},
       Band{"reach region", &S::reach_radius_m, 0.25, 0.35},
       Band{"reach dead-band", &S::reach_dead_band_m, 0.020, 0.030},
       Band{"reach idle speed", &S::idle_speed_m_per_s, 0.007, 0.015},

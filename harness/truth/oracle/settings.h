@@ -3,6 +3,7 @@
 // docs/events.md, gives them. Tested by tests/harness/truth/oracle/oracle_test.cc
 #pragma once
 
+#include <numbers>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,9 @@ struct OracleSettings {
   double hook_force_n = 20;             ///< what pulls with this holds on with one sensor set
   double hook_slip_m_per_s = 0.3;       ///< unless it slips out of the hand
   double opening_per_s = 1;             ///< a grip that opens as fast takes hold of nothing
+  double press_force_n = 2;             ///< of each side of what is pressed between two hands
+  double press_facing_rad =
+      2 * std::numbers::pi / 3;  ///< between the backs of their palms, at least
 
   double idle_speed_m_per_s = 0.01;    ///< slower is standing still,
   double idle_excursion_m = 0.0025;    ///< and so is getting no farther than this

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/truth/oracle/touches.h"
 
+#include <bit>
+#include <cmath>
+
 namespace prehend::truth {
 
 namespace {
@@ -60,6 +63,61 @@ bool HangsOn(const Evidence& evidence, const OracleSettings& settings, Pair pair
   return slip_m_per_s.norm() <= settings.hook_slip_m_per_s;
 }
 
+/// What a hand does with a body that it does not hold alone: its grip is open, or one sensor set
+/// touches.
+class Helpers {
+ public:
+  Helpers(const Evidence& evidence, const OracleSettings& settings)
+      : evidence_(evidence), settings_(settings) {}
+
+  /// Another hand presses on the other side, with a palm that faces this one's.
+  bool IsPressedBetween(Pair pair, int frame) const {
+    if (!Presses(pair, frame)) return false;
+    for (const auto& [other, forces_n] : evidence_.forces_n) {
+      if (other.second != pair.second || other.first == pair.first || !Presses(other, frame))
+        continue;
+      const double cosine = Back(pair.first, frame).dot(Back(other.first, frame));
+      if (cosine <= std::cos(settings_.press_facing_rad)) return true;
+    }
+    return false;
+  }
+
+  /// It is held against another thing that the hand presses from the other side: of thumb and
+  /// fingers one side touches this one and the other side that one.
+  bool IsSqueezedWithAnother(Pair pair, int frame) const {
+    if (!Presses(pair, frame) || !Moves(pair.second)) return false;
+    for (const auto& [other, forces_n] : evidence_.forces_n) {
+      if (other.first != pair.first || other.second == pair.second || !Moves(other.second) ||
+          !Presses(other, frame) ||
+          IsTouchedByFirstSet(pair, frame) == IsTouchedByFirstSet(other, frame))
+        continue;
+      const auto touching = evidence_.touching.find(std::minmax(pair.second, other.second));
+      if (touching != evidence_.touching.end() && touching->second[frame]) return true;
+    }
+    return false;
+  }
+
+ private:
+  std::uint32_t Sets(Pair pair, int frame) const { return evidence_.sensor_sets.at(pair)[frame]; }
+  /// The fingers of a hand, one jaw of a gripper.
+  bool IsTouchedByFirstSet(Pair pair, int frame) const { return (Sets(pair, frame) & 1) != 0; }
+  bool Moves(int body) const {
+    return physics::MovesFreely(evidence_.recording.scene, physics::BodyIndex(body));
+  }
+  Eigen::Vector3d Back(int hand, int frame) const {
+    return evidence_.recording.hand(hand, frame).palm.X_WB.q * Eigen::Vector3d::UnitZ();
+  }
+  bool Presses(Pair pair, int frame) const {
+    const bool alone =
+        std::popcount(Sets(pair, frame)) >= settings_.grasp_sensor_sets &&
+        evidence_.recording.hand(pair.first, frame).trigger >= settings_.commanded_trigger;
+    return !alone && evidence_.forces_n.at(pair)[frame] >= settings_.press_force_n;
+  }
+
+  const Evidence& evidence_;
+  const OracleSettings& settings_;
+};
+
 void SayHowLongTheyTouched(const Recording& recording, Touches& touches) {
   const Grasp* before = nullptr;
   for (Grasp& grasp : touches.grasps) {
@@ -82,20 +140,28 @@ Touches FindTouches(const Evidence& evidence, const OracleSettings& settings) {
         Bridged(WhereTrue(frames), recording.ticks, recording.Ticks(settings.contact_bridge_s));
   for (const auto& [pair, bearings] : evidence.bearings)
     touches.supports[pair] = SupportsOf(bearings, recording, settings);
+  const Helpers helpers(evidence, settings);
+  const auto bridged = [&](const std::vector<bool>& frames) {
+    return Bridged(WhereTrue(frames), recording.ticks, recording.Ticks(settings.grasp_bridge_s));
+  };
   for (const auto& [pair, sets] : evidence.sensor_sets) {
     const auto& [hand, body] = pair;
     const std::vector<bool> opens = WhereGripOpens(recording, settings, hand);
-    std::vector<bool> gripped, held;  // a grasp begins where it is gripped, and lasts while held
+    // A grasp begins where it is gripped, and lasts while held.
+    std::vector<bool> gripped, held, between;
     for (int frame = 0; frame < recording.size(); ++frame) {
-      const bool has_sets = sets[frame] >= settings.grasp_sensor_sets;
-      gripped.push_back(has_sets && !opens[frame]);
-      held.push_back(has_sets || (sets[frame] > 0 && !opens[frame] &&
-                                  HangsOn(evidence, settings, pair, frame)));
+      const bool has_sets = std::popcount(sets[frame]) >= settings.grasp_sensor_sets ||
+                            helpers.IsSqueezedWithAnother(pair, frame);
+      between.push_back(helpers.IsPressedBetween(pair, frame));
+      gripped.push_back((has_sets && !opens[frame]) || between.back());
+      held.push_back(
+          has_sets || between.back() ||
+          (sets[frame] != 0 && !opens[frame] && HangsOn(evidence, settings, pair, frame)));
     }
-    const Spans tight =
-        Bridged(WhereTrue(held), recording.ticks, recording.Ticks(settings.grasp_bridge_s));
+    const Spans tight = bridged(held);
     // Letting go ends a grasp at once, and none begins before the hand feels the object again.
-    for (const Span& squeeze : WhereGripIsCommanded(recording, settings, hand)) {
+    for (const Span& squeeze :
+         Union(WhereGripIsCommanded(recording, settings, hand), bridged(between))) {
       for (Span span : Within(tight, squeeze)) {
         while (!span.empty() && !gripped[span.begin]) ++span.begin;
         if (recording.Lasts_s(span) >= settings.grasp_minimum_s)

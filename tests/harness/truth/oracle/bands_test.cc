@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <regex>
 #include <set>
@@ -26,9 +27,17 @@ struct Row {
 };
 
 double UnitOf(const std::string& unit) {
-  static const std::map<std::string, double> kUnits = {
-      {"", 1},      {"%", 0.01},    {"s", 1},       {"ms", 1e-3}, {"cm", 1e-2},
-      {"mm", 1e-3}, {"cm/s", 1e-2}, {"mm/s", 1e-3}, {"N", 1},     {"/s", 1}};
+  static const std::map<std::string, double> kUnits = {{"", 1},
+                                                       {"%", 0.01},
+                                                       {"s", 1},
+                                                       {"ms", 1e-3},
+                                                       {"cm", 1e-2},
+                                                       {"mm", 1e-3},
+                                                       {"cm/s", 1e-2},
+                                                       {"mm/s", 1e-3},
+                                                       {"N", 1},
+                                                       {"/s", 1},
+                                                       {"deg", std::numbers::pi / 180}};
   return kUnits.at(unit);
 }
 

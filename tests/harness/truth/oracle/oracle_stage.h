@@ -105,7 +105,7 @@ class Stage {
     sets = 2;
   }
 
-  physics::HandState& hand() { return now_.hands[0]; }
+  physics::HandState& hand(int hand = 0) { return now_.hands[static_cast<std::size_t>(hand)]; }
   physics::BodyState& body(int body) { return now_.bodies[body]; }
   grammar::Tick now() const {
     return static_cast<grammar::Tick>(frames_.size()) * ticks_per_frame_;

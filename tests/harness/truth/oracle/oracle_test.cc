@@ -272,6 +272,63 @@ TEST(OracleGrasp, CountsEveryHandAndEveryObject) {
   EXPECT_TRUE(Of("grasping(left, cup)", stage.Truth()).empty()) << "its grip is not commanded";
 }
 
+/// Two palms press on the cup with so much; the left one is turned by so much from the right one.
+grammar::Timeline PressedByTwo(double right_n, double left_n, double turned_deg,
+                               double left_trigger = 0, int left_sets = 1) {
+  Stage stage;
+  const int left = stage.AddHand("left", {0.6, 0, 0.03});
+  stage.hand(left).trigger = left_trigger;
+  stage.hand(left).palm.X_WB.q = physics::FromRollPitchYaw({turned_deg, 0, 0});
+  stage.Play(0.2);
+  for (int set = 0; set < left_sets; ++set)
+    stage.contacts.push_back({.a = Stage::BodySide(stage.cup),
+                              .b = Stage::HandSide(left, set),
+                              .impulse_n_s = left_n / left_sets / 480});
+  stage.contacts.push_back(
+      {.a = Stage::BodySide(stage.cup), .b = Stage::HandSide(0, 2), .impulse_n_s = right_n / 480});
+  stage.Play(0.3);
+  stage.contacts.clear();
+  stage.Play(0.2);
+  return stage.Truth();
+}
+
+TEST(OracleGrasp, OfTwoHandsThatPressFromTwoSidesIsThatOfBoth) {
+  const grammar::Timeline truth = PressedByTwo(2.1, 2.1, 180);
+  const Intervals pressed = {{98, 242}};
+  ExpectNear(Of("grasping(hand, cup)", truth), pressed);
+  ExpectNear(Of("grasping(left, cup)", truth), pressed);
+  EXPECT_EQ(Of("grasping(hand, cup)", PressedByTwo(2.1, 2.1, 121)).size(), 1u);
+  for (const grammar::Timeline& none :
+       {PressedByTwo(1.9, 5, 180), PressedByTwo(5, 1.9, 180), PressedByTwo(5, 5, 119),
+        PressedByTwo(5, 5, 0), PressedByTwo(5, 5, 180, 1, 2)})
+    EXPECT_TRUE(Of("grasping(hand, cup)", none).empty());
+  EXPECT_EQ(Of("grasping(left, cup)", PressedByTwo(5, 5, 180, 1, 2)).size(), 1u)
+      << "it holds the cup alone";
+}
+
+TEST(OracleGrasp, OfTwoThingsThatAreSqueezedTogetherIsThatOfBoth) {
+  const auto squeezed = [](double cup_n, int box_set, double trigger, bool they_touch) {
+    Stage stage;
+    const int box = stage.AddBody("box", {0.06, 0.06, 0.06}, {0.56, 0, 0.03}, false);
+    stage.trigger = trigger;
+    stage.contacts = {
+        {.a = Stage::BodySide(stage.cup), .b = Stage::HandSide(0, 0), .impulse_n_s = cup_n / 480},
+        {.a = Stage::BodySide(box), .b = Stage::HandSide(0, box_set), .impulse_n_s = 5.0 / 480}};
+    if (they_touch)
+      stage.contacts.push_back({.a = Stage::BodySide(stage.cup), .b = Stage::BodySide(box)});
+    stage.Play(0.3);
+    const grammar::Timeline truth = stage.Truth();
+    const std::size_t both = Of("grasping(hand, cup)", truth).size();
+    EXPECT_EQ(Of("grasping(hand, box)", truth).size(), both);
+    return both;
+  };
+  EXPECT_EQ(squeezed(5, 1, 1, true), 1u);
+  EXPECT_EQ(squeezed(1.9, 1, 1, true), 0u);
+  EXPECT_EQ(squeezed(5, 0, 1, true), 0u) << "one side of the grip touches both";
+  EXPECT_EQ(squeezed(5, 1, 0.2, true), 0u) << "no grip is commanded";
+  EXPECT_EQ(squeezed(5, 1, 1, false), 0u);
+}
+
 TEST(Oracle, TellsTheSameStoryAtEverySensingRate) {
   const auto play = [](int ticks_per_frame) {
     Stage stage(ticks_per_frame);
