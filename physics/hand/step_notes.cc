@@ -39,6 +39,20 @@ std::set<std::string> SidesThatTouch(const Scene& scene, const Snapshot& now, Ha
   return sides;
 }
 
+/// Or what that body touches: two things may be squeezed together.
+std::set<std::string> SidesThatSqueeze(const Scene& scene, const Snapshot& now, HandIndex hand,
+                                       BodyIndex object) {
+  std::set<std::string> sides = SidesThatTouch(scene, now, hand, object);
+  if (sides.empty()) return sides;
+  for (const ContactPoint& contact : now.contacts) {
+    const BodyIndex other = contact.a.body == object ? contact.b.body : contact.a.body;
+    const bool touches = contact.a.body == object || contact.b.body == object;
+    if (touches && other != kNone && MovesFreely(scene, other))
+      sides.merge(SidesThatTouch(scene, now, hand, other));
+  }
+  return sides;
+}
+
 std::string NoteAboutObstacle(const Scene& scene, const Snapshot& now, const ReachQuery& query,
                               const ReachPlan& plan) {
   const HandModel& model = scene.hand(query.hand).model;
@@ -86,7 +100,7 @@ bool IsHeldBySides(const Scene& scene, const Snapshot& now, HandIndex hand, Body
 
 std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, HandIndex hand,
                           BodyIndex object) {
-  const std::set<std::string> sides = SidesThatTouch(scene, now, hand, object);
+  const std::set<std::string> sides = SidesThatSqueeze(scene, now, hand, object);
   if (sides.size() >= 2) return "";
   if (sides.size() == 1)
     return "it has closed and touches " + scene.body(object).name + " with its " + *sides.begin() +
