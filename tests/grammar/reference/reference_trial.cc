@@ -96,6 +96,8 @@ class Trial {
         feed_mixed.Step(kEachWay[random_() % kEachWay.size()], events_mixed);
     }
     result_.ticks += 2 * episode.frames();
+    ++result_.episodes;
+    result_.lost += std::ranges::count(episode.lost, true) > 0;
     const Found expected = grammar_->Expected(episode);
     if (!plain.error().empty()) Mismatch(plain.error(), &episode);
     if (const std::string text = Difference(expected, ByRule(*program_, events_plain));
@@ -185,6 +187,7 @@ class Trial {
 
 std::string TrialResult::Text() const {
   return std::to_string(ticks) + " ticks, " + std::to_string(grammars) + " grammars, " +
+         std::to_string(episodes) + " episodes (" + std::to_string(lost) + " with lost poses), " +
          std::to_string(mismatches) + " mismatches";
 }
 
