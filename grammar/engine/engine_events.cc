@@ -156,7 +156,12 @@ void Engine::UpdateKnown(RuleInstance& instance) {
     instance.certain = RunIsCertain(instance);
     const FrameNumber certain_end = instance.in_gap ? instance.gap.frame : instance.next;
     instance.known = instance.certain ? certain_end : instance.begin.frame;
-    if (TicksOf(instance).IsTooLong(AtLeastLasts(instance))) instance.known = instance.next;
+    // What is too long is none, but what waits with `each` may take its place.
+    const auto* from_to = instance.If<FromToState>();
+    if (TicksOf(instance).IsTooLong(AtLeastLasts(instance)))
+      instance.known = from_to == nullptr || from_to->waiting.empty()
+                           ? instance.next
+                           : from_to->waiting.front().frame;
   }
   if (rule.form() == Form::kUntilSince && rule.referenced && instance.next > history_.first()) {
     // A later interval ends after the last frame seen and reaches back no further than its rule

@@ -132,6 +132,18 @@ TEST(Forms, WhatIsTooLateForOneMayBeInTimeForTheNext) {
             "[24,29)@33 x0 ");
 }
 
+// At 22 the one from 12 on lasts too long; it is not known that nothing holds since 20, which
+// waits.
+TEST(Forms, WhatIsTooLongIsNoneButWhatWaitsMayBeOne) {
+  const std::string text =
+      "condition tap(hand: Hand, tray: Movable) while touching(hand, tray) lasting 0 ms to 3 ms\n"
+      "condition press(hand: Hand, tray: Movable) while touching(hand, tray) lasting 5 ms\n"
+      "condition answered(hand: Hand, tray: Movable) from each tap(hand, tray) ends to "
+      "press(hand, tray) begins within 10 ms lasting 0 ms to 9 ms\n"
+      "event e(hand: Hand, tray: Movable) while not answered(hand, tray) lasting 0 ms to 30 ms\n";
+  EXPECT_EQ(Drummed(text, {{10, 12}, {18, 20}, {29, 40}}), "[0,20)@33 x0 ");
+}
+
 TEST(Forms, RepeatIsKnownWhenThereAreEnough) {
   const std::string text =
       "condition thrice(h: Hand, c: Cup) repeat touching(h, c) at least 3, gap at most 5 ms\n"
