@@ -127,6 +127,64 @@ TEST(MotionInHands, AFastHandOverSlipsAndIsAGraspOfEachHand) {
   ExpectSpans(found.at("grasping(taker, bottle)"), {{2.2, 4.5}}, 0.1);
 }
 
+// A rod 1.1 m up in the air, 10 cm long, is carried from 1 to 2 s and from 3.5 s on; nothing bears
+// it. `at` says where rod, hand and another hand are, of the carried rod and the hand at its end.
+std::vector<Span> GraspsOfARod(
+    const std::function<std::vector<Vector3d>(double, const Vector3d&, const Vector3d&)>& at,
+    const std::string& whose = "hand") {
+  const auto found =
+      Recognise(testing::CompileLibrary("pick_and_place_from_motion"),
+                {Thing("rod", {0.05, 0.02, 0.02}), Hand("hand"), Hand("other")}, 6, [&](double s) {
+                  const Vector3d rod(0.3 * Smooth(s, 1, 2) + 0.3 * Smooth(s, 3.5, 4.7), 0,
+                                     1.1 + 0.1 * Smooth(s, 1, 2));
+                  std::vector<Pose> poses;
+                  for (const Vector3d& p_m : at(s, rod, rod - Vector3d(0.1, 0, 0)))
+                    poses.push_back({p_m});
+                  return poses;
+                });
+  const auto spans = found.find("grasping(" + whose + ", rod)");
+  return spans == found.end() ? std::vector<Span>() : spans->second;
+}
+
+TEST(MotionInHands, AGripMayBeShiftedInMidAir) {
+  const Vector3d idle(0.8, 0.3, 0.9);
+  // By 7 and 12 cm, while it is still, and while it is carried.
+  for (const double by_m : {0.07, 0.12}) {
+    for (const double from_s : {1.9, 3.8}) {
+      const auto grasps = GraspsOfARod([&](double s, const Vector3d& rod, const Vector3d& hand) {
+        const double shift_m = by_m * Smooth(s, from_s, from_s + 0.6);
+        return std::vector{rod, Vector3d(hand - Vector3d(shift_m, 0, 0)), idle};
+      });
+      ExpectSpans(grasps, {{1.1, 6}}, 0.15);
+    }
+  }
+}
+
+TEST(MotionInHands, WhatFallsOrIsTakenInMidAirIsLetGoOf) {
+  // It falls at 2.5 s.
+  ExpectSpans(GraspsOfARod([](double s, Vector3d rod, Vector3d hand) {
+                if (s > 3.5) rod.x() = 0.3, hand.x() = 0.2;
+                const double fallen_s = std::max(0.0, s - 2.5);
+                rod.z() = std::max(0.02, rod.z() - 9.81 / 2 * fallen_s * fallen_s);
+                return std::vector{rod, hand, Vector3d(0.8, 0.3, 0.9)};
+              }),
+              {{1.1, 2.5}}, 0.1);
+  // Another hand comes to its other end; the first one leaves at 2.9 s, upward or aside, or stays
+  // where it is when the other one carries the rod on at 3.5 s.
+  for (const Vector3d& away_m : {Vector3d(0, 0, 0.15), Vector3d(-0.3, 0.1, 0), Vector3d(0, 0, 0)}) {
+    const auto at = [&](double s, const Vector3d& rod, Vector3d hand) {
+      if (s > 3.5) hand.x() = 0.2;
+      const double far_m = 0.1 + 0.6 * (1 - Smooth(s, 1, 2.8));
+      return std::vector{rod, Vector3d(hand + away_m * Smooth(s, 2.9, 3.5)),
+                         Vector3d(rod + Vector3d(far_m, 0, 0))};
+    };
+    ExpectSpans(GraspsOfARod(at), {{1.1, away_m.norm() > 0 ? 3.0 : 3.65}}, 0.16);
+    const auto taken = GraspsOfARod(at, "other");
+    ASSERT_EQ(taken.size(), 1u);
+    EXPECT_NEAR(taken[0].second, 6, 0.1);
+  }
+}
+
 // A board of 60 cm turns by 90 degrees about the palm that holds its edge. From the markers on the
 // wrist, 12 cm behind the palm, its middle gets 10 cm nearer; no gap opens.
 TEST(MotionInHands, ALargeThingThatTurnsInTheHandStaysInIt) {
