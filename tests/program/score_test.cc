@@ -42,6 +42,19 @@ TEST_F(ScoreCommand, EveryGrammarIsScoredOnTheSameTruth) {
   EXPECT_EQ(grammars[1]["ignored"]["touching_it"], 1);
 }
 
+TEST_F(ScoreCommand, VerboseRowsHaveWhatWasCompared) {
+  const Json row =
+      Json::parse(Do("score --json --verbose --grammar contact").out)["grammars"][0]["rows"][0];
+  EXPECT_EQ(row["truth_events"]["events"].size(), 2u);
+  EXPECT_EQ(row["found_events"]["events"].size(), 2u);
+  EXPECT_GT(row["end_tick"], 0);
+  const Json& event = row["truth_events"]["events"][0];
+  EXPECT_LE(event["begin_band_tick"][0], event["begin_tick"]);
+  EXPECT_GE(event["end_band_tick"][1], event["end_tick"]);
+  const Json plain = Json::parse(Do("score --json --grammar contact").out);
+  EXPECT_FALSE(plain["grammars"][0]["rows"][0].contains("truth_events"));
+}
+
 TEST_F(ScoreCommand, WhatIsMisspeltIsListedByName) {
   const Said said = Do("score" + GrammarOption("misspelt"));
   ASSERT_EQ(said.exit_code, 0) << said.err;

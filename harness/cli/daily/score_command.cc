@@ -23,7 +23,8 @@ ExitCode PrintScores(const Result<measure::LabelScores>& scores, double collar_s
   context.err << scores->failures;
   const ExitCode code = scores->failures.empty() ? ExitCode::kAgrees : ExitCode::kBadInput;
   if (options.Has("--json")) {
-    nlohmann::ordered_json json = measure::ScoresJson(scores->of_grammars, collar_s);
+    nlohmann::ordered_json json =
+        measure::ScoresJson(scores->of_grammars, collar_s, options.Has("--verbose"));
     json["by_hand"] = measure::ScoresJson(scores->by_hand, collar_s);
     const exchange::Counted& counted = scores->counted;
     json["counted"] = {{"takes", counted.takes},
@@ -125,8 +126,11 @@ ExitCode RunScenarios(const measure::Asking& asking, const measure::NotCovered& 
     if (const std::string lack = episode::Lacks(NameOf(file), episode::Need::kGroundTruth);
         !lack.empty())
       return Refuse(context, lack);
-    requests.push_back(
-        {NameOf(file), episode::IdOf(file), context.root, &asking, events, settings});
+    // Many episodes of one file have its path, and are told apart by their scenarios.
+    std::string id = file.episode && !file.in_project
+                         ? file.skill + (file.skill.empty() ? "" : "/") + file.name
+                         : episode::IdOf(file);
+    requests.push_back({NameOf(file), std::move(id), context.root, &asking, events, settings});
   }
   const double collar_s = CollarFrom(options);
   const auto scores = measure::ScoreScenarios(requests, asking, not_covered, collar_s, CoreCount());
@@ -139,7 +143,8 @@ ExitCode RunScenarios(const measure::Asking& asking, const measure::NotCovered& 
   }
   if (scores.of_grammars.empty()) return worst;  // no table of nothing
   if (options.Has("--json")) {
-    nlohmann::ordered_json json = measure::ScoresJson(scores.of_grammars, collar_s);
+    nlohmann::ordered_json json =
+        measure::ScoresJson(scores.of_grammars, collar_s, options.Has("--verbose"));
     json["witnesses"] = measure::EvaluatorsJson(scores.of_grammars, scores.evaluators);
     context.out << json.dump(2) << "\n";
   } else {

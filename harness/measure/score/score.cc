@@ -110,7 +110,13 @@ MeanOfKinds MeanOf(const std::vector<EventScore>& kinds) {
 
 EpisodeRow RowOf(const EpisodeToScore& judged, const std::set<std::string>& kinds,
                  double collar_s) {
-  EpisodeRow row{.episode = judged.scenario, .person = judged.person, .set = judged.set};
+  EpisodeRow row{.episode = judged.scenario,
+                 .person = judged.person,
+                 .set = judged.set,
+                 .ticks = judged.ticks,
+                 .truth = judged.truth,
+                 .found = judged.found,
+                 .bands = judged.bands};
   const LabelledEpisode all = Labelled(judged.truth, judged.found, judged.ticks);
   AddEpisode(judged, all, "", collar_s, row.total);
   EditOfTracks edit;

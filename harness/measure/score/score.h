@@ -50,6 +50,11 @@ struct EpisodeToScore {
   std::string failure = {}, notes = {};
   std::vector<std::string> covers = {};
   double cpu_s = 0;
+  /// Where the definitions are asked: of each true event the bands of its two boundaries.
+  struct Bands {
+    grammar::Interval begin, end;  ///< earliest and latest
+  };
+  std::vector<Bands> bands = {};
 };
 
 /// Signed offsets (found - true) of the boundaries of matched events, in seconds.
@@ -87,6 +92,9 @@ struct EpisodeRow {
   std::string episode, person, set;
   EventScore total;                  ///< as far as it has single numbers
   std::map<std::string, Hits> hits;  ///< by event, at half of the union
+  grammar::Tick ticks = 0;
+  grammar::Timeline truth, found;
+  std::vector<EpisodeToScore::Bands> bands;  ///< of `truth`, or none
 };
 
 struct Score {
@@ -128,7 +136,9 @@ std::string SideBySide(const std::vector<Score>& scores, double collar_s);
 /// {"collar_s", "grammars": [{"grammar", "episodes", "not_covered", "ignored", "total": {..},
 /// "events": [{..}]}]}; shares from 0 to 1, times in seconds; docs/regression-suite.md says what
 /// each is.
-nlohmann::ordered_json ScoresJson(const std::vector<Score>& scores, double collar_s);
+/// `with_events`: rows have what was compared, too.
+nlohmann::ordered_json ScoresJson(const std::vector<Score>& scores, double collar_s,
+                                  bool with_events = false);
 
 /// {"by_event": {EVENT: {"of", "confirmed"}}, "differences": ["..", ..]}
 nlohmann::ordered_json EvaluationJson(const Evaluation& evaluation);

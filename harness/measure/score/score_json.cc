@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/measure/score/score.h"
+#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::measure {
 namespace {
@@ -88,7 +89,19 @@ Json HitsJson(const Hits& hits) {
   return {{"correct", hits.correct}, {"extra", hits.extra}, {"missed", hits.missed}};
 }
 
-Json RowsJson(const std::vector<EpisodeRow>& episodes) {
+/// What was compared; true events with their bands, if they have any.
+Json ComparedJson(const EpisodeRow& row) {
+  Json truth = truth::TimelineJson(row.truth);
+  for (std::size_t i = 0; i < row.bands.size(); ++i) {
+    truth["events"][i]["begin_band_tick"] = {row.bands[i].begin.begin, row.bands[i].begin.end};
+    truth["events"][i]["end_band_tick"] = {row.bands[i].end.begin, row.bands[i].end.end};
+  }
+  return {{"end_tick", row.ticks},
+          {"truth_events", std::move(truth)},
+          {"found_events", truth::TimelineJson(row.found)}};
+}
+
+Json RowsJson(const std::vector<EpisodeRow>& episodes, bool with_events) {
   Json rows = Json::array();
   for (const EpisodeRow& row : episodes) {
     const EventScore& s = row.total;
@@ -107,6 +120,7 @@ Json RowsJson(const std::vector<EpisodeRow>& episodes) {
                     {"collar_f", s.within_collar.AsHits().F1()},
                     {"hits_50", HitsJson(s.overlap_50)},
                     {"hits_50_of", std::move(by_event)}});
+    if (with_events) rows.back().update(ComparedJson(row));
   }
   return rows;
 }
@@ -122,7 +136,7 @@ Json MeanJson(const MeanOfKinds& mean) {
 
 }  // namespace
 
-Json ScoresJson(const std::vector<Score>& scores, double collar_s) {
+Json ScoresJson(const std::vector<Score>& scores, double collar_s, bool with_events) {
   Json grammars = Json::array();
   for (const Score& s : scores) {
     Json events = Json::array();
@@ -138,7 +152,7 @@ Json ScoresJson(const std::vector<Score>& scores, double collar_s) {
                         {"total", EventScoreJson(s.total)},
                         {"mean_of_events", MeanJson(s.mean)},
                         {"events", std::move(events)},
-                        {"rows", RowsJson(s.rows)}});
+                        {"rows", RowsJson(s.rows, with_events)}});
   }
   return {{"collar_s", collar_s}, {"grammars", std::move(grammars)}};
 }

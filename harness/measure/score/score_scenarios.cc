@@ -29,8 +29,9 @@ struct ScenarioOnWire {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Confirmed, of, confirmed)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evaluation, by_event, differences)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EpisodeToScore::Bands, begin, end)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EpisodeToScore, scenario, ticks, truth, found, ignored,
-                                   by_definitions, by_claims, failure, notes, covers, cpu_s)
+                                   by_definitions, by_claims, failure, notes, covers, cpu_s, bands)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioOnWire, episodes, problem, is_bad_input)
 
 namespace {
@@ -86,6 +87,27 @@ Result<grammar::Timeline> Find(const ScoreRequest& request, const Source& source
   return found;
 }
 
+/// Of each event of the first timeline the bands of its boundaries: those of the events of the
+/// others with its label that overlap it.
+std::vector<EpisodeToScore::Bands> BandsOf(const std::vector<grammar::Timeline>& possible) {
+  std::vector<EpisodeToScore::Bands> bands;
+  for (const grammar::NamedEvent& event : possible.front().events) {
+    const auto [begin, end] = event.interval;
+    EpisodeToScore::Bands& band = bands.emplace_back();
+    band = {.begin = {begin, begin}, .end = {end, end}};
+    for (const grammar::Timeline& other : possible)
+      for (const grammar::NamedEvent& same : other.events) {
+        const auto [from, to] = same.interval;
+        if (same.event != event.event || from >= end || to <= begin ||
+            same.Label() != event.Label())
+          continue;
+        band.begin = {std::min(band.begin.begin, from), std::max(band.begin.end, from)};
+        band.end = {std::min(band.end.begin, to), std::max(band.end.end, to)};
+      }
+  }
+  return bands;
+}
+
 /// One episode per source, all with the same truth: who does not define a kind of event, or
 /// misspells it, has missed all such events.
 ScenarioOnWire Played(const ScoreRequest& request) {
@@ -106,9 +128,10 @@ ScenarioOnWire Played(const ScoreRequest& request) {
        truth::PossibleTimelines(scenario.scene, run.recording, end))
     possible.push_back(Scored(truth, request.events));
   ScenarioOnWire sent;
+  const std::vector<EpisodeToScore::Bands> bands = BandsOf(possible);
   for (const Source& source : request.asking->sources) {
     EpisodeToScore& one = sent.episodes.emplace_back();
-    one = {.scenario = request.id, .ticks = end, .truth = possible.front()};
+    one = {.scenario = request.id, .ticks = end, .truth = possible.front(), .bands = bands};
     const Result<grammar::Timeline> found = Find(request, source, *episode, one);
     if (!found) return unread(found.error());
     one.found = Scored(*found, request.events);
