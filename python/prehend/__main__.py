@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""python3 -m prehend COMMAND ..: what the package adds to the program."""
+import importlib
+import sys
+
+from .errors import Error
+
+COMMANDS = {  # name: module, whose main(arguments) returns the exit code
+    "baseline": "baselines",
+    "benchmark": "benchmark",
+    "dataset": "dataset",
+}
+
+
+def main(arguments):
+    if not arguments or arguments[0] not in COMMANDS:
+        print(f"usage: python3 -m prehend {'|'.join(sorted(COMMANDS))} ..", file=sys.stderr)
+        return 0 if arguments and arguments[0] in ("-h", "--help") else 2
+    try:
+        return importlib.import_module("." + COMMANDS[arguments[0]], __package__).main(arguments[1:]) or 0
+    except Error as error:
+        print(f"prehend: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Recipes and the table, without playing: what is drawn, what is held out, what is counted."""
+import copy
+import json
+import pathlib
+import tempfile
+import unittest
+
+from prehend import EpisodeError, benchmark, datasheet, recipe, robustness, scenes
+
+HASHED = recipe.read(recipe.HERE / "tabletop.yaml")
+
+
+def drawn(count):
+    """Episodes that can be written, as the generator draws them."""
+    for index in range(count):
+        for attempt in range(20):
+            try:
+                text, words, _ = scenes.written(*HASHED, index, attempt)
+            except scenes.Unplayable:
+                continue
+            yield index, text, words
+            break
+
+
+class Recipe(unittest.TestCase):
+    def test_sixty_things_and_each_style_has_some(self):
+        things = recipe.things()
+        self.assertEqual(len(things), 60)
+        for style in set(HASHED[0]["style"]) - recipe.ON_HANDLES:
+            self.assertGreaterEqual(sum(recipe.fits(style, one) for one in things.values()), 2, style)
+
+    def test_the_order_of_words_means_nothing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "r.yaml")
+            path.write_text("recipe: 1\nhand: {right: 8, left: 2}   # as it is\nname: tabletop\n", encoding="utf-8")
+            self.assertEqual(recipe.read(path)[1], HASHED[1])
+            path.write_text("recipe: 1\nhand: {right: 7, left: 3}\n", encoding="utf-8")
+            self.assertNotEqual(recipe.read(path)[1], HASHED[1])
+            for wrong in ("recipe: 2\n", "recipe: 1\nlayuot: {kitchen: 1}\n", "recipe: 1\nlayout: [kitchen]\n", "recipe: 1\npace: {mean: 1}\n", "- 1\n"):
+                path.write_text(wrong, encoding="utf-8")
+                with self.assertRaises(EpisodeError, msg=wrong):
+                    recipe.read(path)
+
+    def test_numbers_are_those_of_every_machine(self):
+        draw = recipe.Draw("a", 1)
+        self.assertEqual([round(draw.unit(), 12) for _ in range(2)], [0.959823643934, 0.915954946785])
+        self.assertEqual(list(drawn(12)), list(drawn(12)))
+
+    def test_counts_are_those_of_the_recipe(self):
+        rows = [{"words": recipe.words(*HASHED, index)} for index in range(4000)]
+        for word, (square, freedom, chance) in datasheet.chi_square(HASHED[0], rows).items():
+            self.assertGreater(chance, 0.001, (word, square, freedom))
+        self.assertGreater(sum(row["words"]["outcome"] != "success" for row in rows), 1000, "a quarter fails")
+
+    def test_nothing_that_is_held_out_is_trained_on(self):
+        seen, held = set(), {axis: set(names) for axis, names in HASHED[0]["held_out"].items()}
+        for index, text, words in drawn(300):
+            role, asks = recipe.role(*HASHED, index, words)
+            seen |= {(role, ask) for ask in asks} | {(role, "")}
+            if role == "test":
+                continue
+            for axis, names in held.items():
+                self.assertFalse(names & set(words[axis] if isinstance(words[axis], list) else [words[axis]]), (index, axis))
+            for thing in held["thing"]:
+                self.assertNotIn(f"  {thing}:", text, index)
+        self.assertEqual({ask for role, ask in seen if role == "test"}, {"", *recipe.QUESTIONS})
+        self.assertTrue({("train", ""), ("dev", "")} <= seen)
+
+
+class Table(unittest.TestCase):
+    def test_a_true_event_is_taken_once(self):
+        self.assertEqual(benchmark.hits([(0, 1)], [(0, 1), (0, 1)], 0.5), 1)
+        self.assertEqual(benchmark.hits([(0, 1), (2, 3)], [(2.1, 3), (0, 0.4)], 0.5), 1)
+        self.assertEqual(benchmark.hits([(0, 1)], [(0, 0.4)], 0.25), 1)
+
+    def test_labels_of_another_hash_are_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "labels_test.csv")
+            path.write_text("episode,event\n", encoding="utf-8")
+            with self.assertRaises(EpisodeError):
+                benchmark.read_labels(path, "test", {"sha256": {"held_out/labels_test.csv": "0" * 64}})
+
+    def test_changes_keep_what_they_say(self):
+        lines = [{"episode": "e", "ticks_per_second": 480, "entities": {"cup": {"centre_m": [0, 0.1, 0]}, "hand": {"hand": True}}}]
+        lines += [{"tick": tick, "samples": {"cup": {"at_m": [0.1, 0.2, 0.3], "quat_wxyz": [0.5, 0.5, 0.5, 0.5], "w_rad_per_s": [1, 2, 3]}},
+                   "hands": {"hand": {"ahead": [1, 0, 0], "collision_spheres_m": [[0, 1, 2, 0.01]]}}, "touches": []} for tick in range(2, 100, 8)]
+        lines.append({"end_tick": 100})
+
+        def after(*changes):
+            now = iter(copy.deepcopy(lines))
+            for change in changes:
+                now = change(now)
+            return list(now)
+        self.assertEqual(after(robustness.mirrored, robustness.mirrored), lines)
+        one = after(robustness.turned)[1]["samples"]["cup"]["at_m"]
+        self.assertAlmostEqual(one[0] ** 2 + one[1] ** 2, 0.05)
+        slow = after(robustness.slow)
+        self.assertEqual([line["tick"] for line in slow[1:-1]], [2, 26, 50, 74, 98])
+        self.assertEqual(after(robustness.noisy), after(robustness.noisy))
+        self.assertNotEqual(after(robustness.noisy)[1], lines[1])
+        json.dumps(slow)
+
+
+if __name__ == "__main__":
+    unittest.main()
