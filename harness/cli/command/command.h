@@ -69,6 +69,7 @@ Command ReportCommand();
 Command QueryCommand();
 Command SweepCommand();
 Command MarginsCommand();
+Command CoverageCommand();
 Command FigureCommand();
 Command TryCommand();
 Command WatchCommand();

@@ -107,21 +107,23 @@ class Clauses {
   /// A sentence about one comparison, region, test or reference, as it was at the frame.
   Reason Told(const Clause& clause, const Viewpoint& at);
 
-  std::string Time(grammar::FrameNumber frame);
-  double Seconds(grammar::Tick ticks) const {
-    return static_cast<double>(ticks) / static_cast<double>(past_.entity_table().ticks_per_second);
-  }
-
- private:
+  /// What a comparison or a region compares at the frame, SI units.
   struct Measured {
     double value = 0;
     double limit = 0;
     grammar::Dimension dimension;
     std::string of;  ///< " from the centre"
   };
+  std::optional<Measured> Measure(grammar::NodeId node, const Viewpoint& at);
+
+  std::string Time(grammar::FrameNumber frame);
+  double Seconds(grammar::Tick ticks) const {
+    return static_cast<double>(ticks) / static_cast<double>(past_.entity_table().ticks_per_second);
+  }
+
+ private:
   /// Nobody knows the value, as something in it is not tracked.
   bool IsNotTracked(grammar::NodeId node, const Viewpoint& at);
-  std::optional<Measured> Measure(grammar::NodeId node, const Viewpoint& at);
   std::vector<Reading::Sample> Course(grammar::NodeId node, const Viewpoint& at);
   Reason Boundary(grammar::InstanceId instance, const grammar::CandidateOutcome& outcome, bool end,
                   const Follow& follow);
