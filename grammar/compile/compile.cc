@@ -36,6 +36,7 @@ class Compiler {
   Compiler(const GrammarText& grammar, const Includer& includer, const Overrides& overrides,
            const std::vector<std::string>& known)
       : includer_(includer), overrides_(overrides), known_(known) {
+    symbols_.who_defines = [this](std::string_view name) { return WhoDefines(name); };
     Read(grammar);
   }
 
@@ -46,11 +47,11 @@ class Compiler {
     CollectHeads();
     CollectDefines();
     CheckLawHeads();
-    if (diagnostics_.empty()) CheckDefines();
-    if (diagnostics_.empty()) LowerAll();
+    CheckDefines();
+    LowerAll();
     if (diagnostics_.empty()) Order();
     if (!diagnostics_.empty())
-      return {.program = nullptr, .diagnostics = std::move(diagnostics_), .warnings = {}};
+      return {.program = nullptr, .diagnostics = InOrder(), .warnings = {}};
     RequireSight(program_);
     ChooseGuards(program_);
     warnings_ = std::move(symbols_.warnings);
@@ -63,6 +64,41 @@ class Compiler {
   }
 
  private:
+  // By file and line, without what only follows from another mistake.
+  Diagnostics InOrder() {
+    std::erase_if(diagnostics_, [](const Diagnostic& d) { return d.message.empty(); });
+    const auto file = [this](const Diagnostic& d) {
+      const auto found = symbols_.files.find(d.file);
+      return found == symbols_.files.end() ? -1 : found->second;
+    };
+    std::ranges::stable_sort(diagnostics_, {},
+                             [&](const Diagnostic& d) { return std::pair(file(d), d.place.line); });
+    const auto is_same = [](const Diagnostic& a, const Diagnostic& b) {
+      return a.file == b.file && a.place.line == b.place.line && a.place.column == b.place.column &&
+             a.message == b.message;
+    };
+    const auto again = std::ranges::unique(diagnostics_, is_same);
+    diagnostics_.erase(again.begin(), again.end());
+    return std::move(diagnostics_);
+  }
+
+  // The grammar of the library that has an event of this name: of several the one with the
+  // shortest name.
+  std::string WhoDefines(std::string_view name) {
+    for (std::size_t& i = looked_into_; i < known_.size(); ++i) {
+      const std::optional<GrammarText> text = includer_ ? includer_(known_[i]) : std::nullopt;
+      Diagnostics ignored;
+      if (!text) continue;
+      for (const Definition& definition : Parse(*text, ignored).definitions) {
+        std::string& owner = owners_[definition.name];
+        const bool is_shorter = owner.empty() || known_[i].size() < owner.size();
+        if (definition.is_event && is_shorter) owner = known_[i];
+      }
+    }
+    const auto found = owners_.find(name);
+    return found == owners_.end() ? "" : found->second;
+  }
+
   void Complain(const Source& source, Place place, std::string message, std::string hint = {}) {
     if (diagnostics_.size() >= kMostDiagnostics) return;
     diagnostics_.push_back(DiagnosticAt(source.text.file, source.text.text, place,
@@ -78,6 +114,8 @@ class Compiler {
 
   void ReadFile(const GrammarText& grammar, std::set<std::string, std::less<>>& seen) {
     Source source{grammar, Parse(grammar, diagnostics_)};
+    symbols_.broken.merge(source.file.broken);
+    symbols_.is_incomplete |= source.file.is_incomplete;
     seen.insert({source.file.name, grammar.file});
     for (const ast::Use& use : source.file.uses) {
       if (use.is_path && !CheckPath(source, use)) continue;
@@ -105,6 +143,7 @@ class Compiler {
         Complain(source, use.place,
                  "there is no grammar '" + (use.variant.empty() ? use.name : name) + "' to use",
                  use.is_path ? "looked for " + name : Suggest(name, known_));
+        symbols_.is_incomplete = true;
       } else {
         ReadFile(*used, seen);
       }
@@ -256,8 +295,14 @@ class Compiler {
     rule.of_form = FormOf(definition);  // others must know before it is lowered
     if (definition.form == Definition::Form::kRepeat && definition.gap)
       rule.As<WhileRule>().at_least = 1;
+    const std::size_t before = diagnostics_.size();
     CheckRoles(source, definition.roles);
     CheckSymmetry(source, definition);
+    if (diagnostics_.size() != before) {
+      symbols_.rules.erase(definition.name);
+      symbols_.broken.insert(definition.name);
+      return;
+    }
     for (const ast::Role& role : definition.roles)
       rule.roles.push_back({role.name, role.class_name});
     program_.rules.push_back(std::move(rule));
@@ -299,6 +344,8 @@ class Compiler {
           Complain(*located.source, located.definition->place,
                    "'" + define.name + "' is defined twice",
                    FirstAt(source.text.file, define.place));
+          symbols_.rules.erase(rule);
+          symbols_.defines.try_emplace(define.name, DefineSource{&source.text, &define});
         } else if (IsBuiltin(define.name)) {
           Complain(source, define.place, "'" + define.name + "' means something already",
                    "it is built in; choose another name");
@@ -315,7 +362,11 @@ class Compiler {
           Complain(source, define.place, "'" + define.name + "' is defined twice",
                    FirstAt(first->second.text->file, first->second.define->place));
         }
+        const std::size_t before = diagnostics_.size();
         CheckParameters(source, define);
+        if (diagnostics_.size() == before) continue;
+        symbols_.broken.insert(define.name);
+        symbols_.defines.erase(define.name);
       }
     }
     CheckParamsAgainstDefines();
@@ -344,7 +395,9 @@ class Compiler {
             laws.try_emplace(law.name, FirstAt(source.text.file, law.place));
         if (!is_new)
           Complain(source, law.place, "the law '" + law.name + "' is defined twice", first->second);
+        const std::size_t before = diagnostics_.size();
         CheckRoles(source, law.roles);
+        if (diagnostics_.size() != before) broken_laws_.insert(&law);
       }
     }
   }
@@ -383,10 +436,15 @@ class Compiler {
                       {},
                       {},
                       {},
-                      {}};
+                      {},
+                      {},
+                      symbols_.broken,
+                      symbols_.is_incomplete,
+                      symbols_.who_defines};
       scratch.rules.resize(program_.rules.size());
       scratch.nodes.clear();
       const RuleId body = scratch.rules.push_back({});
+      const std::size_t before = diagnostics_.size();
       Rule& rule = scratch.rules[body];
       rule.place = source.define->place;
       for (const ast::Role& parameter : source.define->parameters) {
@@ -396,8 +454,10 @@ class Compiler {
       }
       Lowering(symbols, body, *source.text, diagnostics_).Check(source);
       symbols_.used_params.merge(symbols.used_params);
-      if (!diagnostics_.empty()) return;
+      if (diagnostics_.size() != before) symbols_.broken.insert(name);
     }
+    std::erase_if(symbols_.defines,
+                  [this](const auto& define) { return symbols_.broken.contains(define.first); });
   }
 
   void CheckRoles(const Source& source, const std::vector<ast::Role>& roles) {
@@ -445,6 +505,7 @@ class Compiler {
     }
     for (const Source& source : sources_) {
       for (const ast::Law& written : source.file.laws) {
+        if (broken_laws_.contains(&written)) continue;
         std::optional<Law> law = LowerLaw(symbols_, source.text, written, diagnostics_);
         if (law) program_.laws.push_back(std::move(*law));
       }
@@ -552,6 +613,9 @@ class Compiler {
   Diagnostics diagnostics_;
   Diagnostics warnings_;
   std::deque<Source> sources_;
+  std::map<std::string, std::string, std::less<>> owners_;  // of events of the library
+  std::size_t looked_into_ = 0;                             // of known_
+  std::set<const ast::Law*> broken_laws_;
   std::map<std::string, std::string> variants_;  // `use name from ..`: what stands for the name
   struct Located {
     const Source* source;

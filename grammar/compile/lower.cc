@@ -62,6 +62,13 @@ bool IsOverInterval(std::string_view name) {
   return std::ranges::count(SignalsOverIntervals(), name, &OverInterval::name) > 0;
 }
 
+Diagnostic Symbols::Unknown(std::string_view what, std::string_view name, std::string hint) const {
+  if (is_incomplete || broken.contains(name)) return {};
+  const std::string owner = who_defines ? who_defines(name) : "";
+  if (!owner.empty()) hint = "it is in a grammar of the library: use " + owner;
+  return {.message = "unknown " + std::string(what) + " " + Quoted(name), .hint = std::move(hint)};
+}
+
 bool Symbols::IsParamIn(std::string_view file, std::string_view name) const {
   const auto param = params.find(name);
   if (param == params.end()) return false;
@@ -355,9 +362,10 @@ Lowering::Typed Lowering::LowerName(const Expr& expr) {
                "for example: supported_by(object, any)");
   }
   const bool is_call = FindBuiltin(expr.text) != nullptr || symbols_.rules.contains(expr.text);
-  return Bad(expr.place, "unknown name " + Quoted(expr.text),
-             is_call ? "name the entity: " + expr.text + "(object)"
-                     : Suggest(expr.text, KnownNames(false)));
+  const Diagnostic unknown = symbols_.Unknown("name", expr.text,
+                                              is_call ? "name the entity: " + expr.text + "(object)"
+                                                      : Suggest(expr.text, KnownNames(false)));
+  return Bad(expr.place, unknown.message, unknown.hint);
 }
 
 Lowering::Typed Lowering::LowerUnary(const Expr& expr) {

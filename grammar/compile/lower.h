@@ -4,6 +4,7 @@
 // tests/grammar/compile/compile_test.cc
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -42,7 +43,13 @@ struct Symbols {
   std::set<int> used_params;
   std::set<std::string, std::less<>> used_defines;
   Diagnostics warnings = {};
+  /// Names of what is wrong itself: that they are unknown is no further mistake.
+  std::set<std::string, std::less<>> broken = {};
+  bool is_incomplete = false;                                     ///< so may every unknown name be
+  std::function<std::string(std::string_view)> who_defines = {};  ///< a grammar to `use`, or ""
 
+  /// What to say of a name that nobody knows; no message: nothing.
+  Diagnostic Unknown(std::string_view what, std::string_view name, std::string hint) const;
   /// A parameter of this file or of one that it uses; another file's may be called like something
   /// of its own.
   bool IsParamIn(std::string_view file, std::string_view name) const;

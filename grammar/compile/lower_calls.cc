@@ -83,8 +83,9 @@ Lowering::Typed Lowering::LowerCall(const Expr& expr) {
   }
   if (const Operator* builtin = FindBuiltin(expr.text, expr.args.size()))
     return LowerBuiltin(*builtin, expr);
-  return Bad(expr.place, "unknown event, condition or signal " + Quoted(expr.text),
-             Suggest(expr.text, KnownNames(true)));
+  const Diagnostic unknown = symbols_.Unknown("event, condition or signal", expr.text,
+                                              Suggest(expr.text, KnownNames(true)));
+  return Bad(expr.place, unknown.message, unknown.hint);
 }
 
 // `at least 3 of grasping(hand, any)`: so many that play `any` do so at once.

@@ -80,7 +80,9 @@ class LawLowering {
     }
     const auto found = symbols_.rules.find(expr.text);
     if (found == symbols_.rules.end()) {
-      Complain(expr.place, "unknown event " + Quoted(expr.text), Suggest(expr.text, EventNames()));
+      const Diagnostic unknown =
+          symbols_.Unknown("event", expr.text, Suggest(expr.text, EventNames()));
+      Complain(expr.place, unknown.message, unknown.hint);
       return std::nullopt;
     }
     const Rule& rule = symbols_.program.rules[found->second];

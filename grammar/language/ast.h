@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -197,6 +198,8 @@ struct File {
   std::vector<Define> defines;
   std::vector<Definition> definitions;
   std::vector<Law> laws;
+  std::set<std::string> broken;  ///< names of what could not be read
+  bool is_incomplete = false;    ///< nor is it known what else is missing
 };
 
 std::string Dump(const Expr& expr);

@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cstddef>
+#include <optional>
 
 namespace prehend::grammar {
 namespace {
@@ -77,6 +78,9 @@ class Lexer {
         line_begin_ = ++at_;
       } else if (Peek() == ' ' || Peek() == '\t' || Peek() == '\r') {
         ++at_;
+      } else if (Peek() == '/' && Peek(1) == '/') {
+        Complain("unexpected '//'", "a comment begins with '#'");
+        while (at_ < text().size() && Peek() != '\n') ++at_;
       } else if (Peek() == '#') {
         while (at_ < text().size() && Peek() != '\n') ++at_;
       } else {
@@ -113,19 +117,24 @@ class Lexer {
     double number = 0;
     const char* begin = text().data() + at_;
     const auto [end, error] = std::from_chars(begin, text().data() + text().size(), number);
-    if (error != std::errc()) Complain("this number does not fit a double");
     Take(Token::Kind::kNumber, static_cast<std::size_t>(end - begin), number);
+    if (error == std::errc()) return;
+    Complain("this number does not fit a double", {}, tokens_.back().place);
+    Take(Token::Kind::kBad, 0);
   }
 
   void TakeText() {
     std::size_t length = 1;
     while (at_ + length < text().size() && Peek(length) != '"' && Peek(length) != '\n') ++length;
     const bool closed = Peek(length) == '"' && at_ + length < text().size();
-    if (!closed) Complain("this quote is not closed on its line");
+    const Place place = Here();
     tokens_.push_back(
         {Token::Kind::kText, std::string(text().substr(at_ + 1, length - 1)), Here()});
     at_ += length + (closed ? 1 : 0);
     behind_last_ = Here();
+    if (closed) return;
+    Complain("this quote is not closed on its line", {}, place);
+    Take(Token::Kind::kBad, 0);
   }
 
   void TakeSymbol() {
@@ -137,10 +146,26 @@ class Lexer {
     if (kOneByte.find(Peek()) != std::string_view::npos) return Take(Token::Kind::kSymbol, 1);
     const std::size_t length = Utf8Length(text(), at_);
     const std::string found(text().substr(at_, length));
+    if (found == ".") return TakeDot();
     Complain(IsOtherBlank(found) ? "unexpected character that looks like a blank, but is none"
                                  : "unexpected character '" + found + "'",
              HintFor(found));
     while (text().substr(at_, length) == found) at_ += length;  // `&&` is one mistake
+    if (!IsOtherBlank(found) && found != ";") Take(Token::Kind::kBad, 0);
+  }
+
+  // `object.speed` of other languages; `hand.position.z` is one mistake.
+  void TakeDot() {
+    const std::string before = tokens_.empty() ? "" : tokens_.back().text;
+    const bool is_name = !before.empty() && IsLetter(before[0]) && IsLetter(Peek(1));
+    if (tokens_.size() < 2 || tokens_[tokens_.size() - 2].kind != Token::Kind::kBad) {
+      ++at_;
+      const std::string signal(text().substr(at_, NameLength()));
+      --at_;
+      Complain("unexpected character '.'",
+               is_name ? "a signal is asked of an entity: " + signal + "(" + before + ")" : "");
+    }
+    Take(Token::Kind::kBad, 1);
   }
 
   static bool IsOtherBlank(std::string_view found) {
@@ -157,14 +182,16 @@ class Lexer {
     if (found == "^") return "units are quotients: m/s/s";
     if (IsOtherBlank(found)) return "separate with plain spaces";
     if (found == "\u201C" || found == "\u201D") return "quotes are straight: \"";
+    if (found == "{" || found == "}")
+      return "nothing stands around a definition: event e(..) while F";
     if (found == ";") return "nothing ends a line or a definition";
     return {};
   }
 
-  void Complain(std::string message, std::string hint = {}) {
+  void Complain(std::string message, std::string hint = {}, std::optional<Place> place = {}) {
     if (diagnostics_.size() >= kMostDiagnostics) return;
-    diagnostics_.push_back(
-        DiagnosticAt(grammar_.file, text(), Here(), std::move(message), std::move(hint)));
+    diagnostics_.push_back(DiagnosticAt(grammar_.file, text(), place.value_or(Here()),
+                                        std::move(message), std::move(hint)));
   }
 
   const GrammarText& grammar_;

@@ -12,7 +12,7 @@
 namespace prehend::grammar {
 
 struct Token {
-  enum class Kind { kName, kNumber, kText, kSymbol, kEnd };
+  enum class Kind { kName, kNumber, kText, kSymbol, kBad, kEnd };  // kBad: was complained of
   Kind kind = Kind::kEnd;
   std::string text;  ///< of a kText, what is between the quotes
   Place place;

@@ -28,9 +28,14 @@ class Parser : public LawParser {
       SkipToItem();
     }
     while (!AtEnd()) {
+      const std::size_t start = Position();
+      const bool is_use = At("use");
       try {
         ParseItem(file);
       } catch (const ParseStop&) {
+        const std::string name = NameOfItem(start);
+        file.is_incomplete |= is_use || name.empty();
+        file.broken.insert(name);
         SkipToItem();
       }
     }
@@ -48,10 +53,26 @@ class Parser : public LawParser {
   }
 
  private:
+  template <typename T>
+  T Whole(T item) {
+    if (!AtEnd() && !AtItem()) FailBetween();
+    return item;
+  }
+
+  [[noreturn]] void FailBetween() {
+    Fail("expected 'use', 'param', 'define', 'condition', 'event' or 'law', found " + Found(),
+         At(",") && Peek(1).kind == Token::Kind::kNumber ? "decimals have a point: 2.5"
+                                                         : WordHint());
+  }
+
   void ParseItem(ast::File& file) {
     const Place place = Peek().place;
     if (Accept("use")) {
       ParseUse(file, place);
+      while (At(",") && Peek(1).kind == Token::Kind::kName) {
+        Complain(Peek().place, "a 'use' names one grammar", "a line for each: use " + Peek(1).text);
+        ParseUse(file, Take().place);
+      }
     } else if (Accept("param")) {
       const Place name_place = Peek().place;
       std::string name = ExpectName("a parameter's name");
@@ -63,19 +84,17 @@ class Parser : public LawParser {
         FailAt(place, "more than " + std::to_string(kMaxDefinitions) + " definitions in one file");
       }
       if (Accept("define")) {
-        file.defines.push_back(ParseDefine());
+        file.defines.push_back(Whole(ParseDefine()));
       } else if (Accept("law")) {
-        file.laws.push_back(ParseLaw());
+        file.laws.push_back(Whole(ParseLaw()));
       } else {
-        file.definitions.push_back(ParseDefinition());
+        file.definitions.push_back(Whole(ParseDefinition()));
       }
     } else if (Accept("grammar")) {
       FailAt(place, "a second 'grammar' line",
              "one file holds one grammar; `use NAME` reads another one");
     } else {
-      Fail("expected 'use', 'param', 'define', 'condition', 'event' or 'law', found " + Found(),
-           At(",") && Peek(1).kind == Token::Kind::kNumber ? "decimals have a point: 2.5"
-                                                           : WordHint());
+      FailBetween();
     }
   }
 
@@ -189,7 +208,7 @@ class Parser : public LawParser {
           "'otherwise', "
           "found " +
               Found(),
-          WordHint());
+          WordHint(true));
     }
   }
 
@@ -500,7 +519,7 @@ ast::File Parse(const GrammarText& grammar, Diagnostics& diagnostics) {
     return {};
   }
   Parser parser(grammar, diagnostics);
-  if (diagnostics.size() != before) return {};
+  if (diagnostics.size() != before && diagnostics.back().place.line == 0) return {};  // no text
   return parser.ParseFile();
 }
 

@@ -22,7 +22,10 @@ struct Habit {
   std::string_view found;
   std::string_view hint;
 };
-constexpr std::array<Habit, 13> kHabits = {{
+constexpr std::array<Habit, 16> kHabits = {{
+    {"sequence", "one after the other: compose a: E, b: F where a before b"},
+    {"seq", "one after the other: compose a: E, b: F where a before b"},
+    {"import", "another grammar is used: use NAME"},
     {"for", "how long it must hold at least: lasting 2 s"},
     {"within", "a deadline belongs to from A to B: from A to B within 2 s"},
     {"if", "what must hold: while F"},
@@ -82,9 +85,14 @@ void TokenReader::Fail(std::string message, std::string hint) {
   FailAt(Peek().place, std::move(message), std::move(hint));
 }
 
-void TokenReader::FailAt(Place place, std::string message, std::string hint) {
+void TokenReader::Complain(Place place, std::string message, std::string hint) {
+  if (diagnostics_.size() >= kMostDiagnostics) return;
   diagnostics_.push_back(
       DiagnosticAt(grammar_.file, grammar_.text, place, std::move(message), std::move(hint)));
+}
+
+void TokenReader::FailAt(Place place, std::string message, std::string hint) {
+  if (Peek().kind != Token::Kind::kBad) Complain(place, std::move(message), std::move(hint));
   throw ParseStop{};
 }
 
@@ -117,9 +125,11 @@ std::string TokenReader::ExpectName(std::string_view what) {
   return Take().text;
 }
 
-std::string TokenReader::WordHint() const {
+std::string TokenReader::WordHint(bool is_form) const {
   const std::string_view found =
       At("=") && At(">", 1) ? std::string_view("=>") : std::string_view(Peek().text);
+  if (is_form && (found == "=" || found == ":" || At("(", 1)) && found != "sequence")
+    return "say what must hold: while F, or from A to B";
   const auto habit = std::find_if(kHabits.begin(), kHabits.end(),
                                   [&](const Habit& h) { return h.found == found; });
   if (habit != kHabits.end()) return std::string(habit->hint);
@@ -129,8 +139,19 @@ std::string TokenReader::WordHint() const {
   return near.empty() || near == Peek().text ? std::string() : "did you mean '" + near + "'?";
 }
 
+bool TokenReader::AtItem() const {
+  return Peek().kind == Token::Kind::kName && IsItemWord(Peek().text);
+}
+
 void TokenReader::SkipToItem() {
-  while (!AtEnd() && (Peek().kind != Token::Kind::kName || !IsItemWord(Peek().text))) ++at_;
+  while (!AtEnd() && !AtItem()) ++at_;
+}
+
+std::string TokenReader::NameOfItem(std::size_t position) const {
+  if (!IsItemWord(tokens_[position].text)) return "";
+  while (position < at_ && IsItemWord(tokens_[position].text)) ++position;
+  const Token& token = tokens_[position];
+  return token.kind == Token::Kind::kName && !IsReserved(token.text) ? token.text : "";
 }
 
 }  // namespace prehend::grammar

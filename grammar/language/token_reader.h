@@ -32,6 +32,7 @@ class TokenReader {
   bool Accept(std::string_view text);
   std::string Found() const;
 
+  void Complain(Place place, std::string message, std::string hint = {});
   [[noreturn]] void Fail(std::string message, std::string hint = {});
   [[noreturn]] void FailAt(Place place, std::string message, std::string hint = {});
   void Expect(std::string_view text, std::string hint = {});
@@ -39,10 +40,14 @@ class TokenReader {
   /// The ')' of this '('.
   void ExpectToClose(const Token& bracket);
   std::string ExpectName(std::string_view what);
-  /// How it is said here when the next token is a word of other languages; "did you mean 'event'?"
-  /// when it is nearly one of this language.
-  std::string WordHint() const;
+  /// How it is said here, or where a form must begin, when the next token is a word of other
+  /// languages; "did you mean 'event'?" when it is nearly one of this language.
+  std::string WordHint(bool is_form = false) const;
+  bool AtItem() const;
   void SkipToItem();
+  std::size_t Position() const { return at_; }
+  /// What the item that begins there defines; "" if it does not come so far.
+  std::string NameOfItem(std::size_t position) const;
   void SkipToEnd() { at_ = tokens_.size() - 1; }
 
  private:
