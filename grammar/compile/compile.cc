@@ -15,6 +15,7 @@
 #include "grammar/compile/lower.h"
 #include "grammar/compile/lower_definition.h"
 #include "grammar/compile/lower_law.h"
+#include "grammar/compile/mistakes.h"
 #include "grammar/language/parser.h"
 #include "grammar/program/check_ids.h"
 
@@ -26,17 +27,12 @@ using ast::Definition;
 constexpr std::size_t kMaxFiles = 64;
 constexpr std::size_t kMaxRules = 1000;
 
-struct Source {
-  GrammarText text;
-  ast::File file;
-};
-
 class Compiler {
  public:
   Compiler(const GrammarText& grammar, const Includer& includer, const Overrides& overrides,
            const std::vector<std::string>& known)
       : includer_(includer), overrides_(overrides), known_(known) {
-    symbols_.who_defines = [this](std::string_view name) { return WhoDefines(name); };
+    symbols_.who_defines = WhoDefines(includer, known);
     Read(grammar);
   }
 
@@ -51,11 +47,13 @@ class Compiler {
     LowerAll();
     if (diagnostics_.empty()) Order();
     if (!diagnostics_.empty())
-      return {.program = nullptr, .diagnostics = InOrder(), .warnings = {}};
+      return {.program = nullptr,
+              .diagnostics = InOrder(std::move(diagnostics_), symbols_),
+              .warnings = {}};
     RequireSight(program_);
     ChooseGuards(program_);
     warnings_ = std::move(symbols_.warnings);
-    WarnOfUnused();
+    WarnOfUnused(sources_.back(), symbols_, warnings_);
     program_.warnings = warnings_;
     CheckIds(program_);
     return {.program = std::make_shared<const Program>(std::move(program_)),
@@ -64,41 +62,6 @@ class Compiler {
   }
 
  private:
-  // By file and line, without what only follows from another mistake.
-  Diagnostics InOrder() {
-    std::erase_if(diagnostics_, [](const Diagnostic& d) { return d.message.empty(); });
-    const auto file = [this](const Diagnostic& d) {
-      const auto found = symbols_.files.find(d.file);
-      return found == symbols_.files.end() ? -1 : found->second;
-    };
-    std::ranges::stable_sort(diagnostics_, {},
-                             [&](const Diagnostic& d) { return std::pair(file(d), d.place.line); });
-    const auto is_same = [](const Diagnostic& a, const Diagnostic& b) {
-      return a.file == b.file && a.place.line == b.place.line && a.place.column == b.place.column &&
-             a.message == b.message;
-    };
-    const auto again = std::ranges::unique(diagnostics_, is_same);
-    diagnostics_.erase(again.begin(), again.end());
-    return std::move(diagnostics_);
-  }
-
-  // The grammar of the library that has an event of this name: of several the one with the
-  // shortest name.
-  std::string WhoDefines(std::string_view name) {
-    for (std::size_t& i = looked_into_; i < known_.size(); ++i) {
-      const std::optional<GrammarText> text = includer_ ? includer_(known_[i]) : std::nullopt;
-      Diagnostics ignored;
-      if (!text) continue;
-      for (const Definition& definition : Parse(*text, ignored).definitions) {
-        std::string& owner = owners_[definition.name];
-        const bool is_shorter = owner.empty() || known_[i].size() < owner.size();
-        if (definition.is_event && is_shorter) owner = known_[i];
-      }
-    }
-    const auto found = owners_.find(name);
-    return found == owners_.end() ? "" : found->second;
-  }
-
   void Complain(const Source& source, Place place, std::string message, std::string hint = {}) {
     if (diagnostics_.size() >= kMostDiagnostics) return;
     diagnostics_.push_back(DiagnosticAt(source.text.file, source.text.text, place,
@@ -574,47 +537,12 @@ class Compiler {
              hint.empty() ? "a rule may only use rules that do not use it" : hint);
   }
 
-  // In the grammar itself; a library may offer more than one uses.
-  void WarnOfUnused() {
-    const Source& own = sources_.back();
-    const auto warn = [&](Place place, std::string message, std::string hint) {
-      Diagnostic warning =
-          DiagnosticAt(own.text.file, own.text.text, place, std::move(message), std::move(hint));
-      warning.is_warning = true;
-      warnings_.push_back(std::move(warning));
-    };
-    for (const ast::Param& param : own.file.params) {
-      if (symbols_.used_params.contains(symbols_.params.find(param.name)->second)) continue;
-      warn(param.place, "the parameter '" + param.name + "' is not used",
-           "use it, or leave it out");
-    }
-    for (const ast::Define& define : own.file.defines) {
-      if (symbols_.used_defines.contains(define.name)) continue;
-      warn(define.place, "the definition '" + define.name + "' is not used",
-           "use it, or leave it out");
-    }
-    IdVector<RuleId, char> reached(program_.rules.size());
-    for (auto rule = program_.schedule.rbegin(); rule != program_.schedule.rend(); ++rule) {
-      if (!reached[*rule] && !program_.rules[*rule].printed) continue;
-      reached[*rule] = true;
-      for (const Reference& reference : program_.rules[*rule].references)
-        reached[reference.rule] = true;
-    }
-    for (const Definition& definition : own.file.definitions) {
-      if (reached[symbols_.rules.find(definition.name)->second]) continue;
-      warn(definition.place, "no event uses the condition '" + definition.name + "'",
-           "make it an event, use it, or leave it out");
-    }
-  }
-
   const Includer& includer_;
   const Overrides& overrides_;
   const std::vector<std::string>& known_;
   Diagnostics diagnostics_;
   Diagnostics warnings_;
   std::deque<Source> sources_;
-  std::map<std::string, std::string, std::less<>> owners_;  // of events of the library
-  std::size_t looked_into_ = 0;                             // of known_
   std::set<const ast::Law*> broken_laws_;
   std::map<std::string, std::string> variants_;  // `use name from ..`: what stands for the name
   struct Located {
