@@ -16,22 +16,26 @@ namespace {
 /// By how many degrees a body is turned about x, in time.
 using Degrees = std::function<double(double)>;
 
-std::string RowOf(double t_s, const char* name, double x, double y, double z, double degrees) {
+/// Before that it is rolled about its own z.
+std::string RowOf(double t_s, const char* name, double x, double y, double z, double degrees,
+                  double roll_degrees = 0) {
   // No tracker sees the same orientation twice.
   const double half = (degrees + 0.01 * std::sin(100 * t_s)) * std::numbers::pi / 360;
+  const double roll = roll_degrees * std::numbers::pi / 360;
   char text[200];
-  std::snprintf(text, sizeof text, "%.4f,%s,%.6f,%.6f,%.6f,%.8f,%.8f,0,0\n", t_s, name, x, y, z,
-                std::cos(half), std::sin(half));
+  std::snprintf(text, sizeof text, "%.4f,%s,%.6f,%.6f,%.6f,%.8f,%.8f,%.8f,%.8f\n", t_s, name, x, y,
+                z, std::cos(half) * std::cos(roll), std::sin(half) * std::cos(roll),
+                -std::sin(half) * std::sin(roll), std::cos(half) * std::sin(roll));
   return text;
 }
 
 /// The carried cup and a jar that stands on the table.
-std::string Csv(const Degrees& cup, double jar_degrees) {
+std::string Csv(const Degrees& cup, double jar_degrees, double cup_roll = 0) {
   std::string csv = "t,name,x,y,z,qw,qx,qy,qz\n";
   for (int i = 0; i <= 300; ++i) {
     const double t_s = i / 60.0;
     const Row at = CupAt(t_s), hand = HandAt(t_s);
-    csv += RowOf(t_s, "Mug", at.x, at.y, at.z, cup(t_s));
+    csv += RowOf(t_s, "Mug", at.x, at.y, at.z, cup(t_s), cup_roll);
     csv += RowOf(t_s, "Glove", hand.x, hand.y, hand.z, 0);
     csv += RowOf(t_s, "Jar", 0.5, -0.3, 0.77, jar_degrees);
   }
@@ -95,6 +99,19 @@ TEST_F(ImportRestPoses, WhatLiesOrIsUpsideDownMayDoSo) {
   EXPECT_EQ(Warnings(Always(0), 0, tall), "");
   EXPECT_NE(Warnings(Always(180), 0, tall).find("'cup' rests with its z axis 180 degrees away"),
             std::string::npos);
+}
+
+// Nothing lies on an edge of its box; what is as deep as wide may be round, and roll.
+TEST_F(ImportRestPoses, WhatLiesDoesSoOnASide) {
+  const std::string flat = Replaced(Map(), "[0.08, 0.08, 0.1]", "[0.08, 0.05, 0.1]");
+  const auto doubts = [&](double roll, const std::string& map) {
+    const Said said = ImportCsv(folder_, Csv(Always(90), 0, roll), map, {"--check"});
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    return said.err.find("'cup' rests with its z axis 90 degrees away") != std::string::npos;
+  };
+  for (const double roll : {0.0, 10.0, 90.0, 170.0}) EXPECT_FALSE(doubts(roll, flat)) << roll;
+  for (const double roll : {20.0, 45.0, 70.0, 110.0}) EXPECT_TRUE(doubts(roll, flat)) << roll;
+  EXPECT_FALSE(doubts(45, Map()));
 }
 
 TEST_F(ImportRestPoses, WhatSeemsToLieHasAnyAxesAsTheOthersHave) {

@@ -14,8 +14,11 @@
 namespace prehend::house {
 namespace {
 
-/// Of a hand that swings to and fro once a second.
-std::string SwingingCsv(double rate_hz, double noise_m = 0) {
+double SwingsOnceASecond(double t_s) { return 0.3 * std::sin(2 * M_PI * t_s); }
+
+/// Of a hand that swings to and fro.
+std::string SwingingCsv(double rate_hz, double noise_m = 0,
+                        double (*x_m)(double t_s) = SwingsOnceASecond) {
   std::string csv = "cup_x,cup_y,cup_z,hand_x,hand_y,hand_z\n";
   unsigned random = 1;
   const auto noise = [&] {  // roughly normal
@@ -28,8 +31,8 @@ std::string SwingingCsv(double rate_hz, double noise_m = 0) {
   };
   for (int i = 0; i < 6 * rate_hz; ++i) {
     char text[200];
-    std::snprintf(text, sizeof text, "0.3,0.2,0.75,%.6f,%.6f,%.6f\n",
-                  0.3 * std::sin(2 * M_PI * i / rate_hz) + noise(), 0.1 + noise(), 1 + noise());
+    std::snprintf(text, sizeof text, "0.3,0.2,0.75,%.6f,%.6f,%.6f\n", x_m(i / rate_hz) + noise(),
+                  0.1 + noise(), 1 + noise());
     csv += text;
   }
   return csv;
@@ -49,6 +52,22 @@ TEST(ImportWarnings, ASmoothPathDoesNotTremble) {
         ImportCsv(folder, SwingingCsv(std::stod(rate_hz)), SwingingMap(rate_hz), {"--check"});
     EXPECT_EQ(said.err.find("tremble"), std::string::npos) << rate_hz << ": " << said.err;
   }
+}
+
+// A hand that goes to and fro, by 60 cm in half a second, and rests for 0.4 s.
+TEST(ImportWarnings, AHandThatBrakesTremblesNoMoreThanWhereItRests) {
+  const auto folder = FreshFolder("import_warnings");
+  const auto trembles = [&](double noise_m) {
+    const std::string csv = SwingingCsv(25, noise_m, [](double t_s) {
+      const double turn = std::floor(t_s / 0.9), part = std::min(1.0, (t_s - 0.9 * turn) / 0.5);
+      const double way = part * part * (3 - 2 * part);
+      return 0.6 * (std::fmod(turn, 2) == 0 ? way : 1 - way);
+    });
+    return ImportCsv(folder, csv, SwingingMap("25"), {"--check"}).err.find("'hand' trembles by") !=
+           std::string::npos;
+  };
+  EXPECT_FALSE(trembles(0.0004));
+  EXPECT_TRUE(trembles(0.0015));
 }
 
 TEST(ImportWarnings, NoiseOnASmoothPathTremblesAndItsRemedyHelps) {

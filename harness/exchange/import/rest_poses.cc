@@ -27,6 +27,7 @@ constexpr double kLow_m = 0.03;    ///< above its lowest rest: higher it is held
 constexpr double kAtHand_m = 0.1;  ///< beyond the sphere around its box: nearer, a hand may hold it
 constexpr std::size_t kLeastLooks = 2;  ///< looks
 constexpr double kUpright_deg = 15;
+constexpr double kRound = 0.9;    ///< as deep as wide by this share, it may roll
 constexpr double kAlike_deg = 5;  ///< of the axes of two things
 constexpr double kTouches_m = 0.03, kIsOff_m = 0.05;
 
@@ -44,8 +45,14 @@ struct RestPose {
   std::size_t looks = 0;
 
   Eigen::Vector3d Axis() const { return q * Eigen::Vector3d::UnitZ(); }
-  bool LiesOrIsUpsideDown() const {
-    return std::abs(degrees - 90) <= kUpright_deg || degrees >= 180 - kUpright_deg;
+  /// What is not round lies on a side of its box.
+  bool LiesOrIsUpsideDown(const Eigen::Vector3d& half_m) const {
+    const Eigen::Vector3d up = q.conjugate() * Eigen::Vector3d::UnitZ();
+    const double on_side = std::sin((90 - kUpright_deg) * EIGEN_PI / 180);
+    const bool is_round = half_m.head<2>().minCoeff() >= kRound * half_m.head<2>().maxCoeff();
+    return degrees >= 180 - kUpright_deg ||
+           (std::abs(degrees - 90) <= kUpright_deg &&
+            (is_round || up.head<2>().cwiseAbs().maxCoeff() >= on_side));
   }
 };
 
@@ -67,7 +74,8 @@ class RestPoseFinder {
       const bool alike = std::ranges::any_of(rests, [&](const RestPose& other) {
         return &other != &rest && DegreesBetween(other.Axis(), rest.Axis()) < kAlike_deg;
       });
-      if (rest.LiesOrIsUpsideDown() ? !StandsRather(rest) : alike) continue;
+      if (rest.LiesOrIsUpsideDown(entities_[rest.thing].half_size_m) ? !StandsRather(rest) : alike)
+        continue;
       found_.things.insert(rest.thing);
       axes_are_any = axes_are_any || !SaysAxes(map_.entities[rest.thing].value);
     }

@@ -19,10 +19,11 @@ std::size_t EndOfSight(const std::vector<TimedPose>& poses, std::size_t begin) {
 
 /// How far a pose is off the polynomial of degree `order` - 1 through as many of its neighbours, as
 /// the standard deviation that noise on each axis would have: half of all are below that times the
-/// median of a chi distribution of three axes.
+/// median of a chi distribution of three axes. Where it is fast, it bends more than it trembles:
+/// the slower half counts.
 double OffNeighbours_m(const std::vector<TimedPose>& poses, std::size_t order) {
   constexpr double kMedianOfThree = 1.538;
-  std::vector<double> off;
+  std::vector<std::pair<double, double>> of_way;
   for (std::size_t last = order; last < poses.size(); ++last) {
     const std::span<const TimedPose> some(&poses[last - order], order + 1);
     if (std::ranges::any_of(some.subspan(1), &TimedPose::after_loss)) continue;
@@ -37,8 +38,11 @@ double OffNeighbours_m(const std::vector<TimedPose>& poses, std::size_t order) {
       sum += weight * pose.p;
       squares += weight * weight;
     }
-    off.push_back(sum.norm() / std::sqrt(squares));
+    of_way.emplace_back((some.back().p - some.front().p).norm(), sum.norm() / std::sqrt(squares));
   }
+  std::ranges::sort(of_way);
+  std::vector<double> off;
+  for (std::size_t i = 0; 4 * i < of_way.size(); ++i) off.push_back(of_way[i].second);
   return Median(std::move(off)) / kMedianOfThree;
 }
 
