@@ -271,7 +271,7 @@ class Engine final {
   Moment BeginsFrom(const RuleInstance& instance) const;
   Moment BeginsFrom(const Reference& reference, const Binding& whole) const;
   Moment PartsBeginFrom(RuleId rule, const Binding& entities) const;
-  Moment BackFrom(RuleId rule) const;
+  Moment BackFrom(RuleId rule, Tick end) const;
   void NoteWhatIsToCome(const RuleInstance& composition, FrameNumber settled);
   void StepCompose(RuleInstance& instance);
   std::optional<Span> NextComposed(RuleInstance& instance, FrameNumber settled);

@@ -91,7 +91,10 @@ Moment Engine::BeginsFrom(const RuleInstance& instance) const {
   // Nobody asks how far back the next one may reach.
   const bool reaches_back =
       RuleOf(instance).form() == Form::kUntilSince && !RuleOf(instance).referenced;
-  return reaches_back ? Earlier(from, BackFrom(instance.rule)) : from;
+  if (!reaches_back) return from;
+  const bool lags = instance.awake && instance.next <= history_.now();
+  return Earlier(from,
+                 BackFrom(instance.rule, lags ? from.tick : history_.At(history_.now()).tick + 1));
 }
 
 // Likewise, of what a composition refers to, for these entities.
@@ -104,7 +107,8 @@ Moment Engine::BeginsFrom(const Reference& reference, const Binding& whole) cons
   // Nobody has looked at it yet.
   if (finishing_) return {kNever, kLatestTick + 1};
   const bool composed = program_->rules[reference.rule].form() == Form::kCompose;
-  return composed ? PartsBeginFrom(reference.rule, entities) : BackFrom(reference.rule);
+  return composed ? PartsBeginFrom(reference.rule, entities)
+                  : BackFrom(reference.rule, history_.At(history_.now()).tick + 1);
 }
 
 Moment Engine::PartsBeginFrom(RuleId rule, const Binding& entities) const {
@@ -118,9 +122,9 @@ Moment Engine::PartsBeginFrom(RuleId rule, const Binding& entities) const {
   return from;
 }
 
-// As far back as the next interval of the rule may begin.
-Moment Engine::BackFrom(RuleId rule) const {
-  const Tick tick = history_.At(history_.now()).tick + 1 - rule_ticks_[rule].back;
+// As far back as an interval of the rule may begin that ends at this tick or later.
+Moment Engine::BackFrom(RuleId rule, Tick end) const {
+  const Tick tick = end - rule_ticks_[rule].back;
   return {history_.FirstNotBefore(tick), tick};
 }
 

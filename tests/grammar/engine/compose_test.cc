@@ -281,6 +281,36 @@ event table_set(hand: Hand, plate: Plate, cup: Cup, knife: Knife)
   EXPECT_EQ(found, 6);
 }
 
+// The hand is off the cup from 28 on, and until 35 it may be back on it: so long nobody knows what
+// reaches back from 29 on. A tap at 31 is no reason to forget what it may follow.
+TEST(Compose, WhatReachesBackMayBeKnownLate) {
+  const auto program = testing::CompileText(
+      "grammar t\nevent on(h: Hand, c: Cup) while touching(h, c)\n"
+      "event tap(h: Hand, t: Movable) while touching(h, t)\n"
+      "condition nearly(h: Hand, c: Cup)\n"
+      "  until touching(h, c) begins since not touching(h, c) at most 7 ms back\n"
+      "event left(h: Hand, c: Cup, t: Movable)\n"
+      "  until touching(c, t) ends since not nearly(h, c) at most 5 ms back\n"
+      "event both(h: Hand, c: Cup, t: Movable)\n"
+      "  all of a: on(h, c), b: left(h, c, t), d: tap(h, t)\n"
+      "  where a overlaps b, b before d within 22 ms\n");
+  Scene scene;
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  for (Tick tick = 0; tick < 50; ++tick) {
+    scene.touches.clear();
+    if (tick >= 10 && tick < 28) scene.touches.push_back({.a = Scene::kHand, .b = Scene::kCup});
+    if (tick >= 20 && tick < 29) scene.touches.push_back({.a = Scene::kCup, .b = 2});
+    if (tick == 31) scene.touches.push_back({.a = Scene::kHand, .b = 2});
+    monitor.Advance(scene.At(tick), events);
+  }
+  monitor.Finish(50, events);
+  const auto both = std::ranges::find_if(
+      events, [&](const Event& e) { return program->rules[e.rule].name == "both"; });
+  ASSERT_NE(both, events.end());
+  EXPECT_EQ(both->interval, (Interval{10, 32}));
+}
+
 TEST(Compose, ClosesAtTheEndOfTheEpisode) { EXPECT_EQ(Served("##......", "....####"), "[0,8)@8 "); }
 
 }  // namespace
