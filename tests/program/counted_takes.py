@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Made sets of takes of which everything is known: shared tables, offsets, rows, moments, own grammars. What `score` counts
-must be what is counted here, and nothing may be left out without a line.
+"""Made sets of takes of which everything is known: shared tables, offsets, rows, moments, own grammars, and trackers that lose
+a hand or see it elsewhere for a frame or a few. What `score` counts must be what is counted here, and nothing may be left out without a line.
 
     python3 tests/program/counted_takes.py build/test/prehend [COUNT] [FIRST_SEED]
 """
 import json
+import math
 import os
 import random
 import subprocess
@@ -17,44 +18,93 @@ GRAMMAR = """grammar %s
 param close = %d cm
 event near(hand: Hand, thing: Thing) while distance(hand, thing) < close
 """
-THINGS = {"cup": 0.0, "can": 5.0}  # where they are
+THINGS = {"cup": 0.0, "can": 0.8}  # where they are
+BRIDGE_S = 0.105
+MAP = """import: 1
+unit: m
+axes: z_up
+time_unit: s
+bridge_s: %g
+lost: unknown
+outlier: lost
+grammar: %s
+columns: {time: t, position: ["{}_x", "{}_y", "{}_z"]}
+entities:
+  cup: {from: cup, size_m: [0.02, 0.02, 0.02]}
+  can: {from: can, size_m: [0.02, 0.02, 0.02]}
+  hand: {from: hand, hand: true, size_m: [0, 0, 0]}
+"""
 
 
 def motion(rng):
-    """(thing, level) of each tick, in steps of at least 0.1 s."""
-    steps, ticks = [], rng.randrange(300, 700)
-    while len(steps) < ticks:
-        steps += [(rng.choice(list(THINGS)), rng.choice(LEVELS_M))] * rng.randrange(10, 120)
-    return steps[:ticks]
+    """Where the hand is at each tick: it stays at least 0.3 s, and goes at most 2.5 m/s."""
+    places, ticks = [(0.0, 0.9)], rng.randrange(300, 700)
+    while len(places) < ticks:
+        at, to = places[-1], (rng.choice(list(THINGS.values())), rng.choice(LEVELS_M))
+        steps = max(20, round(60 * math.dist(at, to)))
+        for i in range(1, steps + 1):
+            part = (i / steps) ** 2 * (3 - 2 * i / steps)
+            places.append(tuple(a + part * (b - a) for a, b in zip(at, to)))
+        places += [to] * rng.randrange(30, 120)
+    return places[:ticks]
 
 
-def events_in(steps, close_m):
-    """[(begin tick, end tick, thing)]"""
+def events_in(places, close_m, end):
+    """[(begin tick, end tick, thing)]; of places that nobody knows (None) nothing holds."""
     events = []
-    for thing in THINGS:
+    for thing, x in THINGS.items():
         begin = None
-        for tick, (at, level) in enumerate(steps + [(None, 9)]):
-            near = at == thing and level < close_m
+        for tick, place in enumerate(places + [None]):
+            near = place is not None and math.dist(place, (x, 0)) < close_m
             if near and begin is None:
                 begin = tick
             if not near and begin is not None:
-                events.append((begin, tick, thing))
+                events.append((begin, min(tick, end), thing))
                 begin = None
     return sorted(events)
 
 
-def write_recording(path, steps, grammar):
+def write_recording(path, places, grammar):
     name = os.path.basename(path)[:-6]
     with open(path, "w") as out:
         thing = {"size_m": [0.02, 0.02, 0.02]}
         out.write(json.dumps({"recording": 1, "episode": name, "grammar": grammar, "ticks_per_second": PER_S,
                               "entities": {"cup": thing, "can": thing, "hand": {"hand": True, "size_m": [0, 0, 0]}}}) + "\n")
-        for tick, (at, level) in enumerate(steps):
-            samples = {"hand": {"at_m": [THINGS[at], 0, level]}}
+        for tick, (x, z) in enumerate(places):
+            samples = {"hand": {"at_m": [x, 0, z]}}
             if tick == 0:
                 samples.update({name: {"at_m": [x, 0, 0]} for name, x in THINGS.items()})
             out.write(json.dumps({"tick": tick, "samples": samples}) + "\n")
-        out.write(json.dumps({"end_tick": len(steps)}) + "\n")
+        out.write(json.dumps({"end_tick": len(places)}) + "\n")
+
+
+def track(program, path, places, grammar, rng):
+    """The same as a table of a tracker, imported: where the hand must be taken to be, and how often it is an outlier and lost."""
+    seen, known, outliers, lost, at = list(places), list(places), 0, 0, 20
+    while at + 120 < len(places):
+        rests = len(set(places[at - 10:at + 15])) == 1
+        length = rng.choice((1, 2, 3)) if rests and rng.random() < 0.5 else rng.choice((1, 4, 9, 12, 30, 80))
+        gap, last, found = range(at, at + length), places[at - 1], places[at + length]
+        if length <= 3 and rests:
+            outliers += 1
+        for i in gap:
+            seen[i] = (last[0] + 0.3, last[1] + 0.25) if length <= 3 and rests else None
+            known[i] = tuple(a + (i + 1 - at) / (length + 1) * (b - a) for a, b in zip(last, found))
+            if length + 1 > BRIDGE_S * PER_S:
+                known[i] = last if i + 1 - at <= BRIDGE_S * PER_S else None
+        lost += length + 1 > BRIDGE_S * PER_S
+        at += length + rng.randrange(40, 150)
+    with open(path[:-6] + ".csv", "w") as out:
+        out.write("t,cup_x,cup_y,cup_z,can_x,can_y,can_z,hand_x,hand_y,hand_z\n")
+        for tick, place in enumerate(seen):
+            out.write("%.2f,0,0,0,%g,0,0,%s\n" % (tick / PER_S, THINGS["can"], "%.9f,0,%.9f" % place if place else ",,"))
+    with open(path[:-6] + ".map", "w") as out:
+        out.write(MAP % (BRIDGE_S, grammar))
+    done = subprocess.run([program, "import", path[:-6] + ".csv", "--map", path[:-6] + ".map", "-o", path], capture_output=True,
+                          text=True, cwd=os.path.dirname(path))
+    said = {"goes out and back %d time" % outliers: outliers, "'hand' is not tracked": lost}
+    problems = ["import does not say: " + line + ": " + done.stderr for line, there in said.items() if bool(there) != (line in done.stderr)]
+    return known, problems if done.returncode == 0 else [done.stderr]
 
 
 def labels_for(rng, events, ticks):
@@ -90,8 +140,8 @@ def count(takes):
     """Of one group of takes what a table must say."""
     true = found_count = correct = moments = moments_found = 0
     for take in takes:
-        truth = [(round(b * PER_S), round(e * PER_S), thing) for b, e, text, thing in take["labels"] if text == "near" and b < e]
-        points = [(round(b * PER_S), thing) for b, e, text, thing in take["labels"] if text == "near" and b == e]
+        truth = [(round(b * PER_S, 4), round(e * PER_S, 4), thing) for b, e, text, thing in take["labels"] if text == "near" and b < e]
+        points = [(round(b * PER_S, 4), thing) for b, e, text, thing in take["labels"] if text == "near" and b == e]
         found = list(take["events"])
         explained = set()
         for at, thing in points:
@@ -116,8 +166,8 @@ def count(takes):
             "moments_found": moments_found}
 
 
-def make(rng, folder):
-    """The words of a command, and what it must count by grammar."""
+def make(program, rng, folder):
+    """The words of a command, what it must count by grammar, and what `import` did not say."""
     way = rng.choice(("table", "takes", "folder"))
     grammars = {"wide": 60, "middle": 40, "narrow": 20}
     os.mkdir(os.path.join(folder, "grammars"))
@@ -127,15 +177,21 @@ def make(rng, folder):
         with open(os.path.join(folder, "grammars", name + ".grammar"), "w") as out:
             out.write(GRAMMAR % (name, close))
     own = rng.choice(list(grammars))
+    tracked, problems = rng.random() < 0.5, []
     takes, rows, others = [], [], 0
     for i in range(rng.randrange(1, 5)):
-        steps = motion(rng)
+        places = motion(rng)
         asked = rng.choice(list(grammars)) if way == "takes" and rng.random() < 0.4 else None
         name, key = "take%d" % i, ("take%d" if way == "table" else "P%02d") % i
-        write_recording(os.path.join(folder, name + ".jsonl"), steps, own)
+        path, end = os.path.join(folder, name + ".jsonl"), len(places)
+        if tracked:
+            places, missing = track(program, path, places, own, rng)
+            problems, end = problems + missing, end - 1 + PER_S / 10000  # a tick after the last frame
+        else:
+            write_recording(path, places, own)
         take = {"name": name, "key": key, "asked": asked, "grammar": asked or own,
-                "events": events_in(steps, grammars[asked or own] / 100), "offset_s": 0.0}
-        take["labels"] = labels_for(rng, take["events"], len(steps))
+                "events": events_in(places, grammars[asked or own] / 100, end), "offset_s": 0.0}
+        take["labels"] = labels_for(rng, take["events"], int(end))
         if way == "takes":
             take["offset_s"] = rng.choice((0.0, 0.35, -0.2, 3.0))
         elif way == "table":
@@ -187,7 +243,7 @@ def make(rng, folder):
         groups.append([take]) if group is None else group.append(take)
     texts = [label[2] for take in takes for label in take["labels"]]
     left_out = {"others": others, "ignored": texts.count("idle"), "without_text": texts.count("")}
-    return words, groups, left_out
+    return words, groups, left_out, problems
 
 
 def keep(program, words, folder):
@@ -206,14 +262,13 @@ def keep(program, words, folder):
 
 def check(program, seed, folder):
     rng = random.Random(seed)
-    words, groups, left_out = make(rng, folder)
+    words, groups, left_out, problems = make(program, rng, folder)
     if rng.random() < 0.3:
         words = keep(program, words, folder) if words[3].endswith(".jsonl") else words
     done = subprocess.run([program] + words + ["--json"], capture_output=True, text=True, cwd=folder)
     if done.returncode != 0:
         return ["exit code %d: %s" % (done.returncode, done.stderr)]
     said = json.loads(done.stdout)
-    problems = []
 
     def expect(what, is_said, wanted):
         if abs(is_said - wanted) > 1e-9:
