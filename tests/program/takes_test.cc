@@ -245,6 +245,25 @@ TEST_F(Takes, FaultyFilesAreNamed) {
   EXPECT_EQ(Has(problem("takes:\n  - {recording: none.jsonl, labels: a.csv}\n"), "none.jsonl"), "");
 }
 
+TEST_F(Takes, WhatIsCutOrOutsideIsSaid) {
+  const std::string take = Recording("a", {{1, 2}, {4, 5}});
+  const auto said = [&](const std::string& row) {
+    return Score({take, "--truth", Write("c.csv", "begin_s,end_s,label\n1,2,near\n" + row + "\n"),
+                  "--map", map_});
+  };
+  for (const char* row : {"4,5.7,near", "-0.4,0.3,near"})
+    EXPECT_EQ(Has(said(row).out, "counted: 2 labels of 1 take; 1 cut at an end of the recording\n"),
+              "")
+        << row;
+  EXPECT_EQ(Has(said("4,5.01,near").out, "counted: 2 labels of 1 take\n"), "") << "a frame";
+  for (const char* row : {"5.2,5.6,near", "-0.5,-0.1,near", "5.2,5.2,near", "-0.1,-0.1,near"}) {
+    const Said outside = said(row);
+    EXPECT_EQ(outside.exit_code, 2) << row;
+    EXPECT_EQ(Has(outside.err, "c.csv:3:"), "");
+    EXPECT_EQ(Has(outside.err, "s, the recording ends after 5 s"), "");
+  }
+}
+
 TEST_F(Takes, LabelsOfAMomentLieInEvents) {
   const std::string take = Recording("a", {{1, 2}, {3, 4}});
   const std::string head = "begin_s,end_s,label\n";

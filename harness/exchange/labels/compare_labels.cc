@@ -89,6 +89,7 @@ Counted& Counted::operator+=(const Counted& more) {
   takes += more.takes;
   labels += more.labels;
   moments += more.moments;
+  cut += more.cut;
   without_text += more.without_text;
   for (const auto& [label, count] : more.ignored) ignored[label] += count;
   backward.insert(more.backward.begin(), more.backward.end());
@@ -113,6 +114,7 @@ std::string Counted::Text() const {
   std::string text = fmt::format("counted: {} of {}", grammar::CountOf(labels, "label"),
                                  grammar::CountOf(takes, "take"));
   if (moments > 0) text += fmt::format(", and {} of a moment", moments);
+  if (cut > 0) text += fmt::format("; {} cut at an end of the recording", cut);
   std::vector<std::string> left_out = {
       CountedText(OfOtherTakes(), "row", "of other takes"),
       CountedText(ignored, "label", "that the map ignores"),

@@ -21,6 +21,7 @@ using Events = std::vector<EventSignature>;
 
 /// A label may end so long after its recording; people stop marking later than cameras stop.
 constexpr double kMostBeyondEnd_s = 1;
+constexpr double kNoCut_s = 0.02;  ///< about a frame
 /// Times after this are hardly counted from the begin of a recording.
 constexpr double kDates_s = 1e8;
 
@@ -382,7 +383,9 @@ Diagnostics LabelReading::Problems(std::size_t take,
       };
       if (std::ranges::none_of(problems, is_same)) problems.push_back(problem);
     }
-    if (label.begin_s < -kMostBeyondEnd_s || label.end_s > end_s + kMostBeyondEnd_s) {
+    const bool is_outside = label.IsMoment() ? label.end_s < 0 || label.begin_s > end_s
+                                             : label.end_s <= 0 || label.begin_s >= end_s;
+    if (is_outside || label.begin_s < -kMostBeyondEnd_s || label.end_s > end_s + kMostBeyondEnd_s) {
       problems.push_back(labels.At(
           label.place,
           fmt::format("the label lies at {:g} to {:g} s, the recording ends after {:g} s",
@@ -457,6 +460,13 @@ grammar::Timeline LabelReading::Marked(std::size_t take, grammar::Tick ticks_per
     if (moments || !label.IsMoment())
       marked.events.push_back(InTicks(label, ticks_per_second, end));
   return Compared(marked, compared_, truth::TickAt(join_s_, ticks_per_second));
+}
+
+std::size_t LabelReading::Cut(std::size_t take, double end_s) const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(events_[take], [&](const LabelledEvent& label) {
+        return label.begin_s < -kNoCut_s || label.end_s > end_s + kNoCut_s;
+      }));
 }
 
 double LabelReading::EndOf(std::size_t take) const {

@@ -68,6 +68,7 @@ struct TakeRows {
 /// What was counted, and what was not and why.
 struct Counted {
   std::size_t takes = 0, labels = 0, moments = 0;
+  std::size_t cut = 0;  ///< of the labels, those that begin before their recording or end after it
   std::map<std::string, std::size_t> ignored;  ///< by the text of the label
   std::size_t without_text = 0;
   std::map<std::string, std::size_t> backward;  ///< by file
@@ -116,7 +117,7 @@ class LabelReading {
 
   /// The events of the take with this index, in a recording of these entities and this length; not
   /// those of a moment. Errors are entities that are missing or cannot have such a role, and labels
-  /// beyond its end.
+  /// outside of it, or beyond its end.
   Result<grammar::Timeline> Truth(std::size_t take,
                                   const std::vector<grammar::EntityInfo>& entities,
                                   grammar::Tick ticks_per_second, grammar::Tick end) const;
@@ -130,6 +131,8 @@ class LabelReading {
   /// tick.
   grammar::Timeline Marked(std::size_t take, grammar::Tick ticks_per_second, grammar::Tick end,
                            bool moments) const;
+  /// How many labels of the take are cut at an end of a recording of this length.
+  std::size_t Cut(std::size_t take, double end_s) const;
   /// Where the last label of the take ends, in seconds.
   double EndOf(std::size_t take) const;
   /// Of those of a moment how many lie in what is found, by event, give or take `before` ticks from

@@ -215,6 +215,10 @@ class LabelScorer {
       Result<EpisodeToScore> labelled =
           Labelled(**episode, request_.takes[group.takes[i]], i, *truths);
       if (!labelled) return tl::unexpected(std::move(labelled.error()));
+      if (is_first)
+        scores_.counted.cut +=
+            truths->Cut(i, static_cast<double>(labelled->ticks) /
+                               static_cast<double>((*episode)->entities().ticks_per_second));
       const Result<grammar::Timeline> found =
           foreign ? foreign->Find(request_.takes, group.takes[i], Watched(**episode),
                                   *compiled.program, truths->compared(), *labelled)
