@@ -95,7 +95,7 @@ TEST_F(CommandLine, UsageErrorsEndWithASuggestion) {
        "prehend: --shard: found '0/2', wanted I/N, like 2/3 for the second of three\n[^]*"},
       {"check --repeat 0", 2, "prehend: [^]*"},
       {"check --changed --set lift_rise=1cm", 2,
-       "prehend: --changed compares files; it cannot be combined with --grammar or --set\n"},
+       "prehend: --changed compares files; it cannot be combined with --set\n"},
       {"check --filter tag:quiet --filter !*rests", 4, "prehend: no scenario is selected[^]*"},
       {"run carton_rests --record /dev/null/e.jsonl", 2,
        "prehend: --record: cannot create /dev/null: Not a directory\n[^]*"},

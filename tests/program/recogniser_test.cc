@@ -119,8 +119,8 @@ std::string RepeatsWatch(const std::string& grammar, const std::string& events) 
          "show(30)\n";
 }
 
-TEST_F(Recognisers, WhatRepeatsTheGrammarHasItsTable) {
-  const std::string take = Take();
+/// The events that the grammar of a recording finds in it, with their roles.
+std::string EventsOf(const std::string& take) {
   json events = json::object();
   std::istringstream watched(Prehend({"grammar", "watch", take, "--json"}).out);
   for (std::string line; std::getline(watched, line);) {
@@ -130,7 +130,12 @@ TEST_F(Recognisers, WhatRepeatsTheGrammarHasItsTable) {
       if (std::find(roles.begin(), roles.end(), json(role)) == roles.end()) roles.push_back(role);
     }
   }
-  const Said said = Score(take, Program(RepeatsWatch(kGrammar, events.dump())),
+  return events.dump();
+}
+
+TEST_F(Recognisers, WhatRepeatsTheGrammarHasItsTable) {
+  const std::string take = Take();
+  const Said said = Score(take, Program(RepeatsWatch(kGrammar, EventsOf(take))),
                           {"--grammar", kGrammar, "--pace", "online", "--json"});
   ASSERT_EQ(said.exit_code, 0) << said.err;
   const json both = json::parse(said.out)["grammars"];
@@ -243,6 +248,56 @@ TEST_F(Recognisers, BrokenOnesAreNamedAndNothingIsLeft) {
     EXPECT_LT(took_s, 20) << one.name;
     EXPECT_EQ(StillRuns(Path("reco.py")), "") << one.name;
   }
+}
+
+TEST_F(Recognisers, AreCheckedAgainstGoldens) {
+  const std::string scenario = "grasp/short_grasp_counts", run = Path("run.jsonl"), take = Take();
+  const auto check = [&](const std::string& episode, const std::string& command) {
+    return Prehend({"check", episode, "--recogniser", command, "--report", Path("page")});
+  };
+  ASSERT_EQ(Prehend({"run", scenario, "--record", run}).exit_code, 0);
+  const std::string repeats = RepeatsWatch("pick_and_place", EventsOf(run)),
+                    distance = std::string("python3 -B ") + kExamples + "distance.py";
+  const Said same = check(scenario, Program(repeats));
+  EXPECT_EQ(same.exit_code, 0) << same.out;
+  const Said other = check(scenario, distance);
+  EXPECT_EQ(other.exit_code, 1) << other.err;
+  EXPECT_EQ(Has(other.out, "not covered by the recogniser: contact, fixation, reaching, "), "");
+  EXPECT_EQ(Has(other.out, "shifted grasping(right_hand, milk)\n"), "");
+  EXPECT_EQ(Has(other.out, "again: prehend check " + scenario + " --recogniser 'python3"), "");
+  const Said broken = check(scenario, "exit 3");
+  EXPECT_EQ(broken.exit_code, 2);
+  EXPECT_EQ(Has(broken.out, "the recogniser failed"), "");
+  EXPECT_EQ(broken.out.find("missing"), std::string::npos) << "it found nothing, for all we know";
+
+  EXPECT_EQ(check(take, distance).exit_code, 5) << "there is no golden";
+  ASSERT_EQ(Prehend({"accept", take, "--reason", "seen"}, {"CI="}).exit_code, 0);
+  const Said good = check(take, Program(RepeatsWatch(kGrammar, EventsOf(take))));
+  EXPECT_EQ(good.exit_code, 0) << good.out;
+  EXPECT_EQ(check(take, distance).exit_code, 1);
+  EXPECT_EQ(check(take, "exit 3").exit_code, 2);
+}
+
+TEST_F(Recognisers, AreOnThePageOfEpisodesAndBesideTheGrammar) {
+  const std::string kept = Path("kept.episodes"), page = Path("page.html"),
+                    distance = std::string("python3 -B ") + kExamples + "distance.py";
+  ASSERT_EQ(Prehend({"check", "grasp/short_grasp_counts", "--record", kept, "--no-pictures",
+                     "--report", Path("report")})
+                .exit_code,
+            0);
+  const Said said = Prehend({"report", kept, "--recogniser", distance, "-o", page, "--json"});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(json::parse(said.out)["failed"], 1);
+  EXPECT_EQ(Has(ReadFile(page), "shifted grasping(right_hand, milk)"), "");
+  const Said broken = Prehend({"report", kept, "--recogniser", "exit 3", "-o", page});
+  EXPECT_EQ(broken.exit_code, 2);
+  EXPECT_EQ(Has(broken.err, "the recogniser failed"), "");
+  const auto against = [&](const std::string& command) {
+    return Prehend({"render", kept, "--against", command, "-o", Path("two.svg")});
+  };
+  EXPECT_EQ(against(distance).exit_code, 0);
+  EXPECT_EQ(Has(ReadFile(Path("two.svg")), "grasping (recogniser)"), "");
+  EXPECT_EQ(against("exit 3").exit_code, 2);
 }
 
 TEST_F(Recognisers, AFailedEpisodeIsInNoFigure) {

@@ -12,6 +12,7 @@
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/visible_stream.h"
 #include "harness/cli/command/command.h"
+#include "harness/cli/daily/recogniser_choice.h"
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/episodes/schema.h"
@@ -79,6 +80,7 @@ std::vector<Option> RunningOptions() {
                       .rule = AnySeed()},
                      GrammarOption(),
                      SettingsOption(),
+                     RecogniserOption(),
                  });
 }
 
@@ -144,7 +146,9 @@ suite::SuiteRequest RequestFrom(const ParsedOptions& options, const CommandConte
   const bool of_some = options.Has("names") || options.Has("--filter");
   suite::SuiteRequest request{
       .selection = std::move(selection),
-      .changes = {options.Text("--grammar"), options.All("--set")},
+      .changes = {GrammarOf(options, context), options.All("--set")},
+      .recogniser = RecogniserOf(options, context),
+      .listen = ListenTo(RecogniserOf(options, context)),
       .root = context.root,
       .report_folder = options.TextOr("--report", DefaultReport(context.root, of_some)),
       .record_file = options.Text("--record"),
@@ -304,13 +308,17 @@ std::string WhyNotPlayed(const suite::ScenarioSelection& selection, const Parsed
     if (played != selection.scenarios.end() && options.Has(of_play))
       return fmt::format("{} plays scenarios; {} is a recording", of_play, played->path);
   }
+  if (options.Has("--record") && options.Has("--recogniser"))
+    return "--record keeps what a grammar recognises: check --record alone, then check or report "
+           "the episodes with --recogniser";
   return "";
 }
 
 ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
-  if (options.Has("--changed") && (options.Has("--grammar") || options.Has("--set"))) {
-    return Refuse(context,
-                  "--changed compares files; it cannot be combined with --grammar or --set");
+  for (const char* other : {"--grammar", "--set", "--recogniser"}) {
+    if (options.Has("--changed") && options.Has(other))
+      return Refuse(context,
+                    std::string("--changed compares files; it cannot be combined with ") + other);
   }
   const std::string junit = options.Text("--junit");
   if (junit == "-" && options.Has("--json")) {
@@ -348,7 +356,8 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
     context.out << summary.dump(2) << "\n";
   } else if (junit != "-") {
     PrintText(verdicts,
-              {.as_files_say = !options.Has("--grammar") && !options.Has("--set"),
+              {.as_files_say = !options.Has("--grammar") && !options.Has("--set") &&
+                               !options.Has("--recogniser"),
                .verbose = options.Has("--verbose")},
               problem.empty() ? page : "", context);
   }
@@ -372,7 +381,8 @@ Command CheckCommand() {
                        "check --filter tag:smoke --filter '!reach/*' --no-pictures -j 1",
                        "check --changed", "check --record suite.episodes --no-pictures",
                        "check --shard 2/3 --junit verdicts.xml", "check 'slide/*' --repeat 10",
-                       "check --grammar my/rules.grammar --json"},
+                       "check --grammar my/rules.grammar --json",
+                       "check 'slide/*' --recogniser 'python3 reco.py'"},
           .options = Joined(SelectionOptions(), Joined(RunningOptions(), ResultOptions())),
           .run = RunCheck};
 }

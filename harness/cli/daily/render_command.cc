@@ -11,6 +11,7 @@
 #include "harness/base/base/project_paths.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/picture_options.h"
+#include "harness/cli/daily/recogniser_choice.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/show/figures/figures.h"
 #include "harness/show/pictures/film.h"
@@ -157,11 +158,19 @@ std::string WhyNotTogether(const ParsedOptions& options) {
   return "";
 }
 
-/// The run of a scenario or of an episode, with every frame.
+/// The run of a scenario or of an episode, with every frame. `listen` is asked into `heard`.
 tl::expected<suite::PlayedRun, ExitCode> Play(const ParsedOptions& options,
-                                              const CommandContext& context) {
+                                              const CommandContext& context,
+                                              const suite::Listen& listen = {},
+                                              std::optional<suite::Heard>* heard = nullptr) {
   auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
   if (!episode) return tl::unexpected(episode.error());
+  if (listen) {
+    Result<suite::Heard> said = listen(*episode);
+    if (!said) return tl::unexpected(Complain(context, said.error()));
+    context.err << said->notes;
+    *heard = std::move(*said);
+  }
   auto played = PlayOrComplain(std::move(*episode), context);
   if (!played) return played;
   const std::string why = WhyNotShown(options, played->loaded.scenario, played->run);
@@ -197,11 +206,17 @@ ExitCode RenderStrip(const ParsedOptions& options, const CommandContext& context
 }
 
 ExitCode RenderComparison(const ParsedOptions& options, const CommandContext& context) {
-  const auto played = Play(options, context);
+  const std::string view = options.Text("--against");
+  // Other words are those of grammars.
+  const bool is_command =
+      view.starts_with("files:") ||
+      (view.find_first_of(" /") != std::string::npos && !view.ends_with(".grammar"));
+  std::optional<suite::Heard> heard;
+  const auto played = Play(options, context, ListenTo(is_command ? view : ""), &heard);
   if (!played) return played.error();
   const show::SceneFormat format = SceneFormatOf(options, "action", kComparisonWidth_px);
-  const auto made = suite::SheetAgainst(*played, options.Text("--against"),
-                                        WindowOf(options, played->run), format, context.root);
+  const auto made = suite::SheetAgainst(*played, view, WindowOf(options, played->run), format,
+                                        context.root, heard ? &*heard : nullptr);
   if (!made) return Complain(context, made.error());
   return WriteOut(SheetSvg(made->sheet, format.chart), options, played->loaded.scenario,
                   ".against-" + made->name + ".png", context);
@@ -316,10 +331,10 @@ std::vector<Option> OptionsInsteadOfPictures() {
                  {{.name = "--strip", .help = "the timeline alone"},
                   {.name = "--against",
                    .help = "compare with the golden, another grammar, the other engine "
-                           "(bullet, box2d): both timelines, and the scenes at each "
-                           "boundary that differs. 'pictures': golden pictures, those of "
-                           "now, and what differs",
-                   .placeholder = "golden|pictures|GRAMMAR|ENGINE"},
+                           "(bullet, box2d), a recogniser (docs/recognisers.md): both "
+                           "timelines, and the scenes at each boundary that differs. "
+                           "'pictures': golden pictures, those of now, and what differs",
+                   .placeholder = "golden|pictures|GRAMMAR|ENGINE|CMD"},
                   {.name = "--film",
                    .help = "a film: NAME.webp (img2webp), NAME.mp4 (ffmpeg), or a folder "
                            "of frames; 960x540 unless --size says otherwise",

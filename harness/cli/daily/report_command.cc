@@ -9,6 +9,7 @@
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
+#include "harness/cli/daily/recogniser_choice.h"
 #include "harness/suite/check/failures.h"
 #include "harness/suite/check/run_suite.h"
 #include "harness/suite/report/report.h"
@@ -32,7 +33,9 @@ ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) 
     selection.scenarios.push_back(episode::ScenarioOf(episode, all));
   suite::SuiteRequest request{
       .selection = std::move(selection),
-      .changes = {options.Text("--grammar"), options.All("--set")},
+      .changes = {GrammarOf(options, context), options.All("--set")},
+      .recogniser = RecogniserOf(options, context),
+      .listen = ListenTo(RecogniserOf(options, context)),
       .root = context.root,
       .today = context.today,
       .pictures = false,
@@ -74,14 +77,15 @@ ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) 
 }  // namespace
 
 Command ReportCommand() {
-  return {.name = "report",
-          .summary = "Write recorded episodes as one web page: events, differences, 3D replay",
-          .examples = {"report milk.episodes", "report suite.episodes more.episodes -o page.html",
-                       "report suite.episodes --episode 'slide/*' --grammar my/rules.grammar"},
-          .options = {EpisodesArgument(), EpisodesOption(),
-                      OutputOption(fmt::format("the page; default: {}", kDefaultPage)),
-                      JobsOption(), GrammarOption(), SettingsOption(), JsonOption()},
-          .run = RunReport};
+  return {
+      .name = "report",
+      .summary = "Write recorded episodes as one web page: events, differences, 3D replay",
+      .examples = {"report milk.episodes", "report suite.episodes more.episodes -o page.html",
+                   "report suite.episodes --episode 'slide/*' --grammar my/rules.grammar"},
+      .options = {EpisodesArgument(), EpisodesOption(),
+                  OutputOption(fmt::format("the page; default: {}", kDefaultPage)), JobsOption(),
+                  GrammarOption(), SettingsOption(), RecogniserOption(), JsonOption()},
+      .run = RunReport};
 }
 
 }  // namespace prehend::cli

@@ -148,7 +148,7 @@ class Recogniser::Talk {
     if (is_batch_) process_.Send(json{{"episode", episode_->name}}.dump() + "\n");
     episode::EpisodeWriter writer(
         lines,
-        {.episode = episode_->name,
+        {.episode = episode_->name.substr(episode_->name.rfind('/') + 1),  // SKILL/NAME is no name
          .bridge_s = 0,  // what is not tracked for a short time is as the grammar sees it
          .entity_table = episode_->entities},
         facts_);

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
+#include "grammar/contents.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/episode/run/load_grammar.h"
 
@@ -76,6 +78,27 @@ Result<grammar::Timeline> Foreign::Find(const std::vector<episode::Take>& takes,
   for (const auto& [label, count] : said->counted().ignored)
     episode.ignored[label] += static_cast<int>(count);
   return said->Found(0, watched.entities.entities, rate, episode.ticks, compared);
+}
+
+Result<EpisodeToScore> HeardIn(episode::Episode& episode, const Asking& asking) {
+  const grammar::Program& program = *episode.program();
+  const Result<grammar::Tick> end = episode.EndTick();
+  if (!end) return tl::unexpected(end.error());
+  exchange::ComparedRoles roles;
+  for (const grammar::EventSignature& event : grammar::EventSignatures(program))
+    roles[event.name] = event.roles;
+  EpisodeToScore said{.ticks = *end};
+  episode::EpisodeName name = episode.name();
+  if (name.origin == episode::Origin::kRecording && !name.number)  // a path, where it is checked
+    name.scenario = std::filesystem::path(name.file).stem().string();
+  WatchedEpisode watched = Watched(episode);
+  watched.name = name.scenario;
+  Result<grammar::Timeline> found =
+      Foreign(asking, asking.sources.front())
+          .Find(episode::TakesOf({name}), 0, watched, program, roles, said);
+  if (!found) return tl::unexpected(std::move(found.error()));
+  said.found = std::move(*found);
+  return said;
 }
 
 }  // namespace prehend::measure

@@ -54,4 +54,7 @@ class Foreign {
   Recogniser recogniser_;
 };
 
+/// What the first of the sources finds in one episode alone: all events of its grammar.
+Result<EpisodeToScore> HeardIn(episode::Episode& episode, const Asking& asking);
+
 }  // namespace prehend::measure

@@ -24,6 +24,7 @@ std::string CommandAbout(const char* name, const std::string& id,
 
 std::string ExplainCommand(const CheckRequest& request) {
   const episode::EpisodeName& episode = request.episode;
+  if (request.listen) return "";
   if (!episode.number) return CommandAbout("explain", request.id, request.changes);
   return CommandAbout("explain", episode.file, request.changes) +
          fmt::format(" --episode {}", *episode.number);
@@ -31,7 +32,8 @@ std::string ExplainCommand(const CheckRequest& request) {
 
 std::string RepeatCommand(const CheckRequest& request) {
   return CommandAbout("check", request.episode.number ? request.episode.file : request.id,
-                      request.changes);
+                      request.changes) +
+         (request.listen ? " --recogniser " + ShellQuoted(request.recogniser) : "");
 }
 
 }  // namespace prehend::suite

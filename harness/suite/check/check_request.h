@@ -9,6 +9,7 @@
 #include "harness/base/process/worker_pool.h"
 #include "harness/episode/episodes/load_episode.h"
 #include "harness/episode/run/find_scenario.h"
+#include "harness/suite/judge/other_view.h"
 
 namespace prehend::suite {
 
@@ -19,6 +20,8 @@ struct CheckRequest {
   episode::EpisodeName episode;
   std::string file_hash;             ///< FileHash() of an episode file; "": not known yet
   episode::GrammarChoice changes;    ///< settings of a scenario may be fields of it
+  std::string recogniser = {};       ///< who is heard instead of the grammar: a command, or ""
+  Listen listen = {};                ///< hears it
   std::string id;                    ///< skill/name, or the path of what is outside the project
   std::string root;                  ///< the project's
   std::string report_folder;         ///< pictures go to its folder `pictures`
@@ -38,7 +41,9 @@ struct CheckRequest {
   /// Whether it is simulated here and now.
   bool IsPlayed() const { return episode.origin == episode::Origin::kScenario; }
   /// Whether nothing is changed by the command line, so that what differs can be accepted.
-  bool IsAsItsFileSays() const { return changes.grammar.empty() && changes.settings.empty(); }
+  bool IsAsItsFileSays() const {
+    return changes.grammar.empty() && changes.settings.empty() && !listen;
+  }
 };
 
 /// The options of the command line that ask for these changes.
@@ -48,7 +53,7 @@ std::vector<std::string> OptionsOf(const episode::GrammarChoice& changes);
 std::string CommandAbout(const char* name, const std::string& id,
                          const episode::GrammarChoice& changes = {});
 
-/// Asks about its events.
+/// Asks about its events; "" of those that no grammar recognises.
 std::string ExplainCommand(const CheckRequest& request);
 
 /// Repeats a verdict: of the same scenario or episode, with the same changes.

@@ -2,9 +2,13 @@
 // Judges are functions of values; files are written in Store() only.
 #include "harness/suite/check/check_scenario.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -37,6 +41,7 @@ struct CheckedEpisode {
   std::optional<GoldenComparison> golden = {};  ///< empty if the golden cannot be read
   std::string engine_difference = {};
   std::vector<PictureComparison> pictures = {};
+  std::optional<Heard> heard = {};  ///< whose timeline it is, if no grammar's
 
   bool is_good = true;  ///< nothing has been found so far
 
@@ -157,15 +162,54 @@ Findings GoldenBesideRecording(CheckedEpisode& checked) {
   return findings;
 }
 
+/// In the events that who was heard may find.
+Findings HeardAndGolden(CheckedEpisode& checked) {
+  const CheckRequest& request = checked.request;
+  const Heard& heard = *checked.heard;
+  ScenarioVerdict& verdict = checked.verdict;
+  verdict.details = heard.notes;
+  if (!heard.failure.empty())
+    return {{ExitCode::kBadInput, "the recogniser failed", heard.failure}};
+  const scenario::Scenario& scenario = checked.run.loaded.scenario;
+  Result<std::optional<truth::Golden>> golden{std::nullopt};
+  if (checked.recording)
+    golden = truth::ReadGoldenFile(GoldenOf(request.episode, scenario, request.root),
+                                   checked.recording->name);
+  else if (request.in_project)
+    golden = truth::GoldenFiles(request.root).ReadGoldenOf(request.id);
+  if (!golden) return {{ExitCode::kBadInput, "the golden cannot be read", "", golden.error()}};
+  verdict.has_golden = golden->has_value();
+  verdict.drawings = truth::EventDrawings(*checked.run.loaded.program);
+  truth::Golden covered =
+      golden->value_or(truth::Golden{.ticks_per_second = heard.timeline.ticks_per_second});
+  std::set<std::string> left_out;
+  std::erase_if(covered.events, [&](truth::GoldenEvent& line) {
+    const bool is_covered = heard.MayFind(line.event);
+    if (!is_covered) left_out.insert(line.event.event);
+    return !is_covered;
+  });
+  if (!left_out.empty())
+    verdict.details +=
+        fmt::format("not covered by the recogniser: {}\n", fmt::join(left_out, ", "));
+  verdict.comparison = truth::Compare(
+      covered, heard.timeline,
+      checked.recording ? ToleranceOf(*checked.recording) : scenario::DefaultTolerance(scenario));
+  if (!verdict.has_golden) return {{ExitCode::kPending, "no golden yet", ""}};
+  if (verdict.comparison->Agrees()) return {};
+  return {DifferenceFinding(*verdict.comparison, "")};
+}
+
 /// Pictures come last, since of a suite they show what has not passed.
 constexpr Judge kOfRuns[] = {
     Invariants, Limits, Laws, Claims, GoldenAndTruth, OtherEngine, UnrequestedPictures, Pictures};
 constexpr Judge kOfFailedRuns[] = {EndOfRun, Pictures};
 constexpr Judge kOfRecordings[] = {GoldenBesideRecording};
+constexpr Judge kOfHeard[] = {HeardAndGolden};
 
 /// Those that can judge this episode: of a recording only its golden, of a run that failed only
 /// that.
 std::span<const Judge> JudgesOf(const CheckedEpisode& checked) {
+  if (checked.heard) return kOfHeard;
   if (checked.recording) return kOfRecordings;
   if (checked.IsComplete()) return kOfRuns;
   return kOfFailedRuns;
@@ -290,6 +334,7 @@ std::string NextCommand(const CheckedEpisode& checked) {
   const CheckRequest& request = checked.request;
   const std::string again = RepeatCommand(request);
   const bool is_pending = checked.verdict.verdict == Verdict::kPending;
+  if (checked.heard) return again;
   if (checked.recording && is_pending) {
     // `review` and `accept` take what the golden is named after: of one of many in a file, all.
     if (request.episode.number) {
@@ -324,7 +369,7 @@ void AddPictures(CheckedEpisode& checked) {
       request.replays == Replays::kAll ||
       (request.replays == Replays::kFailures && verdict.verdict != Verdict::kPassed);
   if (has_frames && wants_replay) verdict.replay = show::ReplayData(scenario, checked.run.result);
-  if (checked.recording || !verdict.DiffersFromGolden()) return;
+  if (checked.recording || checked.heard || !verdict.DiffersFromGolden()) return;
   if (request.pictures && show::CanDrawPictures())
     verdict.drawn_differences =
         DrawDifferences(scenario, checked.run.result, *verdict.comparison, request.report_folder);
@@ -352,7 +397,7 @@ ScenarioVerdict VerdictOn(CheckedEpisode checked) {
   Conclude(findings, verdict);
   for (std::string* text : {&verdict.reason, &verdict.details}) Shorten(*text, request.root);
   verdict.details += truth::TextOfUndecided(verdict.claims);
-  if (!checked.recording && checked.IsComplete()) {
+  if (!checked.recording && !checked.heard && checked.IsComplete()) {
     Store(checked);
     verdict.picture_differences = PictureDifferencesText(
         checked.pictures, request.IsAsItsFileSays() ? AcceptPicturesCommand(request.id) : "");
@@ -362,6 +407,43 @@ ScenarioVerdict VerdictOn(CheckedEpisode checked) {
   return std::move(verdict);
 }
 
+/// What is said of it by who is heard instead of the grammar, if somebody is.
+grammar::Diagnostics Hear(episode::Episode& episode, grammar::Timeline& timeline,
+                          CheckedEpisode& checked) {
+  if (!checked.request.listen) return {};
+  Result<Heard> heard = checked.request.listen(episode);
+  if (!heard) return std::move(heard.error());
+  timeline = heard->timeline;
+  checked.heard = std::move(*heard);
+  return {};
+}
+
+grammar::Diagnostics Segment(episode::Episode& episode, CheckedEpisode& checked) {
+  const CheckRequest& request = checked.request;
+  auto segmented = episode.SegmentRecorded();
+  if (!segmented) return std::move(segmented.error());
+  const grammar::Diagnostics unheard = Hear(episode, segmented->timeline, checked);
+  if (!unheard.empty()) return unheard;
+  if (!checked.heard || checked.heard->failure.empty())
+    checked.verdict.demonstration = DemonstrationOf(*episode.recording(), segmented->timeline,
+                                                    truth::EventDrawings(*segmented->program));
+  if (request.episode.number && request.replays != Replays::kNone)
+    checked.run.result = episode.RunOf(*segmented, /*frames=*/true);
+  checked.recording = std::move(*segmented);
+  if (episode.row()) checked.verdict.state_hash = episode.row()->state_hash;
+  return {};
+}
+
+/// Of a run that is kept, or of a scenario whose frames somebody wants to see.
+grammar::Diagnostics Replay(episode::Episode& episode, CheckedEpisode& checked) {
+  if (checked.request.IsPlayed()) (void)episode.Played();
+  Result<episode::RunResult> run = episode.Run(/*frames=*/true);
+  if (!run) return std::move(run.error());
+  checked.run.result = std::move(*run);
+  return checked.IsComplete() ? Hear(episode, checked.run.result.timeline, checked)
+                              : grammar::Diagnostics();
+}
+
 }  // namespace
 
 ScenarioVerdict CheckScenario(const CheckRequest& request) {
@@ -369,27 +451,13 @@ ScenarioVerdict CheckScenario(const CheckRequest& request) {
   Result<episode::Episode> episode =
       episode::OpenEpisode(request.episode, request.changes, request.root, &files);
   if (!episode) return Unreadable(request, BlankVerdict(request, nullptr, files), episode.error());
-  if (request.IsPlayed()) {
-    CheckedEpisode checked = ToBeChecked(request, std::move(episode->loaded()), files);
-    Play(files, checked);
-    return VerdictOn(std::move(checked));
-  }
   CheckedEpisode checked = ToBeChecked(request, episode->loaded(), files);
-  if (episode->recording()) {
-    auto segmented = episode->SegmentRecorded();
-    if (!segmented) return Unreadable(request, std::move(checked.verdict), segmented.error());
-    checked.verdict.demonstration = DemonstrationOf(*episode->recording(), segmented->timeline,
-                                                    truth::EventDrawings(*segmented->program));
-    if (request.episode.number && request.replays != Replays::kNone)
-      checked.run.result = episode->RunOf(*segmented, /*frames=*/true);
-    checked.recording = std::move(*segmented);
-    if (episode->row()) checked.verdict.state_hash = episode->row()->state_hash;
-  }
-  if (!episode->recording()) {
-    Result<episode::RunResult> run = episode->Run(/*frames=*/true);
-    if (!run) return Unreadable(request, std::move(checked.verdict), run.error());
-    checked.run.result = std::move(*run);
-  }
+  grammar::Diagnostics unread;
+  if (request.IsPlayed() && !request.listen)
+    Play(files, checked);
+  else
+    unread = episode->recording() ? Segment(*episode, checked) : Replay(*episode, checked);
+  if (!unread.empty()) return Unreadable(request, std::move(checked.verdict), unread);
   return VerdictOn(std::move(checked));
 }
 

@@ -29,9 +29,11 @@ Failures FailuresOf(const std::vector<ScenarioVerdict>& verdicts) {
     if (!causes[i]) continue;
     ++failures.failed;
     const auto rate = static_cast<double>(demonstrations[i]->ticks_per_second);
-    groups[causes[i]->what].takes.push_back(
-        {of[i]->scenario, static_cast<double>(causes[i]->tick) / rate,
-         causes[i]->question.empty() ? "" : of[i]->explain + " " + causes[i]->question});
+    groups[causes[i]->what].takes.push_back({of[i]->scenario,
+                                             static_cast<double>(causes[i]->tick) / rate,
+                                             causes[i]->question.empty() || of[i]->explain.empty()
+                                                 ? ""
+                                                 : of[i]->explain + " " + causes[i]->question});
   }
   for (auto& [because, group] : groups) {
     group.because = because;

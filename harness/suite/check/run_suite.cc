@@ -64,7 +64,8 @@ class Suite {
   }
 
   bool Changed() const {
-    return !request_.changes.grammar.empty() || !request_.changes.settings.empty();
+    return !request_.changes.grammar.empty() || !request_.changes.settings.empty() ||
+           request_.listen;
   }
 
   /// The last pass, when nothing that it depended on changed since.
@@ -112,6 +113,8 @@ class Suite {
         .episode = NameOf(scenarios_[turn.scenario]),
         .file_hash = hash == hashes_.end() ? "" : hash->second,
         .changes = request_.changes,
+        .recogniser = request_.recogniser,
+        .listen = request_.listen,
         .id = Id(turn.scenario),
         .root = request_.root,
         .report_folder = request_.report_folder,

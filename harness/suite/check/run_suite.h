@@ -20,6 +20,8 @@ namespace prehend::suite {
 struct SuiteRequest {
   ScenarioSelection selection;
   episode::GrammarChoice changes;  ///< holds for every scenario
+  std::string recogniser = {};     ///< who is heard instead of the grammar: a command, or ""
+  Listen listen = {};              ///< hears it
   std::string root;
   std::string report_folder;
   std::string record_file;  ///< an episode file that gets the first run of each; or empty

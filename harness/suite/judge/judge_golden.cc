@@ -31,12 +31,6 @@ Finding TruthFinding(const GoldenComparison& compared) {
           .details = GroundTruthText(compared.truth)};
 }
 
-constexpr int kToleratedFrames = 2;
-
-grammar::Tick ToleranceOf(const episode::SegmentedRecording& segmented) {
-  return kToleratedFrames * segmented.frame_ticks;
-}
-
 bool IsHdf5(const std::filesystem::path& source) {
   return source.extension() == ".hdf5" || source.extension() == ".h5";
 }
@@ -237,6 +231,11 @@ std::string GoldenOf(const episode::EpisodeName& name, const scenario::Scenario&
 std::string LacksGolden(const episode::EpisodeName& name, const std::string& root) {
   Result<episode::Episode> opened = episode::OpenEpisode(name, {}, root);
   return opened ? LackOf(name, *opened) : Format(opened.error());
+}
+
+grammar::Tick ToleranceOf(const episode::SegmentedRecording& segmented) {
+  constexpr int kToleratedFrames = 2;
+  return kToleratedFrames * segmented.frame_ticks;
 }
 
 Result<JudgedRecording> JudgeRecording(const episode::EpisodeName& name, const std::string& grammar,

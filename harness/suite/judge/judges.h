@@ -134,6 +134,8 @@ std::string LacksGolden(const episode::EpisodeName& name, const std::string& roo
 /// that of two frames.
 Result<JudgedRecording> JudgeRecording(const episode::EpisodeName& name, const std::string& grammar,
                                        const std::string& root);
+/// Of lines of its golden without a tolerance of their own.
+grammar::Tick ToleranceOf(const episode::SegmentedRecording& segmented);
 /// The same of one that is segmented, with this golden.
 Result<JudgedRecording> JudgeSegmented(episode::SegmentedRecording segmented,
                                        const std::string& golden_file);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "harness/episode/run/load_grammar.h"
@@ -75,19 +76,38 @@ Viewed EngineView(const PlayedRun& played, const std::string& engine) {
   return view;
 }
 
+Viewed HeardView(const PlayedRun& played, const Heard& heard) {
+  if (!heard.failure.empty())
+    return Refused(ExitCode::kBadInput, "--against: the recogniser failed: " + heard.failure);
+  grammar::Timeline covered = played.run.timeline;
+  std::erase_if(covered.events, [&](auto& event) { return !heard.MayFind(event); });
+  OtherView view{.name = "recogniser",
+                 .comparison = truth::Compare(GoldenOf(heard.timeline), covered,
+                                              scenario::DefaultTolerance(played.loaded.scenario))};
+  view.run.timeline = heard.timeline;
+  view.run.drawings = played.run.drawings;
+  return view;
+}
+
 }  // namespace
 
-Viewed ViewOf(const PlayedRun& played, const std::string& view, const std::string& root) {
+bool Heard::MayFind(grammar::NamedEvent& event) const {
+  std::erase_if(event.roles, [](const grammar::Role& role) { return role.name == "style"; });
+  event.open_end = false;
+  return covers.empty() || std::ranges::count(covers, event.event) > 0;
+}
+
+Viewed ViewOf(const PlayedRun& played, const std::string& view, const std::string& root,
+              const Heard* heard) {
+  if (heard) return HeardView(played, *heard);
   if (view == "golden") return GoldenView(played, root);
   if (view == "box2d" || view == "bullet") return EngineView(played, view);
   return GrammarView(played, view, root);
 }
 
-tl::expected<NamedSheet, episode::NotFound> SheetAgainst(const PlayedRun& played,
-                                                         const std::string& view,
-                                                         const show::Window& window,
-                                                         const show::SceneFormat& format,
-                                                         const std::string& root) {
+tl::expected<NamedSheet, episode::NotFound> SheetAgainst(
+    const PlayedRun& played, const std::string& view, const show::Window& window,
+    const show::SceneFormat& format, const std::string& root, const Heard* heard) {
   const scenario::Scenario& scenario = played.loaded.scenario;
   show::ScenePainter painter;
   NamedSheet made{.name = view};
@@ -99,7 +119,7 @@ tl::expected<NamedSheet, episode::NotFound> SheetAgainst(const PlayedRun& played
       return Refused(ExitCode::kNothing, "--against: " + id + " has no golden pictures; " +
                                              AcceptPicturesCommand(id) + " keeps those of now");
   } else {
-    const Viewed other = ViewOf(played, view, root);
+    const Viewed other = ViewOf(played, view, root, heard);
     if (!other) return tl::unexpected(other.error());
     const bool in_other_engine = !other->run.recording.empty();
     const show::Side first{.name = made.name = other->name,

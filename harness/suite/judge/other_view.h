@@ -3,10 +3,13 @@
 // and a sheet of both. Tested by tests/program/render_test.cc
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "harness/episode/episode/episode.h"
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
@@ -14,6 +17,20 @@
 #include "harness/truth/golden/compare.h"
 
 namespace prehend::suite {
+
+/// What somebody else than the grammar says of an episode (docs/recognisers.md).
+struct Heard {
+  grammar::Timeline timeline;
+  std::string failure;              ///< a rule that it broke: its events are not all
+  std::string notes;                ///< what it said beside: lines, or ""
+  std::vector<std::string> covers;  ///< the events that it may find; none: whatever there is
+
+  /// Whether it may find such an event, which loses what nobody heard says: its attributes, and
+  /// whether the episode ended it.
+  bool MayFind(grammar::NamedEvent& event) const;
+};
+/// Programs of others belong to another wing, so who hears them is a value.
+using Listen = std::function<Result<Heard>(episode::Episode&)>;
 
 // A planar scenario in the other engine: what is recognised does not depend on the engine that
 // computed the physics. Tested by tests/harness/suite/judge/compare_engines_test.cc
@@ -68,10 +85,11 @@ struct OtherView {
   truth::Comparison comparison;  ///< `expected` is the other view, `actual` the run that was played
 };
 
-/// `view` is "golden", the name of an engine, or a grammar: its name or its file. `root`: the
-/// project's.
+/// `view` is "golden", the name of an engine, or a grammar: its name or its file; or the command
+/// that said what is heard. `root`: the project's.
 tl::expected<OtherView, episode::NotFound> ViewOf(const PlayedRun& played, const std::string& view,
-                                                  const std::string& root);
+                                                  const std::string& root,
+                                                  const Heard* heard = nullptr);
 
 /// Both over time, and the scenes where they differ. `view` may also be "pictures": golden
 /// pictures, those of now, and what differs. The name is that of the view.
@@ -79,10 +97,8 @@ struct NamedSheet {
   std::string name;
   show::Sheet sheet;
 };
-tl::expected<NamedSheet, episode::NotFound> SheetAgainst(const PlayedRun& played,
-                                                         const std::string& view,
-                                                         const show::Window& window,
-                                                         const show::SceneFormat& format,
-                                                         const std::string& root);
+tl::expected<NamedSheet, episode::NotFound> SheetAgainst(
+    const PlayedRun& played, const std::string& view, const show::Window& window,
+    const show::SceneFormat& format, const std::string& root, const Heard* heard = nullptr);
 
 }  // namespace prehend::suite
