@@ -109,13 +109,14 @@ def check_goldens(folder):
 
 def check_kind(folder, kind, ends_in):
     source, map_path = os.path.join(folder, kind + ".hdf5"), os.path.join(folder, kind + ".yaml")
+    base = "" if kind == "maniskill" else "data/"
     with open(map_path, "a", encoding="utf-8") as out:
         out.write(LABELS)
     episodes, labelled = os.path.join(folder, kind + ".episodes"), os.path.join(folder, kind + "_labelled.hdf5")
     said("import", source, "--map", map_path, "-o", episodes)
     before, bytes_before = datasets(source), open(source, "rb").read()
     with h5py.File(source) as file:
-        names = sorted(file["data"], key=lambda name: int(name[5:]))
+        names = sorted(file[base or "/"], key=lambda name: int(name[5:]))
     edges = {name: edges_of(episodes, name) for name in names}
     whole = [name for name in names if edges[name][1] is not None]
     told = said("episode", "label", episodes, "--map", map_path, "-o", labelled, code=0 if len(whole) == len(names) else 1)
@@ -123,21 +124,21 @@ def check_kind(folder, kind, ends_in):
     assert f"{len(whole)} of {len(names)} episodes are labelled" in told, told
     after = datasets(labelled)
     group = "obs/datagen_info" if kind.startswith("isaac") else "datagen_info"
-    new = {f"data/{name}/{group}/subtask_term_signals/{label}" for name in whole for label in ("grasp_1", "place_1")}
-    groups = {f"data/{name}/{part}" for name in whole for part in (group, group + "/subtask_term_signals")}
+    new = {f"{base}{name}/{group}/subtask_term_signals/{label}" for name in whole for label in ("grasp_1", "place_1")}
+    groups = {f"{base}{name}/{part}" for name in whole for part in (group, group + "/subtask_term_signals")}
     assert set(after) - set(before) <= new | groups and new <= set(after)
     assert all(after[name] == before[name] for name in before if name not in new)
     with h5py.File(labelled) as file:
         for name in names:
             if name in whole:
-                assert ends_in(file["data/" + name], ("grasp_1", "place_1")) == list(edges[name]), (kind, name, edges[name])
+                assert ends_in(file[base + name], ("grasp_1", "place_1")) == list(edges[name]), (kind, name, edges[name])
                 for label in ("grasp_1", "place_1"):
-                    signal = file[f"data/{name}/{group}/subtask_term_signals/{label}"][()]
+                    signal = file[f"{base}{name}/{group}/subtask_term_signals/{label}"][()]
                     assert not signal[0] and np.all(np.diff(signal.astype(int)) >= 0)
             else:
                 why = "place_1: no end" if edges[name][0] is not None else "grasp_1: no begin"
                 assert f"{name} is left without labels: {why} of grasping cube_1" in told
-                assert f"data/{name}/{group}/subtask_term_signals/place_1" not in after
+                assert f"{base}{name}/{group}/subtask_term_signals/place_1" not in after
     again = os.path.join(folder, "again.hdf5")
     said("episode", "label", episodes, "--map", map_path, "-o", again, code=0 if len(whole) == len(names) else 1)
     assert open(again, "rb").read() == open(labelled, "rb").read()
@@ -199,12 +200,35 @@ def check_faults(folder, episodes, map_path):
     os.rename(source + ".away", source)
 
 
+def check_page(folder):
+    """The commands of docs/robot-demonstrations.md, in their order, with the map that the first one proposes."""
+    page = os.path.join(folder, "page_commands")
+    os.mkdir(page)
+    shutil.copy(os.path.join(folder, "isaac_annotated.hdf5"), os.path.join(page, "demos.hdf5"))
+    root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+    lines = open(os.path.join(root, "docs/robot-demonstrations.md"), encoding="utf-8").read().splitlines()
+    commands = [line for line in lines if line.startswith("prehend ")]
+    assert len(commands) == 10, commands
+    for command in commands:
+        done = subprocess.run(command, shell=True, cwd=page, capture_output=True, text=True, check=False,
+                              env=dict(os.environ, PATH=os.path.dirname(PREHEND) + ":" + os.environ["PATH"]))
+        assert done.returncode in (0, 1 if " label " in command else 0), (command, done.returncode, done.stderr)
+        if "--propose" in command:
+            map_path = os.path.join(page, "stack.yaml")
+            text = open(map_path, encoding="utf-8").read().replace("grammar: robot_pick_and_place", "grammar: pick_and_place_from_motion")
+            with open(map_path, "w", encoding="utf-8") as out:
+                out.write(text.replace("[0.05, 0.05, 0.05]", "[0.07, 0.07, 0.2]", 1) + LABELS)
+    with h5py.File(os.path.join(page, "labelled.hdf5")) as file:
+        assert any("obs/datagen_info/subtask_term_signals/place_1" in demo for demo in file["data"].values())
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         made.write_all(folder, made.demonstrations(PREHEND))
         check_goldens(folder)
+        check_page(folder)
         for kind, ends in (("isaac_raw", isaac_ends), ("isaac_annotated", isaac_ends), ("mimicgen", mimicgen_ends),
-                           ("robosuite", mimicgen_ends)):
+                           ("robosuite", mimicgen_ends), ("maniskill", mimicgen_ends)):
             found = check_kind(folder, kind, ends)
             print(f"{kind}: {len(found[3])} of {len(found[2])} demonstrations accepted")
             if kind == "isaac_annotated":

@@ -175,6 +175,7 @@ def maniskill(path, demos):
             for name in ("cube_1", "cube_2"):
                 g["env_states/actors/" + name] = f4(np.hstack([d.poses[name], np.zeros((d.n + 1, 6))]))
             g["obs/extra/tcp_pose"] = f4(d.poses["gripper"])
+            g["env_states/articulations/panda"] = f4(np.hstack([np.zeros((d.n + 1, 20)), np.abs(d.fingers), np.zeros((d.n + 1, 9))]))
             g["obs/agent/qpos"] = f4(np.hstack([np.zeros((d.n + 1, 7)), np.abs(d.fingers)]))
             g["success"] = np.arange(d.n) >= (d.n - 3 if d.success else d.n)
     with open(path.replace(".h5", ".json").replace(".hdf5", ".json"), "w") as out:

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "harness/exchange/import/compare_series.h"
 
@@ -86,6 +87,8 @@ void CollectDatasets(const Hdf5File& file, const std::string& group, const std::
 
 std::string LastOf(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
+constexpr double kSize_m = 0.05;  ///< of things, which the file does not say
+
 class Proposal {
  public:
   Proposal(const Hdf5File& file, std::string pattern, const std::vector<std::string>& groups)
@@ -98,6 +101,7 @@ class Proposal {
     if (things_.empty()) Things("object_poses/", "");
     if (things_.empty()) Things("actors/", "[0:7]");
     if (things_.empty()) States();
+    if (things_.empty()) Observed();
     const std::string hand = Hand();
     std::string text;
     for (const Hdf5Object& one : datasets_)
@@ -114,8 +118,12 @@ class Proposal {
                         : Has("success")                   ? ", success: success"
                                                            : "");
     text +=
-        "grammar: robot_pick_and_place\nentities:                  # sizes are not in the file\n"
-        "  table: {at_m: [0.5, 0, -0.02], fixed: true, class: Table, size_m: [1.2, 1.6, 0.04]}\n";
+        "grammar: robot_pick_and_place\nentities:                  # sizes are not in the file\n";
+    text += fmt::format(
+        "  table: {{at_m: [{:.3g}, {:.3g}, {:.4g}], fixed: true, class: Table, size_m: [1.2, 1.6, "
+        "0.04]}}{}\n",
+        lowest_[0], lowest_[1], lowest_[2] - kSize_m / 2 - 0.02,
+        things_.empty() ? "" : "  # below the lowest thing, if that is 5 cm high");
     return text + things_ + hand;
   }
 
@@ -130,16 +138,24 @@ class Proposal {
     return std::ranges::find(datasets_, path, &Hdf5Object::name) != datasets_.end();
   }
 
-  /// `order`: whether its pose has quaternions.
-  void Thing(const std::string& name, const std::string& pose, bool order) {
-    things_ += fmt::format("  {}: {{pose: {}, size_m: [0.05, 0.05, 0.05]}}\n", name, pose);
+  /// `order`: whether its pose has quaternions. `dataset`: where it is first.
+  void Thing(const std::string& name, const std::string& keys, bool order,
+             const Hdf5Object& dataset) {
+    if (name.starts_with("table") || name.starts_with("ground")) return;
+    const bool is_matrix = dataset.shape.size() == 3;
+    const auto at = file_.Read(group_ + "/" + dataset.name);
+    const std::size_t step = is_matrix ? 4 : 1, first = is_matrix ? 3 : 0;
+    if (at && at->size() > first + 2 * step &&
+        (things_.empty() || (*at)[first + 2 * step] < lowest_[2]))
+      lowest_ = {(*at)[first], (*at)[first + step], (*at)[first + 2 * step]};
+    things_ += fmt::format("  {}: {{{}, size_m: [0.05, 0.05, 0.05]}}\n", name, keys);
     asks_order_ = asks_order_ || order;
   }
 
   void Things(const std::string& below, const std::string& slice) {
     for (const Hdf5Object& one : datasets_)
       if (("/" + one.name).find("/" + below) != std::string::npos)
-        Thing(LastOf(one.name), '"' + one.name + slice + '"', !slice.empty());
+        Thing(LastOf(one.name), "pose: \"" + one.name + slice + '"', !slice.empty(), one);
   }
 
   /// Of Isaac Lab: they are written after the action.
@@ -148,9 +164,24 @@ class Proposal {
       if (!one.name.starts_with("states/rigid_object/") || LastOf(one.name) != "root_pose")
         continue;
       const std::string name = LastOf(one.name.substr(0, one.name.rfind('/')));
-      Thing(name,
-            fmt::format("{0}, first: initial_state{1}, shift: 1", one.name, one.name.substr(6)),
-            true);
+      Thing(
+          name,
+          fmt::format("pose: {0}, first: initial_state{1}, shift: 1", one.name, one.name.substr(6)),
+          true, one);
+    }
+  }
+
+  /// Of robosuite: obs/NAME_pos with obs/NAME_quat, seen from nowhere but the world.
+  void Observed() {
+    for (const Hdf5Object& one : datasets_) {
+      const std::string name = LastOf(one.name).substr(0, LastOf(one.name).rfind("_pos")),
+                        turn = one.name.substr(0, one.name.rfind("_pos")) + "_quat";
+      const bool is_thing = one.name.ends_with("_pos") && Has(turn) && one.shape.size() == 2 &&
+                            one.shape[1] == 3 && name.find("eef") == std::string::npos &&
+                            name != "ee" && name.find("_to_") == std::string::npos;
+      if (is_thing)
+        Thing(name, fmt::format("position: {}, quaternion: {}", one.name, turn), true, one);
+      if (is_thing) order_ = "xyzw";
     }
   }
 
@@ -177,6 +208,13 @@ class Proposal {
       if (const Hdf5Object* one = Find(name); one && grip.empty())
         grip = fmt::format(
             ",\n            grip: {{from: {}, sum_abs: true, open: 0.08, closed: 0}}", one->name);
+    // Of ManiSkill: thirteen numbers of the root, then joints, the last two of them fingers, and
+    // how fast these are.
+    if (const Hdf5Object* arm = Find("env_states/articulations/panda");
+        arm && grip.empty() && arm->Width() > 17)
+      grip = fmt::format(
+          ",\n            grip: {{from: \"{0}[{1}:{2}]\", sum_abs: true, open: 0.08, closed: 0}}",
+          arm->name, (arm->Width() + 13) / 2 - 2, (arm->Width() + 13) / 2);
     return fmt::format(
         "  gripper: {{{}, hand: true, ahead: [0, 0, 1], size_m: [0.02, 0.1, 0.06]{}}}\n", keys,
         grip);
@@ -187,6 +225,7 @@ class Proposal {
   std::vector<Hdf5Object> datasets_;
   std::string things_, order_ = "wxyz";
   bool asks_order_ = false;
+  std::array<double, 3> lowest_ = {0.5, 0, kSize_m / 2};  ///< where the lowest thing is first
 };
 
 }  // namespace

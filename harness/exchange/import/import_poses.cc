@@ -27,6 +27,7 @@ constexpr double kGap = 1.5;         ///< of the usual step: longer is a gap
 constexpr double kFarthest_m = 1e4;  ///< of the recording format
 constexpr double kUnmoved_m = 0.001;
 constexpr double kTrembles_m = 0.0008;  ///< more than this hides how things move
+constexpr double kMostTrembling_m = 0.5;
 
 std::string EpisodeName(const ImportMap& map, const std::string& path) {
   if (!map.episode.empty()) return map.episode;
@@ -323,7 +324,8 @@ class Importer {
   void NoteTrembling(double as_read_m, const std::vector<TimedPose>& poses,
                      const EntityReport& report) {
     const double trembling_m = map_.smooth_s > 0 ? Trembling_m(poses) : as_read_m;
-    if (trembling_m <= kTrembles_m) return;
+    // What goes farther from frame to frame jumps, and means hide nothing of that.
+    if (trembling_m <= kTrembles_m || trembling_m > kMostTrembling_m) return;
     trembling_.push_back("'" + report.from + "'");
     trembles_m_ = std::max(trembles_m_, trembling_m);
     smooth_s_ = std::max(smooth_s_, std::ceil(10 * as_read_m / kTrembles_m / report.rate_hz) / 10);

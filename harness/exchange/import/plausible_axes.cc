@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "harness/exchange/import/plausibility.h"
@@ -20,7 +21,7 @@ namespace {
 constexpr double kLift_m = 0.05,
                  kDip_m = 0.02;  ///< what is lifted does not get lower than it stood
 constexpr double kWay_m = 0.1;   ///< what got so far was moved
-constexpr double kNearTop_m = 0.05;
+constexpr double kNearTop_m = 0.05, kOneHeight_m = 0.02;
 constexpr double kTurned_deg = 15, kAbout_deg = 20;
 constexpr double kInHand_m = 0.015;  ///< in the hand that carries it, root mean square
 constexpr double kWaits_m = 0.005;
@@ -106,6 +107,20 @@ class WayUp {
     return votes;
   }
 
+  /// How far apart the undersides of things are along `up`, where they stand first; of one thing,
+  /// infinitely far.
+  double Apart_m(const Eigen::Vector3d& up) const {
+    Eigen::AlignedBox1d heights;
+    std::vector<std::size_t> bodies;
+    for (const Rest& rest : seen_.rests) {
+      if (!rest.stands || std::ranges::count(bodies, rest.body) > 0) continue;
+      bodies.push_back(rest.body);
+      const double half_m = seen_.entities[rest.body]->size_m.dot(up.cwiseAbs()) / 2;
+      heights.extend(Eigen::Matrix<double, 1, 1>(rest.p_m.dot(up) - half_m));
+    }
+    return bodies.size() < 2 ? std::numeric_limits<double>::infinity() : heights.sizes().x();
+  }
+
   /// Between two rests things turn about `up`.
   Votes Turns(const Eigen::Vector3d& up, std::optional<bool> reorder_wxyz = {}) const {
     Votes votes;
@@ -178,17 +193,20 @@ Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign) {
                       "comes down again: {} looks up",
                       stated, example, highest_m, "xyz"[axis], "xyz"[axis]));
     }
+    // Of things that stand at one height, the map has the table at another: that is not about up.
+    const double level_m = way.Apart_m(up), other_level_m = way.Apart_m(other);
+    const bool is_level = level_m < kOneHeight_m && other_level_m > kWay_m / 2;
     ImportMap upright = map;
     upright.up.reset();
     upright.axes = Located<int>{axis, {}};
     if (const Votes other_tops = way.OnTops(upright.WorldTurn());
-        tops.Deny() && other_tops.Agree()) {
+        !is_level && tops.Deny() && other_tops.Agree()) {
       told += 2 * other_tops.yes;
       signs.push_back(fmt::format("with {} up, what stands would have what the map places below it",
                                   "xyz"[axis]));
     }
     if (const double near_m = NearestApproach(poses, upright, map.MetresPerUnit()).distance_m;
-        here_m > kNowhere_m && near_m < kThere_m) {
+        !is_level && !seen.rests.empty() && here_m > kNowhere_m && near_m < kThere_m) {
       told += 3;
       signs.push_back(fmt::format(
           "with {} up, something tracked comes to what the map places, to which nothing "

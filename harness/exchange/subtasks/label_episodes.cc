@@ -49,11 +49,15 @@ void AddSignalsOf(const Hdf5File& file, const ImportMap& map, Subtasks& one,
                   std::vector<Hdf5Signal>& signals) {
   const std::string& pattern = map.hdf5.episodes.value;
   const std::string group = pattern.substr(0, pattern.rfind('/') + 1) + one.episode;
-  const std::size_t skipped = static_cast<std::size_t>(map.hdf5.skip),
-                    rows = one.ticks.size() + skipped;
+  const std::size_t skipped = static_cast<std::size_t>(map.hdf5.skip);
+  std::size_t rows = one.ticks.size() + skipped;
   const Result<Hdf5Object> actions = file.Describe(group + "/actions"),
                            states = file.Describe(group + "/states");
   if (!file.Has(group)) one.missing = "'" + group + "' is not in " + file.path();
+  // ManiSkill has the state after the last action, too.
+  if (actions && actions->Rows() + 1 == rows) --rows;
+  const bool is_late = one.all.size() > 1 && one.all[one.all.size() - 2].end + skipped >= rows;
+  if (is_late) one.missing = one.all[one.all.size() - 2].name + ": after the last action";
   if (actions && actions->Rows() != rows)
     one.missing =
         fmt::format("it has {} actions, and the episode {} frames", actions->Rows(), rows);
