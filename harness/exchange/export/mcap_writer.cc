@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -216,9 +217,20 @@ std::string WorldName(const grammar::EntityTable& table) {
   return name;
 }
 
+namespace {
+
+/// Names of topics have letters, digits and underscores.
+std::string TopicOf(const std::string& entity, std::size_t number) {
+  std::string word = entity;
+  for (char& c : word) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  return "/shapes/" + (word == entity ? word : fmt::format("{}_{}", word, number));
+}
+
+}  // namespace
+
 std::string WriteMcap(const Motion& motion, const std::string& name, std::ostream& out) {
   McapWriter bag(out);
-  const auto topic = [&](const char* called, const std::string& type, bool latched = false) {
+  const auto topic = [&](const std::string& called, const std::string& type, bool latched = false) {
     return bag.AddTopic({called, type, RosDefinition(type), latched});
   };
   const std::size_t still = topic("/tf_static", "tf2_msgs/msg/TFMessage", true),
@@ -227,6 +239,10 @@ std::string WriteMcap(const Motion& motion, const std::string& name, std::ostrea
                     joints = topic("/joint_states", "sensor_msgs/msg/JointState"),
                     events = topic("/events", "std_msgs/msg/String");
   const grammar::EntityTable& table = motion.table();
+  std::vector<std::size_t> outlines;
+  for (const grammar::EntityInfo& entity : table.entities)
+    outlines.push_back(
+        topic(TopicOf(entity.name, outlines.size()), "sensor_msgs/msg/PointCloud2", true));
   const std::string world = WorldName(table);
   std::vector<FramePose> frames;
   std::vector<bool> stands;
@@ -237,6 +253,8 @@ std::string WriteMcap(const Motion& motion, const std::string& name, std::ostrea
       frames.push_back({&table.entities[i].name, seen.first.p_WB_m, seen.first.q_WB});
   }
   bag.Message(shapes, 0, ShapesMessage(0, table));
+  for (std::size_t i = 0; i < table.entities.size(); ++i)
+    bag.Message(outlines[i], 0, OutlineMessage(0, table.entities[i]));
   if (!frames.empty()) bag.Message(still, 0, TransformsMessage(0, world, frames));
   const auto edges = EdgesOf(motion);
   auto edge = edges.begin();

@@ -3,6 +3,7 @@
 #include "harness/exchange/export/ros_messages.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -33,6 +34,10 @@ const std::map<std::string, std::string> kRosTypes = {
      "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\n"
      "float64[] effort\n"},
     {"sensor_msgs/CompressedImage", "std_msgs/Header header\nstring format\nuint8[] data\n"},
+    {"sensor_msgs/PointField", "string name\nuint32 offset\nuint8 datatype\nuint32 count\n"},
+    {"sensor_msgs/PointCloud2",
+     "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\n"
+     "bool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n"},
     {"visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n"},
     {"visualization_msgs/MeshFile", "string filename\nuint8[] data\n"},
     {"visualization_msgs/Marker",
@@ -108,6 +113,32 @@ std::vector<RosMarker> MarkersIn(const grammar::EntityInfo& entity) {
   return markers;
 }
 
+/// Points on it, in the entity's axes: of a box on its edges, of what is round on three circles.
+void AddOutline(const RosMarker& marker, std::vector<Eigen::Vector3d>& points) {
+  constexpr int kSteps = 24;
+  for (const Eigen::Vector3d& corner : marker.points) points.push_back(corner);
+  for (int i = 0; i < kSteps && marker.points.empty(); ++i) {
+    for (const int axis : {0, 1, 2}) {
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      for (const int edge : {0, 1, 2, 3}) {
+        Eigen::Vector3d p;
+        const double angle = 2 * static_cast<double>(EIGEN_PI) * (i + 0.25 * edge) / kSteps;
+        if (marker.type == kRosCube) {
+          p[axis] = static_cast<double>(i) / kSteps - 0.5;
+          p[u] = edge % 2 - 0.5;
+          p[v] = edge / 2 - 0.5;
+        } else {
+          p[axis] = 0;
+          p[u] = std::cos(angle) / 2;
+          p[v] = std::sin(angle) / 2;
+          if (marker.type == kRosCylinder && axis == 2) p.z() = edge % 2 - 0.5;
+        }
+        points.push_back(marker.p_m + marker.q * p.cwiseProduct(marker.scale));
+      }
+    }
+  }
+}
+
 void PutColor(CdrWriter& out, const grammar::EntityInfo& entity) {
   constexpr std::uint32_t kSkin = 0xE0B090, kGrey = 0xA0A4AA;
   const std::string& own = entity.classes.front();
@@ -174,6 +205,24 @@ std::string ShapesMessage(std::uint64_t ns, const grammar::EntityTable& table) {
     }
   }
   out.bytes.replace(out.origin, sizeof count, ByteWriter{}.Number(count).bytes);
+  return out.bytes;
+}
+
+std::string OutlineMessage(std::uint64_t ns, const grammar::EntityInfo& entity) {
+  constexpr std::uint8_t kFloat32 = 7, kNo = 0, kYes = 1;
+  std::vector<Eigen::Vector3d> points;
+  for (const RosMarker& marker : MarkersIn(entity)) AddOutline(marker, points);
+  CdrWriter out;
+  PutHeader(out, ns, entity.name);
+  out.U32(1).U32(points.size()).U32(3);
+  for (const int axis : {0, 1, 2}) {
+    out.String(std::string(1, "xyz"[axis]));
+    out.U32(4 * static_cast<std::size_t>(axis)).Number(kFloat32).U32(1);
+  }
+  out.Number(kNo).U32(12).U32(12 * points.size()).U32(12 * points.size());
+  for (const Eigen::Vector3d& p : points)
+    for (const double value : p) out.Number(static_cast<float>(value));
+  out.Number(kYes);
   return out.bytes;
 }
 

@@ -11,7 +11,7 @@
 namespace prehend::exchange {
 
 /// Of these types: "tf2_msgs/msg/TFMessage", "visualization_msgs/msg/MarkerArray",
-/// "sensor_msgs/msg/JointState", "std_msgs/msg/String".
+/// "sensor_msgs/msg/JointState", "sensor_msgs/msg/PointCloud2", "std_msgs/msg/String".
 std::string RosDefinition(const std::string& type);
 
 /// A frame of coordinates in the world.
@@ -25,6 +25,9 @@ std::string TransformsMessage(std::uint64_t ns, const std::string& world,
 
 /// What each entity looks like, fixed to the frame that has its name.
 std::string ShapesMessage(std::uint64_t ns, const grammar::EntityTable& table);
+
+/// The same of one of them in points, for viewers without markers.
+std::string OutlineMessage(std::uint64_t ns, const grammar::EntityInfo& entity);
 
 struct JointValue {
   std::string name;
