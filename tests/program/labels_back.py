@@ -173,6 +173,12 @@ def check_tables(folder, episodes, map_path, edges, whole):
         for kind in ("sparse", "dense"):
             assert json.loads(row[kind + "_subtask_end_frames"])[:2] == list(edges[name])
             assert json.loads(row[kind + "_subtask_names"])[0] == "grasp the carton"
+    language = [json.loads(line) for line in open(sarm + ".language.json", encoding="utf-8")]
+    assert len(language) == len(rows)
+    for frame, row in zip(language, rows):
+        assert frame["frame_index"] == int(row["frame"]) and frame["timestamp"] == float(np.float32(frame["frame_index"] / made.RATE_HZ))
+        begun = [one["content"] for one in frame["language_persistent"] if one["timestamp"] <= frame["timestamp"]]
+        assert begun[-1] == row["text"] and frame["language_persistent"][0]["timestamp"] == 0
 
 
 def check_faults(folder, episodes, map_path):
