@@ -125,6 +125,17 @@ test("all kinds of shapes are markers", async () => {
   assert.equal(topics["/tf_static"].messages.length, 0);  // it moves
 });
 
+test("outlines are points on the shapes, in their frames", async () => {
+  const { topics } = await decoded(exported("milk_carton_wrap"));
+  const [cloud] = topics["/shapes/milk"].messages, points = new Float32Array(new Uint8Array(cloud.data).buffer);
+  assert.deepEqual([cloud.header.frame_id, cloud.height, cloud.point_step], ["milk", 1, 12]);
+  assert.equal(points.length, 3 * cloud.width);
+  assert.deepEqual(cloud.fields.map((field) => [field.name, field.offset, field.datatype]), [["x", 0, 7], ["y", 4, 7], ["z", 8, 7]]);
+  const far = [0, 1, 2].map((axis) => Math.max(...points.filter((_, i) => i % 3 === axis).map(Math.abs)));
+  assert.deepEqual(far.map((value) => Math.round(value * 1e6)), [35000, 35000, 100000]);
+  for (const name of ["table", "right_hand"]) assert.ok(topics["/shapes/" + name].messages[0].width > 0);
+});
+
 test("events are begins and ends with their UUIDs", async () => {
   const { topics } = await decoded(exported("milk_carton_wrap"));
   const run = JSON.parse(prehend("run", "milk_carton_wrap", "--json")).events;
