@@ -31,6 +31,10 @@ Engine::Engine(std::shared_ptr<const Program> program, EntityTable entity_table)
     past_.LookBack(rule, history_);
     nearness_.push_back(NearnessOf(rule));
     follows_.push_back(WhenItFollows(rule));
+    const auto* from_to = rule.If<FromToRule>();
+    begins_by_others_.push_back(from_to != nullptr && AsksOnlyOthers(from_to->from));
+    const auto* looks_back = rule.If<UntilSinceRule>();
+    leads_always_.push_back(looks_back != nullptr && IsUnknownUntilTheEnd(looks_back->since));
     any_rests = any_rests || nearness_.back() != kNone;
   }
   turns_.resize(program_->rules.size());
@@ -345,11 +349,14 @@ void Engine::StopWaiting(RuleInstance& instance) {
   ++awake_count_;
 }
 
-// Whether something that it asks about is known up to its next frame, and no further.
+// Whether something that it asks about is known up to its next frame, and no further. What was not
+// known in the frame before, which was decided without it, makes no difference.
 bool Engine::IsAtTheKnown(const RuleInstance& instance) const {
   bool is_there = false;
   ForEachReference(instance, [&](InstanceId index) {
-    is_there = is_there || !instances_.IsKnownAt(instances_[index], instance.next);
+    const RuleInstance& other = instances_[index];
+    is_there = is_there || (!instances_.IsKnownAt(other, instance.next) &&
+                            instances_.IsKnownAt(other, instance.next - 1));
   });
   return is_there;
 }
@@ -366,11 +373,15 @@ void Engine::SkipUnchanged(RuleInstance& instance) const {
   instance.next = std::clamp(NextChange(instance, instance.next - 1), instance.next, now + 1);
 }
 
-// The first frame after this one where something changes that the instance asks about.
-FrameNumber Engine::NextChange(const RuleInstance& instance, FrameNumber after) const {
+// The first frame after this one where something changes that the instance asks about. As long as
+// nothing begins for what others say, it does not look at entities.
+FrameNumber Engine::NextChange(RuleInstance& instance, FrameNumber after) const {
   FrameNumber next = kNever;
   const Rule& rule = RuleOf(instance);
-  for (std::size_t role = 0; role < rule.roles.size(); ++role) {
+  const bool looks =
+      instance.open || !begins_by_others_[instance.rule] ||
+      evaluator_.Truth(rule.As<FromToRule>().from, {instance, after}) != Kleene::kFalse;
+  for (std::size_t role = 0; looks && role < rule.roles.size(); ++role) {
     if (rule.watches_pose[role] || rule.watches_grip[role])
       next = std::min(next, history_.NextChange(instance.entities[role], after));
   }

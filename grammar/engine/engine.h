@@ -150,7 +150,7 @@ class Engine final {
   }
   bool IsAtTheKnown(const RuleInstance& instance) const;
   void SkipUnchanged(RuleInstance& instance) const;
-  FrameNumber NextChange(const RuleInstance& instance, FrameNumber after) const;
+  FrameNumber NextChange(RuleInstance& instance, FrameNumber after) const;
 
   // Following others (grammar/engine/engine_following.cc).
   struct Follows {
@@ -294,6 +294,8 @@ class Engine final {
   IdVector<RuleId, NodeId>
       nearness_;  // a condition that entities far apart do not fulfil, or kNone
   IdVector<RuleId, Follows> follows_;
+  IdVector<RuleId, char> begins_by_others_;    // `from ..` that asks for no entities
+  IdVector<RuleId, char> leads_always_;        // `since ..` that is not known before the end
   IdVector<RuleId, int> turns_;                // when a rule is stepped in a frame
   IdVector<InstanceId, Following> following_;  // up to the last one that ever did
   bool some_may_rest_ = false;

@@ -343,7 +343,8 @@ bool Engine::StepUntil(RuleInstance& instance, FrameNumber frame) {
     state.last_end = state.approach_from = frame;
   }
   if (!RuleOf(instance).referenced) return true;
-  if (evaluator_.Truth(since, {instance, frame}) == Kleene::kFalse) state.approach_from = frame + 1;
+  if (!leads_always_[instance.rule] && evaluator_.Truth(since, {instance, frame}) == Kleene::kFalse)
+    state.approach_from = frame + 1;
   while (state.approach_from < frame &&
          evaluator_.TooFarApart(since, instance, state.approach_from, frame)) {
     ++state.approach_from;
@@ -366,7 +367,7 @@ bool Engine::EndIsQuiet(RuleInstance& instance, FrameNumber frame) {
 // and none of a later end reaches back beyond this frame.
 bool Engine::LeadsHere(RuleInstance& instance, FrameNumber frame) {
   const NodeId since = RuleOf(instance).As<UntilSinceRule>().since;
-  if (frame <= history_.first()) return frame > 0;
+  if (frame <= history_.first() || leads_always_[instance.rule]) return frame > 0;
   return evaluator_.Truth(since, {instance, frame - 1}) != Kleene::kFalse;
 }
 
