@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The report page in Chromium, as somebody uses it. Started by tests/page/run.
 import {strict as assert} from 'node:assert';
-import {spawnSync} from 'node:child_process';
 import {readFileSync, statSync} from 'node:fs';
-import {after, before, test} from 'node:test';
-import {chromium} from 'playwright-core';
+import {before, test} from 'node:test';
+import {openPage, prehend, serious} from './browser.mjs';
 
-const {PREHEND, PROJECT, SUITE_PAGE} = process.env;
+const {SUITE_PAGE} = process.env;
 const FAILS = 'pick_and_place/milk_carton_wrap', BODY = 'body/arm_follows_the_hand';
 const CHANGED = ['--set', 'reach_radius=20cm'];
 const FILE = process.cwd() + '/page/index.html';
-const axe = readFileSync('node_modules/axe-core/axe.min.js', 'utf8');
-
-function prehend(...words) {
-  const said = spawnSync(PREHEND, words, {cwd: PROJECT, encoding: 'utf8', maxBuffer: 1 << 28});
-  return said.stdout;
-}
+const opened = (options) => openPage({file: FILE, ...options});
 
 /// Pose of an entity at a tick, as the program records it for other grammars: what moved since.
 function recordedPose(name, tick) {
@@ -28,39 +22,12 @@ function recordedPose(name, tick) {
   return pose;
 }
 
-let browser, hasReplay;
+let hasReplay;
 before(async () => {
   prehend('check', FAILS, BODY, 'slide/*', 'support/*', ...CHANGED, '--replay', 'all', '--report', process.cwd() + '/page');
   hasReplay = readFileSync(FILE, 'utf8').includes('id="replay-bundle"');
   if (!hasReplay) console.error('\nSKIPPED: the 3D replay in a browser: this build has none\n');
-  browser = await chromium.launch({
-    executablePath: '/usr/bin/chromium', args: ['--no-sandbox', '--enable-unsafe-swiftshader', '--use-angle=swiftshader']});
 });
-after(() => browser && browser.close());
-
-/// The page, and what it asked for and complained about.
-async function opened({hash = '', file = FILE, ...options} = {}) {
-  const context = await browser.newContext({viewport: {width: 1280, height: 900}, ...options});
-  const page = await context.newPage();
-  const seen = {requests: [], complaints: []};
-  page.on('request', (request) => {
-    if (!request.url().startsWith('data:')) seen.requests.push(request.url());
-  });
-  page.on('console', (message) => {
-    if (['error', 'warning'].includes(message.type())) seen.complaints.push(message.text());
-  });
-  page.on('pageerror', (error) => seen.complaints.push(String(error)));
-  await page.goto('file://' + file + hash);
-  return {page, seen, close: () => context.close()};
-}
-
-/// What axe-core calls serious or critical, a line each.
-async function serious(page) {
-  await page.evaluate(axe);
-  const result = await page.evaluate(() => window.axe.run());
-  return result.violations.filter((each) => ['serious', 'critical'].includes(each.impact))
-    .flatMap((each) => each.nodes.map((node) => `${each.id}: ${node.html.slice(0, 120)} ${node.failureSummary}`));
-}
 
 test('asks for nothing but itself and complains of nothing', async () => {
   const {page, seen, close} = await opened();

@@ -60,8 +60,8 @@ TEST(Query, TimesRelationsAndFormsAreChosen) {
   const auto all = Asked(file, {"--event", "transporting"});
   ASSERT_FALSE(all.empty());
   const double begin_s = all[0]["begin_s"], end_s = all[0]["end_s"];
-  EXPECT_EQ(Asked(file, {"--event", "transporting", "--at-least-s", "100"}).size(), 0u);
-  EXPECT_EQ(Asked(file, {"--event", "transporting", "--at-most-s", "100"}).size(), all.size());
+  EXPECT_EQ(Asked(file, {"--event", "transporting", "--lasts-s", "100"}).size(), 0u);
+  EXPECT_EQ(Asked(file, {"--event", "transporting", "--lasts-s", "..100"}).size(), all.size());
   EXPECT_EQ(Asked(file, {"--event", "transporting", "--from", std::to_string(begin_s - 0.001),
                          "--to", std::to_string(end_s + 0.001), "--episode", "milk_carton_wrap"})
                 .size(),

@@ -246,12 +246,17 @@ Option RecogniserLimitOption() {
           .rule = NumbersFrom(1, 86400)};
 }
 
+Option MapOption() {
+  return {.name = "--map",
+          .help =
+              "what labels mean: a YAML file; without it they are events, like "
+              "grasping(right_hand, cup)",
+          .placeholder = "FILE"};
+}
+
 std::vector<Option> TruthOptions(const std::string& help, const std::string& placeholder) {
   return {{.name = "--truth", .help = help, .placeholder = placeholder, .repeatable = true},
-          {.name = "--map",
-           .help = "what labels mean: a YAML file; without it they are events, like "
-                   "grasping(right_hand, cup)",
-           .placeholder = "FILE"},
+          MapOption(),
           {.name = "--skip-bad-labels",
            .help = "leave out labels that end before they begin, and count them"},
           {.name = "--collar-ms",

@@ -100,6 +100,7 @@ Option TimeLimitOption(double least_s, double most_s);
 Option MemoryLimitOption();
 Option JsonOption();
 
+Option MapOption();  ///< what labels mean
 /// --truth, --map, --skip-bad-labels, --collar-ms.
 std::vector<Option> TruthOptions(const std::string& help, const std::string& placeholder);
 

@@ -347,6 +347,15 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   suite::ReportHeader header =
       suite::HeaderOf(CommandText(context.words) + stopped, context.root, context.today);
   header.folder = request.report_folder;
+  if (!options.Has("--grammar") && !options.Has("--set") && stopped.empty()) {
+    // Beside a page that has its own place, so that CI can keep it; else with what is remembered.
+    const fs::path file = fs::path(options.Has("--report") ? request.report_folder
+                                                           : BuildFolder(context.root) + "/check") /
+                          "history.jsonl";
+    header.history = suite::ReadHistory(file.string());
+    header.history.push_back(suite::RunOf(verdicts, header.date, header.commit));
+    (void)suite::WriteHistory(file.string(), header.history);  // as of what passed last
+  }
   problem = WriteTextFile(page, suite::ReportHtml(verdicts, header));
   if (problem.empty() && options.Has("--junit"))
     problem = WriteTextFile(junit, suite::JunitXml(verdicts));

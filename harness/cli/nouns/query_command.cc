@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
+#include <tuple>
 
 #include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
@@ -175,10 +178,36 @@ std::string RoleProblem(const std::string& text) {
              : "found '" + text + "', wanted ROLE=VALUE, like object=milk or any=milk";
 }
 
+constexpr std::string_view kHas = "has ";  ///< a part of this name
+
 std::string RelationProblem(const std::string& text) {
   std::string problem;
-  (void)episode::ParseRelation(text, problem);
+  if (!text.starts_with(kHas)) (void)episode::ParseRelation(text, problem);
   return problem;
+}
+
+/// "0.5", "0.5..2" or "..2": at least, and at most; nothing of any other text.
+using Bounds = std::pair<std::optional<double>, std::optional<double>>;
+std::optional<Bounds> BoundsIn(const std::string& text) {
+  const std::size_t dots = text.find("..");
+  Bounds bounds;
+  const auto read = [](const std::string& part, std::optional<double>& into) {
+    double seconds = 0;
+    const auto [rest, error] = std::from_chars(part.data(), part.data() + part.size(), seconds);
+    if (error != std::errc() || rest != part.data() + part.size() || !(seconds >= 0)) return false;
+    into = seconds;
+    return true;
+  };
+  const std::string least = text.substr(0, dots);
+  const std::string most = dots == std::string::npos ? "" : text.substr(dots + 2);
+  if (least.empty() && most.empty()) return std::nullopt;
+  if (!least.empty() && !read(least, bounds.first)) return std::nullopt;
+  if (!most.empty() && !read(most, bounds.second)) return std::nullopt;
+  return bounds;
+}
+
+std::string LastsProblem(const std::string& text) {
+  return BoundsIn(text) ? "" : "found '" + text + "', wanted seconds: 0.5, 0.5..2 or ..2";
 }
 
 EventQuestion EventQuestionOf(const ParsedOptions& options) {
@@ -189,15 +218,18 @@ EventQuestion EventQuestionOf(const ParsedOptions& options) {
       conditions->push_back(*episode::ParseRoleCondition(text));
   }
   for (const auto& [option, bound] :
-       {std::pair{"--at-least-s", &question.at_least_s},
-        std::pair{"--at-most-s", &question.at_most_s}, std::pair{"--from", &question.from_s},
-        std::pair{"--to", &question.until_s}}) {
+       {std::pair{"--from", &question.from_s}, std::pair{"--to", &question.until_s}}) {
     if (options.Has(option)) *bound = options.NumberOr(option, 0);
   }
+  if (options.Has("--lasts-s"))
+    std::tie(question.at_least_s, question.at_most_s) = *BoundsIn(options.Text("--lasts-s"));
   std::string problem;
-  for (const std::string& text : options.All("--relation"))
-    question.relations.push_back(*episode::ParseRelation(text, problem));
-  question.with = options.All("--with");
+  for (const std::string& text : options.All("--relation")) {
+    if (text.starts_with(kHas))
+      question.with.push_back(text.substr(kHas.size()));
+    else
+      question.relations.push_back(*episode::ParseRelation(text, problem));
+  }
   return question;
 }
 
@@ -304,22 +336,21 @@ Command QueryCommand() {
                   RoleOption("--part-of",
                              "of what it is a part, directly or not: an entity or a class",
                              "ROLE=NAME"),
-                  SecondsOption("--at-least-s", "the event lasts at least so long"),
-                  SecondsOption("--at-most-s", "the event lasts at most so long"),
+                  {.name = "--lasts-s",
+                   .help = "the event lasts at least so long, or so long: 0.5, 0.5..2 or ..2",
+                   .placeholder = "S[..S]",
+                   .rule = {.problem = LastsProblem}},
                   SecondsOption("--from", "it begins at this time of its episode or later"),
                   SecondsOption("--to", "it ends at this time of its episode or earlier"),
                   {.name = "--relation",
                    .help = "how it lies to another event of its episode, in Allen's words "
-                           "(before, meets, overlaps, starts, inside, finishes, equals, ..); "
-                           "may be repeated",
+                           "(before, meets, overlaps, starts, inside, finishes, equals, ..), or "
+                           "'has EVENT': it has a part of this name (see --parts); may be "
+                           "repeated",
                    .placeholder = "'RELATION EVENT'",
                    .rule = {.problem = RelationProblem},
                    .repeatable = true},
                   EpisodesOption(),
-                  {.name = "--with",
-                   .help = "it has a part of this name (see --parts); may be repeated",
-                   .placeholder = "EVENT",
-                   .repeatable = true},
                   {.name = "--parts",
                    .help = "below each event also its parts: those that begin within it and have "
                            "no other participants"},

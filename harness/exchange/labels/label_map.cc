@@ -56,8 +56,8 @@ std::string AsYaml(const std::string& text) {
   return quoted + "\"";
 }
 
-/// "grasping(right_hand, cup)", or the name alone. Nothing, and `problem`, if it is no
-/// event.
+/// "grasping(right_hand, cup)", "grasping(hand=right_hand)", or the name alone. Nothing, and
+/// `problem`, if it is no event.
 std::optional<grammar::NamedEvent> EventIn(const std::string& text, const Events& events,
                                            std::string& problem) {
   const std::size_t open = text.find('(');
@@ -79,14 +79,22 @@ std::optional<grammar::NamedEvent> EventIn(const std::string& text, const Events
     values.push_back(Trimmed(inner.substr(begin, end - begin)));
     begin = end + 1;
   }
+  const bool is_named = std::ranges::all_of(values, [&](const std::string& value) {
+    return std::ranges::count(event->roles, value.substr(0, value.find('='))) > 0 &&
+           value.find('=') != std::string::npos;
+  });
   if (close == std::string::npos || close + 1 != text.size() ||
-      values.size() != event->roles.size()) {
+      (!is_named && values.size() != event->roles.size())) {
     problem = fmt::format("found the label '{}', wanted {}({})", text, name,
                           fmt::join(event->roles, ", "));
     return std::nullopt;
   }
-  for (std::size_t i = 0; i < values.size(); ++i)
-    named.roles.push_back({event->roles[i], values[i]});
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t equals = is_named ? values[i].find('=') : 0;
+    named.roles.push_back(
+        is_named ? grammar::Role{values[i].substr(0, equals), Trimmed(values[i].substr(equals + 1))}
+                 : grammar::Role{event->roles[i], values[i]});
+  }
   PutInOrder(*event, named.roles);
   return named;
 }

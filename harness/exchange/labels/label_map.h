@@ -37,6 +37,8 @@ struct Meaning {
 
 struct LabelMap {
   YamlDocument document;
+  /// Of takes by their names, or "" of all, with {take} in it; paths as seen from here.
+  std::map<std::string, std::string> videos;
   double offset_s = 0;                      ///< added to all times of labels
   std::map<std::string, double> offsets_s;  ///< the same of single takes, by their names
   double join_s = 0;  ///< labels of one event with no longer pause between them are one
@@ -50,6 +52,8 @@ struct LabelMap {
 
 /// What a map says should be added to the times of a take; nothing if that is nowhere.
 std::optional<double> OffsetOf(const LabelMap& map, const std::vector<std::string>& names);
+/// Its video, or ""; the clock is that of its labels.
+std::string VideoOf(const LabelMap& map, const std::vector<std::string>& names);
 
 /// Errors have their places. Events and roles must be those of `events`.
 Result<LabelMap> ReadLabelMap(const std::string& path,
@@ -63,6 +67,7 @@ struct TakeRows {
   std::size_t file = 0;
   std::vector<std::size_t> labels;  ///< their indices
   double offset_s = 0;
+  std::string video = {};
 };
 
 /// What was counted, and what was not and why.
@@ -106,6 +111,7 @@ class LabelReading {
 
   const std::vector<LabelFile>& files() const { return files_; }
   const ComparedRoles& compared() const { return compared_; }
+  const TakeRows& rows(std::size_t take) const { return takes_[take]; }
   /// What is added to all times of labels; nothing if that differs between takes.
   std::optional<double> offset_s() const;
   /// What the map says of the tolerances of boundaries, in seconds, by event.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "harness/base/yaml/diagnostic_list.h"
@@ -49,12 +50,15 @@ class MapReader {
         ReadColumns(node);
       else if (node.key == "entities")
         ReadEntities(node);
+      else if (node.key == "video")
+        ReadVideo(node);
       else if (node.key == "tiers")
         ReadTiers(node);
       else if (node.key != "labels")
-        errors_.AddUnknownName(node.key_where, "unknown key '" + node.key + "'", node.key,
-                               {"version", "labels", "tiers", "offset_s", "starts_at", "join_s",
-                                "collar_ms", "time_unit", "rate_hz", "columns", "entities"});
+        errors_.AddUnknownName(
+            node.key_where, "unknown key '" + node.key + "'", node.key,
+            {"version", "labels", "tiers", "offset_s", "starts_at", "join_s", "collar_ms",
+             "time_unit", "rate_hz", "columns", "entities", "video"});
     }
     if (const YamlNode* labels = root.Find("labels"))
       ReadLabelNodes(*labels);
@@ -157,6 +161,22 @@ class MapReader {
       else
         map_.entities[node.key] = {SaysIgnore(node) ? "" : node.text, node.where};
     }
+  }
+
+  /// A path for all takes, or one for each.
+  void ReadVideo(const YamlNode& node) {
+    const std::filesystem::path folder =
+        std::filesystem::path(map_.document.sources.front().name).parent_path();
+    const auto read = [&](const YamlNode& path, const std::string& take) {
+      std::string ending = path.text.substr(std::min(path.text.rfind('.'), path.text.size()));
+      if (path.kind == YamlNode::Kind::kScalar && (ending == ".mp4" || ending == ".webm"))
+        map_.videos[take] = (folder / path.text).lexically_normal().string();
+      else
+        errors_.Add(path.where, "video: expected a file .mp4 or .webm, found " + Describe(path),
+                    "video: videos/{take}.mp4, or {take1: one.mp4}");
+    };
+    if (node.kind != YamlNode::Kind::kMapping) return read(node, "");
+    for (const YamlNode& path : node.children) read(path, path.key);
   }
 
   bool IsMapping(const YamlNode& node) {
@@ -272,6 +292,17 @@ Result<LabelMap> ReadLabelMap(const std::string& path, const std::vector<EventSi
   Diagnostics problems = MapReader(map, events).Read();
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   return map;
+}
+
+std::string VideoOf(const LabelMap& map, const std::vector<std::string>& names) {
+  for (const std::string& name : names)
+    if (const auto own = map.videos.find(name); own != map.videos.end()) return own->second;
+  constexpr std::string_view kTake = "{take}";
+  const auto all = map.videos.find("");
+  std::string path = all == map.videos.end() ? "" : all->second;
+  if (const std::size_t at = path.find(kTake); at != std::string::npos)
+    path.replace(at, kTake.size(), names.back());
+  return path;
 }
 
 std::optional<double> OffsetOf(const LabelMap& map, const std::vector<std::string>& names) {

@@ -68,6 +68,11 @@ class TruthReader {
   }
 
   /// One file or folder of what was found.
+  Result<LabelReading> NothingMarked(std::size_t takes, const grammar::Program& program) {
+    return LabelReading::Of({LabelFile{}}, nullptr, grammar::EventSignatures(program),
+                            std::vector<TakeRows>(takes));
+  }
+
   Result<LabelReading> ReadFound(const std::string& given,
                                  const std::vector<grammar::EventSignature>& events,
                                  std::vector<std::size_t> only) {
@@ -195,7 +200,9 @@ class TruthReader {
       problems_.push_back(SeveralTakes(file, names.front()));
       return;
     }
-    TakeRows& rows = rows_.emplace_back(TakeRows{.file = *index, .offset_s = offset_s.value_or(0)});
+    TakeRows& rows = rows_.emplace_back(TakeRows{.file = *index,
+                                                 .offset_s = offset_s.value_or(0),
+                                                 .video = map_ ? VideoOf(*map_, names) : ""});
     const bool is_table = IsTable(path);
     for (std::size_t i = 0; i < file.empty.size(); ++i)
       if (!is_table || IsWanted(file.empty[i], wanted, path)) without_text_[*index].insert(i);
@@ -312,6 +319,11 @@ Result<LabelReading> ReadTruths(const std::vector<episode::Take>& takes,
   if (!read) return tl::unexpected(read.error());
   return TruthReader(takes, *read ? &**read : nullptr, backward)
       .Read(given, events, std::move(only));
+}
+
+Result<LabelReading> NothingMarked(std::size_t takes, const grammar::Program& program) {
+  return LabelReading::Of({LabelFile{}}, nullptr, grammar::EventSignatures(program),
+                          std::vector<TakeRows>(takes));
 }
 
 Result<LabelReading> ReadFound(const std::vector<episode::Take>& takes, std::size_t take,

@@ -22,6 +22,9 @@ Result<LabelReading> ReadTruths(const std::vector<episode::Take>& takes,
                                 Backward backward = Backward::kRefuse,
                                 std::vector<std::size_t> only = {});
 
+/// Takes that nobody has labelled: all events with all roles are compared.
+Result<LabelReading> NothingMarked(std::size_t takes, const grammar::Program& program);
+
 /// Times that files of events leave to their take.
 struct TakeClock {
   double ticks_per_second = 0;

@@ -55,6 +55,9 @@ struct EpisodeToScore {
     grammar::Interval begin, end;  ///< earliest and latest
   };
   std::vector<Bands> bands = {};
+  std::size_t take = 0;  ///< which one of those that were asked for
+  std::string video = {};
+  double offset_s = 0;  ///< of the clock of its labels and video
 };
 
 /// Signed offsets (found - true) of the boundaries of matched events, in seconds.

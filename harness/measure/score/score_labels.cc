@@ -61,7 +61,9 @@ Result<EpisodeToScore> Labelled(episode::Episode& episode, const episode::Take& 
                         .ticks = *end,
                         .truth = std::move(*truth),
                         .person = take.person,
-                        .set = take.set};
+                        .set = take.set,
+                        .video = truths.rows(index).video,
+                        .offset_s = truths.rows(index).offset_s};
 }
 
 /// Of what was found what the labels can judge.
@@ -174,6 +176,7 @@ class LabelScorer {
     for (const Source& source : sources) {
       const bool is_grammar = source.kind == Source::Kind::kGrammar;
       Foreign foreign(request_.asking, source);
+      if (!request_.first_is_truth || &source != sources.data()) scores_.opinions.emplace_back();
       for (const Together& group :
            Grouped(request_.takes, is_grammar ? source.text : request_.asking.WhoseEvents())) {
         const auto added =
@@ -199,8 +202,10 @@ class LabelScorer {
     const grammar::CompileResult compiled = opener_.Compile(names.front(), group.asked, *settings);
     if (!compiled.program) return tl::unexpected(compiled.diagnostics);
     const auto truths =
-        exchange::ReadTruths(request_.takes, request_.label_files, request_.asking.label_map,
-                             *compiled.program, request_.backward, group.takes);
+        request_.first_is_truth
+            ? exchange::NothingMarked(group.takes.size(), *compiled.program)
+            : exchange::ReadTruths(request_.takes, request_.label_files, request_.asking.label_map,
+                                   *compiled.program, request_.backward, group.takes);
     if (!truths) return tl::unexpected(truths.error());
     if (const std::string strange = exchange::WarningsOf(*truths);
         is_first && said_.insert(strange).second)
@@ -224,7 +229,10 @@ class LabelScorer {
                                   *compiled.program, truths->compared(), *labelled)
                   : (*episode)->Segment(compiled.program);
       if (!found) return tl::unexpected(found.error());
+      if (const auto said = first_.find(group.takes[i]); said != first_.end())
+        labelled->truth = said->second;
       AddFound(*found, i, *truths, request_.collar_s, *labelled);
+      labelled->take = group.takes[i];
       if (said_.insert(labelled->notes).second) warnings_ += labelled->notes;
       if (!labelled->failure.empty())
         scores_.failures += fmt::format("prehend: {} was not scored by {}: {}", names[i].scenario,
@@ -235,9 +243,17 @@ class LabelScorer {
     const std::string& name = named.empty() && group.asked.empty() ? GrammarName(*compiled.program)
                               : named.empty()                      ? group.asked
                                                                    : named;
+    if (request_.first_is_truth && is_first) {
+      scores_.first = scores_.first.empty() ? name : scores_.first;
+      for (EpisodeToScore& one : all) first_[one.take] = std::move(one.found);
+      return {};
+    }
     warnings_ += ClockWarning(name, all, *truths);
-    AddScores(name, std::move(all), request_.collar_s,
-              request_.is_collar_asked ? Collars{} : truths->collars_s(), scores_);
+    Opinion& opinion = scores_.opinions.back();
+    if (opinion.name.empty()) opinion.name = name;
+    opinion.takes.insert(opinion.takes.end(), all.begin(), all.end());
+    scores_.collars_s = request_.is_collar_asked ? Collars{} : truths->collars_s();
+    AddScores(name, std::move(all), request_.collar_s, scores_.collars_s, scores_);
     scores_.of_grammars.back().set = scores_.by_hand.back().set = group.set;
     return {};
   }
@@ -263,6 +279,7 @@ class LabelScorer {
   episode::EpisodeOpener opener_;
   std::vector<std::unique_ptr<episode::Episode>> episodes_;
   std::set<std::string> said_;
+  std::map<std::size_t, grammar::Timeline> first_;  ///< by take, what is true without labels
   LabelScores scores_;
 };
 

@@ -21,6 +21,13 @@ struct LabelsRequest {
   exchange::Backward backward = exchange::Backward::kRefuse;
   double collar_s = 0.05;
   bool is_collar_asked = false;  ///< instead of those of the map
+  bool first_is_truth = false;   ///< there are no labels: the others are compared with the first
+};
+
+/// What one source says of all takes.
+struct Opinion {
+  std::string name;
+  std::vector<EpisodeToScore> takes;
 };
 
 struct LabelScores {
@@ -28,8 +35,11 @@ struct LabelScores {
   std::vector<Score> by_hand;            ///< each hand for itself, in the same order
   std::vector<std::string> differences;  ///< from the labels, in the same order; lines or ""
   exchange::Counted counted;
-  bool of_people = false;  ///< what was found is labels, too
-  std::string failures;    ///< of programs: lines, or ""
+  bool of_people = false;         ///< what was found is labels, too
+  std::string failures;           ///< of programs: lines, or ""
+  std::string first;              ///< LabelsRequest::first_is_truth: its name
+  std::vector<Opinion> opinions;  ///< of each source that is no file of labels
+  Collars collars_s;              ///< of kinds of events, that scores are made with
 
   bool HasHands() const;
 };

@@ -42,8 +42,9 @@ class Drawing {
 
   double Height() const {
     const double panels = static_cast<double>(chart_.panels.size());
-    return Top() + RowPx() * static_cast<double>(chart_.rows.size()) + HeadingPx() * headings_ +
-           (GapPx() + PanelPx()) * panels + FootPx();
+    double rows_px = HeadingPx() * headings_;
+    for (const Row& row : chart_.rows) rows_px += RowPx(row);
+    return Top() + rows_px + (GapPx() + PanelPx()) * panels + FootPx();
   }
   double Left() const { return left_; }
   double PerSecond() const { return (right_ - left_) / (chart_.to_s - chart_.from_s); }
@@ -60,8 +61,8 @@ class Drawing {
         Text("group", 4, y + 1.2 * format_.text_px, row.heading, "start", "bold");
         y += HeadingPx();
       }
-      DrawRow(row, y, RowPx());
-      y += RowPx();
+      DrawRow(row, y, RowPx(row));
+      y += RowPx(row);
     }
     for (const Panel& panel : chart_.panels) {
       y += GapPx();
@@ -72,7 +73,7 @@ class Drawing {
   }
 
  private:
-  double RowPx() const { return 1.9 * format_.text_px; }
+  double RowPx(const Row& row) const { return std::max(1.9, 0.8 * row.lanes) * format_.text_px; }
   double PanelPx() const { return format_.panel_texts * format_.text_px; }
   double HeadingPx() const { return 1.7 * format_.text_px; }
   bool InPage() const { return !format_.page_class.empty(); }
@@ -112,48 +113,62 @@ class Drawing {
 
   /// For the script of the page, which zooms.
   static void AddTimes(pugi::xml_node node, double begin_s, double end_s) {
-    node.append_attribute("data-begin").set_value(Number(begin_s).c_str());
-    node.append_attribute("data-end").set_value(Number(end_s).c_str());
+    const auto exact = [](double time_s) {
+      return fmt::format("{}", std::round(1e5 * time_s) / 1e5);
+    };
+    node.append_attribute("data-begin").set_value(exact(begin_s).c_str());
+    node.append_attribute("data-end").set_value(exact(end_s).c_str());
+  }
+
+  /// Top and height of what is in a lane, or over the whole row.
+  static std::pair<double, double> Place(double y, double height, int lane, int lanes) {
+    if (lanes == 1 || lane < 0) return {y + 2, height - 4};
+    const double pitch = height / lanes;
+    return {y + pitch * lane + (lane == 0 ? 2 : 1), pitch - 3};
   }
 
   void DrawRow(const Row& row, double y, double height) {
     Text(row.style, left_ - 8, y + 0.5 * height + 0.35 * format_.text_px, row.name, "end");
     for (const Bar& bar : row.bars) {
       if (bar.end_s <= chart_.from_s || bar.begin_s >= chart_.to_s) continue;
-      DrawBar(bar, y, height);
+      DrawBar(bar, row, y, height);
     }
-    for (const Hatch& hatch : row.hatches) DrawHatch(hatch, y, height);
+    for (const Hatch& hatch : row.hatches) DrawHatch(hatch, row, y, height);
   }
 
-  void DrawBar(const Bar& bar, double y, double height) {
+  void DrawBar(const Bar& bar, const Row& row, double y, double height) {
     const double x = X(bar.begin_s), width = std::max(1.5, X(bar.end_s) - x);
-    const bool whole = bar.part == Bar::Part::kWhole;
-    const double tall = whole ? height - 4 : 0.5 * height - 3;
-    pugi::xml_node node =
-        AddElement(svg_, "rect",
-                   {{"x", Number(x)},
-                    {"y", Number(bar.part == Bar::Part::kLower ? y + 0.5 * height + 1 : y + 2)},
-                    {"width", Number(width)},
-                    {"height", Number(tall)},
-                    {"fill", ColorText(bar.color)}});
+    const auto [top, tall] = Place(y, height, bar.lane, row.lanes);
+    pugi::xml_node node = AddElement(svg_, "rect",
+                                     {{"x", Number(x)},
+                                      {"y", Number(top)},
+                                      {"width", Number(width)},
+                                      {"height", Number(tall)},
+                                      {"fill", ColorText(bar.color)}});
     Paint(node, bar.style, {{"stroke", bar.frame.empty() ? "#FFFFFF" : bar.frame.c_str()}});
     if (InPage()) {
       AddTimes(node, bar.begin_s, bar.end_s);
+      if (!row.id.empty()) {
+        node.append_attribute("data-event").set_value(row.id.c_str());
+        node.append_attribute("data-lane").set_value(bar.lane);
+      }
       AddElement(node, "title", {}, bar.tip);
     }
     if (!bar.frame.empty()) Paint(node, "", {{"stroke-width", "2"}});
-    if (0.62 * format_.text_px * static_cast<double>(bar.text.size()) < width - 6)
-      Text("", x + width / 2, y + 0.5 * height + 0.35 * format_.text_px, bar.text, "middle",
+    const bool fits = 0.62 * format_.text_px * static_cast<double>(bar.text.size()) < width - 6;
+    if (fits || (InPage() && !bar.text.empty())) {
+      Text("in_bar", x + width / 2, y + 0.5 * height + 0.35 * format_.text_px, bar.text, "middle",
            "normal", IsLight(bar.color) ? "#000000" : "#FFFFFF");
-    else if (!bar.kind.empty())
+      if (InPage()) AddTimes(svg_.last_child(), bar.begin_s, bar.end_s);
+    } else if (!bar.kind.empty())
       unnamed_[bar.kind] = bar.color;
   }
 
   /// Slanted lines in a frame: readable in print and on any colour.
-  void DrawHatch(const Hatch& hatch, double y, double height) {
+  void DrawHatch(const Hatch& hatch, const Row& row, double y, double height) {
     if (hatch.end_s <= chart_.from_s || hatch.begin_s >= chart_.to_s) return;
-    const double step_px = 5, x = X(hatch.begin_s), top = y + 2, tall = height - 4,
-                 width = std::max(3.0, X(hatch.end_s) - x);
+    const double step_px = 5, x = X(hatch.begin_s), width = std::max(3.0, X(hatch.end_s) - x);
+    const auto [top, tall] = Place(y, height, hatch.lane, row.lanes);
     std::string path =
         fmt::format("M{:.2f},{:.2f}h{:.2f}v{:.2f}h{:.2f}z", x, top, width, tall, -width);
     // Each line leaves the frame where it meets its right or upper side.

@@ -15,19 +15,19 @@
 namespace prehend::show {
 
 struct Bar {
-  enum class Part { kWhole, kUpper, kLower };  ///< of the row's height
   double begin_s = 0, end_s = 0;
   std::string text;  ///< in the bar if it fits
   std::uint32_t color = 0x888888;
   std::string kind = {};  ///< what the colour means: named below the chart if the text does not fit
-  Part part = Part::kWhole;
+  int lane = 0;           ///< from above, of those of its row
   std::string frame = {};  ///< its colour, if it is to be seen
   std::string style = {};  ///< classes in a page
   std::string tip = {};    ///< what a page says where the pointer rests
 };
-/// A time that two rows, or the two parts of one, do not agree about.
+/// A time that two rows, or the lanes of one, do not agree about.
 struct Hatch {
   double begin_s = 0, end_s = 0;
+  int lane = -1;  ///< -1: over the whole row
 };
 struct Row {
   std::string name;
@@ -35,6 +35,8 @@ struct Row {
   std::vector<Hatch> hatches = {};
   std::string heading = {};  ///< above the row
   std::string style = {};    ///< classes of its name in a page
+  std::string id = {};       ///< of its bars in a page, for the script
+  int lanes = 1;
 };
 /// A time that the text speaks of, or a scene beside the chart shows.
 struct Mark {

@@ -78,7 +78,7 @@ std::vector<Cause> CausesOf(const std::vector<ScenarioVerdict>& verdicts) {
   };
   for (const ScenarioVerdict& verdict : verdicts) {
     if (verdict.verdict != Verdict::kFailed && verdict.verdict != Verdict::kFlaky) continue;
-    if (!verdict.DiffersFromGolden() || verdict.attributions.empty()) {
+    if (verdict.attributions.empty()) {
       add("", {"", KindOfReason(verdict.reason)}, verdict, verdict.command);
       continue;
     }

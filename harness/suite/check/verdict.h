@@ -13,6 +13,7 @@
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/exit_code.h"
 #include "harness/base/base/result.h"
+#include "harness/show/replay/played_steps.h"
 #include "harness/suite/check/attribute.h"
 #include "harness/suite/check/explained.h"
 #include "harness/suite/check/settings.h"
@@ -50,6 +51,13 @@ struct DrawnDifference {
 /// Of one scenario.
 inline constexpr std::size_t kMostDrawnDifferences = 3;
 
+/// Of a take whose events are compared with labels, beside the first comparison.
+struct Labelled {
+  std::vector<truth::Comparison> others;  ///< of further sides with the labels
+  std::string video = {};                 ///< as the page names it; "": there is none
+  double offset_s = 0;                    ///< where its time 0 is in the take
+};
+
 struct ScenarioVerdict {
   std::string scenario;  ///< skill/name
   std::string file;      ///< what was checked
@@ -79,10 +87,12 @@ struct ScenarioVerdict {
   std::vector<DrawnDifference> drawn_differences;  ///< at most kMostDrawnDifferences
   std::optional<Demonstration> demonstration;      ///< of a robot, by a recording
   Explained explained;                             ///< of what has a golden and did not pass
+  std::vector<show::PlayedStep> steps;             ///< of its script
   std::string replay;  ///< ReplayData() (harness/show/replay/replay_data.h), or empty
   std::string
       not_recorded;  ///< empty, or why the episode is not in its file; no part of the verdict
   std::string picture_differences;  ///< several lines; only one of several repetitions draws
+  Labelled labelled;                ///< of ReportHeader::sides; no worker knows it
 
   bool DiffersFromGolden() const { return has_golden && comparison && !comparison->Agrees(); }
 };

@@ -51,6 +51,12 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ClaimVerdict, claim, place, says, found, time
 
 }  // namespace prehend::truth
 
+namespace prehend::show {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PlayedStep, who, what, begin, end)
+
+}  // namespace prehend::show
+
 namespace prehend::suite {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReportedPicture, file, caption)
@@ -64,7 +70,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ScenarioVerdict, scenario, file, shows, verdi
                                    drawings, explain, cause, attributions, settings, command,
                                    state_hash, ticks, seconds, peak_memory_kib, inputs, pictures,
                                    not_recorded, picture_differences, drawn_differences, explained,
-                                   demonstration, replay)
+                                   demonstration, replay, steps)
 
 namespace {
 

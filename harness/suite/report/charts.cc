@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "harness/base/base/quoting.h"
 #include "harness/show/chart/chart.h"
@@ -22,6 +23,8 @@ using show::Chart;
 using show::Curve;
 using show::Row;
 
+constexpr std::uint32_t kStepColor = 0xD5DADF;
+
 /// The hand of a phase or grasp, or who has the first role.
 std::string GroupOf(const NamedEvent& event, const truth::EventDrawings& drawings) {
   if (event.roles.empty()) return "";
@@ -31,26 +34,60 @@ std::string GroupOf(const NamedEvent& event, const truth::EventDrawings& drawing
   return event.roles[has_hand && drawing.hand < event.roles.size() ? drawing.hand : 0].value;
 }
 
+/// "reaching(hand=right_hand)", as files of labels have it.
+std::string WithRoles(const NamedEvent& event) {
+  std::string roles;
+  for (const grammar::Role& role : event.roles)
+    if (!truth::IsAttribute(role))
+      roles += (roles.empty() ? "" : ", ") + role.name + "=" + role.value;
+  return roles.empty() ? event.event : event.event + "(" + roles + ")";
+}
+
 class TimelineChart {
  public:
-  TimelineChart(const truth::Comparison& comparison, const truth::EventDrawings& drawings,
-                bool has_golden)
-      : comparison_(comparison), drawings_(drawings), has_golden_(has_golden) {}
+  /// Of one comparison with a golden, or, if sides are named, of several with the first of them.
+  TimelineChart(std::span<const truth::Comparison> comparisons, const Sides& sides,
+                const truth::EventDrawings& drawings, bool has_golden)
+      : comparisons_(comparisons), sides_(sides), drawings_(drawings), has_golden_(has_golden) {
+    for (const truth::Comparison& comparison : comparisons)
+      for (const truth::Pairing& pairing : comparison.pairings)
+        if (pairing.expected && !Agrees(pairing)) differing_.insert(pairing.golden_line);
+  }
 
   /// Rows of a group after each other; groups, and rows in them, in the order in which they first
   /// begin. A single group needs no heading.
   std::vector<Row> Rows() const {
     std::vector<Row> rows;
     std::map<std::string, std::size_t> row_of, first_of;
-    for (const truth::Pairing& pairing : comparison_.pairings) {
-      const std::string label = pairing.event().Label();
-      const auto [found, is_new] = row_of.try_emplace(label, rows.size());
-      if (is_new) {
-        const std::string group = GroupOf(pairing.event(), drawings_);
-        first_of.try_emplace(group, rows.size());
-        rows.push_back({.name = label, .heading = group, .style = "row"});
+    std::vector<std::pair<const truth::Pairing*, int>> pairings;  // with who is compared
+    for (std::size_t i = 0; i < comparisons_.size(); ++i)
+      for (const truth::Pairing& pairing : comparisons_[i].pairings)
+        pairings.emplace_back(&pairing, static_cast<int>(i));
+    if (comparisons_.size() > 1)
+      std::ranges::stable_sort(pairings, [](const auto& a, const auto& b) {
+        return grammar::ComesBefore(a.first->event(), b.first->event());
+      });
+    for (const auto& [pairing, of] : pairings) {
+      for (const auto* event : {&pairing->expected, &pairing->actual}) {
+        // Another event of the same time has a row of its own, if people are to choose between
+        // them.
+        if (!*event || (sides_.empty() && event == &pairing->actual && pairing->expected)) continue;
+        const std::string label = (*event)->Label();
+        const auto [found, is_new] = row_of.try_emplace(label, rows.size());
+        if (is_new) {
+          const std::string group = GroupOf(**event, drawings_);
+          first_of.try_emplace(group, rows.size());
+          rows.push_back({.name = label, .heading = group, .style = "row"});
+          rows.back().lanes = sides_.empty() ? 2 : static_cast<int>(sides_.size()) + 1;
+          if (!sides_.empty()) rows.back().id = WithRoles(**event);
+        }
+        Row& row = rows[found->second];
+        if (sides_.empty()) {
+          Add(*pairing, row);
+        } else {
+          AddSide(*pairing, of, event == &pairing->expected, row);
+        }
       }
-      Add(pairing, rows[found->second]);
     }
     std::ranges::stable_sort(rows, {}, [&](const Row& row) { return first_of.at(row.heading); });
     std::string group = first_of.size() > 1 ? "" : rows.empty() ? "" : rows[0].heading;
@@ -65,15 +102,20 @@ class TimelineChart {
 
   /// What somebody hears who does not see it.
   std::string Label() const {
-    const auto differing = std::ranges::count_if(
-        comparison_.pairings, [&](const truth::Pairing& pairing) { return !Agrees(pairing); });
-    if (!has_golden_) return fmt::format("timeline: {} events", comparison_.pairings.size());
-    return fmt::format("timeline: {} events, {} differ from the golden",
-                       comparison_.pairings.size(), differing);
+    std::size_t events = 0;
+    std::ptrdiff_t differing = 0;
+    for (const truth::Comparison& comparison : comparisons_) {
+      events = std::max(events, comparison.pairings.size());
+      differing += std::ranges::count_if(
+          comparison.pairings, [&](const truth::Pairing& pairing) { return !Agrees(pairing); });
+    }
+    if (!has_golden_) return fmt::format("timeline: {} events", events);
+    return fmt::format("timeline: {} events, {} differ from the {}", events, differing,
+                       sides_.empty() ? "golden" : sides_.front());
   }
 
   double Seconds(Tick tick) const {
-    return static_cast<double>(tick) / static_cast<double>(comparison_.ticks_per_second);
+    return static_cast<double>(tick) / static_cast<double>(comparisons_[0].ticks_per_second);
   }
 
  private:
@@ -81,26 +123,52 @@ class TimelineChart {
     return !has_golden_ || pairing.agreement == truth::LineVerdict::kMatched;
   }
 
+  void AddBar(const std::string& side, const std::string& style, int lane, const NamedEvent& event,
+              const truth::Pairing& pairing, bool agrees, Row& row) const {
+    row.bars.push_back(
+        {.begin_s = Seconds(event.interval.begin),
+         .end_s = Seconds(event.interval.end),
+         .text = "",
+         .color = drawings_.Of(event.event).color,
+         .lane = lane,
+         .style = style + (agrees ? "" : " differs"),
+         .tip = fmt::format("{} {}, {}: {}", side, event.Label(),
+                            truth::IntervalText(event.interval, comparisons_[0].ticks_per_second),
+                            has_golden_ ? Name(pairing.agreement) : "no golden")});
+  }
+
   void Add(const truth::Pairing& pairing, Row& row) const {
-    const auto add = [&](const char* side, Bar::Part part, const NamedEvent& event) {
-      row.bars.push_back(
-          {.begin_s = Seconds(event.interval.begin),
-           .end_s = Seconds(event.interval.end),
-           .text = "",
-           .color = drawings_.Of(event.event).color,
-           .part = part,
-           .style = std::string(side) + (Agrees(pairing) ? "" : " differs"),
-           .tip = fmt::format("{} {}, {}: {}", side, event.Label(),
-                              truth::IntervalText(event.interval, comparison_.ticks_per_second),
-                              has_golden_ ? Name(pairing.agreement) : "no golden")});
-    };
-    if (pairing.expected) add("golden", Bar::Part::kUpper, *pairing.expected);
-    if (pairing.actual) add("actual", Bar::Part::kLower, *pairing.actual);
+    const bool agrees = Agrees(pairing);
+    if (pairing.expected) AddBar("golden", "golden", 0, *pairing.expected, pairing, agrees, row);
+    if (pairing.actual) AddBar("actual", "actual", 1, *pairing.actual, pairing, agrees, row);
+    AddHatches(pairing, -1, row);
+  }
+
+  /// In its lane one side, below all lanes where they differ.
+  void AddSide(const truth::Pairing& pairing, int of, bool is_first_side, Row& row) const {
+    const int lane = is_first_side ? 0 : of + 1;
+    const bool agrees = is_first_side ? !differing_.contains(pairing.golden_line) : Agrees(pairing);
+    if (lane > 0 || of == 0)
+      AddBar(sides_[static_cast<std::size_t>(lane)], lane == 0 ? "golden" : "actual", lane,
+             is_first_side ? *pairing.expected : *pairing.actual, pairing, agrees, row);
+    const bool is_pair =
+        pairing.expected && pairing.actual && pairing.expected->Label() == pairing.actual->Label();
+    const int below = static_cast<int>(sides_.size());
+    if (is_pair) {
+      if (is_first_side) AddHatches(pairing, below, row);
+    } else if (!Agrees(pairing)) {
+      const NamedEvent& event = is_first_side ? *pairing.expected : *pairing.actual;
+      row.style = "row differs";
+      row.hatches.push_back({Seconds(event.interval.begin), Seconds(event.interval.end), below});
+    }
+  }
+
+  void AddHatches(const truth::Pairing& pairing, int lane, Row& row) const {
     if (Agrees(pairing)) return;
     row.style = "row differs";
     const auto hatch = [&](Tick from, Tick to) {
       if (from != to)
-        row.hatches.push_back({Seconds(std::min(from, to)), Seconds(std::max(from, to))});
+        row.hatches.push_back({Seconds(std::min(from, to)), Seconds(std::max(from, to)), lane});
     };
     if (!pairing.expected || !pairing.actual)
       return hatch(pairing.event().interval.begin, pairing.event().interval.end);
@@ -108,9 +176,11 @@ class TimelineChart {
     hatch(pairing.expected->interval.end, pairing.actual->interval.end);
   }
 
-  const truth::Comparison& comparison_;
+  std::span<const truth::Comparison> comparisons_;
+  const Sides& sides_;
   const truth::EventDrawings& drawings_;
   bool has_golden_;
+  std::set<std::size_t> differing_;  ///< lines of the first side, from anybody
 };
 
 Curve CurveOf(const std::string& name, const DecidingSignal& signal,
@@ -128,12 +198,31 @@ Curve CurveOf(const std::string& name, const DecidingSignal& signal,
 
 }  // namespace
 
+std::string TimelineSvg(std::span<const truth::Comparison> comparisons, const Sides& sides,
+                        Tick end, const truth::EventDrawings& drawings, bool has_golden,
+                        std::span<const show::PlayedStep> steps) {
+  const TimelineChart chart(comparisons, sides, drawings, has_golden);
+  std::vector<Row> rows;
+  for (const show::PlayedStep& step : steps) {
+    auto row = std::ranges::find(rows, step.who, &Row::name);
+    if (row == rows.end())
+      row = rows.insert(row, {.name = step.who, .heading = rows.empty() ? "script" : ""});
+    row->bars.push_back({.begin_s = chart.Seconds(step.begin),
+                         .end_s = chart.Seconds(step.end),
+                         .text = step.what,
+                         .color = kStepColor,
+                         .style = "step",
+                         .tip = step.what});
+  }
+  std::ranges::move(chart.Rows(), std::back_inserter(rows));
+  return show::ChartForPage(
+      {.title = "", .to_s = chart.Seconds(std::max<Tick>(1, end)), .rows = std::move(rows)},
+      {.width_px = 1000, .page_class = "timeline"}, chart.Label());
+}
+
 std::string TimelineSvg(const truth::Comparison& comparison, Tick end,
                         const truth::EventDrawings& drawings, bool has_golden) {
-  const TimelineChart chart(comparison, drawings, has_golden);
-  return show::ChartForPage(
-      {.title = "", .to_s = chart.Seconds(std::max<Tick>(1, end)), .rows = chart.Rows()},
-      {.width_px = 1000, .page_class = "timeline"}, chart.Label());
+  return TimelineSvg({&comparison, 1}, {}, end, drawings, has_golden, {});
 }
 
 std::string SignalSvg(const DecidingSignal& signal, Tick ticks_per_second) {
@@ -188,6 +277,12 @@ nlohmann::json BoundariesJson(const Explained& explained, grammar::Tick ticks_pe
 }
 
 }  // namespace
+
+void AddHistory(pugi::xml_node body, const std::vector<PastRun>& history) {
+  if (history.size() > 1)
+    AddElement(body, "script", {{"type", "application/json"}, {"id", "history"}},
+               ScriptText(HistoryJson(history)));
+}
 
 void AddExplanations(pugi::xml_node section, const Explained& explained,
                      grammar::Tick ticks_per_second) {

@@ -4,10 +4,14 @@
 #pragma once
 
 #include <pugixml.hpp>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "harness/show/replay/played_steps.h"
 #include "harness/suite/check/explained.h"
+#include "harness/suite/check/history.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/timeline/event_drawings.h"
 
@@ -19,6 +23,15 @@ namespace prehend::suite {
 std::string TimelineSvg(const truth::Comparison& comparison, grammar::Tick end,
                         const truth::EventDrawings& drawings, bool has_golden = true);
 
+/// Who says what happened: people's labels, grammars, programs. None: a golden and a run.
+using Sides = std::vector<std::string>;
+
+/// The same of several sides: those after the first are each compared with it. A row has a lane for
+/// each, and one for where they differ. Above all are the steps of the script.
+std::string TimelineSvg(std::span<const truth::Comparison> comparisons, const Sides& sides,
+                        grammar::Tick end, const truth::EventDrawings& drawings, bool has_golden,
+                        std::span<const show::PlayedStep> steps);
+
 /// A signal over time: its value, its limit, and when the one crossed the other, as an <svg>
 /// element. The signal has at least one sample.
 std::string SignalSvg(const DecidingSignal& signal, grammar::Tick ticks_per_second);
@@ -27,6 +40,9 @@ std::string SignalSvg(const DecidingSignal& signal, grammar::Tick ticks_per_seco
 /// what turned at each boundary, which the page's script shows at the cursor.
 void AddExplanations(pugi::xml_node section, const Explained& explained,
                      grammar::Tick ticks_per_second);
+
+/// Adds the last runs as data, for the page's script.
+void AddHistory(pugi::xml_node body, const std::vector<PastRun>& history);
 
 // Texts of the report page, embedded when the program is built: its style and script
 // (harness/suite/report/page), and the script of the 3D replay (harness/suite/report/replay).

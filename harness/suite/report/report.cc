@@ -28,14 +28,20 @@ constexpr std::size_t kMostEffects = 6;  // of a cause
 
 constexpr const char* kNewLine = "\n";  // between blocks, where a browser shows none
 
-void AddSummary(pugi::xml_node body, const Tally& tally) {
+/// A take neither passes nor fails: it agrees with its labels or differs from them.
+std::string WordOf(Verdict verdict, const Sides& sides) {
+  if (!sides.empty() && verdict == Verdict::kPassed) return "agrees";
+  return !sides.empty() && verdict == Verdict::kFailed ? "differs" : std::string(Name(verdict));
+}
+
+void AddSummary(pugi::xml_node body, const Tally& tally, const Sides& sides) {
   const pugi::xml_node line = AddElement(body, "p", {{"class", "verdict"}});
   const auto add = [&](int count, const char* verdict, const std::string& style) {
     AddElement(line, "span", {{"class", style}}, fmt::format("{} {}", count, verdict));
   };
-  add(tally.passed, "passed", "passed");
+  add(tally.passed, sides.empty() ? "passed" : "agree", "passed");
   AddText(line, ", ");
-  add(tally.failed, "failed", tally.failed > 0 ? "failed" : "soft");
+  add(tally.failed, sides.empty() ? "failed" : "differ", tally.failed > 0 ? "failed" : "soft");
   if (tally.pending > 0) {
     AddText(line, ", ");
     add(tally.pending, "pending", "pending");
@@ -210,8 +216,49 @@ bool IsGood(const ScenarioVerdict& verdict) {
   return verdict.verdict == Verdict::kPassed || verdict.verdict == Verdict::kUnchanged;
 }
 
+/// What the lanes of each row are, from above.
+void AddLegend(pugi::xml_node parent, const Sides& sides) {
+  const pugi::xml_node line = AddElement(parent, "p", {{"class", "soft sides"}});
+  AddText(line, "From above: ");
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    AddText(line, fmt::format("{} ", i + 1));
+    AddElement(line, "span", {}, sides[i]);
+    AddText(line, ", ");
+  }
+  AddText(line, "and where they differ.");
+}
+
+void AddTime(pugi::xml_node views, const ScenarioVerdict& verdict, const Sides& sides) {
+  const pugi::xml_node time = AddElement(views, "div", {{"class", "time"}});
+  if (!sides.empty()) AddLegend(time, sides);
+  const pugi::xml_node scroll = AddElement(time, "div",
+                                           {{"class", "scroll"},
+                                            {"tabindex", "0"},
+                                            {"role", "group"},
+                                            {"aria-label", "timeline of " + verdict.scenario}});
+  std::vector<truth::Comparison> comparisons = {*verdict.comparison};
+  comparisons.insert(comparisons.end(), verdict.labelled.others.begin(),
+                     verdict.labelled.others.end());
+  AddMarkup(scroll, TimelineSvg(comparisons, sides, verdict.ticks + 1, verdict.drawings,
+                                verdict.has_golden, verdict.steps));
+  AddElement(time, "output", {}, "");
+}
+
+/// Shown by the script, at the cursor. It is not copied into the page.
+void AddFilm(pugi::xml_node views, const ScenarioVerdict& verdict) {
+  if (verdict.labelled.video.empty()) return;
+  AddElement(AddElement(views, "div", {{"class", "film"}}), "video",
+             {{"src", verdict.labelled.video},
+              {"data-offset", fmt::format("{}", verdict.labelled.offset_s)},
+              {"controls", "controls"},
+              {"muted", "muted"},
+              {"preload", "none"},
+              {"aria-label", "video of " + verdict.scenario}},
+             "");
+}
+
 /// `open`: nothing has to be clicked to read it.
-void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, bool open,
+void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, const Sides& sides, bool open,
                 PictureBox& pictures, ReplayBox& replays) {
   const std::string name(Name(verdict.verdict));
   const pugi::xml_node section = AddElement(
@@ -220,27 +267,19 @@ void AddSection(pugi::xml_node body, const ScenarioVerdict& verdict, bool open,
   if (open) fold.append_attribute("open").set_value("open");
   const pugi::xml_node summary = AddElement(fold, "summary");
   const pugi::xml_node title = AddElement(summary, "h2");
-  AddElement(title, "span", {{"class", name}}, name);
+  AddElement(title, "span", {{"class", name}}, WordOf(verdict.verdict, sides));
   AddText(title, " " + verdict.scenario);
   AddElement(fold, "div", {{"class", "soft"}}, verdict.shows);
   if (!verdict.reason.empty()) AddElement(fold, "p", {{"class", name}}, verdict.reason);
   for (const std::string& note : verdict.notes)
     AddElement(fold, "p", {{"class", "soft note"}}, note);
-  AddReasons(fold, verdict);
+  if (sides.empty()) AddReasons(fold, verdict);
   const pugi::xml_node views = AddElement(fold, "div", {{"class", "views"}});
-  if (verdict.comparison) {
-    const pugi::xml_node time = AddElement(views, "div", {{"class", "time"}});
-    const pugi::xml_node scroll = AddElement(time, "div",
-                                             {{"class", "scroll"},
-                                              {"tabindex", "0"},
-                                              {"role", "group"},
-                                              {"aria-label", "timeline of " + verdict.scenario}});
-    AddMarkup(scroll, TimelineSvg(*verdict.comparison, verdict.ticks + 1, verdict.drawings,
-                                  verdict.has_golden));
-    AddElement(time, "output", {}, "");
-  }
+  if (verdict.comparison) AddTime(views, verdict, sides);
+  AddFilm(views, verdict);
   replays.Add(views, verdict.replay);
-  if (verdict.comparison)
+  if (verdict.comparison &&
+      !(verdict.explained.events.empty() && verdict.explained.differences.empty()))
     AddExplanations(AddElement(views, "div", {{"class", "why"}}), verdict.explained,
                     verdict.comparison->ticks_per_second);
   for (const DrawnDifference& moment : verdict.drawn_differences) {
@@ -294,11 +333,32 @@ void AddShifts(pugi::xml_node parent, const Effect& effect, double most_ms) {
   line("median", x(effect.median_ms), x(effect.median_ms), 2, 10);
 }
 
+/// Of agreement: wide tables scroll by themselves.
+void AddTables(pugi::xml_node body, const ReportHeader& header) {
+  const pugi::xml_node tables = AddElement(body, "div", {{"class", "tables"}});
+  for (const ReportTable& one : header.tables) {
+    const pugi::xml_node place = AddElement(
+        tables, "div", {{"tabindex", "0"}, {"role", "group"}, {"aria-label", one.title}});
+    const pugi::xml_node table = AddElement(place, "table", {{"class", "figures"}});
+    AddElement(table, "caption", {}, one.title);
+    for (const auto& row : one.rows) {
+      const pugi::xml_node line = AddElement(table, "tr");
+      for (std::size_t i = 0; i < row.size(); ++i)
+        AddElement(line, i == 0 || &row == &one.rows.front() ? "th" : "td", {}, row[i]);
+    }
+  }
+  const pugi::xml_node fold = AddElement(body, "details");
+  AddElement(fold, "summary", {}, "All figures, as score prints them");
+  AddElement(fold, "pre", {{"tabindex", "0"}}, header.scores);
+}
+
 void AddCauses(pugi::xml_node body, const std::vector<Cause>& causes,
-               const std::vector<NearLimitPass>& near_limit) {
+               const std::vector<NearLimitPass>& near_limit, const Sides& sides) {
   if (!causes.empty()) {
+    const bool is_one = causes.size() == 1;
     AddElement(body, "h2", {},
-               causes.size() == 1 ? "1 cause" : fmt::format("{} causes", causes.size()));
+               !sides.empty() ? std::string("Where they differ")
+                              : fmt::format("{} cause{}", causes.size(), is_one ? "" : "s"));
     const pugi::xml_node list = AddElement(body, "ol", {{"class", "causes"}});
     for (std::size_t i = 0; i < causes.size(); ++i) {
       const Cause& cause = causes[i];
@@ -309,7 +369,8 @@ void AddCauses(pugi::xml_node body, const std::vector<Cause>& causes,
                   {"type", "button"},
                   {"data-cause", std::to_string(i + 1)},
                   {"aria-pressed", "false"}},
-                 fmt::format("{} scenario{}", count, count == 1 ? "" : "s"));
+                 fmt::format("{} {}{}", count, sides.empty() ? "scenario" : "take",
+                             count == 1 ? "" : "s"));
       AddSentence(AddElement(item, "strong"), WithArrows(cause.Title()));
       double most_ms = 0;
       for (const Effect& effect : cause.effects)
@@ -359,7 +420,8 @@ void AddFailures(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdic
   }
 }
 
-void AddTools(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts) {
+void AddTools(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts,
+              const Sides& sides) {
   const pugi::xml_node tools = AddElement(body, "div", {{"id", "tools"}, {"hidden", "hidden"}});
   AddElement(tools, "input",
              {{"id", "search"},
@@ -374,7 +436,7 @@ void AddTools(pugi::xml_node body, const std::vector<ScenarioVerdict>& verdicts)
     AddElement(
         tools, "button",
         {{"class", "chip"}, {"type", "button"}, {"data-verdict", name}, {"aria-pressed", "false"}},
-        fmt::format("{} {}", name, count));
+        fmt::format("{} {}", WordOf(each, sides), count));
   }
   const pugi::xml_node groups =
       AddElement(tools, "select", {{"id", "groups"}, {"aria-label", "how the list is grouped"}});
@@ -460,14 +522,17 @@ std::string ReportHtml(const std::vector<ScenarioVerdict>& unsorted, const Repor
   const pugi::xml_node body = AddElement(html, "body");
   const pugi::xml_node top = AddElement(body, "header");
   AddElement(top, "h1", {}, header.title);
-  AddSummary(top, Count(verdicts));
+  AddSummary(top, Count(verdicts), header.sides);
   AddHeader(top, verdicts, header);
   AddFailures(top, verdicts);
   const std::vector<Cause> causes = CausesOf(verdicts);
-  AddCauses(top, causes, NearLimitPasses(verdicts));
+  const bool is_of_labels = !header.sides.empty();
+  if (is_of_labels) AddTables(top, header);
+  AddCauses(top, causes, is_of_labels ? std::vector<NearLimitPass>() : NearLimitPasses(verdicts),
+            header.sides);
   const pugi::xml_node list =
       AddElement(body, "nav", {{"id", "list"}, {"aria-label", "scenarios"}, {"tabindex", "0"}});
-  AddTools(list, verdicts);
+  AddTools(list, verdicts, header.sides);
   AddTable(list, verdicts, causes);
   const pugi::xml_node sections = AddElement(body, "main");
   if (!WhyNoReplay().empty())
@@ -477,13 +542,18 @@ std::string ReportHtml(const std::vector<ScenarioVerdict>& unsorted, const Repor
   ReplayBox replays;
   for (const ScenarioVerdict& verdict : verdicts) {
     const bool open = !IsGood(verdict) || verdicts.size() == 1;
-    AddSection(sections, verdict, open, pictures, replays);
+    AddSection(sections, verdict, header.sides, open, pictures, replays);
   }
+  const std::string rows =
+      is_of_labels ? "d and D go to the next and the last difference, 1, 2, .. accept there what "
+                     "one side says; what is accepted is saved as labels. "
+                   : "In every row of a timeline, the golden is above (pale) and the recognised "
+                     "event below; where they differ it is hatched. ";
   AddElement(sections, "p", {{"class", "soft"}},
-             "In every row of a timeline, the golden is above (pale) and the recognised event "
-             "below; where they differ it is hatched. A click moves the cursor; so do the arrows, "
-             "and b and B to the next and the last boundary; n and p choose the next and the "
-             "previous scenario.");
+             rows +
+                 "A click moves the cursor; so do the arrows, and b and B to the next and the "
+                 "last boundary; n and p choose the next and the previous scenario.");
+  AddHistory(body, header.history);
   if (replays.any())
     AddElement(body, "script", {{"type", "text/plain"}, {"id", "replay-bundle"}}, ReplayBundle());
   AddElement(body, "script", {}, kScriptPlace);

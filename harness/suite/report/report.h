@@ -8,9 +8,16 @@
 #include <string>
 #include <vector>
 
+#include "harness/suite/check/history.h"
 #include "harness/suite/check/verdict.h"
+#include "harness/suite/report/charts.h"
 
 namespace prehend::suite {
+
+struct ReportTable {
+  std::string title;
+  std::vector<std::vector<std::string>> rows;  ///< the first is its head
+};
 
 struct ReportHeader {
   std::string command;      ///< that made the page
@@ -19,6 +26,12 @@ struct ReportHeader {
   std::string machine = {};
   std::string folder = {};  ///< what the files of pictures are relative to
   std::string title = "Regression suite";
+  std::vector<PastRun> history = {};  ///< of the same scenarios, with this run
+  /// Not empty: not runs and goldens are compared, but what these say of the same takes. Verdicts
+  /// have a comparison of the second with the first, and in `labelled` those of the further ones.
+  Sides sides = {};
+  std::vector<ReportTable> tables = {};
+  std::string scores = {};  ///< as text
 };
 
 /// With the commit that `root` is at, and this machine.

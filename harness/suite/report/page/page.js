@@ -53,8 +53,12 @@
   }
   function group() {
     document.querySelectorAll('#list tr.group').forEach((head) => head.remove());
+    const wordOf = (verdict) => {
+      const chip = chips.find((each) => each.dataset.verdict === verdict);
+      return chip ? chip.textContent.replace(/ \d+$/, '') : verdict;
+    };
     const of = {
-      'by verdict': (row) => row.dataset.verdict,
+      'by verdict': (row) => wordOf(row.dataset.verdict),
       'by folder': (row) => row.dataset.of.split('/').slice(0, -1).join('/') || 'no folder',
       'by cause': (row) => (row.dataset.causes ? 'cause ' + row.dataset.causes.split(' ')[0] : 'no failure'),
     }[groups.value];
@@ -90,7 +94,7 @@
     small.setAttribute('viewBox', left + ' 0 ' + (width - left) + ' ' + height);
     small.setAttribute('preserveAspectRatio', 'none');
     small.setAttribute('aria-hidden', 'true');
-    svg.querySelectorAll('rect[data-begin], path.hatch').forEach((bar) => small.append(bar.cloneNode()));
+    svg.querySelectorAll('rect[data-begin]:not(.step), path.hatch').forEach((bar) => small.append(bar.cloneNode()));
     section.row.querySelector('.mini').append(small);
     const picture = section.querySelector('img');
     if (!picture) return;
@@ -143,15 +147,11 @@
     if (event.key === '/') { event.preventDefault(); search.focus(); }
   });
   document.querySelectorAll('pre.command').forEach((pre) => {
-    const button = document.createElement('button');
-    button.type = 'button';
-    button.className = 'chip copy';
-    button.textContent = 'copy';
-    button.addEventListener('click', async () => {
+    const copy = button('copy', 'chip copy', async () => {
       await navigator.clipboard.writeText(pre.textContent);
-      button.textContent = 'copied';
+      copy.textContent = 'copied';
     });
-    pre.after(button);
+    pre.after(copy);
   });
 
   // The part of its time that a timeline shows, in seconds: everything, unless somebody zooms.
@@ -182,6 +182,10 @@
       bar.style.display = begin <= end ? '' : 'none';
       if (begin > end) return;
       if (bar.matches('.hatch')) return bar.setAttribute('d', hatched(bar, xAt(section, begin), Math.max(3, (end - begin) * scale)));
+      if (bar.matches('.in_bar')) {  // as far as it fits
+        bar.style.display = 7 * bar.textContent.length < (end - begin) * scale ? '' : 'none';
+        return bar.setAttribute('x', xAt(section, (begin + end) / 2));
+      }
       bar.setAttribute('x', xAt(section, begin));
       bar.setAttribute('width', Math.max(1.5, (end - begin) * scale));
     });
@@ -246,9 +250,31 @@
       cursorIn(signal, seconds > Number(end) ? -1 : Number(left) + (seconds - Number(from)) * Number(perSecond));
     });
     if (section.player) section.player.ghost(goldenAt(svg, seconds));
+    if (section === chosen || seconds > 0) showFilm(section, seconds);
     section.querySelector('output').textContent = seconds.toFixed(4) + ' s';
     tellBoundaries(section, seconds);
   }
+  /// The frame of the video that was there at this time of the episode.
+  function showFilm(section, seconds) {
+    const video = section.querySelector('video');
+    if (!video || !video.paused) return;
+    video.preload = 'auto';
+    video.wanted = Math.max(0, seconds - Number(video.dataset.offset));
+    if (!video.seeking) video.currentTime = video.wanted;
+  }
+  document.querySelectorAll('video').forEach((video) => {
+    const section = video.closest('section');
+    video.muted = true;
+    video.addEventListener('seeked', () => {
+      if (video.paused && Math.abs(video.currentTime - video.wanted) > 1e-3) video.currentTime = video.wanted;
+    });
+    const follow = () => {
+      if (video.paused) return;
+      setCursor(section, Math.max(0, video.currentTime + Number(video.dataset.offset)));
+      requestAnimationFrame(follow);
+    };
+    video.addEventListener('play', () => requestAnimationFrame(follow));
+  });
   /// In a hatched place, when the golden has the boundary that is elsewhere here; else null.
   function goldenAt(svg, seconds) {
     const times = Array.from(svg.querySelectorAll('rect.golden.differs'), (bar) => [bar.dataset.begin, bar.dataset.end]).flat();
@@ -340,10 +366,19 @@
   /// The next boundary of any event after this time, or the last before it.
   function boundary(svg, seconds, forward) {
     const all = [];
-    svg.querySelectorAll('rect[data-begin]').forEach((bar) => all.push(Number(bar.dataset.begin), Number(bar.dataset.end)));
+    svg.querySelectorAll('rect[data-begin]:not(.step)').forEach((bar) => all.push(Number(bar.dataset.begin), Number(bar.dataset.end)));
     const beyond = all.filter((each) => (forward ? each > seconds + 1e-6 : each < seconds - 1e-6));
     if (beyond.length === 0) return seconds;
     return forward ? Math.min(...beyond) : Math.max(...beyond);
+  }
+
+  function button(text, style, pressed) {
+    const made = document.createElement('button');
+    made.type = 'button';
+    made.className = style;
+    made.textContent = text;
+    made.addEventListener('click', pressed);
+    return made;
   }
 
   // Pictures at a moment that differs: the difference of both, and one over the other with a slider.
@@ -432,14 +467,10 @@
     if (playing === section) playing = null;
   }
   document.querySelectorAll('.replay').forEach((place) => {
-    const button = document.createElement('button');
-    button.type = 'button';
-    button.className = 'chip';
-    button.textContent = '3D replay';
-    button.setAttribute('aria-expanded', 'false');
-    place.appendChild(button);
     const section = place.closest('section');
-    button.addEventListener('click', () => (section.player ? closeReplay(section) : openReplay(section)));
+    const open = button('3D replay', 'chip', () => (section.player ? closeReplay(section) : openReplay(section)));
+    open.setAttribute('aria-expanded', 'false');
+    place.appendChild(open);
   });
 
   function follow() {
@@ -470,6 +501,12 @@
       choose(sectionOf(id));
       return openReplay(sectionOf(id));
     },
+    // For sides.js.
+    page: {sections, timelineOf, button, inOrder, setCursor, show: (section) => {
+      if (chosen !== section) open(section);
+      at = section;
+      history.replaceState(null, '', link(section));
+    }},
   };
   group();
   if (wide.matches) choose(inOrder()[0]);

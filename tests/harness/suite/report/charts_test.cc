@@ -65,6 +65,32 @@ TEST(TimelineSvg, RowsAreGroupedByWhoseTheyAre) {
   EXPECT_EQ(TimesIn(svg, "class=\"hatch\""), 0) << "without a golden nothing differs";
 }
 
+TEST(TimelineSvg, SidesHaveLanesAndTheirDifferencesOne) {
+  const grammar::NamedEvent event{
+      .event = "sliding", .roles = {{"object", "cup"}}, .interval = {100, 200}};
+  truth::Golden labels{.scenario = "s/x", .grammar = "g", .ticks_per_second = 100};
+  labels.events.push_back({.event = event, .tolerance_ms = {}, .because = {}, .comments = {}});
+  grammar::NamedEvent late = event, other = event;
+  late.interval.begin = 150;
+  other.event = "rolling";
+  const auto compared = [&](const grammar::NamedEvent& found) {
+    return truth::Compare(labels, {.ticks_per_second = 100, .events = {found}}, 2);
+  };
+  const std::vector<truth::Comparison> all = {compared(event), compared(late), compared(other)};
+  const std::vector<show::PlayedStep> steps = {{"hand", "reach cup", 10, 90}};
+  const std::string svg =
+      TimelineSvg(all, {"labels", "same", "late", "other"}, 400, {}, true, steps);
+  EXPECT_EQ(TimesIn(svg, "data-event=\"sliding(object=cup)\" data-lane=\"0\""), 1) << svg;
+  EXPECT_EQ(TimesIn(svg, "data-event=\"sliding(object=cup)\" data-lane=\"1\""), 1);
+  EXPECT_EQ(TimesIn(svg, "data-event=\"sliding(object=cup)\" data-lane=\"2\""), 1);
+  EXPECT_EQ(TimesIn(svg, "data-event=\"rolling(object=cup)\" data-lane=\"3\""), 1);
+  EXPECT_EQ(TimesIn(svg, "class=\"hatch\""), 3) << "its late begin; the label and the other event";
+  EXPECT_TRUE(Has(svg, "class=\"actual\"")) << "who agrees does not differ";
+  EXPECT_TRUE(Has(svg, "class=\"golden differs\""));
+  EXPECT_LT(svg.find(">script</text>"), svg.find(">reach cup</text>"));
+  EXPECT_TRUE(Has(svg, "class=\"in_bar\"") && Has(svg, "class=\"step\""));
+}
+
 TEST(TimelineSvg, AnEmptyTimelineIsAPictureToo) {
   const std::string svg = TimelineSvg(truth::Comparison{}, 0, {});
   EXPECT_TRUE(svg.starts_with("<svg class=\"timeline\"")) << svg;

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// The script of the report page, after page.js: what several sides say, and the last runs.
+(function () {
+  'use strict';
+  const {sections, timelineOf, button, inOrder, setCursor, show} = window.prehendReport.page;
+
+  // Labels, grammars and others beside each other: at each time of an event at which one of them says something else, one
+  // side can be accepted. What is saved are all labels, with these changes, in the clock of the episode.
+  const sides = Array.from((document.querySelector('p.sides') || document.createElement('p')).children, (each) => each.textContent);
+  let difference = null;  // the one that keys are about
+  /// Times of events in which sides overlap; made when somebody looks.
+  function spansOf(section) {
+    if (section.spans) return section.spans;
+    const svg = timelineOf(section), events = new Map();
+    section.spans = [];
+    if (!svg) return section.spans;
+    svg.querySelectorAll('rect[data-event]').forEach((bar) => {
+      const of = bar.dataset.event;
+      events.set(of, [...(events.get(of) || []), bar]);
+    });
+    events.forEach((bars, event) => {
+      let span = null;
+      bars.sort((a, b) => a.dataset.begin - b.dataset.begin).forEach((bar) => {
+        const begin = Number(bar.dataset.begin), end = Number(bar.dataset.end);
+        if (!span || begin >= span.end) {
+          span = {section, event, begin, end, says: sides.map(() => []), differs: false, side: 0};
+          section.spans.push(span);
+        }
+        span.end = Math.max(span.end, end);
+        span.says[Number(bar.dataset.lane)].push([begin, end]);
+        span.differs = span.differs || bar.matches('.differs');
+      });
+    });
+    return section.spans.sort((a, b) => a.begin - b.begin);
+  }
+  const differencesOf = (section) => spansOf(section).filter((span) => span.differs);
+  function list(section) {
+    if (section.save || differencesOf(section).length === 0) return;
+    const all = document.createElement('ol');
+    all.className = 'choices';
+    differencesOf(section).forEach((span) => {
+      span.item = document.createElement('li');
+      const name = button(span.event.replace(/\w+=/g, ''), 'plain', () => go(span));
+      span.buttons = span.says.map((said, k) => {
+        const times = said.map(([begin, end]) => begin.toFixed(2) + '\u2013' + end.toFixed(2) + ' s').join(', ');
+        const made = button((k + 1) + ': ' + (times || 'nothing'), 'chip', () => { go(span); accept(span, k); });
+        made.title = sides[k];
+        return made;
+      });
+      span.item.append(name, ...span.buttons);
+      all.append(span.item);
+    });
+    section.save = button('save as labels', 'chip', () => {
+      const link = document.createElement('a');
+      link.href = URL.createObjectURL(new Blob([labelsOf(section)], {type: 'text/csv'}));
+      link.download = section.id.split('/').pop() + '.csv';
+      link.click();
+    });
+    section.querySelector('.time').append(all, section.save);
+  }
+  const seen = new IntersectionObserver((entries) => entries.forEach((entry) => { if (entry.isIntersecting) list(entry.target.closest('section')); }));
+  if (sides.length > 0) document.querySelectorAll('section .time').forEach((time) => seen.observe(time));
+  function go(span) {
+    if (difference) difference.item.removeAttribute('aria-current');
+    difference = span;
+    list(span.section);
+    span.item.setAttribute('aria-current', 'true');
+    span.item.scrollIntoView({block: 'nearest'});
+    setCursor(span.section, span.begin);
+    show(span.section);
+  }
+  function stepDifference(by) {
+    const all = sides.length === 0 ? [] : inOrder().flatMap(differencesOf);
+    if (all.length === 0) return;
+    go(all[Math.min(Math.max(difference ? all.indexOf(difference) + by : 0, 0), all.length - 1)]);
+  }
+  function accept(span, side) {
+    span.side = side;
+    span.buttons.forEach((each, k) => each.setAttribute('aria-pressed', String(k === side)));
+    const changed = spansOf(span.section).filter((each) => each.side > 0).length;
+    span.section.save.textContent = 'save as labels, ' + (changed === 1 ? '1 change' : changed + ' changes');
+  }
+  function labelsOf(section) {
+    const rows = spansOf(section).flatMap((span) => span.says[span.side].map(([begin, end]) => [begin, end, '"' + span.event + '"']));
+    return ['begin_s,end_s,label', ...rows.sort((a, b) => a[0] - b[0]).map((row) => row.join())].join('\n') + '\n';
+  }
+
+  // The last runs of a scenario: a bar for each, as high as it took long, with the colour of its verdict.
+  const past = document.getElementById('history'), pastRuns = past && JSON.parse(past.textContent);
+  sections.forEach((section) => {
+    const runs = (pastRuns && pastRuns.of[section.id]) || [];
+    if (runs.length < 2) return;
+    const line = document.createElement('p'), longest = Math.max(...runs.map((run) => run[2]), 1e-3);
+    line.className = 'soft history';
+    runs.forEach(([of, verdict, seconds, margin]) => {
+      const bar = document.createElement('span');
+      bar.className = verdict;
+      bar.style.height = (0.25 + seconds / longest) + 'em';
+      bar.title = pastRuns.runs[of] + ': ' + verdict + ', ' + seconds.toFixed(2) + ' s' + (margin === null ? '' : ', ' + margin + ' ms of tolerance left');
+      line.append(bar);
+    });
+    const failed = runs.filter((run) => run[1] !== 'passed').length, margins = runs.map((run) => run[3]).filter((each) => each !== null);
+    line.append(' ' + (runs.length - failed) + ' of the last ' + runs.length + ' runs passed, in ' + Math.min(...runs.map((run) => run[2])).toFixed(2) + ' to ' +
+      longest.toFixed(2) + ' s' + (margins.length === 0 ? '' : '; ' + margins[0] + ' ms of tolerance left then, ' + margins[margins.length - 1] + ' ms now'));
+    section.querySelector('.views').before(line);
+  });
+  document.addEventListener('keydown', (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches('input, select')) return;
+    if (event.key === 'd' || event.key === 'D') stepDifference(event.key === 'd' ? 1 : -1);
+    if (difference && Number(event.key) >= 1 && Number(event.key) <= sides.length) accept(difference, Number(event.key) - 1);
+  });
+  window.prehendReport.labelsOf = (id) => labelsOf(sections.find((section) => section.id === id));
+}());
