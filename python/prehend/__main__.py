@@ -9,6 +9,8 @@ COMMANDS = {  # name: module, whose main(arguments) returns the exit code
     "baseline": "baselines",
     "benchmark": "benchmark",
     "dataset": "dataset",
+    "push": "push",
+    "query": "query",
 }
 
 
