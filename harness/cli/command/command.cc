@@ -64,6 +64,26 @@ Command Limited(Command command, double time_limit_s) {
   return command;
 }
 
+Command NamingWhatIsMissing(Command command, const std::string& argument) {
+  std::vector<std::string> selecting;
+  for (const char* name : {"--episode", "--filter"})
+    if (HasOption(command, name)) selecting.emplace_back(name);
+  command.run = [run = std::move(command.run), argument, selecting](const ParsedOptions& options,
+                                                                    const CommandContext& context) {
+    const ExitCode code = run(options, context);
+    if (code == ExitCode::kBadInput || code == ExitCode::kFailure ||
+        std::ranges::any_of(selecting, [&](const auto& name) { return options.Has(name); }))
+      return code;
+    const Result<std::string> missing = episode::WhatIsMissing(options.All(argument));
+    if (!missing) return Complain(context, missing.error());
+    if (missing->empty()) return code;
+    context.out.flush();
+    context.err << *missing;
+    return ExitCode::kFailure;
+  };
+  return command;
+}
+
 int CoreCount() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 episode::RunRequest RequestOf(const ParsedOptions& options, const std::string& scenario_file) {

@@ -64,6 +64,7 @@ Command ExplainCommand();
 Command TracksCommand();
 Command DiffCommand();
 Command EpisodesCommand();
+Command MergeCommand();
 Command VerifyCommand();
 Command ReportCommand();
 Command QueryCommand();
@@ -81,6 +82,10 @@ Command AskCommand();
 /// it is not given) and --memory-limit-mb. A run beyond a limit, or one that crashes, ends with
 /// exit code 3 and a message.
 Command Limited(Command command, double time_limit_s);
+
+/// The same command, which then names what is missing of suites and trials of which its files, the
+/// values of this argument, are parts: exit code 3. Not if --episode or --filter selects some.
+Command NamingWhatIsMissing(Command command, const std::string& argument);
 
 /// The number of processes that keep this machine busy.
 int CoreCount();

@@ -158,8 +158,8 @@ Option EpisodeOption() {
 Option EpisodesOption() {
   return {.name = "--episode",
           .help =
-              "only these of episode files: a number, or a scenario (a name, skill/name or a "
-              "glob)",
+              "only these of episode files: a number, a scenario (a name, skill/name or a glob), "
+              "status=failed or outcome=NAME",
           .placeholder = "WHICH"};
 }
 

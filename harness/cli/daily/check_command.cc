@@ -30,12 +30,6 @@ constexpr double kDefaultTimeLimit_s = 120;
 constexpr std::uint64_t kDefaultMemoryLimit_mb = 1000;
 constexpr int kMaxRepeats = 10'000;
 
-std::string ShardProblem(const std::string& shard) {
-  return suite::ParseShard(shard)
-             ? ""
-             : "found '" + shard + "', wanted I/N, like 2/3 for the second of three";
-}
-
 /// Its limits are too large to be worth a place in the help.
 ValueRule AnySeed() {
   ValueRule rule = IntegersFrom(0, std::int64_t{1} << 62);
@@ -54,9 +48,10 @@ std::vector<Option> SelectionOptions() {
            .repeatable = true},
           FilterOption(),
           {.name = "--shard",
-           .help = "keep part I of N equal parts",
-           .placeholder = "I/N",
-           .rule = {.problem = ShardProblem}},
+           .help = "keep part I of N: of as many scenarios, or, with the costs.json that a check "
+                   "left in build/check, of as many seconds",
+           .placeholder = "I/N[:COSTS.json]",
+           .rule = {.problem = suite::ShardProblem}},
           {.name = "--changed",
            .help = "skip scenarios that passed, if no file and no part of the program that "
                    "they depend on changed since"},
@@ -314,6 +309,56 @@ std::string WhyNotPlayed(const suite::ScenarioSelection& selection, const Parsed
   return "";
 }
 
+/// The part of the selection that is to be checked, and what it owes if it is recorded.
+Result<episode::Plan> KeepPart(const ParsedOptions& options, const CommandContext& context,
+                               suite::ScenarioSelection& selection) {
+  const suite::Shard shard = *suite::ParseShard(options.TextOr("--shard", "1/1"));
+  std::vector<std::string> names, files;
+  for (const episode::ScenarioFile& file : selection.scenarios) {
+    names.push_back(episode::IdOf(file));
+    files.push_back(file.path);
+  }
+  const Result<std::vector<int>> parts = suite::PartsOf(shard, names);
+  if (!parts) return tl::unexpected(parts.error());
+  episode::Plan plan;
+  if (options.Has("--record") && !options.Has("--repeat") && !options.Has("--changed")) {
+    std::vector<std::string> words = {"check"};
+    std::ranges::copy(options.All("names"), std::back_inserter(words));
+    for (const std::string& filter : options.All("--filter"))
+      words.insert(words.end(), {"--filter", filter});
+    std::ranges::copy(suite::OptionsOf({options.Text("--grammar"), options.All("--set")}),
+                      std::back_inserter(words));
+    plan = episode::MakePlan(words, files, context.root);
+    plan.number = shard.number;
+    plan.count = shard.count;
+    for (std::size_t i = 0; i < names.size(); ++i) plan.owed.push_back({names[i], (*parts)[i]});
+  }
+  suite::KeepShard(shard, *parts, selection);
+  return plan;
+}
+
+/// What the file has already of this part is judged as it is there, and not played again.
+Result<void> GoOn(const episode::Plan& plan, suite::SuiteRequest& request,
+                  const CommandContext& context) {
+  request.plan = plan;
+  if (plan.uuid.empty()) return {};
+  const auto complete = episode::BeginPart(request.record_file, plan);
+  if (!complete) return tl::unexpected(complete.error());
+  std::size_t kept = 0;
+  for (episode::ScenarioFile& file : request.selection.scenarios) {
+    const auto row = complete->find(episode::IdOf(file));
+    if (row == complete->end()) continue;
+    file.path = request.record_file;
+    file.episode = row->second.id;
+    file.origin = episode::Origin::kRecordedRun;
+    ++kept;
+  }
+  if (kept > 0)
+    context.err << fmt::format("{}: it has {} of {} episodes already; these are not played again\n",
+                               request.record_file, kept, request.selection.scenarios.size());
+  return {};
+}
+
 ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   for (const char* other : {"--grammar", "--set", "--recogniser"}) {
     if (options.Has("--changed") && options.Has(other))
@@ -331,13 +376,14 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
   const std::string cannot = WhyNotPlayed(*selection, options);
   if (!cannot.empty()) return Refuse(context, cannot);
-  if (options.Has("--shard")) {
-    suite::KeepShard(*suite::ParseShard(options.Text("--shard")), *selection);
-  }
-  const suite::SuiteRequest request = RequestFrom(options, context, std::move(*selection));
+  const Result<episode::Plan> plan = KeepPart(options, context, *selection);
+  if (!plan) return Complain(context, plan.error());
+  suite::SuiteRequest request = RequestFrom(options, context, std::move(*selection));
   const std::string page = (fs::path(request.report_folder) / "index.html").string();
   std::string problem = WhyNotWritten(options, page);
   if (!problem.empty()) return Refuse(context, problem);
+  if (const Result<void> begun = GoOn(*plan, request, context); !begun)
+    return Complain(context, begun.error());
   Interrupt interrupt;
   const std::vector<suite::ScenarioVerdict> verdicts =
       suite::RunSuite(request, ProgressOn(context), &interrupt);
@@ -376,6 +422,7 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
     interrupt.EndProcess();
   }
   if (problem.empty()) problem = NotRecordedText(verdicts);
+  if (problem.empty()) problem = episode::EndPart(request.record_file, request.plan);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   // An empty shard has agreed with all that it had.
   return verdicts.empty() && options.Has("--shard") ? ExitCode::kAgrees : suite::WorstOf(verdicts);
@@ -389,8 +436,9 @@ Command CheckCommand() {
           .examples = {"check", "check milk_carton_wrap 'slide/*' my/scenario.yaml",
                        "check --filter tag:smoke --filter '!reach/*' --no-pictures -j 1",
                        "check --changed", "check --record suite.episodes --no-pictures",
-                       "check --shard 2/3 --junit verdicts.xml", "check 'slide/*' --repeat 10",
-                       "check --grammar my/rules.grammar --json",
+                       "check --shard 2/3 --junit verdicts.xml",
+                       "check --shard 3/16:costs.json --record part-3.episodes",
+                       "check 'slide/*' --repeat 10", "check --grammar my/rules.grammar --json",
                        "check 'slide/*' --recogniser 'python3 reco.py'"},
           .options = Joined(SelectionOptions(), Joined(RunningOptions(), ResultOptions())),
           .run = RunCheck};

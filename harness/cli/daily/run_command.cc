@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "harness/base/base/atomic_file.h"
@@ -10,11 +11,13 @@
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/visible_stream.h"
 #include "harness/cli/command/command.h"
+#include "harness/episode/episodes/plan.h"
 #include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/run_trials.h"
 #include "harness/suite/check/check_scenario.h"
+#include "harness/suite/check/select_scenarios.h"
 #include "harness/suite/judge/judges.h"
 #include "harness/suite/report/report.h"
 
@@ -43,9 +46,48 @@ episode::RecordRequest RecordingOf(const episode::RunRequest& request,
   return {options.Text("--record"), context.root, request, files, context.today, ProgramHash()};
 }
 
+/// The trials that are asked for: all, or a part of them.
+episode::Plan PlanOfTrials(const ParsedOptions& options, const episode::RunRequest& request,
+                           const std::string& id, const CommandContext& context) {
+  const suite::Shard shard = *suite::ParseShard(options.TextOr("--shard", "1/1"));
+  std::vector<std::string> words = {"run", id};
+  std::ranges::copy(suite::OptionsOf({request.grammar, request.settings}),
+                    std::back_inserter(words));
+  episode::Plan plan = episode::MakePlan(words, {request.scenario_file}, context.root);
+  const int count = options.IntOr("--trials", 1);
+  plan.what += fmt::format(" --trials {}", count);
+  plan.number = shard.number;
+  plan.count = shard.count;
+  for (int trial = 1; trial <= count; ++trial)
+    plan.owed.push_back({fmt::format("{}, trial {}", id, trial), (trial - 1) % shard.count + 1});
+  return plan;
+}
+
+/// The outcomes of those that the file has already.
+Result<std::map<int, episode::TrialResult>> KnownTrials(const std::string& file,
+                                                        const episode::Plan& plan) {
+  const auto complete = episode::BeginPart(file, plan);
+  if (!complete) return tl::unexpected(complete.error());
+  std::map<int, episode::TrialResult> known;
+  for (std::size_t i = 0; i < plan.owed.size(); ++i) {
+    const auto row = complete->find(plan.owed[i].name);
+    if (plan.owed[i].part != plan.number || row == complete->end()) continue;
+    const bool failed = row->second.status == episode::kFailed;
+    const physics::RunStatus& end = row->second.end;
+    const int trial = static_cast<int>(i) + 1;
+    known[trial] = {trial, failed ? "failed" : row->second.outcome,
+                    failed ? end.entity + ": " + end.reason : "", ""};
+  }
+  return known;
+}
+
 ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& request,
-                     const CommandContext& context) {
+                     const std::string& id, const CommandContext& context) {
+  const episode::Plan plan = PlanOfTrials(options, request, id, context);
+  const auto all = std::ranges::count(plan.owed, plan.number, &episode::Plan::Owed::part);
   episode::TrialSettings settings{.count = options.IntOr("--trials", 1),
+                                  .part = plan.number,
+                                  .parts = plan.count,
                                   .jobs = options.IntOr("--jobs", CoreCount())};
   const std::string file = options.Text("--record");
   if (options.Has("--record")) {
@@ -53,13 +95,22 @@ ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& re
       return Refuse(context, "--record: many trials need an episode file, NAME.episodes");
     if (const std::string problem = episode::WhyNotRecordable(file); !problem.empty())
       return Refuse(context, "--record: " + problem);
+    auto known = KnownTrials(file, plan);
+    if (!known) return Complain(context, known.error());
+    settings.known = std::move(*known);
+    if (!settings.known.empty())
+      context.err << fmt::format("{}: it has {} of {} trials already; these are not played again\n",
+                                 file, settings.known.size(), all);
     settings.play = [&](int trial, const episode::RunRequest& varied) {
-      return episode::RecordTrial(trial, varied, RecordingOf(varied, {}, options, context));
+      episode::RecordRequest record = RecordingOf(varied, {}, options, context);
+      record.uuid = plan.UuidOfEpisode(plan.owed[static_cast<std::size_t>(trial) - 1].name);
+      return episode::RecordTrial(trial, varied, std::move(record));
     };
   }
   const auto report = episode::RunTrials(request, context.root, settings, [&](int done) {
     if (context.progress)
-      context.err << kEraseLine << "[" << done << "/" << settings.count << "]" << std::flush;
+      context.err << kEraseLine << "[" << done + static_cast<int>(settings.known.size()) << "/"
+                  << all << "]" << std::flush;
   });
   if (context.progress) context.err << kEraseLine << std::flush;
   if (!report) return Complain(context, report.error());
@@ -71,6 +122,10 @@ ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& re
   const auto lost = std::ranges::count_if(report->results, [](const episode::TrialResult& result) {
     return !result.not_recorded.empty();
   });
+  if (lost == 0 && options.Has("--record")) {
+    const std::string problem = episode::EndPart(file, plan);
+    if (!problem.empty()) return Complain(context, ExitCode::kFailure, "--record: " + problem);
+  }
   if (lost == 0) return ExitCode::kAgrees;
   const auto first = std::ranges::find_if(report->results, [](const episode::TrialResult& result) {
     return !result.not_recorded.empty();
@@ -109,6 +164,10 @@ std::string WhyRefused(const ParsedOptions& options) {
     if (options.Has("--trials") && options.Has(of_one_run))
       return fmt::format("{} needs a single run; --trials makes many", of_one_run);
   }
+  if (options.Has("--shard") && !options.Has("--trials"))
+    return "--shard is a part of many runs; it needs --trials";
+  if (options.Has("--shard") && !suite::ParseShard(options.Text("--shard"))->costs.empty())
+    return "--shard: trials cost the same: found a file of costs, wanted I/N";
   if (options.Has("--trials")) return "";
   for (const char* of_output : {"--json", "--measure"}) {
     if (options.Text("--record") == "-" && options.Has(of_output))
@@ -172,7 +231,7 @@ ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
   if (!file) return file.error();
   episode::RunRequest request = RequestOf(options, file->path);
   if (const std::string why = WhyRefused(options); !why.empty()) return Refuse(context, why);
-  if (options.Has("--trials")) return CountTrials(options, request, context);
+  if (options.Has("--trials")) return CountTrials(options, request, episode::IdOf(*file), context);
   if (options.Has("--trial")) {
     auto varied = episode::RequestOfTrial(request, context.root, options.IntOr("--trial", 1));
     if (!varied) return Complain(context, varied.error());
@@ -188,14 +247,15 @@ Command RunCommand() {
   return {
       .name = "run",
       .summary = "Simulate one scenario and print the events that its grammar recognises",
-      .examples = {"run milk_carton_wrap", "run milk_carton_wrap --json",
-                   "run milk_carton_wrap --record milk.episodes",
-                   "run milk_carton_wrap --report milk.html",
-                   "run milk_carton_wrap --set entities.milk.mass_kg=8",
-                   "run milk_carton_wrap --set lift_rise=10cm --measure",
-                   "run furniture/drawer_is_opened_with_hook --trials 50",
-                   "run furniture/drawer_is_opened_with_hook --trial 17",
-                   "run my/scenario.yaml --grammar my/rules.grammar"},
+      .examples =
+          {"run milk_carton_wrap", "run milk_carton_wrap --json",
+           "run milk_carton_wrap --record milk.episodes", "run milk_carton_wrap --report milk.html",
+           "run milk_carton_wrap --set entities.milk.mass_kg=8",
+           "run milk_carton_wrap --set lift_rise=10cm --measure",
+           "run furniture/drawer_is_opened_with_hook --trials 50",
+           "run furniture/drawer_is_opened_with_hook --trial 17",
+           "run trials/wrap_places_a_carton --trials 800 --shard 3/8 --record part-3.episodes",
+           "run my/scenario.yaml --grammar my/rules.grammar"},
       .options =
           {ScenarioArgument(),
            GrammarOption(),
@@ -208,6 +268,10 @@ Command RunCommand() {
             .help = "simulate variation K only",
             .placeholder = "K",
             .rule = IntegersFrom(1, kMaxTrials)},
+           {.name = "--shard",
+            .help = "keep part I of N of the trials",
+            .placeholder = "I/N",
+            .rule = {.problem = suite::ShardProblem}},
            JobsOption(),
            JsonOption(),
            {.name = "--record",

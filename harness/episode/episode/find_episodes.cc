@@ -2,15 +2,17 @@
 #include "harness/episode/episode/find_episodes.h"
 
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/quoting.h"
 #include "harness/episode/episodes/episode_file.h"
+#include "harness/episode/episodes/plan.h"
+#include "harness/episode/episodes/query_events.h"
 #include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/episodes/recordings.h"
 #include "harness/episode/episodes/schema.h"
@@ -34,13 +36,6 @@ std::string GrammarNamedIn(const std::string& recording) {
   EpisodeStream stream(recording);
   const bool is_read = std::getline(in, line) && stream.Take(line).empty() && stream.has_header();
   return is_read ? stream.header().grammar : "";
-}
-
-bool IsSelected(const EpisodeName& episode, const std::string& which) {
-  const std::string& scenario = episode.scenario;
-  if (which.empty() || std::to_string(*episode.number) == which || scenario == which) return true;
-  return scenario.substr(scenario.rfind('/') + 1) == which ||
-         fnmatch(which.c_str(), scenario.c_str(), 0) == 0;
 }
 
 tl::expected<EpisodeName, NotFound> ScenarioNamed(const std::string& typed,
@@ -88,7 +83,7 @@ EpisodeKind EpisodeKindOf(const std::string& typed) {
   return IsJsonLines(typed) ? EpisodeKind::kJsonLines : EpisodeKind::kScenario;
 }
 
-Result<std::vector<EpisodeName>> EpisodesOf(const std::string& path) {
+Result<std::vector<EpisodeName>> EpisodesOf(const std::string& path, const std::string& which) {
   const auto file = EpisodeFile::Open(path);
   if (!file) return tl::unexpected(file.error());
   if (file->episodes().empty())
@@ -97,9 +92,11 @@ Result<std::vector<EpisodeName>> EpisodesOf(const std::string& path) {
                               .message = "has no episodes",
                               .hint = "its recording ended before the first one began"}});
   std::vector<EpisodeName> names;
-  for (const EpisodeRow& row : file->episodes())
+  for (const EpisodeRow& row : file->episodes()) {
+    if (!IsSelected(row, which)) continue;
     names.push_back({path, row.id, row.scenario,
                      row.simulated ? Origin::kRecordedRun : Origin::kRecording, row.grammar});
+  }
   return names;
 }
 
@@ -139,9 +136,8 @@ class TakeFinder {
             entry);
         return std::nullopt;
       case EpisodeKind::kEpisodeFile:
-        if (const auto kept = EpisodesOf(typed)) {
-          for (const EpisodeName& episode : *kept)
-            if (IsSelected(episode, which_)) Add(episode, entry);
+        if (const auto kept = EpisodesOf(typed, which_)) {
+          for (const EpisodeName& episode : *kept) Add(episode, entry);
         } else {
           std::ranges::copy(kept.error(), std::back_inserter(unread.diagnostics));
         }
@@ -224,6 +220,21 @@ tl::expected<EpisodeName, NotFound> FindEpisode(const std::string& typed, const 
       NotFound{ExitCode::kNothing,
                fmt::format("{} has {} such episodes; --episode selects one, and '{}' shows all",
                            typed, found->size(), CommandText({"episode", "list", typed}))});
+}
+
+Result<std::string> WhatIsMissing(const std::vector<std::string>& files) {
+  StandingFinder finder;
+  std::set<std::string> all(files.begin(), files.end());
+  std::error_code error;
+  for (const std::string& folder : files)
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+      all.insert(entry.path().string());
+  for (const std::string& file : all) {
+    if (!IsEpisodeFile(file)) continue;
+    const Result<void> looked = Guarded(file, [&] { finder.Add(OpenToRead(file)); });
+    if (!looked) return tl::unexpected(looked.error());
+  }
+  return TextOf(finder.Standings());
 }
 
 EpisodeKeeper::EpisodeKeeper(std::string root, std::string today, std::string folder)

@@ -45,8 +45,12 @@ tl::expected<std::vector<EpisodeName>, NotFound> FindEpisodes(std::span<const st
 tl::expected<EpisodeName, NotFound> FindEpisode(const std::string& typed, const std::string& which,
                                                 const std::string& root);
 
-/// All of one episode file.
-Result<std::vector<EpisodeName>> EpisodesOf(const std::string& file);
+/// All of one episode file, or those that IsSelected().
+Result<std::vector<EpisodeName>> EpisodesOf(const std::string& file, const std::string& which = "");
+
+/// What is missing in these files together of suites and trials of which they are parts, a line for
+/// each part; or "". Of a folder, in its episode files. What is no episode file is no part.
+Result<std::string> WhatIsMissing(const std::vector<std::string>& files);
 
 // For commands that ask an episode file: what is in none is played, or imported, into one first.
 // Tested by tests/program/episode_kinds_test.cc

@@ -102,6 +102,15 @@ Statement& Statement::BindNothing() {
   return *this;
 }
 
+Statement& Statement::BindColumn(const Statement& row, int column) {
+  if (sqlite3_bind_value(statement_, next_++, sqlite3_column_value(row.statement_, column)) !=
+      SQLITE_OK)
+    Throw(database_);
+  return *this;
+}
+
+int Statement::Columns() const { return sqlite3_column_count(statement_); }
+
 bool Statement::Step() {
   const int code = sqlite3_step(statement_);
   if (code != SQLITE_ROW && code != SQLITE_DONE) Throw(database_);

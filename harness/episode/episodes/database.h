@@ -39,6 +39,7 @@ class Statement {
   Statement& Bind(const char* text) { return Bind(std::string_view(text)); }
   Statement& BindBytes(std::string_view bytes);  ///< kept by the caller until the next Reset()
   Statement& BindNothing();
+  Statement& BindColumn(const Statement& row, int column);  ///< of another statement, as it is
 
   /// Whether there is a row. Throws DatabaseError.
   bool Step();
@@ -54,6 +55,7 @@ class Statement {
   /// Damage if it is no UUID: it becomes the name of a file, and of a thing in a knowledge base.
   std::string Uuid(int column) const;
   std::string_view Bytes(int column) const;  ///< valid until the next step
+  int Columns() const;
 
  private:
   sqlite3* database_ = nullptr;

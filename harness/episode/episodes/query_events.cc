@@ -142,6 +142,16 @@ class Asker {
 
 }  // namespace
 
+bool IsSelected(const EpisodeRow& episode, const std::string& which) {
+  for (const auto& [word, value] :
+       {std::pair<std::string_view, std::string_view>{"status=", episode.status},
+        {"outcome=", episode.outcome}})
+    if (which.starts_with(word)) return Fits(which.substr(word.size()), std::string(value));
+  const std::string& scenario = episode.scenario;
+  return which.empty() || which == std::to_string(episode.id) || which == scenario ||
+         Fits(which, scenario) || Fits(which, scenario.substr(scenario.rfind('/') + 1));
+}
+
 std::vector<const grammar::NamedEvent*> PartsOf(const grammar::NamedEvent& whole,
                                                 const grammar::Timeline& timeline,
                                                 const std::vector<KeptEntity>& entities) {
@@ -194,11 +204,7 @@ Result<std::vector<EventAnswer>> Ask(const std::string& path, const EventQuestio
   if (!file) return tl::unexpected(file.error());
   std::vector<EventAnswer> answers;
   for (const EpisodeRow& row : file->episodes()) {
-    const std::size_t slash = row.scenario.rfind('/');
-    const std::string name = slash == std::string::npos ? "" : row.scenario.substr(slash + 1);
-    if (!question.scenario.empty() && !Fits(question.scenario, row.scenario) &&
-        !Fits(question.scenario, name))
-      continue;
+    if (!IsSelected(row, question.scenario)) continue;
     const Result<grammar::Timeline> timeline = file->TimelineOf(row);
     if (!timeline) return tl::unexpected(timeline.error());
     const Result<std::vector<KeptEntity>> entities = file->EntitiesOf(row);

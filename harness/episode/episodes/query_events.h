@@ -13,6 +13,10 @@
 
 namespace prehend::episode {
 
+/// Whether --episode selects it: "" all, its number, its scenario (name, skill/name or a glob), or
+/// "status=failed" and "outcome=spilled" (globs, too).
+bool IsSelected(const EpisodeRow& episode, const std::string& which);
+
 /// ROLE=VALUE; the role may be `any`.
 struct RoleCondition {
   std::string role, value;

@@ -37,7 +37,8 @@ NewEpisode EpisodeOf(const RecordRequest& request, const scenario::Scenario& sce
           .engine = EngineName(scenario.scene.world.engine),
           .seed = static_cast<std::int64_t>(scenario.scene.world.seed),
           .program_hash = request.program_hash,
-          .recorded_on = request.recorded_on};
+          .recorded_on = request.recorded_on,
+          .uuid = request.uuid};
 }
 
 void WriteEntities(const Database& database, std::int64_t task, const std::string& uuid,
@@ -252,7 +253,10 @@ std::int64_t WriteEpisode(const Database& database, std::int64_t task, const New
       " outcome, engine, seed, program, program_hash, recorded_on, failure_entity,"
       " failure_reason, failure_advice) VALUES(?, ?, ?, ?, ?, 0, '', '', ?, ?, ?, ?, ?, '', '',"
       " '')");
-  insert.Bind(NewUuid()).Bind(task).Bind(kBeingRecorded).Bind(episode.grammar);
+  insert.Bind(episode.uuid.empty() ? NewUuid() : episode.uuid)
+      .Bind(task)
+      .Bind(kBeingRecorded)
+      .Bind(episode.grammar);
   insert.Bind(episode.ticks_per_second).Bind(episode.engine).Bind(episode.seed);
   insert.Bind("prehend " PREHEND_VERSION)
       .Bind(episode.program_hash)

@@ -33,6 +33,7 @@ struct RecordRequest {
   std::vector<std::string> files;  ///< all that LoadRun() tried to read
   std::string recorded_on;         ///< YYYY-MM-DD
   std::string program_hash;        ///< ProgramHash()
+  std::string uuid = {};           ///< of the episode; "": a new one
 };
 
 class EpisodeRecorder {
@@ -113,6 +114,7 @@ struct NewEpisode {
   std::string engine;
   std::int64_t seed = 0;
   std::string program_hash, recorded_on;
+  std::string uuid = {};  ///< "": a new one
 };
 /// Its row, with the status `recording`.
 std::int64_t WriteEpisode(const Database& database, std::int64_t task, const NewEpisode& episode);

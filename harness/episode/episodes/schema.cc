@@ -85,6 +85,18 @@ CREATE VIEW events_flat AS
   FROM event JOIN episode ON episode.id = event.episode JOIN task ON task.id = episode.task;
 )";
 
+}  // namespace
+
+const char* const kPlanTables = R"(CREATE TABLE IF NOT EXISTS plan(
+  id INTEGER PRIMARY KEY, what TEXT NOT NULL, uuid TEXT NOT NULL, part INTEGER NOT NULL,
+  parts INTEGER NOT NULL);
+CREATE TABLE IF NOT EXISTS plan_owed(
+  plan INTEGER NOT NULL REFERENCES plan, position INTEGER NOT NULL, part INTEGER NOT NULL,
+  name TEXT NOT NULL, uuid TEXT NOT NULL, PRIMARY KEY(plan, position)) WITHOUT ROWID;
+)";
+
+namespace {
+
 std::string AsUuid(std::uint64_t high, std::uint64_t low, unsigned version) {
   high = (high & ~std::uint64_t{0xf000}) | (std::uint64_t{version} << 12);
   low = (low & ~(std::uint64_t{3} << 62)) | (std::uint64_t{1} << 63);
@@ -142,7 +154,12 @@ bool IsAsMade(const Database& database) {
   Statement rows =
       database.Prepare("SELECT sql FROM sqlite_master WHERE sql IS NOT NULL ORDER BY rowid");
   while (rows.Step()) made += rows.Text(0) + ";\n";
-  return made == kTables;
+  if (made == kTables) return true;
+  std::string with_plans = kPlanTables;  // SQLite keeps the text without these words
+  const std::string if_new = "IF NOT EXISTS ";
+  for (std::size_t at = 0; (at = with_plans.find(if_new)) != std::string::npos;)
+    with_plans.erase(at, if_new.size());
+  return made == kTables + with_plans;
 }
 
 void RefuseOthers(const Database& database) {

@@ -12,6 +12,10 @@ namespace prehend::episode {
 
 inline constexpr std::int64_t kSchemaVersion = 1;  ///< of the format
 
+/// Of files that are parts of something larger (harness/episode/episodes/plan.h); made when they
+/// are needed.
+extern const char* const kPlanTables;
+
 /// Whether a file is meant to be an episode file: it is an SQLite database, or does not exist yet
 /// and ends with `.episodes`.
 bool IsEpisodeFile(const std::string& path);

@@ -184,7 +184,12 @@ Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root
                               "outcomes: {lifted: [{entity: milk, above_m: 0.9}]}")});
   }
   std::vector<WorkerJob> jobs;
-  for (int trial = 1; trial <= settings.count; ++trial) {
+  TrialReport report;
+  for (int trial = settings.part; trial <= settings.count; trial += settings.parts) {
+    const auto known = settings.known.find(trial);
+    report.results.push_back(known == settings.known.end() ? TrialResult{trial, {}, {}, {}}
+                                                           : known->second);
+    if (known != settings.known.end()) continue;
     jobs.push_back([&, trial]() -> std::string {
       const RunRequest varied = WithDraws(request, *nominal, trial);
       const auto loaded = LoadRun(varied, root);
@@ -200,11 +205,11 @@ Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root
                                     [&](std::size_t, const WorkerResult&) {
                                       if (progress) progress(++done);
                                     });
-  TrialReport report;
   for (const scenario::Outcome& outcome : scenario.outcomes)
     report.outcomes.push_back(outcome.name);
-  for (std::size_t i = 0; i < workers.size(); ++i)
-    report.results.push_back(FromWorker(static_cast<int>(i) + 1, workers[i]));
+  auto worker = workers.begin();
+  for (TrialResult& result : report.results)
+    if (result.outcome.empty()) result = FromWorker(result.trial, *worker++);
   return report;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -58,17 +59,20 @@ struct TrialResult {
 
 struct TrialSettings {
   int count = 1;
-  int jobs = 1;  ///< processes at a time
+  int part = 1, parts = 1;  ///< only trial part, part + parts, ..
+  int jobs = 1;             ///< processes at a time
   /// Plays a trial in a process of its own, to do more than to classify it. Empty: physics only.
   std::function<TrialResult(int trial, const RunRequest& varied)> play = {};
+  std::map<int, TrialResult> known = {};  ///< these are not played
 };
 
 struct TrialReport {
   std::vector<std::string> outcomes;  ///< of the scenario; the first is the intended one
-  std::vector<TrialResult> results;   ///< trial 1, 2, ...
+  std::vector<TrialResult> results;   ///< trial 1, 2, ...; of a part, its own
 };
 
-/// Runs the trials 1 .. count of a scenario. A scenario without outcomes is an error.
+/// Runs the trials 1 .. count of a scenario, or a part of them. A scenario without outcomes is an
+/// error.
 Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
                               const TrialSettings& settings,
                               const std::function<void(int done)>& progress = {});

@@ -32,8 +32,10 @@ struct CheckRequest {
   bool leave_nothing_behind = false;  ///< no pending golden, no trace; only the verdict
   bool in_project = true;             ///< below scenarios/, so that it may have a golden
   std::string record_file;            ///< an episode file that gets the run; or empty
-  std::string today;                  ///< YYYY-MM-DD, for that file
-  std::string program;                ///< ProgramHash(), to find the cause of differences
+  std::string record_uuid;            ///< of the episode in it; "": a new one
+  bool is_own_record = false;  ///< recorded by a check that was stopped: judged as if it was played
+  std::string today;           ///< YYYY-MM-DD, for that file
+  std::string program;         ///< ProgramHash(), to find the cause of differences
   ProgressCounters::Tick* last_tick =
       nullptr;  ///< gets the tick that the run has reached; may be null
 

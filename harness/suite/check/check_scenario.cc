@@ -115,7 +115,7 @@ Findings GoldenAndTruth(CheckedEpisode& checked) {
 
 /// A planar scenario has the same events in both engines.
 Findings OtherEngine(CheckedEpisode& checked) {
-  if (!checked.request.IsPlayed()) return {};
+  if (!checked.request.IsPlayed() && !checked.request.is_own_record) return {};
   const CheckedRun& run = checked.run;
   const scenario::Scenario& scenario = run.loaded.scenario;
   const auto compared = CompareEngines(scenario, run.loaded.program, run.result.timeline);
@@ -271,7 +271,7 @@ void Play(const std::vector<std::string>& files, CheckedEpisode& checked) {
   std::optional<episode::EpisodeRecorder> recorder;
   if (!request.record_file.empty())
     recorder.emplace(episode::RecordRequest{request.record_file, request.root, request.Run(), files,
-                                            request.today, request.program},
+                                            request.today, request.program, request.record_uuid},
                      loaded.scenario);
   episode::ScenarioRun playing(loaded.scenario, loaded.program, {.record = true});
   while (playing.Step()) {

@@ -66,8 +66,10 @@ std::string LastPasses::Write(const LastPass& record) const {
   return WriteTextFile(folder_ / (record.verdict.scenario + ".json"), AsText(json));
 }
 
-LastPasses::Costs LastPasses::ReadCosts() const {
-  const RecordJson json = ReadJson(folder_ / "costs.json");
+LastPasses::Costs LastPasses::ReadCosts() const { return ReadCostsOf(folder_ / "costs.json"); }
+
+LastPasses::Costs LastPasses::ReadCostsOf(const std::filesystem::path& file) {
+  const RecordJson json = ReadJson(file);
   Costs costs;
   if (!json.is_object()) return costs;
   for (const auto& [scenario, seconds] : json.items()) {

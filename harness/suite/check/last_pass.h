@@ -50,6 +50,7 @@ class LastPasses {
 
   using Costs = std::map<std::string, double>;  ///< id -> seconds
   Costs ReadCosts() const;
+  static Costs ReadCostsOf(const std::filesystem::path& file);  ///< of any such file
   std::string WriteCosts(const Costs& costs) const;
 
  private:

@@ -125,6 +125,8 @@ class Suite {
         .leave_nothing_behind = Changed() || turn.repetition > 0 || !IsRemembered(turn.scenario),
         .in_project = InProject(turn.scenario),
         .record_file = turn.repetition == 0 ? request_.record_file : "",
+        .record_uuid = request_.plan.UuidOfEpisode(Id(turn.scenario)),
+        .is_own_record = scenarios_[turn.scenario].path == request_.record_file,
         .today = request_.today,
         .program = program_};
   }

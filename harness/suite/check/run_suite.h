@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harness/base/process/worker_pool.h"
+#include "harness/episode/episodes/plan.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/suite/check/check_scenario.h"
 #include "harness/suite/check/select_scenarios.h"
@@ -25,6 +26,7 @@ struct SuiteRequest {
   std::string root;
   std::string report_folder;
   std::string record_file;  ///< an episode file that gets the first run of each; or empty
+  episode::Plan plan = {};  ///< which that file pays; or without a UUID
   std::string today;        ///< YYYY-MM-DD, for that file
   bool pictures = true;
   bool all_pictures = true;  ///< also of what passed and is compared with no golden picture

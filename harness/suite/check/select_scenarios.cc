@@ -12,6 +12,7 @@
 
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/scenario/read/read_scenario.h"
+#include "harness/suite/check/last_pass.h"
 
 namespace prehend::suite {
 namespace {
@@ -169,18 +170,51 @@ std::optional<Shard> ParseShard(std::string_view text) {
   const auto [slash, bad_number] = std::from_chars(text.data(), end, shard.number);
   if (bad_number != std::errc() || slash == end || *slash != '/') return std::nullopt;
   const auto [rest, bad_count] = std::from_chars(slash + 1, end, shard.count);
-  if (bad_count != std::errc() || rest != end) return std::nullopt;
+  if (bad_count != std::errc() || (rest != end && (*rest != ':' || rest + 1 == end)))
+    return std::nullopt;
+  if (rest != end) shard.costs.assign(rest + 1, end);
   if (shard.count > kMaxShards || shard.number < 1 || shard.number > shard.count)
     return std::nullopt;
   return shard;
 }
 
-void KeepShard(const Shard& shard, ScenarioSelection& selection) {
-  std::vector<episode::ScenarioFile> kept;
-  for (std::size_t i = 0; i < selection.scenarios.size(); ++i) {
-    if (static_cast<int>(i % shard.count) == shard.number - 1)
-      kept.push_back(selection.scenarios[i]);
+std::string ShardProblem(const std::string& text) {
+  return ParseShard(text) ? ""
+                          : "found '" + text + "', wanted I/N, like 2/3 for the second of three";
+}
+
+Result<std::vector<int>> PartsOf(const Shard& shard, const std::vector<std::string>& names) {
+  std::vector<int> parts(names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) parts[i] = static_cast<int>(i) % shard.count + 1;
+  if (shard.costs.empty()) return parts;
+  const LastPasses::Costs known = LastPasses::ReadCostsOf(shard.costs);
+  double sum = 0;
+  for (const auto& [name, cost] : known) sum += cost;
+  if (!(sum > 0))
+    return tl::unexpected(grammar::Diagnostics{
+        {.file = shard.costs,
+         .message = "no file of costs: wanted a JSON object, {\"SKILL/NAME\": SECONDS, ..}",
+         .hint = "'prehend check' writes build/check/costs.json; copy that"}});
+  std::vector<std::pair<double, std::size_t>> costs;  // of them the dearest first, then by place
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto cost = known.find(names[i]);
+    costs.emplace_back(
+        -(cost == known.end() ? sum / static_cast<double>(known.size()) : cost->second), i);
   }
+  std::ranges::sort(costs);
+  std::vector<double> loads(static_cast<std::size_t>(shard.count));
+  for (const auto& [cost, i] : costs) {
+    const auto least = std::ranges::min_element(loads);
+    parts[i] = static_cast<int>(least - loads.begin()) + 1;
+    *least -= cost;
+  }
+  return parts;
+}
+
+void KeepShard(const Shard& shard, const std::vector<int>& parts, ScenarioSelection& selection) {
+  std::vector<episode::ScenarioFile> kept;
+  for (std::size_t i = 0; i < selection.scenarios.size(); ++i)
+    if (parts[i] == shard.number) kept.push_back(selection.scenarios[i]);
   selection.scenarios = std::move(kept);
   if (shard.number != 1) selection.orphans.clear();
 }

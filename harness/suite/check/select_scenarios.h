@@ -37,12 +37,20 @@ tl::expected<ScenarioSelection, NoSelection> SelectScenarios(
 struct Shard {
   int number = 1;  ///< from 1 to count
   int count = 1;
+  std::string costs = {};  ///< a file of LastPasses::Costs; "": each costs the same
 };
 
-/// Reads "2/3"; nothing for any other text.
+/// Reads "2/3" and "2/3:costs.json"; nothing for any other text.
 std::optional<Shard> ParseShard(std::string_view text);
+/// What is wrong with it, or "".
+std::string ShardProblem(const std::string& text);
 
-/// Every count-th scenario. Orphans are of the first shard.
-void KeepShard(const Shard& shard, ScenarioSelection& selection);
+/// The part, 1 to count, of each: in turn, or, where their costs are known, the most expensive
+/// first and each to the part that has the least so far; one without a cost has the mean of the
+/// others. The same on every machine. An error if the file of costs cannot be read.
+Result<std::vector<int>> PartsOf(const Shard& shard, const std::vector<std::string>& names);
+
+/// Those whose part it is. Orphans are of the first shard.
+void KeepShard(const Shard& shard, const std::vector<int>& parts, ScenarioSelection& selection);
 
 }  // namespace prehend::suite

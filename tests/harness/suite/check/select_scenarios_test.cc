@@ -91,8 +91,9 @@ TEST(Shard, IsReadStrictly) {
   ASSERT_TRUE(shard);
   EXPECT_EQ(shard->number, 2);
   EXPECT_EQ(shard->count, 3);
-  for (const char* bad : {"", "1", "1/", "/2", "0/2", "3/2", "1/0", "-1/2", "1/2/3", "a/b", "1 /2",
-                          "1/99999999999", "1/100000"}) {
+  EXPECT_EQ(ParseShard("3/16:costs.json")->costs, "costs.json");
+  for (const char* bad : {"", "1", "1/2:", "1/", "/2", "0/2", "3/2", "1/0", "-1/2", "1/2/3", "a/b",
+                          "1 /2", "1/99999999999", "1/100000"}) {
     EXPECT_FALSE(ParseShard(bad)) << bad;
   }
 }
@@ -103,11 +104,24 @@ TEST(Shard, EveryScenarioIsInExactlyOne) {
     ScenarioSelection selection;
     for (const char* name : {"a", "b", "c", "d"}) selection.scenarios.push_back({"s", name, name});
     selection.orphans = {{"s/gone", {}}};
-    KeepShard({number, 3}, selection);
+    KeepShard({number, 3}, *PartsOf({number, 3}, {"s/a", "s/b", "s/c", "s/d"}), selection);
     EXPECT_EQ(selection.orphans.size(), number == 1 ? 1u : 0u);
     for (const episode::ScenarioFile& file : selection.scenarios) kept.push_back(file.name);
   }
   EXPECT_EQ(kept, (std::vector<std::string>{"a", "d", "b", "c"}));
+}
+
+TEST(Shard, WithCostsEachGoesWhereLeastIs) {
+  const fs::path file = fs::temp_directory_path() / ("prehend_costs_" + std::to_string(getpid()));
+  WriteTextFile(file, R"({"a": 1, "b": 5, "c": 3, "d": 3})");
+  // The dearest first: b to 1, c to 2, d to 2 (3 is less than 5), then e, of the mean, to 1 (5 is
+  // less than 6), then a to 2.
+  EXPECT_EQ(*PartsOf({1, 2, file}, {"a", "b", "c", "d", "e"}), (std::vector<int>{2, 1, 2, 2, 1}));
+  WriteTextFile(file, "[]");
+  const auto none = PartsOf({1, 2, file}, {"a"});
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().front().message.find("no file of costs"), std::string::npos);
+  fs::remove(file);
 }
 
 }  // namespace

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""parts.py PROGRAM: parts of a suite and of trials that are stopped, merged, lost, and there twice (docs/many-machines.md)."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import time
+import xml.etree.ElementTree
+
+PROGRAM, SOURCE = sys.argv[1], pathlib.Path(__file__).resolve().parents[2]
+WHICH = "reach/*"
+
+
+def run(*words, code=0):
+    said = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, cwd=SOURCE)
+    assert said.returncode == code, (words, said.returncode, said.stdout[-800:], said.stderr[-800:])
+    return said
+
+
+def checking(folder, part, *more):
+    return ["check", WHICH, "--no-pictures", "--jobs", "2", "--report", folder / f"page-{part}", "--record", folder / f"part-{part}.episodes", *more]
+
+
+def episodes(file):
+    with sqlite3.connect(f"file:{file}?mode=ro", uri=True) as database:
+        return [row[0] for row in database.execute("SELECT scenario FROM episode JOIN task ON task.id = task WHERE status <> 'recording'")]
+
+
+def killed(words, file):
+    """Kills it as soon as one episode is complete. Returns how many were."""
+    process = subprocess.Popen([PROGRAM, *map(str, words)], cwd=SOURCE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    while process.poll() is None:
+        try:
+            if len(episodes(file)) > 0:
+                break
+        except sqlite3.Error:
+            pass
+        time.sleep(0.005)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    time.sleep(0.2)  # its workers die with it
+    return len(episodes(file))
+
+
+def verdicts(file, folder):
+    junit = folder / "verdicts.xml"
+    run("check", file, "--no-pictures", "--report", folder / "page", "--junit", junit)
+    return sorted((case.get("classname"), case.get("name"), [one.tag for one in case]) for case in xml.etree.ElementTree.parse(junit).iter("testcase"))
+
+
+def suite(folder):
+    part = [folder / f"part-{i}.episodes" for i in range(4)]
+    run(*checking(folder, 1, "--shard", "1/3"))
+    run(*checking(folder, 3, "--shard", "3/3"))
+    run(*checking(folder, 2, "--shard", "2/3"))
+    unbroken = part[2].read_bytes()
+    part[2].unlink()
+    kept = killed(checking(folder, 2, "--shard", "2/3"), part[2])
+    owed = len(list((SOURCE / "scenarios/reach").glob("*.yaml"))) // 3
+    missing = run("report", part[1], part[2], part[3], "-o", folder / "page.html", code=3).stderr if kept < owed else ""
+    assert "part 2 of 3 lacks" in missing or kept >= owed, missing
+    again = run(*checking(folder, 2, "--shard", "2/3", "--json"))
+    assert f"it has {kept} of " in again.stderr, again.stderr
+    assert part[2].read_bytes() == unbroken, "the bytes of an unbroken run"
+    assert [one["verdict"] for one in json.loads(again.stdout)["scenarios"]] == ["passed"] * len(episodes(part[2]))
+
+    run(*checking(folder, 0))  # all, in one run
+    run("episode", "merge", part[0], "-o", folder / "one.episodes")
+    all_ = folder / "all.episodes"
+    run("episode", "merge", *part[1:], "-o", all_, "--expect", 3)
+    assert all_.read_bytes() == (folder / "one.episodes").read_bytes()
+    assert len(set(episodes(all_))) == len(episodes(all_)) == len(list((SOURCE / "scenarios/reach").glob("*.yaml")))
+    assert verdicts(all_, folder) == verdicts(part[0], folder)
+    assert run("score", all_, "--json").stdout == run("score", folder / "one.episodes", "--json").stdout
+
+    lost = f"check '{WHICH}': part 2 of 3 is missing, with {len(episodes(part[2]))} episodes: " + ", ".join(sorted(episodes(part[2])))
+    for words in (["report", "-o", folder / "page.html"], ["check", "--no-pictures", "--report", folder / "page"], ["score"], ["episode", "query", "--event", "reaching"],
+                  ["episode", "merge", "-o", folder / "two.episodes"]):
+        said = run(*words, part[1], part[3], code=3)
+        assert lost in said.stderr and said.stdout, said.stderr
+    assert lost in run("report", folder / "two.episodes", "-o", folder / "page.html", code=3).stderr
+    assert "--expect: found 2 files, wanted 3" in run("episode", "merge", part[1], part[3], "-o", folder / "two.episodes", "--expect", 3, code=3).stderr
+    run("episode", "query", part[1], part[3], "--event", "reaching", "--episode", "reach/*")  # which selects some
+    # A part twice, as after a task that was queued again into another file.
+    shutil.copyfile(part[1], folder / "again.episodes")
+    said = run("episode", "merge", *part[1:], folder / "again.episodes", "-o", folder / "twice.episodes")
+    assert f"{len(episodes(part[1]))} were there twice" in said.stdout
+    assert (folder / "twice.episodes").read_bytes() == all_.read_bytes()
+    not_the_same(part, folder)
+
+
+def not_the_same(part, folder):
+    import many_episodes  # needs python3-xxhash
+    other = folder / "other.episodes"
+    shutil.copyfile(part[1], other)
+    with sqlite3.connect(other) as database:
+        database.execute("UPDATE event SET end_tick = end_tick + 1 WHERE id = 1")
+    database.close()
+    run("episode", "merge", *part[1:], other, "-o", folder / "no.episodes", code=2)
+    many_episodes.sum_pages(other)
+    said = run("episode", "merge", *part[1:], other, "-o", folder / "no.episodes", code=2)
+    assert "is not the same" in said.stderr and "part-1.episodes" in said.stderr and "other.episodes" in said.stderr, said.stderr
+    assert not list(folder.glob("no.episodes*"))
+
+
+def trials(folder):
+    words = lambda file, *more: ["run", "trials/gripper_places_a_box", "--trials", "7", "--json", "--jobs", "2", "--record", folder / file, *more]
+    whole = json.loads(run(*words("whole.episodes")).stdout)
+    parts = [folder / f"trials-{i}.episodes" for i in (1, 2)]
+    for i, file in enumerate(parts, 1):
+        killed(words(file.name, "--shard", f"{i}/2"), file)
+        said = json.loads(run(*words(file.name, "--shard", f"{i}/2")).stdout)
+        assert said["results"] == whole["results"][i - 1::2], said
+    run("episode", "merge", folder / "whole.episodes", "-o", folder / "one.episodes")
+    run("episode", "merge", *parts, "-o", folder / "all.episodes")
+    assert (folder / "one.episodes").read_bytes() == (folder / "all.episodes").read_bytes()
+    missing = run("episode", "merge", parts[1], "-o", folder / "half.episodes", code=3).stderr
+    assert "part 1 of 2 is missing, with 4 episodes: trials/gripper_places_a_box, trial 1, " in missing, missing
+
+
+def bad_use(folder):
+    assert "wanted a file NAME.episodes" in run("episode", "merge", folder / "part-1.episodes", "-o", folder / "x.db", code=2).stderr
+    assert "no such file" in run("episode", "merge", folder / "none.episodes", "-o", folder / "x.episodes", code=2).stderr
+    assert "it needs --trials" in run("run", "trials/gripper_places_a_box", "--shard", "1/2", code=2).stderr
+    assert "wanted I/N" in run("check", "--shard", "3/2", code=2).stderr
+    assert "no file of costs" in run("check", WHICH, "--shard", "1/2:" + str(folder / "none.json"), code=2).stderr
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as path:
+        suite(pathlib.Path(path))
+        trials(pathlib.Path(path))
+        bad_use(pathlib.Path(path))
