@@ -208,20 +208,27 @@ def labels_of(folder, role):
     return of
 
 
+def episodes_of(folder, role=""):
+    """Name and episode of a set, without attempts that were drawn again."""
+    import prehend
+    files = json.loads((pathlib.Path(folder) / "files.json").read_text(encoding="utf-8"))
+    for file in sorted({one for one in files.values() if role in one}):
+        for episode in prehend.open(str(pathlib.Path(folder) / file)):
+            name = episode.name.rsplit("/", 1)[-1]
+            if files.get(name) == file:
+                yield name, episode
+
+
 def means_of(spans):
     return {event: tuple(np.mean(some, axis=0)) for event, some in spans.items() if some}
 
 
 def learn(folder):
     """Rows and truths of windows, and what the cheats remember; of the train split, and nothing else."""
-    import prehend
     labels = labels_of(folder, "train")
     rows, phases, helds = [], [], []
     schedule, of_thing, of_episode = collections.defaultdict(list), collections.defaultdict(lambda: collections.defaultdict(list)), {}
-    for episode in (one for file in sorted(pathlib.Path(folder).glob("*train*.episodes")) for one in prehend.open(str(file))):
-        name = episode.name.rsplit("/", 1)[-1]
-        if name not in labels:
-            continue  # an attempt that was drawn again
+    for name, episode in episodes_of(folder, "train"):
         take = recorded(episode)
         for hand, thing in take.pairs():
             phase, held = np.zeros(len(take.t), int), np.zeros(len(take.t), bool)
@@ -260,7 +267,7 @@ def train(folder, output):
         return ExtraTreesClassifier(60, min_samples_leaf=3, max_depth=24, random_state=1, n_jobs=1)
 
     def convolution():  # a window that is moved over time: one convolution, then layers of width one
-        return make_pipeline(StandardScaler(), MLPClassifier((64, 32), early_stopping=True, max_iter=40, random_state=1))
+        return make_pipeline(StandardScaler(), MLPClassifier((64, 32), early_stopping=True, max_iter=150, random_state=1))
     model = dict(memory)
     pathlib.Path(output).mkdir(parents=True, exist_ok=True)
     for kind, make in (("trees", trees), ("convolution", convolution)):

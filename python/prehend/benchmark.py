@@ -117,13 +117,34 @@ def write_truth(folder, labels, names, events):
         pathlib.Path(folder, f"{name}.csv").write_text("\n".join(["begin_s,end_s,label", *lines]) + "\n", encoding="utf-8")
 
 
-def score(files, which, truth, source, options):
+def as_files(files, name, values, events):
+    """What a grammar finds, as somebody else's files: for one that has not all of the events."""
+    done = subprocess.run([program(), "episode", "resegment", *files, "--grammar", name, *values, "--json"], capture_output=True, text=True, check=False)
+    if not done.stdout.startswith(("[", "{")):
+        fail(EpisodeError, f"'{name}' was not scored:\n{done.stderr.strip()[-2000:]}")
+    told = json.loads(done.stdout)
+    folder = os.path.join(os.path.dirname(os.path.dirname(files[0])), f"found_by_{name}")
+    os.makedirs(folder, exist_ok=True)
+    for file, one in zip(files, told if isinstance(told, list) else [told], strict=True):
+        lines = [event for event in one["events"] if event["event"] in events]
+        pathlib.Path(folder, pathlib.Path(file).stem + ".jsonl").write_text(
+            "".join(json.dumps(line) + "\n" for line in [{"recogniser": 1}, *lines]), encoding="utf-8")
+    return folder
+
+
+def score(files, truth, source, options, events):
     """The program's own scores of one source, and the processor time that they took."""
     kind, what = source
-    command = ["score", *files, "--truth", truth, f"--{kind}", what, "--json", "--verbose",
-               *(["--episode", which] if which else []), *(["--pace", "online"] if options.online and kind == "recogniser" else [])]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run([program(), *command], capture_output=True, text=True, check=False)
+    name, *values = what.split() if kind == "grammar" else [what]
+    values = [word for value in values for word in ("--set", value)]
+    online = ["--pace", "online"] if options.online and kind == "recogniser" else []
+
+    def scored(*whose):
+        return subprocess.run([program(), "score", *files, "--truth", truth, *whose, "--json", "--verbose"], capture_output=True, text=True, check=False)
+    done = scored(f"--{kind}", name, *values, *online)
+    if kind == "grammar" and "wanted an event of the grammar" in done.stderr:
+        done = scored("--found", as_files(files, name, values, events))
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if not done.stdout.startswith("{"):
         fail(EpisodeError, f"'{what}' was not scored:\n{done.stderr.strip()[-2000:]}")
@@ -190,11 +211,11 @@ def compare(options):
     with tempfile.TemporaryDirectory(prefix="prehend_") as scratch:
         truth = os.path.join(scratch, "truth")
         write_truth(truth, labels, names, events)
-        takes = robustness.recordings(folder, files, names, os.path.join(scratch, "plain"), options)
+        takes = robustness.recordings(folder, files, names, os.path.join(scratch, "plain"))
         changed = robustness.changed(takes, options.robustness, scratch)
         first = None
         for source in options.sources:
-            result, cpu_s = score(takes, None, truth, source, options)
+            result, cpu_s = score(takes, truth, source, options, events)
             counts = Counts(result["rows"], events, names)
             first = first or counts
             per_event = counts.right[:, :, 2].sum(0) * 2 / np.maximum(1, (counts.true + counts.found).sum(0))
@@ -204,7 +225,7 @@ def compare(options):
             row["robustness"] = {}
             for change, some in changed.items():
                 of = [short(pathlib.Path(one).stem) for one in some]
-                again = Counts(score(some, None, truth, source, options)[0]["rows"], events, of)
+                again = Counts(score(some, truth, source, options, events)[0]["rows"], events, of)
                 row["robustness"][change] = round(float(again.f1(np.ones((1, len(of))), 2, True)[0]), 4)
             rows.append(row)
             everything[source[1]] = [{"episode": name, "true": int(counts.true[i].sum()), "found": int(counts.found[i].sum()),
@@ -277,7 +298,8 @@ class _Source(argparse.Action):
 def main(arguments):
     parser = argparse.ArgumentParser(prog="python3 -m prehend benchmark", description=__doc__)
     parser.add_argument("set", help="the folder of 'dataset make'")
-    parser.add_argument("--grammar", action=_Source, dest="sources", metavar="NAME|FILE", help="score a grammar; may be repeated")
+    parser.add_argument("--grammar", action=_Source, dest="sources", metavar="'NAME|FILE [P=V ..]'",
+                        help="score a grammar, with these values of parameters; may be repeated")
     parser.add_argument("--recogniser", action=_Source, dest="sources", metavar="CMD", help="score a program (docs/recognisers.md)")
     parser.add_argument("--found", action=_Source, dest="sources", metavar="FILE|FOLDER", help="score files of events")
     parser.add_argument("--split", choices=["test", "dev", "train"], default="test")

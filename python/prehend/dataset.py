@@ -81,7 +81,7 @@ class Shard:
 
     def __init__(self, recipe, recipe_hash, folder):
         self.recipe, self.hash, self.folder = recipe, recipe_hash, pathlib.Path(folder)
-        self.redrawn, self.rows = collections.Counter(), []
+        self.redrawn, self.rows, self.batches = collections.Counter(), [], 0
 
     def write(self, index, attempt):
         """The next scenario of an index that can be written, with the number of the attempt."""
@@ -95,15 +95,14 @@ class Shard:
 
     def play(self, indices, jobs):
         waiting = {index: 0 for index in indices}
-        for turn in range(ATTEMPTS):
+        while waiting:
             drawn = {index: self.write(index, attempt) for index, attempt in waiting.items()}
             waiting = {}
             for role in ROLES:
                 of_role = [(index, one) for index, one in drawn.items() if recipes.role(self.recipe, self.hash, index, one[2])[0] == role]
                 for at in range(0, len(of_role), BATCH):
-                    waiting |= self.batch(of_role[at:at + BATCH], role, f"{role}.episodes" if turn == 0 else f"{role}.{turn}.episodes", jobs)
-            if not waiting:
-                return
+                    self.batches += 1
+                    waiting |= self.batch(of_role[at:at + BATCH], role, f"{role}_{self.batches:03d}.episodes", jobs)
 
     def batch(self, drawn, role, file, jobs):
         """Plays them; returns those that have to be drawn again, with the next attempt."""
@@ -256,12 +255,12 @@ def write_set(output, about, rows, redrawn):
 
 def export(options):
     """Other forms of a set: those of the program, and HDF5 as simulators lay it out."""
-    files = sorted(pathlib.Path(options.set).glob("*.episodes"))
     if options.to != "hdf5":
+        files = sorted(pathlib.Path(options.set).glob("*.episodes"))
         done = subprocess.run([program(), "episode", "export", *map(str, files), "--to", options.to, "-o", options.output], check=False)
         return done.returncode
     from .datasheet import write_hdf5
-    return write_hdf5(files, options.output)
+    return write_hdf5(options.set, options.output)
 
 
 def shard_text(text):

@@ -110,21 +110,21 @@ def _plots(folder, rows, labels, kinds):
     pyplot.close(figure)
 
 
-def write_hdf5(files, path):
+def write_hdf5(folder, path):
     """data/demo_N with actions and obs, as robomimic, robosuite and Isaac Lab lay out demonstrations; labels under `labels`."""
     import h5py
     import numpy as np
 
-    import prehend
+    from .baselines import episodes_of
     with h5py.File(path, "w") as out:
         data = out.create_group("data")
         total = 0
-        for number, episode in enumerate(one for file in files for one in prehend.open(str(file))):
+        for number, (name, episode) in enumerate(episodes_of(folder)):
             poses = episode.poses()
             names = list(episode.entities.index)
             frames = len(poses) // len(names)
             demo = data.create_group(f"demo_{number}")
-            demo.attrs.update(num_samples=frames, name=episode.name)
+            demo.attrs.update(num_samples=frames, name=name)
             obs = demo.create_group("obs")
             hands = [name for name in names if name in ("right_hand", "left_hand", "gripper")]
             for name in names:

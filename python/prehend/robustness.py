@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings of a split, and the same ones with noise, at a lower rate, turned and mirrored: labels stay what they are."""
-import collections
 import json
 import math
 import os
@@ -13,14 +12,17 @@ from .episodes import program
 TURN_DEG, NOISE_M, KEEP_HZ = 73, 0.005, 20
 
 
-def recordings(folder, files, names, out, _):
+def recordings(folder, files, names, out):
     """Each episode as a recording, OUT/NAME.jsonl: what is sensed, and nothing of the scenario."""
-    of_file = collections.defaultdict(list)
-    for name in names:
-        of_file[files[name]].append(name)
-    for file, some in of_file.items():
-        subprocess.run([program(), "episode", "export", str(folder / file), "--to", "jsonl", "-o", out], check=True, capture_output=True)
-    return [os.path.join(out, f"{name}.jsonl") for name in names]
+    for file in sorted({files[name] for name in names}):
+        subprocess.run([program(), "episode", "export", str(folder / file), "--to", "jsonl", "-o", os.path.join(out, file)], check=True,
+                       capture_output=True)
+    takes = [pathlib.Path(out, files[name], f"{name}.jsonl") for name in names]
+    for take in takes:  # all are judged by the events of one grammar
+        head, _, rest = take.read_text(encoding="utf-8").partition("\n")
+        if '"grammar":"pick_and_place"' not in head:
+            take.write_text(json.dumps({**json.loads(head), "grammar": "pick_and_place"}) + "\n" + rest, encoding="utf-8")
+    return [str(take) for take in takes]
 
 
 def _points(line, point, turn):
