@@ -15,6 +15,7 @@
 
 #include "grammar/contents.h"
 #include "grammar/describe.h"
+#include "grammar/language/parser.h"
 #include "harness/library/library/frames.h"
 #include "harness/library/library/study.h"
 
@@ -231,6 +232,90 @@ py::list SignaturesOf(const Grammar& grammar) {
   return signatures;
 }
 
+using At = std::pair<int, int>;
+At ToPython(grammar::Place place) { return {place.line, place.column}; }
+
+/// (kind, text, place, begin, end, args)
+py::tuple ToPython(const grammar::ast::Expr& expr) {
+  static constexpr std::array kKinds = {"quantity", "name",  "text", "call",  "unary",
+                                        "binary",   "chain", "edge", "anchor"};
+  py::list args;
+  for (const grammar::ast::Expr& arg : expr.args) args.append(ToPython(arg));
+  return py::make_tuple(kKinds[static_cast<std::size_t>(expr.kind)], expr.text,
+                        ToPython(expr.place), ToPython(expr.begin), ToPython(expr.end), args);
+}
+
+/// What stands behind each word of a definition, in any order: (word, expression).
+py::list WordsOf(const grammar::ast::Definition& d) {
+  using Form = grammar::ast::Definition::Form;
+  py::list words;
+  const auto add = [&](const char* word, const auto& expr) {
+    if constexpr (requires { expr.has_value(); }) {
+      if (expr) words.append(py::make_tuple(word, ToPython(*expr)));
+    } else {
+      words.append(py::make_tuple(word, ToPython(expr)));
+    }
+  };
+  if (d.form == Form::kWhile) add("while", d.first);
+  if (d.form == Form::kFromTo) add("from", d.first);
+  if (d.form == Form::kFromTo) add(d.absence ? "without" : "to", d.second);
+  if (d.form == Form::kUntilSince) add("until", d.first);
+  if (d.form == Form::kUntilSince) add("since", d.second);
+  if (d.form == Form::kUntilSince) add("at most .. back", d.at_most_back);
+  if (d.form == Form::kRestOf) add("rest of", d.first);
+  if (d.form == Form::kRepeat) add("at least", d.at_least);
+  if (d.approach) {
+    add("approaching", d.approach->signal);
+    add("receding at most", d.approach->slack);
+    for (const auto* one :
+         {&d.approach->over, &d.approach->still, &d.approach->still_over, &d.approach->onset})
+      add("approaching", *one);
+    for (const auto* one : {&d.approach->motion, &d.approach->speed, &d.approach->idle})
+      add("slower than", *one);
+  }
+  for (const grammar::ast::Expr& one : d.outside) add("outside", one);
+  for (const grammar::ast::Expr& one : d.repeated) add("repeat", one);
+  for (const grammar::ast::Part& part : d.parts)
+    for (const grammar::ast::Expr& one : part.calls) add("part", one);
+  for (const grammar::ast::Relation& relation : d.relations)
+    for (const auto& one : relation.alternatives) add("where", one.within);
+  add("until", d.until);
+  add("within", d.within);
+  add("during", d.during);
+  add("gap at most", d.gap);
+  add("bridging", d.bridging);
+  add("lasting", d.lasting);
+  add("lasting .. to", d.lasting_to);
+  add("requires", d.requirement);
+  if (d.confirmed) add("confirmed by", d.confirmed->by);
+  if (d.confirmed) add("confirmed within", d.confirmed->within);
+  for (const grammar::ast::Attribute& one : d.attributes) add("with", one.value);
+  return words;
+}
+
+/// Of a grammar's text: (params, definitions), each (name, place) and (name, place, words, places
+/// of relations); what is named by `define` stands behind "=".
+py::tuple Syntax(const std::string& file, const std::string& text) {
+  grammar::Diagnostics wrong;
+  const grammar::ast::File tree = grammar::Parse({file, text}, wrong);
+  if (!wrong.empty()) throw Error(wrong);
+  py::list params, definitions;
+  for (const grammar::ast::Param& one : tree.params)
+    params.append(py::make_tuple(one.name, ToPython(one.place)));
+  for (const grammar::ast::Define& one : tree.defines) {
+    py::list words;
+    words.append(py::make_tuple("=", ToPython(one.body)));
+    definitions.append(py::make_tuple(one.name, ToPython(one.place), words, py::list()));
+  }
+  for (const grammar::ast::Definition& one : tree.definitions) {
+    py::list relations;
+    for (const grammar::ast::Relation& relation : one.relations)
+      relations.append(ToPython(relation.place));
+    definitions.append(py::make_tuple(one.name, ToPython(one.place), WordsOf(one), relations));
+  }
+  return py::make_tuple(params, definitions);
+}
+
 py::tuple Segment(const Episode& episode, const Grammar* grammar) {
   Segmented segmented;
   {
@@ -264,7 +349,10 @@ PYBIND11_MODULE(_prehend, m) {
   m.attr("__version__") = PREHEND_VERSION;
   py::register_exception_translator(&Translate);
   py::class_<Grammar>(m, "Grammar")
-      .def(py::init<std::string, grammar::Overrides>(), Unlocked())
+      .def(py::init<std::string, grammar::Overrides, std::map<std::string, std::string>>(),
+           py::arg("name_or_path"), py::arg("parameters"),
+           py::arg("instead") = std::map<std::string, std::string>(), Unlocked())
+      .def_property_readonly("files", &Grammar::files)
       .def_property_readonly("name", &Grammar::name)
       .def("parameters", &ParametersOf)
       .def("events", &SignaturesOf)
@@ -310,6 +398,7 @@ PYBIND11_MODULE(_prehend, m) {
       .def("warnings", [](const LiveMonitor& one) { return one.monitor().warnings(); })
       .def("take", &LiveMonitor::Take)
       .def("finish", &LiveMonitor::Finish);
+  m.def("syntax", &Syntax);
   m.def("open", &OpenEpisodes, Unlocked());
   m.def("episode_of", &EpisodeOf);
   m.def("score",

@@ -35,6 +35,7 @@ struct Expr {
   Quantity quantity;
   std::vector<Expr> args;
   int depth = 1;
+  Place begin, end;  ///< of all of it, with the brackets around it; end: behind it
 };
 
 struct Role {

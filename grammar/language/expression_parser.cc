@@ -49,12 +49,17 @@ Expr ExpressionParser::Make(Expr::Kind kind, Place place, std::string text,
   int depth = 1;
   for (const Expr& arg : args) depth = std::max(depth, arg.depth + 1);
   if (depth > kMaxDepth) FailDeep();
+  const bool is_between = kind == Expr::Kind::kBinary || kind == Expr::Kind::kChain ||
+                          kind == Expr::Kind::kEdge || kind == Expr::Kind::kAnchor;
+  const Place begin = is_between ? args.front().begin : place;
   return {.kind = kind,
           .place = place,
           .text = std::move(text),
           .quantity = {},
           .args = std::move(args),
-          .depth = depth};
+          .depth = depth,
+          .begin = begin,
+          .end = End()};
 }
 
 Expr ExpressionParser::ParseChain(std::string_view word, Expr (ExpressionParser::*operand)()) {
@@ -154,6 +159,7 @@ Expr ExpressionParser::ParsePrimary() {
   if (token.kind == Token::Kind::kNumber) {
     Expr expr = Make(Expr::Kind::kQuantity, token.place, token.text, {});
     expr.quantity = ParseSignedQuantity();
+    expr.end = End();
     return expr;
   }
   if (token.kind == Token::Kind::kText)
@@ -161,6 +167,8 @@ Expr ExpressionParser::ParsePrimary() {
   if (Accept("(")) {
     Expr inner = ParseExpr();
     ExpectToClose(token);
+    inner.begin = token.place;
+    inner.end = End();
     return inner;
   }
   if (Accept("any")) return ParseAny(token.place);

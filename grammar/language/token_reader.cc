@@ -64,6 +64,12 @@ bool TokenReader::At(std::string_view text, std::size_t ahead) const {
   return kind != Token::Kind::kEnd && kind != Token::Kind::kText && Peek(ahead).text == text;
 }
 
+Place TokenReader::End() const {
+  const Token& token = tokens_[at_ == 0 ? 0 : at_ - 1];
+  const std::size_t quotes = token.kind == Token::Kind::kText ? 2 : 0;
+  return {token.place.line, token.place.column + static_cast<int>(token.text.size() + quotes)};
+}
+
 Token TokenReader::Take() {
   Token token = Peek();
   SkipOne();

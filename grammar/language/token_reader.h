@@ -23,6 +23,8 @@ class TokenReader {
 
  protected:
   const Token& Peek(std::size_t ahead = 0) const;
+  /// Behind the token that was taken last.
+  Place End() const;
   bool AtEnd() const { return Peek().kind == Token::Kind::kEnd; }
   bool At(std::string_view text, std::size_t ahead = 0) const;
   Token Take();

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -46,8 +47,10 @@ class PREHEND_API Grammar {
  public:
   /// `name_or_path`: of the library or of the project, or a file
   /// ("my/rules.grammar"); several with '+' between them are compiled as one. `parameters`: name ->
-  /// value with unit as in the text, {"reach_radius", "25 cm"}.
-  explicit Grammar(std::string name_or_path, grammar::Overrides parameters = {});
+  /// value with unit as in the text, {"reach_radius", "25 cm"}. `instead`: path -> what is compiled
+  /// in place of the file's text.
+  explicit Grammar(std::string name_or_path, grammar::Overrides parameters = {},
+                   const std::map<std::string, std::string>& instead = {});
   Grammar(const Grammar&);
   ~Grammar();
 
@@ -55,12 +58,15 @@ class PREHEND_API Grammar {
   const std::string& name() const;
   const std::string& name_or_path() const { return name_or_path_; }
   const grammar::Overrides& parameters() const { return parameters_; }
+  /// What it was looked for in; those that exist are its texts, its own first.
+  const std::vector<std::string>& files() const { return files_; }
   /// For grammar::Monitor, grammar::Describe(), grammar::EventSignatures().
   const std::shared_ptr<const grammar::Program>& program() const { return program_; }
 
  private:
   std::string name_or_path_;
   grammar::Overrides parameters_;
+  std::vector<std::string> files_;
   std::shared_ptr<const grammar::Program> program_;
 };
 

@@ -34,9 +34,11 @@ std::string ProjectRoot() {
          "set PREHEND_HOME to the folder with grammar/library, or with a prehend.yaml");
 }
 
-Grammar::Grammar(std::string name_or_path, grammar::Overrides parameters)
+Grammar::Grammar(std::string name_or_path, grammar::Overrides parameters,
+                 const std::map<std::string, std::string>& instead)
     : name_or_path_(std::move(name_or_path)), parameters_(std::move(parameters)) {
-  grammar::CompileResult compiled = episode::LoadGrammar(ProjectRoot(), name_or_path_, parameters_);
+  grammar::CompileResult compiled =
+      episode::LoadGrammar(ProjectRoot(), name_or_path_, parameters_, &files_, instead);
   if (!compiled.program) throw Error(std::move(compiled.diagnostics));
   program_ = std::move(compiled.program);
 }
