@@ -12,6 +12,7 @@ COMMANDS = {  # name: module, whose main(arguments) returns the exit code
     "push": "push",
     "query": "query",
     "mutate": "mutate",
+    "shrink": "shrink",
 }
 
 
@@ -23,7 +24,9 @@ def main(arguments):
         return importlib.import_module("." + COMMANDS[arguments[0]], __package__).main(arguments[1:]) or 0
     except Error as error:
         print(f"prehend: {error}", file=sys.stderr)
-        return 2
+    except ModuleNotFoundError as missing:
+        print(f"prehend: {arguments[0]} needs the Python module '{missing.name}': apt install python3-{missing.name}", file=sys.stderr)
+    return 2
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""python3 -m prehend mutate, on recordings whose survivors are known on paper."""
+"""python3 -m prehend mutate, on recordings whose survivors are known on paper; shrink, whose smallest is known."""
 import contextlib
 import io
 import json
@@ -7,7 +7,7 @@ import unittest
 
 import prehend
 from prehend import __main__ as command
-from prehend import _prehend, mutants, worlds
+from prehend import _prehend, mutants, shrink, worlds
 import takes
 
 SHELF = """grammar shelf
@@ -86,6 +86,68 @@ class Workbench(takes.Folder, unittest.TestCase):
         self.assertGreater(len(found), 300)
         for one in found:
             self.assertNotEqual(one.text, texts[one.file], one.what)
+
+    def test_what_is_left_is_needed(self):
+        asked = []
+
+        def keeps(some):
+            asked.append(some)
+            return {3, 11} <= set(some)
+
+        self.assertEqual(shrink.fewer(list(range(16)), keeps), [3, 11])
+        self.assertLess(len(asked), 40)
+        self.assertEqual(shrink.fewer([1, 2, 3], lambda some: True), [])
+
+    def test_a_scenario_shrinks_to_what_the_condition_needs(self):
+        tree = shrink.read(takes.ROOT / "scenarios/put_down/slow_put_down.yaml")
+        self.assertEqual(tree["entities"]["milk"]["on"], "table")
+
+        class Player:  # keeps what it must: the carton, the grasp, and a wait of at least 0.15 s
+            wrong = ""
+
+            def keeps(self, now):
+                steps = [step for stage in now.get("script", []) for step in stage.values()]
+                return "milk" in now["entities"] and any("close_to" in one for one in steps) and any(one.get("wait_s", 0) >= 0.15 for one in steps)
+
+        small = shrink.shrink(tree, Player())
+        self.assertEqual(list(small["entities"]), ["milk"])
+        self.assertEqual(small["script"], [{"right_hand": {"close_to": 1}}, {"right_hand": {"wait_s": 0.15}}])
+        self.assertNotIn("tags", small)
+        self.assertEqual(shrink.shrink(tree, Player()), small)
+        (self.folder / "small.yaml").write_text(shrink.text_of(small), "utf-8")
+        self.assertEqual(shrink.read(self.folder / "small.yaml"), small)
+
+    def test_a_played_scenario_shrinks_to_a_file_that_check_takes(self):
+        (self.folder / "short_back.grammar").write_text("grammar short_back\nuse pick_and_place with put_back = 1 s\n", "utf-8")
+        file = self.folder / "small.yaml"
+        words = ["shrink", takes.ROOT / "scenarios/put_down/slow_put_down.yaml", "--grammar", self.folder / "short_back.grammar", "-o", file,
+                 "--budget", 9, "--keep"]
+        code, _, err = run(*words, "missing putting_down")
+        self.assertEqual(code, 0, err)
+        self.assertRegex(err, "2 entities, 9 steps -> 2 entities, [5-8] steps, 9 plays")
+        verdict = json.loads(takes.program("check", file, "--grammar", self.folder / "short_back.grammar", "--json", "--no-pictures", "--report",
+                                           self.folder / "report", code=None))["scenarios"][0]
+        self.assertEqual(verdict["errors"], [])
+        self.assertRegex(verdict["details"], "ground truth: putting_down.* not recognised")
+        code, _, err = run(*words, "extra sliding")
+        self.assertEqual((code, "does not show what is to be kept" in err), (2, True))
+
+    def test_a_recording_shrinks_to_a_window_and_its_bodies(self):
+        t, arrays = takes.carried()
+        file = self.folder / "take.jsonl"
+        takes.json_lines(file, {**arrays, "bystander": arrays["cup"] + 0.7}, range(len(t)), 60,
+                         {**{name: {"class": "Cup", "size_m": [0.07, 0.07, 0.2]} for name in ("cup", "bystander")},
+                          "right_hand": {"hand": True, "size_m": [0.09, 0.084, 0.025]}})
+        for name, far in (("near", 0.2), ("far", 0.3)):
+            (self.folder / f"{name}.grammar").write_text(
+                f"grammar {name}\nevent beside(hand: Hand, cup: Cup) while distance(hand, cup) > {far} m\n", "utf-8")
+        code, out, err = run("shrink", file, "--grammar", self.folder / "near.grammar", "--against", self.folder / "far.grammar", "--keep",
+                             "moved beside(right_hand, cup)")
+        self.assertEqual(code, 0, err)
+        lines = [json.loads(line) for line in out.splitlines()]
+        self.assertEqual(set(lines[0]["entities"]), {"right_hand", "cup"})
+        self.assertLess(len(lines), 60)
+        self.assertEqual(run("shrink", file, "--keep", "moved beside")[0], 2)
 
     def test_a_random_world_is_the_same_each_time(self):
         files = [self.folder / "a.jsonl", self.folder / "b.jsonl"]
