@@ -11,6 +11,7 @@ COMMANDS = {  # name: module, whose main(arguments) returns the exit code
     "dataset": "dataset",
     "push": "push",
     "query": "query",
+    "falsify": "falsify",
     "mutate": "mutate",
     "shrink": "shrink",
 }

@@ -152,15 +152,15 @@ class Player:
             kept = os.path.join(self.folder.name, "kept.episodes")
             if os.path.exists(kept):
                 os.unlink(kept)
-            subprocess.run([episodes.program(), "run", file, "--record", kept, *grammar], capture_output=True, check=False)
+            subprocess.run([episodes.program(), "run", file, "--record", kept, "--time-limit-s", "0", *grammar], capture_output=True, check=False)
             return os.path.exists(kept) and self.condition.of_episode(_prehend.open([kept], "")[0])
-        words = ["check", file, "--no-pictures", "--json", "--replay", "none", "--jobs", "1",
+        words = ["check", file, "--no-pictures", "--json", "--replay", "none", "--jobs", "1", "--time-limit-s", "0",
                  "--report", os.path.join(self.folder.name, "report"), *grammar]
         done = subprocess.run([episodes.program(), *words], capture_output=True, text=True, check=False)
         if not done.stdout.startswith("{"):
             return False
         verdict = json.loads(done.stdout)["scenarios"][0]
-        self.wrong = verdict["details"] if verdict["errors"] else ""
+        self.wrong = verdict["details"] or verdict["reason"] if verdict["exit_code"] in (2, 3) else ""
         return not verdict["errors"] and self.condition.of_check(verdict)
 
 
@@ -252,16 +252,16 @@ def all_rounded(value, digits):
 
 
 def fewer_parts(tree, keeps):
-    """Fewer keys of the file, actors, entities and steps."""
-    for key in [one for one in tree if one not in KEPT_KEYS | {"actors", "script", "expects"}]:
-        if keeps(changed(tree, (key,))):
-            tree = changed(tree, (key,))
+    """Fewer steps, which take the time, then actors, entities and keys of the file."""
+    if "script" in tree:
+        tree = {**tree, "script": fewer(tree["script"], lambda some: keeps({**tree, "script": some}))}
     for kind in ("actors", "entities"):
         names = list(tree.get(kind, {}))
         left = fewer(names, lambda some, all_=names, now=tree: keeps(without(now, [one for one in all_ if one not in some])))
         tree = without(tree, [one for one in names if one not in left])
-    if "script" in tree:
-        tree["script"] = fewer(tree["script"], lambda some, now=tree: keeps({**now, "script": some}))
+    for key in [one for one in tree if one not in KEPT_KEYS | {"actors", "script", "expects"}]:
+        if keeps(changed(tree, (key,))):
+            tree = changed(tree, (key,))
     return tree
 
 

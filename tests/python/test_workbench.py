@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""python3 -m prehend mutate, on recordings whose survivors are known on paper; shrink, whose smallest is known."""
+"""python3 -m prehend mutate, on recordings whose survivors are known on paper; shrink, whose smallest is known;
+falsify, by a threshold that is ten percent off."""
 import contextlib
 import io
 import json
@@ -7,7 +8,7 @@ import unittest
 
 import prehend
 from prehend import __main__ as command
-from prehend import _prehend, mutants, shrink, worlds
+from prehend import _prehend, falsify, mutants, shrink, worlds
 import takes
 
 SHELF = """grammar shelf
@@ -148,6 +149,42 @@ class Workbench(takes.Folder, unittest.TestCase):
         self.assertEqual(set(lines[0]["entities"]), {"right_hand", "cup"})
         self.assertLess(len(lines), 60)
         self.assertEqual(run("shrink", file, "--keep", "moved beside")[0], 2)
+
+    def varied(self):
+        text = (takes.ROOT / "scenarios/slide/four_centimetres_are_a_slide.yaml").read_text("utf-8")
+        text = text.replace("scenario: four_centimetres_are_a_slide", "scenario: varied") + \
+            "vary:\n  - {fields: [script.3.right_hand.move_by_m.0], uniform: [0.002, 0.08]}\n"
+        (self.folder / "varied.yaml").write_text(text, "utf-8")
+        (self.folder / "far.grammar").write_text("grammar far\nuse pick_and_place with slide_distance = 2.2 cm\n", "utf-8")
+        return self.folder / "varied.yaml"
+
+    def test_ranges_are_those_of_vary(self):
+        tree = {"scenario": "x", "entities": {"cup": {"mass_kg": 0.5, "at_m": [1, 2]}}, "outcomes": {}, "vary": [
+            {"fields": ["entities.cup.mass_kg"], "times": [1, 3]}, {"fields": ["entities.cup.at_m.0", "entities.cup.at_m.1"], "plus": [-1, 1]},
+            {"fields": ["world.seed"], "choose": [3, 4]}, {"fields": ["settle_s"], "normal": [1, 0.1]}]}
+        ranges = falsify.Ranges(tree, "x.yaml")
+        self.assertEqual(ranges.values([0.5, 0.25, 0.9, 1]), {"entities.cup.mass_kg": 1.0, "entities.cup.at_m.0": 0.5, "entities.cup.at_m.1": 1.5,
+                                                              "world.seed": 4, "settle_s": 1.3})
+        self.assertEqual(ranges.scenario([0, 0.5, 0, 0.5]), {"scenario": "x", "entities": {"cup": {"mass_kg": 0.5, "at_m": [1.0, 2.0]}},
+                                                             "world": {"seed": 3}, "settle_s": 1.0})
+        self.assertEqual(run("falsify", "pick_and_place", "--scenario", takes.ROOT / "scenarios/slide/hop_divides_a_slide.yaml")[0], 2)
+
+    def test_a_threshold_ten_percent_off_is_found_and_written(self):
+        words = ["falsify", self.varied().with_name("far.grammar"), "--scenario", self.folder / "varied.yaml", "--against", "pick_and_place"]
+        code, out, err = run(*words, "--budget", 40, "-o", self.folder / "found.yaml", "--shrink", 0)
+        self.assertEqual(code, 1, out + err)
+        self.assertRegex(out, r"play \d+: missing sliding\(right_hand, milk\)")
+        found = shrink.read(self.folder / "found.yaml")
+        self.assertNotIn("vary", found)
+        self.assertTrue(0.015 < found["script"][3]["right_hand"]["move_by_m"][0] < 0.03)
+        for grammar, is_found in (("pick_and_place", True), (self.folder / "far.grammar", False)):
+            events = json.loads(takes.program("run", self.folder / "found.yaml", "--grammar", grammar, "--json"))["events"]
+            self.assertEqual(any(one["event"] == "sliding" for one in events), is_found)
+
+    def test_a_grammar_and_itself_do_not_part(self):
+        self.varied()
+        code, out, _ = run("falsify", "pick_and_place", "--scenario", self.folder / "varied.yaml", "--against", "pick_and_place", "--budget", 2)
+        self.assertEqual((code, out), (0, "nothing in 2 plays\n"))
 
     def test_a_random_world_is_the_same_each_time(self):
         files = [self.folder / "a.jsonl", self.folder / "b.jsonl"]
