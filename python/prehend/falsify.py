@@ -146,7 +146,7 @@ class Search:
         if os.path.exists(kept):
             os.unlink(kept)
         subprocess.run([episodes.program(), "run", self.file, "--record", kept, "--grammar", self.margin.grammar,
-                        "--time-limit-s", "0", *sets],
+                        "--time-limit-s", "86400", *sets],
                        capture_output=True, check=False)
         if not os.path.exists(kept):
             self.failed += 1
@@ -156,7 +156,7 @@ class Search:
     def oracle(self, sets):
         """What `check` says of the ground truth; the largest shift in it is what the search goes by."""
         words = [episodes.program(), "check", self.file, "--grammar", self.margin.grammar, "--no-pictures", "--json", "--replay", "none",
-                 "--jobs", "1", "--time-limit-s", "0", "--report", os.path.join(self.folder, "report"), *sets]
+                 "--jobs", "1", "--time-limit-s", "86400", "--report", os.path.join(self.folder, "report"), *sets]
         done = subprocess.run(words, capture_output=True, text=True, check=False)
         verdict = json.loads(done.stdout)["scenarios"][0] if done.stdout.startswith("{") else {"errors": ["it"], "details": ""}
         if verdict["errors"]:

@@ -152,12 +152,13 @@ class Player:
             kept = os.path.join(self.folder.name, "kept.episodes")
             if os.path.exists(kept):
                 os.unlink(kept)
-            subprocess.run([episodes.program(), "run", file, "--record", kept, "--time-limit-s", "0", *grammar], capture_output=True, check=False)
+            subprocess.run([episodes.program(), "run", file, "--record", kept, "--time-limit-s", "86400", *grammar], capture_output=True, check=False)
             return os.path.exists(kept) and self.condition.of_episode(_prehend.open([kept], "")[0])
-        words = ["check", file, "--no-pictures", "--json", "--replay", "none", "--jobs", "1", "--time-limit-s", "0",
+        words = ["check", file, "--no-pictures", "--json", "--replay", "none", "--jobs", "1", "--time-limit-s", "86400",
                  "--report", os.path.join(self.folder.name, "report"), *grammar]
         done = subprocess.run([episodes.program(), *words], capture_output=True, text=True, check=False)
         if not done.stdout.startswith("{"):
+            self.wrong = done.stderr.strip()
             return False
         verdict = json.loads(done.stdout)["scenarios"][0]
         self.wrong = verdict["details"] or verdict["reason"] if verdict["exit_code"] in (2, 3) else ""
