@@ -55,7 +55,8 @@ def typed_pages(folder):
         prehend("import", str(motion / "poses.csv"), "--map", str(motion / "bodies.yaml"), "-o", f"{folder}/{take}.jsonl")
         for part in "labels", "predictions":
             os.makedirs(f"{folder}/{part}", exist_ok=True)
-            shutil.copy(motion / "labels.csv", f"{folder}/{part}/{take}.csv")
+        shutil.copy(motion / "labels.csv", f"{folder}/labels/{take}.csv")
+        prehend("episode", "resegment", f"{folder}/{take}.jsonl", "-o", f"{folder}/predictions/{take}.csv")
     shutil.copy(motion / "labels.yaml", folder)
     shutil.copy(ROOT / "examples/recognisers/distance.py", f"{folder}/reco.py")
     prehend("check", TRAIN[0], "--record", f"{folder}/demos.episodes", "--no-pictures", "--report", f"{folder}/page")

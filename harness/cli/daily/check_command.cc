@@ -141,9 +141,7 @@ suite::SuiteRequest RequestFrom(const ParsedOptions& options, const CommandConte
   const bool of_some = options.Has("names") || options.Has("--filter");
   suite::SuiteRequest request{
       .selection = std::move(selection),
-      .changes = {GrammarOf(options, context), options.All("--set")},
-      .recogniser = RecogniserOf(options, context),
-      .listen = ListenTo(RecogniserOf(options, context)),
+      .changes = {options.Text("--grammar"), options.All("--set")},
       .root = context.root,
       .report_folder = options.TextOr("--report", DefaultReport(context.root, of_some)),
       .record_file = options.Text("--record"),
@@ -156,6 +154,7 @@ suite::SuiteRequest RequestFrom(const ParsedOptions& options, const CommandConte
       .shuffle_seed = {},
       .limits = {}};
   if (options.Has("--shuffle")) request.shuffle_seed = options.UnsignedOr("--shuffle", 0);
+  HearWho(options, request);
   request.limits = {.jobs = options.IntOr("--jobs", CoreCount()),
                     .time_limit_s = options.NumberOr("--time-limit-s", kDefaultTimeLimit_s),
                     .memory_limit_bytes = MemoryLimit_bytes(options)};

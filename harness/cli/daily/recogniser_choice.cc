@@ -4,16 +4,8 @@
 #include "harness/measure/score/found_events.h"
 
 namespace prehend::cli {
-namespace {
-
-bool IsGrammar(const std::string& typed, const CommandContext& context) {
-  return measure::SourceOf(typed, context.root).kind == measure::Source::Kind::kGrammar;
-}
-
-}  // namespace
 
 suite::Listen ListenTo(const std::string& typed) {
-  if (typed.empty()) return {};
   const bool is_folder = typed.starts_with("files:");
   const measure::Source source{
       is_folder ? measure::Source::Kind::kFiles : measure::Source::Kind::kProgram,
@@ -35,14 +27,15 @@ Option RecogniserOption() {
           .placeholder = "CMD"};
 }
 
-std::string GrammarOf(const ParsedOptions& options, const CommandContext& context) {
+void HearWho(const ParsedOptions& options, suite::SuiteRequest& request) {
   const std::string typed = options.Text("--recogniser");
-  return typed.empty() || !IsGrammar(typed, context) ? options.Text("--grammar") : typed;
-}
-
-std::string RecogniserOf(const ParsedOptions& options, const CommandContext& context) {
-  const std::string typed = options.Text("--recogniser");
-  return typed.empty() || IsGrammar(typed, context) ? "" : typed;
+  if (typed.empty()) return;
+  if (measure::SourceOf(typed, request.root).kind == measure::Source::Kind::kGrammar) {
+    request.changes.grammar = typed;
+  } else {
+    request.recogniser = typed;
+    request.listen = ListenTo(typed);
+  }
 }
 
 }  // namespace prehend::cli

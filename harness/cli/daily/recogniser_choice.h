@@ -6,18 +6,15 @@
 #include <string>
 
 #include "harness/cli/command/command.h"
-#include "harness/suite/judge/other_view.h"
+#include "harness/suite/check/run_suite.h"
 
 namespace prehend::cli {
 
-/// A command, or files:FOLDER; hears nobody if it is "".
+/// A command, or files:FOLDER.
 suite::Listen ListenTo(const std::string& typed);
 
 Option RecogniserOption();
-
-/// Of --grammar, or a grammar that is named as the recogniser.
-std::string GrammarOf(const ParsedOptions& options, const CommandContext& context);
-/// Of --recogniser what is no grammar, or "".
-std::string RecogniserOf(const ParsedOptions& options, const CommandContext& context);
+/// Who is named there, who may also be a grammar.
+void HearWho(const ParsedOptions& options, suite::SuiteRequest& request);
 
 }  // namespace prehend::cli

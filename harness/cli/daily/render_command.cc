@@ -212,7 +212,7 @@ ExitCode RenderComparison(const ParsedOptions& options, const CommandContext& co
       view.starts_with("files:") ||
       (view.find_first_of(" /") != std::string::npos && !view.ends_with(".grammar"));
   std::optional<suite::Heard> heard;
-  const auto played = Play(options, context, ListenTo(is_command ? view : ""), &heard);
+  const auto played = Play(options, context, is_command ? ListenTo(view) : suite::Listen(), &heard);
   if (!played) return played.error();
   const show::SceneFormat format = SceneFormatOf(options, "action", kComparisonWidth_px);
   const auto made = suite::SheetAgainst(*played, view, WindowOf(options, played->run), format,

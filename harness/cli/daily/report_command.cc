@@ -22,24 +22,22 @@ constexpr const char* kDefaultPage = "report.html";
 constexpr double kLongest_s = 600;  ///< for one episode
 
 std::vector<suite::ScenarioVerdict> VerdictsOf(const std::vector<episode::EpisodeName>& episodes,
-                                               const std::string& grammar,
-                                               const std::string& recogniser,
+                                               const std::string& grammar, bool hears_who_is_named,
                                                const ParsedOptions& options,
                                                const CommandContext& context) {
   const std::vector<episode::ScenarioFile> all = episode::ListScenarios(context.root);
   suite::ScenarioSelection selection;
   for (const episode::EpisodeName& episode : episodes)
     selection.scenarios.push_back(episode::ScenarioOf(episode, all));
-  const suite::SuiteRequest request{
+  suite::SuiteRequest request{
       .selection = std::move(selection),
       .changes = {grammar, options.All("--set")},
-      .recogniser = recogniser,
-      .listen = ListenTo(recogniser),
       .root = context.root,
       .today = context.today,
       .pictures = false,
       .replays = suite::Replays::kAll,
       .limits = {.jobs = options.IntOr("--jobs", CoreCount()), .time_limit_s = kLongest_s}};
+  if (hears_who_is_named) HearWho(options, request);
   std::vector<suite::ScenarioVerdict> verdicts = suite::RunSuite(request, {});
   // An episode of no scenario of the project is known by its file; on the page by what it is.
   for (std::size_t i = 0; i < episodes.size(); ++i) verdicts[i].scenario = episodes[i].scenario;
@@ -80,7 +78,7 @@ ExitCode ReportSides(std::vector<episode::Take> takes, const std::string& page,
   const auto kept = keeper.KeepAll(episode::EpisodesOf(request.takes));
   if (!kept) return Complain(context, kept.error());
   std::vector<suite::ScenarioVerdict> verdicts =
-      VerdictsOf(*kept, request.asking.WhoseEvents(), "", options, context);
+      VerdictsOf(*kept, request.asking.WhoseEvents(), false, options, context);
   for (std::size_t i = 0; i < verdicts.size(); ++i) {
     verdicts[i].scenario = request.takes[i].episode.scenario;
     verdicts[i].file = keeper.SourceOf(verdicts[i].file);
@@ -124,8 +122,7 @@ ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) 
   if (has_sides) return ReportSides(std::move(*takes), page, options, context);
   if (options.Has("--map")) return Refuse(context, "--map needs --truth: where are the labels?");
   std::vector<suite::ScenarioVerdict> verdicts =
-      VerdictsOf(episode::EpisodesOf(*takes), GrammarOf(options, context),
-                 RecogniserOf(options, context), options, context);
+      VerdictsOf(episode::EpisodesOf(*takes), options.Text("--grammar"), true, options, context);
   suite::ReportHeader header =
       suite::HeaderOf(CommandText(context.words), context.root, context.today);
   header.title = "Recorded episodes";
