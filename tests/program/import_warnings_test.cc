@@ -257,6 +257,13 @@ TEST(ImportWarnings, AGrammarThatDoesNotExistIsWrongWhereItIsNamed) {
     EXPECT_NE((read.out + read.err).find("no grammar is called 'contat'"), std::string::npos)
         << command << read.out << read.err;
   }
+  // Recorded with a file of somebody's.
+  WriteFile(take, Replaced(ReadFile(take), "\"contat\"", "\"somebodys_own_rules\""));
+  const Said unnamed = Prehend({"episode", "export", take, "--to", "csv", "-o", folder / "x.csv"});
+  EXPECT_EQ(unnamed.exit_code, 2);
+  EXPECT_NE(unnamed.err.find("if it is a file of yours, --grammar FILE names it"),
+            std::string::npos)
+      << unnamed.err;
 }
 
 TEST(ImportWarnings, BracesWithoutQuotesAreExplained) {

@@ -143,6 +143,8 @@ grammar::CompileResult LoadGrammarOf(const EpisodeHeader& recording, const std::
   grammar::Diagnostic unknown = recording.grammar_named;
   unknown.message = fmt::format("grammar: no grammar is called '{}'", own);
   unknown.hint = compiled.diagnostics.front().hint;
+  if (unknown.hint.starts_with("there are"))  // no name is near
+    unknown.hint.insert(0, "if it is a file of yours, --grammar FILE names it; ");
   return {nullptr, {std::move(unknown)}};
 }
 
