@@ -242,6 +242,16 @@ def test_faults(folder, demos):
             demo.create_dataset("obs/depth", shape=(220, 1000, 1000), dtype="f4", compression="gzip", chunks=(1, 1000, 1000))
     planted.expect("images", with_images, 0, "6 of 6")
 
+    def at_flange(file):
+        for demo in file["data"].values():
+            path = "obs/datagen_info/eef_pose/franka"
+            values = demo[path][:]
+            values[:, :3, 3] -= 0.3 * values[:, :3, 2]
+            replace(demo, path, values)
+    planted.expect("flange", at_flange, 0, "which must lie between its finger tips: offset_m: [")
+    planted.expect("table", nothing, 2, "nothing tracked comes nearer to 'table' than 0.", "correct its at_m", base="mimicgen",
+                   text=made.MAPS["mimicgen"].replace("[0, 0, 0.74]", "[0, 0, -0.02]"))
+
 
 def test_all_keys(folder, demos):
     """A thing by matrices, one by what is written after the action, a drawer by its joint, and labels for what is written back."""

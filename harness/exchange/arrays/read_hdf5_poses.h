@@ -39,4 +39,8 @@ Result<std::vector<std::string>> GroupsLike(const Hdf5File& file, const std::str
 /// Frames per second, of robosuite's `env_args`; none if they do not say it.
 std::optional<double> ControlRateOf(const Hdf5File& file, const std::string& group);
 
+/// What the first demonstration has, as comments, and a map for it, as far as names tell; sizes,
+/// and often the rate, are not in such files.
+Result<std::string> ProposedMapOfDemonstrations(const std::string& path);
+
 }  // namespace prehend::exchange

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The demonstrations of an HDF5 file, each a recording; what the file has, and a map to begin with.
+// The demonstrations of an HDF5 file, each a recording.
 // Tested by tests/program/import_hdf5.py
 #pragma once
 
@@ -26,9 +26,5 @@ class DemonstrationImport {
   std::unique_ptr<MapFile> map_;
   std::optional<Demonstrations> demonstrations_;
 };
-
-/// What the first demonstration has, as comments, and a map for it, as far as names tell; sizes,
-/// and often the rate, are not in such files.
-Result<std::string> ProposedMapOfDemonstrations(const std::string& path);
 
 }  // namespace prehend::exchange

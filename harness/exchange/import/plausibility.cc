@@ -49,6 +49,9 @@ class Judge {
       if (axes.signs.empty()) Add(GuessHandedness(poses_, map_));
       if (poses_.quaternion_order) Add(GuessOrder(poses_, map_));
       found_.world = found_.warnings.size() > before;
+      if (!found_.world)
+        for (std::string& line : HeldFarOff(poses_, map_))
+          found_.warnings.push_back(std::move(line));
     }
     found_.errors = errors_.Sorted();
     return std::move(found_);

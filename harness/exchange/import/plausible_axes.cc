@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "harness/exchange/import/plausibility.h"
@@ -252,6 +253,36 @@ std::optional<double> Slips_m(const MotionSeen& seen, std::optional<bool> reorde
 }
 
 }  // namespace
+
+std::vector<std::string> HeldFarOff(const PoseFile& poses, const ImportMap& map) {
+  constexpr double kFar_m = 0.03;  // from the surface: grip_near of grasp_from_gripper
+  const MotionSeen seen = MotionIn(poses, map, map.MetresPerUnit());
+  std::map<std::size_t, std::array<std::vector<double>, 3>> held;  // by hand, in its axes
+  std::map<std::size_t, std::vector<double>> gaps_m;
+  for (const Carry& carry : seen.carries) {
+    const MappedEntity &hand = *seen.entities[carry.hand], &thing = *seen.entities[carry.thing];
+    for (std::size_t k = carry.begin; hand.grip && k < carry.end; ++k) {
+      const BodyLook &at = seen.looks[carry.hand][k], &look = seen.looks[carry.thing][k];
+      const Eigen::Vector3d off_m =
+          at.q.conjugate() * (look.p_m + look.q * thing.offset_m - at.p_m) - hand.offset_m;
+      gaps_m[carry.hand].push_back(off_m.norm() - thing.size_m.maxCoeff() / 2);
+      for (const std::size_t i : {0U, 1U, 2U})
+        held[carry.hand][i].push_back(off_m[static_cast<Eigen::Index>(i)]);
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto& [hand, axes] : held) {
+    if (map.IsSure(Warning::kPlace) || Median(gaps_m[hand]) < kFar_m) continue;
+    const Eigen::Vector3d& now = seen.entities[hand]->offset_m;
+    lines.push_back(fmt::format(
+        "what the gripper '{}' carries is {:.2f} m off its origin, which must lie between its "
+        "finger tips: offset_m: [{:.3f}, {:.3f}, {:.3f}]; or, if it is right, sure: [place]",
+        seen.entities[hand]->from->value,
+        Eigen::Vector3d(Median(axes[0]), Median(axes[1]), Median(axes[2])).norm(),
+        now.x() + Median(axes[0]), now.y() + Median(axes[1]), now.z() + Median(axes[2])));
+  }
+  return lines;
+}
 
 Guess GuessOrder(const PoseFile& poses, const ImportMap& map) {
   const bool is_wxyz = poses.quaternion_order == QuaternionOrder::kWxyz;
