@@ -184,7 +184,6 @@ def check_json():
         expect_refused("leap.json", text, leap_map.replace(right, wrong), *why)
     expect_refused("leap.json", text[:-40], leap_map, "cut off")
     (folder / "leap.json").write_text(text)
-    assert "needs --map" in run("import", folder / "leap.json", "--check").stderr
     expect_refused("leap.json", text.replace('"x":', '"x" ', 1), leap_map, "leap.json:1:", "no JSON")
     expect_refused("leap.json", "[]", leap_map.replace("frames: \"$.frames[*]\"\n", ""), "no frame")
     expect_refused("leap.json", "[" * 200_000, leap_map, "nested deeper than 100")
@@ -241,6 +240,49 @@ def check_npz():
     return [("a.npz", whole, one), ("a.npz", npz(True, **arrays), one)]
 
 
+def check_proposed():
+    """A first map of JSON and arrays: once sizes and hands are filled in, it says what a person's says."""
+    def proposed(name, content, *wanted):
+        data = content.encode() if isinstance(content, str) else content
+        (folder / name).write_bytes(data)
+        said = run("import", folder / name, "--propose")
+        assert said.returncode == 0, said.stderr
+        for text in wanted:
+            assert text in said.stdout, (text, said.stdout)
+        lines = said.stdout.split("\n")
+        sizes = [line.replace("size_m: unknown", "size_m: [0, 0, 0]" if "hand: true" in line else "size_m: [0.08, 0.08, 0.1]")
+                 for line in lines if not line.startswith(("import:", "  table:"))]
+        text = "\n".join(sizes).replace("entities:\n", "entities:\n" + TABLE)
+        return import_file(name, data, text), said.stdout
+
+    leap = {"device": {"id": 3}, "frames": [
+        {"timestamp": 1_000_000 + round(t * 1e6), "id": i,
+         "hands": [{"type": "right", "palm": {"position": [1000 * v for v in HANDS[i]], "normal": [0, 0, -1], "velocity": [0, 0, 0]},
+                    "digits": [{"bones": [{"tip": [1, 2, 3]}]}], "pinch": 0.5}] if i > 3 else [],
+         "objects": [{"name": "Cup", "pos": [1000 * v for v in CUPS[i]], "rot": XYZW}]} for i, t in enumerate(TIMES)]}
+    said, _ = proposed("leap.json", json.dumps(leap), 'frames: "$.frames[*]"', 't: "timestamp"', "time_unit: us", "quaternion_order: xyzw",
+                       'cup: {position: "objects[name=Cup].pos", rotation: "objects[name=Cup].rot", class: Cup',
+                       'right_hand: {position: "hands[type=right].palm.position", hand: true', "unit: mm", "handed: left")
+    assert said.returncode == 0 and "right_hand " in said.stdout, said.stderr
+    rows = "\n".join(json.dumps({"name": n, "t": t, "px": at[i][0], "py": at[i][1], "pz": at[i][2]})
+                     for i, t in enumerate(TIMES) for n, at in (("cup", CUPS), ("lhand", HANDS)))
+    said, text = proposed("rows.jsonl", rows, 'cup: {position: "[name=cup].p{x,y,z}"', 'left_hand: {position: "[name=lhand].p{x,y,z}", hand: true',
+                          "time_unit: s")
+    assert said.returncode == 0 and "frames:" not in text, said.stderr
+    quest = "\n".join(json.dumps({"time": f"2026-01-31T10:00:{t:09.6f}Z", "LeftHand": {"pos": xyz(HANDS[i]), "rot": dict(zip("xyzw", XYZW))},
+                                  "Cup": {"transform": np.vstack([np.c_[MATRIX, CUPS[i]], [0, 0, 0, 1]]).tolist()}}) for i, t in enumerate(TIMES))
+    said, text = proposed("quest.jsonl", quest, 'cup: {pose: "Cup.transform"', 'left_hand: {position: "LeftHand.pos", rotation: "LeftHand.rot"', "time_unit: iso")
+    assert said.returncode == 0 and "quaternion_order" not in text, said.stderr
+    said, _ = proposed("take.npz", npz(t=TIMES, cup_pos=CUPS, cup_quat=np.tile(XYZW, (FRAMES, 1)), right_hand=HANDS),
+                       'cup: {position: "cup_pos", rotation: "cup_quat"', 'right_hand: {position: "right_hand", hand: true', 't: "t"')
+    assert said.returncode == 0, said.stderr
+    said, text = proposed("take.npz", npz(position_m=np.stack([CUPS, HANDS], 1)), '"position_m[0:3]"', '"position_m[3:6]"', "rate_hz: 30")
+    for name, content in (("none.json", '{"frames": [{"a": 1}, {"a": 2}]}'), ("broken.json", "[1, 2"), ("deep.json", "[" * 100_000), ("none.npz", npz(t=TIMES))):
+        (folder / name).write_bytes(content.encode() if isinstance(content, str) else content)
+        said = run("import", folder / name, "--propose")
+        assert said.returncode == 2 and "nothing in it is called as" in said.stderr, (name, said.stderr)
+
+
 def check_damage(seeds, count):
     """Cut off, bytes changed, parts doubled: read or refused, never more."""
     random.seed(44)
@@ -270,5 +312,6 @@ def check_damage(seeds, count):
 
 if __name__ == "__main__":
     check_documented_json()
+    check_proposed()
     made = check_json() + check_npz()
     print(f"{check_damage(made, 120)} of 120 damaged files refused, the others read")

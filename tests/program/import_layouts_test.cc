@@ -264,6 +264,8 @@ TEST(ImportLayouts, VariantsOfEuroc) {
       "q_RS_z [], v_RS_R_x [m s^-1], b_w_RS_S_x [rad s^-1]\n" +
           rows(still + ",0,0"),
       "");
+  // Without a rate, and a blank behind the sign.
+  ExpectCup("take.csv", "# " + head.substr(1) + rows(still), "");
   ExpectCup("take.csv", "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m]\n" + rows(""), "");
   ExpectCup("take.csv", head + rows(still), "unit: mm\n", "contradicts the file");
   ExpectCup("take.csv", (head + rows(still)).substr(0, 9000), "", "is the file cut off?");
@@ -272,6 +274,29 @@ TEST(ImportLayouts, VariantsOfEuroc) {
   for (int i = 0; i < kFrames; ++i)
     if (i < 100 || i > 150) gap += row(i, still) + "\n";
   ExpectCup("take.csv", gap, "", "is not tracked for 0.867 s");
+}
+
+TEST(ImportLayouts, TimesOfDayPassMidnight) {
+  const auto clock = [](int i) {
+    const double t = std::fmod(86'398 + i / kRate_hz, 86'400);
+    return Text(std::floor(t / 3600), "%02.0f:") +
+           Text(std::fmod(std::floor(t / 60), 60), "%02.0f:") + Text(std::fmod(t, 60), "%09.6f");
+  };
+  std::string csv = "when,x,y,z\n", json;
+  for (int i = 0; i < kFrames; ++i) {
+    const std::string three = Three(CupAt(i / kRate_hz), 1, ",");
+    csv += clock(i) + "," + three + "\n";
+    json += "{\"when\": \"" + clock(i) + "\", \"p\": [" + three + "]}\n";
+  }
+  const std::string map = "unit: m\ntime_unit: iso\n";
+  ExpectCup("take.csv", csv, map + "columns: {time: when, position: [x, 'y', z]}\n");
+  const Said said =
+      ImportFile(FreshFolder("layouts"), "take.ndjson", json,
+                 "import: 1\naxes: z_up\nt: when\n" + map +
+                     "entities:\n  cup: {position: p, class: Cup, size_m: [0.08, 0.08, "
+                     "0.1]}\n",
+                 {"--check"});
+  EXPECT_NE(said.out.find("301    60.0 "), std::string::npos) << said.out << said.err;
 }
 
 TEST(ImportLayouts, VariantsOfTumAndKitti) {

@@ -305,6 +305,12 @@ def check_c3d():
     said = import_file("take.c3d", C3d(84, True).write(POINTS, lost), documented('"s:cup_1"'))
     assert said.returncode == 0 and "cup: 3 markers" in said.stdout and "in the file" not in said.stderr, said.stderr
     whole = C3d(84, True).write(POINTS, NAMES)
+    (folder / "take.c3d").write_bytes(whole)
+    said = run("import", folder / "take.c3d", "--propose")
+    assert said.returncode == 0 and "a C3D file" in said.stdout and all(f'from: "{n}"' in said.stdout for n in NAMES), (said.stdout, said.stderr)
+    assert "unit:" not in said.stdout and "rate_hz" not in said.stdout, said.stdout
+    (folder / "first.yaml").write_text(said.stdout)
+    assert run("import", folder / "take.c3d", "--map", folder / "first.yaml", "--check").returncode == 0
     for content, map_text, *why in (
             (whole, "axes: z_up\nrate_hz: 100\n" + entities(), "'rate_hz' contradicts the file"),
             (whole, "axes: z_up\nunit: m\n" + entities(), "'unit' contradicts the file"),

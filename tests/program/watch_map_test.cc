@@ -34,12 +34,13 @@ struct Watched {
 };
 
 Watched Watch(const std::string& bytes, const std::string& map,
-              const std::vector<std::string>& more = {"--json"}) {
+              const std::vector<std::string>& more = {"--json"},
+              const std::string& file = "poses.csv") {
   Watched watched{.said = {}, .folder = FreshFolder("watch_map")};
-  WriteFile(watched.folder / "poses.csv", bytes);
+  WriteFile(watched.folder / file, bytes);
   WriteFile(watched.folder / "map.yaml", "import: 1\n" + map);
-  std::vector<std::string> words = {"grammar", "watch", (watched.folder / "poses.csv").string(),
-                                    "--map", (watched.folder / "map.yaml").string()};
+  std::vector<std::string> words = {"grammar", "watch", (watched.folder / file).string(), "--map",
+                                    (watched.folder / "map.yaml").string()};
   words.insert(words.end(), more.begin(), more.end());
   watched.said = Prehend(words);
   return watched;
@@ -54,12 +55,13 @@ std::multiset<std::string> Events(const std::vector<Json>& events) {
   return all;
 }
 
-void ExpectTheEventsOfImport(const std::string& bytes, const std::string& map) {
-  const Watched watched = Watch(bytes, map);
+void ExpectTheEventsOfImport(const std::string& bytes, const std::string& map,
+                             const std::string& file = "poses.csv") {
+  const Watched watched = Watch(bytes, map, {"--json"}, file);
   EXPECT_EQ(watched.said.exit_code, 0) << watched.said.err;
   EXPECT_EQ(watched.said.err, "");
   const std::string take = (watched.folder / "take.jsonl").string();
-  const Said import = Prehend({"import", (watched.folder / "poses.csv").string(), "--map",
+  const Said import = Prehend({"import", (watched.folder / file).string(), "--map",
                                (watched.folder / "map.yaml").string(), "-o", take});
   ASSERT_EQ(import.exit_code, 0) << import.err;
   const Json all = Json::parse(Prehend({"episode", "resegment", take, "--json"}).out)["events"];
@@ -97,6 +99,53 @@ TEST(WatchMap, GivesTheEventsOfTheSameTableImported) {
       "unit: m\naxes: z_up\ntime_unit: frame\nrate_hz: 60\ncolumns: {time: frame, body: name, "
       "position: [x, 'y', z]}\n" +
           kEntities);
+}
+
+/// A frame as Leap and Quest log it.
+std::string JsonFrame(int i, bool has_hand = true) {
+  const auto cup = CupAt(i / kRate_hz), hand = HandAt(i / kRate_hz);
+  const std::string palm = "{\"type\": \"right\", \"palm\": [" + Three(hand, 1, ", ") + "]}";
+  return "{\"t\": " + Text(1000 * i / kRate_hz) + ", \"hands\": [" + (has_hand ? palm : "") +
+         "], \"objects\": [{\"name\": \"Cup\", \"pos\": {\"x\": " + Text(cup.x) +
+         ", \"y\": " + Text(cup.y) + ", \"z\": " + Text(cup.z) + "}}]}";
+}
+
+const std::string kJsonMap =
+    "unit: m\naxes: z_up\nt: t\ntime_unit: ms\n" +
+    Replaced(Replaced(kEntities, "from: Cup", "position: \"objects[name=Cup].pos\""), "from: Hand",
+             "position: \"hands[type=right].palm\"");
+
+TEST(WatchMap, LinesOfJsonAreReadByThePathsOfTheMap) {
+  const std::string all = Rows([](int i) { return JsonFrame(i); });
+  ExpectTheEventsOfImport("{\"device\": \"of a tracker\"}\n" + all, kJsonMap, "take.ndjson");
+  ExpectTheEventsOfImport(all, Replaced(kJsonMap, "t: t\ntime_unit: ms", "rate_hz: 60"),
+                          "take.json");
+  std::string rows;  // one body a line
+  for (int i = 0; i < kFrames; ++i)
+    for (const char* body : {"Cup", "Hand"}) {
+      const auto at = body[0] == 'C' ? CupAt(i / kRate_hz) : HandAt(i / kRate_hz);
+      rows += std::string("{\"n\": \"") + body + "\", \"t\": " + Text(1000 * i / kRate_hz) +
+              ", \"p\": [" + Three(at, 1, ", ") + "]}\n";
+    }
+  std::string by_rows = kJsonMap;
+  for (const auto& [was, is] :
+       {std::pair("objects[name=Cup].pos", "[n=Cup].p"), {"hands[type=right].palm", "[n=Hand].p"}})
+    by_rows = Replaced(by_rows, was, is);
+  ExpectTheEventsOfImport(rows, by_rows, "rows.jsonl");
+  // What is lost for a while, and lines that are none.
+  const Watched lost =
+      Watch(Rows([](int i) { return i == 50 || i == 60 ? "{\"t\": 3" : JsonFrame(i, i < 250); }),
+            kJsonMap + "lost: unknown\n", {"--json"}, "take.ndjson");
+  EXPECT_EQ(lost.said.exit_code, 2);
+  EXPECT_NE(lost.said.err.find("take.ndjson:51:"), std::string::npos) << lost.said.err;
+  EXPECT_NE(lost.said.err.find("2 lines in all"), std::string::npos) << lost.said.err;
+  EXPECT_NE(lost.said.out.find("grasping"), std::string::npos);
+  const Watched own =
+      Watch("{\"recording\": 1, \"episode\": \"x\"}\n", kJsonMap, {"--json"}, "take.ndjson");
+  EXPECT_EQ(own.said.exit_code, 2);
+  EXPECT_NE(own.said.err.find("these are lines of a recording"), std::string::npos) << own.said.err;
+  EXPECT_EQ(Watch(all, Replaced(kJsonMap, "ms", "fortnights"), {}, "take.ndjson").said.exit_code,
+            2);
 }
 
 TEST(WatchMap, FaultyRowsAreNamedOnceOfAKindAndLeftOut) {

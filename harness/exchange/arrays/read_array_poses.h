@@ -5,6 +5,7 @@
 #include <string>
 
 #include "harness/exchange/poses/pose_file.h"
+#include "harness/exchange/poses/table_layout.h"
 
 namespace prehend::exchange {
 
@@ -18,8 +19,9 @@ inline constexpr std::size_t kMostJsonFrames = 1'000'000;
 Result<PoseFile> ReadBvhPoses(const std::string& path, const MapFile& map);
 /// JSON, or lines of it. One frame is kept at a time.
 Result<PoseFile> ReadJsonPoses(const std::string& path, const MapFile& map);
-/// The points of C3D. The file says some of what a map says: its map is read with it.
-Result<PoseFile> ReadC3dPoses(const std::string& path, const std::string& map_path, MapFile& map);
+/// The points of C3D. The file says some of what a map says: its map is read with that.
+Result<TableLayout> LayoutOfC3d(const std::string& path);
+Result<PoseFile> ReadC3dPoses(const std::string& path, const MapFile& map);
 /// The arrays of NumPy's savez.
 Result<PoseFile> ReadNpzPoses(const std::string& path, const MapFile& map);
 

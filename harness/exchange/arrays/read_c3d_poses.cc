@@ -257,7 +257,7 @@ void TakePoint(const C3dFile& file, const Located<std::string>& from, const Impo
 
 }  // namespace
 
-Result<PoseFile> ReadC3dPoses(const std::string& path, const std::string& map_path, MapFile& map) {
+Result<TableLayout> LayoutOfC3d(const std::string& path) {
   Result<std::string> bytes = ReadBytes(path);
   if (!bytes) return tl::unexpected(std::move(bytes.error()));
   C3dFile file;
@@ -265,9 +265,15 @@ Result<PoseFile> ReadC3dPoses(const std::string& path, const std::string& map_pa
     return tl::unexpected(ErrorOfFile(path, why));
   TableLayout layout{.name = "a C3D file", .unit = UnitCalled(file.unit)};
   if (file.rate_hz > 0) layout.rate_hz = file.rate_hz;
-  Result<MapFile> read = ReadMapWith(ReadYamlFile(map_path), PoseFormat::kC3d, layout);
-  if (!read) return tl::unexpected(std::move(read.error()));
-  map = std::move(*read);
+  return layout;
+}
+
+Result<PoseFile> ReadC3dPoses(const std::string& path, const MapFile& map) {
+  Result<std::string> bytes = ReadBytes(path);
+  if (!bytes) return tl::unexpected(std::move(bytes.error()));
+  C3dFile file;
+  if (const std::string why = file.Load(std::move(*bytes)); !why.empty())
+    return tl::unexpected(ErrorOfFile(path, why));
   DiagnosticList errors(map.document);
   if (!map.map.rate_hz)
     errors.Add(map.document.root.where, "'rate_hz' is missing: the file does not say it");

@@ -164,8 +164,13 @@ class FrameReader : public nlohmann::json_sax<Json> {
 
 class JsonRows : public RowSource {
  public:
-  JsonRows(const std::string& path, std::string text, const MapFile& map)
-      : file_(path), text_(std::move(text)), map_(map.map), errors_(map.document) {
+  /// `is_line`: others follow, so what is not in it may be in one of these.
+  JsonRows(const std::string& path, std::string text, const MapFile& map, bool is_line = false)
+      : file_(path),
+        text_(std::move(text)),
+        map_(map.map),
+        is_line_(is_line),
+        errors_(map.document) {
     nan_is_missing = true;
     if (map_.t) Ask(*map_.t);
     for (const Named<MappedEntity>& entity : map_.entities) {
@@ -213,6 +218,7 @@ class JsonRows : public RowSource {
       begin = end + 1;
       ++line_;
     }
+    if (is_line_) return count_ < 2 ? Diagnostics{} : Diagnostics{ManyFrames()};
     if (count_ + left_out_ == 0 && !map_.frames)
       return {grammar::DiagnosticAt(file_, text_, {1, 1}, "there is no frame in it", "")};
     if (count_ + left_out_ == 0)
@@ -231,6 +237,7 @@ class JsonRows : public RowSource {
   std::optional<Rows> Read(const Located<std::string>& name, DiagnosticList& errors) override {
     const AskedPath& path = *std::ranges::find_if(
         asked_, [&](const AskedPath& one) { return one.name.value == name.value; });
+    if (is_line_ && path.width == 0 && !(map_.t && &path == &asked_.front())) return std::nullopt;
     if (path.found == 0) {
       errors.AddUnknownName(name.where,
                             fmt::format("no frame has '{}': there is no '{}'", name.value,
@@ -254,8 +261,14 @@ class JsonRows : public RowSource {
   }
   std::vector<int> Lines() const override { return lines_; }
   std::string Columns(const std::string&, std::size_t) const override { return ""; }
+  std::size_t count() const { return count_; }
 
  private:
+  grammar::Diagnostic ManyFrames() const {
+    return grammar::DiagnosticAt(file_, text_, {1, 1},
+                                 fmt::format("a line of {} frames; one was expected", count_), "");
+  }
+
   void Ask(const Located<std::string>& name) {
     const auto has = [&](const AskedPath& one) { return one.name.value == name.value; };
     if (std::ranges::any_of(asked_, has)) return;
@@ -371,6 +384,7 @@ class JsonRows : public RowSource {
 
   const std::string file_, text_;
   const ImportMap& map_;
+  const bool is_line_;
   DiagnosticList errors_;
   std::vector<AskedPath> asked_;  ///< the time first
   std::size_t count_ = 0, left_out_ = 0, numbers_ = 0;
@@ -389,6 +403,25 @@ Result<PoseFile> ReadJsonPoses(const std::string& path, const MapFile& map) {
   if (Diagnostics wrong = rows.Load(); !wrong.empty()) return tl::unexpected(std::move(wrong));
   const double rate_hz = map.map.rate_hz ? map.map.rate_hz->value : 1;
   return ReadRowPoses(rows, map, path, rate_hz);
+}
+
+PoseLines::PoseLines(const std::string& name, const MapFile& map) {
+  const auto poses = std::make_shared<PoseFile>();
+  const double rate_hz = map.map.rate_hz ? map.map.rate_hz->value : 1;
+  poses_ = poses.get();
+  take_ = [=, &map, stream = RowStream()](const std::string& line,
+                                          std::optional<double>& row_s) mutable -> Diagnostics {
+    row_s = std::nullopt;
+    if (line.find_first_not_of(" \t") == std::string::npos) return {};
+    JsonRows rows(name, line, map, /*is_line=*/true);
+    if (Diagnostics wrong = rows.Load(); !wrong.empty() || rows.count() == 0) return wrong;
+    Result<PoseFile> read = ReadRowPoses(rows, map, name, rate_hz, &stream);
+    if (read && read->rows > 0) row_s = read->last_s;
+    stream.frames += rows.count();
+    if (!read) return read.error();
+    *poses = std::move(*read);
+    return {};
+  };
 }
 
 }  // namespace prehend::exchange

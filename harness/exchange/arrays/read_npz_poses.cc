@@ -10,6 +10,7 @@
 #include <map>
 
 #include "harness/base/base/text_file.h"
+#include "harness/exchange/arrays/find_poses.h"
 #include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/arrays/row_poses.h"
 #include "harness/exchange/hdf5/hdf5_file.h"
@@ -143,6 +144,30 @@ class NpzRows : public RowSource {
     return "";
   }
 
+  /// What looks like times and poses.
+  FoundPoses Find() const {
+    FoundPoses found;
+    std::map<std::string, std::vector<std::string>> values;
+    for (const auto& [name, entry] : entries_) {
+      std::string content;
+      NumpyArray array;
+      if (!Unpack(entry, content).empty() || !ReadNumpy(content, array).empty()) continue;
+      std::vector<std::size_t> shape = array.shape;
+      for (std::size_t i = 0; shape.size() < 2 && i < std::min<std::size_t>(array.Rows(), 50); ++i)
+        values[name].push_back(fmt::format("{}", NumberAt(array, i)));
+      std::size_t of_row = 1, width = shape.empty() ? 0 : shape.back();
+      for (std::size_t i = 1; i < shape.size(); ++i) of_row *= shape[i];
+      if (shape.size() > 2 && (width == 3 || width == 4) && shape[shape.size() - 2] == width)
+        width *= width;
+      for (std::size_t at = 0; width > 0 && at + width <= of_row && at < 50 * width; at += width)
+        found.Add(of_row == width ? "" : fmt::format("body {}", at / width + 1), name,
+                  of_row == width ? name : fmt::format("{}[{}:{}]", name, at, at + width), width,
+                  false);
+    }
+    found.AddTime(values);
+    return found;
+  }
+
   std::optional<Rows> Read(const Located<std::string>& name, DiagnosticList& errors) override {
     const Hdf5Part part = Hdf5PartOf(name.value).value_or(Hdf5Part{.dataset = name.value});
     const auto entry = entries_.find(part.dataset);
@@ -218,6 +243,15 @@ class NpzRows : public RowSource {
 };
 
 }  // namespace
+
+Result<FoundPoses> FindNpzPoses(const std::string& path) {
+  Result<std::string> bytes = ReadBytes(path);
+  if (!bytes) return tl::unexpected(std::move(bytes.error()));
+  NpzRows rows(std::move(*bytes));
+  if (const std::string why = rows.Load(); !why.empty())
+    return tl::unexpected(ErrorOfFile(path, why));
+  return rows.Find();
+}
 
 Result<PoseFile> ReadNpzPoses(const std::string& path, const MapFile& map) {
   Result<std::string> bytes = ReadBytes(path);

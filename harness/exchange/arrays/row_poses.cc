@@ -25,8 +25,10 @@ constexpr double kMostSkew = 0.01;      ///< of a matrix from a rotation
 
 class RowPoseReader {
  public:
-  RowPoseReader(RowSource& source, const MapFile& map, std::string file, double rate_hz)
+  RowPoseReader(RowSource& source, const MapFile& map, std::string file, double rate_hz,
+                RowStream* stream)
       : source_(source),
+        stream_(stream),
         map_(map.map),
         errors_(map.document),
         rate_hz_(rate_hz),
@@ -44,6 +46,8 @@ class RowPoseReader {
     for (OpeningSeries& opening : poses_.openings) ReadOpening(opening);
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
     poses_.rows = frames_;
+    if (stream_ && frames_ > 0) poses_.last_s = SecondsAt(frames_ - 1);
+    if (stream_) return std::move(poses_);
     poses_.last_s = SecondsAt(frames_ - 1);
     if (frames_ < kFewFrames)
       poses_.notes.push_back(fmt::format("it has only {}, {:.2f} s",
@@ -69,7 +73,8 @@ class RowPoseReader {
   }
 
   double SecondsAt(std::size_t frame) const {
-    return times_.empty() ? static_cast<double>(frame) / rate_hz_ : times_[frame];
+    if (!times_.empty()) return times_[frame];
+    return static_cast<double>(frame + (stream_ ? stream_->frames : 0)) / rate_hz_;
   }
 
   std::string Place(std::size_t row) const {
@@ -80,8 +85,13 @@ class RowPoseReader {
   void ReadTimes(const Located<std::string>& name) {
     const std::optional<Rows> rows = ReadRows(name);
     if (!rows || !HasWidth(name, *rows, 1) || !TakesLength(name, *rows)) return;
+    if (stream_ && !stream_->first_time && std::isfinite(rows->values[0]))
+      stream_->first_time = rows->values[0];
+    const double first = stream_ ? stream_->first_time.value_or(0) : rows->values[0];
     for (std::size_t i = 0; i < rows->count; ++i) {
-      const double t_s = (rows->values[i] - rows->values[0]) * map_.SecondsPerUnit();
+      const bool is_iso = map_.time_unit && map_.time_unit->value == TimeUnit::kIso;
+      const double time = is_iso ? AfterMidnight(rows->values[i], first) : rows->values[i];
+      const double t_s = (time - first) * map_.SecondsPerUnit();
       if (!std::isfinite(t_s)) return Complain(name, "has no time " + Place(i));
       if (!times_.empty() && t_s < times_.back())
         return Complain(name, fmt::format("goes back from {:.6g} to {:.6g} s {}", times_.back(),
@@ -263,6 +273,7 @@ class RowPoseReader {
   }
 
   RowSource& source_;
+  RowStream* const stream_;  ///< or null
   const ImportMap& map_;
   DiagnosticList errors_;
   const double rate_hz_;
@@ -305,8 +316,8 @@ Result<std::string> ReadBytes(const std::string& path) {
 }
 
 Result<PoseFile> ReadRowPoses(RowSource& source, const MapFile& map, std::string file,
-                              double rate_hz) {
-  return RowPoseReader(source, map, std::move(file), rate_hz).Read();
+                              double rate_hz, RowStream* stream) {
+  return RowPoseReader(source, map, std::move(file), rate_hz, stream).Read();
 }
 
 }  // namespace prehend::exchange

@@ -38,9 +38,16 @@ class RowSource {
   bool knows_angles = false;    ///< three angles turn about the fixed x, then y, then z, in radians
 };
 
+/// Of lines that come one after the other, each with a frame: what was before.
+struct RowStream {
+  std::optional<double> first_time;  ///< in the file's unit
+  std::size_t frames = 0;
+};
+
 /// What the map asks for. `file`: with its map's `t`, or with `rate_hz` frames a second.
+/// `stream`: it is a line of these, and bodies that are not in it are not tracked in this frame.
 Result<PoseFile> ReadRowPoses(RowSource& source, const MapFile& map, std::string file,
-                              double rate_hz);
+                              double rate_hz, RowStream* stream = nullptr);
 
 /// All bytes of a file.
 Result<std::string> ReadBytes(const std::string& path);

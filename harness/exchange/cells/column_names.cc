@@ -179,40 +179,9 @@ class Finder {
   }
 
   void FindTime(const std::vector<std::string>& names) {
-    static const std::regex kTime(
-        "^(t|time|times|timestamps?|time[_ -]?stamp|stamp|sec|secs|seconds|clock|datetime|utc)"
-        "[ "
-        "_]*[\\[(]?(s|sec|seconds|ms|milliseconds|us|ns)?[\\])]?$|^(frame|frames|frame#|index|"
-        "sample)$",
-        std::regex::icase);
-    std::smatch m;
-    for (const bool frames : {false, true}) {
-      for (const std::string& name : names) {
-        if (!found_.time.empty() || !std::regex_match(name, m, kTime) || m[3].matched != frames)
-          continue;
-        found_.time = name;
-        found_.time_unit = frames ? "frame" : Small(m[2]);
-      }
-    }
-    if (found_.time.empty() || found_.time_unit == "frame") return;
-    std::string& unit = found_.time_unit;
-    if (unit.starts_with("sec")) unit = "s";
-    if (unit.starts_with("milli")) unit = "ms";
-    const std::vector<std::string> cells = CellsOf(found_.time);
-    if (!cells.empty() && !NumberOf(cells.front(), found_.decimal_comma) &&
-        SecondsOfIsoTime(cells.front()))
-      unit = "iso";
-    if (!unit.empty()) return;
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < cells.size(); ++i) {
-      const double step = NumberOf(cells[i], found_.decimal_comma).value_or(0) -
-                          NumberOf(cells[i - 1], found_.decimal_comma).value_or(0);
-      if (step > 0) steps.push_back(step);
-    }
-    std::ranges::sort(steps);
-    const double step = steps.empty() ? 0.01 : steps[steps.size() / 2];
-    unit = step < 0.6 ? "s" : step == 1 ? "frame" : step < 500 ? "ms" : step < 5e5 ? "us" : "ns";
-    found_.time_doubt = "by its steps";
+    const NamedTime time = TimeAmong(
+        names, [&](const std::string& name) { return CellsOf(name); }, found_.decimal_comma);
+    found_.time = time.name, found_.time_unit = time.unit, found_.time_doubt = time.doubt;
   }
 
   void FindKeys(const std::vector<std::string>& names) {
@@ -238,6 +207,46 @@ class Finder {
 };
 
 }  // namespace
+
+NamedTime TimeAmong(const std::vector<std::string>& names, const CellsOfName& cells_of,
+                    bool decimal_comma) {
+  static const std::regex kTime(
+      "^(t|time|times|timestamps?|time[_ -]?stamp|stamp|sec|secs|seconds|clock|datetime|utc)"
+      "[ "
+      "_]*[\\[(]?(s|sec|seconds|ms|milliseconds|us|ns)?[\\])]?$|^(frame|frames|frame#|index|"
+      "sample)$",
+      std::regex::icase);
+  NamedTime time;
+  std::smatch m;
+  for (const bool frames : {false, true}) {
+    for (const std::string& name : names) {
+      if (!time.name.empty() || name.size() > kLongestName || !std::regex_match(name, m, kTime) ||
+          m[3].matched != frames)
+        continue;
+      time.name = name;
+      time.unit = frames ? "frame" : Small(m[2]);
+    }
+  }
+  if (time.name.empty() || time.unit == "frame") return time;
+  std::string& unit = time.unit;
+  if (unit.starts_with("sec")) unit = "s";
+  if (unit.starts_with("milli")) unit = "ms";
+  const std::vector<std::string> cells = cells_of(time.name);
+  if (!cells.empty() && !NumberOf(cells.front(), decimal_comma) && SecondsOfIsoTime(cells.front()))
+    unit = "iso";
+  if (!unit.empty()) return time;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < cells.size(); ++i) {
+    const double step = NumberOf(cells[i], decimal_comma).value_or(0) -
+                        NumberOf(cells[i - 1], decimal_comma).value_or(0);
+    if (step > 0) steps.push_back(step);
+  }
+  std::ranges::sort(steps);
+  const double step = steps.empty() ? 0.01 : steps[steps.size() / 2];
+  unit = step < 0.6 ? "s" : step == 1 ? "frame" : step < 500 ? "ms" : step < 5e5 ? "us" : "ns";
+  time.doubt = "by its steps";
+  return time;
+}
 
 std::optional<NamedColumns> ColumnsOf(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);

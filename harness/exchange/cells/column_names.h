@@ -3,6 +3,7 @@
 // names of bodies stand. Tested by tests/harness/exchange/cells/column_names_test.cc
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -28,6 +29,16 @@ struct NamedColumns {
   bool in_degrees = false;          ///< of angles: some are larger than a turn in radians
   std::vector<std::string> others;  ///< columns that are none of these
 };
+
+struct NamedTime {
+  std::string name, unit, doubt;  ///< as those of NamedColumns
+};
+
+using CellsOfName = std::function<std::vector<std::string>(const std::string&)>;
+
+/// Which of the names is that of a time, and its unit, by its name or by its values.
+NamedTime TimeAmong(const std::vector<std::string>& names, const CellsOfName& cells_of,
+                    bool decimal_comma);
 
 /// By the first lines of a table; nothing if no three columns are called x, y and z.
 std::optional<NamedColumns> ColumnsOf(std::string_view text);

@@ -23,4 +23,10 @@ std::optional<double> NumberOf(std::string_view cell, bool decimal_comma);
 /// seconds since 1970, or since midnight.
 std::optional<double> SecondsOfIsoTime(std::string_view cell);
 
+/// Times of day begin anew at midnight: then `time`, which is after `first`, is of the next day.
+inline double AfterMidnight(double time, double first) {
+  constexpr double kHalfDay_s = 43'200;
+  return time < 2 * kHalfDay_s && time < first - kHalfDay_s ? time + 2 * kHalfDay_s : time;
+}
+
 }  // namespace prehend::exchange

@@ -501,26 +501,23 @@ PoseSample InRecording(const PoseSample& sample, const MappedEntity& entity, con
 
 Result<MapFile> ReadMapFor(const std::string& poses_path, PoseFormat format,
                            Result<YamlDocument> map) {
-  return format == PoseFormat::kCsv ? ReadMapOfTable(std::move(map), poses_path)
-                                    : ReadImportMap(std::move(map), format);
+  if (format == PoseFormat::kCsv) return ReadMapOfTable(std::move(map), poses_path);
+  if (format != PoseFormat::kC3d) return ReadImportMap(std::move(map), format);
+  Result<TableLayout> layout = LayoutOfC3d(poses_path);  // it says its unit and rate
+  if (!layout) return tl::unexpected(layout.error());
+  return ReadMapWith(std::move(map), format, std::move(*layout));
 }
 
 Result<PoseFile> ReadPoses(const std::string& poses_path, PoseFormat format, const MapFile& map) {
   using Reader = Result<PoseFile> (*)(const std::string&, const MapFile&);
-  constexpr std::array<Reader, 6> kReaders = {ReadCsvPoses, ReadBvhPoses,  ReadMcapPoses,
-                                              nullptr,      ReadJsonPoses, ReadNpzPoses};
+  constexpr std::array<Reader, 7> kReaders = {ReadCsvPoses,  ReadBvhPoses, ReadMcapPoses, nullptr,
+                                              ReadJsonPoses, ReadNpzPoses, ReadC3dPoses};
   return kReaders.at(static_cast<std::size_t>(format))(poses_path, map);
 }
 
 Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path) {
   const Result<PoseFormat> format = PoseFormatOf(poses_path);
   if (!format) return tl::unexpected(format.error());
-  if (*format == PoseFormat::kC3d) {  // it says its unit and rate
-    MapFile map;
-    Result<PoseFile> poses = ReadC3dPoses(poses_path, map_path, map);
-    if (!poses) return tl::unexpected(poses.error());
-    return ImportPoses(std::move(*poses), map);
-  }
   if (*format == PoseFormat::kHdf5)
     return tl::unexpected(ErrorOfFile(
         poses_path, "demonstrations in HDF5 are imported alone: all of one file in one call"));

@@ -15,7 +15,10 @@
 #include <set>
 
 #include "harness/base/base/text_file.h"
+#include "harness/exchange/arrays/find_poses.h"
+#include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/arrays/row_poses.h"
+#include "harness/exchange/cells/body_words.h"
 #include "harness/exchange/cells/column_names.h"
 #include "harness/exchange/import/import_demonstrations.h"
 #include "harness/exchange/import/import_poses.h"
@@ -37,33 +40,15 @@ std::string QuotedList(const std::vector<std::string>& texts) {
   return fmt::format("[{}]", fmt::join(quoted, ", "));
 }
 
-/// "global:LeftHand_2" -> left, hand, 2.
-std::vector<std::string> WordsIn(const std::string& name) {
-  std::vector<std::string> words(1);
-  char before = ' ';
-  for (const char c : name) {
-    const bool is_letter = std::isalpha(static_cast<unsigned char>(c)) != 0,
-               is_digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
-    const bool begins = (std::isupper(static_cast<unsigned char>(c)) &&
-                         std::islower(static_cast<unsigned char>(before))) ||
-                        (is_digit && !std::isdigit(static_cast<unsigned char>(before)));
-    if ((begins || !(is_letter || is_digit)) && !words.back().empty()) words.emplace_back();
-    if (is_letter || is_digit)
-      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    before = c;
-  }
-  if (words.back().empty()) words.pop_back();
-  return words;
-}
-
 /// A body of the file, as the map will have it.
 struct Draft {
-  std::string from, name;
+  std::string from, name, keys = {};  ///< of arrays and paths, in the place of `from`
   bool hand = false, fixed = false;
   std::optional<double> upright_at_s;
 
   std::string Line() const {
-    std::string text = fmt::format("  {}: {{from: {}", name, Quoted(from));
+    std::string text =
+        fmt::format("  {}: {{{}", name, keys.empty() ? "from: " + Quoted(from) : keys);
     if (hand) text += ", hand: true";
     if (!hand) text += ", class: " + ClassOf();
     if (fixed) text += ", fixed: true";
@@ -84,39 +69,13 @@ struct Draft {
   }
 };
 
-using Words = std::vector<std::string>;
-
-bool AnyOf(const Words& words, const std::set<std::string>& of) {
-  return std::ranges::any_of(words, [&](const std::string& word) {
-    const bool side = word.size() > 3 && (word[0] == 'l' || word[0] == 'r');
-    return of.contains(word) || (side && of.contains(word.substr(1)));
-  });
-}
-
-/// A bone of a skeleton that is no hand.
-bool IsBone(const Words& words) {
-  return AnyOf(words, {"hip",   "hips",  "ab",     "chest",  "neck",  "head",  "shoulder",
-                       "uarm",  "farm",  "arm",    "thigh",  "shin",  "leg",   "foot",
-                       "toe",   "spine", "ankle",  "knee",   "calf",  "elbow", "pelvis",
-                       "thumb", "index", "middle", "collar", "pinky", "ring",  "finger"});
-}
-
-bool IsHand(const Words& words) {
-  return AnyOf(words, {"hand", "glove", "wrist", "palm", "lh", "rh", "gripper", "eef", "ee", "tcp",
-                       "righthand", "lefthand"}) &&
-         !IsBone(words);
-}
-
-bool IsTable(const Words& words) {
-  return AnyOf(words, {"table", "desk", "shelf", "bench", "counter", "worktop", "floor", "rack"});
-}
-
 class MapProposer {
  public:
   MapProposer(std::string path, PoseFormat format) : path_(std::move(path)), format_(format) {}
 
   Result<std::string> Propose() {
-    if (format_ == PoseFormat::kCsv)
+    const bool has_rows = format_ == PoseFormat::kJson || format_ == PoseFormat::kNpz;
+    if (format_ == PoseFormat::kCsv || format_ == PoseFormat::kC3d)
       if (grammar::Diagnostics why = TakeHead(); !why.empty()) return tl::unexpected(why);
     if (layout_) head_ = layout_->name;
     if (format_ == PoseFormat::kBvh || head_.ends_with("of Motive") || head_.ends_with("TRC file"))
@@ -124,7 +83,8 @@ class MapProposer {
     if (format_ == PoseFormat::kMcap) unit_why_ = axes_why_ = "as ROS has it";
     if (head_.ends_with("KITTI"))
       axes_ = "up: [0, -1, 0]", axes_why_ = "of a camera that looks ahead";
-    if (const grammar::Diagnostics why = FindBodies(); !why.empty()) return tl::unexpected(why);
+    const grammar::Diagnostics why = has_rows ? TakeRows() : FindBodies();
+    if (!why.empty()) return tl::unexpected(why);
     // What is guessed of how they move asks for the next guess: the unit, then the axes.
     for (int guesses = 0; guesses < 4; ++guesses) {
       Result<MapFile> map = Read();
@@ -139,10 +99,42 @@ class MapProposer {
   }
 
  private:
+  /// Bodies of what is called as poses are.
+  grammar::Diagnostics TakeRows() {
+    const Result<FoundPoses> found =
+        format_ == PoseFormat::kJson ? FindJsonPoses(path_) : FindNpzPoses(path_);
+    if (!found) return found.error();
+    keys_ = found->keys, needs_rate_ = found->needs_rate, aside_ = found->aside;
+    if (format_ == PoseFormat::kJson)
+      doubts_.push_back("logs of Unity and Unreal have left-handed axes: handed: left");
+    const auto is_bone = [](const FoundBody& body) { return IsBone(WordsIn(body.called)); };
+    const bool all_bones = std::ranges::all_of(found->bodies, is_bone);
+    std::set<std::string> taken;
+    for (const FoundBody& body : found->bodies) {
+      if (body.From().empty() || bodies_.size() >= kMostEntities || (!all_bones && is_bone(body))) {
+        aside_.push_back(body.From().empty() ? body.rotation : body.From());
+        continue;
+      }
+      if (!body.has_order) order_ = "xyzw";
+      Draft draft = DraftOf(WordsIn(body.called).empty() ? "body" : body.called, taken);
+      draft.from = body.From(), draft.keys = body.Keys();
+      bodies_.push_back(std::move(draft));
+    }
+    if (!bodies_.empty()) return {};
+    return ErrorOfFile(path_, "nothing in it is called as a position or a pose of something is");
+  }
+
   grammar::Diagnostics TakeHead() {
-    const Result<std::string> text = ReadTextFile(path_, kMaxPoseFileBytes);
-    if (!text) return text.error();
-    layout_ = LayoutOf(*text);
+    Result<std::string> text = std::string();
+    if (format_ == PoseFormat::kC3d) {
+      const Result<TableLayout> layout = LayoutOfC3d(path_);
+      if (!layout) return layout.error();
+      layout_ = *layout;
+    } else {
+      text = ReadTextFile(path_, kMaxPoseFileBytes);
+      if (!text) return text.error();
+      layout_ = LayoutOf(*text);
+    }
     if (layout_) {
       says_unit_ = layout_->unit && layout_->says_unit;
       if (layout_->unit && !says_unit_)
@@ -357,10 +349,9 @@ class MapProposer {
     text += "import: 1\n";
     if (!says_unit_) text += Key(unit_, unit_why_);
     text += Key(axes_, axes_why_);
-    if (!order_.empty() && format_ == PoseFormat::kMcap)
-      text += "quaternion_order: " + order_ + "\n";
+    if (!order_.empty()) text += "quaternion_order: " + order_ + "\n";
     if (needs_rate_) text += Key("rate_hz: 30", "fill in: nothing in the file says it");
-    text += ColumnsText();
+    text += keys_ + ColumnsText();
     if (zeros_) text += Key("zero_is_missing: true", "bodies jump to exactly 0, 0, 0");
     text += "lost: unknown\nentities:\n";
     for (const Draft& body : bodies_) text += body.Line();
@@ -411,7 +402,7 @@ class MapProposer {
   const PoseFormat format_;
   std::optional<TableLayout> layout_;
   std::optional<NamedColumns> columns_;
-  std::string head_, summary_, table_, order_;
+  std::string head_, summary_, table_, order_, keys_;
   std::string unit_ = "unit: m", unit_why_ = "not in the file", axes_ = "axes: z_up",
               axes_why_ = "not in the file";
   bool says_unit_ = false, needs_rate_ = false, zeros_ = false, hands_ = false;
@@ -425,11 +416,6 @@ Result<std::string> ProposedMap(const std::string& poses_path) {
   const Result<PoseFormat> format = PoseFormatOf(poses_path);
   if (!format) return tl::unexpected(format.error());
   if (*format == PoseFormat::kHdf5) return ProposedMapOfDemonstrations(poses_path);
-  if (*format > PoseFormat::kHdf5)
-    return tl::unexpected(ErrorOfFile(poses_path,
-                                      "needs --map; maps are proposed for CSV, BVH, MCAP, bags and "
-                                      "HDF5, and docs/motion-capture.md "
-                                      "has some for JSON, .npz and C3D"));
   return MapProposer(poses_path, *format).Propose();
 }
 

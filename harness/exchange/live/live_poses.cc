@@ -7,6 +7,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "harness/exchange/arrays/json_path.h"
 #include "harness/exchange/import/import_poses.h"
 #include "harness/exchange/poses/table_layout.h"
 
@@ -15,9 +16,21 @@ namespace {
 
 constexpr std::size_t kMostHeadLines = 200;
 
+bool IsJson(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  return first != std::string_view::npos && (line[first] == '{' || line[first] == '[');
+}
+
+/// "[name=Cup].position": a line has one body, or some.
+bool IsOfSomeLines(const Named<MappedEntity>& entity) {
+  const auto path = entity.value.from ? ParseJsonPath(entity.value.from->value) : std::nullopt;
+  return path && !path->empty() && path->front().kind == JsonStep::Kind::kMatch;
+}
+
 /// Mostly numbers, or cells of what is not tracked.
 bool IsRow(std::string_view line) {
   if (line.starts_with('#')) return false;
+  if (IsJson(line)) return true;
   for (const Separator separator :
        {Separator::kComma, Separator::kSemicolon, Separator::kTab, Separator::kSpace}) {
     const std::vector<CsvCell> cells = TableCellsOf(line, separator);
@@ -38,13 +51,15 @@ grammar::Diagnostics LivePoses::Take(const std::string& line, episode::EpisodeSt
   ++line_;
   if (lines_) {
     grammar::Diagnostics wrong = lines_->Take(line);
+    for (grammar::Diagnostic& one : wrong)
+      if (one.file == name_) one.place.line = line_;
     if (!wrong.empty() || !lines_->row_s()) return wrong;
     return TakeRow(stream);
   }
   head_ += line + "\n";
   const auto count = static_cast<std::size_t>(line_);
   const bool in_head = head_.starts_with("PathFileType") && count < 6;  // of TRC: numbers in it
-  if (!in_head && IsRow(line)) return Begin(stream);
+  if (!in_head && IsRow(line)) return Begin(line, stream);
   if (count < kMostHeadLines && head_.size() < kMaxPoseFileBytes / 256) return {};
   return {{.file = name_,
            .place = {line_, 1},
@@ -53,10 +68,21 @@ grammar::Diagnostics LivePoses::Take(const std::string& line, episode::EpisodeSt
            .hint = {}}};
 }
 
-grammar::Diagnostics LivePoses::Begin(episode::EpisodeStream& stream) {
-  Result<MapFile> map = ReadMapOfHead(ReadYamlFile(map_path_), head_);
+grammar::Diagnostics LivePoses::Begin(const std::string& row, episode::EpisodeStream& stream) {
+  const bool is_json = IsJson(row);
+  if (is_json && row.find("\"recording\":") != std::string::npos)
+    return {{.file = name_,
+             .place = {line_, 1},
+             .message = "these are lines of a recording, which says itself what it means",
+             .source_line = {},
+             .hint = "without --map"}};
+  if (is_json) head_ = row + "\n";
+  Result<MapFile> map = is_json ? ReadImportMap(map_path_, PoseFormat::kJson)
+                                : ReadMapOfHead(ReadYamlFile(map_path_), head_);
   if (!map) return map.error();
   map_ = std::move(*map);
+  collects_ =
+      !map_->map.columns.body.empty() || std::ranges::any_of(map_->map.entities, IsOfSomeLines);
   DiagnosticList errors(map_->document);
   for (const Named<MappedEntity>& entity : map_->map.entities) {
     const auto& upright = entity.value.upright_at_s;
@@ -77,7 +103,10 @@ grammar::Diagnostics LivePoses::Begin(episode::EpisodeStream& stream) {
   triggers_.resize(count);
   upright_.resize(count);
   for (std::size_t i = 0; i < count; ++i) samples_[i].not_tracked = true;
-  lines_.emplace(name_, head_, *map_);
+  if (is_json)
+    lines_.emplace(name_, *map_);
+  else
+    lines_.emplace(name_, head_, *map_);
   std::istringstream head(head_);
   for (std::string line; std::getline(head, line);)
     if (grammar::Diagnostics wrong = lines_->Take(line); !wrong.empty()) return wrong;
@@ -106,7 +135,7 @@ grammar::Diagnostics LivePoses::TakeRow(episode::EpisodeStream& stream) {
     is_whole = is_whole && !samples_[i].not_tracked;
   }
   AddOpenings();
-  if (map.columns.body.empty() || (is_whole && !has_frame_)) {
+  if (!collects_ || (is_whole && !has_frame_)) {
     const grammar::Diagnostics more = Emit(stream);
     wrong.insert(wrong.end(), more.begin(), more.end());
   }

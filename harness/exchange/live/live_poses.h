@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of a table of poses, while a tracker writes them, by the map of an import: each row, or all
-// rows of a time, becomes a frame of a recording. Tested by tests/program/watch_map_test.cc
+// Lines of a table of poses, or of JSON, while a tracker writes them, by the map of an import: each
+// row, or all rows of a time, becomes a frame of a recording. Tested by
+// tests/program/watch_map_test.cc
 #pragma once
 
 #include <map>
@@ -31,7 +32,7 @@ class LivePoses {
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
-  grammar::Diagnostics Begin(episode::EpisodeStream& stream);
+  grammar::Diagnostics Begin(const std::string& row, episode::EpisodeStream& stream);
   grammar::Diagnostics TakeRow(episode::EpisodeStream& stream);
   void Add(std::size_t entity, PoseSample sample);
   void AddOpenings();
@@ -42,6 +43,7 @@ class LivePoses {
   int line_ = 0;
   std::optional<MapFile> map_;
   std::optional<PoseLines> lines_;
+  bool collects_ = false;                        ///< a frame is of several lines
   std::optional<double> frame_s_;                ///< of the frame that is being collected
   std::vector<episode::SampleEntry> samples_;    ///< of it, by entity
   std::vector<std::optional<double>> triggers_;  ///< by entity: the last ones

@@ -74,11 +74,13 @@ void MirrorPoses(const ImportMap& map, PoseFile& poses);
 
 /// Errors name the place, in the map or in the file of poses; at most a dozen.
 Result<PoseFile> ReadCsvPoses(const std::string& path, const MapFile& map);
-/// Lines of a table while they come; the first ones are its head.
+/// Lines of a table, or of JSON, while they come.
 class PoseLines {
  public:
   /// `head`: the lines up to the first row of poses; they are taken, too, after that.
   PoseLines(const std::string& name, std::string head, const MapFile& map);
+  /// Of JSON, a frame each. Their places are those of the map that stays.
+  PoseLines(const std::string& name, const MapFile& map);
   /// Returns what is wrong with the line. Its time, if it is a row, and what it says of bodies and
   /// openings are known until the next one.
   grammar::Diagnostics Take(const std::string& line) { return take_(line, row_s_); }

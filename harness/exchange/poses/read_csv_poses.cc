@@ -397,7 +397,7 @@ class CsvPoseReader {
       Complain({line_, cell.column}, fmt::format("expected a time like 2026-01-31T10:00:00.25Z, "
                                                  "found '{}'",
                                                  ReadableText(cell.text)));
-    return time;
+    return time && first_time_ ? AfterMidnight(*time, *first_time_) : time;
   }
 
   void TakeRow(std::vector<CsvCell> cells, bool is_last) {

@@ -279,11 +279,13 @@ std::optional<TableLayout> TrcOf(const Lines& lines) {
 }
 
 std::optional<TableLayout> EurocOf(const Lines& lines) {
-  if (!lines.front().starts_with("#timestamp") ||
-      lines.front().find("p_") == std::string_view::npos)
+  std::string_view head = lines.front();
+  if (head.empty() || head[0] != '#') return std::nullopt;
+  head.remove_prefix(std::min(head.find_first_not_of("# "), head.size()));
+  if (!head.starts_with("timestamp") || head.find("p_") == std::string_view::npos)
     return std::nullopt;
   TableLayout layout{.name = "a CSV file of EuRoC", .yields = true, .first_row = 2};
-  for (std::string name : Words(lines.front().substr(1), Separator::kComma))
+  for (std::string name : Words(head, Separator::kComma))
     layout.names.push_back(name.substr(0, name.find(" [")));
   const auto column = [&](const char* begin, const char* end) {
     const auto found = std::ranges::find_if(layout.names, [&](const std::string& name) {
