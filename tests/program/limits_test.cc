@@ -46,6 +46,18 @@ TEST_F(Limits, OfTimeEndARecordingsSegmentation) {
   EXPECT_NE(said.err.find("no end after 0.1 s"), std::string::npos) << said.err;
 }
 
+TEST_F(Limits, OfTheSizeOfFilesEndACommandWithACode) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"run", "carton_rests", "--record",
+                                 (root_ / "x.episodes").string()},
+        {"run", "carton_rests", "--record", (root_ / "x.jsonl").string()},
+        {"check", "--no-pictures", "--report", (root_ / "page").string()}}) {
+    const Said said = Prehend(words, {"PREHEND_HOME=" + root_.string()}, "ulimit -f 4");
+    EXPECT_TRUE(said.exit_code == 3 || said.exit_code == 2) << said.exit_code << said.err;
+    EXPECT_EQ(said.err.find("prehend: "), 0u) << said.err;
+  }
+}
+
 TEST_F(Limits, AreExplained) {
   const std::string help = Do("--help").out;
   EXPECT_NE(help.find("default: 600,"), std::string::npos) << help;

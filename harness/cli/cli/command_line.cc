@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <ctime>
 #include <exception>
@@ -179,6 +180,7 @@ std::string WhyNotText(const std::vector<std::string>& words) {
 ExitCode RunCommandLine(int argc, const char* const* argv, const char* commit) {
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   const VisibleBuffer out(std::cout), err(std::cerr);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error that says so
   try {
     if (const std::string why = WhyNotText(words); !why.empty()) {
       std::cerr << "prehend: " << why << "\n";
