@@ -86,7 +86,7 @@ def same_documented(asked, file):
     assert len({name for line in event for name in re.findall(r"\bevent_\d\b", line)}) == 1, event
 
 
-def stopped_in_the_middle(server, file, folder):
+def stopped_in_the_middle(server, file):
     """What was written is kept, the next push completes it."""
     asked = Asked(server.url(database="other"))
     url = server.url(database="other")
@@ -136,14 +136,14 @@ def not_the_same(server, file):
     expect(python("push", other, server.url()), 2, "is not the same", "many.episodes", other)
 
 
-def full_disk(server, file, folder):
+def full_disk(server, file):
     """A table space of 8 MB, where one can be mounted."""
-    place = folder / "full"
+    place = server.folder / "full"
     place.mkdir()
     if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8m", "tmpfs", place], capture_output=True).returncode:
         return print("full disk: nothing can be mounted here")
     try:
-        shutil.chown(place, "postgres")
+        os.chown(place, server.folder.stat().st_uid, -1)
         asked = Asked(server.url())
         asked.execute("CREATE DATABASE small")
         asked = Asked(server.url(database="small"))
@@ -198,9 +198,9 @@ def main(folder):
         rights(server, asked, file)
         not_the_same(server, base)
         takes_and_scores(server, asked, base, folder)
-        full_disk(server, file, folder)
+        full_disk(server, file)
         asked.execute("CREATE DATABASE other")
-        stopped_in_the_middle(server, file, folder)
+        stopped_in_the_middle(server, file)
 
 
 if __name__ == "__main__":
