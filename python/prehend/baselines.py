@@ -15,6 +15,7 @@ RATE_HZ = 30  # all that follows is computed on this grid, whatever the sensor
 LAGS = (-15, -9, -5, -2, 0, 2, 5, 9, 15)
 PHASES = ["reaching", "fixation", "sliding", "picking_up", "transporting", "putting_down"]
 EVENTS = [*PHASES, "grasping", "pick_and_place"]
+OF_HANDLES = ["reaching", "fixation", "grasping"]  # what is attached to something else is not carried
 LEAST_S = 0.1  # what is shorter is no event, and no gap
 ROWS = 150000  # that are learned from, at most
 
@@ -70,7 +71,9 @@ def takes_of(lines):
         hands = [one for one in names if entities[one].get("hand")]
         others = ("hand", "fixed", "abstract", "person", "jointed")
         things = [one for one in names if not any(entities[one].get(key) for key in others)]
-        yield name, Take(names, hands, things, ticks, np.array(at), np.array(grip), header["ticks_per_second"], end or ticks[-1] + 1)
+        take = Take(names, hands, things, ticks, np.array(at), np.array(grip), header["ticks_per_second"], end or ticks[-1] + 1)
+        take.name, take.attached = name, {one for one in names if entities[one].get("attached")}
+        yield take
 
 
 def recorded(episode):
@@ -186,16 +189,15 @@ KINDS = {"rules": by_rules, "trees": by_model, "convolution": by_model, "schedul
 
 def recognise(kind, model):
     say({"recogniser": 1, "name": kind, "events": {event: ["hand", "object"] for event in EVENTS}, "facts": ["poses", "trigger"], "batch": True})
-    for name, take in takes_of(iter(sys.stdin.readline, "")):
-        take.name = name
+    for take in takes_of(iter(sys.stdin.readline, "")):
         grid = take.per_s / RATE_HZ
         for hand, thing, found in KINDS[kind](model, take):
             for event, spans in found.items():
-                for begin, end in spans:
+                for begin, end in spans if event in OF_HANDLES or thing not in take.attached else ():
                     first, last = int(begin * grid), min(int(end * grid), take.end_tick)
                     if first < last:
                         say({"event": event, "roles": {"hand": hand, "object": thing}, "begin_tick": first, "end_tick": last})
-        say({"done": name})
+        say({"done": take.name})
 
 
 def labels_of(folder, role):
