@@ -2,6 +2,7 @@
 // Episode files, as a person uses them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -218,7 +219,7 @@ TEST(Episodes, AreWholeAfterTheProgramWasKilledAtAnyMoment) {
   const auto file = (folder / "a.episodes").string();
   const char* count = std::getenv("PREHEND_KILLS");  // more of them, by hand
   const int kills = count ? std::atoi(count) : 6;
-  std::size_t cut_off = 0, whole = 0;
+  std::size_t most_cut_off = 0, whole = 0;  // each run goes on where the one before was stopped
   for (int i = 0; i < kills; ++i) {
     const double seconds = 0.02 + 1.3 * std::fmod(0.618034 * i, 1.0);
     const std::string command =
@@ -230,10 +231,10 @@ TEST(Episodes, AreWholeAfterTheProgramWasKilledAtAnyMoment) {
     if (!std::filesystem::exists(file) || std::filesystem::file_size(file) == 0) continue;
     const Said listed = Prehend({"episode", "list", file, "--json"});
     ASSERT_TRUE(listed.exit_code == 0 || listed.exit_code == 4) << listed.err;
-    std::size_t finished = 0;
-    cut_off = 0;
+    std::size_t finished = 0, cut_off = 0;
     for (const auto& row : nlohmann::json::parse(listed.out))
       ++(row["status"] == "recording" ? cut_off : finished);
+    most_cut_off = std::max(most_cut_off, cut_off);
     EXPECT_GE(finished, whole) << "no finished episode is lost";
     whole = finished;
     if (i % 20 != 5 && i + 1 < kills) continue;
@@ -241,7 +242,7 @@ TEST(Episodes, AreWholeAfterTheProgramWasKilledAtAnyMoment) {
     EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
     EXPECT_NE(replayed.out.find(std::to_string(whole) + " of "), std::string::npos);
   }
-  EXPECT_GT(cut_off, 0u);
+  EXPECT_GT(most_cut_off, 0u);
 }
 
 TEST(Episodes, AFullDiskLeavesTheVerdict) {

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <iomanip>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -101,7 +102,7 @@ TEST(Knowledge, ThePapersQuestionsHaveTheSameAnswersInEveryLanguage) {
 
     std::vector<std::string> words = {"episode", "query", days.file, "--json"};
     std::istringstream options(CellOf(row, 0));
-    for (std::string word; options >> word;) words.push_back(word);
+    for (std::string word; options >> std::quoted(word, '\'');) words.push_back(word);
     for (const Json& answer : Asked(words))
       queried.insert(Rounded(answer["begin_s"], answer["end_s"]));
     EXPECT_EQ(queried, asked) << row;

@@ -14,7 +14,7 @@ struct TrialResult {
   std::int64_t ticks = 0;  ///< frames that were shown to monitors
   int grammars = 0;
   int episodes = 0, lost = 0;  ///< those in which poses are lost are counted in both
-  int refused = 0;  ///< random grammars with conditions that are never or always true
+  int refused = 0;             ///< random grammars with conditions that are never or always true
   int mismatches = 0;
   std::string first;  ///< what the first mismatch was
 
