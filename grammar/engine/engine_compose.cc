@@ -82,10 +82,9 @@ Moment Engine::BeginsFrom(const RuleInstance& instance) const {
     }
     return from;
   }
-  if (instance.open) return instance.begin;
-  Moment from = NextFrame();
+  Moment from = instance.open ? instance.begin : NextFrame();
   const FrameNumber known = instances_.KnownOf(instance);
-  if (known <= history_.now())
+  if (!instance.open && known <= history_.now())
     from = known < history_.first() ? Moment{known, kForgotten} : history_.At(known);
   for (const Pending& pending : instance.pending) from = Earlier(from, pending.span.begin);
   // Nobody asks how far back the next one may reach.

@@ -48,11 +48,11 @@ struct RestPose {
   /// What is not round lies on a side of its box.
   bool LiesOrIsUpsideDown(const Eigen::Vector3d& half_m) const {
     const Eigen::Vector3d up = q.conjugate() * Eigen::Vector3d::UnitZ();
-    const double on_side = std::sin((90 - kUpright_deg) * EIGEN_PI / 180);
     const bool is_round = half_m.head<2>().minCoeff() >= kRound * half_m.head<2>().maxCoeff();
     return degrees >= 180 - kUpright_deg ||
            (std::abs(degrees - 90) <= kUpright_deg &&
-            (is_round || up.head<2>().cwiseAbs().maxCoeff() >= on_side));
+            (is_round ||
+             up.head<2>().cwiseAbs().maxCoeff() >= std::cos(kUpright_deg * EIGEN_PI / 180)));
   }
 };
 

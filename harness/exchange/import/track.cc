@@ -19,8 +19,7 @@ std::size_t EndOfSight(const std::vector<TimedPose>& poses, std::size_t begin) {
 
 /// How far a pose is off the polynomial of degree `order` - 1 through as many of its neighbours, as
 /// the standard deviation that noise on each axis would have: half of all are below that times the
-/// median of a chi distribution of three axes. Where it is fast, it bends more than it trembles:
-/// the slower half counts.
+/// median of a chi distribution of three axes. Of the slowest quarter: what is fast bends more.
 double OffNeighbours_m(const std::vector<TimedPose>& poses, std::size_t order) {
   constexpr double kMedianOfThree = 1.538;
   std::vector<std::pair<double, double>> of_way;
