@@ -311,6 +311,34 @@ TEST(Compose, WhatReachesBackMayBeKnownLate) {
   EXPECT_EQ(both->interval, (Interval{10, 32}));
 }
 
+// The press from 15 to 18 waits for its confirmation at 30; the next one begins at 22.
+TEST(Compose, WhatWaitsForItsConfirmationIsNotForgotten) {
+  const auto program = testing::CompileText(
+      "grammar t\nevent tap(h: Hand, t: Movable) while touching(h, t)\n"
+      "condition there(c: Cup) while height(c) > -1 m\ncondition high(c: Cup) while height(c) > 1 "
+      "m\n"
+      "event press(h: Hand, c: Cup) while touching(h, c) confirmed by high(c) within there(c)\n"
+      "event both(h: Hand, c: Cup, t: Movable)\n"
+      "  compose a: tap(h, t), b: press(h, c) where a before within 3 ms b\n");
+  Scene scene;
+  Monitor monitor(program, scene.entity_table);
+  std::vector<Event> events;
+  for (Tick tick = 0; tick < 50; ++tick) {
+    scene.touches.clear();
+    if ((tick >= 10 && tick < 14) || tick == 23)
+      scene.touches.push_back({.a = Scene::kHand, .b = 2});
+    if ((tick >= 15 && tick < 18) || tick >= 22)
+      scene.touches.push_back({.a = Scene::kHand, .b = Scene::kCup});
+    scene.looks[Scene::kCup].p_WB_m.z() = tick < 30 ? 0 : 2;
+    monitor.Advance(scene.At(tick), events);
+  }
+  monitor.Finish(50, events);
+  const auto both = std::ranges::find_if(
+      events, [&](const Event& e) { return program->rules[e.rule].name == "both"; });
+  ASSERT_NE(both, events.end());
+  EXPECT_EQ(both->interval, (Interval{10, 18}));
+}
+
 TEST(Compose, ClosesAtTheEndOfTheEpisode) { EXPECT_EQ(Served("##......", "....####"), "[0,8)@8 "); }
 
 }  // namespace
