@@ -253,12 +253,17 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
     for (const Label& label : LabelsOf(file, take, map, problems)) {
       const std::string text = Trimmed(label.text);
       const bool in_map = map && map->labels.contains(text);
-      if (text == "background" && !in_map && !FindEvent(events, text)) {
+      const Meaning* tier = side == Side::kFound && map && !in_map ? TierOf(label, map) : nullptr;
+      if ((tier && tier->ignored) ||
+          (text == "background" && !in_map && !FindEvent(events, text))) {
         ++reading.counted_.ignored[text];
         continue;
       }
       Meant meant = map && (in_map || side == Side::kTruth) ? ByMap(label, text, *map, events, side)
                                                             : WithoutMap(label, text, events);
+      if (tier && meant.event &&
+          !AddRoles(label, *map, tier, *FindEvent(events, meant.event->event), meant))
+        meant.event.reset();
       const bool is_problem = !meant.problem.empty();
       if (is_problem && problems.size() < kMostComplaints &&
           complained.insert(meant.problem).second)
