@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/base/process/worker_pool.h"
+#include "harness/episode/episode/episode.h"
 #include "harness/episode/episodes/load_episode.h"
 #include "harness/episode/run/find_scenario.h"
 #include "harness/suite/judge/other_view.h"
@@ -36,6 +37,7 @@ struct CheckRequest {
   bool is_own_record = false;  ///< recorded by a check that was stopped: judged as if it was played
   std::string today;           ///< YYYY-MM-DD, for that file
   std::string program;         ///< ProgramHash(), to find the cause of differences
+  episode::EpisodeOpener* opener = nullptr;  ///< of the episodes before it; may be null
   ProgressCounters::Tick* last_tick =
       nullptr;  ///< gets the tick that the run has reached; may be null
 

@@ -450,7 +450,8 @@ grammar::Diagnostics Replay(episode::Episode& episode, CheckedEpisode& checked) 
 ScenarioVerdict CheckScenario(const CheckRequest& request) {
   std::vector<std::string> files;
   Result<episode::Episode> episode =
-      episode::OpenEpisode(request.episode, request.changes, request.root, &files);
+      request.opener ? request.opener->Open(request.episode, request.changes, &files)
+                     : episode::OpenEpisode(request.episode, request.changes, request.root, &files);
   if (!episode) return Unreadable(request, BlankVerdict(request, nullptr, files), episode.error());
   CheckedEpisode checked = ToBeChecked(request, episode->loaded(), files);
   grammar::Diagnostics unread;

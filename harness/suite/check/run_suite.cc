@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <random>
 
@@ -38,22 +39,91 @@ class Suite {
   }
 
   std::vector<ScenarioVerdict> Run(const SuiteProgress& progress, Interrupt* interrupt) {
-    const std::vector<Turn> turns = Turns();
+    std::vector<Turn> turns = Turns();
+    const std::size_t all = turns.size();
+    std::size_t done = 0;
+    const auto keep = [&](std::size_t scenario, ScenarioVerdict verdict) {
+      runs_[scenario].push_back(std::move(verdict));
+      if (progress) progress(++done, all, Id(scenario));
+    };
+    turns = JudgeTogether(turns, keep, interrupt);
     ProgressCounters last_ticks(turns.size());
     if (request_.pictures) show::PrepareToDraw();
     std::vector<WorkerJob> jobs;
     for (std::size_t i = 0; i < turns.size(); ++i) jobs.push_back(Job(turns[i], last_ticks[i]));
-    std::size_t done = 0;
-    const auto keep = [&](std::size_t job, const WorkerResult& result) {
+    const auto take = [&](std::size_t job, const WorkerResult& result) {
       const std::size_t scenario = turns[job].scenario;
-      runs_[scenario].push_back(VerdictOf(scenario, result, last_ticks[job]));
-      if (progress) progress(++done, jobs.size(), Id(scenario));
+      keep(scenario, VerdictOf(scenario, result, last_ticks[job]));
     };
-    RunInWorkers(jobs, request_.limits, keep, interrupt);
+    if (!interrupt || !interrupt->Came()) RunInWorkers(jobs, request_.limits, take, interrupt);
     return Verdicts();
   }
 
  private:
+  using Keep = std::function<void(std::size_t scenario, ScenarioVerdict verdict)>;
+
+  /// Episodes of a file have much in common, which is read once: several are judged in a process.
+  /// Returns the others, and those of a process that did not end: each is judged alone.
+  std::vector<Turn> JudgeTogether(const std::vector<Turn>& turns, const Keep& keep,
+                                  Interrupt* interrupt) {
+    constexpr std::size_t kMost = 16, kLeast = 4;
+    const std::size_t at_once = std::min(
+        kMost, turns.size() / (4 * static_cast<std::size_t>(std::max(1, request_.limits.jobs))));
+    const auto is_kept = [&](const Turn& turn) {
+      const episode::ScenarioFile& one = scenarios_[turn.scenario];
+      return one.episode && request_.repeat == 1;
+    };
+    if (at_once < kLeast) return turns;
+    std::vector<Turn> alone;
+    std::vector<std::vector<Turn>> groups;
+    for (const Turn& turn : turns) {
+      if (!is_kept(turn)) {
+        alone.push_back(turn);
+        continue;
+      }
+      const auto& path = scenarios_[turn.scenario].path;
+      if (groups.empty() || groups.back().size() >= at_once ||
+          scenarios_[groups.back().front().scenario].path != path)
+        groups.emplace_back();
+      groups.back().push_back(turn);
+    }
+    std::vector<WorkerJob> jobs;
+    for (const std::vector<Turn>& group : groups) jobs.push_back(JobOf(group));
+    const auto take = [&](std::size_t job, const WorkerResult& result) {
+      if (!result.finished) {
+        alone.insert(alone.end(), groups[job].begin(), groups[job].end());
+        return;
+      }
+      const auto verdicts = FromWire<nlohmann::json>(result.output);
+      for (std::size_t i = 0; i < groups[job].size(); ++i) {
+        const std::size_t scenario = groups[job][i].scenario;
+        ScenarioVerdict verdict = UnpackedVerdict(verdicts[i]["verdict"]);
+        verdict.file = scenarios_[scenario].path;
+        verdict.seconds = verdicts[i]["seconds"];
+        verdict.peak_memory_kib = result.peak_memory_kib;
+        keep(scenario, std::move(verdict));
+      }
+    };
+    RunInWorkers(jobs, request_.limits, take, interrupt);
+    return alone;
+  }
+
+  WorkerJob JobOf(const std::vector<Turn>& group) const {
+    return [this, group] {
+      episode::EpisodeOpener opener(request_.root);
+      auto verdicts = nlohmann::json::array();
+      for (const Turn& turn : group) {
+        const auto start = std::chrono::steady_clock::now();
+        CheckRequest check = RequestOf(turn);
+        check.opener = &opener;
+        nlohmann::json verdict = Packed(CheckScenario(check));
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+        verdicts.push_back({{"verdict", std::move(verdict)}, {"seconds", took.count()}});
+      }
+      return ToWire(verdicts);
+    };
+  }
+
   std::string Id(std::size_t scenario) const { return episode::IdOf(scenarios_[scenario]); }
 
   /// Only these have goldens, and are remembered from one check to the next.
