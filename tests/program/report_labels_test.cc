@@ -107,6 +107,15 @@ TEST_F(ReportLabels, LabelsMayNameSomeRoles) {
   const Said said = Report({"--truth", Path("labels.csv"), "--json"});
   ASSERT_EQ(said.exit_code, 0) << said.err;
   EXPECT_EQ(nlohmann::json::parse(said.out)["grammars"][0]["total"]["f1_50"], 1.0) << said.out;
+  WriteFile(folder_ / "labels.csv",
+            "begin_s,end_s,label\n1.1,3.8,\"grasping(object=milk)\"\n,,"
+            "\"picking_up(hand=right_hand, object=milk)\"\n");
+  const auto events = nlohmann::json::parse(
+      Report({"--truth", Path("labels.csv"), "--json"}).out)["grammars"][0]["events"];
+  ASSERT_EQ(events.size(), 2u) << "what was looked for and is not there is too much";
+  EXPECT_EQ(events[1]["found"], 1);
+  WriteFile(folder_ / "labels.csv", "begin_s,end_s,label\n,,grasping\n");
+  EXPECT_EQ(Report({"--truth", Path("labels.csv")}).exit_code, 2) << "times are missing";
   WriteFile(folder_ / "labels.csv", "begin_s,end_s,label\n1.1,3.8,\"grasping(thing=milk)\"\n");
   const Said wrong = Report({"--truth", Path("labels.csv")});
   EXPECT_EQ(wrong.exit_code, 2);

@@ -270,6 +270,10 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
         problems.push_back(file.At(label.place, std::move(meant.problem), std::move(meant.hint)));
       if (!meant.event && !is_problem) ++reading.counted_.ignored[text];
       if (!meant.event) continue;
+      if (std::isnan(label.begin_s)) {
+        Compare(meant.event->event, meant.event->roles, reading.compared_);
+        continue;
+      }
       ++(label.IsMoment() ? reading.counted_.moments : reading.counted_.labels);
       Compare(meant.event->event, meant.event->roles, reading.compared_);
       of_take.push_back({label.begin_s + take.offset_s, label.end_s + take.offset_s,

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -333,6 +334,12 @@ class RowTaker {
     if (label.text.empty() && cells[columns_.begin->seat].text.empty() && !label.keys.empty()) {
       file_.nothing_in.insert(std::move(label.keys));
       return;
+    }
+    // An event as it is printed, without times: it is compared, also where nobody marked it.
+    if (label.text.ends_with(')') && cells[columns_.begin->seat].text.empty() &&
+        cells[(columns_.end ? columns_.end : columns_.duration)->seat].text.empty()) {
+      label.begin_s = label.end_s = std::numeric_limits<double>::quiet_NaN();
+      return Keep(std::move(label));
     }
     const auto from_s = Seconds(*columns_.begin, cells),
                to_s = Seconds(columns_.end ? *columns_.end : *columns_.duration, cells);

@@ -23,8 +23,8 @@ inline constexpr std::size_t kMostComplaints = 12;
 inline constexpr std::size_t kMostBackward = 20;
 
 struct Label {
-  double begin_s = 0, end_s = 0;
-  std::string text, tier;  ///< "" where the file has no tiers
+  double begin_s = 0, end_s = 0;  ///< no numbers: its event is compared, and is not there
+  std::string text, tier;         ///< "" where the file has no tiers
   grammar::Place place;
   std::vector<grammar::Role> roles;      ///< of a table: what the columns of roles hold
   std::vector<std::string> keys;         ///< of a table: what the columns CsvReading::keys hold

@@ -82,7 +82,10 @@
   }
   function labelsOf(section) {
     const rows = spansOf(section).flatMap((span) => span.says[span.side].map(([begin, end]) => [begin, end, '"' + span.event + '"']));
-    return ['begin_s,end_s,label', ...rows.sort((a, b) => a[0] - b[0]).map((row) => row.join())].join('\n') + '\n';
+    // Of an event that is not there, a row without times says that it was looked for.
+    const there = new Set(rows.map((row) => row[2]));
+    const none = [...new Set(spansOf(section).map((span) => '"' + span.event + '"'))].filter((event) => !there.has(event) && event.includes('('));
+    return ['begin_s,end_s,label', ...rows.sort((a, b) => a[0] - b[0]).map((row) => row.join()), ...none.map((event) => ',,' + event)].join('\n') + '\n';
   }
 
   // The last runs of a scenario: a bar for each, as high as it took long, with the colour of its verdict.
