@@ -392,6 +392,8 @@ def write(file, text):
     if not file:
         sys.stdout.write(text)
         return
+    if os.path.exists(file) and {"golden", "scenarios", "grammars", "library"} & set(os.path.abspath(file).split(os.sep)):
+        fail(EpisodeError, f"{file} is there already, and the project's own", "write it elsewhere: -o small.yaml", file)
     try:
         with open(file + ".part", "w", encoding="utf-8") as lines:
             lines.write(text)

@@ -4,6 +4,10 @@ falsify, by a threshold that is ten percent off."""
 import contextlib
 import io
 import json
+import os
+import re
+import subprocess
+import sys
 import unittest
 
 import prehend
@@ -185,6 +189,33 @@ class Workbench(takes.Folder, unittest.TestCase):
         self.varied()
         code, out, _ = run("falsify", "pick_and_place", "--scenario", self.folder / "varied.yaml", "--against", "pick_and_place", "--budget", 2)
         self.assertEqual((code, out), (0, "nothing in 2 plays\n"))
+
+    def test_the_page_is_typed_as_it_stands(self):
+        page = (takes.ROOT / "docs/workbench.md").read_text("utf-8")
+        bin_ = self.folder / "bin"
+        bin_.mkdir()
+        for name, target in (("prehend", os.path.realpath(prehend.program())), ("python3", sys.executable)):
+            (bin_ / name).symlink_to(target)
+        package = os.path.dirname(os.path.dirname(os.path.abspath(prehend.__file__)))
+        surroundings = {**os.environ, "PATH": f"{bin_}:{os.environ['PATH']}", "PYTHONPATH": package}
+        surroundings.pop("PREHEND_HOME", None)
+        folder, said = self.folder, {}
+        for line in "\n".join(re.findall(r"```sh\n(.*?)```", page, re.S)).splitlines():
+            if line.startswith("cd "):
+                folder = folder / line[3:]
+                continue
+            done = subprocess.run(["bash", "-c", line], cwd=folder, env=surroundings, capture_output=True, text=True, check=False)
+            said[line] = done.stdout + done.stderr
+            self.assertIn(done.returncode, (0, 1, 5), f"{line}: {done.stdout}{done.stderr}")
+        self.assertEqual(len(said), 14)
+        words = lambda of: next(out for line, out in said.items() if of in line)
+        self.assertIn("episodes show as much as all", words("coverage suite"))
+        self.assertIn("slide_distance: 5 -> 10", words("mutate"))
+        self.assertRegex(words("shrink scenarios"), "2 entities, 6 steps -> 2 entities, [1-4] steps")
+        self.assertIn("slide_distance", words("explain small.yaml"))
+        self.assertRegex(words("shrink take.jsonl"), "3 of 3 bodies|2 of 3 bodies")
+        self.assertRegex(words("--against pick_and_place --shrink"), "play [1-9]: missing sliding")
+        self.assertRegex(words("--budget 20"), "missing sliding")
 
     def test_a_random_world_is_the_same_each_time(self):
         files = [self.folder / "a.jsonl", self.folder / "b.jsonl"]

@@ -29,20 +29,11 @@ constexpr double kNoLimit = -1;
 const grammar::CandidateLog kNoOutcomes;
 namespace fate = grammar::fate;
 
-struct Named {
-  const char* operator()(const fate::Interval&) const { return "interval"; }
-  const char* operator()(const fate::TooShort&) const { return "too short"; }
-  const char* operator()(const fate::TooLong&) const { return "too long"; }
-  const char* operator()(const fate::TooFew&) const { return "too few"; }
-  const char* operator()(const fate::Refused&) const { return "refused"; }
-  const char* operator()(const fate::Unconfirmed&) const { return "unconfirmed"; }
-  const char* operator()(const fate::Dropped&) const { return "dropped"; }
-  const char* operator()(const fate::TooLate&) const { return "too late"; }
-  const char* operator()(const fate::Came&) const { return "it came"; }
-  const char* operator()(const fate::Unfinished&) const { return "unfinished"; }
-  const char* operator()(const fate::NothingBack&) const { return "nothing back"; }
-  const char* operator()(const fate::WalkedBack&) const { return "walked back"; }
-};
+/// In the order of grammar::Fate.
+constexpr std::array kBecame = {"interval", "too short",   "too long",     "too few",
+                                "refused",  "unconfirmed", "dropped",      "too late",
+                                "it came",  "unfinished",  "nothing back", "walked back"};
+static_assert(kBecame.size() == std::variant_size_v<grammar::Fate>);
 
 /// "rise(object) >= lift_rise" of "rise({1}) >= lift_rise".
 std::string WithRoles(const std::string& text, const Rule& rule) {
@@ -163,7 +154,7 @@ class Collector {
 
   void Count(const CandidateOutcome& outcome, CoveredRule& covered) {
     ++covered.begun;
-    ++covered.became[std::visit(Named(), outcome.fate)];
+    ++covered.became[kBecame[outcome.fate.index()]];
     covered.open_end += outcome.IsInterval() && outcome.span.open_end;
     if (outcome.IsInterval() && covered.episodes.empty()) covered.episodes.push_back(0);
   }
