@@ -211,7 +211,7 @@ class Workbench(takes.Folder, unittest.TestCase):
         words = lambda of: next(out for line, out in said.items() if of in line)
         self.assertIn("episodes show as much as all", words("coverage suite"))
         self.assertIn("slide_distance: 5 -> 10", words("mutate"))
-        self.assertRegex(words("shrink scenarios"), "2 entities, 6 steps -> 2 entities, [1-4] steps")
+        self.assertRegex(words("shrink scenarios"), "2 entities, 6 steps -> 2 entities, [1-5] steps")
         self.assertIn("slide_distance", words("explain small.yaml"))
         self.assertRegex(words("shrink take.jsonl"), "3 of 3 bodies|2 of 3 bodies")
         self.assertRegex(words("--against pick_and_place --shrink"), "play [1-9]: missing sliding")
