@@ -191,7 +191,7 @@ Result<Coverage> CoverageOf(const std::vector<episode::EpisodeName>& episodes,
 
 std::string CoverageText(const Coverage& coverage) {
   std::vector<std::vector<std::string>> rows = {
-      {"rule", "bound", "begun", "intervals", "open", "without interval"}};
+      {"rule", "bound", "begun", "intervals", "open end", "without interval"}};
   for (const CoveredRule& rule : coverage.rules) {
     std::string became;
     std::int64_t intervals = 0;
