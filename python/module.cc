@@ -400,6 +400,14 @@ PYBIND11_MODULE(_prehend, m) {
       .def("finish", &LiveMonitor::Finish);
   m.def("syntax", &Syntax);
   m.def("open", &OpenEpisodes, Unlocked());
+  m.def("format_grammar", &FormatGrammar);
+  m.def("check_grammar", [](const std::string& file, const std::string& text) {
+    py::list all;
+    for (const grammar::Diagnostic& d : CheckText(file, text))
+      all.append(
+          py::make_tuple(d.file, d.place.line, d.place.column, d.message, d.hint, d.is_warning));
+    return all;
+  });
   m.def("episode_of", &EpisodeOf);
   m.def("score",
         [](const std::vector<std::tuple<Events, Events, grammar::Tick, grammar::Tick>>& all,

@@ -36,7 +36,9 @@ class Compiler {
     Read(grammar);
   }
 
-  CompileResult Run() {
+  CompileResult Run(const std::function<void(std::deque<Source>&)>& edit = {}) {
+    if (edit) edit(sources_);
+    program_.texts = std::make_shared<const ProgramTexts>(std::move(texts_));
     CollectParams();
     ApplySettings();
     ApplyOverrides();
@@ -71,6 +73,7 @@ class Compiler {
   // The grammar and everything it uses, each once, what is used first.
   void Read(const GrammarText& grammar) {
     std::set<std::string, std::less<>> seen;
+    texts_ = {.grammar = grammar, .used = {}, .overrides = overrides_};
     ReadFile(grammar, seen);
     if (!sources_.empty()) program_.name = sources_.back().file.name;
   }
@@ -108,6 +111,7 @@ class Compiler {
                  use.is_path ? "looked for " + name : Suggest(name, known_));
         symbols_.is_incomplete = true;
       } else {
+        texts_.used.try_emplace(name, *used);
         ReadFile(*used, seen);
       }
     }
@@ -543,6 +547,7 @@ class Compiler {
   Diagnostics diagnostics_;
   Diagnostics warnings_;
   std::deque<Source> sources_;
+  ProgramTexts texts_;
   std::set<const ast::Law*> broken_laws_;
   std::map<std::string, std::string> variants_;  // `use name from ..`: what stands for the name
   struct Located {
@@ -564,6 +569,17 @@ CompileResult Compile(const GrammarText& grammar, const Includer& includer,
 CompileResult Compile(const GrammarText& grammar, const Includer& includer,
                       const Overrides& overrides, const std::vector<std::string>& known) {
   return Compiler(grammar, includer, overrides, known).Run();
+}
+
+CompileResult Recompile(const Program& program,
+                        const std::function<void(std::deque<Source>&)>& edit) {
+  const ProgramTexts& texts = *program.texts;
+  const Includer includer = [&](std::string_view name) -> std::optional<GrammarText> {
+    const auto found = texts.used.find(name);
+    if (found == texts.used.end()) return std::nullopt;
+    return found->second;
+  };
+  return Compiler(texts.grammar, includer, texts.overrides, {}).Run(edit);
 }
 
 }  // namespace prehend::grammar

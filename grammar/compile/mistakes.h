@@ -3,6 +3,9 @@
 // name is. Part of the compiler. Tested by tests/grammar/compile/compile_test.cc
 #pragma once
 
+#include <deque>
+
+#include "grammar/compile/compile.h"
 #include "grammar/compile/lower.h"
 
 namespace prehend::grammar {
@@ -12,6 +15,10 @@ struct Source {
   GrammarText text;
   ast::File file;
 };
+
+/// Compiles the program's texts again, after this edit.
+CompileResult Recompile(const Program& program,
+                        const std::function<void(std::deque<Source>&)>& edit);
 
 /// By file and line, without what only follows from another mistake.
 Diagnostics InOrder(Diagnostics diagnostics, const Symbols& symbols);

@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -334,6 +336,13 @@ struct TimeWindow {
   friend bool operator==(const TimeWindow&, const TimeWindow&) = default;
 };
 
+/// What a program was compiled from.
+struct ProgramTexts {
+  GrammarText grammar;
+  std::map<std::string, GrammarText, std::less<>> used;  ///< by the names that `use` asked for
+  Overrides overrides;
+};
+
 /// Rule 0 is always `touching`. Event::rule indexes `rules`; only the printed ones appear in
 /// output.
 struct Program {
@@ -355,6 +364,7 @@ struct Program {
   std::vector<TimeWindow> windows;  ///< that nodes ask for, each once
   bool asks_touches = false;     ///< for values of a touch, not only for thresholds it has crossed
   bool recalls_touches = false;  ///< for thresholds that it had crossed in earlier frames
+  std::shared_ptr<const ProgramTexts> texts;  ///< that it was compiled from
   bool waits = true;  ///< for what others decide later; false, in tests: steps each frame at once
 };
 

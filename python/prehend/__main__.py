@@ -14,6 +14,7 @@ COMMANDS = {  # name: module, whose main(arguments) returns the exit code
     "falsify": "falsify",
     "mutate": "mutate",
     "shrink": "shrink",
+    "lsp": "lsp",
 }
 
 

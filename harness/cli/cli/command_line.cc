@@ -251,6 +251,7 @@ std::vector<Command> AllCommands() {
           Limited(CoverageCommand(), kMany_s),
           Limited(TracksCommand(), kOne_s),
           DiffCommand(),
+          FormatCommand(),
           WatchCommand(),
           Limited(RecogniserCommand(), kOne_s),
           BenchCommand(),

@@ -63,6 +63,7 @@ Command ScoreCommand();
 Command ExplainCommand();
 Command TracksCommand();
 Command DiffCommand();
+Command FormatCommand();
 Command EpisodesCommand();
 Command MergeCommand();
 Command VerifyCommand();

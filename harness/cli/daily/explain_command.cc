@@ -8,6 +8,7 @@
 #include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/run/run_text.h"
+#include "harness/show/explain/decisive.h"
 #include "harness/show/explain/explain.h"
 #include "harness/show/explain/query.h"
 #include "harness/truth/timeline/event_text.h"
@@ -62,16 +63,20 @@ struct Question {
 };
 
 ExitCode Answer(const ParsedOptions& options, const CommandContext& context,
-                const std::string& episode, const Question& question,
-                grammar::ReplayMonitor& past) {
+                episode::Episode& played, const Question& question, grammar::ReplayMonitor& past) {
   const grammar::Tick per_second = past.entity_table().ticks_per_second;
   const bool as_json = options.Has("--json");
-  episode::OrderedJson json = ToJson(episode, past);
+  episode::OrderedJson json = ToJson(played.loaded().scenario.name, past);
+  const show::Recognise recognise = [&](const auto& program) -> std::optional<grammar::Timeline> {
+    Result<grammar::Timeline> timeline = played.Segment(program);
+    return timeline ? std::optional(std::move(*timeline)) : std::nullopt;
+  };
   if (question.expected) {
     // An event that did happen is explained like any other.
     const std::vector<WhyEvent> there = show::ExplainEvents(past, *question.expected);
     if (there.empty()) {
-      const show::WhyMissing why = show::ExplainMissing(past, *question.expected);
+      show::WhyMissing why = show::ExplainMissing(past, *question.expected);
+      show::FindDecisive(past, *question.expected, recognise, why);
       json["missing"] = show::ToJson(why, per_second);
       if (!as_json) context.out << show::Text(why, per_second);
     } else {
@@ -80,7 +85,8 @@ ExitCode Answer(const ParsedOptions& options, const CommandContext& context,
       if (!as_json) PrintEvents(there, per_second, context.out);
     }
   } else if (question.event) {
-    const std::vector<WhyEvent> events = show::ExplainEvents(past, *question.event);
+    std::vector<WhyEvent> events = show::ExplainEvents(past, *question.event);
+    if (events.size() == 1) show::FindDecisive(past, *question.event, recognise, events.front());
     if (events.empty()) return ComplainOfNoEvent(options, past, *question.event, context);
     json["events"] = ToJson(events, per_second);
     if (!as_json) PrintEvents(events, per_second, context.out);
@@ -113,8 +119,7 @@ ExitCode RunExplain(const ParsedOptions& options, const CommandContext& context)
   }
   const show::Watched watched = show::Watch(*episode);
   if (!watched.problem.empty()) return Refuse(context, watched.problem);
-  const ExitCode code =
-      Answer(options, context, episode->loaded().scenario.name, question, *watched.past);
+  const ExitCode code = Answer(options, context, *episode, question, *watched.past);
   if (watched.failure.empty() || code != ExitCode::kAgrees) return code;
   return Complain(context, ExitCode::kFailure, watched.failure);
 }

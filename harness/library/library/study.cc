@@ -8,11 +8,14 @@
 #include <thread>
 
 #include "grammar/contents.h"
+#include "grammar/language/format.h"
+#include "harness/episode/run/load_grammar.h"
 #include "harness/exchange/labels/read_truths.h"
 #include "harness/library/library/opened.h"
 #include "harness/measure/score/score.h"
 #include "harness/measure/sweep/sweep.h"
 #include "harness/show/chart/chart.h"
+#include "harness/show/explain/decisive.h"
 #include "harness/show/explain/explain.h"
 #include "harness/show/explain/query.h"
 #include "harness/show/explain/tracks.h"
@@ -76,6 +79,15 @@ Signals SignalsOf(const Episode& episode, const Grammar* grammar,
   });
 }
 
+grammar::Diagnostics CheckText(const std::string& file, const std::string& text) {
+  grammar::CompileResult result =
+      episode::LoadGrammar(ProjectRoot(), file, {}, nullptr, {{file, text}});
+  std::ranges::move(result.warnings, std::back_inserter(result.diagnostics));
+  return std::move(result.diagnostics);
+}
+
+std::string FormatGrammar(const std::string& text) { return grammar::FormatText({"", text}); }
+
 Explanation Explain(const Episode& episode, const Grammar* grammar, const std::string& event) {
   return episode.impl().With(grammar, [&](episode::Episode& opened) {
     std::optional<show::Ask> ask;
@@ -87,11 +99,17 @@ Explanation Explain(const Episode& episode, const Grammar* grammar, const std::s
     nlohmann::ordered_json json = {{"episode", episode.name()},
                                    {"grammar", grammar::GrammarName(past.program())},
                                    {"ticks_per_second", per_s}};
-    const std::vector<show::WhyEvent> events =
+    std::vector<show::WhyEvent> events =
         ask ? show::ExplainEvents(past, *ask) : show::ExplainAll(past);
+    const show::Recognise recognise = [&](const auto& program) -> std::optional<grammar::Timeline> {
+      Result<grammar::Timeline> timeline = opened.Segment(program);
+      return timeline ? std::optional(std::move(*timeline)) : std::nullopt;
+    };
+    if (ask && events.size() == 1) show::FindDecisive(past, *ask, recognise, events.front());
     Explanation explanation;
     if (ask && events.empty()) {
-      const show::WhyMissing why = show::ExplainMissing(past, *ask);
+      show::WhyMissing why = show::ExplainMissing(past, *ask);
+      show::FindDecisive(past, *ask, recognise, why);
       explanation.text = show::Text(why, per_s);
       json["missing"] = show::ToJson(why, per_s);
     } else {

@@ -24,6 +24,11 @@ struct Signals {
 PREHEND_API Signals SignalsOf(const Episode& episode, const Grammar* grammar,
                               const std::vector<std::string>& only);
 
+/// What is wrong in a grammar's text and what only looks so; `file`: where it is, or will be.
+PREHEND_API grammar::Diagnostics CheckText(const std::string& file, const std::string& text);
+/// As `prehend grammar format` lays it out.
+PREHEND_API std::string FormatGrammar(const std::string& text);
+
 /// As `prehend explain` prints it.
 struct Explanation {
   std::string text, json;

@@ -44,6 +44,17 @@ struct Reason {
 };
 using Reasons = std::vector<Reason>;
 
+/// The clause whose number, changed by the smallest share, makes the difference. SI units.
+struct Decisive {
+  std::string clause;  ///< empty: no single number makes it
+  std::string rule;    ///< in which it stands
+  std::string where;   ///< "pick_and_place.grammar:57"
+  double limit = 0;
+  double instead = 0;  ///< would have been enough
+  grammar::Dimension dimension;
+  double share = 0;  ///< of the larger of the two
+};
+
 /// Why an event that happened began, ended, counted and was known as late as it was.
 struct WhyEvent {
   std::string event;  ///< "reaching(right_hand, milk)"
@@ -55,6 +66,7 @@ struct WhyEvent {
   Reasons ended;
   Reasons counted;
   Reasons waited;
+  std::optional<Decisive> decisive = std::nullopt;
 };
 
 /// Why an event that was expected did not happen.
@@ -64,6 +76,7 @@ struct WhyMissing {
   std::optional<grammar::Tick> expected_at;
   std::string because;  ///< the first clause that failed, in one sentence
   Reasons reasons;
+  std::optional<Decisive> decisive = std::nullopt;
   std::vector<WhyEvent>
       nearest;  ///< of the same name and entities, at other times; without reasons
 };

@@ -166,6 +166,32 @@ std::string Late(const WhyEvent& why, Tick ticks_per_second) {
   return Duration(why.decided - why.interval.end, ticks_per_second) + " after its end";
 }
 
+void AddTo(Json& json, const std::optional<Decisive>& decisive) {
+  if (!decisive) return;
+  json["decisive"] = decisive->clause.empty()
+                         ? Json(nullptr)
+                         : Json{{"clause", decisive->clause},
+                                {"rule", decisive->rule},
+                                {"at", decisive->where},
+                                {"limit", decisive->limit},
+                                {"instead", decisive->instead},
+                                {"unit", decisive->dimension == grammar::kPlain
+                                             ? ""
+                                             : grammar::DimensionText(decisive->dimension)},
+                                {"share", decisive->share}};
+}
+
+std::string Sentence(const std::optional<Decisive>& decisive, const char* what) {
+  if (!decisive) return "";
+  if (decisive->clause.empty())
+    return fmt::format("  decisive: no clause alone; with no other single number would it {}\n",
+                       what);
+  const ValueTexts texts = Compared(decisive->instead, decisive->limit, decisive->dimension);
+  return fmt::format("  decisive: {} of {}  ({})\n    with {} instead of {} it would {}\n",
+                     decisive->clause, decisive->rule, decisive->where, texts.value, texts.limit,
+                     what);
+}
+
 }  // namespace
 
 std::vector<WhyEvent> ExplainAll(ReplayMonitor& past) {
@@ -227,24 +253,27 @@ WhyMissing ExplainMissing(ReplayMonitor& past, const Ask& ask) {
 }
 
 Json ToJson(const WhyEvent& why, Tick ticks_per_second) {
-  return {{"event", why.event},
-          {"rule", why.where},
-          {"begin_tick", why.interval.begin},
-          {"end_tick", why.interval.end},
-          {"begin_s", Seconds(why.interval.begin, ticks_per_second)},
-          {"end_s", Seconds(why.interval.end, ticks_per_second)},
-          {"decided_tick", why.decided},
-          {"open_end", why.open_end},
-          {"began", ToJson(why.began, ticks_per_second)},
-          {"ended", ToJson(why.ended, ticks_per_second)},
-          {"counts", ToJson(why.counted, ticks_per_second)},
-          {"waited", ToJson(why.waited, ticks_per_second)}};
+  Json json = {{"event", why.event},
+               {"rule", why.where},
+               {"begin_tick", why.interval.begin},
+               {"end_tick", why.interval.end},
+               {"begin_s", Seconds(why.interval.begin, ticks_per_second)},
+               {"end_s", Seconds(why.interval.end, ticks_per_second)},
+               {"decided_tick", why.decided},
+               {"open_end", why.open_end},
+               {"began", ToJson(why.began, ticks_per_second)},
+               {"ended", ToJson(why.ended, ticks_per_second)},
+               {"counts", ToJson(why.counted, ticks_per_second)},
+               {"waited", ToJson(why.waited, ticks_per_second)}};
+  AddTo(json, why.decisive);
+  return json;
 }
 
 Json ToJson(const WhyMissing& why, Tick ticks_per_second) {
   Json json = {{"event", why.event}, {"rule", why.where}, {"happened", false}};
   if (why.expected_at) json["expected_s"] = Seconds(*why.expected_at, ticks_per_second);
   json["because"] = why.because;
+  AddTo(json, why.decisive);
   json["reasons"] = ToJson(why.reasons, ticks_per_second);
   Json nearest = Json::array();
   for (const WhyEvent& other : why.nearest) {
@@ -270,13 +299,15 @@ std::string Text(const WhyEvent& why, Tick ticks_per_second) {
   text += Tree("  counts", why.counted);
   const std::string decided =
       "  decided at " + At(why.decided, ticks_per_second) + ", " + Late(why, ticks_per_second);
-  return text + (why.waited.empty() ? decided + "\n" : Tree(decided, why.waited));
+  return text + (why.waited.empty() ? decided + "\n" : Tree(decided, why.waited)) +
+         Sentence(why.decisive, "not have happened");
 }
 
 std::string Text(const WhyMissing& why, Tick ticks_per_second) {
   std::string text = why.event + " did not happen";
   if (why.expected_at) text += " at " + At(*why.expected_at, ticks_per_second);
   text += why.because.empty() ? "\n" : "\n  because " + why.because + "\n";
+  text += Sentence(why.decisive, "have happened");
   text += Tree("", why.reasons);
   for (const WhyEvent& other : why.nearest) {
     text +=

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "harness/show/explain/phrasing.h"
+#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::show {
 
@@ -239,7 +240,8 @@ Reasons MissingReasons::Requirement(const CandidateOutcome& outcome, int depth) 
 }
 
 // Where the conditions that should have begun at the end came closest within the run.
-Reasons MissingReasons::EndThatNeverCame(const CandidateOutcome& outcome, FrameNumber look_until) {
+Reasons MissingReasons::EndThatNeverCame(const CandidateOutcome& outcome, FrameNumber look_until,
+                                         int depth) {
   const FromToRule& rule = past_.RuleOf(outcome.instance).As<FromToRule>();
   if (rule.absence) return {};
   const FrameNumber last = std::min({outcome.span.end.frame, past_.frames() - 1, look_until});
@@ -247,7 +249,13 @@ Reasons MissingReasons::EndThatNeverCame(const CandidateOutcome& outcome, FrameN
       .instance = outcome.instance, .frame = last, .begin = outcome.span.begin.frame};
   const auto tell = [&](const Clauses::Clause& clause) {
     const grammar::Node& moment = past_.program().nodes[clause.node];
-    if (moment.op != grammar::Op::kBegins || !clause.truth) return Weighed{};
+    const bool begins = moment.op == grammar::Op::kBegins;
+    if ((!begins && moment.op != grammar::Op::kEnds) || !clause.truth) return Weighed{};
+    const grammar::Node& of = past_.program().nodes[moment.args[0]];
+    if (of.op == grammar::Op::kHolds)
+      return Weigh(MomentOf(past_.Referred(outcome.instance, of.slot), begins,
+                            {outcome.span.begin.frame, last}, depth));
+    if (!begins) return Weighed{};
     Viewpoint at = end;
     at.frame = Closest(moment.args[0], at, {outcome.span.begin.frame, last});
     return Weigh(moment.args[0], at, true, [&](const Clauses::Clause& part) {
@@ -258,6 +266,25 @@ Reasons MissingReasons::EndThatNeverCame(const CandidateOutcome& outcome, FrameN
     });
   };
   return Weigh(rule.to, end, true, tell).reasons;
+}
+
+// Of a rule whose begin or end was waited for: when it came instead, or why it never held.
+Reason MissingReasons::MomentOf(InstanceId target, bool begins, const Window& run, int depth) {
+  Reason reason{.mark = Mark::kFailed, .what = begins ? "to it begins" : "to it ends"};
+  if (target == kNone) return reason;
+  reason.what = "to " + Label(past_, target) + (begins ? " begins" : " ends");
+  const CandidateOutcome* held = past_.LastBegun(target, run.last);
+  const bool is_there = held != nullptr && held->span.end.frame > run.first;
+  if (is_there) {
+    reason.how = "it held " + truth::IntervalText({held->span.begin.tick, held->span.end.tick},
+                                                  past_.entity_table().ticks_per_second);
+    return reason;
+  }
+  reason.how =
+      "it did not hold from " + clauses_.Time(run.first) + " to " + clauses_.Time(run.last);
+  if (past_.RuleOf(target).form() != grammar::Form::kTouching)
+    reason.because = OfInstance(target, run, depth + 1).reasons;
+  return reason;
 }
 
 void MissingReasons::AddClauses(const char* word, grammar::NodeId node, const Viewpoint& at,
@@ -333,7 +360,7 @@ MissingReasons::Telling MissingReasons::Tell(const CandidateOutcome& outcome, in
       return reasons.Unconfirmed(outcome, unconfirmed.over, depth);
     }
     Telling operator()(fate::Dropped dropped) const {
-      Telling told{"dropped", reasons.EndThatNeverCame(outcome, look_until)};
+      Telling told{"dropped", reasons.EndThatNeverCame(outcome, look_until, depth)};
       reasons.AddClauses(
           "during ", rule.As<FromToRule>().during,
           {.instance = outcome.instance, .frame = dropped.at, .begin = outcome.span.begin.frame},

@@ -75,7 +75,8 @@ class MissingReasons {
                 const std::function<Weighed(const Clauses::Clause&)>& tell);
   Reasons Requirement(const grammar::CandidateOutcome& outcome, int depth);
   Reasons EndThatNeverCame(const grammar::CandidateOutcome& outcome,
-                           grammar::FrameNumber look_until);
+                           grammar::FrameNumber look_until, int depth);
+  Reason MomentOf(grammar::InstanceId target, bool begins, const Window& run, int depth);
   Cause OfForm(grammar::InstanceId instance, const Window& window, int depth);
   Cause OfWhile(grammar::InstanceId instance, const Window& window, int depth);
   Cause OfFromTo(grammar::InstanceId instance, const Window& window, int depth);
