@@ -6,10 +6,14 @@
 
 #include <algorithm>
 
+#include "grammar/watch_drawing.h"
 #include "harness/base/base/atomic_file.h"
+#include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/picture_options.h"
+#include "harness/episode/run/load_grammar.h"
 #include "harness/show/figures/comparison_sheet.h"
+#include "harness/show/figures/drawing_chart.h"
 #include "harness/show/figures/scene_tiles.h"
 #include "harness/show/pictures/svg_file.h"
 #include "harness/suite/check/select_scenarios.h"
@@ -163,6 +167,36 @@ ExitCode DrawChart(const Kind& kind, const suite::PlayedRun& played, const Parse
   return WriteSheet(sheet, format, painter, options, context);
 }
 
+/// A file of drawn episodes, of which `--episode` names one by its number or title.
+ExitCode DrawDrawing(const std::string& path, const ParsedOptions& options,
+                     const CommandContext& context) {
+  if (!options.Has("--grammar"))
+    return Refuse(context, path + ": a drawing needs a grammar: --grammar my.grammar");
+  const Result<std::string> text = ReadTextFile(path);
+  if (!text) return Complain(context, text.error());
+  Result<grammar::Overrides> settings = episode::ParameterSettings(options.All("--set"));
+  if (!settings) return Complain(context, settings.error());
+  const grammar::CompileResult compiled =
+      episode::LoadGrammar(context.root, options.Text("--grammar"), *settings);
+  if (!compiled.program) return Complain(context, compiled.diagnostics);
+  grammar::Diagnostics wrong;
+  const std::vector<grammar::DrawnEpisode> all =
+      grammar::ReadDrawings({ReadableName(path), *text}, wrong);
+  if (!wrong.empty()) return Complain(context, wrong);
+  const std::string which = options.TextOr("--episode", "1");
+  std::size_t at = 0;
+  while (at < all.size() && std::to_string(at + 1) != which && all[at].title != which) ++at;
+  if (at == all.size())
+    return Complain(context, ExitCode::kNothing,
+                    fmt::format("--episode: '{}' is none of the {} drawings of {}", which,
+                                all.size(), ReadableName(path)));
+  const grammar::WatchedDrawing watched = WatchDrawing(compiled.program, all[at]);
+  if (!watched.error.empty()) return Complain(context, ExitCode::kFailure, watched.error);
+  const show::SceneFormat format = SceneFormatOf(options, "action", 900);
+  show::Sheet sheet{.chart = show::DrawingChart(*compiled.program, all[at], watched.timeline)};
+  return WriteSheet(sheet, format, {}, options, context);
+}
+
 /// Why these options do not go together, or "".
 std::string WhyNot(const Kind& kind, const ParsedOptions& options) {
   if (std::string_view(kind.name) != "phases" && options.Has("--against"))
@@ -181,6 +215,8 @@ ExitCode RunFigure(const ParsedOptions& options, const CommandContext& context) 
   if (problem.empty()) problem = WhyNotWritable(options.Text("--output"));
   if (!problem.empty()) return Refuse(context, problem);
   const std::string typed = options.TextOr("EPISODE", kind.scenario);
+  if (std::string_view(kind.name) == "phases" && typed.ends_with(".txt"))
+    return DrawDrawing(typed, options, context);
   if (std::string_view(kind.name) == "grasps") return DrawGrasps(typed, options, context);
   const auto played = PlayTyped(typed, options, context);
   if (!played) return played.error();
@@ -204,7 +240,9 @@ Command FigureCommand() {
       .options = Joined(
           {{.name = "kind", .help = KindHelp(), .rule = OneOf(KindNames()), .required = true},
            {.name = "EPISODE",
-            .help = "a scenario, an episode file or a recording; for grasps a glob of scenarios"},
+            .help =
+                "a scenario, an episode file or a recording; for grasps a glob of scenarios; for "
+                "phases also drawings (.txt), with --grammar"},
            EpisodeOption(),
            Required(OutputOption("the file: .svg, .pdf or .png")),
            {.name = "--against",

@@ -10,7 +10,7 @@
 #include "harness/base/base/atomic_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/show/explain/query.h"
-#include "harness/show/explain/tracks.h"
+#include "harness/show/tracks/tracks.h"
 
 namespace prehend::cli {
 namespace {

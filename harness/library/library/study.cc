@@ -18,7 +18,7 @@
 #include "harness/show/explain/decisive.h"
 #include "harness/show/explain/explain.h"
 #include "harness/show/explain/query.h"
-#include "harness/show/explain/tracks.h"
+#include "harness/show/tracks/tracks.h"
 #include "harness/truth/timeline/event_drawings.h"
 #include "harness/truth/timeline/event_text.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Conditions and signals over time, on frames written by hand.
-#include "harness/show/explain/tracks.h"
+#include "harness/show/tracks/tracks.h"
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,8 @@ TEST(Tracks, SomeOfThemByName) {
   Stage stage(kGrammar);
   grammar::ReplayMonitor& past = Push(stage);
   EXPECT_EQ(TrackNames(past.program()),
-            (std::vector<std::string>{"displacement", "height", "met", "pushed", "touching"}));
+            (std::vector<std::string>{"displacement", "height", "met", "pushed", "robustness",
+                                      "touching"}));
   std::ostringstream csv;
   WriteCsv(CollectTracks(past, {"height", "met"}), csv);
   EXPECT_EQ(csv.str().substr(0, csv.str().find('\n')),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/explain/tracks.h"
+#include "harness/show/tracks/tracks.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 
 #include "harness/base/base/quoting.h"
 #include "harness/show/explain/phrasing.h"
+#include "harness/show/tracks/robustness.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::show {
@@ -24,6 +25,8 @@ using grammar::Program;
 using grammar::ReplayMonitor;
 using grammar::Rule;
 using grammar::RuleId;
+
+constexpr const char* kRobustness = "robustness";
 
 /// A number of one rule that can be plotted: a side of a comparison, or how far something is from a
 /// region's centre.
@@ -87,10 +90,26 @@ class Collector {
     for (const RuleId rule : grammar::IdsOf(rules)) {
       if (!rules[rule].hidden) AddSignals(rule);
     }
+    for (const RuleId rule : grammar::IdsOf(rules)) {
+      const bool wanted = only_.size() == 1 || only_.contains(rules[rule].name);
+      if (!rules[rule].hidden && only_.contains(kRobustness) && wanted) AddRobustness(rule);
+    }
     return std::move(tracks_);
   }
 
  private:
+  void AddRobustness(RuleId rule) {
+    for (const InstanceId instance : past_.InstancesOf(rule)) {
+      const std::optional<Robustness> robustness = RobustnessOf(past_, instance);
+      auto* values = robustness && tracks_.problem.empty()
+                         ? Add(std::string(kRobustness) + " of " + Label(past_, instance),
+                               Track::Kind::kSignal, robustness->unit)
+                         : nullptr;
+      for (std::size_t i = 0; values != nullptr && i < values->size(); ++i)
+        if (std::isfinite(robustness->values[i])) (*values)[i] = robustness->values[i];
+    }
+  }
+
   bool Wanted(const std::string& name) const { return only_.empty() || only_.contains(name); }
 
   std::vector<std::optional<double>>* Add(std::string name, Track::Kind kind, std::string unit) {
@@ -197,6 +216,7 @@ std::vector<std::string> TrackNames(const Program& program) {
     names.insert(rule.name);
     for (const Signal& signal : SignalsOf(program, rule)) names.insert(NameOf(program, signal));
   }
+  names.insert(kRobustness);
   names.erase("");
   return {names.begin(), names.end()};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every named condition and signal of a grammar over time, one value per frame: for plots.
-// Tested by tests/harness/show/explain/tracks_test.cc
+// Tested by tests/harness/show/tracks/tracks_test.cc
 #pragma once
 
 #include <optional>
