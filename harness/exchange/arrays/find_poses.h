@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/yaml/diagnostic_list.h"
+#include "harness/base/base/result.h"
 
 namespace prehend::exchange {
 

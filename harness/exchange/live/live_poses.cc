@@ -7,7 +7,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "harness/exchange/arrays/json_path.h"
 #include "harness/exchange/import/import_poses.h"
 #include "harness/exchange/poses/table_layout.h"
 
@@ -23,8 +22,10 @@ bool IsJson(std::string_view line) {
 
 /// "[name=Cup].position": a line has one body, or some.
 bool IsOfSomeLines(const Named<MappedEntity>& entity) {
-  const auto path = entity.value.from ? ParseJsonPath(entity.value.from->value) : std::nullopt;
-  return path && !path->empty() && path->front().kind == JsonStep::Kind::kMatch;
+  if (!entity.value.from) return false;
+  std::string_view path = entity.value.from->value;
+  path.remove_prefix(std::min(path.find_first_not_of("$@"), path.size()));
+  return path.starts_with('[') && path.find('=') < path.find_first_of("'\"]");
 }
 
 /// Mostly numbers, or cells of what is not tracked.
