@@ -309,7 +309,6 @@ ProgramDescription DescribeProgram(const std::string& version) {
                       {"episode query --class", "--role"},
                       {"episode query --at-least-s", "--lasts-s"},
                       {"episode query --at-most-s", "--lasts-s=.."},
-                      {"episode query --with", "--relation"},
                       {"episode query --scenario", "--episode"},
                       {"episode query --from-s", "--from"},
                       {"episode query --until-s", "--to"},

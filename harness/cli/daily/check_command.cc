@@ -358,6 +358,19 @@ Result<void> GoOn(const episode::Plan& plan, suite::SuiteRequest& request,
   return {};
 }
 
+/// Of what the files say. Beside a page that has its own place, so that CI can keep it; else with
+/// what is remembered.
+void AddToHistory(const std::vector<suite::ScenarioVerdict>& verdicts, const ParsedOptions& options,
+                  const CommandContext& context, suite::ReportHeader& header) {
+  if (options.Has("--grammar") || options.Has("--set")) return;
+  const std::string folder =
+      options.Has("--report") ? header.folder : BuildFolder(context.root) + "/check";
+  const std::string file = (fs::path(folder) / "history.jsonl").string();
+  header.history = suite::ReadHistory(file);
+  header.history.push_back(suite::RunOf(verdicts, header.date, header.commit));
+  (void)suite::WriteHistory(file, header.history);  // as what passed last
+}
+
 ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   for (const char* other : {"--grammar", "--set", "--recogniser"}) {
     if (options.Has("--changed") && options.Has(other))
@@ -392,15 +405,7 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   suite::ReportHeader header =
       suite::HeaderOf(CommandText(context.words) + stopped, context.root, context.today);
   header.folder = request.report_folder;
-  if (!options.Has("--grammar") && !options.Has("--set") && stopped.empty()) {
-    // Beside a page that has its own place, so that CI can keep it; else with what is remembered.
-    const fs::path file = fs::path(options.Has("--report") ? request.report_folder
-                                                           : BuildFolder(context.root) + "/check") /
-                          "history.jsonl";
-    header.history = suite::ReadHistory(file.string());
-    header.history.push_back(suite::RunOf(verdicts, header.date, header.commit));
-    (void)suite::WriteHistory(file.string(), header.history);  // as of what passed last
-  }
+  if (stopped.empty()) AddToHistory(verdicts, options, context, header);
   problem = WriteTextFile(page, suite::ReportHtml(verdicts, header));
   if (problem.empty() && options.Has("--junit"))
     problem = WriteTextFile(junit, suite::JunitXml(verdicts));

@@ -22,7 +22,7 @@ std::string Text(const StepAction& action) {
                  [](const ReachStep& step) { return "reach " + step.object; },
                  [](const TriggerStep& step) {
                    return step.trigger > 0 ? fmt::format("close to {:g}", step.trigger)
-                                           : std::string("open");
+                                           : std::string("open to 0");
                  },
                  [](const MoveStep& step) {
                    const bool is_lift = step.by_m.head<2>().isZero() && step.by_m.z() > 0;

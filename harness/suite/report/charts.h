@@ -11,7 +11,7 @@
 
 #include "harness/show/replay/played_steps.h"
 #include "harness/suite/check/explained.h"
-#include "harness/suite/check/history.h"
+#include "harness/suite/report/history.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/timeline/event_drawings.h"
 

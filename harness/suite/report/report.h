@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "harness/suite/check/history.h"
 #include "harness/suite/check/verdict.h"
 #include "harness/suite/report/charts.h"
+#include "harness/suite/report/history.h"
 
 namespace prehend::suite {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What became of each scenario in the last runs: a file with a line of JSON for each run. Tested by
-// tests/harness/suite/check/history_test.cc
+// tests/harness/suite/report/history_test.cc
 #pragma once
 
 #include <cstddef>

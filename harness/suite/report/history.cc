@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/check/history.h"
+#include "harness/suite/report/history.h"
 
 #include <cmath>
 #include <filesystem>
