@@ -263,8 +263,7 @@ std::vector<Command> AllCommands() {
 ProgramDescription DescribeProgram(const std::string& version) {
   return {
       .version = version,
-      .summary =
-          "Simulate manipulation, segment it with activity grammars, compare it with goldens.",
+      .summary = "Simulate manipulation, segment it with activity grammars, test both.",
       .footer = kFooter,
       .groups = {{"Write scenarios", {"new", "validate"}},
                  {"Test", {"check", "review", "accept", "list"}},

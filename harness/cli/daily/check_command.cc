@@ -371,6 +371,21 @@ void AddToHistory(const std::vector<suite::ScenarioVerdict>& verdicts, const Par
   (void)suite::WriteHistory(file, header.history);  // as what passed last
 }
 
+/// `page`: "" if it could not be written.
+void PrintResults(const std::vector<suite::ScenarioVerdict>& verdicts, const ParsedOptions& options,
+                  const std::string& page, Interrupt& interrupt, const CommandContext& context) {
+  if (options.Has("--json")) {
+    nlohmann::ordered_json summary = SummaryJson(verdicts, page);
+    if (interrupt.Came()) summary["stopped_by"] = interrupt.Name();
+    context.out << summary.dump(2) << "\n";
+    return;
+  }
+  const bool as_files_say =
+      !options.Has("--grammar") && !options.Has("--set") && !options.Has("--recogniser");
+  PrintText(verdicts, {.as_files_say = as_files_say, .verbose = options.Has("--verbose")}, page,
+            context);
+}
+
 ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   for (const char* other : {"--grammar", "--set", "--recogniser"}) {
     if (options.Has("--changed") && options.Has(other))
@@ -409,17 +424,8 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   problem = WriteTextFile(page, suite::ReportHtml(verdicts, header));
   if (problem.empty() && options.Has("--junit"))
     problem = WriteTextFile(junit, suite::JunitXml(verdicts));
-  if (options.Has("--json")) {
-    nlohmann::ordered_json summary = SummaryJson(verdicts, problem.empty() ? page : "");
-    if (interrupt.Came()) summary["stopped_by"] = interrupt.Name();
-    context.out << summary.dump(2) << "\n";
-  } else if (junit != "-") {
-    PrintText(verdicts,
-              {.as_files_say = !options.Has("--grammar") && !options.Has("--set") &&
-                               !options.Has("--recogniser"),
-               .verbose = options.Has("--verbose")},
-              problem.empty() ? page : "", context);
-  }
+  if (junit != "-" || options.Has("--json"))
+    PrintResults(verdicts, options, problem.empty() ? page : "", interrupt, context);
   if (!stopped.empty()) {
     context.out.flush();
     context.err << "prehend" << stopped << std::endl;

@@ -27,8 +27,8 @@ std::vector<suite::ScenarioVerdict> VerdictsOf(const std::vector<episode::Episod
                                                const CommandContext& context) {
   const std::vector<episode::ScenarioFile> all = episode::ListScenarios(context.root);
   suite::ScenarioSelection selection;
-  for (const episode::EpisodeName& episode : episodes)
-    selection.scenarios.push_back(episode::ScenarioOf(episode, all));
+  std::ranges::transform(episodes, std::back_inserter(selection.scenarios),
+                         [&](const auto& episode) { return episode::ScenarioOf(episode, all); });
   suite::SuiteRequest request{
       .selection = std::move(selection),
       .changes = {grammar, options.All("--set")},
@@ -40,7 +40,7 @@ std::vector<suite::ScenarioVerdict> VerdictsOf(const std::vector<episode::Episod
   if (hears_who_is_named) HearWho(options, request);
   std::vector<suite::ScenarioVerdict> verdicts = suite::RunSuite(request, {});
   // An episode of no scenario of the project is known by its file; on the page by what it is.
-  for (std::size_t i = 0; i < episodes.size(); ++i) verdicts[i].scenario = episodes[i].scenario;
+  for (std::size_t i = 0; i < verdicts.size(); ++i) verdicts[i].scenario = episodes[i].scenario;
   return verdicts;
 }
 

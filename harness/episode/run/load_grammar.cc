@@ -189,19 +189,21 @@ grammar::Diagnostics Warnings(const grammar::Program& program,
     for (std::size_t i = 1; i <= member.sensor_sets.size(); ++i) numbers.insert(std::to_string(i));
   }
   grammar::Diagnostics warnings = CompileWarnings(program);
-  std::vector<grammar::NameInSource> asked_for = NamedClasses(program);
-  std::erase_if(asked_for, [&](const grammar::NameInSource& named) {
-    return IsUsedFromLibrary(named.file, GrammarName(program));
-  });
-  WarnOfUnknownNames(asked_for, classes, "no entity of this episode is a",
+  const auto asked_for = [&](std::vector<grammar::NameInSource> names) {
+    std::erase_if(names, [&](const grammar::NameInSource& named) {
+      return IsUsedFromLibrary(named.file, GrammarName(program));
+    });
+    return names;
+  };
+  WarnOfUnknownNames(asked_for(NamedClasses(program)), classes, "no entity of this episode is a",
                      "an entity is one by its 'class', or by a line of the scenario's 'classes'; "
                      "without one, what needs it never happens",
                      warnings);
   WarnOfUnknownNames(
-      NamedSensorSets(program), sensor_sets, "no hand of this episode has a sensor set",
+      asked_for(NamedSensorSets(program)), sensor_sets, "no hand of this episode has a sensor set",
       sensor_sets.empty() ? "" : fmt::format("there are: {}", fmt::join(sensor_sets, ", ")),
       warnings);
-  WarnOfUnknownNames(NumberedSensorSets(program), numbers,
+  WarnOfUnknownNames(asked_for(NumberedSensorSets(program)), numbers,
                      "no hand of this episode has a sensor set",
                      fmt::format("a hand has {} of them here at most", numbers.size()), warnings);
   return warnings;
