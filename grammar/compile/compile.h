@@ -3,6 +3,8 @@
 // tests/grammar/compile/compile_test.cc
 #pragma once
 
+#include <deque>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +15,7 @@
 namespace prehend::grammar {
 
 struct Program;  // grammar/program/program.h
+struct Source;   // grammar/compile/mistakes.h
 
 struct CompileResult {
   std::shared_ptr<const Program> program;  ///< null when there are errors
@@ -28,5 +31,9 @@ CompileResult Compile(const GrammarText& grammar, const Includer& includer,
 /// of the grammar; it ends with ".grammar".
 CompileResult Compile(const GrammarText& grammar, const Includer& includer,
                       const Overrides& overrides, const std::vector<std::string>& known);
+
+/// Compiles the program's texts again, after this edit of their syntax trees.
+CompileResult Recompile(const Program& program,
+                        const std::function<void(std::deque<Source>&)>& edit);
 
 }  // namespace prehend::grammar

@@ -2,8 +2,10 @@
 #include "grammar/compile/limits.h"
 
 #include <algorithm>
+#include <deque>
 #include <set>
 
+#include "grammar/compile/compile.h"
 #include "grammar/compile/mistakes.h"
 #include "grammar/language/limits.h"
 

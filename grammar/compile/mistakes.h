@@ -3,9 +3,12 @@
 // name is. Part of the compiler. Tested by tests/grammar/compile/compile_test.cc
 #pragma once
 
-#include <deque>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
 
-#include "grammar/compile/compile.h"
+#include "grammar/base/source.h"
 #include "grammar/compile/lower.h"
 
 namespace prehend::grammar {
@@ -15,10 +18,6 @@ struct Source {
   GrammarText text;
   ast::File file;
 };
-
-/// Compiles the program's texts again, after this edit.
-CompileResult Recompile(const Program& program,
-                        const std::function<void(std::deque<Source>&)>& edit);
 
 /// By file and line, without what only follows from another mistake.
 Diagnostics InOrder(Diagnostics diagnostics, const Symbols& symbols);

@@ -188,6 +188,21 @@ void Compare(const std::string& event, const std::vector<grammar::Role>& roles,
     });
 }
 
+/// A warning of labels that are left out, or "".
+std::string WithoutText(const LabelFile& file) {
+  if (file.empty.empty()) return "";
+  const Label& first = file.empty.front();
+  grammar::Diagnostic warning =
+      file.At(first.place,
+              fmt::format("{} without text, and left out; the first {}at {:g} to {:g} s",
+                          file.empty.size() == 1 ? "a label is"
+                                                 : fmt::format("{} labels are", file.empty.size()),
+                          first.tier.empty() ? "" : "of the tier '" + first.tier + "' ",
+                          first.begin_s, first.end_s));
+  warning.is_warning = true;
+  return grammar::Format(warning);
+}
+
 }  // namespace
 
 Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelMap* map,
@@ -284,19 +299,8 @@ Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelM
   }
   for (const LabelFile& file : files) {
     if (file.backward > 0) reading.counted_.backward[file.file] = file.backward;
-    reading.warnings_ += grammar::Format(file.warnings);
+    reading.warnings_ += grammar::Format(file.warnings) + WithoutText(file);
     reading.counted_.without_text += file.empty.size();
-    if (file.empty.empty()) continue;
-    const Label& first = file.empty.front();
-    grammar::Diagnostic warning = file.At(
-        first.place,
-        fmt::format(
-            "{} without text, and left out; the first {}at {:g} to {:g} s",
-            file.empty.size() == 1 ? "a label is" : fmt::format("{} labels are", file.empty.size()),
-            first.tier.empty() ? "" : "of the tier '" + first.tier + "' ", first.begin_s,
-            first.end_s));
-    warning.is_warning = true;
-    reading.warnings_ += grammar::Format(warning);
   }
   // What labels could name: without one of them, what is recognised of it is too much. Where no
   // label is and no map, that is all.
