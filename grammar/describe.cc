@@ -152,9 +152,12 @@ std::string Watched(const Program& program, const Rule& rule) {
   return guard.form() == Form::kTouching ? "pairs that touch" : "while " + guard.name;
 }
 
+/// Its places in the indexes of the engine, and in the lists of those that are told of a change.
+constexpr std::size_t kIndexed_bytes = 512;
+
 std::size_t BytesPerBinding(const Rule& rule) {
   return sizeof(RuleInstance) + rule.references.size() * sizeof(int) +
-         rule.anchors.size() * 3 * sizeof(double);
+         rule.anchors.size() * 3 * sizeof(double) + kIndexed_bytes;
 }
 
 std::string Head(const Rule& rule) {

@@ -10,6 +10,7 @@
 
 #include "bench/yardsticks/four_automata.h"
 #include "bench/yardsticks/worlds.h"
+#include "grammar/describe.h"
 
 namespace prehend::bench {
 namespace {
@@ -54,6 +55,29 @@ TEST(Speed, AnObjectTakesFourKilobytesAfterUse) {
   EXPECT_GT(WatchByGrammar(log, monitor).recognised.events, 4u * kObjects);
   const std::size_t after = mallinfo2().uordblks;
   EXPECT_LT(after - std::min(before, after), 4096u * kObjects);
+}
+
+// What `prehend validate` prints: bindings that are new, and after each object was used.
+TEST(Speed, NoBindingTakesMoreThanIsPrinted) {
+  const auto program = CompileFourRules();
+  std::size_t bound = 0;
+  for (const grammar::RuleDescription& rule : Describe(*program).rules)
+    bound = std::max(bound, rule.bytes_per_binding + 2 * rule.bytes_per_interval);
+  for (const int frames : {1, 16'000}) {
+    const ChangeLog log = MakeStations(2048, frames, 60);
+    std::vector<grammar::Event> events;
+    const std::size_t before = mallinfo2().uordblks;
+    grammar::Monitor monitor(program, log.entity_table);
+    for (std::size_t i = 0; i < log.size(); ++i) {
+      monitor.AdvanceBy(log[i], events);
+      events.clear();
+    }
+    const std::size_t after = mallinfo2().uordblks;
+    const auto bindings = static_cast<std::size_t>(monitor.instances_in_use());
+    EXPECT_GT(bindings, 2000u);
+    EXPECT_LE(after - std::min(before, after), bound * bindings + 100'000) << frames;
+    std::printf("%zu bytes per binding, at most %zu\n", (after - before) / bindings, bound);
+  }
 }
 
 TEST(Speed, TheHashSeesEveryPartOfAnEvent) {

@@ -206,11 +206,11 @@ namespace {
 
 constexpr const char* kFooter =
     R"(Options:
-  -h,--help             Print this, or of a command what it does and takes
-  --version             Print the version
-  --time-limit-s S      After most commands: seconds that it may take; 0: no limit; default: 600,
-                        of many episodes 3600, of sweeps 86400, of each scenario in 'check' 120,
-                        of a question in 'episode ask' 10, with --trials or --on-save none
+  -h,--help             Print this, or of a command what it does and takes; --version: the version
+  --json                Where a command prints results: print JSON instead of text
+  --time-limit-s S      Seconds that most commands may take; 0: no limit; default: 600, of many
+                        episodes 3600, sweeps 86400, a scenario in 'check' 120, 'episode ask' 10,
+                        with --trials or --on-save none
   -j,--jobs N           Where many are looked at: so many at a time; default: one per core
   --memory-limit-mb MB  Memory that it may take; 0: no limit; default: 4000, in 'check' 1000
 
@@ -270,7 +270,7 @@ ProgramDescription DescribeProgram(const std::string& version) {
                  {"Look at an episode", {"run", "explain", "render", "figure", "report"}},
                  {"Use data of your own", {"import", "score"}}},
       .nouns = {{"episode", "Recorded episodes"},
-                {"grammar", "Rules of events"},
+                {"grammar", "Rules"},
                 {"scenario", "What scenarios are made of"}},
       .old_commands = {{"episodes", "episode list"},
                        {"query", "episode query"},

@@ -227,7 +227,9 @@ Option MemoryLimitOption() {
           .unlisted = true};
 }
 
-Option JsonOption() { return {.name = "--json", .help = "print JSON instead of text"}; }
+Option JsonOption() {
+  return {.name = "--json", .help = "print JSON instead of text", .unlisted = true};
+}
 
 Option PaceOption() {
   return {.name = "--pace",

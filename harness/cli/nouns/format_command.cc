@@ -22,14 +22,15 @@ ExitCode RunFormat(const ParsedOptions& options, const CommandContext& context) 
 }  // namespace
 
 Command FormatCommand() {
-  return {.name = "grammar format",
-          .summary = "Lay out a grammar as those of the library are",
-          .examples = {"grammar format pick_and_place", "grammar format my/rules.grammar"},
-          .options = {{.name = "GRAMMAR", .help = "a grammar's name or file", .required = true}},
-          .run = RunFormat,
-          .note =
-              "Comments, line breaks and the columns of '=' and '#' are kept. A grammar with "
-              "errors is not laid out."};
+  return {
+      .name = "grammar format",
+      .summary = "Lay out a grammar as those of the library are",
+      .examples = {"grammar format pick_and_place", "grammar format my/rules.grammar"},
+      .options = {{.name = "GRAMMAR", .help = "a grammar's name or file", .required = true}},
+      .run = RunFormat,
+      .note =
+          "Comments, line breaks and the columns of '=' and '#' are kept; with errors nothing is "
+          "laid out."};
 }
 
 }  // namespace prehend::cli
