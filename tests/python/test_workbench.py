@@ -207,7 +207,7 @@ class Workbench(takes.Folder, unittest.TestCase):
             done = subprocess.run(["bash", "-c", line], cwd=folder, env=surroundings, capture_output=True, text=True, check=False)
             said[line] = done.stdout + done.stderr
             self.assertIn(done.returncode, (0, 1, 5), f"{line}: {done.stdout}{done.stderr}")
-        self.assertEqual(len(said), 14)
+        self.assertEqual(len(said), 15)
         words = lambda of: next(out for line, out in said.items() if of in line)
         self.assertIn("episodes show as much as all", words("coverage suite"))
         self.assertIn("slide_distance: 5 -> 10", words("mutate"))
