@@ -153,7 +153,7 @@ std::string Watched(const Program& program, const Rule& rule) {
 }
 
 /// Its places in the indexes of the engine, and in the lists of those that are told of a change.
-constexpr std::size_t kIndexed_bytes = 512;
+constexpr std::size_t kIndexed_bytes = 1024;
 
 std::size_t BytesPerBinding(const Rule& rule) {
   return sizeof(RuleInstance) + rule.references.size() * sizeof(int) +

@@ -562,17 +562,11 @@ class Compiler {
 }  // namespace
 
 CompileResult Compile(const GrammarText& grammar, const Includer& includer,
-                      const Overrides& overrides) {
-  return Compile(grammar, includer, overrides, {});
-}
-
-CompileResult Compile(const GrammarText& grammar, const Includer& includer,
                       const Overrides& overrides, const std::vector<std::string>& known) {
   return Compiler(grammar, includer, overrides, known).Run();
 }
 
-CompileResult Recompile(const Program& program,
-                        const std::function<void(std::deque<Source>&)>& edit) {
+CompileResult Recompile(const Program& program, const Edit& edit) {
   const ProgramTexts& texts = *program.texts;
   const Includer includer = [&](std::string_view name) -> std::optional<GrammarText> {
     const auto found = texts.used.find(name);

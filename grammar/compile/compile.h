@@ -23,17 +23,14 @@ struct CompileResult {
   Diagnostics warnings;  ///< what is allowed and yet looks like a mistake
 };
 
+/// `known` are the names that `use NAME` could ask for: diagnostics suggest the nearest. `use
+/// "PATH"` asks the includer for a path relative to the file of the grammar; it ends with
+/// ".grammar".
 CompileResult Compile(const GrammarText& grammar, const Includer& includer,
-                      const Overrides& overrides = {});
-
-/// The same for callers that know the names that `use NAME` could ask for: `known`, from which
-/// diagnostics suggest the nearest. `use "PATH"` asks the includer for a path relative to the file
-/// of the grammar; it ends with ".grammar".
-CompileResult Compile(const GrammarText& grammar, const Includer& includer,
-                      const Overrides& overrides, const std::vector<std::string>& known);
+                      const Overrides& overrides = {}, const std::vector<std::string>& known = {});
 
 /// Compiles the program's texts again, after this edit of their syntax trees.
-CompileResult Recompile(const Program& program,
-                        const std::function<void(std::deque<Source>&)>& edit);
+using Edit = std::function<void(std::deque<Source>&)>;
+CompileResult Recompile(const Program& program, const Edit& edit);
 
 }  // namespace prehend::grammar

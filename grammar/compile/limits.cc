@@ -71,10 +71,9 @@ std::shared_ptr<const Program> WithLimit(const Program& program, const std::stri
     const std::set<std::string> names = MadeOf(rule, sources), defines = DefinesIn(sources);
     for (Source& source : sources) {
       source.file.laws.clear();
-      std::erase_if(source.file.defines,
-                    [&](const ast::Define& d) { return !names.contains(d.name); });
-      std::erase_if(source.file.definitions,
-                    [&](const ast::Definition& d) { return !names.contains(d.name); });
+      const auto is_other = [&](const auto& one) { return !names.contains(one.name); };
+      std::erase_if(source.file.defines, is_other);
+      std::erase_if(source.file.definitions, is_other);
       for (ast::Definition& definition : source.file.definitions)
         definition.is_event |= definition.name == rule;
       if (source.text.file != limit.file) continue;

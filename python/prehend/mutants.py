@@ -161,6 +161,9 @@ def mutants(grammar, clauses):
         for name, place in named:
             value = re.compile(r"\w+\s*=\s*").match(file.text, file.at(place))
             file.numbers(value.end(), params[name], name)
+        for use in re.finditer(r"^use\b[^#\n]*?\bwith\b([^#\n]*)", file.text, re.MULTILINE):  # `use NAME with x = 5 cm`
+            for given in re.finditer(r"(\w+)\s*=\s*", use.group(1)):
+                file.numbers(use.start(1) + given.end(), params.get(given.group(1), set()), given.group(1))
         for one in file.mutants:
             try:
                 _prehend.Grammar(grammar, {}, {one.file: one.text})
