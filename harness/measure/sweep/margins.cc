@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 
 #include "grammar/base/quantity.h"
 #include "grammar/base/wording.h"
@@ -19,6 +20,8 @@ namespace {
 
 constexpr std::array kFactors = {0.125, 0.177, 0.25, 0.354, 0.5, 0.707, 0.841, 1.0,
                                  1.19,  1.414, 2.0,  2.83,  4.0, 5.66,  8.0};
+
+constexpr std::size_t kAxesAtOnce = 16;
 
 using CompileWith = std::function<grammar::CompileResult(const grammar::Overrides&)>;
 
@@ -43,7 +46,7 @@ Axis AxisOf(const grammar::ProgramParam& param, const grammar::Overrides& fixed,
   return axis;
 }
 
-Margin MarginOf(const Axis& axis, const std::vector<SweepPoint>& points, std::size_t own,
+Margin MarginOf(const Axis& axis, std::span<const SweepPoint> points, std::size_t own,
                 double within) {
   auto best = std::ranges::max_element(points, {}, &SweepPoint::f1);
   if (points[own].f1 == best->f1) best = points.begin() + static_cast<std::ptrdiff_t>(own);
@@ -131,16 +134,25 @@ Result<Margins> FindMargins(const std::vector<episode::Take>& takes, SweepReques
       progress(before * takes.size() + done, settings * takes.size());
     };
   }
-  for (const TriedAxis& one : tried) {
-    request.axes = {one.axis};
+  // Several at once: a scenario is played for each call.
+  request.one_at_a_time = true;
+  for (std::size_t first = 0; first < tried.size(); first += kAxesAtOnce) {
+    const auto some = std::span(tried).subspan(first, std::min(kAxesAtOnce, tried.size() - first));
+    request.axes.clear();
+    for (const TriedAxis& one : some) request.axes.push_back(one.axis);
     Result<SweepResult> swept = Sweep(takes, request);
     if (!swept) return tl::unexpected(std::move(swept.error()));
-    all.margins.push_back(MarginOf(one.axis, swept->points, one.own, within));
+    std::span<const SweepPoint> points = swept->points;
+    before += points.size();
+    for (const TriedAxis& one : some) {
+      const std::size_t own_points = one.axis.values.size();
+      all.margins.push_back(MarginOf(one.axis, points.first(own_points), one.own, within));
+      points = points.subspan(own_points);
+    }
     std::ranges::stable_sort(all.margins, {}, Width);
     all.sweep = std::move(*swept);
     if (all.sweep.episodes == 0) break;
     if (so_far) so_far(all);
-    before += one.axis.values.size();
   }
   return all;
 }

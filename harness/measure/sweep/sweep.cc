@@ -68,18 +68,33 @@ std::vector<std::size_t> IndicesOf(std::size_t point, const std::vector<Axis>& a
   return at;
 }
 
+/// What each point sets, in the order of points.
+std::vector<grammar::Overrides> Settings(const SweepRequest& request) {
+  std::vector<grammar::Overrides> settings;
+  if (request.one_at_a_time) {
+    for (const Axis& axis : request.axes)
+      for (std::size_t i = 0; i < axis.values.size(); ++i)
+        settings.push_back({{axis.parameter, axis.ValueText(i)}});
+    return settings;
+  }
+  std::size_t count = 1;
+  for (const Axis& axis : request.axes) count *= axis.values.size();
+  settings.resize(count);
+  for (std::size_t point = 0; point < count; ++point) {
+    const std::vector<std::size_t> at = IndicesOf(point, request.axes);
+    for (std::size_t i = 0; i < at.size(); ++i)
+      settings[point][request.axes[i].parameter] = request.axes[i].ValueText(at[i]);
+  }
+  return settings;
+}
+
 Result<Programs> CompileAll(const SweepRequest& request, const episode::EpisodeName& first) {
   episode::EpisodeOpener opener(request.root);
   const Result<grammar::Overrides> fixed = episode::ParameterSettings(request.settings);
   if (!fixed) return tl::unexpected(fixed.error());
-  std::size_t count = 1;
-  for (const Axis& axis : request.axes) count *= axis.values.size();
   Programs programs;
-  for (std::size_t point = 0; point < count; ++point) {
-    grammar::Overrides overrides = *fixed;
-    const std::vector<std::size_t> at = IndicesOf(point, request.axes);
-    for (std::size_t i = 0; i < at.size(); ++i)
-      overrides[request.axes[i].parameter] = request.axes[i].ValueText(at[i]);
+  for (grammar::Overrides& overrides : Settings(request)) {
+    overrides.insert(fixed->begin(), fixed->end());
     grammar::CompileResult compiled = opener.Compile(first, request.grammar, overrides);
     if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
     programs.push_back(std::move(compiled.program));
@@ -344,7 +359,7 @@ Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRe
   }
   for (std::size_t p = 0; p < result.points.size(); ++p) {
     SweepPoint& point = result.points[p];
-    point.at = IndicesOf(p, request.axes);
+    if (!request.one_at_a_time) point.at = IndicesOf(p, request.axes);
     point.f1 = Hits{point.correct, point.extra, point.missed}.F1();
     point.begin_ms = MedianMs(begins[p]);
     point.end_ms = MedianMs(ends[p]);

@@ -44,6 +44,8 @@ struct SweepRequest {
   std::string grammar;                ///< "": what the episodes were played or recorded with
   std::vector<std::string> settings;  ///< of parameters that stay as they are
   std::vector<Axis> axes;
+  bool one_at_a_time = false;  ///< of several axes one is varied, the others are as they are;
+                               ///< points of the first axis come first
   Truth truth = Truth::kGolden;
   std::vector<std::string> label_files;  ///< one per episode, one of all, or one folder
   std::string label_map;                 ///< "": labels are events
@@ -66,7 +68,8 @@ std::string SetAxes(const std::vector<std::string>& texts, SweepRequest& request
 
 /// How one setting did, over all episodes.
 struct SweepPoint {
-  std::vector<std::size_t> at;                      ///< per axis, the index of its value
+  std::vector<std::size_t> at;                      ///< per axis, the index of its value; one at
+                                                    ///< a time: empty
   int correct = 0, extra = 0, missed = 0;           ///< events
   double f1 = 1;                                    ///< of these; 1 if there is nothing
   double begin_ms = 0, end_ms = 0, latency_ms = 0;  ///< medians of magnitudes; of the latency
@@ -146,7 +149,7 @@ struct Margins {
 
 /// Tries an eighth to eight times of each value, in steps of 19 or 41 percent. `within` is a share
 /// of F1; `only` these parameters, all if there are none. `request.axes` is not used.
-/// `so_far` is called with the result as it is after each parameter.
+/// `so_far` is called with the result as it is, some times.
 Result<Margins> FindMargins(const std::vector<episode::Take>& takes, SweepRequest request,
                             double within, const std::vector<std::string>& only = {},
                             const std::function<void(const Margins&)>& so_far = {});
