@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How often `prehend import` guesses wrong: prints the table of docs/motion-capture.md.
+"""How often `prehend import` guesses wrong: prints a table, of which docs/motion-capture.md has the sums.
 
     python3 tests/program/import_guesses.py build/test/prehend [TAKES] [SEED]
 
