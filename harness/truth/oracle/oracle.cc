@@ -14,12 +14,13 @@ namespace {
 
 class TimelineBuilder {
  public:
-  TimelineBuilder(const Evidence& evidence, const OracleSettings& settings, grammar::Tick end)
+  TimelineBuilder(const Evidence& evidence, const Touches& touches, const OracleSettings& settings,
+                  grammar::Tick end)
       : evidence_(evidence),
         recording_(evidence.recording),
         settings_(settings),
         end_(end),
-        touches_(FindTouches(evidence, settings)) {
+        touches_(touches) {
     timeline_.ticks_per_second = recording_.scene.world.rate_hz;
   }
 
@@ -118,7 +119,7 @@ class TimelineBuilder {
   const Recording& recording_;
   const OracleSettings& settings_;
   grammar::Tick end_;
-  Touches touches_;
+  const Touches& touches_;
   grammar::Timeline timeline_;
 };
 
@@ -139,7 +140,8 @@ grammar::Timeline TrueTimeline(const physics::Scene& scene,
                                std::span<const physics::Snapshot> recording, grammar::Tick end,
                                const OracleSettings& settings) {
   const Recording frames = MakeRecording(scene, recording);
-  return TimelineBuilder(Evidence(frames), settings, end).Build();
+  const Evidence evidence(frames);
+  return TimelineBuilder(evidence, FindTouches(evidence, settings), settings, end).Build();
 }
 
 std::vector<grammar::Timeline> PossibleTimelines(const physics::Scene& scene,
@@ -148,8 +150,12 @@ std::vector<grammar::Timeline> PossibleTimelines(const physics::Scene& scene,
   const Recording frames = MakeRecording(scene, recording);
   const Evidence evidence(frames);
   std::vector<grammar::Timeline> timelines;
-  for (const OracleSettings& choice : DefinitionChoices())
-    timelines.push_back(TimelineBuilder(evidence, choice, end).Build());
+  const Touches usual = FindTouches(evidence, {});  // most choices change none of their numbers
+  for (const OracleSettings& choice : DefinitionChoices()) {
+    const Touches own = choice == TouchSettings{} ? Touches{} : FindTouches(evidence, choice);
+    const Touches& touches = choice == TouchSettings{} ? usual : own;
+    timelines.push_back(TimelineBuilder(evidence, touches, choice, end).Build());
+  }
   return timelines;
 }
 

@@ -10,8 +10,8 @@
 
 namespace prehend::truth {
 
-/// A cylinder is a region around an anchor: so far sideways, so far up and down.
-struct OracleSettings {
+/// What contacts, supports and grasps depend on.
+struct TouchSettings {
   double contact_bridge_s = 0.100;  ///< a gap in contact or support that is bridged
   double grasp_bridge_s = 0.060;    ///< a loss of grip on the object that is bridged
 
@@ -29,6 +29,11 @@ struct OracleSettings {
   double press_facing_rad =
       2 * std::numbers::pi / 3;  ///< between the backs of their palms, at least
 
+  bool operator==(const TouchSettings&) const = default;
+};
+
+/// A cylinder is a region around an anchor: so far sideways, so far up and down.
+struct OracleSettings : TouchSettings {
   double idle_speed_m_per_s = 0.01;    ///< slower is standing still,
   double idle_excursion_m = 0.0025;    ///< and so is getting no farther than this
   double idle_window_s = 0.5;          ///< within half of this before or after

@@ -11,7 +11,7 @@ namespace {
 /// From where it is at rest on what bears its weight until they part or that is no longer below: it
 /// may tip or roll in between, and a hand may take the weight. What is over in a moment was a blow.
 Spans SupportsOf(const std::vector<Bearing>& bearings, const Recording& recording,
-                 const OracleSettings& settings) {
+                 const TouchSettings& settings) {
   std::vector<bool> borne;
   for (const Bearing& bearing : bearings) {
     const bool bears = bearing.share >= settings.support_share || (!borne.empty() && borne.back());
@@ -30,7 +30,7 @@ Spans SupportsOf(const std::vector<Bearing>& bearings, const Recording& recordin
   return spans;
 }
 
-Spans WhereGripIsCommanded(const Recording& recording, const OracleSettings& settings, int hand) {
+Spans WhereGripIsCommanded(const Recording& recording, const TouchSettings& settings, int hand) {
   std::vector<bool> commanded;
   for (int frame = 0; frame < recording.size(); ++frame)
     commanded.push_back(recording.hand(hand, frame).trigger >= settings.commanded_trigger);
@@ -38,7 +38,7 @@ Spans WhereGripIsCommanded(const Recording& recording, const OracleSettings& set
 }
 
 /// Whether the grip opens, in the 10 ms around each frame.
-std::vector<bool> WhereGripOpens(const Recording& recording, const OracleSettings& settings,
+std::vector<bool> WhereGripOpens(const Recording& recording, const TouchSettings& settings,
                                  int hand) {
   constexpr double kWindow_s = 0.02;
   std::vector<bool> opens(recording.size());
@@ -55,7 +55,7 @@ std::vector<bool> WhereGripOpens(const Recording& recording, const OracleSetting
 }
 
 /// Held with one sensor set that bears force, without slipping out of the hand, as a bar in a hook.
-bool HangsOn(const Evidence& evidence, const OracleSettings& settings, Pair pair, int frame) {
+bool HangsOn(const Evidence& evidence, const TouchSettings& settings, Pair pair, int frame) {
   if (evidence.forces_n.at(pair)[frame] < settings.hook_force_n) return false;
   const physics::BodyState& body = evidence.recording.body(pair.second, frame);
   const physics::BodyState& palm = evidence.recording.hand(pair.first, frame).palm;
@@ -67,15 +67,21 @@ bool HangsOn(const Evidence& evidence, const OracleSettings& settings, Pair pair
 /// touches.
 class Helpers {
  public:
-  Helpers(const Evidence& evidence, const OracleSettings& settings)
-      : evidence_(evidence), settings_(settings) {}
+  Helpers(const Evidence& evidence, const TouchSettings& settings)
+      : evidence_(evidence), settings_(settings) {
+    for (const auto& [pair, forces_n] : evidence.forces_n)
+      for (int frame = 0; frame < evidence.recording.size(); ++frame)
+        presses_[pair].push_back(forces_n[frame] >= settings.press_force_n &&
+                                 !HoldsAlone(pair, frame));
+  }
 
-  /// Another hand presses on the other side, with a palm that faces this one's.
+  /// Of (hand index, body): by frame.
+  const std::vector<bool>& WherePressed(Pair pair) const { return presses_.at(pair); }
+
+  /// Another hand presses on the other side, with a palm that faces this one's. `pair` presses.
   bool IsPressedBetween(Pair pair, int frame) const {
-    if (!Presses(pair, frame)) return false;
-    for (const auto& [other, forces_n] : evidence_.forces_n) {
-      if (other.second != pair.second || other.first == pair.first || !Presses(other, frame))
-        continue;
+    for (const auto& [other, presses] : presses_) {
+      if (other.second != pair.second || other.first == pair.first || !presses[frame]) continue;
       const double cosine = Back(pair.first, frame).dot(Back(other.first, frame));
       if (cosine <= std::cos(settings_.press_facing_rad)) return true;
     }
@@ -83,12 +89,12 @@ class Helpers {
   }
 
   /// It is held against another thing that the hand presses from the other side: of thumb and
-  /// fingers one side touches this one and the other side that one.
+  /// fingers one side touches this one and the other side that one. `pair` presses.
   bool IsSqueezedWithAnother(Pair pair, int frame) const {
-    if (!Presses(pair, frame) || !Moves(pair.second)) return false;
-    for (const auto& [other, forces_n] : evidence_.forces_n) {
-      if (other.first != pair.first || other.second == pair.second || !Moves(other.second) ||
-          !Presses(other, frame) ||
+    if (!Moves(pair.second)) return false;
+    for (const auto& [other, presses] : presses_) {
+      if (other.first != pair.first || other.second == pair.second || !presses[frame] ||
+          !Moves(other.second) ||
           IsTouchedByFirstSet(pair, frame) == IsTouchedByFirstSet(other, frame))
         continue;
       const auto touching = evidence_.touching.find(std::minmax(pair.second, other.second));
@@ -107,15 +113,14 @@ class Helpers {
   Eigen::Vector3d Back(int hand, int frame) const {
     return evidence_.recording.hand(hand, frame).palm.X_WB.q * Eigen::Vector3d::UnitZ();
   }
-  bool Presses(Pair pair, int frame) const {
-    const bool alone =
-        std::popcount(Sets(pair, frame)) >= settings_.grasp_sensor_sets &&
-        evidence_.recording.hand(pair.first, frame).trigger >= settings_.commanded_trigger;
-    return !alone && evidence_.forces_n.at(pair)[frame] >= settings_.press_force_n;
+  bool HoldsAlone(Pair pair, int frame) const {
+    return std::popcount(Sets(pair, frame)) >= settings_.grasp_sensor_sets &&
+           evidence_.recording.hand(pair.first, frame).trigger >= settings_.commanded_trigger;
   }
 
   const Evidence& evidence_;
-  const OracleSettings& settings_;
+  const TouchSettings& settings_;
+  std::map<Pair, std::vector<bool>> presses_;
 };
 
 void SayHowLongTheyTouched(const Recording& recording, Touches& touches) {
@@ -132,7 +137,7 @@ void SayHowLongTheyTouched(const Recording& recording, Touches& touches) {
 
 }  // namespace
 
-Touches FindTouches(const Evidence& evidence, const OracleSettings& settings) {
+Touches FindTouches(const Evidence& evidence, const TouchSettings& settings) {
   const Recording& recording = evidence.recording;
   Touches touches;
   for (const auto& [pair, frames] : evidence.touching)
@@ -144,24 +149,29 @@ Touches FindTouches(const Evidence& evidence, const OracleSettings& settings) {
   const auto bridged = [&](const std::vector<bool>& frames) {
     return Bridged(WhereTrue(frames), recording.ticks, recording.Ticks(settings.grasp_bridge_s));
   };
+  std::map<int, std::vector<bool>> grip_opens;
+  std::map<int, Spans> commanded;
   for (const auto& [pair, sets] : evidence.sensor_sets) {
     const auto& [hand, body] = pair;
-    const std::vector<bool> opens = WhereGripOpens(recording, settings, hand);
+    if (!commanded.contains(hand)) {
+      commanded[hand] = WhereGripIsCommanded(recording, settings, hand);
+      grip_opens[hand] = WhereGripOpens(recording, settings, hand);
+    }
+    const std::vector<bool>&opens = grip_opens[hand], &presses = helpers.WherePressed(pair);
     // A grasp begins where it is gripped, and lasts while held.
-    std::vector<bool> gripped, held, between;
+    std::vector<bool> gripped(recording.size()), held = gripped, between = gripped;
     for (int frame = 0; frame < recording.size(); ++frame) {
+      if (sets[frame] == 0) continue;
       const bool has_sets = std::popcount(sets[frame]) >= settings.grasp_sensor_sets ||
-                            helpers.IsSqueezedWithAnother(pair, frame);
-      between.push_back(helpers.IsPressedBetween(pair, frame));
-      gripped.push_back((has_sets && !opens[frame]) || between.back());
-      held.push_back(
-          has_sets || between.back() ||
-          (sets[frame] != 0 && !opens[frame] && HangsOn(evidence, settings, pair, frame)));
+                            (presses[frame] && helpers.IsSqueezedWithAnother(pair, frame));
+      between[frame] = presses[frame] && helpers.IsPressedBetween(pair, frame);
+      gripped[frame] = (has_sets && !opens[frame]) || between[frame];
+      held[frame] =
+          has_sets || between[frame] || (!opens[frame] && HangsOn(evidence, settings, pair, frame));
     }
     const Spans tight = bridged(held);
     // Letting go ends a grasp at once, and none begins before the hand feels the object again.
-    for (const Span& squeeze :
-         Union(WhereGripIsCommanded(recording, settings, hand), bridged(between))) {
+    for (const Span& squeeze : Union(commanded[hand], bridged(between))) {
       for (Span span : Within(tight, squeeze)) {
         while (!span.empty() && !gripped[span.begin]) ++span.begin;
         if (recording.Lasts_s(span) >= settings.grasp_minimum_s)

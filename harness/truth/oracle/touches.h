@@ -26,7 +26,7 @@ struct Touches {
   std::map<Pair, Spans> supports;  ///< (object, support), both bodies, the object movable
   std::vector<Grasp> grasps;       ///< sorted by hand, body, time
 };
-Touches FindTouches(const Evidence& evidence, const OracleSettings& settings);
+Touches FindTouches(const Evidence& evidence, const TouchSettings& settings);
 
 // What a hand does with an object during one grasp. Tested by
 // tests/harness/truth/oracle/oracle_test.cc
