@@ -253,7 +253,8 @@ TEST_F(Recognisers, BrokenOnesAreNamedAndNothingIsLeft) {
 TEST_F(Recognisers, AreCheckedAgainstGoldens) {
   const std::string scenario = "grasp/short_grasp_counts", run = Path("run.jsonl"), take = Take();
   const auto check = [&](const std::string& episode, const std::string& command) {
-    return Prehend({"check", episode, "--recogniser", command, "--report", Path("page")});
+    return Prehend(
+        {"check", episode, "--recogniser", command, "--no-pictures", "--report", Path("page")});
   };
   ASSERT_EQ(Prehend({"run", scenario, "--record", run}).exit_code, 0);
   const std::string repeats = RepeatsWatch("pick_and_place", EventsOf(run)),
