@@ -19,8 +19,8 @@ Diagnostics InOrder(Diagnostics diagnostics, const Symbols& symbols) {
     return a.file == b.file && a.place.line == b.place.line && a.place.column == b.place.column &&
            a.message == b.message;
   };
-  const auto again = std::ranges::unique(diagnostics, is_same);
-  diagnostics.erase(again.begin(), again.end());
+  diagnostics.erase(std::unique(diagnostics.begin(), diagnostics.end(), is_same),
+                    diagnostics.end());
   return diagnostics;
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <ranges>
 
 namespace prehend::truth {
 
@@ -227,18 +226,16 @@ double Evidence::Apart_m(int hand, int frame, int other) const {
 }
 
 bool Evidence::Leaves(int hand, int frame, double distance_m, double window_s, int end) const {
-  const auto before = std::views::iota(0, frame),
-             after = std::views::iota(frame, std::max(end, frame));
-  const int first =
-      frame - static_cast<int>(before.end() - std::ranges::partition_point(before, [&](int i) {
-                                 return recording.Seconds(i, frame) > window_s / 2;
-                               }));
-  const int last =
-      frame - 1 +
-      static_cast<int>(
-          std::ranges::partition_point(
-              after, [&](int i) { return recording.Seconds(frame, i) <= window_s / 2; }) -
-          after.begin());
+  const auto begin = recording.ticks.begin(), now = begin + frame;
+  const auto is_near = [&](grammar::Tick from, grammar::Tick to) {
+    return static_cast<double>(to - from) / recording.scene.world.rate_hz <= window_s / 2;
+  };
+  const auto first_near =
+      std::partition_point(begin, now, [&](grammar::Tick t) { return !is_near(t, *now); });
+  const auto past = std::partition_point(now, begin + std::max(end, frame),
+                                         [&](grammar::Tick t) { return is_near(*now, t); });
+  const int first = static_cast<int>(first_near - begin);
+  const int last = static_cast<int>(past - begin) - 1;
   // What moves is farthest at the ends.
   for (int i = first; i < frame; ++i)
     if (Apart_m(hand, frame, i) > distance_m) return true;
