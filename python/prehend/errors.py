@@ -1,9 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """What goes wrong: exceptions with a place and a remedy, and warnings of what is missing or looks wrong."""
+import io
 import os
 import re
 import sys
 import warnings
+
+
+_SHOWN = {code: f"\\u{code:04x}" for code in (*range(9), *range(11, 32), *range(127, 160), *range(0x2028, 0x202f), *range(0x2066, 0x206a))}
+
+
+class Visible(io.TextIOWrapper):
+    """A stream for texts of files and servers: control characters, and those that turn the direction of writing, show as JSON writes them."""
+
+    def write(self, text):
+        return super().write(text.translate(_SHOWN))
 
 
 class Error(ValueError):
@@ -47,6 +58,18 @@ class MissingFacts(UserWarning):
 
 class DoubtfulFrames(UserWarning):
     """Poses or sizes that can hardly be meant: another unit, no table, z not up."""
+
+
+def named(name):
+    """A name from somebody's file that becomes a name of ours: it leaves no folder."""
+    if not re.fullmatch(r"[A-Za-z0-9_][\w.-]*", str(name), re.ASCII):
+        fail(EpisodeError, f"found the name {str(name)[:60]!r}, wanted letters, digits, '-', '_' and '.'", "ask who made the set")
+    return str(name)
+
+
+def cell(value):
+    """A cell of CSV that no spreadsheet runs."""
+    return re.sub(r"^(?=[=+@-])(?![+-]?[\d.]+(e[+-]?\d+)?$)", "'", value) if isinstance(value, str) else value
 
 
 def of(diagnostics):

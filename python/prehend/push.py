@@ -7,6 +7,7 @@ An episode is known by its UUID: what is there already and equal is left alone, 
 import argparse
 import contextlib
 import hashlib
+import io
 import json
 import os
 import pathlib
@@ -74,18 +75,10 @@ def schema():
     return TABLES + "\n".join(parts) + "\n" + INDEXES + ROLES
 
 
-def _psycopg2():
-    try:
-        import psycopg2  # pylint: disable=import-outside-toplevel
-    except ImportError:
-        fail(EpisodeError, "Python's psycopg2 is not installed", "apt install python3-psycopg2 python3-xxhash")
-    return psycopg2
-
-
 @contextlib.contextmanager
 def connected(url):
     """A connection whose errors say what to do; the password stays out of them."""
-    psycopg2 = _psycopg2()
+    import psycopg2  # pylint: disable=import-outside-toplevel
     if not url.startswith(("postgresql://", "postgres://")):
         fail(EpisodeError, f"found {url!r}, wanted postgresql://USER@HOST:PORT/DATABASE")
     try:
@@ -129,7 +122,6 @@ class _Rows:
         return self._lines[-1]
 
     def copy(self, cursor, table):
-        import io  # pylint: disable=import-outside-toplevel
         cursor.copy_expert(f"COPY prehend.{table} FROM STDIN", io.StringIO("\n".join(self._lines) + "\n" if self._lines else ""))
 
 
@@ -141,23 +133,20 @@ class _File:
     """An episode file, read as SQLite without writing."""
 
     def __init__(self, path):
-        self._program("list", path)
+        self.program("list", path)
         self.database = sqlite3.connect(pathlib.Path(path).absolute().as_uri() + "?mode=ro", uri=True)
         self.uri, self.path = pathlib.Path(path).absolute().as_uri(), path
-        self.cut_off = self._one("SELECT count(*) FROM episode WHERE status = 'recording'")
+        self.cut_off = self.database.execute("SELECT count(*) FROM episode WHERE status = 'recording'").fetchone()[0]
 
     @staticmethod
-    def _program(*words):
+    def program(*words):
         done = subprocess.run([episodes.program(), "episode", *words], capture_output=True, text=True, check=False)
         if done.returncode not in (0, 4):
             fail(EpisodeError, done.stderr.strip())
 
     def check(self):
         """The program compares the checksums of all that it reads, and this reads all events, their roles and their entities."""
-        self._program("query", self.path, "--episode", "*", "--count-by", "event")
-
-    def _one(self, sql):
-        return self.database.execute(sql).fetchone()[0]
+        self.program("query", self.path, "--episode", "*", "--count-by", "event")
 
     def hash(self):
         import xxhash  # pylint: disable=import-outside-toplevel
@@ -166,9 +155,6 @@ class _File:
             for block in iter(lambda: file.read(1 << 22), b""):
                 hashed.update(block)
         return f"{hashed.intdigest():016x}"
-
-    def numbers(self):
-        return [row[0] for row in self.database.execute("SELECT id FROM episode WHERE status <> 'recording' ORDER BY id")]
 
     def tasks(self, wanted):
         """Their rows, and those of their entities."""
@@ -252,7 +238,8 @@ def _push_batch(cursor, file, batch):
 def push_file(connection, path):
     """Pushes an episode file; returns how many episodes are new, were there, and were cut off."""
     file = _File(path)
-    numbers, new, content = file.numbers(), 0, file.hash()
+    numbers = [row[0] for row in file.database.execute("SELECT id FROM episode WHERE status <> 'recording' ORDER BY id")]
+    new, content = 0, file.hash()
     with connection, connection.cursor() as cursor:
         cursor.execute("SELECT 1 FROM prehend.file WHERE uri = %s AND hash = %s", (file.uri, content))
         if cursor.fetchone():  # it was pushed to its end, and has not changed since
@@ -272,10 +259,10 @@ def push_file(connection, path):
 def push_takes(connection, path):
     """Takes and their labels, of a file of takes (docs/labels.md) whose recordings are episode files; returns two counts."""
     import yaml  # pylint: disable=import-outside-toplevel
+    _File.program("query", path, "--count-by", "event")  # which reads them all, and says what is wrong
     here, takes, labels = pathlib.Path(path).parent, _Rows(), _Rows()
     said = yaml.safe_load(pathlib.Path(path).read_text(encoding="utf-8"))
-    counted = [0, 0]
-    source = pathlib.Path(path).absolute().as_uri()
+    counted, source = [0, 0], pathlib.Path(path).absolute().as_uri()
     for take in said["takes"]:
         recording, file = here / take["recording"], take.get("labels", said.get("labels"))
         if recording.suffix != ".episodes":
@@ -302,10 +289,13 @@ def push_takes(connection, path):
 def push_scores(connection, path):
     """What 'prehend score --json' printed; returns how many rows."""
     rows, source, count = _Rows(), pathlib.Path(path).absolute().as_uri(), 0
-    for one in json.loads(pathlib.Path(path).read_text(encoding="utf-8"))["grammars"]:
-        for event in one["events"] + [one["total"]]:
-            rows.add(source, one["grammar"], one["set"], event["event"], json.dumps(event))
-            count += 1
+    try:
+        for one in json.loads(pathlib.Path(path).read_text(encoding="utf-8"))["grammars"]:
+            for event in one["events"] + [one["total"]]:
+                rows.add(source, *map(str, (one["grammar"], one["set"], event["event"])), json.dumps(event))
+                count += 1
+    except (LookupError, RecursionError, TypeError, ValueError) as error:
+        fail(EpisodeError, f"{path}: found {error!r:.200}, wanted what 'prehend score --json' printed", file=path)
     with connection, connection.cursor() as cursor:
         cursor.execute("DELETE FROM prehend.score WHERE source = %s", (source,))
         rows.copy(cursor, "score")

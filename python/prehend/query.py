@@ -9,7 +9,7 @@ import re
 import sys
 
 from . import push
-from .errors import EpisodeError, fail
+from .errors import EpisodeError, cell, fail
 
 # How an event e lies to another event o, in Allen's words.
 RELATIONS = {
@@ -39,16 +39,23 @@ def _regex(glob):
 def _role(text):
     role, _, value = text.partition("=")
     if not role or not value:
-        raise argparse.ArgumentTypeError(f"found {text!r}, wanted ROLE=VALUE, like object=milk or any=milk")
+        raise argparse.ArgumentTypeError(f"found {text!r}, wanted ROLE=NAME, like object=milk or any=milk")
     return role, value
 
 
 def _relation(text):
     name, _, event = text.partition(" ")
     name = "inside" if name == "during" else name
-    if name not in RELATIONS or not event:
-        raise argparse.ArgumentTypeError(f"found {text!r}, wanted 'RELATION EVENT' with one of {', '.join(RELATIONS)}")
+    if name not in (*RELATIONS, "has") or not event:
+        raise argparse.ArgumentTypeError(f"found {text!r}, wanted 'RELATION EVENT' with one of has, {', '.join(RELATIONS)}")
     return name, event
+
+
+def _lasts(text):
+    bounds = text.partition("..")[::2]
+    if not any(bounds) or not all(re.fullmatch(r"|(\d+\.?\d*|\.\d+)(e-?\d+)?", one) for one in bounds):
+        raise argparse.ArgumentTypeError(f"found {text!r}, wanted seconds: 0.5, 0.5..2 or ..2")
+    return [float(one) if one else None for one in bounds]
 
 
 def question(options):
@@ -66,7 +73,7 @@ def question(options):
         ask("p.status ~ %s" if which.startswith("status=") else "p.outcome ~ %s", _regex(which.partition("=")[2]))
     elif which:
         ask("(p.scenario ~ %s OR regexp_replace(p.scenario, '.*/', '') ~ %s)", *[_regex(which)] * 2)
-    for bound, condition in ((options.at_least_s, "e.duration_s >= %s"), (options.at_most_s, "e.duration_s <= %s"),
+    for bound, condition in ((options.lasts_s[0], "e.duration_s >= %s"), (options.lasts_s[1], "e.duration_s <= %s"),
                              (options.begins, "e.begin_s >= %s"), (options.ends, "e.end_s <= %s")):
         if bound is not None:
             ask(condition, bound)
@@ -76,10 +83,9 @@ def question(options):
         ask(has_role + "(r.value ~ %s OR EXISTS (SELECT 1 FROM unnest(n.classes) c WHERE c ~ %s)))", role, role, *[_regex(value)] * 2)
     for role, value in options.part_of:
         ask(has_role + "EXISTS (SELECT 1 FROM unnest(n.wholes) c WHERE c ~ %s))", role, role, _regex(value))
+    others = "FROM prehend.event o WHERE o.episode = e.episode AND o.id <> e.id AND "
     for name, event in options.relation:
-        ask(f"EXISTS (SELECT 1 FROM prehend.event o WHERE o.episode = e.episode AND o.id <> e.id AND o.event ~ %s AND {RELATIONS[name]})", _regex(event))
-    for event in options.have:
-        ask(f"EXISTS (SELECT 1 {PART} AND o.event ~ %s)", _regex(event))
+        ask(f"EXISTS (SELECT 1 {PART if name == 'has' else others + RELATIONS[name]} AND o.event ~ %s)", _regex(event))
     return " AND ".join(conditions), values
 
 
@@ -115,13 +121,13 @@ def _print(rows, options):
         print(json.dumps(rows, indent=2, ensure_ascii=False))
         return
     table = [list(rows[0])] if rows else []
-    table += [[f"{cell:.4f}" if isinstance(cell, float) else str(cell) for cell in row.values()] for row in rows]
+    table += [[f"{one:.4f}" if isinstance(one, float) else str(one) for one in row.values()] for row in rows]
     if options.csv:
-        csv.writer(sys.stdout, lineterminator="\n").writerows([("'" + cell if cell[:1] in ("=", "+", "@") else cell) for cell in row] for row in table)
+        csv.writer(sys.stdout, lineterminator="\n").writerows(map(cell, row) for row in table)
         return
     widths = [max(map(len, column)) for column in zip(*table)]
     for row in table:
-        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip())
+        print("  ".join(map(str.ljust, row, widths)).rstrip())
 
 
 def main(arguments):
@@ -130,10 +136,10 @@ def main(arguments):
     parser.add_argument("--event", metavar="NAME", help="its name, or a glob")
     parser.add_argument("--role", type=_role, action="append", default=[], metavar="ROLE=NAME")
     parser.add_argument("--part-of", type=_role, action="append", default=[], metavar="ROLE=NAME")
-    for name, place in (("--at-least-s", "at_least_s"), ("--at-most-s", "at_most_s"), ("--from", "begins"), ("--to", "ends")):
+    parser.add_argument("--lasts-s", type=_lasts, default=(None, None), metavar="S[..S]")
+    for name, place in (("--from", "begins"), ("--to", "ends")):
         parser.add_argument(name, type=float, dest=place, metavar="S")
     parser.add_argument("--relation", type=_relation, action="append", default=[], metavar="'RELATION EVENT'")
-    parser.add_argument("--with", action="append", default=[], dest="have", metavar="EVENT")
     parser.add_argument("--episode", metavar="WHICH", help="a scenario (a name, skill/name or a glob), status=failed, outcome=NAME")
     parser.add_argument("--count-by", metavar="COLUMN,..")
     parser.add_argument("--json", action="store_true")

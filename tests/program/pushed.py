@@ -21,8 +21,8 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 os.environ["PREHEND_PROGRAM"] = PROGRAM
 SCENARIOS = ["pick_and_place/milk_carton_wrap", "furniture/fridge_is_opened_by_its_handle", "kitchen/cereal_box_is_slid_near_and_set_down",
              "pick_up/slide_then_pick_up"]
-QUESTIONS = [["--event", "transporting", "--role", "object=MilkCarton"], ["--with", "picking_up"], ["--event", "grasp*", "--role", "any=milk"],
-             ["--event", "grasping", "--role", "object=Handle", "--part-of", "object=fridge"], ["--at-least-s", "0.5", "--at-most-s", "2"],
+QUESTIONS = [["--event", "transporting", "--role", "object=MilkCarton"], ["--relation", "has picking_up"], ["--event", "grasp*", "--role", "any=milk"],
+             ["--event", "grasping", "--role", "object=Handle", "--part-of", "object=fridge"], ["--lasts-s", "0.5..2"], ["--lasts-s", "..0.4"],
              ["--relation", "meets transporting"], ["--relation", "during grasping", "--event", "*ing"], ["--from", "1", "--to", "4", "--episode", "pick_up/*"],
              ["--relation", "before transporting", "--event", "reaching"], ["--relation", "overlaps contact"], ["--event", "no_such_event"]]
 
@@ -169,6 +169,10 @@ def takes_and_scores(server, asked, base, folder):
     scores.write_text(program("score", str(takes), "--json").stdout)
     for _ in range(2):
         expect(python("push", str(one), str(takes), str(scores), server.url()), 0, "1 takes, 2 labels", "rows of scores")
+    for name, text in (("a.json", "[" * 100000), ("b.json", '{"grammars": 3}'), ("c.json", '{"grammars": [{"events": [], "total": {}}]}'), ("d.json", ""),
+                       ("e.yaml", "takes: &a [*a]"), ("f.yaml", "- 1"), ("g.yaml", "takes:\n- {recording: none.episodes}\n"), ("h.yaml", "takes: 3"), ("i.yaml", "takes: [3]")):
+        (folder / name).write_text(text)
+        expect(python("push", str(folder / name), server.url()), 2, "none.episodes" if name == "g.yaml" else name)
     assert asked.execute("SELECT person, set_name, count(*) FROM prehend.take JOIN prehend.label USING(episode, source) GROUP BY 1, 2").fetchall() == [("P7", "test", 2)]
     assert asked.execute("SELECT count(*) FROM prehend.score WHERE event = 'all' AND (found->>'true')::int = 2").fetchone() == (1,)
 
