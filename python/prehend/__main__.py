@@ -3,7 +3,7 @@
 import importlib
 import sys
 
-from .errors import Error
+from .errors import Error, Visible
 
 COMMANDS = {  # name: module, whose main(arguments) returns the exit code
     "baseline": "baselines",
@@ -32,4 +32,5 @@ def main(arguments):
 
 
 if __name__ == "__main__":
+    sys.stdout, sys.stderr = (Visible(one.buffer, "utf-8", "backslashreplace", line_buffering=one.line_buffering) for one in (sys.stdout, sys.stderr))
     sys.exit(main(sys.argv[1:]))

@@ -11,6 +11,8 @@ import sys
 
 import numpy as np
 
+from .errors import EpisodeError, fail
+
 RATE_HZ = 30  # all that follows is computed on this grid, whatever the sensor
 LAGS = (-15, -9, -5, -2, 0, 2, 5, 9, 15)
 PHASES = ["reaching", "fixation", "sliding", "picking_up", "transporting", "putting_down"]
@@ -18,6 +20,10 @@ EVENTS = [*PHASES, "grasping", "pick_and_place"]
 OF_HANDLES = ["reaching", "fixation", "grasping"]  # what is attached to something else is not carried
 LEAST_S = 0.1  # what is shorter is no event, and no gap
 ROWS = 150000  # that are learned from, at most
+LEARNED = {"numpy": "dtype ndarray", "numpy.core.multiarray": "_reconstruct scalar", "numpy.random._pickle": "__bit_generator_ctor __randomstate_ctor",
+           "sklearn.ensemble._forest": "ExtraTreesClassifier", "sklearn.neural_network._multilayer_perceptron": "MLPClassifier",
+           "sklearn.neural_network._stochastic_optimizers": "AdamOptimizer", "sklearn.pipeline": "Pipeline", "sklearn.tree._tree": "Tree",
+           "sklearn.preprocessing._data": "StandardScaler", "sklearn.preprocessing._label": "LabelBinarizer", "sklearn.tree._classes": "ExtraTreeClassifier"}
 
 
 def say(line):
@@ -255,6 +261,15 @@ def learn(folder):
     return np.concatenate(rows), np.concatenate(phases), np.concatenate(helds), memory
 
 
+class Learned(pickle.Unpickler):
+    """What `train` writes: a pickle may name any function, and this one calls none but those of LEARNED."""
+
+    def find_class(self, module, name):
+        if name not in LEARNED.get(module.replace("numpy._core", "numpy.core"), "").split():
+            fail(EpisodeError, f"found {module}.{name}, wanted a model that 'baseline train' wrote", "train it again")
+        return super().find_class(module, name)
+
+
 def train(folder, output):
     from sklearn.ensemble import ExtraTreesClassifier
     from sklearn.neural_network import MLPClassifier
@@ -270,14 +285,13 @@ def train(folder, output):
 
     def convolution():  # a window that is moved over time: one convolution, then layers of width one
         return make_pipeline(StandardScaler(), MLPClassifier((64, 32), early_stopping=True, max_iter=150, random_state=1))
-    model = dict(memory)
     pathlib.Path(output).mkdir(parents=True, exist_ok=True)
     for kind, make in (("trees", trees), ("convolution", convolution)):
         fitted = {"phase": make().fit(rows, phases), "held": make().fit(rows, helds)}
         with open(pathlib.Path(output) / f"{kind}.pickle", "wb") as file:
             pickle.dump(fitted, file)
     with open(pathlib.Path(output) / "memory.pickle", "wb") as file:
-        pickle.dump(model, file)
+        pickle.dump(memory, file)
     print(f"{output}: learned from {len(rows)} moments of the train split")
 
 
@@ -292,5 +306,5 @@ def main(arguments):
     model, file = None, {"trees": "trees", "convolution": "convolution", "schedule": "memory", "names": "memory"}.get(options.kind)
     if file:
         with open(pathlib.Path(options.folder) / f"{file}.pickle", "rb") as opened:
-            model = pickle.load(opened)
+            model = Learned(opened).load()
     return recognise(options.kind, model)

@@ -17,7 +17,7 @@ import numpy as np
 from . import robustness
 from .dataset import label, sha256
 from .episodes import program
-from .errors import EpisodeError, fail
+from .errors import EpisodeError, fail, named
 
 ACTIONS = ["reaching", "fixation", "grasping", "sliding", "picking_up", "transporting", "putting_down", "pick_and_place"]
 OVERLAPS = (0.10, 0.25, 0.50)
@@ -198,13 +198,13 @@ def compare(options):
         known = [row for row in csv.DictReader(file) if row["role"] == options.split]
     if options.asks:
         known = [row for row in known if options.asks in row["asks"].split()]
-    names = [row["episode"] for row in known]
+    names = [named(row["episode"]) for row in known]
     if not names:
         fail(EpisodeError, f"no episode of the {options.split} split asks '{options.asks}'")
     path = options.labels or folder / ("held_out" if options.split == "test" else "") / f"labels_{options.split}.csv"
     labels, digest = read_labels(path, options.split, manifest)
     events = ACTIONS if options.events == "actions" else sorted({one["event"] for some in labels.values() for one in some})
-    files = json.loads((folder / "files.json").read_text(encoding="utf-8"))
+    files = {name: named(file) for name, file in json.loads((folder / "files.json").read_text(encoding="utf-8")).items()}
     rows, everything = [], {}
     chooser = np.random.Generator(np.random.PCG64(1))
     resamples = chooser.multinomial(len(names), np.full(len(names), 1 / len(names)), RESAMPLES).astype(float)

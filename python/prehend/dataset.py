@@ -14,7 +14,7 @@ import tempfile
 from . import recipe as recipes
 from . import scenes
 from .episodes import program
-from .errors import EpisodeError, fail
+from .errors import EpisodeError, cell, fail, named
 
 BATCH, ATTEMPTS, ROLES = 100, 20, ("train", "dev", "test")
 PARTS = ["hand", "object", "support", "a", "b"]  # columns of labels
@@ -167,7 +167,7 @@ def labels_of(rows):
 
 def write_table(path, header, rows):
     with open(path, "w", newline="", encoding="utf-8") as file:
-        csv.writer(file, lineterminator="\n").writerows([header, *rows])
+        csv.writer(file, lineterminator="\n").writerows(map(cell, row) for row in [header, *rows])
 
 
 def write_labels(path, rows):
@@ -205,7 +205,7 @@ def join_into(output, shards):
         prefix = f"{about['shard'][0]}of{about['shard'][1]}." if about["shard"][1] > 1 else ""
         for line in (shard / "rows.jsonl").read_text(encoding="utf-8").splitlines():
             row = json.loads(line)
-            rows.append(row | {"file": prefix + row["file"]})
+            rows.append(row | {"file": prefix + named(row["file"]), "episode": named(row["episode"])})
         for file in sorted(shard.glob("*.episodes")):
             if output != shard:
                 shutil.copyfile(file, output / (prefix + file.name))
@@ -256,7 +256,7 @@ def write_set(output, about, rows, redrawn):
 def export(options):
     """Other forms of a set: those of the program, and HDF5 as simulators lay it out."""
     if options.to != "hdf5":
-        files = sorted(pathlib.Path(options.set).glob("*.episodes"))
+        files = sorted(pathlib.Path(options.set).absolute().glob("*.episodes"))
         done = subprocess.run([program(), "episode", "export", *map(str, files), "--to", options.to, "-o", options.output], check=False)
         return done.returncode
     from .datasheet import write_hdf5

@@ -2,11 +2,15 @@
 """Recipes and the table, without playing: what is drawn, what is held out, what is counted."""
 import copy
 import json
+import os
 import pathlib
+import pickle
+import subprocess
+import sys
 import tempfile
 import unittest
 
-from prehend import EpisodeError, benchmark, datasheet, recipe, robustness, scenes
+from prehend import EpisodeError, baselines, benchmark, dataset, datasheet, errors, recipe, robustness, scenes
 
 HASHED = recipe.read(recipe.HERE / "tabletop.yaml")
 
@@ -100,6 +104,49 @@ class Table(unittest.TestCase):
         self.assertEqual(after(robustness.noisy), after(robustness.noisy))
         self.assertNotEqual(after(robustness.noisy)[1], lines[1])
         json.dumps(slow)
+
+
+class OfStrangers(unittest.TestCase):
+    """Sets and models that somebody else made name no file outside of their folder, and run nothing."""
+
+    def test_names_leave_no_folder(self):
+        about = {"recipe": HASHED[0], "recipe_sha256": HASHED[1], "episodes": 1, "shard": [1, 1], "redrawn": {}}
+        for key, name in (("episode", "../evil"), ("episode", "/tmp/evil"), ("episode", "a\nb"), ("episode", "-o"), ("episode", ".."), ("file", "../../x"), ("file", "")):
+            with tempfile.TemporaryDirectory() as folder, self.subTest(name):
+                shard = pathlib.Path(folder, "shard")
+                shard.mkdir()
+                (shard / "shard.json").write_text(json.dumps(about), encoding="utf-8")
+                row = {"episode": "e00000", "file": "train_001.episodes", "role": "train", "scenario": "x", "labels": [], "extra": [], "claims": []} | {key: name}
+                (shard / "rows.jsonl").write_text(json.dumps(row) + "\n", encoding="utf-8")
+                with self.assertRaisesRegex(EpisodeError, "found the name"):
+                    dataset.join_into(pathlib.Path(folder, "set"), [shard])
+                self.assertEqual(sorted(path.name for path in pathlib.Path(folder).rglob("*")), ["rows.jsonl", "set", "shard", "shard.json"])
+
+    def test_a_table_runs_nothing(self):
+        for text, shown in (("=cmd|' /C calc'!A0", True), ("+1+cmd", True), ("-2+3", True), ("@SUM(1)", True), ("-0.5", False), ("+1e-07", False), ("reach", False)):
+            self.assertEqual(errors.cell(text), "'" + text if shown else text)
+        self.assertEqual(errors.cell(-0.5), -0.5)
+
+    def test_a_model_calls_nothing(self):
+        class Evil:
+            def __init__(self, call):
+                self.call = call
+
+            def __reduce__(self):
+                return self.call
+
+        with tempfile.TemporaryDirectory() as folder:
+            trace = pathlib.Path(folder, "ran")
+            for call in ((os.system, (f"touch {trace}",)), (eval, (f"open({str(trace)!r}, 'w')",)), (subprocess.check_output, (["touch", str(trace)],))):
+                pathlib.Path(folder, "memory.pickle").write_bytes(pickle.dumps({"schedule": Evil(call)}))
+                with self.assertRaisesRegex(EpisodeError, "wanted a model"):
+                    baselines.main(["schedule", folder])
+            self.assertFalse(trace.exists())
+
+    def test_control_characters_are_shown(self):
+        said = subprocess.run([sys.executable, "-m", "prehend", "push", "\x1b[31mx\u202e.episodes", "postgresql://nobody@127.0.0.1:1/x"], capture_output=True, check=False)
+        self.assertEqual(said.returncode, 2)
+        self.assertIn(b"\\u001b[31mx\\u202e.episodes: no such file", said.stderr)
 
 
 if __name__ == "__main__":
