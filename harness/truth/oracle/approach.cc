@@ -129,7 +129,7 @@ int ReachBegin(const Evidence& evidence, const OracleSettings& settings, int han
                int earliest, int touch) {
   const Recording& recording = evidence.recording;
   int begin = touch;
-  while (begin > earliest &&
+  while (begin > earliest && recording.Seconds(begin - 1, touch) <= settings.reach_look_back_s &&
          InReachRegion(recording, hand, body, begin - 1, settings.reach_radius_m))
     --begin;
   const HandMotion motion(evidence, settings, hand, touch);

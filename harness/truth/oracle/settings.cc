@@ -31,6 +31,7 @@ std::span<const Band> DefinitionBands() {
       Band{"reach idle time", &S::reach_idle_s, 0.4, 0.6},
       Band{"onset", &S::onset_speed_m_per_s, 0.0005, 0.003},
       Band{"turn pause", &S::turn_pause_s, 0.05, 0.2},
+      Band{"reach look-back", &S::reach_look_back_s, 8, 12},
       Band{"reach minimum", &S::reach_minimum_s, 0.08, 0.12},
       Band{"reach brush", &S::reach_brush_s, 0.04, 0.06},
       Band{"slide speed", &S::slide_speed_m_per_s, 0.007, 0.015},

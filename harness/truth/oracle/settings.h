@@ -44,6 +44,7 @@ struct OracleSettings : TouchSettings {
   double reach_dead_band_m = 0.025;  ///< moving away by less is not moving away
   double reach_idle_s = 0.5;         ///< standing still for longer ends a reach
   double reach_minimum_s = 0.1;
+  double reach_look_back_s = 10;
   double reach_brush_s = 0.05;  ///< a shorter touch on the way does not end a reach
 
   double slide_speed_m_per_s = 0.01;  ///< along the support, where the two touch
