@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// By how much a `while` holds or does not, frame by frame: the robustness of signal temporal logic.
+// By how much a rule holds or does not, frame by frame: the robustness of signal temporal logic.
 // Tested by tests/harness/show/tracks/robustness_test.cc
 #pragma once
 
@@ -16,8 +16,7 @@ struct Robustness {
   std::string unit;            ///< "": of numbers of several kinds, or plain
 };
 
-/// Nothing of another form, nor of one that `until`, `requires`, `confirmed by` or a greatest
-/// length decides.
+/// Of the forms and modifiers that are a formula over frames (docs/explain.md); nothing of others.
 std::optional<Robustness> RobustnessOf(grammar::ReplayMonitor& past, grammar::InstanceId instance);
 
 }  // namespace prehend::show
