@@ -78,10 +78,32 @@ std::vector<Option> InGroup(const std::string& group, std::vector<Option> option
   return options;
 }
 
-Option Required(Option option) {
-  option.required = true;
+Option Argument(const std::string& name, const std::string& help, ValueRule rule) {
+  return {.name = name, .help = help, .rule = std::move(rule)};
+}
+
+Option Flag(const std::string& name, const std::string& help) {
+  return {.name = name, .help = help};
+}
+
+Option Value(const std::string& name, const std::string& placeholder, const std::string& help,
+             ValueRule rule) {
+  return {.name = name, .help = help, .placeholder = placeholder, .rule = std::move(rule)};
+}
+
+namespace {
+
+Option With(Option option, bool Option::*said) {
+  option.*said = true;
   return option;
 }
+
+}  // namespace
+
+Option Required(Option option) { return With(std::move(option), &Option::required); }
+Option Repeatable(Option option) { return With(std::move(option), &Option::repeatable); }
+Option WritesFile(Option option) { return With(std::move(option), &Option::is_output); }
+Option Unlisted(Option option) { return With(std::move(option), &Option::unlisted); }
 
 std::vector<Option> Joined(std::vector<Option> first, std::vector<Option> second) {
   std::ranges::move(second, std::back_inserter(first));
@@ -120,60 +142,45 @@ std::string FilterProblem(const std::string& filter) {
 
 }  // namespace
 
-Option ScenarioArgument() {
-  return {.name = "scenario", .help = "a name, skill/name or a file", .required = true};
-}
+Option ScenarioArgument() { return Required(Argument("scenario", "a name, skill/name or a file")); }
 
 Option EpisodeArgument() {
-  return {.name = "EPISODE",
-          .help = "a scenario (name, skill/name or file), an episode file or a recording",
-          .required = true};
+  return Required(
+      Argument("EPISODE", "a scenario (name, skill/name or file), an episode file or a recording"));
 }
 
 Option EpisodesArgument() {
-  return {.name = "EPISODES",
-          .help =
-              "episode files (docs/episodes.md), recordings (docs/recording-format.md), files of "
-              "takes (docs/labels.md) or "
-              "scenarios, which are played first",
-          .required = true,
-          .repeatable = true};
+  return Repeatable(
+      Required(Argument("EPISODES",
+                        "episode files (docs/episodes.md), recordings (docs/recording-format.md), "
+                        "files of takes (docs/labels.md) or scenarios, which are played first")));
 }
 
 Option EpisodeFilesArgument() {
-  return {.name = "files",
-          .help = "files from 'run --record' or 'check --record' (docs/episodes.md)",
-          .required = true,
-          .repeatable = true};
+  return Repeatable(Required(
+      Argument("files", "files from 'run --record' or 'check --record' (docs/episodes.md)")));
 }
 
 Option EpisodeOption() {
-  return {.name = "--episode",
-          .help =
-              "which one of an episode file that holds several: its number, or its scenario "
-              "(a name, skill/name or a glob)",
-          .placeholder = "WHICH"};
+  return Value("--episode", "WHICH",
+               "which one of an episode file that holds several: its number, or its scenario (a "
+               "name, skill/name or a glob)");
 }
 
 Option EpisodesOption() {
-  return {.name = "--episode",
-          .help =
-              "only these of episode files: a number, a scenario (a name, skill/name or a glob), "
-              "status=failed or outcome=NAME",
-          .placeholder = "WHICH"};
+  return Value("--episode", "WHICH",
+               "only these of episode files: a number, a scenario (a name, skill/name or a glob), "
+               "status=failed or outcome=NAME");
 }
 
 Option GrammarOption() {
-  return {.name = "--grammar",
-          .help = "use another grammar: a name of the library or a .grammar file",
-          .placeholder = "NAME|FILE"};
+  return Value("--grammar", "NAME|FILE",
+               "use another grammar: a name of the library or a .grammar file");
 }
 
 Option ParametersOption() {
-  return {.name = "--set",
-          .help = "set a parameter of the grammar (reach_radius=25cm); may be repeated",
-          .placeholder = "NAME=VALUE",
-          .repeatable = true};
+  return Repeatable(Value("--set", "NAME=VALUE",
+                          "set a parameter of the grammar (reach_radius=25cm); may be repeated"));
 }
 
 Option SettingsOption() {
@@ -202,72 +209,52 @@ Option JobsOption() {
 }
 
 Option FilterOption() {
-  return {.name = "--filter",
-          .help =
-              "keep those that match this glob or have the tag; with a leading '!' drop them; "
-              "may be repeated, then all must hold",
-          .placeholder = "[!]GLOB|[!]tag:NAME",
-          .rule = {.problem = FilterProblem},
-          .repeatable = true};
+  return Repeatable(Value("--filter", "[!]GLOB|[!]tag:NAME",
+                          "keep those that match this glob or have the tag; with a leading '!' "
+                          "drop them; may be repeated, then all must hold",
+                          {.problem = FilterProblem}));
 }
 
 Option TimeLimitOption(double least_s, double most_s) {
-  return {.name = "--time-limit-s",
-          .help = {},
-          .placeholder = "S",
-          .rule = NumbersFrom(least_s, most_s),
-          .unlisted = true};
+  return Unlisted(Value("--time-limit-s", "S", "", NumbersFrom(least_s, most_s)));
 }
 
 Option MemoryLimitOption() {
-  return {.name = "--memory-limit-mb",
-          .help = {},
-          .placeholder = "MB",
-          .rule = IntegersFrom(0, 1'000'000),
-          .unlisted = true};
+  return Unlisted(Value("--memory-limit-mb", "MB", "", IntegersFrom(0, 1'000'000)));
 }
 
-Option JsonOption() {
-  return {.name = "--json", .help = "print JSON instead of text", .unlisted = true};
-}
+Option JsonOption() { return Unlisted(Flag("--json", "print JSON instead of text")); }
 
 Option PaceOption() {
-  return {.name = "--pace",
-          .help =
-              "online: a program gets its next frame when it has answered the last one; real_time: "
-              "when its time comes; default: at once",
-          .placeholder = "online|real_time",
-          .rule = OneOf({"online", "real_time"})};
+  return Value("--pace", "online|real_time",
+               "online: a program gets its next frame when it has answered the last one; "
+               "real_time: when its time comes; default: at once",
+               OneOf({"online", "real_time"}));
 }
 
 Option RecogniserLimitOption() {
-  return {.name = "--recogniser-limit-s",
-          .help = fmt::format("seconds for a program and an episode; default: {:g}",
-                              kRecogniserLimit_s),
-          .placeholder = "S",
-          .rule = NumbersFrom(1, 86400)};
+  return Value(
+      "--recogniser-limit-s", "S",
+      fmt::format("seconds for a program and an episode; default: {:g}", kRecogniserLimit_s),
+      NumbersFrom(1, 86400));
 }
 
 Option MapOption() {
-  return {.name = "--map",
-          .help =
-              "what labels mean: a YAML file; without it they are events, like "
-              "grasping(right_hand, cup)",
-          .placeholder = "FILE"};
+  return Value(
+      "--map", "FILE",
+      "what labels mean: a YAML file; without it they are events, like grasping(right_hand, cup)");
 }
 
 std::vector<Option> TruthOptions(const std::string& help, const std::string& placeholder) {
-  return {{.name = "--truth", .help = help, .placeholder = placeholder, .repeatable = true},
-          MapOption(),
-          {.name = "--skip-bad-labels",
-           .help = "leave out labels that end before they begin, and count them"},
-          {.name = "--collar-ms",
-           .help = fmt::format("an event is right if both boundaries are so near; default: {:g}, "
-                               "and in a sweep with labels by people what has half of the union "
-                               "with its label in common (F1@50)",
-                               kDefaultCollar_ms),
-           .placeholder = "MS",
-           .rule = NumbersFrom(0, 10000)}};
+  return {
+      Repeatable(Value("--truth", placeholder, help)), MapOption(),
+      Flag("--skip-bad-labels", "leave out labels that end before they begin, and count them"),
+      Value("--collar-ms", "MS",
+            fmt::format(
+                "an event is right if both boundaries are so near; default: {:g}, and in a sweep "
+                "with labels by people what has half of the union with its label in common (F1@50)",
+                kDefaultCollar_ms),
+            NumbersFrom(0, 10000))};
 }
 
 }  // namespace prehend::cli

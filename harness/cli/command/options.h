@@ -47,8 +47,19 @@ struct Option {
 /// The same options under a heading of the help.
 std::vector<Option> InGroup(const std::string& group, std::vector<Option> options);
 
-/// The same option, which must be given.
+/// What is typed without dashes, by its place; an option without a value; one with a value, for
+/// which the help has the placeholder.
+Option Argument(const std::string& name, const std::string& help, ValueRule rule = {});
+Option Flag(const std::string& name, const std::string& help);
+Option Value(const std::string& name, const std::string& placeholder, const std::string& help,
+             ValueRule rule = {});
+
+/// The same option, which must be given; may be given several times; names a file that is written;
+/// is told of in the program's help and not in the command's.
 Option Required(Option option);
+Option Repeatable(Option option);
+Option WritesFile(Option option);
+Option Unlisted(Option option);
 
 /// Two lists of options, one after the other.
 std::vector<Option> Joined(std::vector<Option> first, std::vector<Option> second);

@@ -17,37 +17,27 @@ bool Looks(const ParsedOptions& options, const char* word) {
 
 std::vector<Option> PartOptions() {
   return {
-      {.name = "--from",
-       .help = "begin of the part whose events, paths and ghosts are shown, seconds",
-       .placeholder = "S",
-       .rule = NumbersFrom(0, 1e6)},
-      {.name = "--to",
-       .help = "end of that part; default: all, but paths and ghosts of an episode of "
-               "more than 15 s only around the moment",
-       .placeholder = "S",
-       .rule = NumbersFrom(0, 1e6)},
-      {.name = "--hand", .help = "paths, ghosts and rows of this hand only", .placeholder = "HAND"},
-      {.name = "--of",
-       .help = "the path of this thing, and only events that it takes part in",
-       .placeholder = "NAME"}};
+      Value("--from", "S", "begin of the part whose events, paths and ghosts are shown, seconds",
+            NumbersFrom(0, 1e6)),
+      Value("--to", "S",
+            "end of that part; default: all, but paths and ghosts of an episode of "
+            "more than 15 s only around the moment",
+            NumbersFrom(0, 1e6)),
+      Value("--hand", "HAND", "paths, ghosts and rows of this hand only"),
+      Value("--of", "NAME", "the path of this thing, and only events that it takes part in")};
 }
 
 std::vector<Option> LookOptions() {
-  return {{.name = "--camera",
-           .help = "from where: front, left, right, top, three_quarter; hand, action or "
-                   "body, which are nearer to what they name; a camera of the scenario; "
-                   "or X,Y,Z:X,Y,Z[:DEG], a place, what it looks at, and the view's height",
-           .placeholder = "CAMERA"},
-          {.name = "--text",
-           .help = "scale of all text; default: 1",
-           .placeholder = "SCALE",
-           .rule = NumbersFrom(0.3, 5)},
-          {.name = "--look",
-           .help = "print: on white paper; transparent: without a ground, for slides and posters; "
-                   "regions: with the regions of interest of what hands do at the moment, and a "
-                   "star above each thing that a hand may be reaching for",
-           .placeholder = "LOOK,..",
-           .rule = SomeOf({"print", "transparent", "regions"})}};
+  return {Value("--camera", "CAMERA",
+                "from where: front, left, right, top, three_quarter; hand, action or "
+                "body, which are nearer to what they name; a camera of the scenario; "
+                "or X,Y,Z:X,Y,Z[:DEG], a place, what it looks at, and the view's height"),
+          Value("--text", "SCALE", "scale of all text; default: 1", NumbersFrom(0.3, 5)),
+          Value("--look", "LOOK,..",
+                "print: on white paper; transparent: without a ground, for slides and posters; "
+                "regions: with the regions of interest of what hands do at the moment, and a "
+                "star above each thing that a hand may be reaching for",
+                SomeOf({"print", "transparent", "regions"}))};
 }
 
 show::PictureFormat FormatOfOptions(const ParsedOptions& options) {

@@ -155,35 +155,27 @@ Command AcceptCommand() {
            "accept milk_carton_wrap --pictures --reason \"the carton is seen in the hand\"",
            "accept takes/take1.jsonl --reason \"compared with the video\"",
            "accept takes/take1.jsonl --grammar my.grammar --reason \"compared with the video\""},
-      .options =
-          {{.name = "scenario",
-            .help = "a name, skill/name, or the file of a recording of a tracker, of episodes all "
-                    "demonstrations",
-            .required = true},
-           {.name = "--reason",
-            .help = "why this is right; is written into the golden",
-            .placeholder = "TEXT"},
-           {.name = "--derived",
-            .help = "how the events follow from the definitions, one line each; the "
-                    "physical oracle's derivation is added; may be repeated",
-            .placeholder = "TEXT",
-            .repeatable = true},
-           {.name = "--reviewed",
-            .help = "accept only what 'review' printed with this fingerprint",
-            .placeholder = "FINGERPRINT",
-            .rule = {.problem = FingerprintProblem}},
-           {.name = "--grammar",
-            .help = "of a recording of a tracker: this grammar instead of the one that it names",
-            .placeholder = "NAME|FILE"},
-           {.name = "--exact",
-            .help = "take over boundaries that moved within their tolerance, too: after a "
-                    "change that moved many, or the next small one fails"},
-           {.name = "--unsteady",
-            .help = "why the events may differ after a metamorphic transform, which "
-                    "accept does; is written into the golden; without it they may not",
-            .placeholder = "TEXT"},
-           {.name = "--pictures",
-            .help = "accept the pictures, not the events; they are kept beside the timeline"}},
+      .options = {Required(Argument("scenario",
+                                    "a name, skill/name, or the file of a recording of a tracker, "
+                                    "of episodes all demonstrations")),
+                  Value("--reason", "TEXT", "why this is right; is written into the golden"),
+                  Repeatable(Value("--derived", "TEXT",
+                                   "how the events follow from the definitions, one line each; the "
+                                   "physical oracle's derivation is added; may be repeated")),
+                  Value("--reviewed", "FINGERPRINT",
+                        "accept only what 'review' printed with this fingerprint",
+                        {.problem = FingerprintProblem}),
+                  Value(
+                      "--grammar", "NAME|FILE",
+                      "of a recording of a tracker: this grammar instead of the one that it names"),
+                  Flag("--exact",
+                       "take over boundaries that moved within their tolerance, too: after a "
+                       "change that moved many, or the next small one fails"),
+                  Value("--unsteady", "TEXT",
+                        "why the events may differ after a metamorphic transform, which accept "
+                        "does; is written into the golden; without it they may not"),
+                  Flag("--pictures",
+                       "accept the pictures, not the events; they are kept beside the timeline")},
       .run = RunAccept};
 }
 
@@ -192,15 +184,12 @@ Command ReviewCommand() {
       .name = "review",
       .summary = "Show what is pending, and how it differs from the goldens",
       .examples = {"review", "review milk_carton_wrap 'slide/*'"},
-      .options = {{.name = "names",
-                   .help =
-                       "names, skill/name, globs, or files of recordings of trackers; default: all "
-                       "that is pending",
-                   .repeatable = true},
-                  {.name = "--grammar",
-                   .help =
-                       "of recordings of trackers: this grammar instead of the one that they name",
-                   .placeholder = "NAME|FILE"},
+      .options = {Repeatable(Argument("names",
+                                      "names, skill/name, globs, or files of recordings of "
+                                      "trackers; default: all that is pending")),
+                  Value(
+                      "--grammar", "NAME|FILE",
+                      "of recordings of trackers: this grammar instead of the one that they name"),
                   JsonOption()},
       .run = RunReview};
 }

@@ -41,42 +41,38 @@ std::vector<Option> SelectionOptions() {
   return InGroup(
       "Which scenarios",
       {
-          {.name = "names",
-           .help =
-               "names, skill/name, globs or files, also episode files and recordings of trackers; "
-               "default: all scenarios",
-           .repeatable = true},
+          Repeatable(Argument(
+              "names",
+              "names, skill/name, globs or files, also episode files and recordings of trackers; "
+              "default: all scenarios")),
           FilterOption(),
-          {.name = "--shard",
-           .help = "keep part I of N: of as many scenarios, or, with the costs.json that a check "
-                   "left in build/check, of as many seconds",
-           .placeholder = "I/N[:COSTS.json]",
-           .rule = {.problem = suite::ShardProblem}},
-          {.name = "--changed",
-           .help = "skip scenarios that passed, if no file and no part of the program that "
-                   "they depend on changed since"},
+          Value("--shard", "I/N[:COSTS.json]",
+                "keep part I of N: of as many scenarios, or, with the costs.json that a check "
+                "left in build/check, of as many seconds",
+                {.problem = suite::ShardProblem}),
+          Flag("--changed",
+               "skip scenarios that passed, if no file and no part of the program that "
+               "they depend on changed since"),
       });
 }
 
 std::vector<Option> RunningOptions() {
-  return InGroup("How they run",
-                 {
-                     JobsOption(),
-                     TimeLimitOption(0.1, 86400),
-                     MemoryLimitOption(),
-                     {.name = "--repeat",
-                      .help = "run each scenario N times; a scenario whose results or state hashes "
-                              "differ is flaky and fails",
-                      .placeholder = "N",
-                      .rule = IntegersFrom(1, kMaxRepeats)},
-                     {.name = "--shuffle",
-                      .help = "run in a random order with this seed; default: the slowest first",
-                      .placeholder = "SEED",
-                      .rule = AnySeed()},
-                     GrammarOption(),
-                     SettingsOption(),
-                     RecogniserOption(),
-                 });
+  return InGroup(
+      "How they run",
+      {
+          JobsOption(),
+          TimeLimitOption(0.1, 86400),
+          MemoryLimitOption(),
+          Value("--repeat", "N",
+                "run each scenario N times; a scenario whose results or state hashes "
+                "differ is flaky and fails",
+                IntegersFrom(1, kMaxRepeats)),
+          Value("--shuffle", "SEED",
+                "run in a random order with this seed; default: the slowest first", AnySeed()),
+          GrammarOption(),
+          SettingsOption(),
+          RecogniserOption(),
+      });
 }
 
 std::string RecordProblem(const std::string& file) {
@@ -94,28 +90,21 @@ std::vector<Option> ResultOptions() {
   return InGroup(
       "What is written",
       {
-          {.name = "--report",
-           .help = "folder for index.html and pictures; default: build/report of the project, "
-                   "or, outside of it, of this folder; build/report/some of some scenarios",
-           .placeholder = "DIR",
-           .is_output = true},
-          {.name = "--junit",
-           .help = "also write the verdicts as JUnit XML; -: print it instead of text",
-           .placeholder = "FILE",
-           .is_output = true},
-          {.name = "--record",
-           .help = "also write each episode to FILE, NAME.episodes (docs/episodes.md)",
-           .placeholder = "FILE",
-           .rule = {.range = {}, .problem = RecordProblem},
-           .is_output = true},
-          {.name = "--no-pictures", .help = "draw no pictures"},
-          {.name = "--replay",
-           .help = "of which scenarios the page has a 3D replay: failures (the default), "
-                   "all, none",
-           .placeholder = "WHICH",
-           .rule = OneOf({"failures", "all", "none"})},
-          {.name = "--verbose",
-           .help = "print the details of every failure, also of more than ten"},
+          WritesFile(
+              Value("--report", "DIR",
+                    "folder for index.html and pictures; default: build/report of the project, "
+                    "or, outside of it, of this folder; build/report/some of some scenarios")),
+          WritesFile(Value("--junit", "FILE",
+                           "also write the verdicts as JUnit XML; -: print it instead of text")),
+          WritesFile(Value("--record", "FILE",
+                           "also write each episode to FILE, NAME.episodes (docs/episodes.md)",
+                           {.range = {}, .problem = RecordProblem})),
+          Flag("--no-pictures", "draw no pictures"),
+          Value("--replay", "WHICH",
+                "of which scenarios the page has a 3D replay: failures (the default), "
+                "all, none",
+                OneOf({"failures", "all", "none"})),
+          Flag("--verbose", "print the details of every failure, also of more than ten"),
           JsonOption(),
       });
 }

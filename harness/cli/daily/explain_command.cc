@@ -133,18 +133,13 @@ Command ExplainCommand() {
                        "explain milk_carton_wrap --expected 'sliding right_hand milk @2.0s'",
                        "explain milk_carton_wrap --set lift_rise=40cm --expected picking_up --json",
                        "explain milk.jsonl --event 'grasping(right_hand, milk)'"},
-          .options = {EpisodeArgument(),
-                      EpisodeOption(),
-                      {.name = "--event",
-                       .help = "an event that happened: reaching@1.24s, 'sliding right_hand milk "
-                               "@2.0s'",
-                       .placeholder = "EVENT[@TIME]"},
-                      {.name = "--expected",
-                       .help = "an event that did not happen: 'sliding right_hand milk @2.0s'",
-                       .placeholder = "EVENT[@TIME]"},
-                      GrammarOption(),
-                      SettingsOption(),
-                      JsonOption()},
+          .options = {EpisodeArgument(), EpisodeOption(),
+                      Value("--event", "EVENT[@TIME]",
+                            "an event that happened: reaching@1.24s, 'sliding right_hand milk "
+                            "@2.0s'"),
+                      Value("--expected", "EVENT[@TIME]",
+                            "an event that did not happen: 'sliding right_hand milk @2.0s'"),
+                      GrammarOption(), SettingsOption(), JsonOption()},
           .run = RunExplain};
 }
 

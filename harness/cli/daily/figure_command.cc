@@ -238,23 +238,18 @@ Command FigureCommand() {
                    "figure plate --from 1 --to 4 -o plate.svg --look transparent",
                    "figure gaze suite.episodes --episode gaze/eyes_lead_the_hand -o gaze.png"},
       .options = Joined(
-          {{.name = "kind", .help = KindHelp(), .rule = OneOf(KindNames()), .required = true},
-           {.name = "EPISODE",
-            .help =
-                "a scenario, an episode file or a recording; for grasps a glob of scenarios; for "
-                "phases also drawings (.txt), with --grammar"},
-           EpisodeOption(),
-           Required(OutputOption("the file: .svg, .pdf or .png")),
-           {.name = "--against",
-            .help = "of phases: the same episode by another grammar, or the golden, beside it",
-            .placeholder = "golden|GRAMMAR|ENGINE"},
-           {.name = "--scenes",
-            .help = "how many scenes are above a chart, 0 to 10; default: phases 5, others 3",
-            .placeholder = "N",
-            .rule = IntegersFrom(0, kMostScenes)},
-           {.name = "--at",
-            .help = "when these are: EVENT.begin, EVENT.end or seconds, with commas between them",
-            .placeholder = "TIME,.."}},
+          {Required(Argument("kind", KindHelp(), OneOf(KindNames()))),
+           Argument("EPISODE",
+                    "a scenario, an episode file or a recording; for grasps a glob of scenarios; "
+                    "for phases also drawings (.txt), with --grammar"),
+           EpisodeOption(), Required(OutputOption("the file: .svg, .pdf or .png")),
+           Value("--against", "golden|GRAMMAR|ENGINE",
+                 "of phases: the same episode by another grammar, or the golden, beside it"),
+           Value("--scenes", "N",
+                 "how many scenes are above a chart, 0 to 10; default: phases 5, others 3",
+                 IntegersFrom(0, kMostScenes)),
+           Value("--at", "TIME,..",
+                 "when these are: EVENT.begin, EVENT.end or seconds, with commas between them")},
           Joined(Joined(LookOptions(), PartOptions()), {GrammarOption(), SettingsOption()})),
       .run = RunFigure};
 }

@@ -320,26 +320,21 @@ Command ImportCommand() {
                    "import poses.csv --map bodies.yaml --check",
                    "import poses.csv --map bodies.yaml -o take.jsonl",
                    "episode resegment take.jsonl", "import take.jsonl -o takes.episodes"},
-      .options = {{.name = "poses",
-                   .help = "files with poses of hands and things: CSV, BVH, MCAP, a bag, HDF5, "
-                           "JSON, .npz or C3D (docs/motion-capture.md), folders of them, or a "
-                           "recording (docs/recording-format.md)",
-                   .required = true,
-                   .repeatable = true},
-                  {.name = "--map",
-                   .help = "of poses, what the file means: unit, axes, times, columns, bodies",
-                   .placeholder = "MAP.yaml"},
-                  OutputOption(
-                      "the recording (docs/recording-format.md), -: standard output; or an episode "
-                      "file, NAME.episodes, to which it is added (docs/episodes.md); of several "
-                      "takes a folder; of --propose the map"),
-                  {.name = "--propose",
-                   .help = "write a first map for the file, in which sizes are to be filled in"},
-                  {.name = "--check",
-                   .help = "write nothing; show what the file has, and what a grammar will miss"},
-                  {.name = "--grammar",
-                   .help = "the grammar to look with; default: that of the map",
-                   .placeholder = "GRAMMAR"}},
+      .options =
+          {Repeatable(Required(
+               Argument("poses",
+                        "files with poses of hands and things: CSV, BVH, MCAP, a bag, HDF5, "
+                        "JSON, .npz or C3D (docs/motion-capture.md), folders of them, or a "
+                        "recording (docs/recording-format.md)"))),
+           Value("--map", "MAP.yaml",
+                 "of poses, what the file means: unit, axes, times, columns, bodies"),
+           OutputOption(
+               "the recording (docs/recording-format.md), -: standard output; or an episode "
+               "file, NAME.episodes, to which it is added (docs/episodes.md); of several "
+               "takes a folder; of --propose the map"),
+           Flag("--propose", "write a first map for the file, in which sizes are to be filled in"),
+           Flag("--check", "write nothing; show what the file has, and what a grammar will miss"),
+           Value("--grammar", "GRAMMAR", "the grammar to look with; default: that of the map")},
       .run = RunImport};
 }
 

@@ -71,11 +71,9 @@ Command ListCommand() {
   return {.name = "list",
           .summary = "List the scenarios: name, what each shows, tags",
           .examples = {"list", "list 'slide/*' --filter tag:claim", "list --json"},
-          .options = {{.name = "names",
-                       .help = "which ones: names, skill/name, globs or files; default: all",
-                       .repeatable = true},
-                      FilterOption(),
-                      JsonOption()},
+          .options = {Repeatable(Argument(
+                          "names", "which ones: names, skill/name, globs or files; default: all")),
+                      FilterOption(), JsonOption()},
           .run = RunList};
 }
 

@@ -246,19 +246,17 @@ Command NewCommand() {
       .examples = {"new bottle_is_shaken", "new first_try --like pour",
                    "new slide/carton_slides_far --like carton_slides_then_is_transported",
                    "new --project my_kitchen"},
-      .options = {{.name = "name",
-                   .help =
-                       "what the scenario claims, like bottle_is_shaken; or skill/name. The verb "
-                       "and the thing are taken from it. In a folder of no project the file is "
-                       "written there"},
-                  {.name = "--like",
-                   .help = fmt::format(
-                       "start from this scenario; or what happens, if the name does not say so: {}",
-                       fmt::join(scenario::VerbNames(FindProjectRoot().value_or("")), ", ")),
-                   .placeholder = "SCENARIO|VERB"},
-                  {.name = "--project",
-                   .help = "make a project of your own in this new folder (docs/projects.md)",
-                   .placeholder = "DIR"}},
+      .options =
+          {Argument("name",
+                    "what the scenario claims, like bottle_is_shaken; or skill/name. The verb "
+                    "and the thing are taken from it. In a folder of no project the file is "
+                    "written there"),
+           Value("--like", "SCENARIO|VERB",
+                 fmt::format(
+                     "start from this scenario; or what happens, if the name does not say so: {}",
+                     fmt::join(scenario::VerbNames(FindProjectRoot().value_or("")), ", "))),
+           Value("--project", "DIR",
+                 "make a project of your own in this new folder (docs/projects.md)")},
       .run = RunNew};
 }
 

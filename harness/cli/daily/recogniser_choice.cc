@@ -20,11 +20,9 @@ suite::Listen ListenTo(const std::string& typed) {
 }
 
 Option RecogniserOption() {
-  return {.name = "--recogniser",
-          .help =
-              "hear this program, or the events in files:FOLDER, instead of the grammar "
-              "(docs/recognisers.md)",
-          .placeholder = "CMD"};
+  return Value("--recogniser", "CMD",
+               "hear this program, or the events in files:FOLDER, instead of the grammar "
+               "(docs/recognisers.md)");
 }
 
 void HearWho(const ParsedOptions& options, suite::SuiteRequest& request) {

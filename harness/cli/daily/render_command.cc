@@ -327,27 +327,20 @@ ExitCode RunRender(const ParsedOptions& options, const CommandContext& context) 
 }
 
 std::vector<Option> OptionsInsteadOfPictures() {
-  return InGroup("Instead of pictures",
-                 {{.name = "--strip", .help = "the timeline alone"},
-                  {.name = "--against",
-                   .help = "compare with the golden, another grammar, the other engine "
-                           "(bullet, box2d), a recogniser (docs/recognisers.md): both "
-                           "timelines, and the scenes at each boundary that differs. "
-                           "'pictures': golden pictures, those of now, and what differs",
-                   .placeholder = "golden|pictures|GRAMMAR|ENGINE|CMD"},
-                  {.name = "--film",
-                   .help = "a film: NAME.webp (img2webp), NAME.mp4 (ffmpeg), or a folder "
-                           "of frames; 960x540 unless --size says otherwise",
-                   .placeholder = "FILE|FOLDER",
-                   .is_output = true},
-                  {.name = "--fps",
-                   .help = "frames in a second of the film; default: 30",
-                   .placeholder = "N",
-                   .rule = NumbersFrom(1, 120)},
-                  {.name = "--speed",
-                   .help = "seconds of the episode in a second of the film; default: 1",
-                   .placeholder = "N",
-                   .rule = NumbersFrom(0.01, 100)}});
+  return InGroup(
+      "Instead of pictures",
+      {Flag("--strip", "the timeline alone"),
+       Value("--against", "golden|pictures|GRAMMAR|ENGINE|CMD",
+             "compare with the golden, another grammar, the other engine "
+             "(bullet, box2d), a recogniser (docs/recognisers.md): both "
+             "timelines, and the scenes at each boundary that differs. "
+             "'pictures': golden pictures, those of now, and what differs"),
+       WritesFile(Value("--film", "FILE|FOLDER",
+                        "a film: NAME.webp (img2webp), NAME.mp4 (ffmpeg), or a folder "
+                        "of frames; 960x540 unless --size says otherwise")),
+       Value("--fps", "N", "frames in a second of the film; default: 30", NumbersFrom(1, 120)),
+       Value("--speed", "N", "seconds of the episode in a second of the film; default: 1",
+             NumbersFrom(0.01, 100))});
 }
 
 }  // namespace
@@ -365,33 +358,21 @@ Command RenderCommand() {
            "render milk_carton_wrap --against original_2020 -o two_grammars.png",
            "render milk_carton_wrap --film milk.webp --speed 0.5"},
       .options = Joined(
-          Joined({EpisodeArgument(),
-                  EpisodeOption(),
+          Joined({EpisodeArgument(), EpisodeOption(),
                   OutputOption("the PNG file; default: build/pictures/SKILL/NAME.png. --strip and "
                                "--against also write .svg and .pdf"),
-                  {.name = "--at",
-                   .help = "when: EVENT.begin, EVENT.end, or seconds; for a sheet several, "
-                           "with commas between them",
-                   .placeholder = "TIME"},
-                  {.name = "--sheet",
-                   .help = "all pictures in one file, with so many columns",
-                   .placeholder = "N",
-                   .rule = IntegersFrom(1, kMostColumns)}},
+                  Value("--at", "TIME",
+                        "when: EVENT.begin, EVENT.end, or seconds; for a sheet several, "
+                        "with commas between them"),
+                  Value("--sheet", "N", "all pictures in one file, with so many columns",
+                        IntegersFrom(1, kMostColumns))},
                  OptionsInsteadOfPictures()),
           Joined(Joined(LookOptions(), PartOptions()),
-                 {{.name = "--size",
-                   .help = "pixels of a picture; default: 1280x720",
-                   .placeholder = "WxH",
-                   .rule = Sizes()},
-                  {.name = "--without",
-                   .help = "leave these out",
-                   .placeholder = "PART,..",
-                   .rule = SomeOf(PartNames()),
-                   .repeatable = true},
-                  GrammarOption(),
-                  SettingsOption(),
-                  {.name = "--json",
-                   .help = "print the run as one JSON object, with the files of its pictures"}})),
+                 {Value("--size", "WxH", "pixels of a picture; default: 1280x720", Sizes()),
+                  Repeatable(Value("--without", "PART,..", "leave these out", SomeOf(PartNames()))),
+                  GrammarOption(), SettingsOption(),
+                  Flag("--json",
+                       "print the run as one JSON object, with the files of its pictures")})),
       .run = RunRender};
 }
 

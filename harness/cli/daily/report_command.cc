@@ -7,7 +7,6 @@
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/quoting.h"
-#include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/daily/recogniser_choice.h"
 #include "harness/cli/daily/report_labels.h"
@@ -162,20 +161,14 @@ Command ReportCommand() {
                        "report suite.episodes --episode 'slide/*' --grammar my/rules.grammar",
                        "report take1.jsonl take2.jsonl --truth labels --map labels.yaml",
                        "report takes.yaml --grammar old.grammar --grammar files:predictions"},
-          .options = {EpisodesArgument(),
-                      EpisodesOption(),
+          .options = {EpisodesArgument(), EpisodesOption(),
                       OutputOption(fmt::format("the page; default: {}", kDefaultPage)),
-                      JobsOption(),
-                      grammar,
-                      SettingsOption(),
-                      RecogniserOption(),
-                      {.name = "--truth",
-                       .help = "compare with labels by people: one file for each recording, one "
-                               "table of all, or a folder (docs/labels.md); may be repeated",
-                       .placeholder = "FILE|FOLDER",
-                       .repeatable = true},
-                      MapOption(),
-                      JsonOption()},
+                      JobsOption(), grammar, SettingsOption(), RecogniserOption(),
+                      Repeatable(
+                          Value("--truth", "FILE|FOLDER",
+                                "compare with labels by people: one file for each recording, one "
+                                "table of all, or a folder (docs/labels.md); may be repeated")),
+                      MapOption(), JsonOption()},
           .run = RunReport};
 }
 

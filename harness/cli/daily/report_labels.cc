@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <map>
 
-#include "harness/base/base/quoting.h"
 #include "harness/suite/check/check_request.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/timeline/event_text.h"

@@ -257,34 +257,22 @@ Command RunCommand() {
            "run trials/wrap_places_a_carton --trials 800 --shard 3/8 --record part-3.episodes",
            "run my/scenario.yaml --grammar my/rules.grammar"},
       .options =
-          {ScenarioArgument(),
-           GrammarOption(),
-           SettingsOption(),
-           {.name = "--trials",
-            .help = "simulate N variations of the scenario and count the outcomes",
-            .placeholder = "N",
-            .rule = IntegersFrom(1, kMaxTrials)},
-           {.name = "--trial",
-            .help = "simulate variation K only",
-            .placeholder = "K",
-            .rule = IntegersFrom(1, kMaxTrials)},
-           {.name = "--shard",
-            .help = "keep part I of N of the trials",
-            .placeholder = "I/N",
-            .rule = {.problem = suite::ShardProblem}},
-           JobsOption(),
-           JsonOption(),
-           {.name = "--record",
-            .help = "write the episode to FILE: NAME.episodes holds many episodes and all of each; "
-                    "any other ending: what the grammar sees, as JSON Lines; -: print these "
-                    "instead of the table. With --trials: NAME.episodes, an episode per trial",
-            .placeholder = "FILE",
-            .is_output = true},
-           {.name = "--report",
-            .help = "also write the run as a web page with its 3D replay, judged as by check",
-            .placeholder = "FILE",
-            .is_output = true},
-           {.name = "--measure", .help = "print where the time went, and the peak memory"}},
+          {ScenarioArgument(), GrammarOption(), SettingsOption(),
+           Value("--trials", "N", "simulate N variations of the scenario and count the outcomes",
+                 IntegersFrom(1, kMaxTrials)),
+           Value("--trial", "K", "simulate variation K only", IntegersFrom(1, kMaxTrials)),
+           Value("--shard", "I/N", "keep part I of N of the trials",
+                 {.problem = suite::ShardProblem}),
+           JobsOption(), JsonOption(),
+           WritesFile(Value(
+               "--record", "FILE",
+               "write the episode to FILE: NAME.episodes holds many episodes and all of each; "
+               "any other ending: what the grammar sees, as JSON Lines; -: print these "
+               "instead of the table. With --trials: NAME.episodes, an episode per trial")),
+           WritesFile(
+               Value("--report", "FILE",
+                     "also write the run as a web page with its 3D replay, judged as by check")),
+           Flag("--measure", "print where the time went, and the peak memory")},
       .run = RunOne,
       .note =
           "It shows and does not judge: claims that the events contradict are printed, and the "

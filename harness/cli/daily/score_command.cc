@@ -185,53 +185,43 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
 }  // namespace
 
 Command ScoreCommand() {
-  return {.name = "score",
-          .summary = "Score grammars against what physically happened",
-          .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
-                       "score --grammar my/rules.grammar --event grasping,sliding",
-                       "score 'slide/*' --collar-ms 20 --json",
-                       "score take1.jsonl take2.jsonl --truth labels --map labels.yaml",
-                       "score takes.yaml", "score anna.csv --truth ben.csv"},
-          .options = Joined(
-              {{.name = "names",
-                .help = "names, skill/name, globs or files; default: all scenarios",
-                .repeatable = true},
-               FilterOption(),
-               {.name = "--grammar",
-                .help = "a grammar to score; may be repeated; default: pick_and_place and "
-                        "original_2020 (with --set the first alone); with --truth that of the "
-                        "recordings",
-                .placeholder = "NAME|FILE",
-                .repeatable = true},
-               ParametersOption(),
-               EpisodesOption(),
-               {.name = "--event",
-                .help = "score only these events; default: all that docs/events.md defines",
-                .placeholder = "NAME,..",
-                .repeatable = true},
-               {.name = "--verbose",
-                .help = "list every event that differs from what an evaluator says, or "
-                        "from the labels"},
-               {.name = "--found",
-                .help = "score these events, too, which somebody else found: a folder with a file "
-                        "for each episode (.csv, .eaf, .TextGrid, .timeline, .jsonl, .txt), or one "
-                        "table with a column 'episode' (docs/recognisers.md)",
-                .placeholder = "FILE|FOLDER",
-                .repeatable = true},
-               {.name = "--recogniser",
-                .help = "score a program that reads frames and prints events "
-                        "(docs/recognisers.md), a grammar, or files:FOLDER; may be repeated",
-                .placeholder = "CMD",
-                .repeatable = true},
-               PaceOption(),
-               RecogniserLimitOption(),
-               JsonOption()},
-              TruthOptions(
-                  "labels by people (.csv, .eaf, .TextGrid) of the recordings or episode files "
-                  "that are named: one file for each, one table of all, or a folder "
-                  "(docs/labels.md); may be repeated",
-                  "FILE|FOLDER")),
-          .run = RunScore};
+  return {
+      .name = "score",
+      .summary = "Score grammars against what physically happened",
+      .examples = {"score", "score --grammar pick_and_place --grammar my/rules.grammar",
+                   "score --grammar my/rules.grammar --event grasping,sliding",
+                   "score 'slide/*' --collar-ms 20 --json",
+                   "score take1.jsonl take2.jsonl --truth labels --map labels.yaml",
+                   "score takes.yaml", "score anna.csv --truth ben.csv"},
+      .options = Joined(
+          {Repeatable(
+               Argument("names", "names, skill/name, globs or files; default: all scenarios")),
+           FilterOption(),
+           Repeatable(Value("--grammar", "NAME|FILE",
+                            "a grammar to score; may be repeated; default: pick_and_place and "
+                            "original_2020 (with --set the first alone); with --truth that of the "
+                            "recordings")),
+           ParametersOption(), EpisodesOption(),
+           Repeatable(Value("--event", "NAME,..",
+                            "score only these events; default: all that docs/events.md defines")),
+           Flag("--verbose",
+                "list every event that differs from what an evaluator says, or "
+                "from the labels"),
+           Repeatable(
+               Value("--found", "FILE|FOLDER",
+                     "score these events, too, which somebody else found: a folder with a file "
+                     "for each episode (.csv, .eaf, .TextGrid, .timeline, .jsonl, .txt), or one "
+                     "table with a column 'episode' (docs/recognisers.md)")),
+           Repeatable(Value("--recogniser", "CMD",
+                            "score a program that reads frames and prints events "
+                            "(docs/recognisers.md), a grammar, or files:FOLDER; may be repeated")),
+           PaceOption(), RecogniserLimitOption(), JsonOption()},
+          TruthOptions(
+              "labels by people (.csv, .eaf, .TextGrid) of the recordings or episode files "
+              "that are named: one file for each, one table of all, or a folder "
+              "(docs/labels.md); may be repeated",
+              "FILE|FOLDER")),
+      .run = RunScore};
 }
 
 }  // namespace prehend::cli

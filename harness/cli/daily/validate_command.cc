@@ -188,21 +188,19 @@ ExitCode RunValidate(const ParsedOptions& options, const CommandContext& context
 }  // namespace
 
 Command ValidateCommand() {
-  return {.name = "validate",
-          .summary = "Read scenarios, grammars and goldens without running anything",
-          .examples = {"validate", "validate milk_carton_wrap my/scenario.yaml",
-                       "validate my/rules.grammar", "validate --grammar pick_and_place",
-                       "validate --on-save"},
-          .options = {{.name = "files",
-                       .help = "scenarios (names or files), .grammar or .timeline files; default: "
-                               "all scenarios",
-                       .repeatable = true},
-                      GrammarOption(),
-                      SettingsOption(),
-                      JsonOption(),
-                      {.name = "--on-save",
-                       .help = "validate again what a saved file affects, until interrupted"}},
-          .run = RunValidate};
+  return {
+      .name = "validate",
+      .summary = "Read scenarios, grammars and goldens without running anything",
+      .examples = {"validate", "validate milk_carton_wrap my/scenario.yaml",
+                   "validate my/rules.grammar", "validate --grammar pick_and_place",
+                   "validate --on-save"},
+      .options = {Repeatable(
+                      Argument("files",
+                               "scenarios (names or files), .grammar or .timeline files; default: "
+                               "all scenarios")),
+                  GrammarOption(), SettingsOption(), JsonOption(),
+                  Flag("--on-save", "validate again what a saved file affects, until interrupted")},
+      .run = RunValidate};
 }
 
 }  // namespace prehend::cli

@@ -193,20 +193,13 @@ Command AskCommand() {
            "Door))\"",
            "episode ask kb --show shown \"entity(A, [an, action]), occurs(A, [S, E]), "
            "show(world(S))\""},
-      .options = {{.name = "folder",
-                   .help = "what 'prehend episode knowledge' wrote",
-                   .required = true},
-                  {.name = "query", .help = "docs/knowledge.md explains it", .required = true},
-                  {.name = "--show",
-                   .help = "draw what the query shows into this folder",
-                   .placeholder = "FOLDER",
-                   .is_output = true},
-                  {.name = "--most",
-                   .help = "stop after so many answers; default: 100",
-                   .placeholder = "N",
-                   .rule = IntegersFrom(1, kMostAnswers)},
-                  TimeLimitOption(0.1, kMostAsk_s),
-                  JsonOption()},
+      .options = {Required(Argument("folder", "what 'prehend episode knowledge' wrote")),
+                  Required(Argument("query", "docs/knowledge.md explains it")),
+                  WritesFile(
+                      Value("--show", "FOLDER", "draw what the query shows into this folder")),
+                  Value("--most", "N", "stop after so many answers; default: 100",
+                        IntegersFrom(1, kMostAnswers)),
+                  TimeLimitOption(0.1, kMostAsk_s), JsonOption()},
       .run = RunAsk};
 }
 

@@ -72,12 +72,11 @@ Command BenchCommand() {
           .summary = "Measure how fast a grammar is evaluated on this machine",
           .examples = {"grammar bench", "grammar bench take.jsonl --grammar my/rules.grammar",
                        "grammar bench --json"},
-          .options = {{.name = "EPISODE",
-                       .help = "a scenario, an episode file or a recording whose frames are "
-                               "watched; default: milk_carton_wrap"},
+          .options = {Argument("EPISODE",
+                               "a scenario, an episode file or a recording whose frames are "
+                               "watched; default: milk_carton_wrap"),
                       GrammarOption(),
-                      {.name = "--quick",
-                       .help = "one run instead of five: shows that it runs, not how fast"},
+                      Flag("--quick", "one run instead of five: shows that it runs, not how fast"),
                       JsonOption()},
           .run = RunBench};
 }

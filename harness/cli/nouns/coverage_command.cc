@@ -60,11 +60,10 @@ Command CoverageCommand() {
                       GrammarOption(),
                       EpisodesOption(),
                       JobsOption(),
-                      {.name = "--within",
-                       .help = "exit code 1 if more than so many percent of the clauses never "
-                               "decided both ways",
-                       .placeholder = "PERCENT",
-                       .rule = NumbersFrom(0, 100)},
+                      Value("--within", "PERCENT",
+                            "exit code 1 if more than so many percent of the clauses never "
+                            "decided both ways",
+                            NumbersFrom(0, 100)),
                       {.name = "--output",
                        .help = "also write a file of lcov for editors and CI, NAME.info",
                        .placeholder = "FILE",

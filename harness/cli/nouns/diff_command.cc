@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend grammar diff. Tested by tests/program/causes_test.cc
-#include <fmt/format.h>
 
 #include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
@@ -32,8 +31,8 @@ Command DiffCommand() {
           .summary = "Say what changed between two grammars: rules, clauses, parameters",
           .examples = {"grammar diff pick_and_place original_2020",
                        "grammar diff old.grammar new.grammar"},
-          .options = {{.name = "OLD", .help = "a grammar's name or file", .required = true},
-                      {.name = "NEW", .help = "another one", .required = true}},
+          .options = {Required(Argument("OLD", "a grammar's name or file")),
+                      Required(Argument("NEW", "another one"))},
           .run = RunDiff,
           .note =
               "Comments and spaces do not count, nor does the order of rules. Exit code 1: they "

@@ -88,10 +88,9 @@ Command ExportCommand() {
                        "episode export suite.episodes --episode 'slide/*' --to csv -o poses",
                        "episode export take.jsonl --to npz -o take.npz"},
           .options = {EpisodesArgument(), EpisodesOption(),
-                      Required({.name = "--to",
-                                .help = "mcap, csv (poses and events), jsonl (a recording) or npz",
-                                .placeholder = "mcap|csv|jsonl|npz",
-                                .rule = OneOf({"mcap", "csv", "jsonl", "npz"})}),
+                      Required(Value("--to", "mcap|csv|jsonl|npz",
+                                     "mcap, csv (poses and events), jsonl (a recording) or npz",
+                                     OneOf({"mcap", "csv", "jsonl", "npz"}))),
                       Required(OutputOption("the folder, which gets a file per episode; of one "
                                             "episode a file with the format's ending",
                                             "PATH")),
@@ -104,43 +103,38 @@ Command LabelCommand() {
           .summary = "Write the sub-tasks of robot demonstrations back, or as a table",
           .examples = {"episode label demos.episodes --map stack.yaml -o labelled.hdf5",
                        "episode label demos.episodes --map stack.yaml --to frames -o frames.csv"},
-          .options = {EpisodesArgument(),
-                      EpisodesOption(),
-                      Required({.name = "--map",
-                                .help = "the map that they were imported with, with its labels",
-                                .placeholder = "MAP.yaml"}),
-                      {.name = "--to",
-                       .help = "a table instead; csv: a row per sub-task; frames: a row per frame",
-                       .placeholder = "csv|frames",
-                       .rule = OneOf({"csv", "frames"})},
+          .options = {EpisodesArgument(), EpisodesOption(),
+                      Required(Value("--map", "MAP.yaml",
+                                     "the map that they were imported with, with its labels")),
+                      Value("--to", "csv|frames",
+                            "a table instead; csv: a row per sub-task; frames: a row per frame",
+                            OneOf({"csv", "frames"})),
                       Required(OutputOption(
                           "NAME.hdf5, a copy of their HDF5 file with signals of sub-tasks, as "
                           "Isaac Lab and MimicGen read them; or the table of --to")),
-                      GrammarOption(),
-                      ParametersOption()},
+                      GrammarOption(), ParametersOption()},
           .run = RunLabel};
 }
 
 Command KnowledgeCommand() {
-  return {.name = "episode knowledge",
-          .summary = "Write recorded episodes for knowledge bases (RDF, OWL, NEEM)",
-          .examples =
-              {"episode knowledge suite.episodes -o kb",
-               "episode knowledge suite.episodes --episode 'slide/*' --also owl --also neem -o kb"},
-          .options = {EpisodesArgument(),
-                      {.name = "--output",
-                       .help = "the folder; default: kb. It gets prehend.ttl, maps/ and episodes/",
-                       .placeholder = "FOLDER",
-                       .other_name = "-o",
-                       .is_output = true},
-                      {.name = "--also",
-                       .help = "also as owl (RDF/XML beside each Turtle file) or neem (BSON "
-                               "collections as mongodump writes them); may be repeated",
-                       .placeholder = "owl|neem",
-                       .rule = OneOf({"owl", "neem"}),
-                       .repeatable = true},
-                      EpisodesOption()},
-          .run = RunKnowledge};
+  return {
+      .name = "episode knowledge",
+      .summary = "Write recorded episodes for knowledge bases (RDF, OWL, NEEM)",
+      .examples =
+          {"episode knowledge suite.episodes -o kb",
+           "episode knowledge suite.episodes --episode 'slide/*' --also owl --also neem -o kb"},
+      .options = {EpisodesArgument(),
+                  {.name = "--output",
+                   .help = "the folder; default: kb. It gets prehend.ttl, maps/ and episodes/",
+                   .placeholder = "FOLDER",
+                   .other_name = "-o",
+                   .is_output = true},
+                  Repeatable(Value("--also", "owl|neem",
+                                   "also as owl (RDF/XML beside each Turtle file) or neem (BSON "
+                                   "collections as mongodump writes them); may be repeated",
+                                   OneOf({"owl", "neem"}))),
+                  EpisodesOption()},
+      .run = RunKnowledge};
 }
 
 }  // namespace prehend::cli

@@ -26,7 +26,7 @@ Command FormatCommand() {
       .name = "grammar format",
       .summary = "Lay out a grammar as those of the library are",
       .examples = {"grammar format pick_and_place", "grammar format my/rules.grammar"},
-      .options = {{.name = "GRAMMAR", .help = "a grammar's name or file", .required = true}},
+      .options = {Required(Argument("GRAMMAR", "a grammar's name or file"))},
       .run = RunFormat,
       .note =
           "Comments, line breaks and the columns of '=' and '#' are kept; with errors nothing is "

@@ -2,7 +2,6 @@
 // prehend episode merge. Tested by tests/program/parts.py
 #include <fmt/format.h>
 
-#include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episodes/plan.h"
 #include "harness/episode/episodes/schema.h"
@@ -39,10 +38,8 @@ Command MergeCommand() {
                        "episode merge part-*.episodes -o all.episodes --expect 16"},
           .options = {EpisodeFilesArgument(),
                       Required(OutputOption("NAME.episodes, which gets each episode once")),
-                      {.name = "--expect",
-                       .help = "so many files must be there: exit code 3",
-                       .placeholder = "N",
-                       .rule = IntegersFrom(1, kMostParts)}},
+                      Value("--expect", "N", "so many files must be there: exit code 3",
+                            IntegersFrom(1, kMostParts))},
           .run = RunMerge,
           .note =
               "What a part owes and does not have is named, and the exit code is 3; the file is "

@@ -153,14 +153,9 @@ Command PosesCommand() {
       .examples =
           {"scenario poses milk_carton_wrap", "scenario poses milk_carton_wrap --at grasping.begin",
            "scenario poses suite.episodes --episode slide/hop_divides_a_slide --at 1.5 --json"},
-      .options = {EpisodeArgument(),
-                  EpisodeOption(),
-                  {.name = "--at",
-                   .help = "when: EVENT.begin, EVENT.end, or seconds; default: 0",
-                   .placeholder = "TIME"},
-                  GrammarOption(),
-                  SettingsOption(),
-                  JsonOption()},
+      .options = {EpisodeArgument(), EpisodeOption(),
+                  Value("--at", "TIME", "when: EVENT.begin, EVENT.end, or seconds; default: 0"),
+                  GrammarOption(), SettingsOption(), JsonOption()},
       .run = RunPoses};
 }
 
@@ -169,10 +164,10 @@ Command SchemaCommand() {
           .summary = "Print the JSON Schema of scenario files",
           .examples = {"scenario schema > scenarios/scenario.schema.json",
                        "scenario schema import-map"},
-          .options = {{.name = "import-map",
-                       .help = "that word: the schema of the maps of 'prehend import' "
+          .options = {Argument("import-map",
+                               "that word: the schema of the maps of 'prehend import' "
                                "(docs/motion-capture.md)",
-                       .rule = OneOf({"import-map"})}},
+                               OneOf({"import-map"}))},
           .run = RunSchema};
 }
 

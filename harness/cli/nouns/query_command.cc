@@ -302,15 +302,11 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
 
 Option RoleOption(const std::string& name, const std::string& help,
                   const std::string& placeholder) {
-  return {.name = name,
-          .help = help + "; may be repeated",
-          .placeholder = placeholder,
-          .rule = {.problem = RoleProblem},
-          .repeatable = true};
+  return Repeatable(Value(name, placeholder, help + "; may be repeated", {.problem = RoleProblem}));
 }
 
 Option SecondsOption(const std::string& name, const std::string& help) {
-  return {.name = name, .help = help, .placeholder = "S", .rule = NumbersFrom(0, 1e6)};
+  return Value(name, "S", help, NumbersFrom(0, 1e6));
 }
 
 }  // namespace
@@ -327,45 +323,37 @@ Command QueryCommand() {
            "episode query *.episodes --event sliding --relation 'meets transporting' --csv",
            "episode query suite.episodes --event grasping --count-by style,object_class",
            "episode query suite.episodes --event grasping --role object=Handle --show shown"},
-      .options = {EpisodesArgument(),
-                  {.name = "--event", .help = "its name, or a glob", .placeholder = "NAME"},
-                  RoleOption("--role",
-                             "who or what has a role: an entity, or what is of this class, "
-                             "directly or not (of any role: any=NAME)",
-                             "ROLE=NAME"),
-                  RoleOption("--part-of",
-                             "of what it is a part, directly or not: an entity or a class",
-                             "ROLE=NAME"),
-                  {.name = "--lasts-s",
-                   .help = "the event lasts at least so long, or so long: 0.5, 0.5..2 or ..2",
-                   .placeholder = "S[..S]",
-                   .rule = {.problem = LastsProblem}},
-                  SecondsOption("--from", "it begins at this time of its episode or later"),
-                  SecondsOption("--to", "it ends at this time of its episode or earlier"),
-                  {.name = "--relation",
-                   .help = "how it lies to another event of its episode, in Allen's words "
-                           "(before, meets, overlaps, starts, inside, finishes, equals, ..), or "
-                           "'has EVENT': it has a part of this name (see --parts); may be "
-                           "repeated",
-                   .placeholder = "'RELATION EVENT'",
-                   .rule = {.problem = RelationProblem},
-                   .repeatable = true},
-                  EpisodesOption(),
-                  {.name = "--parts",
-                   .help = "below each event also its parts: those that begin within it and have "
-                           "no other participants"},
-                  {.name = "--count-by",
-                   .help = "instead of the answers how many have the same in these columns: event, "
-                           "scenario, episode, file, a role (style, object), a role's class "
-                           "(object_class)",
-                   .placeholder = "COLUMN,.."},
-                  {.name = "--show",
-                   .help = "draw each answer into this folder: the world when the event begins, "
-                           "with the paths of its hand and its thing until it ends",
-                   .placeholder = "FOLDER",
-                   .is_output = true},
-                  JsonOption(),
-                  {.name = "--csv", .help = "print CSV instead of a table"}},
+      .options =
+          {EpisodesArgument(), Value("--event", "NAME", "its name, or a glob"),
+           RoleOption("--role",
+                      "who or what has a role: an entity, or what is of this class, "
+                      "directly or not (of any role: any=NAME)",
+                      "ROLE=NAME"),
+           RoleOption("--part-of", "of what it is a part, directly or not: an entity or a class",
+                      "ROLE=NAME"),
+           Value("--lasts-s", "S[..S]",
+                 "the event lasts at least so long, or so long: 0.5, 0.5..2 or ..2",
+                 {.problem = LastsProblem}),
+           SecondsOption("--from", "it begins at this time of its episode or later"),
+           SecondsOption("--to", "it ends at this time of its episode or earlier"),
+           Repeatable(Value("--relation", "'RELATION EVENT'",
+                            "how it lies to another event of its episode, in Allen's words "
+                            "(before, meets, overlaps, starts, inside, finishes, equals, ..), or "
+                            "'has EVENT': it has a part of this name (see --parts); may be "
+                            "repeated",
+                            {.problem = RelationProblem})),
+           EpisodesOption(),
+           Flag("--parts",
+                "below each event also its parts: those that begin within it and have "
+                "no other participants"),
+           Value("--count-by", "COLUMN,..",
+                 "instead of the answers how many have the same in these columns: event, "
+                 "scenario, episode, file, a role (style, object), a role's class "
+                 "(object_class)"),
+           WritesFile(Value("--show", "FOLDER",
+                            "draw each answer into this folder: the world when the event begins, "
+                            "with the paths of its hand and its thing until it ends")),
+           JsonOption(), Flag("--csv", "print CSV instead of a table")},
       .run = RunQuery};
 }
 

@@ -71,13 +71,11 @@ Command RecogniserCommand() {
           .summary = "Try whether a program of yours can be scored",
           .examples = {"grammar recogniser 'python3 reco.py' take1.jsonl",
                        "grammar recogniser ./reco take1.jsonl --pace online"},
-          .options = {{.name = "COMMAND",
-                       .help = "a program that reads frames and prints events, for the shell "
-                               "(docs/recognisers.md)",
-                       .required = true},
-                      {.name = "EPISODE",
-                       .help = "a recording, an episode file of one or a scenario",
-                       .required = true},
+          .options = {Required(Argument("COMMAND",
+                                        "a program that reads frames and prints events, for the "
+                                        "shell (docs/recognisers.md)")),
+                      Required(
+                          Argument("EPISODE", "a recording, an episode file of one or a scenario")),
                       PaceOption()},
           .run = RunRecogniser};
 }

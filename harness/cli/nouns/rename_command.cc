@@ -115,10 +115,8 @@ Command RenameCommand() {
           .summary = "Give a scenario another name: its file, golden, pictures and reasons move",
           .examples = {"scenario rename milk_carton_wrap milk_is_carried",
                        "scenario rename milk_carton_wrap carry/milk"},
-          .options = {{.name = "OLD", .help = "a name or skill/name", .required = true},
-                      {.name = "NEW",
-                       .help = "a name, in the same folder, or skill/name",
-                       .required = true}},
+          .options = {Required(Argument("OLD", "a name or skill/name")),
+                      Required(Argument("NEW", "a name, in the same folder, or skill/name"))},
           .run = RunRename};
 }
 

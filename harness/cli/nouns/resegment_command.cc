@@ -152,11 +152,10 @@ Command ResegmentCommand() {
                    "episode resegment suite.episodes --episode 'slide/*' --set slide_speed=3cm/s"},
       .options = {EpisodesArgument(),
                   EpisodesOption(),
-                  {.name = "--against",
-                   .help = "print only how the events differ from those that were recognised when "
-                           "the episode was recorded",
-                   .placeholder = "recorded",
-                   .rule = OneOf({"recorded"})},
+                  Value("--against", "recorded",
+                        "print only how the events differ from those that were recognised when "
+                        "the episode was recorded",
+                        OneOf({"recorded"})),
                   JobsOption(),
                   GrammarOption(),
                   ParametersOption(),
@@ -167,10 +166,9 @@ Command ResegmentCommand() {
                    .other_name = "-o",
                    .rule = {.range = {}, .problem = LabelsProblem},
                    .is_output = true},
-                  {.name = "--event",
-                   .help = "with --output: write this event instead of all; may be repeated",
-                   .placeholder = "NAME",
-                   .repeatable = true},
+                  Repeatable(
+                      Value("--event", "NAME",
+                            "with --output: write this event instead of all; may be repeated")),
                   JsonOption()},
       .run = RunResegment};
 }

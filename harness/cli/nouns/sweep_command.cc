@@ -171,7 +171,7 @@ std::vector<Option> SweepOptions(const std::vector<Option>& own) {
 }
 
 Option WithinOption(const std::string& help) {
-  return {.name = "--within", .help = help, .placeholder = "PERCENT", .rule = NumbersFrom(0, 100)};
+  return Value("--within", "PERCENT", help, NumbersFrom(0, 100));
 }
 
 }  // namespace
@@ -183,10 +183,8 @@ Command MarginsCommand() {
                        "grammar margins take1.jsonl take2.jsonl --truth labels --map labels.yaml "
                        "-o margins.csv"},
           .options = SweepOptions(
-              {{.name = "--over",
-                .help = "try this parameter instead of all; may be repeated",
-                .placeholder = "NAME",
-                .repeatable = true},
+              {Repeatable(
+                   Value("--over", "NAME", "try this parameter instead of all; may be repeated")),
                WithinOption("how many percent of F1 a score may be below the best; default: 1"),
                OutputOption("also write a CSV file, again after each parameter")}),
           .run = RunMargins};
@@ -206,12 +204,10 @@ Command SweepCommand() {
            "map.png",
            "grammar sweep *.episodes --over reach_radius=10cm..50cm:9 --over lift_rise=2cm..8cm:7"},
       .options = SweepOptions(
-          {{.name = "--over",
-            .help =
-                "try so many values of this parameter, evenly spaced; repeated: all combinations",
-            .placeholder = "NAME=FROM..TO:COUNT",
-            .rule = {.range = {}, .problem = AxisProblem},
-            .repeatable = true},
+          {Repeatable(Value(
+               "--over", "NAME=FROM..TO:COUNT",
+               "try so many values of this parameter, evenly spaced; repeated: all combinations",
+               {.range = {}, .problem = AxisProblem})),
            WithinOption("the robust settings: their F1 is within so many percent of the best; "
                         "default: 0.5"),
            std::move(output)}),

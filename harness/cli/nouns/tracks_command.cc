@@ -76,23 +76,19 @@ ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) 
 }  // namespace
 
 Command TracksCommand() {
-  return {.name = "grammar tracks",
-          .summary = "Write conditions and signals over time, for plots",
-          .examples = {"grammar tracks milk_carton_wrap -o milk.csv",
-                       "grammar tracks milk_carton_wrap --only grasping --only speed_along",
-                       "grammar tracks milk.jsonl --grammar my/rules.grammar -o milk.json"},
-          .options = {EpisodeArgument(),
-                      EpisodeOption(),
-                      OutputOption("the file to write, .csv or .json; - or nothing: print CSV"),
-                      {.name = "--only",
-                       .help = "an event, condition or signal (speed_along); may be repeated; "
-                               "default: all",
-                       .placeholder = "NAME",
-                       .repeatable = true},
-                      GrammarOption(),
-                      SettingsOption(),
-                      JsonOption()},
-          .run = RunTracks};
+  return {
+      .name = "grammar tracks",
+      .summary = "Write conditions and signals over time, for plots",
+      .examples = {"grammar tracks milk_carton_wrap -o milk.csv",
+                   "grammar tracks milk_carton_wrap --only grasping --only speed_along",
+                   "grammar tracks milk.jsonl --grammar my/rules.grammar -o milk.json"},
+      .options = {EpisodeArgument(), EpisodeOption(),
+                  OutputOption("the file to write, .csv or .json; - or nothing: print CSV"),
+                  Repeatable(Value("--only", "NAME",
+                                   "an event, condition or signal (speed_along); may be repeated; "
+                                   "default: all")),
+                  GrammarOption(), SettingsOption(), JsonOption()},
+      .run = RunTracks};
 }
 
 }  // namespace prehend::cli

@@ -133,15 +133,10 @@ Command TryCommand() {
           .examples = {"grammar try my.grammar my_drawings.txt",
                        "grammar try pick_and_place my_drawings.txt --set slide_distance=\"3 cm\"",
                        "grammar try my.grammar my_drawings.txt --json"},
-          .options = {{.name = "grammar",
-                       .help = "a name of the library or a .grammar file",
-                       .required = true},
-                      {.name = "drawings",
-                       .help = "files with drawings: docs/drawings.md",
-                       .required = true,
-                       .repeatable = true},
-                      ParametersOption(),
-                      JsonOption()},
+          .options = {Required(Argument("grammar", "a name of the library or a .grammar file")),
+                      Repeatable(
+                          Required(Argument("drawings", "files with drawings: docs/drawings.md"))),
+                      ParametersOption(), JsonOption()},
           .run = RunTry};
 }
 

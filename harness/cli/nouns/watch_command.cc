@@ -254,20 +254,15 @@ Command WatchCommand() {
       .summary = "Print events while a recording is written, each when it is decided",
       .examples = {"grammar watch - --grammar pick_and_place_from_motion",
                    "grammar watch - --map map.yaml --open", "grammar watch tracker.fifo --json"},
-      .options =
-          {{.name = "EPISODE",
-            .help = "lines of a recording (docs/recording-format.md), or with --map of a table of "
-                    "poses or of\nJSON: -, standard input, a pipe or a file; or an episode "
-                    "file, or a scenario",
-            .required = true},
-           {.name = "--map",
-            .help = "what the lines of a table of poses or of JSON mean, as in 'import'",
-            .placeholder = "MAP.yaml"},
-           {.name = "--open", .help = "also print what holds now and is not certain"},
-           EpisodeOption(),
-           GrammarOption(),
-           ParametersOption(),
-           {.name = "--json", .help = "print JSON, one object per event"}},
+      .options = {Required(Argument("EPISODE",
+                                    "lines of a recording (docs/recording-format.md), or with "
+                                    "--map of a table of poses or of\nJSON: -, standard input, a "
+                                    "pipe or a file; or an episode file, or a scenario")),
+                  Value("--map", "MAP.yaml",
+                        "what the lines of a table of poses or of JSON mean, as in 'import'"),
+                  Flag("--open", "also print what holds now and is not certain"), EpisodeOption(),
+                  GrammarOption(), ParametersOption(),
+                  Flag("--json", "print JSON, one object per event")},
       .run = RunWatch};
 }
 
