@@ -52,9 +52,12 @@ FileHashes HashFiles(const std::vector<std::string>& paths) {
 }
 
 std::string ProgramHash() {
-  std::string libraries;
-  dl_iterate_phdr(AddLibrary, &libraries);
-  return ContentHash(FileHash("/proc/self/exe") + libraries);
+  static const std::string hash = [] {
+    std::string libraries;
+    dl_iterate_phdr(AddLibrary, &libraries);
+    return ContentHash(FileHash("/proc/self/exe") + libraries);
+  }();
+  return hash;
 }
 
 std::string BuildText() { return PREHEND_BUILD; }

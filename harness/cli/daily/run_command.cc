@@ -101,6 +101,7 @@ ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& re
     if (!settings.known.empty())
       context.err << fmt::format("{}: it has {} of {} trials already; these are not played again\n",
                                  file, settings.known.size(), all);
+    ProgramHash();  // once, before each trial has a process of its own
     settings.play = [&](int trial, const episode::RunRequest& varied) {
       episode::RecordRequest record = RecordingOf(varied, {}, options, context);
       record.uuid = plan.UuidOfEpisode(plan.owed[static_cast<std::size_t>(trial) - 1].name);

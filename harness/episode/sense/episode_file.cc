@@ -6,7 +6,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "harness/scenario/scenario/scenario.h"
 
@@ -87,35 +91,89 @@ Json MemberJson(const grammar::EntityInfo& member, const grammar::EntityTable& e
   return json;
 }
 
-Json SampleJson(const grammar::EntitySample& look, const grammar::EntityTable& entity_table,
-                const WrittenFacts& facts) {
-  if (!grammar::IsTracked(look)) return nullptr;
-  Json json = {{"at_m", ToJson(look.p_WB_m)},
-               {"quat_wxyz", ToJson(look.q_WB)},
-               {"v_m_per_s", ToJson(look.v_WB_m_per_s)},
-               {"w_rad_per_s", ToJson(look.w_WB_rad_per_s)}};
-  if (look.asleep) json["asleep"] = true;
-  if (facts.joints && look.joint_position != 0) json["joint_position"] = look.joint_position;
-  if (facts.joints && look.joint_fraction != 0) json["joint_fraction"] = look.joint_fraction;
-  if (facts.gazes && look.gazes_at != grammar::kNoEntity)
-    json["gazes_at"] = entity_table.entities[look.gazes_at].name;
-  return json;
+// Lines of frames are written straight from the structs, with each number as Json writes it.
+
+void Add(double number, std::string& line) {
+  if (number == 0 && !std::signbit(number)) {
+    line += "0.0";
+  } else if (!std::isfinite(number)) {
+    line += "null";
+  } else {
+    std::array<char, 64> text{};
+    line.append(text.data(), nlohmann::detail::to_chars(text.data(), &text.back(), number));
+  }
 }
 
-Json HandJson(const grammar::HandSample& hand, const grammar::EntityTable& entity_table,
-              const WrittenFacts& facts) {
-  Json json;
-  if (facts.trigger) json["trigger"] = hand.trigger;
-  json["ahead"] = ToJson(hand.ahead_W);
-  if (facts.touches) {  // where the fingers are, they may touch
-    Json& spheres = json["collision_spheres_m"] = Json::array();
-    for (const grammar::CollisionSphere& one : hand.collision_spheres)
-      spheres.push_back({one.p_W_m.x(), one.p_W_m.y(), one.p_W_m.z(), one.radius_m});
+void Add(std::initializer_list<double> numbers, std::string& line) {
+  char before = '[';
+  for (const double number : numbers) {
+    line += std::exchange(before, ',');
+    Add(number, line);
   }
-  if (!facts.trigger) return json;
-  if (hand.style >= 0 && hand.style < static_cast<int>(entity_table.styles.size()))
-    json["style"] = entity_table.styles[hand.style];
-  return json;
+  line += ']';
+}
+
+void Add(const Eigen::Vector3d& v, std::string& line) { Add({v.x(), v.y(), v.z()}, line); }
+
+template <typename Value>
+void Add(const char* key, const Value& value, std::string& line) {
+  line += key;
+  Add(value, line);
+}
+
+void AddName(const std::string& name, std::string& line) {
+  const bool is_plain = std::ranges::all_of(name, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+  line += is_plain ? '"' + name + '"' : Json(name).dump();
+}
+
+void AddSample(const grammar::EntitySample& look, const grammar::EntityTable& entity_table,
+               const WrittenFacts& facts, std::string& line) {
+  if (!grammar::IsTracked(look)) {
+    line += "null";
+    return;
+  }
+  const Eigen::Quaterniond& q = look.q_WB;
+  Add(R"({"at_m":)", look.p_WB_m, line);
+  line += R"(,"quat_wxyz":)";
+  Add({q.w(), q.x(), q.y(), q.z()}, line);
+  Add(R"(,"v_m_per_s":)", look.v_WB_m_per_s, line);
+  Add(R"(,"w_rad_per_s":)", look.w_WB_rad_per_s, line);
+  if (look.asleep) line += R"(,"asleep":true)";
+  if (facts.joints && look.joint_position != 0)
+    Add(R"(,"joint_position":)", look.joint_position, line);
+  if (facts.joints && look.joint_fraction != 0)
+    Add(R"(,"joint_fraction":)", look.joint_fraction, line);
+  if (facts.gazes && look.gazes_at != grammar::kNoEntity) {
+    line += R"(,"gazes_at":)";
+    AddName(entity_table.entities[look.gazes_at].name, line);
+  }
+  line += '}';
+}
+
+void AddHand(const grammar::HandSample& hand, const grammar::EntityTable& entity_table,
+             const WrittenFacts& facts, std::string& line) {
+  line += '{';
+  if (facts.trigger) {
+    Add(R"("trigger":)", hand.trigger, line);
+    line += ',';
+  }
+  Add(R"("ahead":)", hand.ahead_W, line);
+  if (facts.touches) {  // where the fingers are, they may touch
+    line += R"(,"collision_spheres_m":[)";
+    for (const grammar::CollisionSphere& one : hand.collision_spheres) {
+      if (line.back() == ']') line += ',';
+      Add({one.p_W_m.x(), one.p_W_m.y(), one.p_W_m.z(), one.radius_m}, line);
+    }
+    line += ']';
+  }
+  if (facts.trigger && hand.style >= 0 &&
+      hand.style < static_cast<int>(entity_table.styles.size())) {
+    line += R"(,"style":)";
+    AddName(entity_table.styles[hand.style], line);
+  }
+  line += '}';
 }
 
 Json TouchJson(const grammar::Touch& touch, const grammar::EntityTable& entity_table) {
@@ -204,22 +262,36 @@ EpisodeWriter::EpisodeWriter(std::ostream& out, const EpisodeHeader& header,
 }
 
 void EpisodeWriter::Write(const grammar::Frame& frame) {
-  Json samples = Json::object();
+  std::string line = fmt::format(R"({{"tick":{},"samples":{{)", frame.tick);
+  const auto begin_of = [&](int entity) {
+    if (line.back() != '{') line += ',';
+    AddName(entity_table_.entities[entity].name, line);
+    line += ':';
+    return line.size();
+  };
   for (std::size_t i = 0; i < frame.entities.size(); ++i) {
-    Json sample = SampleJson(frame.entities[i], entity_table_, facts_);
-    std::string text = sample.dump();
-    if (text == shown_[i]) continue;
-    samples[entity_table_.entities[i].name] = std::move(sample);
-    shown_[i] = std::move(text);
+    const std::size_t before = line.size(), begin = begin_of(static_cast<int>(i));
+    AddSample(frame.entities[i], entity_table_, facts_, line);
+    const std::string_view text = std::string_view(line).substr(begin);
+    if (text == shown_[i]) {
+      line.resize(before);
+    } else {
+      shown_[i] = text;
+    }
   }
-  Json hands = Json::object(), touches = Json::array();
-  for (const grammar::HandSample& hand : frame.hands)
-    hands[entity_table_.entities[hand.entity].name] = HandJson(hand, entity_table_, facts_);
-  for (const grammar::Touch& touch : frame.touches)
-    touches.push_back(TouchJson(touch, entity_table_));
-  Json line = {{"tick", frame.tick}, {"samples", std::move(samples)}, {"hands", std::move(hands)}};
-  if (facts_.touches) line["touches"] = std::move(touches);
-  out_ << line.dump() << "\n";
+  line += R"(},"hands":{)";
+  for (const grammar::HandSample& hand : frame.hands) {
+    begin_of(hand.entity);
+    AddHand(hand, entity_table_, facts_, line);
+  }
+  line += '}';
+  if (facts_.touches) {
+    Json touches = Json::array();
+    for (const grammar::Touch& touch : frame.touches)
+      touches.push_back(TouchJson(touch, entity_table_));
+    line += R"(,"touches":)" + touches.dump();
+  }
+  out_ << line << "}\n";
 }
 
 void EpisodeWriter::Finish(grammar::Tick end_tick) {

@@ -257,6 +257,7 @@ class Importer {
     std::optional<Eigen::Quaterniond> upright;
     if (entity.upright_at_s) upright = OrientationThen(body, entity);
     std::vector<TimedPose> poses;
+    poses.reserve(body.samples.size());
     for (const PoseSample& sample : body.samples) {
       const PoseSample at = InRecording(sample, entity, map_, upright);
       poses.push_back({.t_s = at.t_s, .p = at.p, .q = at.q});
@@ -366,13 +367,14 @@ class Importer {
       for (const Track& track : *all) tracks.push_back(&track);
     for (const Track* const track : tracks) {
       const std::vector<TimedPose>& poses = track->poses;
+      auto at = times_.begin();  // most are there already
       for (std::size_t i = 0; i < poses.size(); ++i) {
         if (i > 0 && TickOf(poses[i].t_s) == TickOf(poses[i - 1].t_s))
           return fmt::format(
               "two poses are {:.3g} s apart, and a second has {} ticks; give the "
               "map more ticks_per_second",
               poses[i].t_s - poses[i - 1].t_s, map_.ticks_per_second);
-        times_.emplace(TickOf(poses[i].t_s), poses[i].t_s);
+        at = std::next(times_.try_emplace(at, TickOf(poses[i].t_s), poses[i].t_s));
       }
     }
     times_.emplace(0, 0.0);
@@ -385,20 +387,21 @@ class Importer {
 
   void AddFrames() {
     episode::Recording& episode = imported_.episode;
-    episode::EpisodeFrame before;
+    episode.frames.reserve(times_.size());
     double before_s = 0;
     for (const auto& [tick, t_s] : times_) {
       episode::EpisodeFrame frame;
       frame.tick = tick;
+      frame.entities.reserve(tracks_.size());
+      const auto* before = episode.frames.empty() ? nullptr : &episode.frames.back().entities;
       for (std::size_t i = 0; i < tracks_.size(); ++i) {
         const std::size_t passed = tracks_[i].next;
         const TimedPose pose = tracks_[i].At(t_s);
         grammar::EntitySample& sample = frame.entities.emplace_back();
         sample.p_WB_m = pose.p;
         sample.q_WB = pose.q;
-        if (!before.entities.empty() && !Found(tracks_[i], passed) &&
-            grammar::IsTracked(before.entities[i]))
-          SetVelocity(before.entities[i], t_s - before_s, sample);
+        if (before && !Found(tracks_[i], passed) && grammar::IsTracked((*before)[i]))
+          SetVelocity((*before)[i], t_s - before_s, sample);
         if (map_.lost == Lost::kUnknown && IsLost(tracks_[i], t_s)) sample = grammar::NotTracked();
         if (map_.entities[i].value.hand) {
           frame.hands.push_back({.entity = static_cast<int>(i),
@@ -408,8 +411,7 @@ class Importer {
         }
       }
       SetOpenings(t_s, frame);
-      episode.frames.push_back(frame);
-      before = std::move(frame);
+      episode.frames.push_back(std::move(frame));
       before_s = t_s;
     }
     episode.placed.assign(tracks_.size(), true);

@@ -56,7 +56,15 @@ Eigen::Quaterniond Reordered(const Eigen::Quaterniond& q, bool was_wxyz) {
 
 class WayUp {
  public:
-  WayUp(const MotionSeen& seen, const ImportMap& map) : seen_(seen), map_(map) {}
+  WayUp(const MotionSeen& seen, const ImportMap& map) : seen_(seen), map_(map) {
+    for (const std::vector<BodyLook>& looks : seen.looks) {
+      std::vector<std::size_t>& jumps = last_jump_.emplace_back(looks.size());
+      for (std::size_t k = 1; k < looks.size(); ++k) {
+        const double way_m = (looks[k].p_m - looks[k - 1].p_m).norm();
+        jumps[k] = way_m > kCarried_m_per_s * seen.look_s ? k : jumps[k - 1];
+      }
+    }
+  }
 
   /// What stood, was carried, and stands again, is lifted along `up`.
   Votes Lifts(const Eigen::Vector3d& up, double& highest_m, std::string& example) const {
@@ -144,15 +152,12 @@ class WayUp {
  private:
   /// Faster than anybody carries it: what it did there tells nothing.
   bool Jumps(const Rest& from, const Rest& to) const {
-    const std::vector<BodyLook>& looks = seen_.looks[from.body];
-    for (std::size_t k = from.begin + 1; k < to.end; ++k) {
-      if ((looks[k].p_m - looks[k - 1].p_m).norm() > kCarried_m_per_s * seen_.look_s) return true;
-    }
-    return false;
+    return last_jump_[from.body][to.end - 1] > from.begin;
   }
 
   const MotionSeen& seen_;
   const ImportMap& map_;
+  std::vector<std::vector<std::size_t>> last_jump_;  ///< by body and look; 0: none
 };
 
 }  // namespace

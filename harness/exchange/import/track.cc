@@ -23,6 +23,7 @@ std::size_t EndOfSight(const std::vector<TimedPose>& poses, std::size_t begin) {
 double OffNeighbours_m(const std::vector<TimedPose>& poses, std::size_t order) {
   constexpr double kMedianOfThree = 1.538;
   std::vector<std::pair<double, double>> of_way;
+  of_way.reserve(poses.size());
   for (std::size_t last = order; last < poses.size(); ++last) {
     const std::span<const TimedPose> some(&poses[last - order], order + 1);
     if (std::ranges::any_of(some.subspan(1), &TimedPose::after_loss)) continue;
@@ -39,9 +40,10 @@ double OffNeighbours_m(const std::vector<TimedPose>& poses, std::size_t order) {
     }
     of_way.emplace_back((some.back().p - some.front().p).norm(), sum.norm() / std::sqrt(squares));
   }
-  std::ranges::sort(of_way);
+  const std::size_t slow = (of_way.size() + 3) / 4;
+  std::ranges::nth_element(of_way, of_way.begin() + static_cast<std::ptrdiff_t>(slow));
   std::vector<double> off;
-  for (std::size_t i = 0; 4 * i < of_way.size(); ++i) off.push_back(of_way[i].second);
+  for (std::size_t i = 0; i < slow; ++i) off.push_back(of_way[i].second);
   return Median(std::move(off)) / kMedianOfThree;
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tests/harness/scenario_fixture.h"
@@ -90,8 +91,12 @@ TEST(EpisodeFile, IsReadAsItWasWritten) {
   Recording episode = *read;
   std::ostringstream written;
   EpisodeWriter writer(written, episode.header);
+  episode.frames[0].entities[1].v_WB_m_per_s = {-1e-7, 2.0 / 3, -0.0};
   for (EpisodeFrame& frame : episode.frames) writer.Write(frame.View());
   writer.Finish(episode.end_tick);
+  std::istringstream lines(written.str());
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_EQ(nlohmann::ordered_json::parse(line).dump(), line);
   const auto again = ReadText(written.str());
   ASSERT_TRUE(again) << scenario::Brief(ErrorsOf(again));
   EXPECT_EQ(again->end_tick, 9);
