@@ -49,7 +49,8 @@ Box2dWorld::Box2dWorld(const Scene& scene, const std::vector<int>& styles)
     : scene_(scene),
       dt_s_(1.0 / scene.world.rate_hz),
       world_(ToBox2d({0, 0, -scene.world.gravity_m_per_s2})),
-      stillness_(scene.bodies.size()) {
+      stillness_(scene.bodies.size()),
+      touching_(scene.world.rate_hz) {
   // As in Bullet: the run's checks report bodies that are too fast for the tick.
   world_.SetContinuousPhysics(false);
   world_.SetContactListener(&mixing_);

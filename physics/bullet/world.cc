@@ -96,7 +96,8 @@ BulletWorld::BulletWorld(const Scene& scene, const std::vector<int>& styles)
                                    ? BulletParts::kStock
                                    : BulletParts::kReplaced)),
       world_(engine_->world()),
-      stillness_(scene.bodies.size()) {
+      stillness_(scene.bodies.size()),
+      touching_(scene.world.rate_hz) {
   Configure();
   AddBodies();
   AddJoints();

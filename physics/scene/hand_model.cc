@@ -222,7 +222,9 @@ void LinkPlaces::Place(const Pose& X_WPalm, const std::vector<double>& joints,
 double WantedSpeed(const JointDriver& driver, const HandLink& link, double target, double joint,
                    double dt_s) {
   const double limit = link.slides ? driver.max_slide_m_per_s : driver.max_speed_rad_per_s;
-  return std::clamp(driver.stiffness * (target - joint) / dt_s, -limit, limit);
+  const double ticks = dt_s * JointDriver::kStiffnessRate_hz;
+  const double share = std::min(driver.stiffness * ticks * ticks, 1.0);
+  return std::clamp(share * (target - joint) / dt_s, -limit, limit);
 }
 
 std::vector<double> JointTargets(const GraspStyle& style, double trigger) {

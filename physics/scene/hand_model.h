@@ -43,7 +43,10 @@ struct PidGains {
 
 /// Velocity servo of a joint, with limited torque.
 struct JointDriver {
-  double stiffness = 0.2;  ///< share of the error removed per tick
+  /// At other rates the share of a tick grows with the square of its length. A joint that holds
+  /// something then yields alike, by what the solver leaves over, which does so, too.
+  static constexpr double kStiffnessRate_hz = 480;
+  double stiffness = 0.2;  ///< share of the error removed per tick at that rate
   double damping = 1.0;    ///< 0..1: how firmly the target velocity is enforced
   double max_speed_rad_per_s = 12;
   double max_slide_m_per_s = 0.3;  ///< the same for links that slide

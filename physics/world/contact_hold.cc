@@ -9,10 +9,7 @@
 namespace prehend::physics {
 namespace {
 
-/// A contact survives this many ticks without an impulse: 8 ms at 480 Hz.
-constexpr int kHoldTicks = 4;
-/// One that pressed for longer than a blow also lasts until its surfaces are so far apart.
-constexpr int kBlowTicks = 10;
+/// What pressed for longer than a blow also lasts until its surfaces are so far apart.
 constexpr double kApart_m = 0.0005;
 
 }  // namespace
@@ -62,11 +59,12 @@ void TouchingPairs::EndTick() {
       std::sort(pair.points.begin(), pair.points.end(), ComesBefore);
       continue;
     }
-    const bool lasts = pair.near && pair.pressed_ticks > kBlowTicks;
+    const bool lasts = pair.near && pair.pressed_ticks > blow_ticks_;
     pair.quiet_ticks = lasts ? 0 : pair.quiet_ticks + 1;
     for (ContactPoint& point : pair.points) point.normal_impulse_n_s = 0;
   }
-  std::erase_if(pairs_, [](const auto& entry) { return entry.second.quiet_ticks > kHoldTicks; });
+  std::erase_if(pairs_,
+                [this](const auto& entry) { return entry.second.quiet_ticks > hold_ticks_; });
   if (rested_ == rests_) return;
   rested_ = rests_;
   if (MovePairs(pairs_, resting_, true)) ShareResting();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Defines contact, the same for every engine. Two surfaces are in contact in a tick in which
 // momentum passed between them, whatever their distance was before and after it: a bounce is over
-// within one tick. A contact lasts until no impulse has passed for a few ticks, because the impulse
-// of a resting contact flickers. What has pressed for longer than a blow also lasts until the
+// within one tick. A contact lasts until no impulse has passed for 8 ms, because the impulse of a
+// resting contact flickers. What has pressed for longer than a blow also lasts until the
 // surfaces are half a millimetre apart: the first micrometres of a slow lift take long, and how
 // long is chance. Contacts between two resting bodies do not change and cost no time. Tested by
 // tests/physics/world/contact_hold_test.cc, tests/physics/world/bounce_test.cc
@@ -22,6 +22,9 @@ bool ComesBefore(const ContactPoint& l, const ContactPoint& r);
 
 class TouchingPairs {
  public:
+  explicit TouchingPairs(int rate_hz = 480)
+      : hold_ticks_(rate_hz / 120), blow_ticks_(rate_hz / 48) {}
+
   /// Call before the points of a tick are added. `rests`: by body of the scene, whether it is fixed
   /// or asleep after this tick.
   void BeginTick(const std::vector<char>& rests);
@@ -50,6 +53,8 @@ class TouchingPairs {
   bool MovePairs(Pairs& from, Pairs& to, bool that_rest);
   void ShareResting();
 
+  int hold_ticks_;            ///< a contact survives so many ticks (8 ms) without an impulse
+  int blow_ticks_;            ///< what presses for more (20 ms) is no blow
   Pairs pairs_;               ///< pairs of which one side may move
   Pairs resting_;             ///< all other pairs
   std::vector<char> rests_;   ///< by body, after this tick

@@ -112,7 +112,7 @@ ValueFormat<JointDriver> DriverFormat() {
   using D = JointDriver;
   return StructFormat<D>("the joint driver")
       .Optional("stiffness", &D::stiffness, Number(0, 1),
-                "Share of the error that it tries to remove per tick.")
+                "Share of the error that it tries to remove per tick at 480 Hz.")
       .Optional("damping", &D::damping, Number(0, 1), "How firmly it holds its target speed.")
       .Optional("max_speed_rad_per_s", &D::max_speed_rad_per_s, Number(0.1, 100),
                 "Maximum speed of a joint.")

@@ -49,6 +49,15 @@ TEST_F(ContactHold, ABlowIsOverHoweverNearTheTwoStay) {
   EXPECT_EQ(TicksThatTouch(20, kNear_m), 4);
 }
 
+TEST_F(ContactHold, TwiceTheTicksAreTheSameTime) {
+  pairs_ = TouchingPairs(960);
+  Press(15);
+  EXPECT_EQ(TicksThatTouch(20, kNear_m), 8) << "a blow";
+  Press(21);
+  EXPECT_EQ(TicksThatTouch(100, kNear_m), 100);
+  EXPECT_EQ(TicksThatTouch(20, kFar_m), 8);
+}
+
 TEST_F(ContactHold, AFlickerOfTheForceEndsNothing) {
   for (int i = 0; i < 5; ++i) {
     Press(3);
