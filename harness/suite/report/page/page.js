@@ -85,8 +85,9 @@
 
   /// A timeline as small as a line of the list.
   sections.forEach((section) => {
-    const link = section.row.querySelector('a');
-    link.replaceChildren(...link.textContent.split(/(?<=[_/])/).flatMap((part) => [part, document.createElement('wbr')]));
+    const link = section.row.querySelector('a'), title = section.querySelector('h2').lastChild;
+    for (const name of [link.lastChild, title])
+      name.replaceWith(...name.textContent.split(/(?<=[_/])/).flatMap((part) => [part, document.createElement('wbr')]));
     const svg = timelineOf(section);
     if (!svg) return;
     const {width, height} = svg.viewBox.baseVal, left = Number(svg.dataset.left);

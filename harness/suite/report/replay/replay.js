@@ -20,6 +20,11 @@ const LAYERS = [
   ['regions', 'regions of interest'], ['contacts', 'contacts'], ['paths', 'paths'], ['gaze', 'gaze'], ['body', 'body'],
   ['names', 'names']];
 
+// Where a name may stand, the nearest first, in pixels.
+const NEAR = [];
+for (let right = -160; right <= 160; right += 20) for (let down = -160; down <= 160; down += 10) NEAR.push([right, down]);
+NEAR.sort((a, b) => Math.hypot(...a) + (a[1] > 0 ? 40 : 0) - Math.hypot(...b) - (b[1] > 0 ? 40 : 0));
+
 function sums(differences, width) {
   const values = Float64Array.from(differences);
   for (let i = width; i < values.length; ++i) values[i] += values[i - width];
@@ -80,10 +85,19 @@ function solid(geometry, color, opacity) {
   return group;
 }
 
-/// Of a hand: without edges, as round as it is thin.
-function link(size) {
-  const mesh = new Mesh(new RoundedBoxGeometry(...size, 4, 0.45 * Math.min(...size)), new MeshLambertMaterial({color: SKIN}));
+/// Of a hand: without edges. Fingers are as round as they are thin, and long enough to leave no notches at their joints.
+function link(size, round) {
+  const radius = Math.min(round, 0.475 * Math.min(size[1], size[2]));
+  const mesh = new Mesh(new RoundedBoxGeometry(size[0] + (round > 0.1 ? 0.9 * radius : 0), size[1], size[2], 4, radius), new MeshLambertMaterial({color: SKIN}));
   mesh.castShadow = mesh.receiveShadow = true;
+  return mesh;
+}
+
+/// A hint of one, which is nothing in the physics: as in the stills.
+function forearm([length, width]) {
+  const radius = 0.36 * width, material = new MeshLambertMaterial({color: SKIN, transparent: true, opacity: 0.55});
+  const mesh = new Mesh(new CapsuleGeometry(radius, 0.17, 8, 24).rotateZ(Math.PI / 2), material);
+  mesh.position.x = -length / 2 - 0.085 - 0.6 * radius;
   return mesh;
 }
 
@@ -95,8 +109,8 @@ class World {
     this.placed = [];  // [object, track]
     this.objects = {};
     this.named = [];
-    this.scene.add(new HemisphereLight(0xffffff, 0x8d8d8d, 1.6), new AmbientLight(0xffffff, 0.4));
-    const sun = new DirectionalLight(0xffffff, 1.6);
+    this.scene.add(new HemisphereLight(0xffffff, 0x8d8d8d, 1.9), new AmbientLight(0xffffff, 0.4));
+    const sun = new DirectionalLight(0xffffff, 2.1);
     this.sun = sun;
     this.scene.add(sun, sun.target);
     data.bodies.forEach((body) => this.addBody(body));
@@ -150,9 +164,11 @@ class World {
 
   addHand(hand) {
     const group = new Group();
-    group.add(link(hand.palm));
+    group.add(link(hand.palm, 0.012));
+    const isGripper = hand.links.length < 6, hasArm = this.data.bodies.some((body) => body.kind === 'person' && body.name.includes('forearm'));
+    if (!isGripper && !hasArm) group.add(forearm(hand.palm));
     hand.links.forEach((one) => {
-      const part = link(one.size);
+      const part = link(one.size, 1);
       this.place(part, one.track);
       group.add(part);
     });
@@ -174,29 +190,40 @@ class World {
   addContacts() {
     const most = Math.max(1, ...this.data.contacts.samples.map((points) => points.length / 3));
     this.points = new InstancedMesh(
-      new SphereGeometry(0.0025, 8, 6), new MeshBasicMaterial({color: 0xffc400, depthTest: false, transparent: true, opacity: 0.8}), most);
+      new SphereGeometry(0.0025, 8, 6), new MeshBasicMaterial({color: 0xffc400, depthTest: false, transparent: true, opacity: 0.6}), most);
     this.points.frustumCulled = false;
     this.points.renderOrder = 2;
     this.scene.add(this.points);
     this.layers.contacts.push(this.points);
   }
 
-  /// Of what moves, and of what stands near it.
+  /// Of what moves, with its size, and of people. Collects `seen`, what a picture of everything has to hold.
   bounds() {
-    const box = new Box3(), point = new Vector3();
+    const box = new Box3(), point = new Vector3(), around = new Box3();
+    this.seen = [];
+    const add = (one) => {
+      box.union(one);
+      for (let k = 0; k < 8; ++k)
+        this.seen.push(new Vector3(k & 1 ? one.max.x : one.min.x, k & 2 ? one.max.y : one.min.y, k & 4 ? one.max.z : one.min.z));
+    };
     this.scene.traverse((object) => {
       const track = object.userData.path;
       if (!track) return;
-      for (let i = 0; i < track.t.length; ++i) box.expandByPoint(point.fromArray(track.p, 3 * i));
+      const half = object.userData.phases ? 0.1 : 0.06;
+      for (let i = 0, every = Math.ceil(track.t.length / 100); i < track.t.length; i += every)
+        add(around.setFromCenterAndSize(point.fromArray(track.p, 3 * i), new Vector3(2 * half, 2 * half, 2 * half)));
     });
     if (box.isEmpty()) {
       this.seek(0);
-      box.setFromObject(this.scene);
+      add(around.setFromObject(this.scene));
     }
-    for (const [object, track] of this.placed) {  // heads of people
+    for (const [object, track] of this.placed) {  // heads of people, wherever they lean
       if (!this.layers.body.includes(object)) continue;
-      track.set(0, object);
-      box.expandByObject(object);
+      for (const tick of [0, this.data.end / 2, this.data.end]) {
+        track.set(tick, object);
+        object.updateMatrixWorld(true);
+        add(around.setFromObject(object));
+      }
     }
     return box.expandByScalar(0.15);
   }
@@ -284,8 +311,9 @@ class World {
     const move = new Matrix4();
     if (this.points) {
       const points = this.data.contacts.samples[at(this.data.contacts)] || [];
+      const size = Math.min(1, Math.sqrt(40 / (points.length / 3)));  // many of them would cover what they mark
       for (let i = 0; i < points.length; i += 3)
-        this.points.setMatrixAt(i / 3, move.makeTranslation(
+        this.points.setMatrixAt(i / 3, move.makeScale(size, size, size).setPosition(
           points[i] / COARSE_PER_M, points[i + 1] / COARSE_PER_M, points[i + 2] / COARSE_PER_M));
       this.points.count = points.length / 3;
       this.points.instanceMatrix.needsUpdate = true;
@@ -347,8 +375,9 @@ class Player {
 
   addLabels() {
     this.labels = this.world.named.map(([name, object]) => {
+      const line = element(this.stage, 'span', {class: 'leader', 'aria-hidden': 'true'});
       const label = element(this.stage, 'span', {class: 'label', 'aria-hidden': 'true'}, name);
-      return {label, object};
+      return {label, line, object};
     });
   }
 
@@ -415,6 +444,25 @@ class Player {
     });
   }
 
+  /// Puts the camera where everything is as large as it can be in the picture, seen from `away`.
+  fit(away) {
+    const back = away.clone().normalize(), right = this.camera.up.clone().cross(back).normalize(), up = back.clone().cross(right);
+    const tall = 0.9 * Math.tan(this.camera.fov * Math.PI / 360), at = this.camera.position.set(0, 0, 0);
+    let far = 0;
+    for (const [axis, slope] of [[right, tall * this.camera.aspect], [up, tall]]) {
+      let least = Infinity, most = -Infinity;
+      for (const point of this.world.seen) {
+        least = Math.min(least, point.dot(axis) - slope * point.dot(back));
+        most = Math.max(most, point.dot(axis) + slope * point.dot(back));
+      }
+      at.addScaledVector(axis, (least + most) / 2);
+      far = Math.max(far, (most - least) / 2 / slope);
+    }
+    const middle = this.world.box.getCenter(new Vector3()).dot(back);
+    at.addScaledVector(back, Math.max(far, middle + 0.3));
+    this.controls.target.copy(at).addScaledVector(back, middle - at.dot(back));
+  }
+
   resize() {
     const width = this.stage.clientWidth || 640;
     const height = Math.round(Math.min(width * 0.6, 520));
@@ -427,10 +475,9 @@ class Player {
 
   /// Puts the camera: one of the names in VIEWS.
   view(name) {
-    const box = this.world.box;
-    const target = box.getCenter(new Vector3());
+    const target = this.world.box.getCenter(new Vector3());
     let away = {front: [-1, 0, 0.25], side: [0, -1, 0.2], top: [0, -0.01, 1]}[name] || [-0.4, -1, 0.6];
-    let distance = box.getSize(new Vector3()).length() / 2 / Math.tan(17.5 * Math.PI / 180) * 0.72;
+    let distance = 0;
     this.camera.near = 0.01;
     if (name === 'hand') {
       this.world.objects[this.world.data.hands[0].name].getWorldPosition(target);
@@ -445,8 +492,12 @@ class Player {
       distance = Math.max(0.3, new Vector3(...away).length());
       this.camera.near = 0.15;  // her own head is not in the way
     }
-    this.controls.target.copy(target);
-    this.camera.position.copy(target).add(new Vector3(...away).normalize().multiplyScalar(distance));
+    if (distance > 0) {
+      this.controls.target.copy(target);
+      this.camera.position.copy(target).add(new Vector3(...away).normalize().multiplyScalar(distance));
+    } else {
+      this.fit(new Vector3(...away));
+    }
     this.camera.updateProjectionMatrix();
     this.controls.update();
     this.views.value = name;
@@ -484,7 +535,7 @@ class Player {
     if (this.time >= this.end_s) this.seek(0);
     let last = performance.now();
     const step = (now) => {
-      this.seek(this.time + (now - last) / 1000 * Number(this.speed.value));
+      this.seek(this.time + Math.min(now - last, 250) / 1000 * Number(this.speed.value));  // nothing is skipped
       last = now;
       if (this.time >= this.end_s) this.pause(); else if (this.timer) this.timer = requestAnimationFrame(step);
     };
@@ -508,16 +559,24 @@ class Player {
     if (this.gone || !this.labels) return;
     this.renderer.render(this.world.scene, this.camera);
     const width = this.stage.clientWidth, height = this.canvas.clientHeight, at = new Vector3(), taken = [];
-    for (const {label, object} of this.labels) {
-      object.getWorldPosition(at).project(this.camera);
-      const isIn = Math.abs(at.x) < 1 && Math.abs(at.y) < 1 && at.z < 1 && object.visible;
-      label.style.visibility = isIn ? '' : 'hidden';
-      if (!isIn) continue;
-      const x = (at.x + 1) / 2 * width, half = 4 * label.textContent.length + 4;
-      let y = (1 - at.y) / 2 * height - 34;  // above it, and above those that are there
-      while (taken.some((one) => Math.abs(one.y - y) < 20 && Math.abs(one.x - x) < one.half + half)) y -= 20;
+    for (const one of this.labels) {
+      one.object.getWorldPosition(at).project(this.camera);
+      one.isIn = Math.abs(at.x) < 1 && Math.abs(at.y) < 1 && at.z < 1 && one.object.visible;
+      one.label.style.visibility = one.line.style.visibility = one.isIn ? '' : 'hidden';
+      one.there = {x: (at.x + 1) / 2 * width, y: (1 - at.y) / 2 * height};
+      if (one.isIn) taken.push({x: one.there.x, y: one.there.y - 9, half: 16});  // what is named is not covered
+    }
+    for (const {label, line, there} of this.labels.filter((one) => one.isIn)) {
+      const half = 4 * label.textContent.length + 4;
+      const isFree = ([x, y]) => x >= half && x <= width - half && y >= 2 && y <= height - 22 &&
+        !taken.some((one) => Math.abs(one.y - y) < 20 && Math.abs(one.x - x) < one.half + half);
+      // Above it, or as near to that as there is room, with a line to what it names.
+      const [x, y] = NEAR.map(([right, down]) => [there.x + right, there.y - 34 + down]).find(isFree) || [there.x, there.y - 34];
       taken.push({x, y, half});
       label.style.transform = `translate(${x}px, ${y}px) translate(-50%, 0)`;
+      const from = y + (there.y > y + 9 ? 18 : 0), long = Math.hypot(there.x - x, there.y - from);
+      line.style.transform = `translate(${x}px, ${from}px) rotate(${Math.atan2(there.y - from, there.x - x)}rad)`;
+      line.style.width = long + 'px';
     }
   }
 
