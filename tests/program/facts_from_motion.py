@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How right the facts from motion are; prints the tables of docs/facts-from-motion.md. Takes minutes; not a test of ctest.
+"""How right the facts from motion are; prints what docs/facts-from-motion.md sums up. Takes minutes; not a test of ctest.
 
     python3 tests/program/facts_from_motion.py build/test/prehend [NAME..]
 

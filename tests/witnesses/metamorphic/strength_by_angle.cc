@@ -4,7 +4,7 @@
 // scenarios/trials end with their first outcome as written, turned by 40 degrees, mirrored (the
 // left hand) and both. Prints a table in Markdown. Exit status 0: the heaviest crates are within 3
 // % (and one step) of each other, the counts of a scenario within 2 of 200 (at least 1).
-// docs/physics.md has the tables. A small run of each is in ctest.
+// docs/physics.md has what came out. A small run of each is in ctest.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
