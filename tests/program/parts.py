@@ -92,6 +92,7 @@ def suite(folder):
     assert f"{len(episodes(part[1]))} were there twice" in said.stdout
     assert (folder / "twice.episodes").read_bytes() == all_.read_bytes()
     not_the_same(part, folder)
+    hostile(part, folder)
 
 
 def not_the_same(part, folder):
@@ -106,6 +107,40 @@ def not_the_same(part, folder):
     said = run("episode", "merge", *part[1:], other, "-o", folder / "no.episodes", code=2)
     assert "is not the same" in said.stderr and "part-1.episodes" in said.stderr and "other.episodes" in said.stderr, said.stderr
     assert not list(folder.glob("no.episodes*"))
+
+
+def hostile(part, folder):
+    """Rows that nobody wrote: numbers out of range, more of everything than anybody has."""
+    import many_episodes  # needs python3-xxhash
+
+    def after(sql, *words, code):
+        file, begin = folder / "hostile.episodes", os.times()
+        shutil.copyfile(part[1], file)
+        with sqlite3.connect(file) as database:
+            database.executescript(sql)
+        database.close()
+        many_episodes.sum_pages(file)
+        told = run(*words, file, code=code).stderr
+        assert os.times().children_user - begin.children_user < 5, sql
+        return told
+    many = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < {}) INSERT INTO {} FROM n"
+    for sql, code, said in (("UPDATE plan_owed SET part = 4", 2, "found part 4 of 3"), ("UPDATE plan SET part = -1", 2, "found part -1 of 3"),
+                            ("UPDATE plan SET parts = 1 << 40", 2, "found part 1099511627776 of 10000"),
+                            ("UPDATE plan_owed SET name = 'a' || char(27) || '[31m'", 2, "the file is damaged"),
+                            ("UPDATE plan SET uuid = '../../x'", 2, "the file is damaged"),
+                            (many.format(20000, "plan(what, uuid, part, parts) SELECT 'x', uuid, 1, 1") + ", plan WHERE plan.id = 1", 2, "20001 plans"),
+                            ("UPDATE plan SET parts = 10000", 3, "part 3 of 10000 is missing"),
+                            (many.format(100000, "plan_owed(plan, position, part, name, uuid) SELECT 1, i + 1000, i % 10000 + 1, 'n' || i, ''"), 3, "and 9950 parts more")):
+        if said.startswith("and"):
+            sql = "UPDATE plan SET parts = 10000; " + sql
+        told = after(sql, "episode", "merge", "-o", folder / "no.episodes", code=code)
+        assert said in told and len(told) < 400000 and "\x1b" not in told, told[:300]
+    for sql, said in (("UPDATE event SET begin_tick = 'abc'", "found 'abc', wanted an integer"), ("UPDATE event SET begin_tick = 1.5", "wanted an integer"),
+                      ("UPDATE event SET end_tick = 1 << 62", "wanted an integer"), ("UPDATE event SET end_tick = begin_tick - 1", "found the number"),
+                      ("UPDATE event SET begin_tick = -1", "found the number -1, wanted 0"), ("UPDATE episode SET ticks_per_second = 0", "found the number 0, wanted 1"),
+                      ("UPDATE entity SET part_of = 1 << 40", "found the number 1099511627776"), ("UPDATE entity SET size_x_m = 'wide'", "wanted a number")):
+        told = after(sql, "episode", "query", "--event", "*", "--part-of", "any=Hand", code=2)
+        assert "the file is damaged: " in told and said in told, (sql, told[:300])
 
 
 def trials(folder):

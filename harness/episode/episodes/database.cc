@@ -129,10 +129,20 @@ void Statement::Reset() {
 }
 
 std::int64_t Statement::Integer(int column) const {
-  return sqlite3_column_int64(statement_, column);
+  constexpr std::int64_t kMost = std::int64_t{1} << 53;  // as large as all programs can read
+  const int type = sqlite3_column_type(statement_, column);
+  const std::int64_t number = sqlite3_column_int64(statement_, column);
+  if ((type != SQLITE_INTEGER && type != SQLITE_NULL) || number < -kMost || number > kMost)
+    throw DatabaseError("the file is damaged: found '" + Text(column) + "', wanted an integer");
+  return number;
 }
 
-double Statement::Double(int column) const { return sqlite3_column_double(statement_, column); }
+double Statement::Double(int column) const {
+  const int type = sqlite3_column_type(statement_, column);
+  if (type == SQLITE_TEXT || type == SQLITE_BLOB)
+    throw DatabaseError("the file is damaged: found '" + Text(column) + "', wanted a number");
+  return sqlite3_column_double(statement_, column);
+}
 
 bool Statement::IsNothing(int column) const {
   return sqlite3_column_type(statement_, column) == SQLITE_NULL;

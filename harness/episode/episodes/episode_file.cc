@@ -33,6 +33,15 @@ void AtChunk(std::int64_t first_tick, const Work& work) {
   }
 }
 
+constexpr std::int64_t kMostTicks = std::int64_t{1} << 50;
+
+/// The number, or the file is damaged.
+std::int64_t Between(std::int64_t least, std::int64_t number, std::int64_t most) {
+  if (number < least || number > most)
+    throw Damage(fmt::format("found the number {}, wanted {} to {}", number, least, most));
+  return number;
+}
+
 physics::RunStatus EndOf(const EpisodeRow& row, const Statement& found) {
   using Kind = physics::RunStatus::Kind;
   if (row.status == kCompleted || row.status == kUnfinished)
@@ -70,8 +79,8 @@ Result<EpisodeFile> EpisodeFile::Open(const std::string& path) {
              .status = find.Text(3),
              .simulated = find.Text(13) != kNoEngine,
              .grammar = find.Text(4),
-             .ticks_per_second = std::max<std::int64_t>(find.Integer(5), 1),
-             .ticks = find.Integer(6),
+             .ticks_per_second = Between(1, find.Integer(5), 1'000'000),
+             .ticks = Between(-1, find.Integer(6), kMostTicks),
              .state_hash = find.Text(7),
              .outcome = find.Text(8),
              .recorded_on = find.Text(9),
@@ -146,8 +155,9 @@ Result<grammar::Timeline> EpisodeFile::TimelineOf(const EpisodeRow& episode) con
       grammar::NamedEvent& event = timeline.events.emplace_back();
       const std::int64_t id = find.Integer(0);
       event.event = find.Text(1);
-      event.interval = {find.Integer(2), find.Integer(3)};
-      event.decided = find.Integer(4);
+      event.interval.begin = Between(0, find.Integer(2), kMostTicks);
+      event.interval.end = Between(event.interval.begin, find.Integer(3), kMostTicks);
+      event.decided = Between(-1, find.Integer(4), kMostTicks);
       event.open_end = find.Integer(5) != 0;
       for (; has_role && roles.Integer(0) <= id; has_role = roles.Step()) {
         if (roles.Integer(0) == id) event.roles.push_back({roles.Text(1), roles.Text(2)});
@@ -177,11 +187,12 @@ Result<std::vector<KeptEntity>> EpisodeFile::EntitiesOf(const EpisodeRow& episod
     while (find.Step()) {
       const std::int64_t number = find.Integer(0);
       if (number == static_cast<std::int64_t>(entities.size()))
-        entities.push_back({.name = find.Text(1),
-                            .part_of = static_cast<int>(find.Integer(2)),
-                            .uuid = find.Uuid(4),
-                            .mass_kg = find.Double(5),
-                            .size_m = {find.Double(6), find.Double(7), find.Double(8)}});
+        entities.push_back(
+            {.name = find.Text(1),
+             .part_of = static_cast<int>(Between(-1, find.Integer(2), 1'000'000'000)),
+             .uuid = find.Uuid(4),
+             .mass_kg = find.Double(5),
+             .size_m = {find.Double(6), find.Double(7), find.Double(8)}});
       if (number + 1 != static_cast<std::int64_t>(entities.size()))
         throw Damage("an entity is missing");
       entities.back().classes.push_back(find.Text(3));

@@ -19,6 +19,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostNamed = 50;
+constexpr std::int64_t kMostPlans = 10'000, kMostParts = 10'000;
+
+int PartOf(std::int64_t parts, std::int64_t part, int least = 1) {
+  if (part < least || part > parts)
+    throw DatabaseError(fmt::format("the file is damaged: found part {} of {}", part, parts));
+  return static_cast<int>(part);
+}
 
 bool HasPlans(const Database& database) {
   return database.Number("SELECT count(*) FROM sqlite_master WHERE name = 'plan'") > 0;
@@ -27,18 +34,21 @@ bool HasPlans(const Database& database) {
 std::vector<Plan> PlansIn(const Database& database) {
   std::vector<Plan> plans;
   if (!HasPlans(database)) return plans;
+  if (const std::int64_t count = database.Number("SELECT count(*) FROM plan"); count > kMostPlans)
+    throw DatabaseError(fmt::format("has {} plans, wanted at most {}", count, kMostPlans));
   Statement find = database.Prepare("SELECT id, what, uuid, part, parts FROM plan ORDER BY id");
   Statement owed =
       database.Prepare("SELECT name, part FROM plan_owed WHERE plan = ? ORDER BY position");
   while (find.Step()) {
     Plan& plan = plans.emplace_back();
+    const int count = PartOf(kMostParts, find.Integer(4));
     plan = {.what = find.Text(1),
             .uuid = find.Uuid(2),
-            .number = static_cast<int>(find.Integer(3)),
-            .count = static_cast<int>(find.Integer(4)),
+            .number = PartOf(count, find.Integer(3), 0),
+            .count = count,
             .owed = {}};
     for (owed.Reset(), owed.Bind(find.Integer(0)); owed.Step();)
-      plan.owed.push_back({owed.Text(0), static_cast<int>(owed.Integer(1))});
+      plan.owed.push_back({owed.Text(0), PartOf(count, owed.Integer(1))});
   }
   return plans;
 }
@@ -169,9 +179,15 @@ std::string TextOf(const std::vector<Standing>& standings) {
     const Plan& plan = standing.plan;
     std::map<int, std::vector<std::string>> missing;
     for (const Plan::Owed& owed : standing.missing) missing[owed.part].push_back(owed.name);
+    std::map<int, std::size_t> owed_by;
+    for (const Plan::Owed& owed : plan.owed) ++owed_by[owed.part];
+    std::size_t lines = 0;
     for (auto& [part, names] : missing) {
-      const auto owed =
-          static_cast<std::size_t>(std::ranges::count(plan.owed, part, &Plan::Owed::part));
+      if (++lines > kMostNamed) {
+        text += fmt::format("{}: and {} parts more\n", plan.what, missing.size() - kMostNamed);
+        break;
+      }
+      const std::size_t owed = owed_by[part];
       const std::size_t count = names.size(), more = count - std::min(count, kMostNamed);
       names.resize(count - more);
       if (more > 0) names.push_back(fmt::format("and {} more", more));

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <limits>
+#include <map>
 #include <random>
 
 #include "harness/base/base/content_hash.h"
@@ -100,6 +102,7 @@ class Suite {
         ScenarioVerdict verdict = UnpackedVerdict(verdicts[i]["verdict"]);
         verdict.file = scenarios_[scenario].path;
         verdict.seconds = verdicts[i]["seconds"];
+        cpu_s_[scenario] = std::max(cpu_s_[scenario], verdicts[i]["cpu_s"].get<double>());
         verdict.peak_memory_kib = result.peak_memory_kib;
         keep(scenario, std::move(verdict));
       }
@@ -114,11 +117,14 @@ class Suite {
       auto verdicts = nlohmann::json::array();
       for (const Turn& turn : group) {
         const auto start = std::chrono::steady_clock::now();
+        const std::clock_t begun = std::clock();
         CheckRequest check = RequestOf(turn);
         check.opener = &opener;
         nlohmann::json verdict = Packed(CheckScenario(check));
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-        verdicts.push_back({{"verdict", std::move(verdict)}, {"seconds", took.count()}});
+        const double cpu_s = static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
+        verdicts.push_back(
+            {{"verdict", std::move(verdict)}, {"seconds", took.count()}, {"cpu_s", cpu_s}});
       }
       return ToWire(verdicts);
     };
@@ -246,7 +252,8 @@ class Suite {
         verdicts.back().command += fmt::format(" --repeat {}", request_.repeat);
       const ScenarioVerdict& merged = verdicts.back();
       if (merged.verdict == Verdict::kUnchanged || Changed() || !IsRemembered(i)) continue;
-      costs_[merged.scenario] = merged.seconds;
+      const auto cpu_s = cpu_s_.find(i);  // what was run alone, after a crash, has none
+      costs_[merged.scenario] = cpu_s == cpu_s_.end() ? merged.seconds : cpu_s->second;
       // Without its record the next check takes longer; if build/ cannot be written, the report,
       // which is in it, too, is an error.
       if (merged.verdict == Verdict::kPassed) {
@@ -281,7 +288,8 @@ class Suite {
   const LastPasses records_;
   const std::string program_;
   LastPasses::Costs costs_;
-  FileHashes hashes_;                               ///< of episode files
+  std::map<std::size_t, double> cpu_s_;  ///< by scenario: another load does not change it much
+  FileHashes hashes_;                    ///< of episode files
   std::vector<std::vector<ScenarioVerdict>> runs_;  ///< per scenario, in the order they ended
 };
 
