@@ -54,8 +54,13 @@ EpisodeHeader Episode::Header() const {
 }
 
 const RunResult& Episode::Played() {
-  if (!played_) played_ = RunScenario(loaded_.scenario, loaded_.program, {.record = true});
-  return *played_;
+  if (played_) return *played_;
+  if (file_) {
+    // What was kept is what would be simulated again, if its frames have the hash of then.
+    Result<RunResult> kept = Replay(*file_, row_, loaded_);
+    if (kept) return played_.emplace(std::move(*kept));
+  }
+  return played_.emplace(RunScenario(loaded_.scenario, loaded_.program, {.record = true}));
 }
 
 Result<SegmentedRecording> Episode::SegmentRecorded() {
