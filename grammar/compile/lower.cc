@@ -29,6 +29,28 @@ std::string_view TypeText(Type type) {
   return "";
 }
 
+/// What to write instead of a name that other languages and libraries have; "" of others.
+std::string_view HabitHint(std::string_view name) {
+  constexpr std::string_view kMoment = "a moment is E begins, or E ends";
+  constexpr std::string_view kAlone = "what is true or false is not compared: F, or not F";
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kHabits = {
+      {{"begin", kMoment},
+       {"start", kMoment},
+       {"end", kMoment},
+       {"stop", kMoment},
+       {"true", kAlone},
+       {"false", kAlone},
+       {"velocity", "how fast it moves: speed(object)"},
+       {"z", "how high it is: height(object)"},
+       {"angle", "how far it is turned: tilt(object), rotation(a, b), aligned(a, z, b, z)"},
+       {"duration", "how long it holds: while F lasting 2 s"},
+       {"near", "how far they are apart: distance(a, b) < 5 cm"},
+       {"close", "how far they are apart: distance(a, b) < 5 cm"}}};
+  const auto habit =
+      std::ranges::find(kHabits, name, &std::pair<std::string_view, std::string_view>::first);
+  return habit == kHabits.end() ? "" : habit->second;
+}
+
 }  // namespace
 
 std::string Suggest(std::string_view name, const std::vector<std::string>& known) {
@@ -65,6 +87,7 @@ bool IsOverInterval(std::string_view name) {
 Diagnostic Symbols::Unknown(std::string_view what, std::string_view name, std::string hint) const {
   if (is_incomplete || broken.contains(name)) return {};
   const std::string owner = who_defines ? who_defines(name) : "";
+  if (!HabitHint(name).empty()) hint = HabitHint(name);
   if (!owner.empty()) hint = "it is in a grammar of the library: use " + owner;
   return {.message = "unknown " + std::string(what) + " " + Quoted(name), .hint = std::move(hint)};
 }
@@ -170,9 +193,10 @@ std::optional<double> Lowering::ConstantOf(const Expr& expr, const Dimension& di
   if (node.op != Op::kNumber) {
     Complain(expr.place, std::string(what) + " must be a number or a parameter");
   } else if (!(typed.dimension == dimension)) {
-    Complain(expr.place, std::string(what) + (dimension == kPlain ? " is " : " is in ") +
-                             DimensionText(dimension) + ", this is " +
-                             DimensionText(typed.dimension));
+    Complain(expr.place,
+             std::string(what) + (dimension == kPlain ? " is " : " is in ") +
+                 DimensionText(dimension) + ", this is " + DimensionText(typed.dimension),
+             typed.dimension == kPlain && dimension == kSeconds ? "for example: 200 ms" : "");
   } else if (node.number < 0) {
     Complain(expr.place, std::string(what) + " cannot be negative");
   } else if (dimension == kSeconds && node.number > kLongest_s) {
@@ -308,7 +332,9 @@ Lowering::Typed Lowering::TruthValue(const Expr& expr) {
 Lowering::Typed Lowering::Number(const Expr& expr) {
   const Typed typed = Lower(expr);
   if (typed.bad || typed.type == Type::kNumber) return typed;
-  return Bad(expr.place, "a number is needed here, this is " + std::string(TypeText(typed.type)));
+  return Bad(expr.place, "a number is needed here, this is " + std::string(TypeText(typed.type)),
+             typed.type == Type::kTruth ? "what is true or false is not compared: F, or not F"
+                                        : "for example: distance(a, b), height(object)");
 }
 
 Lowering::Typed Lowering::Position(const Expr& expr) {

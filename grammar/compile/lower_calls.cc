@@ -54,7 +54,11 @@ std::optional<int> Lowering::RoleArgument(const Expr& expr, std::string_view wan
         expr.place,
         Quoted(callee) + " takes a role here" +
             (expr.kind == Expr::Kind::kName ? ", and there is no role " + Quoted(expr.text) : ""),
-        expr.kind == Expr::Kind::kName ? Suggest(expr.text, names) : "");
+        expr.kind != Expr::Kind::kName ? ""
+        : expr.text[0] <= 'Z'          ? "an entity of a class is a role: some: " + expr.text
+        : Suggest(expr.text, names).empty()
+            ? "a rule knows roles, not entities by their names: give it a role and a class"
+            : Suggest(expr.text, names));
     return std::nullopt;
   }
   role_used_[role] = true;

@@ -241,7 +241,10 @@ Dimension ExpressionParser::ParseDimension(double& si) {
   if (Peek().kind == Token::Kind::kName) {
     const Unit* unit = FindUnit(Peek().text);
     if (unit == nullptr) {
-      const std::string near = NearestName(Peek().text, UnitNames());
+      std::string near = NearestName(Peek().text, UnitNames());
+      for (const std::string_view angle : {"deg", "rad"})
+        if (Peek().text.starts_with(angle)) near = angle;
+      if (Peek().text.starts_with("sec")) near = "s";
       Fail("unknown unit '" + Peek().text + "'",
            near.empty() ? "units are m cm mm s ms N rad deg, and their quotients like cm/s"
                         : "did you mean '" + near + "'?");

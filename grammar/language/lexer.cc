@@ -163,7 +163,9 @@ class Lexer {
       const std::string signal(text().substr(at_, NameLength()));
       --at_;
       Complain("unexpected character '.'",
-               is_name ? "a signal is asked of an entity: " + signal + "(" + before + ")" : "");
+               is_name         ? "a signal is asked of an entity: " + signal + "(" + before + ")"
+               : before == ")" ? "a moment is E begins, or E ends"
+                               : "");
     }
     Take(Token::Kind::kBad, 1);
   }
@@ -180,6 +182,11 @@ class Lexer {
     if (found == "!") return "it must not hold: not F";
     if (found == "%") return "shares are plain numbers: 0.5";
     if (found == "^") return "units are quotients: m/s/s";
+    if (found == "\u2264") return "'<=' compares";
+    if (found == "\u2265") return "'>=' compares";
+    if (found == "\u2260") return "'!=' compares";
+    if (found == "\u2212" || found == "\u2013") return "a minus is '-'";
+    if (found == "\u00B0") return "degrees are deg: 45 deg";
     if (IsOtherBlank(found)) return "separate with plain spaces";
     if (found == "\u201C" || found == "\u201D") return "quotes are straight: \"";
     if (found == "{" || found == "}")

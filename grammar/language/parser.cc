@@ -76,7 +76,7 @@ class Parser : public LawParser {
     } else if (Accept("param")) {
       const Place name_place = Peek().place;
       std::string name = ExpectName("a parameter's name");
-      Expect("=");
+      Expect("=", "a number and its unit: param " + name + " = 5 cm");
       file.params.push_back({std::move(name), name_place, ParseSignedQuantity()});
     } else if (At("define") || At("event") || At("condition") || At("symmetric") || At("law")) {
       if (file.definitions.size() + file.defines.size() + file.laws.size() == kMaxDefinitions) {
@@ -137,7 +137,7 @@ class Parser : public LawParser {
       } while (Accept(","));
       ExpectToClose(bracket);
     }
-    Expect("=");
+    Expect("=", "a value or a test: define NAME(a: Movable) = F");
     define.body = ParseExpr();
     return define;
   }

@@ -22,7 +22,10 @@ struct Habit {
   std::string_view found;
   std::string_view hint;
 };
-constexpr std::array<Habit, 16> kHabits = {{
+constexpr std::string_view kOrder =
+    "one after the other: from A to B, or compose a: E, b: F where a before b";
+constexpr std::array<Habit, 30> kHabits = {{
+    {"z", "how high it is: height(object)"},
     {"sequence", "one after the other: compose a: E, b: F where a before b"},
     {"seq", "one after the other: compose a: E, b: F where a before b"},
     {"import", "another grammar is used: use NAME"},
@@ -31,7 +34,20 @@ constexpr std::array<Habit, 16> kHabits = {{
     {"if", "what must hold: while F"},
     {"when", "what must hold: while F"},
     {"rule", "what is recognised is an event, what only other rules use a condition"},
-    {"then", "one after the other: from A to B, or compose a: E, b: F where a before b"},
+    {"then", kOrder},
+    {"after", kOrder},
+    {"before", kOrder},
+    {"between", "two limits, joined by 'and': x > 1 cm and x < 2 cm"},
+    {"unless", "what must not hold: and not F"},
+    {"always", "that it holds, and how long at least: while F lasting 2 s"},
+    {"eventually", "that it comes in time: from A to B within 2 s"},
+    {"exists", "some entity: touching(hand, any) of an event or condition"},
+    {"forall", "a rule is found for each choice of entities by itself: give it roles"},
+    {"def", "a value or a test: define NAME(a: Movable) = F"},
+    {"let", "a value or a test: define NAME = F; a number: param NAME = 5 cm"},
+    {"const", "a number: param NAME = 5 cm"},
+    {"var", "a number: param NAME = 5 cm"},
+    {"function", "a value or a test: define NAME(a: Movable) = F"},
     {"=", "'==' compares"},
     {"=>", "'>=' compares"},
     {"<", "one comparison at a time, joined by 'and': 1 cm < x and x < 2 cm"},
@@ -123,7 +139,11 @@ void TokenReader::ExpectAtMost() {
 
 std::string TokenReader::ExpectName(std::string_view what) {
   if (Peek().kind != Token::Kind::kName)
-    Fail("expected " + std::string(what) + ", found " + Found());
+    Fail("expected " + std::string(what) + ", found " + Found(),
+         Peek().kind == Token::Kind::kNumber ? "a name begins with a letter"
+         : Peek().kind == Token::Kind::kText && what.starts_with("a class")
+             ? "what kind of thing it is, not which one: object: MilkCarton"
+             : "");
   if (IsReserved(Peek().text)) {
     Fail("'" + Peek().text + "' is a word of the language and cannot be " + std::string(what),
          "choose another name");
@@ -136,8 +156,12 @@ std::string TokenReader::WordHint(bool is_form) const {
       At("=") && At(">", 1) ? std::string_view("=>") : std::string_view(Peek().text);
   if (is_form && (found == "=" || found == ":" || At("(", 1)) && found != "sequence")
     return "say what must hold: while F, or from A to B";
-  const auto habit = std::find_if(kHabits.begin(), kHabits.end(),
-                                  [&](const Habit& h) { return h.found == found; });
+  // What was read as a name may be the mistake: `while always F`.
+  constexpr std::array<std::string_view, 4> kBeforeTests = {"always", "eventually", "exists",
+                                                            "forall"};
+  const std::string_view before = tokens_[at_ == 0 ? 0 : at_ - 1].text;
+  const bool is_before = std::ranges::count(kBeforeTests, before) > 0;
+  const auto habit = std::ranges::find(kHabits, is_before ? before : found, &Habit::found);
   if (habit != kHabits.end()) return std::string(habit->hint);
   std::vector<std::string> words(kItemWords.begin(), kItemWords.end());
   words.insert(words.end(), kOtherWords.begin(), kOtherWords.end());
