@@ -2,6 +2,8 @@
 #include "harness/show/figures/drawing_chart.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "harness/truth/timeline/event_drawings.h"
 
@@ -12,20 +14,32 @@ constexpr double kColumn_s =
     static_cast<double>(grammar::kDrawnColumnTicks) / grammar::kDrawnTicksPerSecond;
 constexpr std::uint32_t kFactColor = 0xb8bfc9;
 
-/// "x, y, z" of what a fact measures; "" of what only holds or not.
-std::string PanelOf(const std::string& name) {
-  const std::string what = name.substr(name.rfind(' ') + 1);
-  if (what == "x" || what == "y" || what == "z") return "cm";
-  if (what == "tilt" || what == "turn" || what == "joint" || what == "percent") return what;
-  return what == "grip" ? "grip, tenths" : "";
+/// What a fact measures, and how much of it one step of its row is.
+struct Scale {
+  std::string_view fact, panel;
+  double step = 1;
+};
+constexpr std::array<Scale, 8> kScales = {{{"x", "cm"},
+                                           {"y", "cm"},
+                                           {"z", "cm"},
+                                           {"tilt", "tilt, deg", 5},
+                                           {"turn", "turn, deg", 10},
+                                           {"joint", "open, %", 5},
+                                           {"percent", "open, %"},
+                                           {"grip", "grip", 0.1}}};
+
+/// Null of what only holds or not.
+const Scale* ScaleOf(const std::string& name) {
+  const auto found = std::ranges::find(kScales, name.substr(name.rfind(' ') + 1), &Scale::fact);
+  return found == kScales.end() ? nullptr : &*found;
 }
 
-Curve CurveOf(const grammar::DrawnRow& row) {
+Curve CurveOf(const grammar::DrawnRow& row, double step) {
   Curve curve{.name = row.name, .points = {}};
   for (std::size_t i = 0; i < row.cells.size(); ++i)
     curve.points.emplace_back(
         kColumn_s * static_cast<double>(i),
-        row.cells[i] == '#' ? 10 : grammar::DrawnNumber(row.cells[i]).value_or(0));
+        step * (row.cells[i] == '#' ? 10 : grammar::DrawnNumber(row.cells[i]).value_or(0)));
   return curve;
 }
 
@@ -54,15 +68,15 @@ Chart DrawingChart(const grammar::Program& program, const grammar::DrawnEpisode&
   Chart chart{
       .title = drawn.title, .from_s = 0, .to_s = seconds(drawn.end()), .rows = {}, .panels = {}};
   for (const grammar::DrawnRow& fact : drawn.facts) {
-    const std::string panel = PanelOf(fact.name);
-    if (panel.empty()) {
+    const Scale* scale = ScaleOf(fact.name);
+    if (scale == nullptr) {
       chart.rows.push_back(BarsOf(fact));
       continue;
     }
-    auto found = std::ranges::find(chart.panels, panel, &Panel::name);
+    auto found = std::ranges::find(chart.panels, scale->panel, &Panel::name);
     if (found == chart.panels.end())
-      found = chart.panels.insert(found, {.name = panel, .curves = {}});
-    found->curves.push_back(CurveOf(fact));
+      found = chart.panels.insert(found, {.name = std::string(scale->panel), .curves = {}});
+    found->curves.push_back(CurveOf(fact, scale->step));
   }
   const truth::EventDrawings drawings(program);
   for (const grammar::DrawnRow& wanted : drawn.expected) {
