@@ -135,8 +135,8 @@ test("a thousand random edits: it lives, and answers within 50 ms of processor t
       const began = spent_ms();
       await changed(uri, text);
       const position = at(text, text.slice(where, where + 8));
-      const asked = [["completion"], ["hover"], ["definition"], ["formatting"]][below(4)];
-      await ask(asked[0], uri, position, { options: {} });
+      const asked = ["completion", "hover", "definition", "formatting", "rename"][below(5)];
+      await ask(asked, uri, position, { options: {}, newName: "renamed" }).catch((error) => assert.equal(asked, "rename", error));
       times.push(spent_ms() - began);
       assert.ok(!died);
     }
@@ -145,5 +145,5 @@ test("a thousand random edits: it lives, and answers within 50 ms of processor t
   times.sort((a, b) => a - b);
   console.log(`an edit and a question: median ${times[500].toFixed(1)} ms, longest ${times.at(-1).toFixed(1)} ms`);
   assert.equal(times.length, 1000);
-  assert.ok(times[989] < 50, `99 of 100 within ${times[989]} ms`);
+  assert.ok(times.at(-1) < 50, `the slowest took ${times.at(-1)} ms`);
 });
