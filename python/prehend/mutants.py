@@ -109,8 +109,11 @@ class _File:
         spans = {word: (self.at(tree[3]), self.at(tree[4])) for word, tree in reversed(words)}
         forms = [word for word, _ in words]
         for word, tree in words:
-            whole = self.within(begin, begin + 1, name, word)
+            whole, first = self.within(begin, begin + 1, name, word), len(self.mutants)
             self.expression(tree, whole or of_rule, word)
+            if word == "during":  # it may keep the interval from beginning
+                for one in self.mutants[first:]:
+                    one.clauses = sorted({*one.clauses, *self.within(*spans["from"])})
         for word in MAY_BE_DROPPED & set(forms):
             may = (word == "until" and forms[0] == "while", word == "within" and forms[:2] == ["from", "to"],
                    word not in ("until", "within"))
@@ -131,6 +134,7 @@ class _File:
             self.add(end, drops.end(), "", f"{name}: dropped: or drop", of_rule)
             end = drops.end()
         touched = self.within(0, 1, name, word) or self.within(*spans[word]) or of_rule
+        touched = touched + self.within(*spans["from"]) if word == "during" else touched
         self.add(start.start(), end, " ", f"{name}: dropped: {self.short((start.start(), end))}", touched)
 
     def relation(self, begin, clauses):

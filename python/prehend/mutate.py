@@ -2,8 +2,10 @@
 """python3 -m prehend mutate EPISODES.. --grammar G: which mistakes in a grammar would nobody notice?"""
 import argparse
 import json
+import math
 import multiprocessing
 import os
+import pathlib
 import subprocess
 import sys
 import tempfile
@@ -12,7 +14,7 @@ import numpy as np
 
 from . import _prehend, episodes, worlds
 from .errors import EpisodeError, fail
-from .mutants import mutants
+from .mutants import mutants, texts
 
 _work = None  # of a worker: what it keeps from one mutant to the next
 
@@ -87,6 +89,19 @@ def _is_equivalent(mutant):
     return _work.is_equivalent(mutant)
 
 
+def reasons(grammars):
+    """What stands in equivalent_mutants.tsv beside them, by a mutant's file, source line and mistake: why it is no mistake."""
+    found = {}
+    for file in grammars:
+        beside = os.path.join(os.path.dirname(file), "equivalent_mutants.tsv")
+        lines = pathlib.Path(beside).read_text("utf-8").splitlines() if os.path.isfile(beside) else []
+        for number, row in ((number, line.split("\t")) for number, line in enumerate(lines, 1) if line[:1] not in ("", "#")):
+            if len(row) != 4:
+                fail(EpisodeError, f"{beside}:{number}: error: found {len(row)} columns, wanted 4: file, source line, mistake, reason")
+            found[os.path.join(os.path.dirname(file), row[0]), row[1], row[2]] = row[3]
+    return found
+
+
 def covered(files, which, grammar, jobs):
     """What `prehend grammar coverage --json` says."""
     words = [episodes.program(), "grammar", "coverage", *files, "--grammar", grammar, "--json", "--jobs", str(jobs)]
@@ -96,9 +111,9 @@ def covered(files, which, grammar, jobs):
     return json.loads(done.stdout)
 
 
-def order_of(mutant, clauses):
-    """Episodes that reach what the mutant touches, those that came nearest to it first."""
-    nearest = {}
+def order_of(mutant, clauses, count):
+    """Episodes that reach what the mutant touches, those that came nearest to it first; all, if that is no clause, as in `rest of`."""
+    nearest = {} if mutant.clauses else {episode: (math.inf, episode) for episode in range(count)}
     for clause in (clauses[number] for number in mutant.clauses):
         for episode, sides in clause["seen"]:
             near = min((one for one in sides["nearest"] if one is not None), default=None)
@@ -114,8 +129,10 @@ def mutate(paths, grammar, which="", jobs=2, frames=100_000, folder=None):
     names = [one.name for one in opened]
     coverage = covered(files, which, grammar, jobs)
     clauses = coverage["clauses"]
-    all_mutants = mutants(grammar, clauses)
-    orders = [order_of(one, clauses) for one in all_mutants]
+    all_mutants, sources = mutants(grammar, clauses), texts(grammar)
+    known = reasons(sources)
+    said_of = [known.get((one.file, sources[one.file].splitlines()[one.line - 1].strip(), one.what)) for one in all_mutants]
+    orders = [order_of(one, clauses, len(names)) for one in all_mutants]
     random_files = [os.path.join(folder, f"world_{number}.jsonl") for number in range(-(-frames // worlds.FRAMES))]
     for number, file in enumerate(random_files):
         worlds.write(file, number)
@@ -128,11 +145,13 @@ def mutate(paths, grammar, which="", jobs=2, frames=100_000, folder=None):
         equivalent = dict(zip(left, pool.map(_is_equivalent, [all_mutants[one] for one in left], 1)))
     said = []
     for number, (one, (killed, episode, shift_s), (order, nearest)) in enumerate(zip(all_mutants, ends, orders)):
-        end = "killed" if killed else "equivalent" if equivalent.get(number) and one.clauses else "survived" if order else "not reached"
-        row = {"file": one.file, "line": one.line, "column": one.column, "what": one.what, "end": end}
+        is_equal = said_of[number] or equivalent.get(number) and one.clauses
+        end = "killed" if killed else "equivalent" if is_equal else "survived" if order else "not reached"
+        row = {"file": one.file, "line": one.line, "column": one.column, "what": one.what, "end": end,
+               **({"reason": said_of[number]} if said_of[number] else {})}
         if killed or shift_s:
             row.update(episode=names[episode], **({} if killed else {"shift_s": shift_s}))
-        elif order and one.threshold:
+        elif order and one.threshold and one.clauses:
             clause = clauses[one.clauses[0]]
             row.update(episode=names[order[0]], nearest=nearest[order[0]][0], unit=clause["unit"])
         elif order:
@@ -155,11 +174,12 @@ def near_text(row):
 
 def text_of(result, frames):
     lines = [f"{result['grammar']}: {result['mutants']} mutants on {result['episodes']} episodes"]
-    for end, says in (("survived", "survived"), ("not reached", "no episode comes there"),
-                      ("equivalent", f"the same in {frames:,} random frames, too")):
-        rows = [row for row in result["all"] if row["end"] == end]
+    for end, says, told in (("survived", "survived", False), ("not reached", "no episode comes there", False),
+                            ("equivalent", f"the same in {frames:,} random frames, too", False), ("equivalent", "no mistake", True),
+                            ("killed", "killed, though said to be no mistake", True)):
+        rows = [row for row in result["all"] if row["end"] == end and (end == "survived" or ("reason" in row) == told)]
         lines += [f"\n{says}: {len(rows)}"] if rows else []
-        lines += [f"  {os.path.relpath(row['file'])}:{row['line']}:{row['column']}: {row['what']}{near_text(row)}" for row in rows]
+        lines += [f"  {os.path.relpath(row['file'])}:{row['line']}:{row['column']}: {row['what']}{'; ' + row['reason'] if told else near_text(row)}" for row in rows]
     return "\n".join(lines + [f"\nkilled {result['killed']} of {result['mutants'] - result['equivalent']} that are not equivalent: "
                               f"{result['score_percent']:.1f} %"])
 

@@ -2,6 +2,7 @@
 """python3 -m prehend shrink SCENARIO --keep CONDITION: the smallest scenario, or recording, that still shows it."""
 import argparse
 import copy
+import itertools
 import json
 import os
 import re
@@ -266,6 +267,27 @@ def fewer_parts(tree, keeps):
     return tree
 
 
+def merged(value, gone, other):
+    """With the other one's name in the place of the one that is gone."""
+    if isinstance(value, dict):
+        return {key: merged(one, gone, other) for key, one in value.items() if key != gone}
+    if isinstance(value, list):
+        return [merged(one, gone, other) for one in value]
+    return re.sub(rf"\b{gone}\b", other, value) if isinstance(value, str) else value
+
+
+def merge_two(tree, keeps):
+    """One of the last entities in the place of another one, if need be without the step that leads from one to the other."""
+    names = list(tree.get("entities", {}))
+    for gone, other in itertools.permutations(names, 2) if 2 < len(names) <= 4 and "script" in tree else ():
+        one = merged(tree, gone, other)
+        for out in range(-1, len(one["script"])):
+            now = {**one, "script": [step for i, step in enumerate(one["script"]) if i != out]}
+            if keeps(now):
+                return now
+    return tree
+
+
 def simpler_values(tree, keeps):
     """Fewer keys of steps and entities, then shorter times and fewer decimals: of all at once, if that does, else of each."""
     for path in reversed(list(places(tree))):
@@ -299,7 +321,7 @@ def shrink(tree, player):
     before = None
     while before != tree:
         before = tree
-        tree = fewer_parts(tree, player.keeps)
+        tree = merge_two(fewer_parts(tree, player.keeps), player.keeps)
     return simpler_values(tree, player.keeps)
 
 

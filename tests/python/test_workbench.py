@@ -12,7 +12,7 @@ import unittest
 
 import prehend
 from prehend import __main__ as command
-from prehend import _prehend, falsify, mutants, shrink, worlds
+from prehend import _prehend, falsify, mutants, mutate, shrink, worlds
 import takes
 
 SHELF = """grammar shelf
@@ -84,6 +84,33 @@ class Workbench(takes.Folder, unittest.TestCase):
         self.assertEqual(run("mutate", "none.jsonl", "--grammar", self.shelf())[0], 2)
         self.assertEqual(run("mutate", dull, "--grammar", "no_such_grammar")[0], 2)
 
+    def test_what_is_no_mistake_has_its_reason_beside_the_grammar(self):
+        file = self.cup("low", [0.04, 0.5, 0.5, 0.5, 0.07, 0.5, 0.07])
+        grammar, beside = self.shelf(), self.folder / "equivalent_mutants.tsv"
+        rows = ["# file, line, mistake, reason", "shelf.grammar\tparam low = 10 cm\tlow: 10 -> 20\tno cup is so low",
+                "shelf.grammar\tlasting 0.2 s\tlasting: 0.2 -> 0.4\twrong"]
+        beside.write_text("\n".join(rows) + "\n", "utf-8")
+        words = ["mutate", file, "--grammar", grammar, "--frames", 0, "--jobs", 1]
+        code, out, _ = run(*words)
+        self.assertEqual(code, 0)
+        self.assertRegex(out, r"no mistake: 1\n  .*shelf.grammar:2:13: low: 10 -> 20; no cup is so low\n")
+        self.assertRegex(out, r"killed, though said to be no mistake: 1\n  .*lasting: 0.2 -> 0.4; wrong\n")
+        result = json.loads(run(*words, "--json")[1])
+        self.assertEqual([row["reason"] for row in result["all"] if row["end"] == "equivalent"], ["no cup is so low"])
+        beside.write_text("shelf.grammar\tlow\n", "utf-8")
+        code, _, err = run(*words)
+        self.assertEqual((code, "tsv:1: error: found 2 columns, wanted 4" in err), (2, True))
+
+    def test_what_is_said_of_the_library_is_of_mutants_that_there_are(self):
+        texts = mutants.texts("pick_and_place")
+        found = {(one.file, texts[one.file].splitlines()[one.line - 1].strip(), one.what) for one in mutants.mutants("pick_and_place", [])}
+        said = mutate.reasons(texts)
+        self.assertEqual(len(said), 25)
+        self.assertEqual(set(said) - found, set())
+
+    def test_a_mutant_of_no_clause_meets_all_episodes(self):
+        self.assertEqual(mutate.order_of(mutants.Mutant("x", 1, 1, "y", ""), [], 3)[0], [0, 1, 2])
+
     def test_every_mutant_of_the_library_compiles_and_is_another_text(self):
         texts = mutants.texts("pick_and_place")
         self.assertEqual([file.rsplit("/", 1)[1] for file in texts][0], "pick_and_place.grammar")
@@ -102,6 +129,13 @@ class Workbench(takes.Folder, unittest.TestCase):
         self.assertEqual(shrink.fewer(list(range(16)), keeps), [3, 11])
         self.assertLess(len(asked), 40)
         self.assertEqual(shrink.fewer([1, 2, 3], lambda some: True), [])
+
+    def test_one_thing_takes_the_place_of_another(self):
+        tree = {"scenario": "x", "entities": {"table": {"fixed": True}, "shelf": {"fixed": True}, "cup": {"on": "shelf"}},
+                "script": [{"hand": {"reach": "cup"}}, {"hand": {"carry_to_m": [0, 0]}}, {"hand": {"place_on": "table"}}]}
+        left = shrink.merge_two(tree, lambda now: len(now["script"]) == 2 and now["entities"].get("cup", {}).get("on") == "shelf")
+        self.assertEqual(list(left["entities"]), ["shelf", "cup"])
+        self.assertEqual(left["script"][-1], {"hand": {"place_on": "shelf"}})
 
     def test_a_scenario_shrinks_to_what_the_condition_needs(self):
         tree = shrink.read(takes.ROOT / "scenarios/put_down/slow_put_down.yaml")
