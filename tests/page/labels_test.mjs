@@ -93,6 +93,48 @@ test('three faults in labels are found, and what is accepted is read by score', 
   await close();
 });
 
+test('what was decided is there again when the page is loaded again', async () => {
+  const {page, close} = await opened();
+  const pressed = () => page.locator('section.chosen .choices [aria-pressed=true]').allTextContents();
+  await page.keyboard.press('d');
+  await page.keyboard.press('2');
+  await page.keyboard.press('d');
+  await page.keyboard.press('1');
+  const [decided, saved] = [await pressed(), await page.evaluate(() => window.prehendReport.labelsOf('take2'))];
+  assert.deepEqual(decided.map((each) => each[0]), ['2', '1']);
+  await page.reload();
+  assert.equal(await page.evaluate(() => window.prehendReport.labelsOf('take2')), saved);
+  await page.getByRole('button', {name: 'save as labels, 1 change'}).waitFor();
+  assert.deepEqual(await pressed(), decided);
+  await page.evaluate(() => {  // of other events nothing is decided
+    const [key] = Object.keys(localStorage);
+    localStorage.setItem(key + '0', localStorage.getItem(key));
+    localStorage.removeItem(key);
+  });
+  await page.reload();
+  await page.keyboard.press('d');
+  assert.deepEqual(await pressed(), []);
+  await close();
+});
+
+test('labels of a moment are saved, too', async () => {
+  mkdirSync(HERE + '/points', {recursive: true});
+  const points = readFileSync(HERE + '/labels/take1.csv', 'utf8') + '2.5,2.5,hold,right\n0.9,0.9,lift,right\n';
+  writeFileSync(HERE + '/points/take1.csv', points);
+  const truth = ['--truth', HERE + '/points', '--map', HERE + '/labels.yaml'];
+  prehend('report', TAKES[0], ...truth, '-o', HERE + '/points.html');
+  const {page, close} = await openPage({file: HERE + '/points.html'});
+  assert.match(await page.locator('.moments').textContent(), /^Labels of a moment: grasping\(right_hand, milk\) 2\.75 s/);
+  mkdirSync(HERE + '/saved_points', {recursive: true});
+  writeFileSync(HERE + '/saved_points/take1.csv', await page.evaluate(() => window.prehendReport.labelsOf('take1')));
+  const score = (...words) => JSON.parse(prehend('score', TAKES[0], ...words, '--json')).grammars[0];
+  const [labelled, saved] = [score(...truth), score('--truth', HERE + '/saved_points')];
+  assert.deepEqual(Object.keys(saved.moments).sort(), ['grasping', 'picking_up']);
+  assert.deepEqual(saved.moments, labelled.moments);
+  assert.deepEqual([saved.total.true, saved.total.found, saved.total.f1_50], [labelled.total.true, labelled.total.found, labelled.total.f1_50]);
+  await close();
+});
+
 test('the video shows the frame of the cursor', async (context) => {
   if (!hasVideo) return context.skip('no ffmpeg');
   for (const take of ['take1', 'take2']) {

@@ -165,6 +165,10 @@ suite::ReportHeader CompareSides(const measure::LabelScores& scores, const std::
       suite::ScenarioVerdict& verdict = verdicts[take.take];
       if (verdict.exit_code == ExitCode::kBadInput) continue;
       comparisons.push_back(Compared(take, scores, collar_s));
+      if (!verdict.has_golden)
+        for (const auto& [event, moments] : take.moments)
+          verdict.labelled.moments.insert(verdict.labelled.moments.end(), moments.labels.begin(),
+                                          moments.labels.end());
       Add(comparisons.back(), opinion.name, scores.opinions.size() == 1, verdict);
       if (!take.failure.empty())
         verdict.notes.push_back(opinion.name + " has failed here: " + take.failure);

@@ -45,6 +45,7 @@ std::map<std::string, Moments> LabelReading::TakeMoments(std::size_t take,
     const grammar::Tick at = truth::TickAt(label.begin_s, truth.ticks_per_second);
     Moments& counted = moments[one.event];
     ++counted.marked;
+    counted.labels.emplace_back(label.begin_s, label.event);
     bool is_found = false;
     for (std::size_t i = 0; i < found.events.size(); ++i) {
       const grammar::NamedEvent& event = found.events[i];

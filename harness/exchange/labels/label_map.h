@@ -91,6 +91,7 @@ struct Counted {
 /// Labels of a moment, and how many lie in what was recognised of the same name and roles.
 struct Moments {
   int marked = 0, found = 0;
+  std::vector<std::pair<double, grammar::NamedEvent>> labels = {};  ///< of a take, with seconds
 };
 
 /// What labels are: what is true, or what somebody else found. Of the latter the map says what it

@@ -56,6 +56,7 @@ struct Labelled {
   std::vector<truth::Comparison> others;  ///< of further sides with the labels
   std::string video = {};                 ///< as the page names it; "": there is none
   double offset_s = 0;                    ///< where its time 0 is in the take
+  std::vector<std::pair<double, grammar::NamedEvent>> moments = {};  ///< labels, with seconds
 };
 
 struct ScenarioVerdict {

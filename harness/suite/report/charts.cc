@@ -14,6 +14,14 @@
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {
+std::string WithRoles(const grammar::NamedEvent& event) {
+  std::string roles;
+  for (const grammar::Role& role : event.roles)
+    if (!truth::IsAttribute(role))
+      roles += (roles.empty() ? "" : ", ") + role.name + "=" + role.value;
+  return roles.empty() ? event.event : event.event + "(" + roles + ")";
+}
+
 namespace {
 
 using grammar::NamedEvent;
@@ -32,15 +40,6 @@ std::string GroupOf(const NamedEvent& event, const truth::EventDrawings& drawing
   const bool has_hand =
       drawing.as == grammar::DrawnAs::kPhase || drawing.as == grammar::DrawnAs::kGrasp;
   return event.roles[has_hand && drawing.hand < event.roles.size() ? drawing.hand : 0].value;
-}
-
-/// "reaching(hand=right_hand)", as files of labels have it.
-std::string WithRoles(const NamedEvent& event) {
-  std::string roles;
-  for (const grammar::Role& role : event.roles)
-    if (!truth::IsAttribute(role))
-      roles += (roles.empty() ? "" : ", ") + role.name + "=" + role.value;
-  return roles.empty() ? event.event : event.event + "(" + roles + ")";
 }
 
 class TimelineChart {

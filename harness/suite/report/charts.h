@@ -56,4 +56,7 @@ std::string_view ReplayBundle();
 /// Why there is none; else empty.
 std::string_view WhyNoReplay();
 
+/// "grasping(hand=right_hand, object=milk)", as labels are saved.
+std::string WithRoles(const grammar::NamedEvent& event);
+
 }  // namespace prehend::suite

@@ -242,6 +242,15 @@ void AddTime(pugi::xml_node views, const ScenarioVerdict& verdict, const Sides& 
   AddMarkup(scroll, TimelineSvg(comparisons, sides, verdict.ticks + 1, verdict.drawings,
                                 verdict.has_golden, verdict.steps));
   AddElement(time, "output", {}, "");
+  if (verdict.labelled.moments.empty()) return;
+  const pugi::xml_node moments = AddElement(time, "p", {{"class", "soft moments"}});
+  AddText(moments, "Labels of a moment:");
+  for (const auto& [seconds, event] : verdict.labelled.moments) {
+    AddText(moments, " ");
+    AddElement(moments, "span",
+               {{"data-at", fmt::format("{}", seconds)}, {"data-event", WithRoles(event)}},
+               fmt::format("{} {:.2f} s", event.Label(), seconds));
+  }
 }
 
 /// Shown by the script, at the cursor. It is not copied into the page.

@@ -23,7 +23,7 @@
       bars.sort((a, b) => a.dataset.begin - b.dataset.begin).forEach((bar) => {
         const begin = Number(bar.dataset.begin), end = Number(bar.dataset.end);
         if (!span || begin >= span.end) {
-          span = {section, event, begin, end, says: sides.map(() => []), differs: false, side: 0};
+          span = {section, event, begin, end, says: sides.map(() => []), differs: false, side: 0, decided: false};
           section.spans.push(span);
         }
         span.end = Math.max(span.end, end);
@@ -31,7 +31,9 @@
         span.differs = span.differs || bar.matches('.differs');
       });
     });
-    return section.spans.sort((a, b) => a.begin - b.begin);
+    section.spans.sort((a, b) => a.begin - b.begin);
+    recall(section, section.spans);
+    return section.spans;
   }
   const differencesOf = (section) => spansOf(section).filter((span) => span.differs);
   function list(section) {
@@ -57,6 +59,7 @@
       link.click();
     });
     section.querySelector('.time').append(all, section.save);
+    showDecisions(section);
   }
   const seen = new IntersectionObserver((entries) => entries.forEach((entry) => { if (entry.isIntersecting) list(entry.target.closest('section')); }));
   if (sides.length > 0) document.querySelectorAll('section .time').forEach((time) => seen.observe(time));
@@ -76,12 +79,37 @@
   }
   function accept(span, side) {
     span.side = side;
-    span.buttons.forEach((each, k) => each.setAttribute('aria-pressed', String(k === side)));
-    const changed = spansOf(span.section).filter((each) => each.side > 0).length;
-    span.section.save.textContent = 'save as labels, ' + (changed === 1 ? '1 change' : changed + ' changes');
+    span.decided = true;
+    showDecisions(span.section);
+    keep(span.section);
+  }
+  function showDecisions(section) {
+    differencesOf(section).forEach((span) => span.buttons.forEach((each, k) => each.setAttribute('aria-pressed', String(span.decided && k === span.side))));
+    const changed = spansOf(section).filter((each) => each.side > 0).length;
+    section.save.textContent = 'save as labels' + (changed === 0 ? '' : ', ' + (changed === 1 ? '1 change' : changed + ' changes'));
+  }
+  // Decisions stay when the page is opened again, also one that was made anew of the same labels and events.
+  const keyOf = (section) => {
+    let hash = 0x811c9dc5;
+    const text = JSON.stringify([sides, spansOf(section).map((span) => [span.event, span.says])]);
+    for (let i = 0; i < text.length; ++i) hash = Math.imul(hash ^ text.charCodeAt(i), 0x01000193) >>> 0;
+    return 'prehend ' + section.id + ' ' + hash.toString(16);
+  };
+  function keep(section) {
+    const decided = differencesOf(section).map((span) => (span.decided ? span.side : null));
+    try { localStorage.setItem(keyOf(section), JSON.stringify(decided)); } catch { /* a browser that keeps nothing */ }
+  }
+  function recall(section, spans) {
+    let decided = null;
+    try { decided = JSON.parse(localStorage.getItem(keyOf(section))); } catch { /* nor gives anything */ }
+    spans.filter((span) => span.differs).forEach((span, i) => {
+      const side = decided && decided[i];
+      if (Number.isInteger(side) && side >= 0 && side < sides.length) Object.assign(span, {side, decided: true});
+    });
   }
   function labelsOf(section) {
     const rows = spansOf(section).flatMap((span) => span.says[span.side].map(([begin, end]) => [begin, end, '"' + span.event + '"']));
+    section.querySelectorAll('.moments span').forEach((each) => rows.push([each.dataset.at, each.dataset.at, '"' + each.dataset.event + '"']));
     // Of an event that is not there, a row without times says that it was looked for.
     const there = new Set(rows.map((row) => row[2]));
     const none = [...new Set(spansOf(section).map((span) => '"' + span.event + '"'))].filter((event) => !there.has(event) && event.includes('('));
