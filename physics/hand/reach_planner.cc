@@ -21,6 +21,7 @@ constexpr double kTall_m = 0.09;
 constexpr double kSlender = 1.25;
 /// A path with this clearance is accepted.
 constexpr double kClearEnough_m = 0.002;
+constexpr double kRounding_m = 1e-9;
 /// Share of a reach after which the orientation has settled, well before the fingers enclose the
 /// object.
 constexpr double kTurnShare = 0.75;
@@ -36,6 +37,8 @@ constexpr double kRolled = 20;
 /// Share of a turn that counts if another candidate turns as much the other way round: then the
 /// hand turns inward, a right hand to the left.
 constexpr double kInward = 1e-6;
+/// Cost of rolling the hand the other way, which may otherwise be equal but for rounding.
+constexpr double kOtherRoll = 1e-6;
 
 /// Bends of the path, in the order in which they are tried: how long the last part follows the
 /// direction of arrival, and how much the path rises first.
@@ -63,6 +66,23 @@ Eigen::Quaterniond RotationFromPairs(const Eigen::Vector3d& a_H, const Eigen::Ve
   H << a_H, b_H, a_H.cross(b_H);
   W << a_W, b_W, a_W.cross(b_W);
   return Eigen::Quaterniond(Eigen::Matrix3d(W * H.transpose())).normalized();
+}
+
+/// `to`; but rounding would decide which way round a turn of half a circle goes. So it ends a hair
+/// farther if it is not inward, or, about a level axis, not about +y, +x or +z of the hand: then
+/// the other way is shorter. `side` is -1 of a left hand, else 1.
+Eigen::Quaterniond InwardHalfTurn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to,
+                                  int side) {
+  constexpr double kHair = 1e-6;
+  const Eigen::Vector3d turn_W = RotationVector(to * from.conjugate());
+  if (turn_W.norm() < kPi - kHair) return to;
+  const Eigen::Vector3d turn_H = from.conjugate() * turn_W;
+  for (const double way : {side * turn_W.z(), turn_H.y(), side * turn_H.x(), side * turn_H.z()}) {
+    if (std::abs(way) < kHair) continue;
+    if (way > 0) break;
+    return Eigen::Quaterniond(Eigen::AngleAxisd(2 * kHair, turn_W.normalized())) * to;
+  }
+  return to;
 }
 
 Eigen::Vector3d Horizontal(double yaw_rad) { return {std::cos(yaw_rad), std::sin(yaw_rad), 0}; }
@@ -171,7 +191,7 @@ class CandidateList {
   bool SideIsNatural() const;
 
  private:
-  Candidate Make(const GraspApproach& approach, const Eigen::Quaterniond& q) const;
+  Candidate Make(const GraspApproach& approach, const Eigen::Quaterniond& wanted) const;
 
   double HalfWidth(const Eigen::Vector3d& direction_W) const {
     return HalfWidthAlong(target_.box, target_.X_WB, direction_W);
@@ -187,7 +207,9 @@ class CandidateList {
   const bool mounted_;  ///< held by a joint: not resting on a support
 };
 
-Candidate CandidateList::Make(const GraspApproach& approach, const Eigen::Quaterniond& q) const {
+Candidate CandidateList::Make(const GraspApproach& approach,
+                              const Eigen::Quaterniond& wanted) const {
+  const Eigen::Quaterniond q = InwardHalfTurn(query_.from.X_WH.q, wanted, side_);
   const Eigen::Vector3d toward_W = q * approach.toward, grip_W = q * style_.grip_axis;
   const double half_grip = HalfWidth(grip_W);
   // The post is at the object's face: along the grip axis the middle counts, in the other
@@ -260,14 +282,17 @@ std::vector<Candidate> CandidateList::FromSide() const {
     // An object that is lower than wide can also be gripped at its top and bottom.
     if (!planar_ && half_height >= HalfWidth(across_W)) continue;
     add(toward_W, across_W, around + kRolled);
-    add(toward_W, -across_W, around + kRolled);
+    add(toward_W, -across_W, around + kRolled + kOtherRoll);
   }
   return candidates;
 }
 
 bool CandidateList::SideIsNatural() const {
-  const Eigen::Vector3d size = WorldBounds(target_.body, target_.X_WB).sizes();
-  return style_.side && size.z() >= kTall_m && size.z() >= kSlender * std::min(size.x(), size.y());
+  const double height_m = WorldBounds(target_.body, target_.X_WB).sizes().z();
+  double width_m = height_m;
+  for (const double yaw : YawsOf(target_.body, target_.X_WB, 0, planar_, side_))
+    width_m = std::min(width_m, WidthAlong(target_.body, target_.X_WB, Horizontal(yaw)));
+  return style_.side && height_m >= kTall_m && height_m >= kSlender * width_m;
 }
 
 /// Keeps the candidates that the hand can open for and that grasp the point; if there are none,
@@ -336,7 +361,8 @@ ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& q
     const double at_end_m = clearance.At(candidate.X_WH, now);
     const bool fits =
         at_end_m >= kClearEnough_m - query.offset_m.norm() && candidate.too_wide_m == 0;
-    const double clear_enough_m = std::min(kClearEnough_m, at_end_m);
+    // The last look is at the end, but for rounding.
+    const double clear_enough_m = std::min(kClearEnough_m, at_end_m - kRounding_m);
     for (const Bend& bend : kBends) {
       ReachPlan plan{.segment = Way(query, candidate, bend),
                      .toward_W = candidate.toward_W,
@@ -345,7 +371,7 @@ ReachPlan PlanReach(const Scene& scene, const Snapshot& now, const ReachQuery& q
       plan.clearance_m = clearance.Along(plan.segment, now);
       plan.found = fits && plan.clearance_m >= clear_enough_m;
       if (plan.found) return plan;
-      if (!have_one || plan.clearance_m > best.clearance_m) best = plan;
+      if (!have_one || plan.clearance_m > best.clearance_m + kRounding_m) best = plan;
       have_one = true;
     }
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <utility>
 
 #include "physics/person/skeleton.h"
 #include "tests/physics/tabletop.h"
@@ -43,6 +44,27 @@ TEST(ReachPlannerTest, AutoTakesTallThingsFromTheSideAndLowOnesFromAbove) {
   EXPECT_NEAR(Plan(MakeScene({}), "wrap", Approach::kAuto).toward_W.z(), 0, 1e-9);
   const Scene low = MakeScene({.shape = Box{{0.06, 0.06, 0.06}}});
   EXPECT_NEAR(Plan(low, "wrap", Approach::kAuto).toward_W.z(), -1, 1e-9);
+}
+
+TEST(ReachPlannerTest, ThePlanTurnsWithTheHandAndTheThing) {
+  const auto plan = [](double yaw_rad, const Vector3d& size_m, Approach approach) {
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()));
+    Scene scene = MakeScene({.shape = Box{size_m}, .yaw_rad = yaw_rad});
+    scene.bodies[kTable].shapes = {{Box{{4, 4, 0.04}}, {}}};
+    const Vector3d centre_m = scene.bodies[kObject].X_WB.p_m;
+    scene.hands[0].X_WH = {centre_m + turn * Vector3d(-0.4, 0, 0.4), turn};
+    return Eigen::Quaterniond(turn.conjugate() * Plan(scene, "pinch", approach).segment.q_end);
+  };
+  // A slab, of which the bounds along the world's axes are as wide as it is high at some yaws; and
+  // a bar, for which the hand rolls by a right angle one way or the other.
+  const Vector3d slab_m(0.037, 0.21, 0.165), bar_m(0.014, 0.16, 0.014);
+  for (const auto& [size_m, approach] :
+       {std::pair(slab_m, Approach::kAuto), std::pair(bar_m, Approach::kSide)}) {
+    const Eigen::Quaterniond straight = plan(0, size_m, approach);
+    for (double yaw = 0.1; yaw < 6.2; yaw += 0.7)
+      EXPECT_LT(plan(yaw, size_m, approach).angularDistance(straight), 1e-5)
+          << size_m.z() << ' ' << yaw;
+  }
 }
 
 TEST(ReachPlannerTest, TheGripIsSquareToATurnedBox) {
