@@ -218,7 +218,7 @@ def _hand_over(scene):
     name, style = scene.choose(lambda thing: thing["size"][2] >= 0.17, {"wrap"})
     giver, taker = ("right_hand", "left_hand") if scene.side < 0 else ("left_hand", "right_hand")
     height = scene.things[name]["size"][2]
-    scene.taken.append((0.2, 0.1, 0.2))
+    scene.taken += [(0.2, -0.1 * scene.side, 0.2), (0.1, -0.25 * scene.side, 0.2)]  # from here to there
     scene.stand(name, 0.2, -0.1 * scene.side)
     scene.take(name, style, giver, point_m=point(-0.008, 0, -0.25 * height), **{"from": "side"})
     scene.do(giver, "lift_by_m: 0.2", 0.6)

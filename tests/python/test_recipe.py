@@ -2,9 +2,11 @@
 """Recipes and the table, without playing: what is drawn, what is held out, what is counted."""
 import copy
 import json
+import math
 import os
 import pathlib
 import pickle
+import re
 import subprocess
 import sys
 import tempfile
@@ -50,6 +52,15 @@ class Recipe(unittest.TestCase):
         draw = recipe.Draw("a", 1)
         self.assertEqual([round(draw.unit(), 12) for _ in range(2)], [0.959823643934, 0.915954946785])
         self.assertEqual(list(drawn(12)), list(drawn(12)))
+
+    def test_nothing_stands_where_a_hand_puts_down_what_it_was_given(self):
+        handed = [text for _, text, words in drawn(400) if words["skill"] == "hand_over" and words["outcome"] == "success"]
+        self.assertGreater(len(handed), 5)
+        for text in handed:
+            place = [float(word) for word in re.search(r"carry_to_m: \[(.*?), (.*?)\]", text).groups()]
+            for x, y in re.findall(r"on: table, at_m: \[(.*?), (.*?)\]", text):
+                if float(x) != 0.2 or abs(float(y)) != 0.1:  # what is handed over
+                    self.assertGreater(math.dist(place, (float(x), float(y))), 0.2, text)
 
     def test_counts_are_those_of_the_recipe(self):
         rows = [{"words": recipe.words(*HASHED, index)} for index in range(4000)]
