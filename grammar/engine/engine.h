@@ -159,6 +159,7 @@ class Engine final {
     bool closed_looks = false;    // while it is not open it looks at entities, too
     bool open_looks = false;      // likewise, while it is
     bool only_others = false;     // it never looks at entities
+    bool by_since = false;        // `until .. since`: only while others say that nothing leads on
     std::vector<int> slots = {};  // `until`: the references that it asks for
   };
   struct Following {               // of an instance that does so
@@ -166,6 +167,7 @@ class Engine final {
     FrameNumber resumes = 0;       // the first one that it steps when it follows no more
     FrameNumber assumed = kNever;  // before this one nothing happens if the others stay as they are
     bool asks_only_others = false;
+    bool is_ruled_out = false;  // by others alone, whatever the entities do
     bool is_listed = false;     // among those that look ahead
     FrameNumber known_in = -1;  // in this frame it was seen how far it is known
     int cost = 0;               // so many instances may have to be asked for that
@@ -191,6 +193,8 @@ class Engine final {
   static Bound Both(Bound a, Bound b);
   Bound BoundOf(InstanceId index) const;
   Bound BoundOf(NodeId node, RuleInstance& instance);
+  FrameNumber SettledByOthers(NodeId node, RuleInstance& instance, bool holds);
+  FrameNumber RuledOutUntil(RuleInstance& instance);
   bool IsSettled(Bound one) const { return !one.holds && one.known > history_.now(); }
   FrameNumber StaysUntil(RuleInstance& instance);
   FrameNumber CountStaysUntil(const RuleInstance& instance) const;

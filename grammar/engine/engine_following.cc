@@ -106,6 +106,10 @@ Engine::Follows Engine::WhenItFollows(const Rule& rule) const {
       program_->nodes[looks_back->since].op == Op::kOr && IsUnknownUntilTheEnd(looks_back->since);
   Follows follows{.closed = is_far || !rule.referenced};
   CollectAsked(*program_, looks_back->until, follows.slots);
+  if (follows.closed) return follows;
+  const std::size_t of_until = follows.slots.size();
+  CollectAsked(*program_, looks_back->since, follows.slots);
+  follows.closed = follows.by_since = follows.slots.size() > of_until;
   return follows;
 }
 
@@ -126,7 +130,8 @@ bool Engine::MayFollow(RuleInstance& instance, FrameNumber resumes) {
     return evaluator_.Truth(node, {instance, resumes - 1}) == Kleene::kFalse;
   };
   if (const auto* looks_back = RuleOf(instance).If<UntilSinceRule>())
-    return is_false(looks_back->until);
+    return is_false(looks_back->until) &&
+           (!follows_[instance.rule].by_since || RuledOutUntil(instance) >= resumes);
   if (const auto* any = instance.If<AnyState>()) return instance.open || any->owner == kNoEntity;
   const auto* from_to = RuleOf(instance).If<FromToRule>();
   return from_to == nullptr || instance.open || is_false(from_to->from) ||
@@ -142,7 +147,8 @@ bool Engine::Follow(RuleInstance& instance) {
     return false;
   if (following_.size() <= instance.index.index()) following_.resize(instance.index.index() + 1);
   const bool looks_back = RuleOf(instance).form() == Form::kUntilSince;
-  const bool looks = instance.open ? follows.open_looks : follows.closed_looks;
+  const bool is_ruled_out = !follows.only_others && RuledOutUntil(instance) >= instance.next;
+  const bool looks = !is_ruled_out && (instance.open ? follows.open_looks : follows.closed_looks);
   // Else nobody would be told that it is not known in the next frame.
   const bool is_known_now = RuleOf(instance).referenced && instance.known > history_.now();
   if (is_known_now || (looks && instance.next > history_.now())) return false;
@@ -171,6 +177,7 @@ bool Engine::Follow(RuleInstance& instance) {
   following.held = following.resumes = resumes;
   following.assumed = looks ? resumes : kNever;
   following.asks_only_others = !looks_back && follows.only_others;
+  following.is_ruled_out = is_ruled_out && !looks_back;
   if (looks && !following.is_listed) {
     ahead_[instance.rule].push_back(instance.index);
     ++ahead_count_;
@@ -242,12 +249,17 @@ FrameNumber Engine::KnownOf(InstanceId follower) {
   const bool had_its_turn = 2 * turns_[instance.rule] < turn_;
   const FrameNumber end = history_.now() + (had_its_turn ? 1 : 0);
   Following& following = following_[instance.index];
-  if (following.asks_only_others) {
+  const bool asks_followers = std::exchange(asks_followers_, true);
+  if (following.is_ruled_out) {
+    following.resumes = std::max(following.resumes, std::min(RuledOutUntil(instance), end));
+    instance.next = following.resumes;
+  } else if (following.asks_only_others) {
     following.resumes = std::max(following.resumes, std::min(StaysUntil(instance), end));
     instance.next = following.resumes;
   } else {
     CatchUp(instance, end);
   }
+  asks_followers_ = asks_followers;
   UpdateKnown(instance);
   if (had_its_turn) following.known_in = history_.now();
   return instance.known;
@@ -269,6 +281,10 @@ void Engine::CatchUp(RuleInstance& instance, FrameNumber end) {
   Following& following = following_[instance.index];
   following.resumes = std::max(following.resumes, next);
   instance.next = std::max(instance.next, following.resumes);
+  if (follows_[instance.rule].by_since) {
+    auto& from = instance.As<UntilSinceState>().approach_from;
+    from = std::max(from, following.resumes);
+  }
   while (instance.next < std::min(end, following.assumed) && StepFrame(instance)) continue;
 }
 
@@ -377,6 +393,32 @@ Engine::Bound Engine::BoundOf(NodeId index, RuleInstance& instance) {
                   instance.entities[static_cast<std::size_t>(node.roles[0])];
   }
   return bound;
+}
+
+// Up to where a condition is true, or false, by what others say as long as they go on as they are,
+// whatever the entities do.
+FrameNumber Engine::SettledByOthers(NodeId index, RuleInstance& instance, bool holds) {
+  const Node& node = program_->nodes[index];
+  if (node.op == Op::kNot) return SettledByOthers(node.args[0], instance, !holds);
+  if (node.op == Op::kAnd || node.op == Op::kOr) {
+    const FrameNumber left = SettledByOthers(node.args[0], instance, holds);
+    const bool one_is_enough = (node.op == Op::kOr) == holds;
+    if (one_is_enough ? left > history_.now() : left == 0) return left;
+    const FrameNumber right = SettledByOthers(node.args[1], instance, holds);
+    return one_is_enough ? std::max(left, right) : std::min(left, right);
+  }
+  if (node.op != Op::kHolds) return 0;
+  const Bound bound = BoundOf(instances_.Resolve(instance, node.slot));
+  return bound.holds == holds ? bound.known : 0;
+}
+
+// Up to where nothing begins or leads on by what others say.
+FrameNumber Engine::RuledOutUntil(RuleInstance& instance) {
+  if (instance.open) return 0;
+  if (const auto* holds = RuleOf(instance).If<WhileRule>())
+    return SettledByOthers(holds->condition, instance, false);
+  const auto* looks_back = RuleOf(instance).If<UntilSinceRule>();
+  return looks_back == nullptr ? 0 : SettledByOthers(looks_back->since, instance, false);
 }
 
 // The truth of one that is followed has changed.

@@ -189,8 +189,8 @@ Kleene Evaluator::Compare(const Node& node, const View& view) const {
   const bool all_greater = node.op == Op::kGreater || node.op == Op::kGreaterEqual;
   if (with.op == Op::kNumber && of.shared != kNone &&
       ((of.op == Op::kMaximum && all_less) || (of.op == Op::kMinimum && all_greater))) {
-    const Kleene all = AllInWindow(node, with.number, view);
-    if (all != Kleene::kTrue) return all;
+    const std::optional<Kleene> all = AllInWindow(node, with.number, view);
+    if (all) return *all;
   }
   const std::optional<double> left = Number(node.args[0], view);
   if (!left) return Kleene::kUnknown;

@@ -132,7 +132,7 @@ class Evaluator {
     double up = 0;        ///< cosine between the part's top and up
   };
   const std::vector<OverPart>& OverParts(int a, int b, FrameNumber frame) const;
-  Kleene AllInWindow(const Node& node, double number, const View& view) const;
+  std::optional<Kleene> AllInWindow(const Node& node, double number, const View& view) const;
   struct Window {
     FrameNumber early = 0;
     FrameNumber late = 0;
@@ -199,6 +199,14 @@ class Evaluator {
   static constexpr std::size_t kComputed = 1024;  ///< a power of two
   mutable std::vector<Computed> computed_;        ///< empty if they share none
   mutable std::vector<double> window_values_;     ///< kept for its memory
+  /// Values that stay on the side that a comparison asks for, from one frame to another.
+  struct Stays {
+    const Node* node = nullptr;
+    int a = kNoEntity, b = kNoEntity;
+    FrameNumber early = 0, late = -1;
+  };
+  static constexpr std::size_t kStays = 1024;  ///< a power of two
+  mutable std::vector<Stays> stays_;           ///< empty until the first one
   /// How things lay to each other, last.
   struct LastOver {
     FrameNumber frame = -1;

@@ -104,24 +104,42 @@ std::optional<double> Evaluator::OfWindow(const Node& node, const View& view) co
   return value;
 }
 
-// Whether a value stays on one side of a number in a window: false if its last one does not, kTrue
-// if that must be computed. What is lost at times is no number at some of the frames.
-Kleene Evaluator::AllInWindow(const Node& node, double number, const View& view) const {
+// Whether a value stays on one side of a number in a window; nullopt if that must be computed. What
+// is lost at times is no number at some of the frames. As the window moves on, only the values that
+// are new in it are looked at.
+std::optional<Kleene> Evaluator::AllInWindow(const Node& node, double number,
+                                             const View& view) const {
   const Node& of = program_.nodes[node.args[0]];
   const Node& value = program_.nodes[of.args[0]];
   const bool is_signal = value.op == Op::kSpeedOver || value.op == Op::kRelativeSpeedOver ||
                          value.op == Op::kDistance || value.op == Op::kHeight;
-  if (!is_signal) return Kleene::kTrue;
-  for (const int role : of.shared_roles) {
-    if (role != kNone && history_.WasLost(view.instance.entities[static_cast<std::size_t>(role)]))
-      return Kleene::kTrue;
+  if (!is_signal) return std::nullopt;
+  int who[2] = {kNoEntity, kNoEntity};
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (of.shared_roles[i] == kNone) continue;
+    who[i] = view.instance.entities[static_cast<std::size_t>(of.shared_roles[i])];
+    if (history_.WasLost(who[i])) return std::nullopt;
   }
   const std::optional<Window> window = WindowAround(of, view.frame);
   if (!window) return Kleene::kUnknown;
+  if (stays_.empty()) stays_.resize(kStays);
+  const std::size_t place = 7 * static_cast<std::size_t>(who[0]) +
+                            61 * static_cast<std::size_t>(who[1] + 1) +
+                            509 * static_cast<std::size_t>(of.shared);
+  Stays& stays = stays_[place % kStays];
+  const bool goes_on = stays.node == &node && stays.a == who[0] && stays.b == who[1] &&
+                       stays.early <= window->early && stays.late >= window->early;
   // If the value at the last frame is known, all of them are.
-  const std::optional<double> last = Number(of.args[0], view.At(window->late));
-  if (!last) return Kleene::kUnknown;
-  return Known(std::isnan(*last) || Compares(node.op, *last, number));
+  for (FrameNumber frame = window->late; frame >= (goes_on ? stays.late + 1 : window->early);
+       --frame) {
+    const std::optional<double> here = Number(of.args[0], view.At(frame));
+    if (!here) return Kleene::kUnknown;
+    if (std::isnan(*here)) return std::nullopt;
+    if (!Compares(node.op, *here, number)) return Kleene::kFalse;
+  }
+  stays = {&node, who[0], who[1], window->early,
+           goes_on ? std::max(stays.late, window->late) : window->late};
+  return Kleene::kTrue;
 }
 
 // The way of a as seen from b between two frames, turned to where b is now, without its upright
