@@ -9,7 +9,7 @@ from .errors import EpisodeError, fail
 
 HERE = pathlib.Path(__file__).parent
 WEIGHED = ["layout", "outcome", "skill", "hand", "person", "body", "noise", "sensing_hz", "distractors", "retry", "style", "thing"]
-NUMBERS = ["pace", "mass", "friction", "yaw_deg", "aim_m"]
+NUMBERS = ["pace", "step", "rest_s", "mass", "friction", "yaw_deg", "aim_m"]
 AXES = ["thing", "layout", "person", "style", "noise"]
 QUESTIONS = {"same": "as in training", "thing": "things never seen", "layout": "a room never seen", "person": "people never seen",
              "style": "grasps never seen", "noise": "sensors worse than those seen"}

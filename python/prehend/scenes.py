@@ -118,12 +118,26 @@ class Scene:  # pylint: disable=too-many-instance-attributes
 
     # What happens.
     def do(self, hand, action, base_s=None, **more):
-        keys = {**more, **({"over_s": number(base_s * self.pace)} if base_s else {})}
+        keys = {**more, **({"over_s": number(base_s * self.pace * self.draw.of(self.recipe["step"]))} if base_s else {})}
         self.script.append(f"  - {hand}: {{{action}{''.join(f', {k}: {v}' for k, v in keys.items())}}}\n")
 
     def pause(self, hand):
+        """As long as the person's, or twice as long, or hardly: so that timing tells nothing."""
         if self.person["pause_s"] > 0.08:
-            self.do(hand, f"wait_s: {number(self.person['pause_s'])}")
+            self.do(hand, f"wait_s: {number(0.02 + self.person['pause_s'] * self.draw.between(0, 2))}")
+
+    def wait(self, hands):
+        """Before the first step: so that the time since the beginning tells nothing."""
+        waits = number(self.draw.of(self.recipe["rest_s"]))
+        self.script += [f"{'    ' if i else '  - '}{hand}: {{wait_s: {waits}}}\n" for i, hand in enumerate(hands)]
+
+    def wander(self, hands, x_most):
+        """At last to any place above the table: so that the thing that is beside the hand then tells nothing."""
+        over_s, height = number(self.draw.between(0.8, 2)), self.top + self.draw.between(0.25, 0.35)
+        for i, hand in enumerate(hands):
+            way = self.draw.between(0.05, 0.4) * (1 if hand == "left_hand" else -1) if len(hands) > 1 else self.draw.between(-0.4, 0.4)
+            at = point(self.draw.between(-0.2, x_most), way, height)
+            self.script.append(f"{'    ' if i else '  - '}{hand}: {{poses: [{{t_s: {over_s}, at_m: {at}}}]}}\n")
 
     def take(self, name, style, hand=None, grip=1.0, offset=(0.0, 0.0, 0.0), **more):
         """Reach and close."""
@@ -227,7 +241,7 @@ def _hand_over(scene):
     scene.do(giver, "retreat_by_m: 0.2", 0.6)
     scene.do(taker, f"carry_to_m: {point(0.1, -0.25 * scene.side)}", 1.0)
     scene.do(taker, "place_on: table", 0.7)
-    scene.do(taker, "open_to: 0", 0.45)
+    scene.let_go(taker)
     scene.claim(f"grasping({giver}, {name}) overlaps grasping({taker}, {name})", f"one putting_down({taker}, {name})")
 
 
@@ -335,9 +349,13 @@ SKILLS = {"pick_and_place": _pick_and_place, "put_on": _put_on, "lift_and_back":
           "push": _push, "bar": _bar}
 
 
+def _hands(scene):
+    return ["right_hand", "left_hand"] if scene.words["skill"] in ("hand_over", "two_hands") else [scene.hand]
+
+
 def _actors(scene):
     """Hands where they start, and the person whose they are."""
-    hands = ["right_hand", "left_hand"] if scene.words["skill"] in ("hand_over", "two_hands") else [scene.hand]
+    hands = _hands(scene)
     tracking = NOISE[scene.words["noise"]].get("tracking")
     more = ", tracking: {" + ", ".join(f"{k}: {v}" for k, v in tracking.items()) + "}" if tracking else ""
     # In front of furniture a hand begins at its height.
@@ -365,10 +383,13 @@ def written(recipe, recipe_hash, index, attempt):
         slippery = ", friction: 0.5" if words["skill"].startswith("slide") else ""
         scene.entities.append(f"  table: {{class: {scene.table}, fixed: true, color: {scene.color}, box: {{size_m: "
                               f"{point(scene.size_x, scene.size_y, 0.04)}}}, at_m: {point(0.2, 0, scene.top - 0.02)}{slippery}}}\n")
+    hands = _hands(scene)
+    scene.wait(hands)
     if words["outcome"] == "success":
         SKILLS[words["skill"]](scene)
     else:
         _failure(scene, words["outcome"])
+    scene.wander(hands, -0.1 if furniture else 0.25)
     acted = sorted(scene.used)
     held_out = set(recipe["held_out"].get("thing") or [])
     for _ in range(0 if furniture else int(words["distractors"])):  # things that only stand there
@@ -386,5 +407,5 @@ def written(recipe, recipe_hash, index, attempt):
     text = (f"scenario: {scene.name}\nshows: {words['skill']}, {words['outcome']}\nexpects:\n" + "".join(f"  - {c}\n" for c in scene.claims)
             + f"grammar: {grammar}\nworld: {{rate_hz: 480, sensing_hz: {words['sensing_hz']}, seed: {index + 1}}}\n"
             + (f"sensors: {{{', '.join(f'{k}: {v}' for k, v in sensors.items())}, seed: {index + 1}}}\n" if sensors else "")
-            + "entities:\n" + "".join(entities) + "actors:\n" + "".join(scene.actors) + "script:\n" + "".join(scene.script) + "settle_s: 0.4\n")
+            + "entities:\n" + "".join(entities) + "actors:\n" + "".join(scene.actors) + "script:\n" + "".join(scene.script) + f"settle_s: {number(0.4 + scene.draw.of(recipe['rest_s']))}\n")
     return text, drawn, scene.claims
