@@ -3,6 +3,7 @@
 import argparse
 import collections
 import csv
+import datetime
 import hashlib
 import json
 import os
@@ -286,7 +287,15 @@ def main(arguments):
     one.add_argument("set")
     one.add_argument("--to", choices=["mcap", "csv", "jsonl", "npz", "hdf5"], required=True)
     one.add_argument("-o", "--output", required=True)
+    one = commands.add_parser("archive", help="a set, results on it, hashes, licence and citation as one file")
+    one.add_argument("set")
+    one.add_argument("results", nargs="*", help="folders of 'benchmark'")
+    one.add_argument("--date", required=True, type=datetime.date.fromisoformat, metavar="YYYY-MM-DD", help="of the release")
+    one.add_argument("-o", "--output", required=True, metavar="FILE.tar")
     options = parser.parse_args(arguments)
+    if options.command == "archive":
+        from .datasheet import archive
+        return archive(options.set, options.results, options.date, options.output)
     if options.command == "join":
         return join_into(options.output, options.shards)
     return make(options) if options.command == "make" else export(options)

@@ -1,14 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is said of a data set: a datasheet, the table of classes, plots; and HDF5 as simulators lay it out."""
 import collections
+import hashlib
+import io
 import json
 import os
+import pathlib
+import tarfile
 
 from . import recipe as recipes
 
 LICENCE = """This data set is licensed under Creative Commons Attribution 4.0 International (CC BY 4.0):
 https://creativecommons.org/licenses/by/4.0/legalcode
 Sizes and masses of things: YCB object set, Calli et al. 2015, doi:10.1109/MRA.2015.2448951.
+"""
+CITATION = """cff-version: 1.2.0
+message: If you use this data set, please cite it and the program that made it.
+type: dataset
+title: "{set}: {episodes} simulated episodes of manipulation, with labels of three witnesses"
+authors:
+  - name: The prehend developers
+license: CC-BY-4.0
+version: {version}
+date-released: {date}
+references:
+  - {{type: software, title: prehend, version: "{program}", authors: [{{name: The prehend developers}}]}}
+  - {{type: article, title: Benchmarking in Manipulation Research, year: 2015, doi: 10.1109/MRA.2015.2448951,
+     authors: [{{family-names: Calli, given-names: Berk}}]}}
 """
 SHEET = """# Datasheet of '{name}'
 
@@ -108,6 +126,25 @@ def _plots(folder, rows, labels, kinds):
     axes[2].set_xlabel("episodes")
     figure.savefig(folder / "classes.png", metadata={"Software": None})
     pyplot.close(figure)
+
+
+def archive(folder, results, date, path):
+    """What of a set is the same on every machine, and results on it, as one file with all hashes: the same bytes in every run."""
+    manifest = json.loads((pathlib.Path(folder) / "manifest.json").read_text(encoding="utf-8"))
+    files = {}
+    for place, below in ((folder, ""), *((one, f"results/{pathlib.Path(one).name}/") for one in results)):
+        for file in pathlib.Path(place).rglob("*"):
+            if file.is_file() and file.suffix != ".episodes" and file.name not in ("files.json", "cpu.json") and not file.name.startswith("scored_"):
+                files[below + file.relative_to(place).as_posix()] = file.read_bytes()
+    version = hashlib.sha256(files["manifest.json"]).hexdigest()[:16]
+    files["CITATION.cff"] = CITATION.format(**manifest, version=version, date=date).encode()
+    files["SHA256SUMS"] = "".join(f"{hashlib.sha256(data).hexdigest()}  {name}\n" for name, data in sorted(files.items())).encode()
+    with tarfile.open(path, "w", format=tarfile.USTAR_FORMAT) as tar:
+        for name, data in sorted(files.items()):
+            info = tarfile.TarInfo(f"{manifest['set']}/{name}")
+            info.size = len(data)
+            tar.addfile(info, io.BytesIO(data))
+    print(f"{path}: {len(files)} files, {hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()}")
 
 
 def write_hdf5(folder, path):
