@@ -18,44 +18,15 @@ constexpr std::size_t kMaxNodes = 10000;
 constexpr double kLongest_s = 86400;  // more is a slip of the finger
 
 std::string_view TypeText(Type type) {
-  switch (type) {
-    case Type::kTruth:
-      return "true or false";
-    case Type::kNumber:
-      return "a number";
-    case Type::kPosition:
-      return "a position";
-  }
-  return "";
-}
-
-/// What to write instead of a name that other languages and libraries have; "" of others.
-std::string_view HabitHint(std::string_view name) {
-  constexpr std::string_view kMoment = "a moment is E begins, or E ends";
-  constexpr std::string_view kAlone = "what is true or false is not compared: F, or not F";
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kHabits = {
-      {{"begin", kMoment},
-       {"start", kMoment},
-       {"end", kMoment},
-       {"stop", kMoment},
-       {"true", kAlone},
-       {"false", kAlone},
-       {"velocity", "how fast it moves: speed(object)"},
-       {"z", "how high it is: height(object)"},
-       {"angle", "how far it is turned: tilt(object), rotation(a, b), aligned(a, z, b, z)"},
-       {"duration", "how long it holds: while F lasting 2 s"},
-       {"near", "how far they are apart: distance(a, b) < 5 cm"},
-       {"close", "how far they are apart: distance(a, b) < 5 cm"}}};
-  const auto habit =
-      std::ranges::find(kHabits, name, &std::pair<std::string_view, std::string_view>::first);
-  return habit == kHabits.end() ? "" : habit->second;
+  return type == Type::kTruth ? "true or false" : type == Type::kNumber ? "a number" : "a position";
 }
 
 }  // namespace
 
-std::string Suggest(std::string_view name, const std::vector<std::string>& known) {
+std::string Suggest(std::string_view name, const std::vector<std::string>& known,
+                    std::string_view otherwise) {
   const std::string near = NearestName(name, known);
-  return near.empty() ? std::string() : "did you mean " + Quoted(near) + "?";
+  return near.empty() ? std::string(otherwise) : "did you mean " + Quoted(near) + "?";
 }
 
 std::string AllenNames() {
@@ -87,7 +58,7 @@ bool IsOverInterval(std::string_view name) {
 Diagnostic Symbols::Unknown(std::string_view what, std::string_view name, std::string hint) const {
   if (is_incomplete || broken.contains(name)) return {};
   const std::string owner = who_defines ? who_defines(name) : "";
-  if (!HabitHint(name).empty()) hint = HabitHint(name);
+  if (const std::string_view habit = HabitHint(name); !habit.empty()) hint = habit;
   if (!owner.empty()) hint = "it is in a grammar of the library: use " + owner;
   return {.message = "unknown " + std::string(what) + " " + Quoted(name), .hint = std::move(hint)};
 }
@@ -333,8 +304,7 @@ Lowering::Typed Lowering::Number(const Expr& expr) {
   const Typed typed = Lower(expr);
   if (typed.bad || typed.type == Type::kNumber) return typed;
   return Bad(expr.place, "a number is needed here, this is " + std::string(TypeText(typed.type)),
-             typed.type == Type::kTruth ? "what is true or false is not compared: F, or not F"
-                                        : "for example: distance(a, b), height(object)");
+             std::string(HabitHint(typed.type == Type::kTruth ? "true" : "position")));
 }
 
 Lowering::Typed Lowering::Position(const Expr& expr) {

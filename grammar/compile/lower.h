@@ -17,6 +17,7 @@
 #include "grammar/analysis/value_ranges.h"
 #include "grammar/base/source.h"
 #include "grammar/language/ast.h"
+#include "grammar/language/token_reader.h"
 #include "grammar/program/program.h"
 
 namespace prehend::grammar {
@@ -72,7 +73,8 @@ bool IsOverInterval(std::string_view name);
 
 inline std::string Quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
 /// "did you mean 'height'?", or nothing.
-std::string Suggest(std::string_view name, const std::vector<std::string>& known);
+std::string Suggest(std::string_view name, const std::vector<std::string>& known,
+                    std::string_view otherwise = "");
 /// "before, meets, ..": all thirteen.
 std::string AllenNames();
 

@@ -41,24 +41,19 @@ std::string ArgumentCounts(std::string_view name) {
 
 std::optional<int> Lowering::RoleArgument(const Expr& expr, std::string_view wanted_class,
                                           std::string_view callee) {
-  const int role = expr.kind == Expr::Kind::kName ? FindRole(expr.text) : kNone;
+  const bool is_name = expr.kind == Expr::Kind::kName;
+  const int role = is_name ? FindRole(expr.text) : kNone;
   if (role == kNone) {
-    std::vector<std::string> names;
-    for (const RuleRole& known : rule().roles) names.push_back(known.name);
     if (expr.text == "any") {
       Complain(expr.place, "'any' stands only for a role of an event or condition",
                "for example: contact(object, any), with `use contact`");
       return std::nullopt;
     }
-    Complain(
-        expr.place,
-        Quoted(callee) + " takes a role here" +
-            (expr.kind == Expr::Kind::kName ? ", and there is no role " + Quoted(expr.text) : ""),
-        expr.kind != Expr::Kind::kName ? ""
-        : expr.text[0] <= 'Z'          ? "an entity of a class is a role: some: " + expr.text
-        : Suggest(expr.text, names).empty()
-            ? "a rule knows roles, not entities by their names: give it a role and a class"
-            : Suggest(expr.text, names));
+    std::vector<std::string> names;
+    for (const RuleRole& known : rule().roles) names.push_back(known.name);
+    const std::string found = is_name ? ", and there is no role " + Quoted(expr.text) : "";
+    Complain(expr.place, Quoted(callee) + " takes a role here" + found,
+             is_name ? Suggest(expr.text, names, HabitHint("role")) : "");
     return std::nullopt;
   }
   role_used_[role] = true;

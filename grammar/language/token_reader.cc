@@ -24,7 +24,23 @@ struct Habit {
 };
 constexpr std::string_view kOrder =
     "one after the other: from A to B, or compose a: E, b: F where a before b";
-constexpr std::array<Habit, 30> kHabits = {{
+constexpr std::string_view kMoment = "a moment is E begins, or E ends";
+constexpr std::string_view kAlone = "what is true or false is not compared: F, or not F";
+constexpr std::string_view kDistance = "how far they are apart: distance(a, b) < 5 cm";
+constexpr std::array<Habit, 43> kHabits = {{
+    {"begin", kMoment},
+    {"start", kMoment},
+    {"end", kMoment},
+    {"stop", kMoment},
+    {"true", kAlone},
+    {"false", kAlone},
+    {"near", kDistance},
+    {"close", kDistance},
+    {"velocity", "how fast it moves: speed(object)"},
+    {"angle", "how far it is turned: tilt(object), rotation(a, b), aligned(a, z, b, z)"},
+    {"duration", "how long it holds: while F lasting 2 s"},
+    {"position", "for example: distance(a, b), height(object)"},
+    {"role", "a rule knows roles, not entities or classes by their names: give it a role"},
     {"z", "how high it is: height(object)"},
     {"sequence", "one after the other: compose a: E, b: F where a before b"},
     {"seq", "one after the other: compose a: E, b: F where a before b"},
@@ -62,6 +78,11 @@ bool IsItemWord(std::string_view word) {
 }
 
 }  // namespace
+
+std::string_view HabitHint(std::string_view word) {
+  const auto habit = std::ranges::find(kHabits, word, &Habit::found);
+  return habit == kHabits.end() ? "" : habit->hint;
+}
 
 bool IsReserved(std::string_view word) {
   return IsItemWord(word) ||
@@ -161,8 +182,8 @@ std::string TokenReader::WordHint(bool is_form) const {
                                                             "forall"};
   const std::string_view before = tokens_[at_ == 0 ? 0 : at_ - 1].text;
   const bool is_before = std::ranges::count(kBeforeTests, before) > 0;
-  const auto habit = std::ranges::find(kHabits, is_before ? before : found, &Habit::found);
-  if (habit != kHabits.end()) return std::string(habit->hint);
+  if (const std::string_view habit = HabitHint(is_before ? before : found); !habit.empty())
+    return std::string(habit);
   std::vector<std::string> words(kItemWords.begin(), kItemWords.end());
   words.insert(words.end(), kOtherWords.begin(), kOtherWords.end());
   const std::string near = NearestName(Peek().text, words);

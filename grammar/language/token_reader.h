@@ -13,6 +13,8 @@ namespace prehend::grammar {
 
 /// Words that cannot name a role, a parameter or a rule.
 bool IsReserved(std::string_view word);
+/// What to write in the place of a word of other languages; "" of others.
+std::string_view HabitHint(std::string_view word);
 
 /// Thrown inside the parser only: unwinds to the next item after the complaint was written down.
 struct ParseStop {};
