@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three faults in a copy of two skills' scenarios: `check` names them, with parameter and value.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -79,6 +80,24 @@ TEST(Causes, ThreeSeededFaultsAreNamedWithTheirValues) {
             "`slide_distance` 2 cm -> 5 cm\n"
             "rule `transporting`: `outside ..` lost `picking_up(hand, object)`\n");
   EXPECT_EQ(Prehend({"grammar", "diff", "contact", "contact"}).exit_code, 0);
+
+  // What is no difference from a golden: a law that is violated, roles with which nothing compiles.
+  const std::string good = ReadFile(fs::path(PREHEND_SOURCE_DIR) / grammar);
+  const auto cause_of = [&](const char* from, const char* to, const char* scenario) {
+    WriteFile(root / grammar, Replaced(good, from, to));
+    const std::string out = check({scenario}).out;
+    return out.substr(std::min(out.find("1 cause:"), out.size()));
+  };
+  EXPECT_THAT(cause_of("putting_down(hand, object)\n  do not overlap",
+                       "putting_down(hand, object), grasping(hand, object)\n  do not overlap",
+                       "slide/four_centimetres_are_a_slide"),
+              testing::HasSubstr("1. law `phases_do_not_overlap`: gained `grasping(hand, object)` "
+                                 "in grammar/library/pick_and_place.grammar: "));
+  EXPECT_THAT(
+      cause_of("landed(hand: Hand, object: Movable) =", "landed(object: Movable, hand: Hand) =",
+               "slide/four_centimetres_are_a_slide"),
+      testing::HasSubstr("1. rule `landed`: `landed(hand: Hand, object: Movable)` -> "
+                         "`landed(object: Movable, hand: Hand)` in "));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 
 #include "harness/truth/timeline/event_text.h"
 
@@ -88,6 +89,27 @@ std::string OtherCause(const PossibleCauses& possible) {
              : fmt::format("{}", fmt::join(possible.other_changes, ", "));
 }
 
+/// Each change of the grammar by itself, then all of a rule, then all.
+std::vector<std::vector<const SettingChange*>> ToUndo(const PossibleCauses& possible) {
+  std::vector<const SettingChange*> of_grammar;
+  for (const SettingChange& change : possible.changes) {
+    const bool is_whole = change.before.empty() || change.after.empty();
+    if (change.of == SettingChange::Of::kField || of_grammar.size() >= kMostUndone) continue;
+    if (change.of == SettingChange::Of::kClause || !is_whole) of_grammar.push_back(&change);
+  }
+  std::vector<std::vector<const SettingChange*>> sets;
+  std::map<std::string, std::vector<const SettingChange*>> rules;
+  for (const SettingChange* change : of_grammar) {
+    sets.push_back({change});
+    if (change->of == SettingChange::Of::kClause)
+      rules[change->file + change->name.substr(0, change->name.find(' '))].push_back(change);
+  }
+  for (auto& [rule, changes] : rules)
+    if (changes.size() > 1 && changes.size() < of_grammar.size()) sets.push_back(changes);
+  if (of_grammar.size() > 1) sets.push_back(std::move(of_grammar));
+  return sets;
+}
+
 }  // namespace
 
 std::vector<Attribution> AttributeDifferences(const truth::Comparison& comparison,
@@ -97,26 +119,43 @@ std::vector<Attribution> AttributeDifferences(const truth::Comparison& compariso
   std::vector<Attribution> attributions;
   for (const truth::Pairing* pairing : differing)
     attributions.push_back(Described(*pairing, comparison.ticks_per_second));
-  std::vector<const SettingChange*> of_grammar;
-  for (const SettingChange& change : possible.changes) {
-    const bool is_whole = change.before.empty() || change.after.empty();
-    if (change.of == SettingChange::Of::kField || of_grammar.size() >= kMostUndone) continue;
-    if (change.of == SettingChange::Of::kClause || !is_whole) of_grammar.push_back(&change);
-  }
-  const auto undo = [&](const std::vector<const SettingChange*>& undone) {
-    const auto without = compare_with(undone);
-    for (std::size_t i = 0; without && i < differing.size(); ++i) {
-      if (attributions[i].because.empty() && IsGone(*differing[i], *without))
-        attributions[i].because = ListOf(undone);
-    }
-  };
-  for (const SettingChange* change : of_grammar) undo({change});
   const auto is_open = [](const Attribution& attribution) { return attribution.because.empty(); };
-  if (of_grammar.size() > 1 && std::ranges::any_of(attributions, is_open)) undo(of_grammar);
+  const auto gone_without = [&](const std::vector<const SettingChange*>& undone) {
+    std::vector<std::size_t> gone;
+    const auto without = compare_with(undone);
+    for (std::size_t i = 0; without && i < differing.size(); ++i)
+      if (is_open(attributions[i]) && IsGone(*differing[i], *without)) gone.push_back(i);
+    return gone;
+  };
+  for (std::vector<const SettingChange*> undone : ToUndo(possible)) {
+    if (undone.size() > 1 && std::ranges::none_of(attributions, is_open)) break;
+    const std::vector<std::size_t> gone = gone_without(undone);
+    // Of several together those that are needed.
+    for (std::size_t k = undone.size(); !gone.empty() && undone.size() > 1 && k-- > 0;) {
+      std::vector<const SettingChange*> fewer = undone;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(k));
+      if (gone_without(fewer) == gone) undone = std::move(fewer);
+    }
+    for (const std::size_t i : gone) attributions[i].because = ListOf(undone);
+  }
   for (Attribution& attribution : attributions) {
     if (is_open(attribution)) attribution.because = OtherCause(possible);
   }
   return attributions;
+}
+
+std::string CauseOfFailure(
+    const PossibleCauses& possible,
+    const std::function<bool(const std::vector<const SettingChange*>& undone)>& holds_without) {
+  if (holds_without) {
+    for (const auto& undone : ToUndo(possible))
+      if (holds_without(undone)) return ListOf(undone);
+    const std::string other = possible.motion_differs ? OtherCause(possible) : "";
+    if (!other.empty()) return other;
+  }
+  std::vector<const SettingChange*> all;
+  for (const SettingChange& change : possible.changes) all.push_back(&change);
+  return all.empty() ? OtherCause(possible) : ListOf(all);
 }
 
 }  // namespace prehend::suite

@@ -69,11 +69,9 @@ std::string FirstCause(const StateTrace& before, const DifferingRun& now) {
 }
 
 /// The same motion, with some parameters and clauses as they were.
-std::optional<truth::Comparison> CompareWithout(const CheckRequest& request,
-                                                const CheckedRun& checked,
-                                                const truth::Golden& golden,
-                                                const FileHashes& inputs,
-                                                const std::vector<const SettingChange*>& undone) {
+std::optional<CheckedRun> RunWithout(const CheckRequest& request, const CheckedRun& checked,
+                                     const FileHashes& inputs,
+                                     const std::vector<const SettingChange*>& undone) {
   episode::RunRequest changed = request.Run();
   for (const SettingChange* change : undone) {
     const auto path = std::ranges::find_if(inputs, [&](const auto& one) {
@@ -90,13 +88,42 @@ std::optional<truth::Comparison> CompareWithout(const CheckRequest& request,
       changed.settings.push_back(name + change->before);
     }
   }
-  const Result<episode::LoadedRun> loaded = episode::LoadRun(changed, request.root);
+  Result<episode::LoadedRun> loaded = episode::LoadRun(changed, request.root);
   if (!loaded) return std::nullopt;
-  const scenario::Scenario& scenario = checked.loaded.scenario;
-  return truth::Compare(golden,
-                        episode::Resegment(scenario, checked.result.recording, loaded->program,
-                                           checked.result.ticks + 1),
-                        scenario::DefaultTolerance(scenario));
+  CheckedRun run{.id = checked.id, .loaded = std::move(*loaded), .result = {}, .explain = {}};
+  run.result.timeline = episode::Resegment(checked.loaded.scenario, checked.result.recording,
+                                           run.loaded.program, checked.result.ticks + 1);
+  return run;
+}
+
+bool CanUndo(const CheckRequest& request, const CheckedRun& checked) {
+  return request.IsPlayed() && !checked.result.recording.empty();
+}
+
+DifferingRun NowOf(const CheckRequest& request, const CheckedRun& checked,
+                   const ScenarioVerdict& verdict) {
+  const episode::RunResult& run = checked.result;
+  return {.program = request.program,
+          .build = BuildText(),
+          .inputs = verdict.inputs,
+          .settings = verdict.settings,
+          .options = OptionsOf(request.changes),
+          .other_grammar = !request.changes.grammar.empty(),
+          .trace = TraceOf(checked.loaded.scenario.scene, run.recording),
+          .ticks_per_second = static_cast<double>(run.timeline.ticks_per_second)};
+}
+
+/// Laws and claims are what a grammar decides, besides the golden.
+bool HoldsItself(const CheckedRun& run) {
+  return JudgeLaws(run).empty() &&
+         ClaimFindings(JudgeClaims(run.loaded, run.result.timeline)).empty();
+}
+
+void AddCause(const PossibleCauses& possible, const std::string& because,
+              ScenarioVerdict& verdict) {
+  verdict.cause += ChangesText(possible.changes);
+  verdict.attributions.push_back(
+      {.event = {}, .what = verdict.reason, .because = because, .question = {}});
 }
 
 }  // namespace
@@ -144,27 +171,49 @@ void AttributeRun(const CheckRequest& request, const CheckedRun& checked,
                   const truth::Golden& golden, const truth::Comparison& comparison,
                   ScenarioVerdict& verdict) {
   const LastPasses records(request.root);
-  const episode::RunResult& run = checked.result;
   const auto last_pass = records.Read(request.id);
   const auto trace = ReadTrace(records.TracePath(request.id));
-  const DifferingRun now{.program = request.program,
-                         .build = BuildText(),
-                         .inputs = verdict.inputs,
-                         .settings = verdict.settings,
-                         .options = OptionsOf(request.changes),
-                         .other_grammar = !request.changes.grammar.empty(),
-                         .trace = TraceOf(checked.loaded.scenario.scene, run.recording),
-                         .ticks_per_second = static_cast<double>(run.timeline.ticks_per_second)};
+  const DifferingRun now = NowOf(request, checked, verdict);
   verdict.cause = CauseText(last_pass, trace, now, request.root);
   const auto possible = PossibleCausesOf(last_pass, trace, now, request.root);
   if (possible) verdict.cause += ChangesText(possible->changes);
-  const bool can_undo = request.IsPlayed() && !run.recording.empty();
   verdict.attributions = AttributeDifferences(
       comparison, possible.value_or(PossibleCauses{}),
       [&](const std::vector<const SettingChange*>& undone) -> std::optional<truth::Comparison> {
-        if (!can_undo) return std::nullopt;
-        return CompareWithout(request, checked, golden, verdict.inputs, undone);
+        if (!CanUndo(request, checked)) return std::nullopt;
+        const auto without = RunWithout(request, checked, verdict.inputs, undone);
+        if (!without) return std::nullopt;
+        return truth::Compare(golden, without->result.timeline,
+                              scenario::DefaultTolerance(checked.loaded.scenario));
       });
+}
+
+void AttributeFailure(const CheckRequest& request, const CheckedRun& checked,
+                      ScenarioVerdict& verdict) {
+  const LastPasses records(request.root);
+  const auto possible =
+      PossibleCausesOf(records.Read(request.id), ReadTrace(records.TracePath(request.id)),
+                       NowOf(request, checked, verdict), request.root);
+  if (!possible) return;
+  const bool is_of_grammar = !HoldsItself(checked);
+  const std::string because = CauseOfFailure(*possible, [&](const auto& undone) {
+    if (!is_of_grammar || !CanUndo(request, checked)) return false;
+    const auto without = RunWithout(request, checked, verdict.inputs, undone);
+    return without && HoldsItself(*without);
+  });
+  AddCause(*possible, because, verdict);
+}
+
+void AttributeUnread(const CheckRequest& request, ScenarioVerdict& verdict) {
+  const auto last_pass = LastPasses(request.root).Read(request.id);
+  if (!last_pass) return;
+  const std::vector<std::string> changed = ChangedInputs(*last_pass);
+  PossibleCauses possible{.changes = ChangesBetween(last_pass->verdict.settings,
+                                                    SettingsOfFiles(changed, request.root)),
+                          .other_changes = OptionsOf(request.changes)};
+  for (const std::string& file : changed)
+    possible.other_changes.push_back(RelativeTo(request.root, file));
+  AddCause(possible, CauseOfFailure(possible, nullptr), verdict);
 }
 
 }  // namespace prehend::suite

@@ -48,4 +48,11 @@ void AttributeRun(const CheckRequest& request, const CheckedRun& checked,
                   const truth::Golden& golden, const truth::Comparison& comparison,
                   ScenarioVerdict& verdict);
 
+/// Of a run that fails although it does not differ from a golden: a law, a claim, the run itself.
+void AttributeFailure(const CheckRequest& request, const CheckedRun& checked,
+                      ScenarioVerdict& verdict);
+
+/// Of a scenario that could be read when it passed.
+void AttributeUnread(const CheckRequest& request, ScenarioVerdict& verdict);
+
 }  // namespace prehend::suite

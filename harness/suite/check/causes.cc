@@ -83,6 +83,10 @@ std::vector<Cause> CausesOf(const std::vector<ScenarioVerdict>& verdicts) {
       continue;
     }
     for (const Attribution& difference : verdict.attributions) {
+      if (difference.event.empty()) {
+        add(difference.because, {"", KindOfReason(difference.what)}, verdict, verdict.command);
+        continue;
+      }
       Gathered* of = add(difference.because, {difference.event, difference.what}, verdict,
                          verdict.explain + " " + difference.question);
       if (difference.shift_ms != 0) of->shifts_ms.push_back(difference.shift_ms);

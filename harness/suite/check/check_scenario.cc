@@ -325,6 +325,7 @@ void Shorten(std::string& text, const std::string& root) {
 ScenarioVerdict Unreadable(const CheckRequest& request, ScenarioVerdict verdict,
                            const grammar::Diagnostics& why) {
   Conclude({{ExitCode::kBadInput, "cannot be read", "", why}}, verdict);
+  AttributeUnread(request, verdict);
   if (request.IsPlayed()) verdict.command = CommandAbout("validate", request.id, request.changes);
   return verdict;
 }
@@ -396,6 +397,9 @@ ScenarioVerdict VerdictOn(CheckedEpisode checked) {
     checked.is_good = findings.empty();
   }
   Conclude(findings, verdict);
+  if (verdict.verdict == Verdict::kFailed && verdict.attributions.empty() && !checked.recording &&
+      !checked.heard)
+    AttributeFailure(request, checked.run, verdict);
   for (std::string* text : {&verdict.reason, &verdict.details}) Shorten(*text, request.root);
   verdict.details += truth::TextOfUndecided(verdict.claims);
   if (!checked.recording && !checked.heard && checked.IsComplete()) {

@@ -33,12 +33,20 @@ std::string_view WithoutComment(std::string_view line) {
 
 std::string Joined(const Words& words) { return fmt::format("{}", fmt::join(words, " ")); }
 
+/// A comma is a word, so that a list that goes on has the same last element.
+Words PiecesOf(std::string_view text) {
+  std::string spaced;
+  for (const char c : text) spaced += c == ',' ? std::string(" , ") : std::string(1, c);
+  return WordsOf(spaced);
+}
+
 /// Commas and connectives at its ends say nothing.
 std::string Middle(const Words& words, std::size_t begin, std::size_t end) {
   std::string text = Joined({words.begin() + static_cast<std::ptrdiff_t>(begin),
                              words.begin() + static_cast<std::ptrdiff_t>(end)});
+  for (std::size_t at = 0; (at = text.find(" ,")) != std::string::npos;) text.erase(at, 1);
   if (text.ends_with(",")) text.pop_back();
-  for (const std::string_view word : {"and ", "or "})
+  for (const std::string_view word : {", ", "and ", "or "})
     if (text.starts_with(word)) text.erase(0, word.size());
   return text;
 }
@@ -55,6 +63,7 @@ std::ptrdiff_t Depth(const Words& words, std::size_t end) {
 std::vector<Clause> ClausesOf(std::string_view grammar) {
   std::vector<Clause> clauses;
   std::string rule;
+  bool is_law = false;
   std::size_t indent = 0;  // of the rule's clauses; 0: none yet
   for (std::size_t begin = 0; begin < grammar.size();) {
     const std::size_t line_end = std::min(grammar.find('\n', begin), grammar.size());
@@ -72,13 +81,17 @@ std::vector<Clause> ClausesOf(std::string_view grammar) {
         clauses.push_back({words[1], Joined({words.begin() + 3, words.end()}), start, end});
       if (words.size() < 2 || words[0] == "param" || words[0] == "use" || words[0] == "grammar")
         continue;
-      rule = words[1].substr(0, words[1].find('('));
+      // "symmetric event contact(..)"
+      const auto kind = static_cast<std::ptrdiff_t>(words[0] == "symmetric" && words.size() > 2);
+      const std::string& head = words[static_cast<std::size_t>(kind) + 1];
+      rule = head.substr(0, head.find('('));
+      is_law = words[0] == "law";
       indent = 0;
-      clauses.push_back({rule + " roles", Joined({words.begin() + 1, words.end()}),
-                         static_cast<std::size_t>(grammar.find(words[1], start)), end});
-    } else if (!rule.empty() && (indent == 0 || depth <= indent)) {
+      clauses.push_back({rule + " roles", Joined({words.begin() + kind + 1, words.end()}),
+                         static_cast<std::size_t>(grammar.find(head, start)), end});
+    } else if (!rule.empty() && (indent == 0 || (depth <= indent && !is_law))) {
       indent = depth;
-      std::string name = rule + " " + words[0];
+      std::string name = rule + " " + (is_law ? "law" : words[0]);
       const auto twins = std::ranges::count_if(clauses, [&](const Clause& one) {
         return one.name == name || one.name.starts_with(name + " ");
       });
@@ -113,11 +126,16 @@ std::string WithClause(std::string_view grammar, const std::string& name, const 
 }
 
 std::string ClauseChangeText(std::string_view before, std::string_view after) {
-  const Words old = WordsOf(before), now = WordsOf(after);
+  const Words old = PiecesOf(before), now = PiecesOf(after);
   const std::size_t most = std::min(old.size(), now.size());
   std::size_t first = 0, last = 0;
   while (first < most && old[first] == now[first]) ++first;
   while (last < most - first && old[old.size() - 1 - last] == now[now.size() - 1 - last]) ++last;
+  // What is negated, not only that it is.
+  const auto negates = [&](const Words& words) {
+    return words.size() == first + last + 1 && words[first] == "not";
+  };
+  if (last > 0 && (negates(old) || negates(now))) --last;
   // Never from the midst of a call.
   while (first > 0 && (Depth(old, first) > 0 || Depth(now, first) > 0)) --first;
   while (last > 0 && (Depth(old, old.size() - last) > 0 || Depth(now, now.size() - last) > 0))

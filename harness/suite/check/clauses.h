@@ -11,7 +11,8 @@
 namespace prehend::suite {
 
 /// Of a rule, a condition, a law, a definition: "transporting(..)" has "transporting roles",
-/// "transporting outside", "transporting drawn". A parameter is one by itself: "far" is "2 cm".
+/// "transporting outside", "transporting drawn"; of a law "NAME law" is all that it demands. A
+/// parameter is one by itself: "far" is "2 cm".
 struct Clause {
   std::string name;  ///< of the rule, and the clause's first word; a second such clause: ".. 2"
   std::string text;  ///< without comments, one space where there were some

@@ -47,6 +47,13 @@ void AddValues(const YamlNode& node, const std::string& path, Values& values) {
   }
 }
 
+/// Of files that are no grammar, and no YAML, there is nothing to say.
+void AddFile(const std::string& path, Values& values) {
+  if (path.ends_with(".grammar")) values.merge(GrammarSettings(ReadTextFile(path).value_or("")));
+  if (!path.ends_with(".yaml")) return;
+  if (const auto document = ReadYamlFile(path)) AddValues(document->root, "", values);
+}
+
 /// What stands after the '=' of a declaration in these lines, or "".
 std::string AsWritten(const std::string& text, const grammar::ProgramParam& param) {
   std::size_t begin = 0;
@@ -101,20 +108,24 @@ Settings SettingsOf(const episode::LoadedRun& loaded, const episode::RunRequest&
   for (const grammar::ProgramParam& param : grammar::Describe(*loaded.program).params)
     settings[RelativeTo(root, param.file)][param.name] = ParameterText(param, request, texts);
   for (const auto& [path, hash] : inputs) {
-    if (path.ends_with(".grammar") && hash != kNoFile)
-      settings[RelativeTo(root, path)].merge(GrammarSettings(ReadTextFile(path).value_or("")));
-    if (!path.ends_with(".yaml") || hash == kNoFile) continue;
     if (path == loaded.scenario.file)
       AddValues(loaded.document.root, "", settings[RelativeTo(root, path)]);
-    else if (const auto document = ReadYamlFile(path))
-      AddValues(document->root, "", settings[RelativeTo(root, path)]);
+    else if (hash != kNoFile)
+      AddFile(path, settings[RelativeTo(root, path)]);
   }
+  std::erase_if(settings, [](const auto& file) { return file.second.empty(); });
   for (const std::string& setting : request.settings) {
     const std::size_t equals = setting.find('=');
     const std::string name = setting.substr(0, equals);
     if (equals != std::string::npos && episode::IsFieldOfScenario(name))
       settings[RelativeTo(root, request.scenario_file)][name] = setting.substr(equals + 1);
   }
+  return settings;
+}
+
+Settings SettingsOfFiles(const std::vector<std::string>& files, const std::string& root) {
+  Settings settings;
+  for (const std::string& file : files) AddFile(file, settings[RelativeTo(root, file)]);
   return settings;
 }
 
@@ -155,8 +166,10 @@ std::string ChangeText(const SettingChange& change) {
   if (change.of == SettingChange::Of::kClause) {
     const std::size_t space = change.name.find(' ');
     const std::string clause = change.name.substr(space + 1);
-    const bool is_named = !change.before.empty() && !change.after.empty() && clause != "roles";
-    return fmt::format("rule `{}`:{} {}", change.name.substr(0, space),
+    const bool is_law = clause == "law";
+    const bool is_named =
+        !change.before.empty() && !change.after.empty() && clause != "roles" && !is_law;
+    return fmt::format("{} `{}`:{} {}", is_law ? "law" : "rule", change.name.substr(0, space),
                        is_named ? fmt::format(" `{} ..`", clause) : "",
                        ClauseChangeText(change.before, change.after));
   }

@@ -24,6 +24,9 @@ using Settings = std::map<std::string, std::map<std::string, std::string>>;
 Settings SettingsOf(const episode::LoadedRun& loaded, const episode::RunRequest& request,
                     const FileHashes& inputs, const std::string& root);
 
+/// Of these files as they are written, although nothing can be made of them.
+Settings SettingsOfFiles(const std::vector<std::string>& files, const std::string& root);
+
 /// Of a grammar's text: its parameters as written, and the clauses of its rules.
 std::map<std::string, std::string> GrammarSettings(std::string_view text);
 

@@ -82,6 +82,58 @@ TEST(Attribution, AClauseIsACauseByItself) {
   EXPECT_EQ(texts.back(), "sliding missing: rule `sliding`: `while ..` lost `b` in a.grammar");
 }
 
+TEST(Attribution, OfSeveralTogetherThoseThatAreNeeded) {
+  PossibleCauses changes = kThreeChanges;
+  changes.changes[2] = {"a.grammar", "lifting while", "while a", "while b",
+                        SettingChange::Of::kClause};
+  const auto without = [](const std::vector<const SettingChange*>& undone) {
+    const auto has = [&](const char* name) {
+      return std::ranges::any_of(undone, [&](const auto* one) { return one->name == name; });
+    };
+    const bool holds = has("reach_radius") && has("lifting while");
+    return std::optional(
+        ComparedWith({holds ? kReach : kLateReach, kSlide, Event("grasping", 200, 300)}));
+  };
+  EXPECT_EQ(Texts(AttributeDifferences(*without({}), changes, without)),
+            (std::vector<std::string>{"reaching begins later: `reach_radius` 30 cm -> 20 cm, "
+                                      "rule `lifting`: `while ..` `a` -> `b` in a.grammar"}));
+}
+
+TEST(Attribution, ClausesOfARuleGoTogether) {
+  const auto clause = [](const char* name) {
+    return SettingChange{"a.grammar", name, "a(x)", "a(y)", SettingChange::Of::kClause};
+  };
+  const PossibleCauses changes = {
+      .changes = {clause("lifting while"), clause("sliding roles"), clause("sliding while")}};
+  const auto without = [](const std::vector<const SettingChange*>& undone) {
+    const bool is_whole = undone.size() >= 2 && undone[undone.size() - 2]->name == "sliding roles";
+    return std::optional(is_whole ? ComparedWith({kReach, kSlide, Event("grasping", 200, 300)})
+                                  : ComparedWith({kReach, Event("grasping", 200, 300)}));
+  };
+  EXPECT_EQ(Texts(AttributeDifferences(*without({}), changes, without)),
+            (std::vector<std::string>{"sliding missing: rule `sliding`: `a(x)` -> `a(y)`, "
+                                      "rule `sliding`: `while ..` `a(x)` -> `a(y)` in a.grammar"}));
+}
+
+TEST(Attribution, OfAFailureThatIsNoDifference) {
+  const auto only_slide = [](const std::vector<const SettingChange*>& undone) {
+    return undone.size() == 1 && undone[0]->name == "slide_distance";
+  };
+  EXPECT_EQ(CauseOfFailure(kThreeChanges, only_slide),
+            "`slide_distance` 2 cm -> 5 cm in a.grammar");
+  EXPECT_EQ(CauseOfFailure(kThreeChanges, [](const auto&) { return false; }),
+            "`cup.mass_kg` 0.4 -> 8 in x.yaml");
+  EXPECT_EQ(CauseOfFailure(kThreeChanges, nullptr),
+            "`reach_radius` 30 cm -> 20 cm, `slide_distance` 2 cm -> 5 cm in a.grammar, "
+            "`cup.mass_kg` 0.4 -> 8 in x.yaml");
+  PossibleCauses still = kThreeChanges;
+  still.motion_differs = false;
+  still.other_changes = {"the program"};
+  EXPECT_EQ(CauseOfFailure(still, [](const auto&) { return false; }),
+            CauseOfFailure(kThreeChanges, nullptr));
+  EXPECT_EQ(CauseOfFailure({.changes = {}, .other_changes = {"a.grammar"}}, nullptr), "a.grammar");
+}
+
 TEST(Attribution, WithoutAChangedValueTheFileIsNamed) {
   const auto nothing = [](const std::vector<const SettingChange*>&) {
     return std::optional<truth::Comparison>();

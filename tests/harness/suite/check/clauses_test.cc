@@ -67,6 +67,20 @@ TEST(Clauses, TheChangeIsWhatLiesBetween) {
             "`in(a, b)` -> `in(b, a)`");
   EXPECT_EQ(ClauseChangeText("lasting 0.3 s", "lasting 0.5 s"), "`0.3` -> `0.5`");
   EXPECT_EQ(ClauseChangeText("", "requires a"), "gained `requires a`");
+  EXPECT_EQ(ClauseChangeText("during in(a, b)", "during not in(a, b)"),
+            "`in(a, b)` -> `not in(a, b)`");
+  EXPECT_EQ(ClauseChangeText("outside a(x, y), b", "outside a(x, y), b, c(x)"), "gained `c(x)`");
+  EXPECT_EQ(ClauseChangeText("while a and not b and c", "while a and b and c"), "`not b` -> `b`");
+}
+
+TEST(Clauses, OfALawAndOfWhatIsSymmetric) {
+  EXPECT_EQ(Texts("symmetric event touch(a: Thing, b: Thing)\n  while near(a, b)\n\n"
+                  "law apart(a: Thing)\n  up(a), down(a),\n    held(a)\n  do not overlap\n"),
+            (std::map<std::string, std::string>{
+                {"touch roles", "touch(a: Thing, b: Thing)"},
+                {"touch while", "while near(a, b)"},
+                {"apart roles", "apart(a: Thing)"},
+                {"apart law", "up(a), down(a), held(a) do not overlap"}}));
 }
 
 }  // namespace

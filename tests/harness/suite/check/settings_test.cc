@@ -41,6 +41,12 @@ TEST(Settings, AFileThatWasNotedWithoutClausesHasNoNewOnes) {
   EXPECT_EQ(ChangeText(ChangesBetween(then, now)[0]), "rule `carrying`: `while ..` lost `lifted`");
 }
 
+TEST(Settings, ALawIsNoRule) {
+  EXPECT_EQ(ChangeText({"g.grammar", "apart law", "up(a), down(a) do not overlap",
+                        "up(a), down(a), held(a) do not overlap", SettingChange::Of::kClause}),
+            "law `apart`: gained `held(a)`");
+}
+
 TEST(Settings, PathsAreThoseOfTheProject) {
   EXPECT_EQ(RelativeTo("/root", "/root/scenarios/x.yaml"), "scenarios/x.yaml");
   EXPECT_EQ(RelativeTo("/root", "/elsewhere/x.yaml"), "/elsewhere/x.yaml");
