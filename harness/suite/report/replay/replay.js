@@ -20,8 +20,7 @@ const LAYERS = [
   ['regions', 'regions of interest'], ['contacts', 'contacts'], ['paths', 'paths'], ['gaze', 'gaze'], ['body', 'body'],
   ['names', 'names']];
 
-// Where a name may stand, the nearest first, in pixels.
-const NEAR = [];
+const NEAR = [];  // where a name may stand, the nearest first, in pixels
 for (let right = -160; right <= 160; right += 20) for (let down = -160; down <= 160; down += 10) NEAR.push([right, down]);
 NEAR.sort((a, b) => Math.hypot(...a) + (a[1] > 0 ? 40 : 0) - Math.hypot(...b) - (b[1] > 0 ? 40 : 0));
 
@@ -96,9 +95,7 @@ function link(size, round) {
 /// A hint of one, which is nothing in the physics: as in the stills.
 function forearm([length, width]) {
   const radius = 0.36 * width, material = new MeshLambertMaterial({color: SKIN, transparent: true, opacity: 0.55});
-  const mesh = new Mesh(new CapsuleGeometry(radius, 0.17, 8, 24).rotateZ(Math.PI / 2), material);
-  mesh.position.x = -length / 2 - 0.085 - 0.6 * radius;
-  return mesh;
+  return new Mesh(new CapsuleGeometry(radius, 0.17, 8, 24).rotateZ(Math.PI / 2).translate(-length / 2 - 0.085 - 0.6 * radius, 0, 0), material);
 }
 
 class World {
@@ -495,9 +492,7 @@ class Player {
     if (distance > 0) {
       this.controls.target.copy(target);
       this.camera.position.copy(target).add(new Vector3(...away).normalize().multiplyScalar(distance));
-    } else {
-      this.fit(new Vector3(...away));
-    }
+    } else this.fit(new Vector3(...away));
     this.camera.updateProjectionMatrix();
     this.controls.update();
     this.views.value = name;
