@@ -50,14 +50,14 @@ Json EventJson(const EventAnswer& answer, const grammar::NamedEvent& event) {
 
 /// `pictures`: one file per answer, or none.
 void PrintQueryJson(const std::vector<EventAnswer>& answers,
-                    const std::vector<std::string>& pictures, bool parts, std::ostream& out) {
+                    const std::vector<std::string>& pictures, std::ostream& out) {
   Json all = Json::array();
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const EventAnswer& answer = answers[i];
     Json one = {{"file", answer.file}, {"episode", answer.episode}, {"scenario", answer.scenario}};
     one.update(EventJson(answer, answer.event));
     for (const grammar::NamedEvent& part : answer.parts) {
-      if (parts) one["parts"].push_back(EventJson(answer, part));
+      one["parts"].push_back(EventJson(answer, part));
     }
     if (!pictures.empty()) one["picture"] = pictures[i];
     all.push_back(std::move(one));
@@ -73,8 +73,7 @@ void PrintCsv(const std::vector<std::vector<std::string>>& rows, std::ostream& o
 }
 
 void PrintQueryTable(const std::vector<EventAnswer>& answers,
-                     const std::vector<std::string>& pictures, bool parts, bool csv,
-                     std::ostream& out) {
+                     const std::vector<std::string>& pictures, bool csv, std::ostream& out) {
   std::vector<std::vector<std::string>> rows = {
       {"file", "episode", "scenario", "event", "begin_s", "end_s", "roles"}};
   if (!pictures.empty()) rows[0].push_back("picture");
@@ -89,9 +88,7 @@ void PrintQueryTable(const std::vector<EventAnswer>& answers,
   };
   for (std::size_t i = 0; i < answers.size(); ++i) {
     add(i, answers[i].event, false);
-    for (const grammar::NamedEvent& part : answers[i].parts) {
-      if (parts) add(i, part, true);
-    }
+    for (const grammar::NamedEvent& part : answers[i].parts) add(i, part, true);
   }
   if (csv) return PrintCsv(rows, out);
   for (const std::string& line : truth::AlignColumns(rows)) out << line << "\n";
@@ -212,6 +209,7 @@ std::string LastsProblem(const std::string& text) {
 
 EventQuestion EventQuestionOf(const ParsedOptions& options) {
   EventQuestion question{.scenario = options.Text("--episode"), .event = options.Text("--event")};
+  question.tells_parts = options.Has("--parts");
   for (const auto& [option, conditions] :
        {std::pair{"--role", &question.roles}, std::pair{"--part-of", &question.parts_of}}) {
     for (const std::string& text : options.All(option))
@@ -292,10 +290,9 @@ ExitCode RunQuery(const ParsedOptions& options, const CommandContext& context) {
   if (!columns.empty())
     PrintCounts(answers, columns, options, context.out);
   else if (options.Has("--json"))
-    PrintQueryJson(answers, drawn.files, options.Has("--parts"), context.out);
+    PrintQueryJson(answers, drawn.files, context.out);
   else
-    PrintQueryTable(answers, drawn.files, options.Has("--parts"), options.Has("--csv"),
-                    context.out);
+    PrintQueryTable(answers, drawn.files, options.Has("--csv"), context.out);
   if (!drawn.error.empty()) return Complain(context, ExitCode::kFailure, "--show: " + drawn.error);
   return answers.empty() ? ExitCode::kNothing : ExitCode::kAgrees;
 }

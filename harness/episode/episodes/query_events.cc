@@ -220,6 +220,7 @@ Result<std::vector<EventAnswer>> Ask(const std::string& path, const EventQuestio
         const KeptEntity* entity = EntityNamed(role.value, *entities);
         answer.classes.push_back(entity ? entity->classes.front() : "");
       }
+      if (!question.tells_parts) continue;
       for (const grammar::NamedEvent* part : PartsOf(event, *timeline, *entities))
         answer.parts.push_back(*part);
     }

@@ -35,6 +35,7 @@ struct EventQuestion {
   };
   std::vector<Relation> relations;
   std::vector<std::string> with;  ///< it has a part of each of these names
+  bool tells_parts = false;       ///< of each answer, which may be many: EventAnswer::parts
 };
 
 /// "ROLE=VALUE"; nothing if it is not of that form.
@@ -49,7 +50,7 @@ struct EventAnswer {
   grammar::Tick ticks_per_second = 480;
   grammar::NamedEvent event;
   std::vector<std::string> classes;        ///< by its roles; "" of what is no entity
-  std::vector<grammar::NamedEvent> parts;  ///< PartsOf() it
+  std::vector<grammar::NamedEvent> parts;  ///< PartsOf() it, if they are wanted
 };
 
 /// The events of an episode that begin within this one and whose participants are all its own, in
