@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <functional>
 #include <iomanip>
 #include <map>
@@ -527,6 +528,37 @@ TEST(Import, EpisodeFilesTakePosesAndRecordings) {
             Prehend({"explain", lines, "--event", "transporting"}).out);
   const Said asked = Prehend({"episode", "query", takes, "--event", "transporting", "--csv"});
   EXPECT_NE(asked.out.find("a_cup_is_carried"), std::string::npos) << asked.out;
+}
+
+// A clock may begin below 0.
+TEST(Import, WhatHappensBeforeTickZeroIsKept) {
+  const auto folder = FreshFolder("import");
+  const std::string takes = (folder / "takes.episodes").string(),
+                    lines = (folder / "take.jsonl").string(),
+                    early = (folder / "early.jsonl").string();
+  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
+  std::ofstream out(early);
+  std::istringstream in(ReadFile(lines));
+  constexpr int kEarlier = 20'000;  // the recording has 10,000 ticks per second
+  for (std::string line; std::getline(in, line);) {
+    const std::string key = "{\"tick\":";
+    const std::size_t comma = line.find(',');
+    if (line.starts_with(key))
+      line =
+          key + std::to_string(std::stol(line.substr(key.size())) - kEarlier) + line.substr(comma);
+    out << line << "\n";
+  }
+  out.close();
+  ASSERT_EQ(Prehend({"import", early, "-o", takes}).exit_code, 0);
+  const auto events = [](const Said& said) {
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    return std::ranges::count(said.out, '\n');
+  };
+  const std::vector<std::string> ask = {"episode", "query", "", "--event", "transporting", "--csv"};
+  std::vector<std::string> of_early = ask, of_lines = ask;
+  of_early[2] = takes, of_lines[2] = lines;
+  EXPECT_GT(events(Prehend(of_lines)), 1);
+  EXPECT_EQ(events(Prehend(of_early)), events(Prehend(of_lines)));
 }
 
 TEST(Import, EpisodesOfRecordingsAreCheckedAgainstTheGoldenBesideTheirSource) {

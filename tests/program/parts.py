@@ -137,7 +137,7 @@ def hostile(part, folder):
         assert said in told and len(told) < 400000 and "\x1b" not in told, told[:300]
     for sql, said in (("UPDATE event SET begin_tick = 'abc'", "found 'abc', wanted an integer"), ("UPDATE event SET begin_tick = 1.5", "wanted an integer"),
                       ("UPDATE event SET end_tick = 1 << 62", "wanted an integer"), ("UPDATE event SET end_tick = begin_tick - 1", "found the number"),
-                      ("UPDATE event SET begin_tick = -1", "found the number -1, wanted 0"), ("UPDATE episode SET ticks_per_second = 0", "found the number 0, wanted 1"),
+                      ("UPDATE episode SET ticks_per_second = 0", "found the number 0, wanted 1"),
                       ("UPDATE entity SET part_of = 1 << 40", "found the number 1099511627776"), ("UPDATE entity SET size_x_m = 'wide'", "wanted a number")):
         told = after(sql, "episode", "query", "--event", "*", "--part-of", "any=Hand", code=2)
         assert "the file is damaged: " in told and said in told, (sql, told[:300])

@@ -177,17 +177,19 @@ Option WithinOption(const std::string& help) {
 }  // namespace
 
 Command MarginsCommand() {
-  return {.name = "grammar margins",
-          .summary = "How far each parameter of a grammar may be from its value",
-          .examples = {"grammar margins suite.episodes --truth oracle --grammar my/rules.grammar",
-                       "grammar margins take1.jsonl take2.jsonl --truth labels --map labels.yaml "
-                       "-o margins.csv"},
-          .options = SweepOptions(
-              {Repeatable(
-                   Value("--over", "NAME", "try this parameter instead of all; may be repeated")),
-               WithinOption("how many percent of F1 a score may be below the best; default: 1"),
-               OutputOption("also write a CSV file, again after each parameter")}),
-          .run = RunMargins};
+  return {
+      .name = "grammar margins",
+      .summary = "How far each parameter of a grammar may be from its value",
+      .examples = {"grammar margins suite.episodes --truth oracle --grammar my/rules.grammar",
+                   "grammar margins take1.jsonl take2.jsonl --truth labels --map labels.yaml "
+                   "-o margins.csv"},
+      .options = SweepOptions(
+          {Repeatable(
+               Value("--over", "NAME", "try this parameter instead of all; may be repeated")),
+           WithinOption("how many percent of F1 a score may be below the best; default: 1"),
+           OutputOption(
+               "also write a CSV file, again after each parameter (of scenarios, after sixteen)")}),
+      .run = RunMargins};
 }
 
 Command SweepCommand() {

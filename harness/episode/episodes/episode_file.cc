@@ -33,7 +33,7 @@ void AtChunk(std::int64_t first_tick, const Work& work) {
   }
 }
 
-constexpr std::int64_t kMostTicks = std::int64_t{1} << 50;
+constexpr std::int64_t kMostTicks = std::int64_t{1} << 50;  // recordings may begin below 0
 
 /// The number, or the file is damaged.
 std::int64_t Between(std::int64_t least, std::int64_t number, std::int64_t most) {
@@ -80,7 +80,7 @@ Result<EpisodeFile> EpisodeFile::Open(const std::string& path) {
              .simulated = find.Text(13) != kNoEngine,
              .grammar = find.Text(4),
              .ticks_per_second = Between(1, find.Integer(5), 1'000'000),
-             .ticks = Between(-1, find.Integer(6), kMostTicks),
+             .ticks = Between(-kMostTicks, find.Integer(6), kMostTicks),
              .state_hash = find.Text(7),
              .outcome = find.Text(8),
              .recorded_on = find.Text(9),
@@ -155,9 +155,9 @@ Result<grammar::Timeline> EpisodeFile::TimelineOf(const EpisodeRow& episode) con
       grammar::NamedEvent& event = timeline.events.emplace_back();
       const std::int64_t id = find.Integer(0);
       event.event = find.Text(1);
-      event.interval.begin = Between(0, find.Integer(2), kMostTicks);
+      event.interval.begin = Between(-kMostTicks, find.Integer(2), kMostTicks);
       event.interval.end = Between(event.interval.begin, find.Integer(3), kMostTicks);
-      event.decided = Between(-1, find.Integer(4), kMostTicks);
+      event.decided = Between(-kMostTicks, find.Integer(4), kMostTicks);
       event.open_end = find.Integer(5) != 0;
       for (; has_role && roles.Integer(0) <= id; has_role = roles.Step()) {
         if (roles.Integer(0) == id) event.roles.push_back({roles.Text(1), roles.Text(2)});

@@ -21,7 +21,7 @@ namespace {
 constexpr std::array kFactors = {0.125, 0.177, 0.25, 0.354, 0.5, 0.707, 0.841, 1.0,
                                  1.19,  1.414, 2.0,  2.83,  4.0, 5.66,  8.0};
 
-constexpr std::size_t kAxesAtOnce = 16;
+constexpr std::size_t kAxesOfScenarios = 16;  ///< at once
 
 using CompileWith = std::function<grammar::CompileResult(const grammar::Overrides&)>;
 
@@ -134,10 +134,14 @@ Result<Margins> FindMargins(const std::vector<episode::Take>& takes, SweepReques
       progress(before * takes.size() + done, settings * takes.size());
     };
   }
-  // Several at once: a scenario is played for each call.
+  // A scenario is played for each call. Of what is only read, each parameter is told as it comes.
+  const bool plays = std::ranges::any_of(takes, [](const episode::Take& take) {
+    return take.episode.origin == episode::Origin::kScenario;
+  });
+  const std::size_t at_once = plays ? kAxesOfScenarios : 1;
   request.one_at_a_time = true;
-  for (std::size_t first = 0; first < tried.size(); first += kAxesAtOnce) {
-    const auto some = std::span(tried).subspan(first, std::min(kAxesAtOnce, tried.size() - first));
+  for (std::size_t first = 0; first < tried.size(); first += at_once) {
+    const auto some = std::span(tried).subspan(first, std::min(at_once, tried.size() - first));
     request.axes.clear();
     for (const TriedAxis& one : some) request.axes.push_back(one.axis);
     Result<SweepResult> swept = Sweep(takes, request);

@@ -324,8 +324,10 @@ Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRe
   const std::function<void()> tell = [&] {
     request.progress(static_cast<std::size_t>(measured.load()), programs->size() * episodes.size());
   };
-  const auto said = RunInWorkers(jobs, {.jobs = request.jobs, .time_limit_s = kTimeLimit_s}, {},
-                                 nullptr, request.progress ? tell : std::function<void()>());
+  const double limit_s =
+      kTimeLimit_s * static_cast<double>(request.one_at_a_time ? request.axes.size() : 1);
+  const auto said = RunInWorkers(jobs, {.jobs = request.jobs, .time_limit_s = limit_s}, {}, nullptr,
+                                 request.progress ? tell : std::function<void()>());
 
   SweepResult result;
   result.grammar = GrammarName(*programs->front());
