@@ -68,7 +68,7 @@ def main(name, clone, out):
     commit = subprocess.run(["git", "-C", clone, "rev-parse", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
     if commit != COMMITS[name]:
         print(f"note: the clone is at {commit}; the figures of docs/benchmark.md are of {COMMITS[name]}", file=sys.stderr)
-    (out / "labels").mkdir(parents=True)
+    (out / "labels").mkdir(parents=True, exist_ok=True)
     {"bimacs": bimacs, "handovers": handovers}[name](clone, out)
     labels = ["--map", HERE / "bimacs_labels.yaml", "--skip-bad-labels"] if name == "bimacs" else []
     return subprocess.run(["prehend", "score", *sorted(out.glob("*.jsonl")), "--truth", out / "labels", *labels], check=False).returncode

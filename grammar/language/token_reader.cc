@@ -57,7 +57,7 @@ constexpr std::array<Habit, 43> kHabits = {{
     {"unless", "what must not hold: and not F"},
     {"always", "that it holds, and how long at least: while F lasting 2 s"},
     {"eventually", "that it comes in time: from A to B within 2 s"},
-    {"exists", "some entity: touching(hand, any) of an event or condition"},
+    {"exists", "some entity: any, for a role of an event or condition: contact(hand, any)"},
     {"forall", "a rule is found for each choice of entities by itself: give it roles"},
     {"def", "a value or a test: define NAME(a: Movable) = F"},
     {"let", "a value or a test: define NAME = F; a number: param NAME = 5 cm"},

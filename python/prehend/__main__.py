@@ -32,5 +32,6 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    sys.stdout, sys.stderr = (Visible(one.buffer, "utf-8", "backslashreplace", line_buffering=one.line_buffering) for one in (sys.stdout, sys.stderr))
+    sys.stdout, sys.stderr = (Visible(one.buffer, "utf-8", "backslashreplace", line_buffering=one.line_buffering, write_through=one.write_through)
+                              for one in (sys.stdout, sys.stderr))
     sys.exit(main(sys.argv[1:]))

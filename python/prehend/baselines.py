@@ -11,7 +11,7 @@ import sys
 
 import numpy as np
 
-from .errors import EpisodeError, fail
+from .errors import EpisodeError, fail, named
 
 RATE_HZ = 30  # all that follows is computed on this grid, whatever the sensor
 LAGS = (-15, -9, -5, -2, 0, 2, 5, 9, 15)
@@ -21,6 +21,7 @@ OF_HANDLES = ["reaching", "fixation", "grasping"]  # what is attached to somethi
 LEAST_S = 0.1  # what is shorter is no event, and no gap
 ROWS = 150000  # that are learned from, at most
 LEARNED = {"numpy": "dtype ndarray", "numpy.core.multiarray": "_reconstruct scalar", "numpy.random._pickle": "__bit_generator_ctor __randomstate_ctor",
+           "numpy.random._mt19937": "MT19937", "numpy.random.bit_generator": "SeedSequence __pyx_unpickle_SeedSequence",
            "sklearn.ensemble._forest": "ExtraTreesClassifier", "sklearn.neural_network._multilayer_perceptron": "MLPClassifier",
            "sklearn.neural_network._stochastic_optimizers": "AdamOptimizer", "sklearn.pipeline": "Pipeline", "sklearn.tree._tree": "Tree",
            "sklearn.preprocessing._data": "StandardScaler", "sklearn.preprocessing._label": "LabelBinarizer", "sklearn.tree._classes": "ExtraTreeClassifier"}
@@ -220,7 +221,7 @@ def episodes_of(folder, role=""):
     """Name and episode of a set, without attempts that were drawn again."""
     import prehend
     files = json.loads((pathlib.Path(folder) / "files.json").read_text(encoding="utf-8"))
-    for file in sorted({one for one in files.values() if role in one}):
+    for file in sorted({named(one) for one in files.values() if role in one}):
         for episode in prehend.open(str(pathlib.Path(folder) / file)):
             name = episode.name.rsplit("/", 1)[-1]
             if files.get(name) == file:

@@ -7,7 +7,7 @@ import sys
 import warnings
 
 
-_SHOWN = {code: f"\\u{code:04x}" for code in (*range(9), *range(11, 32), *range(127, 160), *range(0x2028, 0x202f), *range(0x2066, 0x206a))}
+_SHOWN = {code: f"\\u{code:04x}" for code in (*range(9), *range(11, 32), *range(127, 160), 0x061c, 0x200e, 0x200f, *range(0x2028, 0x202f), *range(0x2066, 0x206a))}
 
 
 class Visible(io.TextIOWrapper):
@@ -69,7 +69,7 @@ def named(name):
 
 def cell(value):
     """A cell of CSV that no spreadsheet runs."""
-    return re.sub(r"^(?=[=+@-])(?![+-]?[\d.]+(e[+-]?\d+)?$)", "'", value) if isinstance(value, str) else value
+    return re.sub(r"^(?=[=+@\t\r-])(?![+-]?[\d.]+(e[+-]?\d+)?$)", "'", value) if isinstance(value, str) else value
 
 
 def of(diagnostics):

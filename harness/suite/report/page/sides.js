@@ -91,7 +91,7 @@
   // Decisions stay when the page is opened again, also one that was made anew of the same labels and events.
   const keyOf = (section) => {
     let hash = 0x811c9dc5;
-    const text = JSON.stringify([sides, spansOf(section).map((span) => [span.event, span.says])]);
+    const text = JSON.stringify([sides, spansOf(section).map((span) => [span.event, span.says, span.differs])]);
     for (let i = 0; i < text.length; ++i) hash = Math.imul(hash ^ text.charCodeAt(i), 0x01000193) >>> 0;
     return 'prehend ' + section.id + ' ' + hash.toString(16);
   };
