@@ -73,10 +73,6 @@ class CsvPoseReader {
   void Read() {
     const std::string_view text = poses.text;
     TakeHead();
-    if (map_.columns.body.empty()) {
-      const auto rows = static_cast<std::size_t>(std::ranges::count(text, '\n'));
-      for (PoseBody& body : poses.bodies) body.samples.reserve(rows);
-    }
     bool goes_on = map_errors_.empty();
     for (std::size_t begin = 0;
          goes_on && begin < text.size() && problems_.size() < kMostComplaints;) {
@@ -598,7 +594,6 @@ Result<PoseFile> ReadCsvPoses(const std::string& path, const MapFile& map) {
   reader.Read();
   if (Diagnostics problems = reader.Problems(); !problems.empty())
     return tl::unexpected(std::move(problems));
-  reader.poses.text = {};  // nobody complains of it any more
   return std::move(reader.poses);
 }
 
