@@ -27,7 +27,7 @@ def judged(folder, names, labels, grammar, parts):
     for what, program in modifiers(grammar):
         rows = []
         for name, one in episodes.items():
-            found = [{"event": event, "roles": dict(roles), "begin_tick": begin, "end_tick": end}
+            found = [{"event": event, "roles": {role: who for role, who in roles if role in parts}, "begin_tick": begin, "end_tick": end}
                      for event, roles, begin, end, *_ in one._opened.segment(program)[0]]  # pylint: disable=protected-access
             rows.append({"episode": name, "end_tick": one.duration_s * one.ticks_per_second, "edit": float("nan"),
                          "truth_events": {"ticks_per_second": one.ticks_per_second, "events": truth[name]},
