@@ -11,7 +11,7 @@
 #include "grammar/describe.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/yaml/located_yaml.h"
-#include "harness/suite/check/clauses.h"
+#include "harness/suite/judge/clauses.h"
 
 namespace prehend::suite {
 namespace {

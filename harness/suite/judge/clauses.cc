@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/check/clauses.h"
+#include "harness/suite/judge/clauses.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clauses are found, named and put back as they were.
-#include "harness/suite/check/clauses.h"
+#include "harness/suite/judge/clauses.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The clauses of a grammar's rules as they are written, so that a changed one can be named and put
-// back. Tested by tests/harness/suite/check/clauses_test.cc
+// back. Tested by tests/harness/suite/judge/clauses_test.cc
 #pragma once
 
 #include <cstddef>
