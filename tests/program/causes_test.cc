@@ -43,7 +43,7 @@ TEST(Causes, ThreeSeededFaultsAreNamedWithTheirValues) {
   EXPECT_NE(said.out.find(" x reaching begins later, median +"), std::string::npos) << said.out;
   for (const char* part :
        {"`slide_distance` 2 cm -> 5 cm in grammar/library/pick_and_place.grammar: "
-        "slide/four_centimetres_are_a_slide\n     1 x sliding missing\n",
+        "2 scenarios\n     4 x sliding missing\n",
         "`entities.milk.mass_kg` 0.4 -> 8 in "
         "scenarios/slide/carton_slides_then_is_transported.yaml: "
         "slide/carton_slides_then_is_transported\n"})

@@ -129,7 +129,7 @@ TEST(StillThings, CostNoEvent) {
     const auto program = testing::CompileLibrary(grammar);
     ASSERT_TRUE(program);
     std::size_t events = 0;
-    for (int seed = 1; seed <= Stories(3); ++seed) {
+    for (int seed = 1; seed <= Stories(6); ++seed) {
       const EntityTable kitchen = Kitchen();
       Monitor monitor(program, kitchen);
       ReplayMonitor thorough(program, kitchen);
