@@ -161,6 +161,9 @@ class Painter {
 /// unknown name gives "front".
 Camera NamedCamera(const std::string& name, const Eigen::Vector3f& low_m,
                    const Eigen::Vector3f& high_m, double aspect);
+/// The same, with the eye in the direction `from` of the box.
+Camera CameraFrom(const Eigen::Vector3f& from, const Eigen::Vector3f& low_m,
+                  const Eigen::Vector3f& high_m, double aspect);
 const std::vector<std::string>& CameraNames();
 
 }  // namespace prehend::render

@@ -145,8 +145,13 @@ Camera NamedCamera(const std::string& name, const Vector3f& low_m, const Vector3
   const auto& directions = NamedDirections();
   const auto found = std::find_if(directions.begin(), directions.end(),
                                   [&](const auto& d) { return d.name == name; });
-  const Vector3f from = (found == directions.end() ? directions.front() : *found).from.normalized();
+  return CameraFrom((found == directions.end() ? directions.front() : *found).from, low_m, high_m,
+                    aspect);
+}
 
+Camera CameraFrom(const Vector3f& towards_the_eye, const Vector3f& low_m, const Vector3f& high_m,
+                  double aspect) {
+  const Vector3f from = towards_the_eye.normalized();
   Camera camera;
   if (!low_m.allFinite() || !high_m.allFinite()) return camera;
   const float tangent_y = kFilledShare * HalfTangent(camera.vertical_field_of_view_deg);

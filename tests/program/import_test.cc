@@ -530,7 +530,6 @@ TEST(Import, EpisodeFilesTakePosesAndRecordings) {
   EXPECT_NE(asked.out.find("a_cup_is_carried"), std::string::npos) << asked.out;
 }
 
-// A clock may begin below 0.
 TEST(Import, WhatHappensBeforeTickZeroIsKept) {
   const auto folder = FreshFolder("import");
   const std::string takes = (folder / "takes.episodes").string(),
@@ -539,7 +538,7 @@ TEST(Import, WhatHappensBeforeTickZeroIsKept) {
   ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
   std::ofstream out(early);
   std::istringstream in(ReadFile(lines));
-  constexpr int kEarlier = 20'000;  // the recording has 10,000 ticks per second
+  constexpr int kEarlier = 20'000;
   for (std::string line; std::getline(in, line);) {
     const std::string key = "{\"tick\":";
     const std::size_t comma = line.find(',');

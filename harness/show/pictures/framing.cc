@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <optional>
 
 #include "harness/scenario/scenario/scenario.h"
 #include "harness/show/pictures/compose_picture.h"
@@ -16,6 +17,9 @@ constexpr double kMoves_m = 0.02;
 constexpr double kNearHand_m = 0.18;
 constexpr double kNearStar_m = 0.08;
 constexpr double kPalmReach_m = 0.11;
+constexpr double kLeastRise =
+    0.25;                           ///< of the eye of `hand` above what it looks at, per way across
+constexpr float kLeastFrom = 0.1f;  ///< shorter: the hands look in opposite directions
 /// Snapshots that are looked at per episode, at most.
 constexpr std::size_t kLooks = 400;
 
@@ -76,16 +80,22 @@ class Framing {
   Eigen::AlignedBox3d box_;
 };
 
-void FrameHands(const scenario::Scenario& scenario, const physics::Snapshot& now,
-                const std::vector<std::string>& framed, Framing& framing) {
+/// Returns from where one looks into the open side of their grips: between thumb and fingers, from
+/// the side of the palm, not from below.
+Eigen::Vector3f FrameHands(const scenario::Scenario& scenario, const physics::Snapshot& now,
+                           const std::vector<std::string>& framed, Framing& framing) {
   const physics::Scene& scene = scenario.scene;
   const auto is_named = [&](const auto& entity) {
     return std::ranges::find(framed, entity.name) != framed.end();
   };
   const bool names_hands = std::ranges::any_of(scene.hands, is_named);
   std::vector<physics::HandState> hands;
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < now.hands.size(); ++i) {
-    if (!names_hands || is_named(scene.hands[i])) hands.push_back(now.hands[i]);
+    if (names_hands && !is_named(scene.hands[i])) continue;
+    hands.push_back(now.hands[i]);
+    const double thumb = scene.hands[i].model.left ? -1 : 1;
+    from += now.hands[i].palm.X_WB.q * Eigen::Vector3d(0.5, 0.7 * thumb, -0.5);
   }
   for (const physics::HandState& hand : hands) framing.AddHand(hand);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
@@ -94,7 +104,11 @@ void FrameHands(const scenario::Scenario& scenario, const physics::Snapshot& now
       return (now.bodies[i].X_WB.p_m - hand.palm.X_WB.p_m).norm() < kNearHand_m;
     });
     if (is_near || is_named(scene.bodies[i])) framing.AddBody(i, now);
+    if (is_near && !physics::MovesFreely(scene, physics::BodyIndex(i)))
+      from.setZero();  // furniture hides the open side
   }
+  from.z() = std::max(from.z(), kLeastRise * from.head<2>().norm());
+  return from.cast<float>();
 }
 
 /// Of what is framed.
@@ -136,8 +150,9 @@ render::Camera CameraFor(const scenario::Scenario& scenario, const episode::RunR
             .vertical_field_of_view_deg = static_cast<float>(body.view_deg)};
   }
   Framing framing(scenario, run, format);
+  std::optional<Eigen::Vector3f> from;
   if (name == "hand" && !scenario.scene.hands.empty()) {
-    FrameHands(scenario, picture.snapshot, format.framed, framing);
+    from = FrameHands(scenario, picture.snapshot, format.framed, framing);
     FrameStars(picture.markers, framing);
   } else {
     framing.ForEachLook([&](const physics::Snapshot& now) { framing.AddHands(now); });
@@ -153,8 +168,10 @@ render::Camera CameraFor(const scenario::Scenario& scenario, const episode::RunR
   }
   Eigen::AlignedBox3f box = framing.box().cast<float>();
   if (box.isEmpty()) box = {Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(1, 1, 1)};
-  return render::NamedCamera(name, box.min(), box.max(),
-                             static_cast<double>(picture.width_px) / picture.height_px);
+  const double aspect = static_cast<double>(picture.width_px) / picture.height_px;
+  return from && from->norm() > kLeastFrom
+             ? render::CameraFrom(*from, box.min(), box.max(), aspect)
+             : render::NamedCamera(name, box.min(), box.max(), aspect);
 }
 
 }  // namespace prehend::show
