@@ -3,16 +3,21 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "harness/episode/sense/episode_format.h"
 #include "harness/episode/sense/sensing.h"
 #include "harness/show/explain/explain.h"
+#include "harness/show/explain/phrasing.h"
 #include "harness/show/explain/query.h"
+#include "harness/show/tracks/robustness.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {
+
+using grammar::Tick;
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExplainedEvent, event, begin, end, began, ended)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DecidingSignal, clause, how, unit, tick, golden_tick, ticks,
@@ -52,15 +57,52 @@ void AddSignals(const show::Reasons& reasons, grammar::Tick golden_tick,
   }
 }
 
+constexpr double kRobustAround_s = 0.4;
+constexpr std::size_t kMostRobustSamples = 240;
+
+/// By how much the event holds, before, in and after the interval; 0 is the limit. Nothing of rules
+/// that have no robustness.
+void AddRobustness(const std::string& label, const grammar::NamedEvent& event,
+                   grammar::ReplayMonitor& past, std::vector<DecidingSignal>& signals) {
+  const auto& rules = past.program().rules;
+  const auto around = static_cast<Tick>(kRobustAround_s *
+                                        static_cast<double>(past.entity_table().ticks_per_second));
+  const std::size_t first = past.FrameAt(event.interval.begin - around),
+                    last = std::min(past.frames(), past.FrameAt(event.interval.end + around) + 1);
+  for (const grammar::RuleId rule : grammar::IdsOf(rules)) {
+    if (rules[rule].name != event.event) continue;
+    for (const grammar::InstanceId instance : past.InstancesOf(rule)) {
+      if (show::Label(past, instance) != label) continue;
+      const std::optional<show::Robustness> robustness = show::RobustnessOf(past, instance);
+      if (!robustness || first >= last) return;
+      DecidingSignal signal{.clause = "robustness of " + label,
+                            .how = "above 0 it holds",
+                            .unit = robustness->unit,
+                            .tick = event.interval.begin};
+      for (std::size_t i = first; i < last; i += 1 + (last - first) / kMostRobustSamples) {
+        if (!std::isfinite(robustness->values[i])) continue;
+        signal.ticks.push_back(past.TickOf(i));
+        signal.values.push_back(robustness->values[i]);
+        signal.limits.push_back(0);
+      }
+      if (signal.ticks.size() > 1) signals.push_back(std::move(signal));
+      return;
+    }
+  }
+}
+
 /// The same question that DifferenceText() prints.
 ExplainedDifference ExplainDifference(const truth::Pairing& pairing, grammar::ReplayMonitor& past) {
   const grammar::Tick per_second = past.entity_table().ticks_per_second;
   const grammar::NamedEvent& event = pairing.actual ? *pairing.actual : *pairing.expected;
   ExplainedDifference difference{
       .what = fmt::format("{} {}", Name(pairing.agreement), pairing.event().Label())};
-  std::string question = event.event;
-  for (const grammar::Role& role : event.roles)
-    if (!truth::IsAttribute(role)) question += " " + role.value;
+  std::string question = event.event, label = event.event + "(";
+  for (const grammar::Role& role : event.roles) {
+    if (truth::IsAttribute(role)) continue;
+    label += (label.ends_with('(') ? "" : ", ") + role.value;
+    question += " " + role.value;
+  }
   question += " @" + truth::SecondsText(event.interval.begin, per_second) + "s";
   const Result<show::Ask> ask =
       show::ParseAsk("event", question, past.program(), past.entity_table());
@@ -86,6 +128,7 @@ ExplainedDifference ExplainDifference(const truth::Pairing& pairing, grammar::Re
     AddSignals(why.began, begin, difference.signals);
     AddSignals(why.ended, end, difference.signals);
   }
+  AddRobustness(label + ")", event, past, difference.signals);
   return difference;
 }
 

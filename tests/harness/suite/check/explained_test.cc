@@ -48,7 +48,7 @@ TEST_F(ExplainedTest, SaysWhatTurnedAndShowsTheSignalThatDecided) {
   const ExplainedDifference& difference = explained.differences.front();
   EXPECT_EQ(difference.what, "extra quick(carton)");
   EXPECT_TRUE(difference.text.starts_with("quick(carton)  ")) << difference.text;
-  ASSERT_EQ(difference.signals.size(), 1u) << "it is quick up to the end of the episode";
+  ASSERT_EQ(difference.signals.size(), 2u) << "it is quick up to the end of the episode";
   const DecidingSignal& signal = difference.signals.front();
   EXPECT_EQ(signal.tick, event.begin);
   EXPECT_EQ(signal.unit, "m/s");
@@ -58,6 +58,11 @@ TEST_F(ExplainedTest, SaysWhatTurnedAndShowsTheSignalThatDecided) {
   EXPECT_LE(signal.values[at - 1], signal.limits[at - 1]);
   EXPECT_EQ(signal.limits[at], 0.2);
   EXPECT_GT(signal.ticks.back(), signal.tick) << "it goes on afterwards";
+  const DecidingSignal& robustness = difference.signals.back();
+  EXPECT_EQ(robustness.clause, "robustness of quick(carton)");
+  EXPECT_EQ(robustness.unit, "m/s");
+  for (std::size_t i = 0; i < robustness.ticks.size(); ++i)
+    EXPECT_EQ(robustness.values[i] > 0, robustness.ticks[i] >= event.begin) << i;
 }
 
 TEST_F(ExplainedTest, SaysWhyWhatWasExpectedDidNotHappen) {
