@@ -124,7 +124,7 @@ def time_limit(folder):
 def others(folder, one):
     scenario = "trials/gripper_places_a_box"
     for job, words in (("trials", ["trials.sbatch", 3, scenario, 7]), ("import", ["import.sbatch", 2, "takes"]),
-                       ("sweep", ["sweep.sbatch", 3, "one.episodes", "reach_radius", 20, 30, "cm", "--over", "lift_rise=3cm..6cm:2"])):
+                       ("sweep", ["sweep.sbatch", 3, "one.episodes", "reach_radius", 20, 30, "cm", "--over", "lift_rise=3cm..6cm:2", "--grammar", "pick_and_place"])):
         here = folder / job
         here.mkdir()
         if job == "import":
@@ -138,9 +138,28 @@ def others(folder, one):
         if job == "sweep":
             lines = (here / "sweep.csv").read_text().splitlines()
             assert len(lines) == 7 and {line.split(",")[0] for line in lines[1:]} == {"20cm", "25cm", "30cm"}, lines
+            refused(here)
         else:
             assert len(episodes(here / "all.episodes")) == (7 if job == "trials" else 4), job
             assert (here / "all.html").exists()
+
+
+def refused(folder):
+    """A unit with a slash; one of two parts is lost, which is named; all fail, and no table is left of the sweep before."""
+    log, table = folder / "parts/prehend-merge.log", folder / "sweep.csv"
+    words = (SUBMIT, "sweep.sbatch", 2, "one.episodes", "slide_speed", 1, 2, "cm/s", "--grammar", "pick_and_place", "--over")
+    run(*words, "lift_rise=3cm..6cm:2", folder=folder)
+    ended()
+    assert [line.split(",")[0] for line in table.read_text().splitlines()] == ["slide_speed", "1cm/s", "1cm/s", "2cm/s", "2cm/s"], table.read_text()
+    (folder / "parts/sweep-1.csv").unlink()
+    said = subprocess.run(["bash", SUBMIT.with_name("merge.sbatch"), "sweep.sbatch", "2"], cwd=folder, capture_output=True, text=True)
+    assert said.returncode == 3 and "part 1 of 2 is missing" in said.stderr, said
+    assert [line.split(",")[0] for line in table.read_text().splitlines()] == ["slide_speed", "2cm/s", "2cm/s"], table.read_text()
+    array = run(*words, "lift_rice=3cm..6cm:2", folder=folder).strip()
+    ended()
+    assert {state for job, state in states().items() if int(job.split("_")[0]) >= int(array)} == {"FAILED"}, states()
+    assert not table.exists() and "part 2 of 2 is missing" in log.read_text() and "sweep.csv is not written" in log.read_text(), log.read_text()
+    assert "did you mean 'lift_rise'" in (folder / "parts/prehend-sweep-2.log").read_text()
 
 
 def desktops(folder):
