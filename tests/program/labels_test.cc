@@ -81,6 +81,12 @@ TEST_F(Labelled, TheGrammarOfTheRecordingIsScoredUnlessAnotherIsNamed) {
                   "other: error: it names the grammar contact, and milk the grammar "
                   "pick_and_place_from_motion\n  hint: one of them for all: --grammar contact"))
       << two.err;
+  fs::copy_file(take, Path("third.jsonl"));
+  const Said most = run({"grammar", "sweep", take, Path("other.jsonl"), Path("third.jsonl"),
+                         "--over", "hold_way=3mm..4mm:2"});
+  EXPECT_EQ(most.exit_code, 2);
+  EXPECT_TRUE(Has(most.err, "hint: one of them for all: --grammar pick_and_place_from_motion"))
+      << most.err;
 }
 
 TEST_F(Labelled, TakesOfAFolderAreSummed) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 
 #include "grammar/contents.h"
 #include "harness/episode/episodes/recordings.h"
@@ -261,23 +262,33 @@ grammar::Diagnostics WhyNotOneGrammar(std::span<const EpisodeName> episodes,
                                       const std::string& root) {
   EpisodeOpener opener(root);
   std::shared_ptr<const grammar::Program> first;
+  std::map<std::string, int> named;
+  grammar::Diagnostics why;
   for (const EpisodeName& episode : episodes) {
     if (episodes.size() == 1) break;
     grammar::CompileResult own = opener.Compile(episode, "", {});
+    if (!own.program && !why.empty()) continue;
     if (!own.program) return std::move(own.diagnostics);
     if (!first) first = own.program;
-    if (SameTexts(*first, *own.program)) continue;
     const std::string &name = GrammarName(*own.program), &other = GrammarName(*first);
-    return {{.file = episode.scenario,
-             .message = name == other
-                            ? fmt::format("its grammar {} is not the same as that of {}, which has "
-                                          "the same name",
-                                          name, episodes.front().scenario)
-                            : fmt::format("it names the grammar {}, and {} the grammar {}", name,
-                                          episodes.front().scenario, other),
-             .hint = fmt::format("one of them for all: --grammar {}", name)}};
+    ++named[name];
+    if (!why.empty() || SameTexts(*first, *own.program)) continue;
+    why = {{.file = episode.scenario,
+            .message = name == other
+                           ? fmt::format("its grammar {} is not the same as that of {}, which has "
+                                         "the same name",
+                                         name, episodes.front().scenario)
+                           : fmt::format("it names the grammar {}, and {} the grammar {}", name,
+                                         episodes.front().scenario, other),
+            .hint = name}};
   }
-  return {};
+  if (why.empty()) return why;
+  // What most of them name, or, of as many, what differs.
+  std::string& hint = why.front().hint;
+  for (const auto& [name, count] : named)
+    if (count > named[hint]) hint = name;
+  hint = "one of them for all: --grammar " + hint;
+  return why;
 }
 
 Result<Episode> OpenEpisode(const EpisodeName& name, const GrammarChoice& choice,
