@@ -201,10 +201,9 @@ Command SweepCommand() {
       .name = "grammar sweep",
       .summary = "Try a grammar's parameters on recorded episodes",
       .examples =
-          {"grammar sweep suite.episodes --grammar pick_and_place --over reach_radius=10cm..50cm:9 "
-           "-o sweep.csv",
-           "grammar sweep suite.episodes --grammar pick_and_place --over lift_rise=2cm..8cm:7 -o "
-           "map.png",
+          {"grammar sweep all.episodes --grammar pick_and_place --over reach_radius=10cm..50cm:9",
+           "grammar sweep all.episodes --grammar pick_and_place --over lift_rise=2cm..8cm:7 -o "
+           "a.png",
            "grammar sweep *.episodes --over reach_radius=10cm..50cm:9 --over lift_rise=2cm..8cm:7"},
       .options = SweepOptions(
           {Repeatable(Value(
