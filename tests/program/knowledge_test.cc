@@ -190,6 +190,15 @@ TEST(Knowledge, AllensRelationsAreExclusive) {
     relations.insert(bound["R"].get<std::string>());
   }
   EXPECT_GT(relations.size(), 8u);
+  // Of events that the question does not name first, too.
+  std::set<std::pair<std::string, std::string>> of_any;
+  for (const Json& pair :
+       Asked({"episode", "ask", days.kb, "allen(A, R, B)", "--json", "--most", "100000"}))
+    of_any.insert({pair["bindings"]["A"]["iri"], pair["bindings"]["B"]["iri"]});
+  EXPECT_EQ(of_any, seen);
+  const Said unknown = Prehend({"episode", "ask", days.kb, "label_of(X, L)"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("wanted an individual"), std::string::npos) << unknown.err;
 }
 
 /// What one variable is bound to in each answer, as it is printed, in the order of the answers.

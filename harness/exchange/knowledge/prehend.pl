@@ -315,7 +315,7 @@ same(A, B, Local) :- name(knowrob, Local, P), once(( rdf3(A, P, O), rdf3(B, P, O
 seconds(E, Begin, End) :- value(E, knowrob:startTime, Begin), value(E, knowrob:endTime, End).
 tick(E, Local, Tick) :- value(E, prehend:Local, Tick).
 
-members(composed(_, Members), Members) :- !.
+members(E, Members) :- nonvar(E), E = composed(_, Members), !.
 members(E, [E]).
 
 %!  occurs(?E, ?[Begin, End])
@@ -332,7 +332,7 @@ occurs(E, Times) :-
     Members = [First | _],
     once(episode_of(First, Episode)), b_setval(prehend_episode, Episode).
 
-episode_of(composed(_, [E | _]), Episode) :- !, episode_of(E, Episode).
+episode_of(E0, Episode) :- nonvar(E0), E0 = composed(_, [E | _]), !, episode_of(E, Episode).
 episode_of(E, Episode) :- said(E, knowrob:inEpisode, Episode).
 
 %!  allen(?A, ?Relation, ?B)
@@ -411,6 +411,7 @@ shown(trajectory(X), [S, E], _{what: trajectory, of: Label, from: S, to: E}) :-
     number(S), number(E), label_of(X, Label).
 shown(marker(X), T, _{what: marker, of: Label, from: T, to: T}) :- number(T), label_of(X, Label).
 
+label_of(X, _) :- var(X), throw(refused("found ~q, wanted an individual: entity(X, ..) before it says which"-[X])).
 label_of(X, Label) :- atom(X), once(value(X, rdfs:label, Label)).
 
 % --- queries as text -------------------------------------------------------------------------------------------------
