@@ -10,6 +10,8 @@
 #include <regex>
 #include <set>
 
+#include "harness/exchange/cells/body_words.h"
+
 namespace prehend::exchange {
 namespace {
 
@@ -22,6 +24,7 @@ struct Part {
   Kind kind = kOther;
   std::size_t axis = 0;  ///< of x, y, z, w
   std::string before, body, after, unit;
+  std::size_t letter = 0;  ///< where a body's name would end that has the one letter of the kind
 
   std::string Pattern() const { return before + (body.empty() ? "" : "{}") + after; }
 };
@@ -31,13 +34,13 @@ std::string Small(std::string text) {
   return text;
 }
 
-/// "Cup_pos_x", "cup.qw", "x_cup", "CupX", "X (mm)".
+/// "Cup_pos_x", "cup.qw", "x_cup", "CupX", "X (mm)", "cup_yaw".
 Part PartOf(const std::string& name) {
   const std::string words =
       "pos|position|translation|trans|location|loc|point|p|t|"
       "quaternion|quat|orientation|orient|q|o|rotation|rot|euler|angle|r";
   static const std::regex kBehind("^(?:(.+?)([ _.:/-]+))?((?:(?:" + words +
-                                      ")[ _.:/-]*)?[\\[(]?)([xyzw])" +
+                                      ")[ _.:/-]*)?[\\[(]?)([xyzw]|roll|pitch|yaw)" +
                                       "([\\])]?(?:[ _]*[\\[(]?(m|mm|cm|in|inch|deg|rad)[\\])]?)?)$",
                                   std::regex::icase);
   static const std::regex kBefore("^((?:(?:" + words + ")[ _.:/-]*)?)([xyzw])([ _.:/-]+)(.+)$",
@@ -52,6 +55,9 @@ Part PartOf(const std::string& name) {
     part.body = m[1], word = m[3], axis = m[4], part.unit = Small(m[6]);
     if (word.empty() && std::regex_match(part.body, kWord)) word.swap(part.body);  // of one body
     part.after = name.substr(part.body.size());
+    if (word.size() == 2 && !part.body.empty() &&
+        !std::isalpha(static_cast<unsigned char>(word[1])))
+      part.letter = part.body.size() + static_cast<std::size_t>(m.length(2)) + 1;
   } else if (std::regex_match(name, m, kCamel)) {
     part.body = m[1], word = m[2], axis = m[3];
     part.after = name.substr(part.body.size());
@@ -61,8 +67,9 @@ Part PartOf(const std::string& name) {
   } else {
     return part;
   }
-  part.axis = std::string_view("xyzw").find(Small(axis));
-  word = Small(word);
+  axis = Small(axis);
+  word = axis.size() > 1 ? "angle" : Small(word);
+  part.axis = std::string_view(axis.size() > 1 ? "rpy" : "xyzw").find(axis.front());
   const char first = word.empty() ? 'p' : word.front();
   part.kind = word.starts_with("or") || first == 'q' || first == 'o' ? kQuaternion
               : first == 'r' || first == 'e' || first == 'a'         ? kAngles
@@ -117,14 +124,30 @@ class Finder {
     found_.decimal_comma = decimal_comma;
     const std::vector<std::string>& names = rows_[header_];
     std::map<std::string, Columns> bodies;
-    std::map<std::string, int> patterns;
-    for (const std::string& name : names) {
-      const Part part = PartOf(name);
-      if (part.kind == kOther) continue;
-      bodies[part.body][part.kind][part.axis] = name;
+    const auto add_all = [&] {
+      bodies.clear();
+      for (const std::string& name : names)
+        if (const Part& part = parts_[name]; part.kind != kOther)
+          bodies[part.body][part.kind][part.axis] = name;
+    };
+    for (const std::string& name : names) parts_[name] = PartOf(name);
+    add_all();
+    // The "r" of "hand_r_x" is a side, and no rotation: of a hand that is nowhere else, of what has
+    // a left one, or turns by itself.
+    for (auto& [name, part] : parts_) {
+      if (part.letter == 0 || IsWhole(bodies[part.body], kPosition)) continue;
+      const std::string body = name.substr(0, part.letter);
+      const std::string left = body.substr(0, part.letter - 1) + (body.back() == 'r' ? 'l' : 'L');
+      if (Small(body).back() != 'r' ||
+          !(IsHand(WordsIn(part.body)) || bodies.contains(left) || bodies.contains(body)))
+        continue;
+      part.after = name.substr(part.letter);
+      part.body = body, part.kind = kPosition;
+    }
+    add_all();
+    for (const auto& [name, part] : parts_)
       if (!part.unit.empty() && part.kind == kPosition)
         found_.unit = part.unit == "in" ? "inch" : part.unit;
-    }
     // The body with the most columns is the pattern of all.
     const Columns* best = nullptr;
     std::string of;
@@ -140,7 +163,7 @@ class Finder {
     const bool one = whole == 1;
     const auto add = [&](std::vector<std::string>& list, Kind kind, std::size_t count) {
       for (const std::string& name : std::span(best->at(kind)).first(count))
-        list.push_back(one ? name : PartOf(name).Pattern());
+        list.push_back(one ? name : parts_.at(name).Pattern());
     };
     add(found_.position, kPosition, 3);
     for (const Kind kind : {kQuaternion, kAngles}) {
@@ -150,14 +173,20 @@ class Finder {
       add(found_.orientation, kind, four ? 4 : 3);
       found_.form = four ? OrientationForm::kQuaternion : OrientationForm::kEuler;
       for (const std::string& name : std::span(best->at(kind)).first(3))
-        found_.in_degrees = found_.in_degrees || Largest(name) > 2 * 3.2;
+        found_.in_degrees |= parts_.at(name).unit == "deg" || Largest(name) > 2 * 3.2;
+      found_.roll_first = Small(best->at(kind).front()).find("roll") != std::string::npos;
     }
     FindTime(names);
     if (one && of.empty()) FindKeys(names);
-    for (const std::string& name : names)
-      if (!name.empty() && name != found_.time && PartOf(name).kind == kOther &&
-          std::ranges::find(found_.keys, name) == found_.keys.end())
+    const auto in = [](const std::vector<std::string>& list, const std::string& name) {
+      return std::ranges::find(list, name) != list.end();
+    };
+    for (const std::string& name : names) {
+      const std::string pattern = one ? name : parts_[name].Pattern();
+      if (!name.empty() && name != found_.time && !in(found_.keys, name) &&
+          !in(found_.position, pattern) && !in(found_.orientation, pattern))
         found_.others.push_back(name);
+    }
     return found_;
   }
 
@@ -203,6 +232,7 @@ class Finder {
 
   const Rows& rows_;
   const std::size_t header_;
+  std::map<std::string, Part> parts_;  ///< by the name of the column
   NamedColumns found_;
 };
 

@@ -26,7 +26,8 @@ struct NamedColumns {
   /// '{}' stands for the body's name, unless a row or the file is of one.
   std::vector<std::string> position, orientation;
   OrientationForm form = OrientationForm::kQuaternion;
-  bool in_degrees = false;          ///< of angles: some are larger than a turn in radians
+  bool in_degrees = false;          ///< of angles: some are larger than a turn in radians, or said
+  bool roll_first = false;          ///< they are called roll, pitch and yaw
   std::vector<std::string> others;  ///< columns that are none of these
 };
 

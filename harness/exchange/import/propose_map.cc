@@ -157,9 +157,13 @@ class MapProposer {
     if (!columns_->unit.empty()) unit_ = "unit: " + columns_->unit, unit_why_ = "";
     says_unit_ = false;
     needs_rate_ = columns_->time.empty() || columns_->time_unit == "frame";
-    if (!columns_->others.empty())
-      doubts_.push_back(
-          fmt::format("columns that are left aside: {}", fmt::join(columns_->others, ", ")));
+    if (const auto& others = columns_->others; !others.empty()) {
+      constexpr std::size_t kNamed = 12;
+      doubts_.push_back(fmt::format(
+          "columns that are left aside: {}{}",
+          fmt::join(std::span(others).first(std::min(kNamed, others.size())), ", "),
+          others.size() > kNamed ? fmt::format(" and {} more", others.size() - kNamed) : ""));
+    }
     return {};
   }
 
@@ -379,10 +383,11 @@ class MapProposer {
     if (!c.time.empty()) text += Key("time_unit: " + c.time_unit, c.time_doubt);
     const bool quaternion = c.form == OrientationForm::kQuaternion;
     if (!c.orientation.empty())
-      text += quaternion ? "quaternion_order: xyzw\n"
-                         : Key("euler_order: XYZ", "fill in: the order of the turns") +
-                               Key(c.in_degrees ? "angle_unit: deg" : "angle_unit: rad",
-                                   "by their values");
+      text += quaternion     ? "quaternion_order: xyzw\n"
+              : c.roll_first ? Key("euler_order: xyz", "fill in: as ROS has roll, pitch and yaw")
+                             : Key("euler_order: XYZ", "fill in: the order of the turns");
+    if (!c.orientation.empty() && !quaternion)
+      text += Key(c.in_degrees ? "angle_unit: deg" : "angle_unit: rad", "by their values");
     text += "columns:\n";
     if (!c.time.empty()) text += "  time: " + Quoted(c.time) + "\n";
     if (!c.keys.empty()) text += "  body: " + QuotedList(c.keys) + "\n";

@@ -34,6 +34,18 @@ TEST(ColumnNames, AreSpelledInManyWays) {
        "h.pose.orientation.z,h.pose.orientation.w",
        {"{}.position.x", "{}.position.y", "{}.position.z"},
        {"{}.orientation.x", "{}.orientation.y", "{}.orientation.z", "{}.orientation.w"}},
+      // One letter is a kind of values, or the side of a hand.
+      {"t,hand_r_x,hand_r_y,hand_r_z,hand_l_x,hand_l_y,hand_l_z", {"{}_x", "{}_y", "{}_z"}, {}},
+      {"t,Hand R X,Hand R Y,Hand R Z,Hand R RX,Hand R RY,Hand R RZ,Cup X,Cup Y,Cup Z,Cup RX,Cup "
+       "RY,Cup RZ",
+       {"{} X", "{} Y", "{} Z"},
+       {"{} RX", "{} RY", "{} RZ"}},
+      {"t,a_t_x,a_t_y,a_t_z,a_r_x,a_r_y,a_r_z,b_t_x,b_t_y,b_t_z,b_r_x,b_r_y,b_r_z",
+       {"{}_t_x", "{}_t_y", "{}_t_z"},
+       {"{}_r_x", "{}_r_y", "{}_r_z"}},
+      {"t,a_x,a_y,a_z,a_roll,a_pitch,a_yaw,b_x,b_y,b_z,b_roll,b_pitch,b_yaw",
+       {"{}_x", "{}_y", "{}_z"},
+       {"{}_roll", "{}_pitch", "{}_yaw"}},
       // Of one body: as they are.
       {"time,pos_x,pos_y,pos_z,qw,qx,qy,qz", {"pos_x", "pos_y", "pos_z"}, {"qx", "qy", "qz", "qw"}},
   };
@@ -75,6 +87,11 @@ TEST(ColumnNames, SeparatorsHeadsKeysAndUnits) {
   EXPECT_EQ(landmarks.keys, (Names{"hand", "landmark"}));
   EXPECT_EQ(Of("t x y z rx ry rz\n0 1 2 3 90 0 0\n").form, OrientationForm::kEuler);
   EXPECT_TRUE(Of("t x y z rx ry rz\n0 1 2 3 90 0 0\n").in_degrees);
+  EXPECT_EQ(Of("t,head_r_x,head_r_y,head_r_z,cup_x,cup_y,cup_z\n0,1,2,3,1,2,3\n").position,
+            (Names{"cup_x", "cup_y", "cup_z"}));
+  // Bodies whose columns are called in another way are left aside, and said.
+  EXPECT_EQ(Of("t,a_x,a_y,a_z,b_x,b_y,b_z,c_pos_x,c_pos_y,c_pos_z\n0,1,2,3,1,2,3,1,2,3\n").others,
+            (Names{"c_pos_x", "c_pos_y", "c_pos_z"}));
   EXPECT_FALSE(ColumnsOf("when,what\n1,2\n"));
   EXPECT_FALSE(ColumnsOf("1,2,3\n4,5,6\n"));
   EXPECT_FALSE(ColumnsOf(""));
