@@ -381,9 +381,8 @@ Result<YamlDocument> ParseYaml(const std::string& file, std::string text) {
 }
 
 Result<YamlDocument> ReadYamlFile(const std::string& path) {
-  auto text = ReadTextFile(path);
-  if (!text) return tl::unexpected(std::move(text.error()));
-  return ParseYaml(path, std::move(*text));
+  PREHEND_TRY(auto text, ReadTextFile(path));
+  return ParseYaml(path, std::move(text));
 }
 
 }  // namespace prehend

@@ -103,8 +103,7 @@ Diagnostics ApplyOverride(const std::string& assignment, const SchemaJson& schem
   if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size()) {
     return report(0, "expected PATH=VALUE", "for example entities.milk.mass_kg=8");
   }
-  auto parsed = ParseYaml("--set", assignment.substr(equals + 1));
-  if (!parsed) return std::move(parsed.error());
+  PREHEND_TRY(auto parsed, ParseYaml("--set", assignment.substr(equals + 1)));
 
   document.sources.push_back({"--set", assignment});
   const int source = static_cast<int>(document.sources.size()) - 1;
@@ -133,7 +132,7 @@ Diagnostics ApplyOverride(const std::string& assignment, const SchemaJson& schem
     begin = end + 1;
   }
 
-  YamlNode value = std::move(parsed->root);
+  YamlNode value = std::move(parsed.root);
   value.key = node->key;
   Relocate(value, source, static_cast<int>(equals) + 1);
   value.key_where = {source, {1, static_cast<int>(last_step) + 1}};

@@ -306,8 +306,7 @@ Result<episode::Plan> KeepPart(const ParsedOptions& options, const CommandContex
     names.push_back(episode::IdOf(file));
     files.push_back(file.path);
   }
-  const Result<std::vector<int>> parts = suite::PartsOf(shard, names);
-  if (!parts) return tl::unexpected(parts.error());
+  PREHEND_TRY(const std::vector<int> parts, suite::PartsOf(shard, names));
   episode::Plan plan;
   if (options.Has("--record") && !options.Has("--repeat") && !options.Has("--changed")) {
     std::vector<std::string> words = {"check"};
@@ -319,9 +318,9 @@ Result<episode::Plan> KeepPart(const ParsedOptions& options, const CommandContex
     plan = episode::MakePlan(words, files, context.root);
     plan.number = shard.number;
     plan.count = shard.count;
-    for (std::size_t i = 0; i < names.size(); ++i) plan.owed.push_back({names[i], (*parts)[i]});
+    for (std::size_t i = 0; i < names.size(); ++i) plan.owed.push_back({names[i], parts[i]});
   }
-  suite::KeepShard(shard, *parts, selection);
+  suite::KeepShard(shard, parts, selection);
   return plan;
 }
 
@@ -330,12 +329,11 @@ Result<void> GoOn(const episode::Plan& plan, suite::SuiteRequest& request,
                   const CommandContext& context) {
   request.plan = plan;
   if (plan.uuid.empty()) return {};
-  const auto complete = episode::BeginPart(request.record_file, plan);
-  if (!complete) return tl::unexpected(complete.error());
+  PREHEND_TRY(const auto complete, episode::BeginPart(request.record_file, plan));
   std::size_t kept = 0;
   for (episode::ScenarioFile& file : request.selection.scenarios) {
-    const auto row = complete->find(episode::IdOf(file));
-    if (row == complete->end()) continue;
+    const auto row = complete.find(episode::IdOf(file));
+    if (row == complete.end()) continue;
     file.path = request.record_file;
     file.episode = row->second.id;
     file.origin = episode::Origin::kRecordedRun;

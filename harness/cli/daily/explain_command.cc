@@ -105,21 +105,20 @@ ExitCode RunExplain(const ParsedOptions& options, const CommandContext& context)
   if (options.Has("--event") && options.Has("--expected")) {
     return Refuse(context, "--event contradicts --expected; give one of them");
   }
-  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
-  if (!episode) return episode.error();
+  PREHEND_TRY(auto episode, OpenEpisodeOrComplain(options.Text("EPISODE"), options, context));
 
   Question question;
   for (const auto& [option, ask] :
        {std::pair{"--event", &question.event}, std::pair{"--expected", &question.expected}}) {
     if (!options.Has(option)) continue;
     const Result<Ask> read =
-        show::ParseAsk(option, options.Text(option), *episode->program(), episode->entities());
+        show::ParseAsk(option, options.Text(option), *episode.program(), episode.entities());
     if (!read) return Complain(context, read.error());
     *ask = *read;
   }
-  const show::Watched watched = show::Watch(*episode);
+  const show::Watched watched = show::Watch(episode);
   if (!watched.problem.empty()) return Refuse(context, watched.problem);
-  const ExitCode code = Answer(options, context, *episode, question, *watched.past);
+  const ExitCode code = Answer(options, context, episode, question, *watched.past);
   if (watched.failure.empty() || code != ExitCode::kAgrees) return code;
   return Complain(context, ExitCode::kFailure, watched.failure);
 }

@@ -64,9 +64,8 @@ std::string KindHelp() {
 tl::expected<suite::PlayedRun, ExitCode> PlayTyped(const std::string& typed,
                                                    const ParsedOptions& options,
                                                    const CommandContext& context) {
-  auto episode = OpenEpisodeOrComplain(typed, options, context);
-  if (!episode) return tl::unexpected(episode.error());
-  return PlayOrComplain(std::move(*episode), context);
+  PREHEND_TRY(auto episode, OpenEpisodeOrComplain(typed, options, context));
+  return PlayOrComplain(std::move(episode), context);
 }
 
 ExitCode WriteSheet(const show::Sheet& sheet, const show::SceneFormat& format,
@@ -151,19 +150,18 @@ ExitCode DrawChart(const Kind& kind, const suite::PlayedRun& played, const Parse
   if (!chart)
     return Complain(context, ExitCode::kNothing,
                     scenario.name + " has no person, whose gaze could be shown");
-  const auto moments = MomentsOf(kind, played, options, context);
-  if (!moments) return moments.error();
+  PREHEND_TRY(const auto moments, MomentsOf(kind, played, options, context));
   show::SceneFormat format = SceneFormatOf(options, name == "gaze" ? "body" : "action", 900);
   format.picture.ghosts = false;
   format.picture.paths = name == "phases";
   format.picture.labels = false;
-  if (!moments->empty() && !show::CanDrawPictures())
+  if (!moments.empty() && !show::CanDrawPictures())
     context.err << "prehend: warning: this build draws no scenes; the chart is alone\n";
-  if (moments->empty() || !show::CanDrawPictures())
+  if (moments.empty() || !show::CanDrawPictures())
     return WriteSheet({.chart = std::move(chart)}, format, {}, options, context);
   show::ScenePainter painter;
   const show::Sheet sheet =
-      WithScenes(std::move(*chart), scenario, played.run, *moments, format, painter);
+      WithScenes(std::move(*chart), scenario, played.run, moments, format, painter);
   return WriteSheet(sheet, format, painter, options, context);
 }
 
@@ -218,12 +216,11 @@ ExitCode RunFigure(const ParsedOptions& options, const CommandContext& context) 
   if (std::string_view(kind.name) == "phases" && typed.ends_with(".txt"))
     return DrawDrawing(typed, options, context);
   if (std::string_view(kind.name) == "grasps") return DrawGrasps(typed, options, context);
-  const auto played = PlayTyped(typed, options, context);
-  if (!played) return played.error();
-  problem = WhyNotShown(options, played->loaded.scenario, played->run);
+  PREHEND_TRY(const auto played, PlayTyped(typed, options, context));
+  problem = WhyNotShown(options, played.loaded.scenario, played.run);
   if (!problem.empty()) return Refuse(context, problem);
-  return kind.HasChart() ? DrawChart(kind, *played, options, context)
-                         : DrawKeyFrames(*played, options, context);
+  return kind.HasChart() ? DrawChart(kind, played, options, context)
+                         : DrawKeyFrames(played, options, context);
 }
 
 }  // namespace

@@ -142,13 +142,12 @@ tl::expected<Model, ExitCode> ModelFor(const std::string& name, const ParsedOpti
     if (!grammar::NearestName(typed, verbs).empty() &&
         !episode::FindEpisodes({&typed, 1}, "", context.root))
       return tl::unexpected(Refuse(context, "--like: " + scenario::WhyNoVerb(typed, verbs)));
-    const auto like = FindScenarioOrComplain(typed, context);
-    if (!like) return tl::unexpected(like.error());
-    Result<std::string> read = ReadTextFile(like->path);
+    PREHEND_TRY(const auto like, FindScenarioOrComplain(typed, context));
+    Result<std::string> read = ReadTextFile(like.path);
     if (!read) return tl::unexpected(Complain(context, read.error()));
-    return Model{.path = like->path,
+    return Model{.path = like.path,
                  .text = std::move(*read),
-                 .skill = like->skill.empty() ? kDefaultSkill : like->skill};
+                 .skill = like.skill.empty() ? kDefaultSkill : like.skill};
   }
   const Result<scenario::Templates> templates = scenario::ReadTemplates(context.root);
   if (!templates) return tl::unexpected(Complain(context, templates.error()));
@@ -208,12 +207,10 @@ ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
     return Refuse(context,
                   "the name of the scenario is missing, like 'new cup_is_lifted'; for a project "
                   "of your own: --project DIR");
-  const auto typed = ReadName(options.Text("name"), context);
-  if (!typed) return typed.error();
-  const std::string& name = typed->name;
-  const auto model = ModelFor(name, options, context);
-  if (!model) return model.error();
-  const std::string skill = typed->skill.empty() ? model->skill : typed->skill;
+  PREHEND_TRY(const auto typed, ReadName(options.Text("name"), context));
+  const std::string& name = typed.name;
+  PREHEND_TRY(const auto model, ModelFor(name, options, context));
+  const std::string skill = typed.skill.empty() ? model.skill : typed.skill;
   if (skill == episode::kShowsErrors || skill == episode::kTemplates) {
     const std::string holds =
         skill == episode::kTemplates ? "templates of 'new'" : "examples of errors";
@@ -223,17 +220,17 @@ ExitCode RunNew(const ParsedOptions& options, const CommandContext& context) {
                       std::string(kDefaultSkill) + "/" + name);
   }
   if (!IsOwnProject(context.root) && !IsCalledIn(context.root))
-    return WriteHere(*model, name, context);
+    return WriteHere(model, name, context);
   for (const episode::ScenarioFile& scenario : episode::ListScenarios(context.root)) {
     if (scenario.name == name)
       return Refuse(context, "a scenario of this name exists: " + scenario.path);
   }
   const auto path = std::filesystem::path(context.root) / "scenarios" / skill / (name + ".yaml");
-  const auto text = Composed(*model, path, context);
+  const auto text = Composed(model, path, context);
   if (!text) return ExitCode::kBadInput;
   const std::string problem = WriteTextFile(path, *text);
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
-  SayWhatIsNext(*model, path.string(), episode::ScenarioId(skill, name), true, context);
+  SayWhatIsNext(model, path.string(), episode::ScenarioId(skill, name), true, context);
   return ExitCode::kAgrees;
 }
 

@@ -12,10 +12,9 @@ suite::Listen ListenTo(const std::string& typed) {
       is_folder ? typed.substr(6) : typed};
   return [source](episode::Episode& episode) -> Result<suite::Heard> {
     const measure::Asking asking{.sources = {source}, .time_limit_s = kRecogniserLimit_s};
-    Result<measure::EpisodeToScore> said = measure::HeardIn(episode, asking);
-    if (!said) return tl::unexpected(std::move(said.error()));
-    return suite::Heard{std::move(said->found), std::move(said->failure), std::move(said->notes),
-                        std::move(said->covers)};
+    PREHEND_TRY(measure::EpisodeToScore said, measure::HeardIn(episode, asking));
+    return suite::Heard{std::move(said.found), std::move(said.failure), std::move(said.notes),
+                        std::move(said.covers)};
   };
 }
 

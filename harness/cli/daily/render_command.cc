@@ -163,15 +163,14 @@ tl::expected<suite::PlayedRun, ExitCode> Play(const ParsedOptions& options,
                                               const CommandContext& context,
                                               const suite::Listen& listen = {},
                                               std::optional<suite::Heard>* heard = nullptr) {
-  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
-  if (!episode) return tl::unexpected(episode.error());
+  PREHEND_TRY(auto episode, OpenEpisodeOrComplain(options.Text("EPISODE"), options, context));
   if (listen) {
-    Result<suite::Heard> said = listen(*episode);
+    Result<suite::Heard> said = listen(episode);
     if (!said) return tl::unexpected(Complain(context, said.error()));
     context.err << said->notes;
     *heard = std::move(*said);
   }
-  auto played = PlayOrComplain(std::move(*episode), context);
+  auto played = PlayOrComplain(std::move(episode), context);
   if (!played) return played;
   const std::string why = WhyNotShown(options, played->loaded.scenario, played->run);
   if (!why.empty()) return tl::unexpected(Refuse(context, why));
@@ -193,10 +192,9 @@ ExitCode WriteOut(const std::string& svg, const ParsedOptions& options,
 }
 
 ExitCode RenderStrip(const ParsedOptions& options, const CommandContext& context) {
-  const auto played = Play(options, context);
-  if (!played) return played.error();
-  const episode::LoadedRun& loaded = played->loaded;
-  const episode::RunResult& run = played->run;
+  PREHEND_TRY(const auto played, Play(options, context));
+  const episode::LoadedRun& loaded = played.loaded;
+  const episode::RunResult& run = played.run;
   show::Chart chart = show::PhasesChart(loaded.scenario, run, WindowOf(options, run));
   for (const std::string& words : options.All("--without")) {
     if (std::ranges::count(WordsOf(words), "title") > 0) chart.title.clear();
@@ -212,13 +210,13 @@ ExitCode RenderComparison(const ParsedOptions& options, const CommandContext& co
       view.starts_with("files:") ||
       (view.find_first_of(" /") != std::string::npos && !view.ends_with(".grammar"));
   std::optional<suite::Heard> heard;
-  const auto played = Play(options, context, is_command ? ListenTo(view) : suite::Listen(), &heard);
-  if (!played) return played.error();
+  PREHEND_TRY(const auto played,
+              Play(options, context, is_command ? ListenTo(view) : suite::Listen(), &heard));
   const show::SceneFormat format = SceneFormatOf(options, "action", kComparisonWidth_px);
-  const auto made = suite::SheetAgainst(*played, view, WindowOf(options, played->run), format,
+  const auto made = suite::SheetAgainst(played, view, WindowOf(options, played.run), format,
                                         context.root, heard ? &*heard : nullptr);
   if (!made) return Complain(context, made.error());
-  return WriteOut(SheetSvg(made->sheet, format.chart), options, played->loaded.scenario,
+  return WriteOut(SheetSvg(made->sheet, format.chart), options, played.loaded.scenario,
                   ".against-" + made->name + ".png", context);
 }
 
@@ -226,10 +224,9 @@ ExitCode RenderFilm(const ParsedOptions& options, const CommandContext& context)
   const std::string path = options.Text("--film");
   if (const std::string why = show::WhyNoFilm(path); !why.empty())
     return Refuse(context, "--film: " + why);
-  const auto played = Play(options, context);
-  if (!played) return played.error();
-  const episode::LoadedRun& loaded = played->loaded;
-  const episode::RunResult& run = played->run;
+  PREHEND_TRY(const auto played, Play(options, context));
+  const episode::LoadedRun& loaded = played.loaded;
+  const episode::RunResult& run = played.run;
   const show::Window window = WindowOf(options, run);
   const show::FilmFormat film{.from_s = window.from_s,
                               .to_s = window.to_s,
@@ -248,9 +245,8 @@ ExitCode RenderFilm(const ParsedOptions& options, const CommandContext& context)
 }
 
 ExitCode RenderPictures(const ParsedOptions& options, const CommandContext& context) {
-  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
-  if (!episode) return episode.error();
-  episode::LoadedRun* loaded = &episode->loaded();
+  PREHEND_TRY(auto episode, OpenEpisodeOrComplain(options.Text("EPISODE"), options, context));
+  episode::LoadedRun* loaded = &episode.loaded();
   const show::PictureChoice choice = ChoiceOf(options);
   std::vector<scenario::PictureYaml> asked;
   if (options.Has("--at") || options.Has("--camera") || options.Has("--output"))
@@ -266,7 +262,7 @@ ExitCode RenderPictures(const ParsedOptions& options, const CommandContext& cont
                     "the scenario defines no pictures; --at asks for one");
   }
 
-  const Result<episode::RunResult> played = episode->Run(true);
+  const Result<episode::RunResult> played = episode.Run(true);
   if (!played) return Complain(context, played.error());
   const episode::RunResult& run = *played;
   const show::PictureResult drawn = Draw(options, *loaded, run, context.root);

@@ -110,18 +110,17 @@ ExitCode ReportSides(std::vector<episode::Take> takes, const std::string& page,
 }
 
 ExitCode RunReport(const ParsedOptions& options, const CommandContext& context) {
-  auto takes = FindTakesOrComplain("EPISODES", options, context);
-  if (!takes) return takes.error();
+  PREHEND_TRY(auto takes, FindTakesOrComplain("EPISODES", options, context));
   const std::string page = options.TextOr("--output", kDefaultPage);
   std::string problem = WhyNotWritable(page);
   if (!problem.empty()) return Refuse(context, "--output: " + problem);
   const bool has_sides =
       options.Has("--truth") || options.All("--grammar").size() > 1 ||
-      std::ranges::any_of(*takes, [](const episode::Take& take) { return !take.labels.empty(); });
-  if (has_sides) return ReportSides(std::move(*takes), page, options, context);
+      std::ranges::any_of(takes, [](const episode::Take& take) { return !take.labels.empty(); });
+  if (has_sides) return ReportSides(std::move(takes), page, options, context);
   if (options.Has("--map")) return Refuse(context, "--map needs --truth: where are the labels?");
   std::vector<suite::ScenarioVerdict> verdicts =
-      VerdictsOf(episode::EpisodesOf(*takes), options.Text("--grammar"), true, options, context);
+      VerdictsOf(episode::EpisodesOf(takes), options.Text("--grammar"), true, options, context);
   suite::ReportHeader header =
       suite::HeaderOf(CommandText(context.words), context.root, context.today);
   header.title = "Recorded episodes";

@@ -66,12 +66,11 @@ episode::Plan PlanOfTrials(const ParsedOptions& options, const episode::RunReque
 /// The outcomes of those that the file has already.
 Result<std::map<int, episode::TrialResult>> KnownTrials(const std::string& file,
                                                         const episode::Plan& plan) {
-  const auto complete = episode::BeginPart(file, plan);
-  if (!complete) return tl::unexpected(complete.error());
+  PREHEND_TRY(const auto complete, episode::BeginPart(file, plan));
   std::map<int, episode::TrialResult> known;
   for (std::size_t i = 0; i < plan.owed.size(); ++i) {
-    const auto row = complete->find(plan.owed[i].name);
-    if (plan.owed[i].part != plan.number || row == complete->end()) continue;
+    const auto row = complete.find(plan.owed[i].name);
+    if (plan.owed[i].part != plan.number || row == complete.end()) continue;
     const bool failed = row->second.status == episode::kFailed;
     const physics::RunStatus& end = row->second.end;
     const int trial = static_cast<int>(i) + 1;
@@ -228,18 +227,17 @@ ExitCode PlayOne(const episode::ScenarioFile& file, const episode::RunRequest& r
 }
 
 ExitCode RunOne(const ParsedOptions& options, const CommandContext& context) {
-  const auto file = FindScenarioOrComplain(options.Text("scenario"), context);
-  if (!file) return file.error();
-  episode::RunRequest request = RequestOf(options, file->path);
+  PREHEND_TRY(const auto file, FindScenarioOrComplain(options.Text("scenario"), context));
+  episode::RunRequest request = RequestOf(options, file.path);
   if (const std::string why = WhyRefused(options); !why.empty()) return Refuse(context, why);
-  if (options.Has("--trials")) return CountTrials(options, request, episode::IdOf(*file), context);
+  if (options.Has("--trials")) return CountTrials(options, request, episode::IdOf(file), context);
   if (options.Has("--trial")) {
     auto varied = episode::RequestOfTrial(request, context.root, options.IntOr("--trial", 1));
     if (!varied) return Complain(context, varied.error());
     context.err << episode::SampledText(request, *varied);
     request = std::move(*varied);
   }
-  return PlayOne(*file, request, options, context);
+  return PlayOne(file, request, options, context);
 }
 
 }  // namespace

@@ -99,12 +99,11 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
                     "--found and --recogniser: of which recordings? score take1.jsonl --found ..");
     return RunLabelFiles(options, context);
   }
-  auto takes = FindTakesOrComplain("names", options, context);
-  if (!takes) return takes.error();
+  PREHEND_TRY(auto takes, FindTakesOrComplain("names", options, context));
   const double collar_s = CollarFrom(options);
   std::string warnings;
   const auto scores = measure::ScoreLabels({.root = context.root,
-                                            .takes = std::move(*takes),
+                                            .takes = std::move(takes),
                                             .asking = AskingFrom(options, context),
                                             .settings = options.All("--set"),
                                             .label_files = options.All("--truth"),

@@ -98,13 +98,12 @@ tl::expected<Validated, ExitCode> Validate(const std::string& typed, const Parse
     validated.diagnostics = suite::ValidateGoldenFile(typed, context.root, validated.inputs);
     return validated;
   }
-  const auto file = FindScenarioOrComplain(typed, context);
-  if (!file) return tl::unexpected(file.error());
-  Validated validated{.file = ReadableName(file->path)};
+  PREHEND_TRY(const auto file, FindScenarioOrComplain(typed, context));
+  Validated validated{.file = ReadableName(file.path)};
   Result<episode::LoadedRun> loaded =
-      episode::LoadRun(RequestOf(options, file->path), context.root, &validated.inputs);
+      episode::LoadRun(RequestOf(options, file.path), context.root, &validated.inputs);
   validated.diagnostics = ErrorsOf(loaded);
-  if (file->in_project) AddGolden(*file, options, loaded, context.root, validated);
+  if (file.in_project) AddGolden(file, options, loaded, context.root, validated);
   if (!loaded) return validated;
   validated.warnings = std::move(loaded->warnings);
   std::ranges::move(episode::UndecidedClaims(loaded->scenario, loaded->document, *loaded->program),
@@ -159,9 +158,8 @@ ExitCode RunValidate(const ParsedOptions& options, const CommandContext& context
                     "there is no scenario in " + context.root + "/scenarios");
   std::vector<Validated> all;
   for (const std::string& name : names) {
-    auto validated = Validate(name, options, context);
-    if (!validated) return validated.error();
-    all.push_back(std::move(*validated));
+    PREHEND_TRY(auto validated, Validate(name, options, context));
+    all.push_back(std::move(validated));
   }
   const bool everything = options.All("files").empty() && !options.Has("--grammar");
   const ExitCode strays = everything ? WarnOfScenariosNotRun(context) : ExitCode::kAgrees;

@@ -23,14 +23,13 @@ ExitCode RunCoverage(const ParsedOptions& options, const CommandContext& context
     if (const std::string why = WhyNotWritable(output); !why.empty())
       return Refuse(context, "--output: " + why);
   }
-  const auto episodes = FindEpisodesOrComplain("EPISODES", options, context);
-  if (!episodes) return episodes.error();
+  PREHEND_TRY(const auto episodes, FindEpisodesOrComplain("EPISODES", options, context));
   if (!options.Has("--grammar")) {
-    if (const auto why = episode::WhyNotOneGrammar(*episodes, context.root); !why.empty())
+    if (const auto why = episode::WhyNotOneGrammar(episodes, context.root); !why.empty())
       return Complain(context, why);
   }
   const auto coverage = measure::CoverageOf(
-      *episodes, {context.root, options.Text("--grammar"), options.IntOr("--jobs", CoreCount())});
+      episodes, {context.root, options.Text("--grammar"), options.IntOr("--jobs", CoreCount())});
   if (!coverage) return Complain(context, coverage.error());
   if (!output.empty()) {
     if (const std::string why = WriteTextFile(output, measure::CoverageLcov(*coverage));

@@ -69,15 +69,14 @@ Command EpisodesCommand() {
 namespace {
 
 ExitCode RunVerify(const ParsedOptions& options, const CommandContext& context) {
-  const auto selected =
-      FindEpisodesOrComplain("files", options, context, {episode::Need::kEpisodeFile});
-  if (!selected) return selected.error();
+  PREHEND_TRY(const auto selected,
+              FindEpisodesOrComplain("files", options, context, {episode::Need::kEpisodeFile}));
   const std::vector<episode::Resegmented> results =
-      episode::ResegmentAll(*selected, {.root = context.root,
-                                        .choice = {},
-                                        .compare = true,
-                                        .replay = true,
-                                        .jobs = options.IntOr("--jobs", CoreCount())});
+      episode::ResegmentAll(selected, {.root = context.root,
+                                       .choice = {},
+                                       .compare = true,
+                                       .replay = true,
+                                       .jobs = options.IntOr("--jobs", CoreCount())});
   ExitCode worst = ExitCode::kAgrees;
   std::size_t same = 0, unfinished = 0;
   nlohmann::ordered_json json = nlohmann::ordered_json::array();

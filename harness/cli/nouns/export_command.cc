@@ -17,13 +17,12 @@ namespace prehend::cli {
 namespace {
 
 ExitCode RunExport(const ParsedOptions& options, const CommandContext& context) {
-  const auto episodes = FindEpisodesOrComplain("EPISODES", options, context);
-  if (!episodes) return episodes.error();
+  PREHEND_TRY(const auto episodes, FindEpisodesOrComplain("EPISODES", options, context));
   const auto files = exchange::ExportEpisodes(
-      *episodes, {.root = context.root,
-                  .ending = "." + options.Text("--to"),
-                  .output = options.Text("--output"),
-                  .choice = {options.Text("--grammar"), options.All("--set")}});
+      episodes, {.root = context.root,
+                 .ending = "." + options.Text("--to"),
+                 .output = options.Text("--output"),
+                 .choice = {options.Text("--grammar"), options.All("--set")}});
   if (!files) return Complain(context, files.error());
   ExitCode worst = ExitCode::kAgrees;
   for (const exchange::Exported& file : *files) {
@@ -39,15 +38,14 @@ ExitCode RunLabel(const ParsedOptions& options, const CommandContext& context) {
   const bool is_copy = output.ends_with(".hdf5") || output.ends_with(".h5");
   if (is_copy == options.Has("--to"))
     return Refuse(context, "expected either -o OUT.hdf5, or --to csv|frames with -o FILE");
-  const auto episodes = FindEpisodesOrComplain("EPISODES", options, context);
-  if (!episodes) return episodes.error();
+  PREHEND_TRY(const auto episodes, FindEpisodesOrComplain("EPISODES", options, context));
   const auto labelled = exchange::LabelEpisodes(
-      *episodes, {.root = context.root,
-                  .choice = {options.Text("--grammar"), options.All("--set")},
-                  .map = options.Text("--map"),
-                  .hdf5 = is_copy ? output : "",
-                  .table = output,
-                  .frames = options.Text("--to") == "frames"});
+      episodes, {.root = context.root,
+                 .choice = {options.Text("--grammar"), options.All("--set")},
+                 .map = options.Text("--map"),
+                 .hdf5 = is_copy ? output : "",
+                 .table = output,
+                 .frames = options.Text("--to") == "frames"});
   if (!labelled) return Complain(context, labelled.error());
   for (const exchange::Subtasks& one : *labelled) {
     if (!one.missing.empty())
@@ -61,14 +59,13 @@ ExitCode RunLabel(const ParsedOptions& options, const CommandContext& context) {
 }
 
 ExitCode RunKnowledge(const ParsedOptions& options, const CommandContext& context) {
-  auto episodes = FindEpisodesOrComplain("EPISODES", options, context, {});
-  if (!episodes) return episodes.error();
+  PREHEND_TRY(auto episodes, FindEpisodesOrComplain("EPISODES", options, context, {}));
   const std::vector<std::string> forms = options.All("--also");
   const auto asked = [&](const char* form) {
     return std::ranges::find(forms, form) != forms.end();
   };
   const std::string folder = options.TextOr("--output", "kb");
-  const auto kept = episode::EpisodeKeeper(context.root, context.today, folder).KeepAll(*episodes);
+  const auto kept = episode::EpisodeKeeper(context.root, context.today, folder).KeepAll(episodes);
   if (!kept) return Complain(context, kept.error());
   const Result<exchange::KnowledgeWritten> written = exchange::WriteKnowledge(
       *kept, {.root = context.root, .folder = folder, .owl = asked("owl"), .neem = asked("neem")});

@@ -114,15 +114,13 @@ Json PosesJson(const scenario::Scenario& scenario, const physics::Snapshot& now,
 }
 
 ExitCode RunPoses(const ParsedOptions& options, const CommandContext& context) {
-  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
-  if (!episode) return episode.error();
+  PREHEND_TRY(auto episode, OpenEpisodeOrComplain(options.Text("EPISODE"), options, context));
   const std::string at = options.TextOr("--at", "0");
-  if (const auto problem = episode::WhyNoEventTime(at, *episode->program()))
+  if (const auto problem = episode::WhyNoEventTime(at, *episode.program()))
     return Refuse(context, "--at: " + problem->message + "; " + problem->hint);
-  const auto played = PlayOrComplain(std::move(*episode), context);
-  if (!played) return played.error();
-  const episode::RunResult& run = played->run;
-  const scenario::Scenario& scenario = played->loaded.scenario;
+  PREHEND_TRY(const auto played, PlayOrComplain(std::move(episode), context));
+  const episode::RunResult& run = played.run;
+  const scenario::Scenario& scenario = played.loaded.scenario;
   const episode::FoundTime moment = episode::FindEventTime(at, run);
   if (!moment.missed.empty())
     context.err << "prehend: warning: " << moment.missed << "; this is the end of the run\n";

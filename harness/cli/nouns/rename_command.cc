@@ -70,13 +70,12 @@ std::string Move(const fs::path& from, const fs::path& to, const std::string& te
 }
 
 ExitCode RunRename(const ParsedOptions& options, const CommandContext& context) {
-  const auto found = FindScenarioOrComplain(options.Text("OLD"), context);
-  if (!found) return found.error();
-  Renamed renamed{.from = *found, .skill = {}, .name = {}};
+  PREHEND_TRY(const auto found, FindScenarioOrComplain(options.Text("OLD"), context));
+  Renamed renamed{.from = found, .skill = {}, .name = {}};
   std::string problem = WhyNotRenamed(options.Text("NEW"), context.root, renamed);
   if (!problem.empty()) return Refuse(context, problem);
-  const std::string id = episode::IdOf(*found);
-  const auto text = WithName(found->path, "scenario: ", found->name, renamed.name);
+  const std::string id = episode::IdOf(found);
+  const auto text = WithName(found.path, "scenario: ", found.name, renamed.name);
   if (!text) return Complain(context, text.error());
   const truth::GoldenFiles goldens(context.root);
   const fs::path golden = goldens.GoldenPath(id);
@@ -90,14 +89,14 @@ ExitCode RunRename(const ParsedOptions& options, const CommandContext& context) 
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   const auto loaded = episode::LoadRun({renamed.path.string(), "", {}}, context.root);
   fs::remove(renamed.path, error);
-  if (!loaded && episode::LoadRun({found->path, "", {}}, context.root))
+  if (!loaded && episode::LoadRun({found.path, "", {}}, context.root))
     return Complain(context, loaded.error());
-  problem = Move(found->path, renamed.path, *text, context);
+  problem = Move(found.path, renamed.path, *text, context);
   if (problem.empty() && has_golden)
     problem = Move(golden, goldens.GoldenPath(renamed.id), *golden_text, context);
   for (const truth::KeptPicture& picture : goldens.PicturesOf(id)) {
     const std::string name =
-        renamed.name + picture.path.filename().string().substr(found->name.size());
+        renamed.name + picture.path.filename().string().substr(found.name.size());
     const fs::path to = goldens.PicturePath(renamed.id, name);
     fs::create_directories(to.parent_path(), error);
     fs::rename(picture.path, to, error);

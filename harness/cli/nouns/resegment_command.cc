@@ -133,10 +133,9 @@ ExitCode RunResegment(const ParsedOptions& options, const CommandContext& contex
   const std::vector<episode::Need> needs =
       options.Has("--against") ? std::vector<episode::Need>{episode::Need::kRecordedEvents}
                                : std::vector<episode::Need>{};
-  const auto selected = FindEpisodesOrComplain("EPISODES", options, context, needs);
-  if (!selected) return selected.error();
-  return options.Has("--output") ? WriteLabels(*selected, options, context)
-                                 : ResegmentEpisodes(*selected, options, context);
+  PREHEND_TRY(const auto selected, FindEpisodesOrComplain("EPISODES", options, context, needs));
+  return options.Has("--output") ? WriteLabels(selected, options, context)
+                                 : ResegmentEpisodes(selected, options, context);
 }
 
 }  // namespace

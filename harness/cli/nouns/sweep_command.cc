@@ -106,8 +106,7 @@ auto WithProgress(measure::SweepRequest& request, std::size_t episodes,
 ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context) {
   auto request = RequestFrom(options, context);
   if (!request) return ExitCode::kBadInput;
-  const auto takes = TakesFrom(options, *request, context);
-  if (!takes) return takes.error();
+  PREHEND_TRY(const auto takes, TakesFrom(options, *request, context));
   const double within = options.NumberOr("--within", kDefaultMargin_percent) / 100;
   std::string problem;
   // After each parameter, so that it is there if somebody ends it.
@@ -115,8 +114,8 @@ ExitCode RunMargins(const ParsedOptions& options, const CommandContext& context)
     if (options.Has("--output") && !margins.sweep.IsRefused(*request))
       problem = WriteTextFile(options.Text("--output"), MarginsCsv(margins));
   };
-  const auto margins = WithProgress(*request, takes->size(), context, [&] {
-    return measure::FindMargins(*takes, *request, within, options.All("--over"), write);
+  const auto margins = WithProgress(*request, takes.size(), context, [&] {
+    return measure::FindMargins(takes, *request, within, options.All("--over"), write);
   });
   if (!margins) return Complain(context, margins.error());
   if (const auto refused = ComplainOf(margins->sweep, *request, context)) return *refused;
@@ -129,10 +128,9 @@ ExitCode RunSweep(const ParsedOptions& options, const CommandContext& context) {
   if (!request) return ExitCode::kBadInput;
   if (const std::string why = measure::SetAxes(options.All("--over"), *request); !why.empty())
     return Refuse(context, why);
-  const auto takes = TakesFrom(options, *request, context);
-  if (!takes) return takes.error();
-  const auto result = WithProgress(*request, takes->size(), context,
-                                   [&] { return measure::Sweep(*takes, *request); });
+  PREHEND_TRY(const auto takes, TakesFrom(options, *request, context));
+  const auto result = WithProgress(*request, takes.size(), context,
+                                   [&] { return measure::Sweep(takes, *request); });
   if (!result) return Complain(context, result.error());
   if (const auto problem = ComplainOf(*result, *request, context)) return *problem;
 

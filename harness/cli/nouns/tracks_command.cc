@@ -42,10 +42,9 @@ ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) 
   if (options.Has("--json") && output.ends_with(".csv")) {
     return Refuse(context, "--json contradicts an --output that ends with .csv");
   }
-  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
-  if (!episode) return episode.error();
+  PREHEND_TRY(auto episode, OpenEpisodeOrComplain(options.Text("EPISODE"), options, context));
   const std::vector<std::string> only = options.All("--only");
-  const std::string unknown = UnknownTrack(only, *episode->program());
+  const std::string unknown = UnknownTrack(only, *episode.program());
   if (!unknown.empty()) return Refuse(context, unknown);
 
   // Found out before the episode is played.
@@ -53,13 +52,13 @@ ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) 
   if (!output.empty()) file.emplace(output);
   if (file && !file->problem().empty()) return Refuse(context, "--output: " + file->problem());
 
-  const show::Watched watched = show::Watch(*episode);
+  const show::Watched watched = show::Watch(episode);
   if (!watched.problem.empty()) return Refuse(context, watched.problem);
   const show::Tracks tracks = show::CollectTracks(*watched.past, {only.begin(), only.end()});
   if (!tracks.problem.empty()) return Refuse(context, tracks.problem);
   std::ostream& out = file ? file->stream() : context.out;
   if (as_json) {
-    show::WriteJson(tracks, episode->loaded().scenario.name, GrammarName(*episode->program()), out);
+    show::WriteJson(tracks, episode.loaded().scenario.name, GrammarName(*episode.program()), out);
   } else {
     show::WriteCsv(tracks, out);
   }

@@ -200,21 +200,20 @@ class LineWatcher {
 
 /// A run or a recording of an episode file, or a scenario while it is played.
 ExitCode WatchEpisode(const ParsedOptions& options, const CommandContext& context) {
-  auto episode = OpenEpisodeOrComplain(options.Text("EPISODE"), options, context);
-  if (!episode) return episode.error();
+  PREHEND_TRY(auto episode, OpenEpisodeOrComplain(options.Text("EPISODE"), options, context));
   if (options.Has("--map"))
     return Refuse(context, "--map is for tables of poses; an episode says what it means");
-  Warn(context, episode->loaded().warnings);
+  Warn(context, episode.loaded().warnings);
   episode::Episode::End end;
   const episode::Segmentation watched = episode::Segment(
-      episode->program(), episode->entities(),
+      episode.program(), episode.entities(),
       [&](const std::function<void(const episode::FrameNews&)>& take) {
-        end = episode->EachFrame([&](const grammar::Frame& frame) { take(frame); });
+        end = episode.EachFrame([&](const grammar::Frame& frame) { take(frame); });
         return end.tick;
       },
       [&](const grammar::Timeline& decided) { Print(decided, options.Has("--json"), context.out); },
       options.Has("--open")
-          ? PrintOpen(options.Has("--json"), episode->entities().ticks_per_second, context.out)
+          ? PrintOpen(options.Has("--json"), episode.entities().ticks_per_second, context.out)
           : episode::OpenEvents{});
   if (!watched.problem.empty())
     return Refuse(context, "the grammar cannot segment this episode: " + watched.problem);

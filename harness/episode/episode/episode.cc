@@ -30,9 +30,8 @@ Result<EpisodeHeader> HeaderOf(const std::string& file) {
   EpisodeStream stream(file);
   if (std::getline(in, line) && stream.Take(line).empty() && stream.has_header())
     return stream.header();
-  Result<Recording> whole = ReadRecording(file);
-  if (!whole) return tl::unexpected(std::move(whole.error()));
-  return std::move(whole->header);
+  PREHEND_TRY(Recording whole, ReadRecording(file));
+  return std::move(whole.header);
 }
 
 }  // namespace
@@ -73,9 +72,8 @@ Result<RunResult> Episode::Run(bool frames) {
     return frames ? Replay(*file_, row_, loaded_) : Resegment(*file_, row_, loaded_);
   if (name_.origin == Origin::kScenario)
     return played_ ? *played_ : RunScenario(loaded_.scenario, loaded_.program, {.record = frames});
-  Result<SegmentedRecording> segmented = SegmentRecorded();
-  if (!segmented) return tl::unexpected(std::move(segmented.error()));
-  return RunOf(std::move(*segmented), frames);
+  PREHEND_TRY(SegmentedRecording segmented, SegmentRecorded());
+  return RunOf(std::move(segmented), frames);
 }
 
 RunResult Episode::RunOf(SegmentedRecording segmented, bool frames) {
@@ -155,32 +153,29 @@ Result<std::vector<physics::Snapshot>> Episode::Snapshots() {
 }
 
 Result<grammar::Timeline> Episode::Segment(const std::shared_ptr<const grammar::Program>& program) {
-  const Result<grammar::Tick> end = EndTick();
-  if (!end) return tl::unexpected(end.error());
+  PREHEND_TRY(const grammar::Tick end, EndTick());
   if (recording_) return SegmentFrames(*recording_, program, name_.file);
   const scenario::Scenario& scenario = loaded_.scenario;
-  if (played_) return Resegment(scenario, played_->recording, program, *end);
+  if (played_) return Resegment(scenario, played_->recording, program, end);
   if (!sensed_) {
     const Sensing sensing(scenario.scene, scenario.sensing);
     auto sensed = ReadSnapshots([&](std::int64_t tick) { return sensing.Due(tick); });
     if (!sensed) return tl::unexpected(std::move(sensed.error()));
     sensed_ = std::move(*sensed);
   }
-  return Resegment(scenario, *sensed_, program, *end);
+  return Resegment(scenario, *sensed_, program, end);
 }
 
 Result<Episode> EpisodeOpener::OpenLines(const EpisodeName& name, const GrammarChoice& choice) {
-  Result<Recording> recording = ReadRecording(name.file);
-  if (!recording) return tl::unexpected(std::move(recording.error()));
-  return Open(std::move(*recording), name, choice);
+  PREHEND_TRY(Recording recording, ReadRecording(name.file));
+  return Open(std::move(recording), name, choice);
 }
 
 Result<Episode> EpisodeOpener::Open(Recording recording, const EpisodeName& name,
                                     const GrammarChoice& choice) {
-  const Result<grammar::Overrides> parameters = ParameterSettings(choice.settings);
-  if (!parameters) return tl::unexpected(parameters.error());
+  PREHEND_TRY(const grammar::Overrides parameters, ParameterSettings(choice.settings));
   const EpisodeHeader& header = recording.header;
-  grammar::CompileResult compiled = LoadGrammarOf(header, choice.grammar, root_, *parameters);
+  grammar::CompileResult compiled = LoadGrammarOf(header, choice.grammar, root_, parameters);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
   LoadedRun loaded{.scenario = PlaceholderFor(header), .program = std::move(compiled.program)};
   loaded.scenario.file = name.file;
@@ -193,9 +188,8 @@ Result<Episode> EpisodeOpener::Open(Recording recording, const EpisodeName& name
 
 Result<EpisodeRow> EpisodeOpener::FindKept(const EpisodeName& name) {
   if (!file_ || file_->path() != name.file) {
-    auto opened = EpisodeFile::Open(name.file);
-    if (!opened) return tl::unexpected(std::move(opened.error()));
-    file_ = std::make_shared<const EpisodeFile>(std::move(*opened));
+    PREHEND_TRY(auto opened, EpisodeFile::Open(name.file));
+    file_ = std::make_shared<const EpisodeFile>(std::move(opened));
   }
   const auto row = std::ranges::find(file_->episodes(), *name.number, &EpisodeRow::id);
   if (row == file_->episodes().end())
@@ -205,18 +199,14 @@ Result<EpisodeRow> EpisodeOpener::FindKept(const EpisodeName& name) {
 }
 
 Result<Episode> EpisodeOpener::OpenKept(const EpisodeName& name, const GrammarChoice& choice) {
-  const Result<EpisodeRow> row = FindKept(name);
-  if (!row) return tl::unexpected(row.error());
-  Result<LoadedRun> loaded = loader_.Load(*file_, *row, choice);
-  if (!loaded) return tl::unexpected(std::move(loaded.error()));
-  const Origin origin = row->simulated ? Origin::kRecordedRun : Origin::kRecording;
-  Episode episode({name.file, row->id, row->scenario, origin, row->grammar}, std::move(*loaded));
+  PREHEND_TRY(const EpisodeRow row, FindKept(name));
+  PREHEND_TRY(LoadedRun loaded, loader_.Load(*file_, row, choice));
+  const Origin origin = row.simulated ? Origin::kRecordedRun : Origin::kRecording;
+  Episode episode({name.file, row.id, row.scenario, origin, row.grammar}, std::move(loaded));
   episode.file_ = file_;
-  episode.row_ = *row;
-  if (row->simulated) return episode;
-  Result<Recording> recording = ReadWhole(*file_, *row);
-  if (!recording) return tl::unexpected(std::move(recording.error()));
-  episode.recording_ = std::move(*recording);
+  episode.row_ = row;
+  if (row.simulated) return episode;
+  PREHEND_TRY(episode.recording_, ReadWhole(*file_, row));
   return episode;
 }
 
@@ -226,9 +216,9 @@ Result<Episode> EpisodeOpener::Open(const EpisodeName& name, const GrammarChoice
   if (choice.grammar.empty()) choice.grammar = name.asked;
   if (name.number) return OpenKept(name, choice);
   if (name.origin == Origin::kRecording) return OpenLines(name, choice);
-  Result<LoadedRun> loaded = LoadRun({name.file, choice.grammar, choice.settings}, root_, files);
-  if (!loaded) return tl::unexpected(std::move(loaded.error()));
-  return Episode(name, std::move(*loaded));
+  PREHEND_TRY(LoadedRun loaded,
+              LoadRun({name.file, choice.grammar, choice.settings}, root_, files));
+  return Episode(name, std::move(loaded));
 }
 
 grammar::CompileResult EpisodeOpener::Compile(const EpisodeName& name, const std::string& asked,

@@ -58,21 +58,18 @@ namespace fs = std::filesystem;
 
 /// Plays a scenario into a file. Returns what went wrong.
 grammar::Diagnostics Record(RecordRequest request) {
-  const Result<LoadedRun> loaded = LoadRun(request.run, request.root, &request.files);
-  if (!loaded) return loaded.error();
-  RunRecorder recorder(request, loaded->scenario);
-  PlayScenario(*loaded, {}, &recorder);
+  PREHEND_TRY(const LoadedRun loaded, LoadRun(request.run, request.root, &request.files));
+  RunRecorder recorder(request, loaded.scenario);
+  PlayScenario(loaded, {}, &recorder);
   if (recorder.problem().empty()) return {};
   return {{.file = request.file, .message = recorder.problem()}};
 }
 
 grammar::Diagnostics Import(const ImportRequest& request) {
-  Result<Recording> recording = ReadRecording(request.source);
-  if (!recording) return recording.error();
-  const auto imported = ImportRecording(request, *recording);
-  if (!imported) return imported.error();
-  if (imported->problem.empty()) return {};
-  return {{.file = request.file, .message = imported->problem}};
+  PREHEND_TRY(Recording recording, ReadRecording(request.source));
+  PREHEND_TRY(const auto imported, ImportRecording(request, recording));
+  if (imported.problem.empty()) return {};
+  return {{.file = request.file, .message = imported.problem}};
 }
 
 }  // namespace
@@ -84,15 +81,14 @@ EpisodeKind EpisodeKindOf(const std::string& typed) {
 }
 
 Result<std::vector<EpisodeName>> EpisodesOf(const std::string& path, const std::string& which) {
-  const auto file = EpisodeFile::Open(path);
-  if (!file) return tl::unexpected(file.error());
-  if (file->episodes().empty())
+  PREHEND_TRY(const auto file, EpisodeFile::Open(path));
+  if (file.episodes().empty())
     return tl::unexpected(
         grammar::Diagnostics{{.file = path,
                               .message = "has no episodes",
                               .hint = "its recording ended before the first one began"}});
   std::vector<EpisodeName> names;
-  for (const EpisodeRow& row : file->episodes()) {
+  for (const EpisodeRow& row : file.episodes()) {
     if (!IsSelected(row, which)) continue;
     names.push_back({path, row.id, row.scenario,
                      row.simulated ? Origin::kRecordedRun : Origin::kRecording, row.grammar});
@@ -149,9 +145,8 @@ class TakeFinder {
     for (const std::string& file : in_folder)
       if (auto none = Add(file, entry)) return none;
     if (!in_folder.empty()) return std::nullopt;
-    auto scenario = ScenarioNamed(typed, root_);
-    if (!scenario) return std::move(scenario.error());
-    Add(std::move(*scenario), entry);
+    PREHEND_TRY(auto scenario, ScenarioNamed(typed, root_));
+    Add(std::move(scenario), entry);
     return std::nullopt;
   }
 
@@ -206,20 +201,18 @@ tl::expected<std::vector<Take>, NotFound> FindTakes(std::span<const std::string>
 tl::expected<std::vector<EpisodeName>, NotFound> FindEpisodes(std::span<const std::string> typed,
                                                               const std::string& which,
                                                               const std::string& root) {
-  auto takes = FindTakes(typed, which, root);
-  if (!takes) return tl::unexpected(std::move(takes.error()));
-  return EpisodesOf(*takes);
+  PREHEND_TRY(auto takes, FindTakes(typed, which, root));
+  return EpisodesOf(takes);
 }
 
 tl::expected<EpisodeName, NotFound> FindEpisode(const std::string& typed, const std::string& which,
                                                 const std::string& root) {
-  auto found = FindEpisodes({&typed, 1}, which, root);
-  if (!found) return tl::unexpected(std::move(found.error()));
-  if (found->size() == 1) return std::move(found->front());
+  PREHEND_TRY(auto found, FindEpisodes({&typed, 1}, which, root));
+  if (found.size() == 1) return std::move(found.front());
   return tl::unexpected(
       NotFound{ExitCode::kNothing,
                fmt::format("{} has {} such episodes; --episode selects one, and '{}' shows all",
-                           typed, found->size(), CommandText({"episode", "list", typed}))});
+                           typed, found.size(), CommandText({"episode", "list", typed}))});
 }
 
 Result<std::string> WhatIsMissing(const std::vector<std::string>& files) {
@@ -256,16 +249,13 @@ Result<EpisodeName> EpisodeKeeper::Keep(const EpisodeName& episode) {
           ? Import({file, root_, episode.file, "", today_, ProgramHash()})
           : Record({file, root_, {.scenario_file = episode.file}, {}, today_, ProgramHash()});
   if (!problems.empty()) return tl::unexpected(std::move(problems));
-  Result<std::vector<EpisodeName>> kept = EpisodesOf(file);
-  if (!kept) return tl::unexpected(std::move(kept.error()));
-  return std::move(kept->front());
+  PREHEND_TRY(std::vector<EpisodeName> kept, EpisodesOf(file));
+  return std::move(kept.front());
 }
 
 Result<std::vector<EpisodeName>> EpisodeKeeper::KeepAll(std::vector<EpisodeName> episodes) {
   for (EpisodeName& episode : episodes) {
-    Result<EpisodeName> kept = Keep(episode);
-    if (!kept) return tl::unexpected(std::move(kept.error()));
-    episode = std::move(*kept);
+    PREHEND_TRY(episode, Keep(episode));
   }
   return episodes;
 }

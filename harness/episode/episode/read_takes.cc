@@ -125,11 +125,10 @@ bool IsTakesFile(const std::string& path) {
 }
 
 Result<std::vector<TakeEntry>> ReadTakes(const std::string& path) {
-  const Result<YamlDocument> document = ReadYamlFile(path);
-  if (!document) return tl::unexpected(document.error());
-  DiagnosticList errors(*document);
+  PREHEND_TRY(const YamlDocument document, ReadYamlFile(path));
+  DiagnosticList errors(document);
   TakesYaml read;
-  if (!TakesFormat().Read(document->root, errors, read)) return tl::unexpected(errors.Sorted());
+  if (!TakesFormat().Read(document.root, errors, read)) return tl::unexpected(errors.Sorted());
   const auto beside = [&](const std::string& file) {
     return file.empty() ? file : (fs::path(path).parent_path() / file).string();
   };

@@ -159,38 +159,34 @@ grammar::CompileResult EpisodeLoader::Compile(bool is_own, const std::string& na
 
 Result<LoadedRun> EpisodeLoader::LoadRecording(const EpisodeFile& file, const EpisodeRow& episode,
                                                const TaskFiles& task, const GrammarChoice& choice) {
-  Result<EpisodeHeader> header = ReadRecordingHeader(file, episode);
-  if (!header) return tl::unexpected(std::move(header.error()));
-  Result<grammar::Overrides> overrides = ParameterSettings(choice.settings);
-  if (!overrides) return tl::unexpected(std::move(overrides.error()));
+  PREHEND_TRY(EpisodeHeader header, ReadRecordingHeader(file, episode));
+  PREHEND_TRY(grammar::Overrides overrides, ParameterSettings(choice.settings));
   const bool is_own = choice.grammar.empty();
   const std::string asked = tasks_.RequestOf(task).grammar;
-  const std::string own = asked.empty() ? header->grammar : asked;
+  const std::string own = asked.empty() ? header.grammar : asked;
   const std::string name = is_own ? own : choice.grammar;
-  grammar::CompileResult compiled = Compile(is_own, name, *overrides);
+  grammar::CompileResult compiled = Compile(is_own, name, overrides);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
   LoadedRun loaded{
-      .scenario = PlaceholderFor(*header), .program = std::move(compiled.program), .grammar = name};
+      .scenario = PlaceholderFor(header), .program = std::move(compiled.program), .grammar = name};
   loaded.scenario.file = task.run.scenario_file;
   loaded.scenario.grammar = GrammarName(*loaded.program);
   if (!is_own || !choice.settings.empty())
-    loaded.warnings = Warnings(*loaded.program, header->entity_table);
+    loaded.warnings = Warnings(*loaded.program, header.entity_table);
   return loaded;
 }
 
 Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow& episode,
                                       const GrammarChoice& choice) {
-  const Result<TaskFiles> task = file.TaskOf(episode);
-  if (!task) return tl::unexpected(task.error());
-  if (const std::string problem = tasks_.Unpack(*task); !problem.empty())
+  PREHEND_TRY(const TaskFiles task, file.TaskOf(episode));
+  if (const std::string problem = tasks_.Unpack(task); !problem.empty())
     return Failure(file, episode, problem);
   Refresh();
-  if (!episode.simulated) return LoadRecording(file, episode, *task, choice);
+  if (!episode.simulated) return LoadRecording(file, episode, task, choice);
   const auto load_grammar = [&](const std::string& name, const grammar::Overrides& overrides) {
     return Compile(true, name, overrides);
   };
-  Result<LoadedRun> loaded =
-      LoadRun(tasks_.RequestOf(*task), tasks_.root(), library_, load_grammar);
+  Result<LoadedRun> loaded = LoadRun(tasks_.RequestOf(task), tasks_.root(), library_, load_grammar);
   if (!loaded) {
     grammar::Diagnostics diagnostics = std::move(loaded.error());
     for (grammar::Diagnostic& diagnostic : diagnostics)
@@ -201,11 +197,10 @@ Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow&
   loaded->warnings.clear();  // they were shown when it was recorded
   if (choice.grammar.empty() && choice.settings.empty()) return loaded;
 
-  Result<grammar::Overrides> overrides = ParameterSettings(choice.settings);
-  if (!overrides) return tl::unexpected(std::move(overrides.error()));
+  PREHEND_TRY(grammar::Overrides overrides, ParameterSettings(choice.settings));
   const bool is_own = choice.grammar.empty();
   if (!is_own) loaded->grammar = choice.grammar;
-  grammar::CompileResult compiled = Compile(is_own, loaded->grammar, *overrides);
+  grammar::CompileResult compiled = Compile(is_own, loaded->grammar, overrides);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
   loaded->program = std::move(compiled.program);
   loaded->scenario.grammar = GrammarName(*loaded->program);
@@ -237,9 +232,7 @@ Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
     return Failure(file, episode, "the grammar cannot segment it: " + segmentation.problem);
   run.timeline = std::move(segmentation.timeline);
   run.state_hash = HashOfText(episode.state_hash);
-  Result<std::vector<physics::ScriptNote>> notes = file.NotesOf(episode);
-  if (!notes) return tl::unexpected(std::move(notes.error()));
-  run.notes = std::move(*notes);
+  PREHEND_TRY(run.notes, file.NotesOf(episode));
   return run;
 }
 

@@ -124,10 +124,9 @@ Result<std::map<std::string, EpisodeRow>> BeginPart(const std::string& file, con
     transaction.Commit();
   };
   if (const Result<void> begun = Guarded(file, begin); !begun) return tl::unexpected(begun.error());
-  const Result<EpisodeFile> opened = EpisodeFile::Open(file);
-  if (!opened) return tl::unexpected(opened.error());
+  PREHEND_TRY(const EpisodeFile opened, EpisodeFile::Open(file));
   std::map<std::string, const EpisodeRow*> by_uuid;
-  for (const EpisodeRow& row : opened->episodes())
+  for (const EpisodeRow& row : opened.episodes())
     if (row.status == kCompleted || row.status == kFailed) by_uuid[row.uuid] = &row;
   std::map<std::string, EpisodeRow> complete;
   for (const Plan::Owed& owed : plan.owed) {

@@ -200,28 +200,25 @@ std::optional<EventQuestion::Relation> ParseRelation(std::string_view text, std:
 
 Result<std::vector<EventAnswer>> Ask(const std::string& path, const EventQuestion& question,
                                      KnownNames& known) {
-  const Result<EpisodeFile> file = EpisodeFile::Open(path);
-  if (!file) return tl::unexpected(file.error());
+  PREHEND_TRY(const EpisodeFile file, EpisodeFile::Open(path));
   std::vector<EventAnswer> answers;
-  for (const EpisodeRow& row : file->episodes()) {
+  for (const EpisodeRow& row : file.episodes()) {
     if (!IsSelected(row, question.scenario)) continue;
-    const Result<grammar::Timeline> timeline = file->TimelineOf(row);
-    if (!timeline) return tl::unexpected(timeline.error());
-    const Result<std::vector<KeptEntity>> entities = file->EntitiesOf(row);
-    if (!entities) return tl::unexpected(entities.error());
-    const Asker asker(question, *entities, *timeline);
-    for (const grammar::NamedEvent& event : timeline->events) {
+    PREHEND_TRY(const grammar::Timeline timeline, file.TimelineOf(row));
+    PREHEND_TRY(const std::vector<KeptEntity> entities, file.EntitiesOf(row));
+    const Asker asker(question, entities, timeline);
+    for (const grammar::NamedEvent& event : timeline.events) {
       known.events.insert(event.event);
       for (const grammar::Role& role : event.roles) known.roles.insert(role.name);
       if (!asker.Holds(event)) continue;
       EventAnswer& answer = answers.emplace_back();
       answer = {path, row.id, row.scenario, row.ticks_per_second, event, {}, {}};
       for (const grammar::Role& role : event.roles) {
-        const KeptEntity* entity = EntityNamed(role.value, *entities);
+        const KeptEntity* entity = EntityNamed(role.value, entities);
         answer.classes.push_back(entity ? entity->classes.front() : "");
       }
       if (!question.tells_parts) continue;
-      for (const grammar::NamedEvent* part : PartsOf(event, *timeline, *entities))
+      for (const grammar::NamedEvent* part : PartsOf(event, timeline, entities))
         answer.parts.push_back(*part);
     }
   }

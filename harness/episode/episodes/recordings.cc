@@ -113,16 +113,14 @@ std::uint64_t HashOfFrames(const Recording& recording) {
 
 Result<ImportedRecording> ImportRecording(const ImportRequest& request, Recording& recording) {
   // What is segmented now is what is read later.
-  Result<EpisodeHeader> kept = ReadFirstLine(request.source, FirstLine(recording.header));
-  if (!kept) return tl::unexpected(std::move(kept.error()));
-  recording.header = std::move(*kept);
+  PREHEND_TRY(recording.header, ReadFirstLine(request.source, FirstLine(recording.header)));
   std::vector<std::string> grammars;
   grammar::CompileResult compiled =
       LoadGrammarOf(recording.header, request.grammar, request.root, {}, &grammars);
   if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
-  auto segmented = SegmentRecording(recording, std::move(compiled.program), request.source);
-  if (!segmented) return tl::unexpected(std::move(segmented.error()));
-  ImportedRecording imported{.segmented = std::move(*segmented), .problem = {}};
+  PREHEND_TRY(auto segmented,
+              SegmentRecording(recording, std::move(compiled.program), request.source));
+  ImportedRecording imported{.segmented = std::move(segmented), .problem = {}};
   const EpisodeHeader& header = recording.header;
   RunResult end;
   end.ticks = recording.end_tick - 1;
@@ -148,19 +146,17 @@ Result<ImportedRecording> ImportRecording(const ImportRequest& request, Recordin
 }
 
 Result<EpisodeHeader> ReadRecordingHeader(const EpisodeFile& file, const EpisodeRow& row) {
-  const Result<TaskFiles> task = file.TaskOf(row);
-  if (!task) return tl::unexpected(task.error());
-  const auto header = task->files.find(kHeaderFile);
-  if (header == task->files.end())
+  PREHEND_TRY(const TaskFiles task, file.TaskOf(row));
+  const auto header = task.files.find(kHeaderFile);
+  if (header == task.files.end())
     return tl::unexpected(NotRead(file, row, "the file is damaged: it has no entities"));
   return ReadFirstLine(file.path() + ": " + kHeaderFile, header->second);
 }
 
 Result<Recording> ReadRecording(const EpisodeFile& file, const EpisodeRow& row) {
-  Result<EpisodeHeader> header = ReadRecordingHeader(file, row);
-  if (!header) return tl::unexpected(std::move(header.error()));
+  PREHEND_TRY(EpisodeHeader header, ReadRecordingHeader(file, row));
   Recording recording;
-  recording.header = std::move(*header);
+  recording.header = std::move(header);
   recording.end_tick = row.ticks + 1;
   recording.says_its_end = row.status == kCompleted;
   TablePacker packer;

@@ -166,17 +166,15 @@ std::size_t CountOf(const std::string& outcome, const TrialReport& report) {
 }  // namespace
 
 Result<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root, int trial) {
-  const Result<LoadedRun> nominal = LoadNominal(request, root);
-  if (!nominal) return tl::unexpected(nominal.error());
-  return WithDraws(request, *nominal, trial);
+  PREHEND_TRY(const LoadedRun nominal, LoadNominal(request, root));
+  return WithDraws(request, nominal, trial);
 }
 
 Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
                               const TrialSettings& settings,
                               const std::function<void(int done)>& progress) {
-  const Result<LoadedRun> nominal = LoadNominal(request, root);
-  if (!nominal) return tl::unexpected(nominal.error());
-  const scenario::Scenario& scenario = nominal->scenario;
+  PREHEND_TRY(const LoadedRun nominal, LoadNominal(request, root));
+  const scenario::Scenario& scenario = nominal.scenario;
   if (scenario.outcomes.empty()) {
     return tl::unexpected(grammar::Diagnostics{
         grammar::DiagnosticAt(request.scenario_file, "", {1, 1},
@@ -191,7 +189,7 @@ Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root
                                                            : known->second);
     if (known != settings.known.end()) continue;
     jobs.push_back([&, trial]() -> std::string {
-      const RunRequest varied = WithDraws(request, *nominal, trial);
+      const RunRequest varied = WithDraws(request, nominal, trial);
       const auto loaded = LoadRun(varied, root);
       if (!loaded)
         return ToWire(TrialResult{

@@ -169,9 +169,7 @@ Result<SegmentedRecording> SegmentRecording(Recording& recording,
                                .says_its_end = recording.says_its_end,
                                .warnings = Warnings(*program, entities),
                                .missing = FindMissingFacts(recording, *program)};
-  Result<grammar::Timeline> timeline = SegmentFrames(recording, program, file);
-  if (!timeline) return tl::unexpected(std::move(timeline.error()));
-  segmented.timeline = std::move(*timeline);
+  PREHEND_TRY(segmented.timeline, SegmentFrames(recording, program, file));
   segmented.missing.warnings += AssumedText(recording, segmented.timeline);
   return segmented;
 }

@@ -210,16 +210,14 @@ void FoundPoses::AddTime(const std::map<std::string, std::vector<std::string>>& 
 }
 
 Result<FoundPoses> FindJsonPoses(const std::string& path) {
-  Result<std::string> text = ReadTextFile(path, kMostProposedBytes);
-  if (!text) return tl::unexpected(std::move(text.error()));
+  PREHEND_TRY(std::string text, ReadTextFile(path, kMostProposedBytes));
   std::vector<Json> roots;
-  const std::size_t first_end = std::min(text->find('\n'), text->size());
-  const bool is_lines = text->find_first_not_of(" \t\r\n", first_end) != std::string::npos &&
-                        Json::accept(text->substr(0, first_end));
-  for (std::size_t begin = 0; begin < text->size();) {
-    const std::size_t end =
-        is_lines ? std::min(text->find('\n', begin), text->size()) : text->size();
-    Json root = Json::parse(std::string_view(*text).substr(begin, end - begin), nullptr,
+  const std::size_t first_end = std::min(text.find('\n'), text.size());
+  const bool is_lines = text.find_first_not_of(" \t\r\n", first_end) != std::string::npos &&
+                        Json::accept(text.substr(0, first_end));
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = is_lines ? std::min(text.find('\n', begin), text.size()) : text.size();
+    Json root = Json::parse(std::string_view(text).substr(begin, end - begin), nullptr,
                             /*allow_exceptions=*/false);
     if (!root.is_discarded()) roots.push_back(std::move(root));
     begin = end + 1;

@@ -15,9 +15,8 @@ constexpr std::size_t kMostListed = 200;
 /// The groups of a file whose map is not written yet.
 Result<std::pair<std::string, std::vector<std::string>>> GuessGroups(const Hdf5File& file) {
   std::string pattern = file.Has("data") ? "data/*" : file.Has("traj_0") ? "traj_*" : "*";
-  auto groups = GroupsLike(file, pattern);
-  if (!groups) return tl::unexpected(groups.error());
-  return std::pair(std::move(pattern), std::move(*groups));
+  PREHEND_TRY(auto groups, GroupsLike(file, pattern));
+  return std::pair(std::move(pattern), std::move(groups));
 }
 
 /// Every dataset below a group, by its path below it.
@@ -181,14 +180,12 @@ class Proposal {
 }  // namespace
 
 Result<std::string> ProposedMapOfDemonstrations(const std::string& path) {
-  const auto file = Hdf5File::Open(path);
-  if (!file) return tl::unexpected(file.error());
-  auto groups = GuessGroups(*file);
-  if (!groups) return tl::unexpected(groups.error());
-  const std::vector<std::string>& all = groups->second;
-  return fmt::format("# {}: {} demonstrations, '{}' to '{}'; the first has\n", file->path(),
+  PREHEND_TRY(const auto file, Hdf5File::Open(path));
+  PREHEND_TRY(auto groups, GuessGroups(file));
+  const std::vector<std::string>& all = groups.second;
+  return fmt::format("# {}: {} demonstrations, '{}' to '{}'; the first has\n", file.path(),
                      all.size(), all.front(), all.back()) +
-         Proposal(*file, groups->first, all).Text();
+         Proposal(file, groups.first, all).Text();
 }
 
 }  // namespace prehend::exchange

@@ -41,17 +41,16 @@ std::optional<Eigen::Vector3d> StatureOf(const scenario::BvhFile& bvh) {
 }  // namespace
 
 Result<PoseFile> ReadBvhPoses(const std::string& path, const MapFile& map) {
-  const Result<scenario::BvhFile> bvh = scenario::ReadBvh(path, kLimits);
-  if (!bvh) return tl::unexpected(bvh.error());
+  PREHEND_TRY(const scenario::BvhFile bvh, scenario::ReadBvh(path, kLimits));
   DiagnosticList errors(map.document);
   PoseFile poses{
       .file = path, .text = {}, .bodies = BodiesOf(map.map, errors), .unused = {}, .notes = {}};
   std::map<std::string, std::size_t> joints;
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < bvh->joints.size(); ++i) {
-    if (bvh->joints[i].name.empty()) continue;
-    joints.emplace(bvh->joints[i].name, i);
-    names.push_back(bvh->joints[i].name);
+  for (std::size_t i = 0; i < bvh.joints.size(); ++i) {
+    if (bvh.joints[i].name.empty()) continue;
+    joints.emplace(bvh.joints[i].name, i);
+    names.push_back(bvh.joints[i].name);
   }
   for (const Named<MappedEntity>& entity : map.map.entities) {
     const auto& from = entity.value.from;
@@ -62,18 +61,18 @@ Result<PoseFile> ReadBvhPoses(const std::string& path, const MapFile& map) {
   if (!errors.empty()) return tl::unexpected(errors.Sorted());
 
   if (map.map.is_draft) poses.unused = names;
-  poses.stature = StatureOf(*bvh);
-  poses.rows = bvh->rows.size();
-  poses.last_s = static_cast<double>(bvh->rows.size() - 1) * bvh->frame_time_s;
-  for (std::size_t frame = 0; frame < bvh->rows.size(); ++frame) {
-    const std::vector<scenario::JointPose> all = scenario::JointPosesAt(*bvh, frame);
+  poses.stature = StatureOf(bvh);
+  poses.rows = bvh.rows.size();
+  poses.last_s = static_cast<double>(bvh.rows.size() - 1) * bvh.frame_time_s;
+  for (std::size_t frame = 0; frame < bvh.rows.size(); ++frame) {
+    const std::vector<scenario::JointPose> all = scenario::JointPosesAt(bvh, frame);
     for (PoseBody& body : poses.bodies) {
       const scenario::JointPose& joint = all[joints.at(body.name)];
       if (map.map.zero_is_missing && joint.p.isZero(0)) continue;
-      body.samples.push_back({.t_s = static_cast<double>(frame) * bvh->frame_time_s,
+      body.samples.push_back({.t_s = static_cast<double>(frame) * bvh.frame_time_s,
                               .p = joint.p,
                               .q = joint.q,
-                              .line = bvh->places[frame].line});
+                              .line = bvh.places[frame].line});
     }
   }
   RefuseAbsentBodies(poses, map.map, errors);

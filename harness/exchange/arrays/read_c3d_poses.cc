@@ -258,10 +258,9 @@ void TakePoint(const C3dFile& file, const Located<std::string>& from, const Impo
 }  // namespace
 
 Result<TableLayout> LayoutOfC3d(const std::string& path) {
-  Result<std::string> bytes = ReadBytes(path);
-  if (!bytes) return tl::unexpected(std::move(bytes.error()));
+  PREHEND_TRY(std::string bytes, ReadBytes(path));
   C3dFile file;
-  if (const std::string why = file.Load(std::move(*bytes)); !why.empty())
+  if (const std::string why = file.Load(std::move(bytes)); !why.empty())
     return tl::unexpected(ErrorOfFile(path, why));
   TableLayout layout{.name = "a C3D file", .unit = UnitCalled(file.unit)};
   if (file.rate_hz > 0) layout.rate_hz = file.rate_hz;
@@ -269,10 +268,9 @@ Result<TableLayout> LayoutOfC3d(const std::string& path) {
 }
 
 Result<PoseFile> ReadC3dPoses(const std::string& path, const MapFile& map) {
-  Result<std::string> bytes = ReadBytes(path);
-  if (!bytes) return tl::unexpected(std::move(bytes.error()));
+  PREHEND_TRY(std::string bytes, ReadBytes(path));
   C3dFile file;
-  if (const std::string why = file.Load(std::move(*bytes)); !why.empty())
+  if (const std::string why = file.Load(std::move(bytes)); !why.empty())
     return tl::unexpected(ErrorOfFile(path, why));
   DiagnosticList errors(map.document);
   if (!map.map.rate_hz)

@@ -78,10 +78,9 @@ Result<std::vector<std::string>> GroupsLike(const Hdf5File& file, const std::str
       pattern.substr(parent.empty() ? 0 : slash + 1, star - (parent.empty() ? 0 : slash + 1));
   const std::string after = star == std::string::npos ? "" : pattern.substr(star + 1);
   if (star == std::string::npos) return std::vector<std::string>{pattern};
-  const auto names = file.NamesIn(parent);
-  if (!names) return tl::unexpected(names.error());
+  PREHEND_TRY(const auto names, file.NamesIn(parent));
   std::vector<std::string> groups;
-  for (const std::string& name : *names) {
+  for (const std::string& name : names) {
     if (name.size() < before.size() + after.size() || !name.starts_with(before) ||
         !name.ends_with(after))
       continue;
@@ -90,9 +89,9 @@ Result<std::vector<std::string>> GroupsLike(const Hdf5File& file, const std::str
       groups.push_back(path);
   }
   if (groups.empty())
-    return tl::unexpected(file.Error(fmt::format(
-        "no group is like '{}': '{}' has {}", pattern, parent.empty() ? "/" : parent,
-        names->empty() ? "nothing" : names->front() + (names->size() > 1 ? " .." : ""))));
+    return tl::unexpected(file.Error(
+        fmt::format("no group is like '{}': '{}' has {}", pattern, parent.empty() ? "/" : parent,
+                    names.empty() ? "nothing" : names.front() + (names.size() > 1 ? " .." : ""))));
   return groups;
 }
 
@@ -110,12 +109,9 @@ std::optional<double> ControlRateOf(const Hdf5File& file, const std::string& gro
 }
 
 Result<Demonstrations> Demonstrations::Open(const std::string& path, const MapFile& map) {
-  auto file = Hdf5File::Open(path);
-  if (!file) return tl::unexpected(file.error());
-  Demonstrations all(std::move(*file), map);
-  auto groups = GroupsLike(all.file_, map.map.hdf5.episodes.value);
-  if (!groups) return tl::unexpected(groups.error());
-  all.groups_ = std::move(*groups);
+  PREHEND_TRY(auto file, Hdf5File::Open(path));
+  Demonstrations all(std::move(file), map);
+  PREHEND_TRY(all.groups_, GroupsLike(all.file_, map.map.hdf5.episodes.value));
   const auto& said = map.map.rate_hz;
   const std::optional<double> rate_hz = ControlRateOf(all.file_, all.groups_.front());
   DiagnosticList errors(map.document);

@@ -397,9 +397,8 @@ class JsonRows : public RowSource {
 }  // namespace
 
 Result<PoseFile> ReadJsonPoses(const std::string& path, const MapFile& map) {
-  Result<std::string> text = ReadTextFile(path, kMostJsonBytes);
-  if (!text) return tl::unexpected(std::move(text.error()));
-  JsonRows rows(path, std::move(*text), map);
+  PREHEND_TRY(std::string text, ReadTextFile(path, kMostJsonBytes));
+  JsonRows rows(path, std::move(text), map);
   if (Diagnostics wrong = rows.Load(); !wrong.empty()) return tl::unexpected(std::move(wrong));
   const double rate_hz = map.map.rate_hz ? map.map.rate_hz->value : 1;
   return ReadRowPoses(rows, map, path, rate_hz);

@@ -245,18 +245,16 @@ class NpzRows : public RowSource {
 }  // namespace
 
 Result<FoundPoses> FindNpzPoses(const std::string& path) {
-  Result<std::string> bytes = ReadBytes(path);
-  if (!bytes) return tl::unexpected(std::move(bytes.error()));
-  NpzRows rows(std::move(*bytes));
+  PREHEND_TRY(std::string bytes, ReadBytes(path));
+  NpzRows rows(std::move(bytes));
   if (const std::string why = rows.Load(); !why.empty())
     return tl::unexpected(ErrorOfFile(path, why));
   return rows.Find();
 }
 
 Result<PoseFile> ReadNpzPoses(const std::string& path, const MapFile& map) {
-  Result<std::string> bytes = ReadBytes(path);
-  if (!bytes) return tl::unexpected(std::move(bytes.error()));
-  NpzRows rows(std::move(*bytes));
+  PREHEND_TRY(std::string bytes, ReadBytes(path));
+  NpzRows rows(std::move(bytes));
   if (const std::string why = rows.Load(); !why.empty())
     return tl::unexpected(ErrorOfFile(path, why));
   return ReadRowPoses(rows, map, path, map.map.rate_hz ? map.map.rate_hz->value : 1);

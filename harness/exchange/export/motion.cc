@@ -23,11 +23,10 @@ Result<Motion> Motion::Of(episode::Episode& episode, bool other_grammar) {
     motion.timeline = std::move(*recorded);
   }
   if (!episode.row() || other_grammar) {
-    Result<episode::RunResult> run = episode.Run(false);
-    if (!run) return tl::unexpected(std::move(run.error()));
-    if (uuid.empty()) uuid = fmt::format("{} {:016x}", episode.name().scenario, run->state_hash);
+    PREHEND_TRY(episode::RunResult run, episode.Run(false));
+    if (uuid.empty()) uuid = fmt::format("{} {:016x}", episode.name().scenario, run.state_hash);
     uuid = episode::UuidOf(uuid + " " + GrammarName(*episode.program()));
-    motion.timeline = std::move(run->timeline);
+    motion.timeline = std::move(run.timeline);
   }
   for (std::size_t i = 0; i < motion.timeline.events.size(); ++i)
     motion.uuids.push_back(episode::UuidOfEvent(uuid, i));

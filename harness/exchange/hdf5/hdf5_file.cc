@@ -305,23 +305,21 @@ bool Hdf5File::Has(const std::string& object) const {
 }
 
 Result<Hdf5Object> Hdf5File::Describe(const std::string& path) const {
-  const Result<Hdf5Id> object = OpenObject(path);
-  if (!object) return tl::unexpected(object.error());
+  PREHEND_TRY(const Hdf5Id object, OpenObject(path));
   Hdf5Object description;
   description.kind = Hdf5Kind::kGroup;
-  if (H5Iget_type(*object) == H5I_DATASET) description = ObjectOf(*object);
+  if (H5Iget_type(object) == H5I_DATASET) description = ObjectOf(object);
   description.name = path.substr(path.rfind('/') + 1);
   return description;
 }
 
 Result<std::vector<std::string>> Hdf5File::NamesIn(const std::string& path) const {
-  const Result<Hdf5Id> group = OpenObject(path);
-  if (!group) return tl::unexpected(group.error());
-  if (H5Iget_type(*group) != H5I_GROUP)
+  PREHEND_TRY(const Hdf5Id group, OpenObject(path));
+  if (H5Iget_type(group) != H5I_GROUP)
     return tl::unexpected(Error(fmt::format("'{}' is a dataset; expected a group", path)));
   std::vector<std::string> names;
   const herr_t status = H5Literate(
-      *group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr,
+      group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr,
       [](hid_t, const char* name, const H5L_info_t*, void* to) -> herr_t {
         auto& all = *static_cast<std::vector<std::string>*>(to);
         all.emplace_back(name);
@@ -358,26 +356,25 @@ std::optional<Hdf5Value> Hdf5File::Attribute(const std::string& path,
 }
 
 Result<std::vector<double>> Hdf5File::Read(const std::string& path, const Hdf5Part& part) const {
-  const Result<Hdf5Id> dataset = OpenObject(path);
-  if (!dataset) return tl::unexpected(dataset.error());
+  PREHEND_TRY(const Hdf5Id dataset, OpenObject(path));
   const auto refuse = [&](const std::string& why) {
     return tl::unexpected(Error(fmt::format("'{}' {}", path, why)));
   };
-  if (H5Iget_type(*dataset) != H5I_DATASET) return refuse("is a group; expected a dataset");
-  const Hdf5Object object = ObjectOf(*dataset);
+  if (H5Iget_type(dataset) != H5I_DATASET) return refuse("is a group; expected a dataset");
+  const Hdf5Object object = ObjectOf(dataset);
   const bool is_bool = object.kind == Hdf5Kind::kBool;
   if (!is_bool && object.kind != Hdf5Kind::kFloat && object.kind != Hdf5Kind::kInteger)
     return refuse(fmt::format("is {}; expected numbers", object.Text()));
   const std::uint64_t rows = object.Rows(), width = object.Width();
   if (width > kMostHdf5Values || rows > kMostHdf5Values / std::max<std::uint64_t>(width, 1))
     return refuse(fmt::format("is {}; at most {} values are read", object.Text(), kMostHdf5Values));
-  if (const std::string why = ChunkProblem(*dataset, object); !why.empty()) return refuse(why);
-  const Hdf5Id type(H5Dget_type(*dataset));
+  if (const std::string why = ChunkProblem(dataset, object); !why.empty()) return refuse(why);
+  const Hdf5Id type(H5Dget_type(dataset));
   std::vector<double> values(rows * width);
   std::vector<std::int8_t> flags(is_bool ? values.size() : 0);
   const hid_t as = is_bool ? static_cast<hid_t>(type) : H5T_NATIVE_DOUBLE;
   void* const to = is_bool ? static_cast<void*>(flags.data()) : values.data();
-  if (!values.empty() && H5Dread(*dataset, as, H5S_ALL, H5S_ALL, H5P_DEFAULT, to) < 0)
+  if (!values.empty() && H5Dread(dataset, as, H5S_ALL, H5S_ALL, H5P_DEFAULT, to) < 0)
     return refuse("is damaged: " + InnermostError());
   std::ranges::copy(flags, values.begin());
   const std::uint64_t from = std::min(part.first, width),

@@ -20,13 +20,10 @@ grammar::Diagnostics OfGroup(const std::string& group, grammar::Diagnostics erro
 
 Result<DemonstrationImport> DemonstrationImport::Open(const std::string& poses_path,
                                                       const std::string& map_path) {
-  Result<MapFile> map = ReadImportMap(map_path, PoseFormat::kHdf5);
-  if (!map) return tl::unexpected(map.error());
+  PREHEND_TRY(MapFile map, ReadImportMap(map_path, PoseFormat::kHdf5));
   DemonstrationImport import;
-  import.map_ = std::make_unique<MapFile>(std::move(*map));
-  auto demonstrations = Demonstrations::Open(poses_path, *import.map_);
-  if (!demonstrations) return tl::unexpected(demonstrations.error());
-  import.demonstrations_ = std::move(*demonstrations);
+  import.map_ = std::make_unique<MapFile>(std::move(map));
+  PREHEND_TRY(import.demonstrations_, Demonstrations::Open(poses_path, *import.map_));
   return import;
 }
 

@@ -523,11 +523,9 @@ Result<Imported> ImportPoses(const std::string& poses_path, const std::string& m
   if (*format == PoseFormat::kHdf5)
     return tl::unexpected(ErrorOfFile(
         poses_path, "demonstrations in HDF5 are imported alone: all of one file in one call"));
-  const Result<MapFile> map = ReadMapFor(poses_path, *format, ReadYamlFile(map_path));
-  if (!map) return tl::unexpected(map.error());
-  Result<PoseFile> poses = ReadPoses(poses_path, *format, *map);
-  if (!poses) return tl::unexpected(poses.error());
-  return ImportPoses(std::move(*poses), *map);
+  PREHEND_TRY(const MapFile map, ReadMapFor(poses_path, *format, ReadYamlFile(map_path)));
+  PREHEND_TRY(PoseFile poses, ReadPoses(poses_path, *format, map));
+  return ImportPoses(std::move(poses), map);
 }
 
 Result<Imported> ImportPoses(PoseFile poses, const MapFile& map) {

@@ -87,12 +87,10 @@ class MapProposer {
     if (!why.empty()) return tl::unexpected(why);
     // What is guessed of how they move asks for the next guess: the unit, then the axes.
     for (int guesses = 0; guesses < 4; ++guesses) {
-      Result<MapFile> map = Read();
-      if (!map) return tl::unexpected(map.error());
-      map->map.is_draft = true;
-      Result<PoseFile> poses = ReadPoses(path_, format_, *map);
-      if (!poses) return tl::unexpected(poses.error());
-      if (!Improve(*poses, map->map)) break;
+      PREHEND_TRY(MapFile map, Read());
+      map.map.is_draft = true;
+      PREHEND_TRY(PoseFile poses, ReadPoses(path_, format_, map));
+      if (!Improve(poses, map.map)) break;
     }
     Try();
     return MapText(true);
@@ -101,16 +99,15 @@ class MapProposer {
  private:
   /// Bodies of what is called as poses are.
   grammar::Diagnostics TakeRows() {
-    const Result<FoundPoses> found =
-        format_ == PoseFormat::kJson ? FindJsonPoses(path_) : FindNpzPoses(path_);
-    if (!found) return found.error();
-    keys_ = found->keys, needs_rate_ = found->needs_rate, aside_ = found->aside;
+    PREHEND_TRY(const FoundPoses found,
+                format_ == PoseFormat::kJson ? FindJsonPoses(path_) : FindNpzPoses(path_));
+    keys_ = found.keys, needs_rate_ = found.needs_rate, aside_ = found.aside;
     if (format_ == PoseFormat::kJson)
       doubts_.push_back("logs of Unity and Unreal have left-handed axes: handed: left");
     const auto is_bone = [](const FoundBody& body) { return IsBone(WordsIn(body.called)); };
-    const bool all_bones = std::ranges::all_of(found->bodies, is_bone);
+    const bool all_bones = std::ranges::all_of(found.bodies, is_bone);
     std::set<std::string> taken;
-    for (const FoundBody& body : found->bodies) {
+    for (const FoundBody& body : found.bodies) {
       if (body.From().empty() || bodies_.size() >= kMostEntities || (!all_bones && is_bone(body))) {
         aside_.push_back(body.From().empty() ? body.rotation : body.From());
         continue;
@@ -127,9 +124,7 @@ class MapProposer {
   grammar::Diagnostics TakeHead() {
     Result<std::string> text = std::string();
     if (format_ == PoseFormat::kC3d) {
-      const Result<TableLayout> layout = LayoutOfC3d(path_);
-      if (!layout) return layout.error();
-      layout_ = *layout;
+      PREHEND_TRY(layout_, LayoutOfC3d(path_));
     } else {
       text = ReadTextFile(path_, kMaxPoseFileBytes);
       if (!text) return text.error();
@@ -170,14 +165,12 @@ class MapProposer {
   /// By a map without entities: then none of them is used.
   grammar::Diagnostics FindBodies() {
     bodies_ = {{.from = "?", .name = "body"}};
-    Result<MapFile> map = Read();
-    if (!map) return map.error();
-    map->map.entities.clear();
-    map->map.is_draft = true;
-    const Result<PoseFile> poses = ReadPoses(path_, format_, *map);
-    if (!poses) return poses.error();
-    std::vector<std::string> names = poses->unused;
-    if (format_ == PoseFormat::kCsv && map->map.columns.IsOfOneBody())
+    PREHEND_TRY(MapFile map, Read());
+    map.map.entities.clear();
+    map.map.is_draft = true;
+    PREHEND_TRY(const PoseFile poses, ReadPoses(path_, format_, map));
+    std::vector<std::string> names = poses.unused;
+    if (format_ == PoseFormat::kCsv && map.map.columns.IsOfOneBody())
       names = {std::filesystem::path(path_).stem().string()};
     bodies_.clear();
     std::set<std::string> taken;

@@ -247,14 +247,13 @@ constexpr const char* kRootOfThings = "knowrob:Entity";
 
 Result<Vocabulary> Vocabulary::Load() {
   const std::string file = Shipped(kTerminology);
-  Result<std::string> text = ReadTextFile(file);
-  if (!text) return tl::unexpected(text.error());
+  PREHEND_TRY(std::string text, ReadTextFile(file));
   std::string problem;
-  const std::vector<Triple> triples = ReadTurtle(*text, problem);
+  const std::vector<Triple> triples = ReadTurtle(text, problem);
   if (!problem.empty())
     return tl::unexpected(grammar::Diagnostics{{.file = file, .message = problem}});
   Vocabulary vocabulary;
-  vocabulary.text_ = std::move(*text);
+  vocabulary.text_ = std::move(text);
   std::map<std::string, EventTerm> terms;  // by their names
   std::map<std::string, std::string> event_names;
   vocabulary.things_.insert(kRootOfThings);

@@ -53,11 +53,11 @@ Result<void> EachPoses(episode::Episode& episode,
 
 Result<Poses> FirstPoses(episode::Episode& episode) {
   if (episode.recording()) return PosesIn(episode.recording()->frames.front());
-  const auto first = episode::EpisodeFrames(*episode.file(), *episode.row(),
-                                            episode::LayoutOf(episode.loaded().scenario.scene))
-                         .At(1);
-  if (!first) return tl::unexpected(first.error());
-  return PosesIn(*first);
+  PREHEND_TRY(const auto first,
+              episode::EpisodeFrames(*episode.file(), *episode.row(),
+                                     episode::LayoutOf(episode.loaded().scenario.scene))
+                  .At(1));
+  return PosesIn(first);
 }
 
 grammar::Diagnostics Problem(const std::string& file, const std::string& message) {
@@ -87,24 +87,20 @@ class KnowledgeWriter {
   grammar::Diagnostics WriteTerminology() { return WriteText("prehend", vocabulary_.text()); }
 
   grammar::Diagnostics Write(const episode::EpisodeName& name) {
-    Result<episode::Episode> opened = opener_.Open(name);
-    if (!opened) return opened.error();
-    file_ = opened->file();
-    const episode::EpisodeRow* row = opened->row();
+    PREHEND_TRY(episode::Episode opened, opener_.Open(name));
+    file_ = opened.file();
+    const episode::EpisodeRow* row = opened.row();
     EpisodeOfTask episode{.row = *row, .file = fs::absolute(name.file).string()};
-    auto timeline = opened->Recorded();
-    if (!timeline) return timeline.error();
-    episode.timeline = std::move(*timeline);
-    for (const grammar::EventSignature& event : grammar::EventSignatures(*opened->program()))
+    PREHEND_TRY(episode.timeline, opened.Recorded());
+    for (const grammar::EventSignature& event : grammar::EventSignatures(*opened.program()))
       if (event.composed) episode.composed.insert(event.name);
 
-    auto map = MapOf(*row, *opened);
-    if (!map) return map.error();
-    const std::vector<Triple> triples = EpisodeTriples(episode, **map, vocabulary_);
+    PREHEND_TRY(auto map, MapOf(*row, opened));
+    const std::vector<Triple> triples = EpisodeTriples(episode, *map, vocabulary_);
     ++written_.episodes;
     written_.events += episode.timeline.events.size();
     grammar::Diagnostics bad = WriteTriples("episodes/" + row->uuid, triples);
-    if (bad.empty() && request_.neem) bad = WriteNeem(*row, **map, triples, *opened);
+    if (bad.empty() && request_.neem) bad = WriteNeem(*row, *map, triples, opened);
     return bad;
   }
 
@@ -118,17 +114,13 @@ class KnowledgeWriter {
 
   /// The map of the episode's task, which is written when it is first asked for.
   Result<const MapOfTask*> MapOf(const episode::EpisodeRow& row, episode::Episode& episode) {
-    auto task = file_->DescribeTaskOf(row);
-    if (!task) return tl::unexpected(task.error());
-    const std::string uuid = task->uuid;
+    PREHEND_TRY(auto task, file_->DescribeTaskOf(row));
+    const std::string uuid = task.uuid;
     if (const auto known = maps_.find(uuid); known != maps_.end()) return &known->second.map;
-    auto entities = file_->EntitiesOf(row);
-    if (!entities) return tl::unexpected(entities.error());
+    PREHEND_TRY(auto entities, file_->EntitiesOf(row));
     MapOfTask map{
-        .task = std::move(*task), .scenario = row.scenario, .entities = std::move(*entities)};
-    Result<Poses> first = FirstPoses(episode);
-    if (!first) return tl::unexpected(first.error());
-    map.poses = std::move(*first);
+        .task = std::move(task), .scenario = row.scenario, .entities = std::move(entities)};
+    PREHEND_TRY(map.poses, FirstPoses(episode));
     std::vector<Triple> triples = MapTriples(map, vocabulary_);
     hierarchy_.Add(triples);
     ++written_.tasks;
@@ -227,9 +219,8 @@ class KnowledgeWriter {
 
 Result<KnowledgeWritten> WriteKnowledge(const std::vector<episode::EpisodeName>& episodes,
                                         const KnowledgeRequest& request) {
-  Result<Vocabulary> vocabulary = Vocabulary::Load();
-  if (!vocabulary) return tl::unexpected(vocabulary.error());
-  KnowledgeWriter writer(request, std::move(*vocabulary));
+  PREHEND_TRY(Vocabulary vocabulary, Vocabulary::Load());
+  KnowledgeWriter writer(request, std::move(vocabulary));
   if (const grammar::Diagnostics bad = writer.WriteTerminology(); !bad.empty())
     return tl::unexpected(bad);
   for (const episode::EpisodeName& episode : episodes) {

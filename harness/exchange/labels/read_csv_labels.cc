@@ -435,10 +435,9 @@ Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
       separator = Lower(file.file).ends_with(".tsv") ? '\t' : SeparatorOf(line);
       std::vector<std::string> words;
       for (const CsvCell& cell : CsvCellsOf(line, separator)) words.emplace_back(cell.text);
-      Result<CsvColumns> known = ColumnFinder(file, words, how).Find();
-      if (!known) return known.error();
+      PREHEND_TRY(CsvColumns known, ColumnFinder(file, words, how).Find());
       width = words.size();
-      rows.emplace(file, std::move(*known), std::move(words));
+      rows.emplace(file, std::move(known), std::move(words));
       continue;
     }
     if (line.find_first_not_of(" \t") == std::string_view::npos) continue;

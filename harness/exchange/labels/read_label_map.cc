@@ -286,9 +286,8 @@ class MapReader {
 }  // namespace
 
 Result<LabelMap> ReadLabelMap(const std::string& path, const std::vector<EventSignature>& events) {
-  Result<YamlDocument> document = ReadYamlFile(path);
-  if (!document) return tl::unexpected(std::move(document.error()));
-  LabelMap map{.document = std::move(*document)};
+  PREHEND_TRY(YamlDocument document, ReadYamlFile(path));
+  LabelMap map{.document = std::move(document)};
   Diagnostics problems = MapReader(map, events).Read();
   if (!problems.empty()) return tl::unexpected(std::move(problems));
   return map;

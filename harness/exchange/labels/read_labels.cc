@@ -114,9 +114,8 @@ bool IsTable(const std::string& path) {
 }
 
 Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv, Backward backward) {
-  Result<std::string> text = ReadAnyUtf(path);
-  if (!text) return tl::unexpected(std::move(text.error()));
-  LabelFile file{.file = path, .text = std::move(*text)};
+  PREHEND_TRY(std::string text, ReadAnyUtf(path));
+  LabelFile file{.file = path, .text = std::move(text)};
   const std::string ending = LowerEnding(path);
   Diagnostics problems;
   if (IsTable(path)) {
@@ -146,10 +145,9 @@ Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv, Bac
 }
 
 Diagnostics ReadGoldenLabels(LabelFile& file) {
-  const Result<truth::Golden> golden = truth::ReadGolden(file.file, file.text);
-  if (!golden) return golden.error();
-  const auto per_s = static_cast<double>(golden->ticks_per_second);
-  for (const truth::GoldenEvent& line : golden->events) {
+  PREHEND_TRY(const truth::Golden golden, truth::ReadGolden(file.file, file.text));
+  const auto per_s = static_cast<double>(golden.ticks_per_second);
+  for (const truth::GoldenEvent& line : golden.events) {
     file.labels.push_back({.begin_s = static_cast<double>(line.event.interval.begin) / per_s,
                            .end_s = static_cast<double>(line.event.interval.end) / per_s,
                            .text = line.event.Label(),

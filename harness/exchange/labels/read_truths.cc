@@ -303,9 +303,8 @@ Result<std::optional<LabelMap>> MapOf(const std::vector<episode::Take>& takes,
                                       const std::vector<grammar::EventSignature>& events) {
   const std::string& path = map.empty() ? takes.front().map : map;
   if (path.empty()) return std::optional<LabelMap>();
-  Result<LabelMap> meaning = ReadLabelMap(path, events);
-  if (!meaning) return tl::unexpected(std::move(meaning.error()));
-  return std::optional<LabelMap>(std::move(*meaning));
+  PREHEND_TRY(LabelMap meaning, ReadLabelMap(path, events));
+  return std::optional<LabelMap>(std::move(meaning));
 }
 
 }  // namespace

@@ -78,10 +78,8 @@ grammar::Diagnostics LivePoses::Begin(const std::string& row, episode::EpisodeSt
              .source_line = {},
              .hint = "without --map"}};
   if (is_json) head_ = row + "\n";
-  Result<MapFile> map = is_json ? ReadImportMap(map_path_, PoseFormat::kJson)
-                                : ReadMapOfHead(ReadYamlFile(map_path_), head_);
-  if (!map) return map.error();
-  map_ = std::move(*map);
+  PREHEND_TRY(map_, is_json ? ReadImportMap(map_path_, PoseFormat::kJson)
+                            : ReadMapOfHead(ReadYamlFile(map_path_), head_));
   collects_ =
       !map_->map.columns.body.empty() || std::ranges::any_of(map_->map.entities, IsOfSomeLines);
   DiagnosticList errors(map_->document);

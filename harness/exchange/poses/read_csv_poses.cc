@@ -588,9 +588,8 @@ PoseLines::PoseLines(const std::string& name, std::string head, const MapFile& m
 }
 
 Result<PoseFile> ReadCsvPoses(const std::string& path, const MapFile& map) {
-  Result<std::string> text = ReadTextFile(path, kMaxPoseFileBytes);
-  if (!text) return tl::unexpected(std::move(text.error()));
-  CsvPoseReader reader(path, std::move(*text), map);
+  PREHEND_TRY(std::string text, ReadTextFile(path, kMaxPoseFileBytes));
+  CsvPoseReader reader(path, std::move(text), map);
   reader.Read();
   if (Diagnostics problems = reader.Problems(); !problems.empty())
     return tl::unexpected(std::move(problems));

@@ -82,22 +82,18 @@ Result<grammar::Timeline> Foreign::Find(const std::vector<episode::Take>& takes,
 
 Result<EpisodeToScore> HeardIn(episode::Episode& episode, const Asking& asking) {
   const grammar::Program& program = *episode.program();
-  const Result<grammar::Tick> end = episode.EndTick();
-  if (!end) return tl::unexpected(end.error());
+  PREHEND_TRY(const grammar::Tick end, episode.EndTick());
   exchange::ComparedRoles roles;
   for (const grammar::EventSignature& event : grammar::EventSignatures(program))
     roles[event.name] = event.roles;
-  EpisodeToScore said{.ticks = *end};
+  EpisodeToScore said{.ticks = end};
   episode::EpisodeName name = episode.name();
   if (name.origin == episode::Origin::kRecording && !name.number)  // a path, where it is checked
     name.scenario = std::filesystem::path(name.file).stem().string();
   WatchedEpisode watched = Watched(episode);
   watched.name = name.scenario;
-  Result<grammar::Timeline> found =
-      Foreign(asking, asking.sources.front())
-          .Find(episode::TakesOf({name}), 0, watched, program, roles, said);
-  if (!found) return tl::unexpected(std::move(found.error()));
-  said.found = std::move(*found);
+  PREHEND_TRY(said.found, Foreign(asking, asking.sources.front())
+                              .Find(episode::TakesOf({name}), 0, watched, program, roles, said));
   return said;
 }
 

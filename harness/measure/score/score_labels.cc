@@ -51,15 +51,13 @@ std::string ClockWarning(const std::string& grammar, const std::vector<EpisodeTo
 /// The labels of one take, and nothing found yet.
 Result<EpisodeToScore> Labelled(episode::Episode& episode, const episode::Take& take,
                                 std::size_t index, const exchange::LabelReading& truths) {
-  const Result<grammar::Tick> end = episode.EndTick();
-  if (!end) return tl::unexpected(end.error());
+  PREHEND_TRY(const grammar::Tick end, episode.EndTick());
   const grammar::EntityTable table = episode.entities();
-  Result<grammar::Timeline> truth =
-      truths.Truth(index, table.entities, table.ticks_per_second, *end);
-  if (!truth) return tl::unexpected(std::move(truth.error()));
+  PREHEND_TRY(grammar::Timeline truth,
+              truths.Truth(index, table.entities, table.ticks_per_second, end));
   return EpisodeToScore{.scenario = episode.name().scenario,
-                        .ticks = *end,
-                        .truth = std::move(*truth),
+                        .ticks = end,
+                        .truth = std::move(truth),
                         .person = take.person,
                         .set = take.set,
                         .video = truths.rows(index).video,
@@ -108,11 +106,10 @@ Result<std::vector<exchange::LabelFile>> ReadBoth(const LabelFilesRequest& reque
   std::vector<exchange::LabelFile> files;
   for (const auto* side : {&request.truth, &request.files}) {
     for (const std::string& path : *side) {
-      auto file = exchange::ReadLabels(path, csv, request.backward);
-      if (!file) return tl::unexpected(std::move(file.error()));
-      if (csv.take.empty() && !file->several.empty())
-        return tl::unexpected(grammar::Diagnostics{exchange::SeveralTakes(*file, path)});
-      files.push_back(std::move(*file));
+      PREHEND_TRY(auto file, exchange::ReadLabels(path, csv, request.backward));
+      if (csv.take.empty() && !file.several.empty())
+        return tl::unexpected(grammar::Diagnostics{exchange::SeveralTakes(file, path)});
+      files.push_back(std::move(file));
     }
   }
   return files;
@@ -179,9 +176,8 @@ class LabelScorer {
       if (!request_.first_is_truth || &source != sources.data()) scores_.opinions.emplace_back();
       for (const Together& group :
            Grouped(request_.takes, is_grammar ? source.text : request_.asking.WhoseEvents())) {
-        const auto added =
-            Add(group, is_grammar ? nullptr : &foreign, source.text, &source == sources.data());
-        if (!added) return tl::unexpected(added.error());
+        PREHEND_TRY(const auto added, Add(group, is_grammar ? nullptr : &foreign, source.text,
+                                          &source == sources.data()));
       }
     }
     return std::move(scores_);
@@ -197,9 +193,8 @@ class LabelScorer {
       auto why = episode::WhyNotOneGrammar(names, request_.root);
       if (!why.empty()) return tl::unexpected(std::move(why));
     }
-    const auto settings = episode::ParameterSettings(request_.settings);
-    if (!settings) return tl::unexpected(settings.error());
-    const grammar::CompileResult compiled = opener_.Compile(names.front(), group.asked, *settings);
+    PREHEND_TRY(const auto settings, episode::ParameterSettings(request_.settings));
+    const grammar::CompileResult compiled = opener_.Compile(names.front(), group.asked, settings);
     if (!compiled.program) return tl::unexpected(compiled.diagnostics);
     const auto truths =
         request_.first_is_truth
@@ -213,31 +208,28 @@ class LabelScorer {
     if (is_first) scores_.counted += truths->counted();
     std::vector<EpisodeToScore> all;
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const auto episode = Open(names[i], group.asked);
-      if (!episode) return tl::unexpected(episode.error());
-      if ((*episode)->recording() && !foreign)
-        AddMissing(episode::FindMissingFacts(*(*episode)->recording(), *compiled.program));
-      Result<EpisodeToScore> labelled =
-          Labelled(**episode, request_.takes[group.takes[i]], i, *truths);
-      if (!labelled) return tl::unexpected(std::move(labelled.error()));
+      PREHEND_TRY(const auto episode, Open(names[i], group.asked));
+      if (episode->recording() && !foreign)
+        AddMissing(episode::FindMissingFacts(*episode->recording(), *compiled.program));
+      PREHEND_TRY(EpisodeToScore labelled,
+                  Labelled(*episode, request_.takes[group.takes[i]], i, *truths));
       if (is_first)
         scores_.counted.cut +=
-            truths->Cut(i, static_cast<double>(labelled->ticks) /
-                               static_cast<double>((*episode)->entities().ticks_per_second));
-      const Result<grammar::Timeline> found =
-          foreign ? foreign->Find(request_.takes, group.takes[i], Watched(**episode),
-                                  *compiled.program, truths->compared(), *labelled)
-                  : (*episode)->Segment(compiled.program);
-      if (!found) return tl::unexpected(found.error());
+            truths->Cut(i, static_cast<double>(labelled.ticks) /
+                               static_cast<double>(episode->entities().ticks_per_second));
+      PREHEND_TRY(const grammar::Timeline found,
+                  foreign ? foreign->Find(request_.takes, group.takes[i], Watched(*episode),
+                                          *compiled.program, truths->compared(), labelled)
+                          : episode->Segment(compiled.program));
       if (const auto said = first_.find(group.takes[i]); said != first_.end())
-        labelled->truth = said->second;
-      AddFound(*found, i, *truths, request_.collar_s, *labelled);
-      labelled->take = group.takes[i];
-      if (said_.insert(labelled->notes).second) warnings_ += labelled->notes;
-      if (!labelled->failure.empty())
+        labelled.truth = said->second;
+      AddFound(found, i, *truths, request_.collar_s, labelled);
+      labelled.take = group.takes[i];
+      if (said_.insert(labelled.notes).second) warnings_ += labelled.notes;
+      if (!labelled.failure.empty())
         scores_.failures += fmt::format("prehend: {} was not scored by {}: {}", names[i].scenario,
-                                        named, labelled->failure);
-      all.push_back(std::move(*labelled));
+                                        named, labelled.failure);
+      all.push_back(std::move(labelled));
     }
     if (std::ranges::none_of(all, [](const auto& one) { return one.failure.empty(); })) return {};
     const std::string& name = named.empty() && group.asked.empty() ? GrammarName(*compiled.program)
@@ -262,9 +254,8 @@ class LabelScorer {
   Result<episode::Episode*> Open(const episode::EpisodeName& name, const std::string& grammar) {
     for (const auto& known : episodes_)
       if (known->name() == name) return known.get();
-    Result<episode::Episode> episode = opener_.Open(name, {grammar, request_.settings});
-    if (!episode) return tl::unexpected(std::move(episode.error()));
-    episodes_.push_back(std::make_unique<episode::Episode>(std::move(*episode)));
+    PREHEND_TRY(episode::Episode episode, opener_.Open(name, {grammar, request_.settings}));
+    episodes_.push_back(std::make_unique<episode::Episode>(std::move(episode)));
     return episodes_.back().get();
   }
 
@@ -337,34 +328,31 @@ Result<LabelScores> ScoreLabelFiles(const LabelFilesRequest& request, std::strin
   if (!request.label_map.empty()) {
     if (events.empty())
       return Refused("no recording says which events there are", "--grammar NAME, for the map");
-    Result<exchange::LabelMap> read = exchange::ReadLabelMap(request.label_map, events);
-    if (!read) return tl::unexpected(std::move(read.error()));
-    map = std::move(*read);
+    PREHEND_TRY(map, exchange::ReadLabelMap(request.label_map, events));
   }
-  auto files = ReadBoth(request, map ? map->csv : exchange::CsvReading{});
-  if (!files) return tl::unexpected(std::move(files.error()));
-  if (events.empty()) map = MapOf(*files, events);
-  const auto reading = exchange::LabelReading::Of(std::move(*files), map ? &*map : nullptr, events);
-  if (!reading) return tl::unexpected(reading.error());
-  warnings += exchange::WarningsOf(*reading);
+  PREHEND_TRY(auto files, ReadBoth(request, map ? map->csv : exchange::CsvReading{}));
+  if (events.empty()) map = MapOf(files, events);
+  PREHEND_TRY(const auto reading,
+              exchange::LabelReading::Of(std::move(files), map ? &*map : nullptr, events));
+  warnings += exchange::WarningsOf(reading);
   std::vector<EpisodeToScore> all;
   for (std::size_t i = 0; i < count; ++i) {
-    const double end_s = std::max(reading->EndOf(i), reading->EndOf(count + i));
+    const double end_s = std::max(reading.EndOf(i), reading.EndOf(count + i));
     const auto end =
         std::max<grammar::Tick>(1, std::llround(end_s * static_cast<double>(kTicksPerSecond)));
     EpisodeToScore pair{.scenario = request.files[i],
                         .ticks = end,
-                        .truth = reading->Marked(i, kTicksPerSecond, end, false),
-                        .found = reading->Marked(count + i, kTicksPerSecond, end, false)};
-    pair.moments = reading->TakeMoments(
+                        .truth = reading.Marked(i, kTicksPerSecond, end, false),
+                        .found = reading.Marked(count + i, kTicksPerSecond, end, false)};
+    pair.moments = reading.TakeMoments(
         i, pair.truth, std::llround(request.collar_s * static_cast<double>(kTicksPerSecond)),
         pair.found);
     all.push_back(std::move(pair));
   }
   LabelScores scores;
   AddScores(fmt::format("{}", fmt::join(request.files, ", ")), std::move(all), request.collar_s,
-            request.is_collar_asked ? Collars{} : reading->collars_s(), scores);
-  scores.counted = reading->counted();
+            request.is_collar_asked ? Collars{} : reading.collars_s(), scores);
+  scores.counted = reading.counted();
   scores.counted.takes = count;
   scores.of_people = true;
   return scores;

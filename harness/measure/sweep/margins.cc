@@ -104,13 +104,12 @@ double Width(const Margin& margin) {
 Result<Margins> FindMargins(const std::vector<episode::Take>& takes, SweepRequest request,
                             double within, const std::vector<std::string>& only,
                             const std::function<void(const Margins&)>& so_far) {
-  const Result<grammar::Overrides> fixed = episode::ParameterSettings(request.settings);
-  if (!fixed) return tl::unexpected(fixed.error());
+  PREHEND_TRY(const grammar::Overrides fixed, episode::ParameterSettings(request.settings));
   episode::EpisodeOpener opener(request.root);
   const CompileWith compile = [&](const grammar::Overrides& overrides) {
     return opener.Compile(takes.front().episode, request.grammar, overrides);
   };
-  const grammar::CompileResult compiled = compile(*fixed);
+  const grammar::CompileResult compiled = compile(fixed);
   if (!compiled.program) return tl::unexpected(compiled.diagnostics);
   const std::vector<grammar::ProgramParam> params = grammar::Describe(*compiled.program).params;
   if (auto unknown = UnknownAmong(only, params)) return tl::unexpected(std::move(*unknown));
@@ -124,7 +123,7 @@ Result<Margins> FindMargins(const std::vector<episode::Take>& takes, SweepReques
       continue;
     }
     tried.emplace_back();
-    tried.back().axis = AxisOf(param, *fixed, compile, tried.back().own);
+    tried.back().axis = AxisOf(param, fixed, compile, tried.back().own);
     settings += tried.back().axis.values.size();
   }
   // What is told is about all of them.
@@ -144,9 +143,8 @@ Result<Margins> FindMargins(const std::vector<episode::Take>& takes, SweepReques
     const auto some = std::span(tried).subspan(first, std::min(at_once, tried.size() - first));
     request.axes.clear();
     for (const TriedAxis& one : some) request.axes.push_back(one.axis);
-    Result<SweepResult> swept = Sweep(takes, request);
-    if (!swept) return tl::unexpected(std::move(swept.error()));
-    std::span<const SweepPoint> points = swept->points;
+    PREHEND_TRY(SweepResult swept, Sweep(takes, request));
+    std::span<const SweepPoint> points = swept.points;
     before += points.size();
     for (const TriedAxis& one : some) {
       const std::size_t own_points = one.axis.values.size();
@@ -154,7 +152,7 @@ Result<Margins> FindMargins(const std::vector<episode::Take>& takes, SweepReques
       points = points.subspan(own_points);
     }
     std::ranges::stable_sort(all.margins, {}, Width);
-    all.sweep = std::move(*swept);
+    all.sweep = std::move(swept);
     if (all.sweep.episodes == 0) break;
     if (so_far) so_far(all);
   }

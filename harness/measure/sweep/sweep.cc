@@ -90,11 +90,10 @@ std::vector<grammar::Overrides> Settings(const SweepRequest& request) {
 
 Result<Programs> CompileAll(const SweepRequest& request, const episode::EpisodeName& first) {
   episode::EpisodeOpener opener(request.root);
-  const Result<grammar::Overrides> fixed = episode::ParameterSettings(request.settings);
-  if (!fixed) return tl::unexpected(fixed.error());
+  PREHEND_TRY(const grammar::Overrides fixed, episode::ParameterSettings(request.settings));
   Programs programs;
   for (grammar::Overrides& overrides : Settings(request)) {
-    overrides.insert(fixed->begin(), fixed->end());
+    overrides.insert(fixed.begin(), fixed.end());
     grammar::CompileResult compiled = opener.Compile(first, request.grammar, overrides);
     if (!compiled.program) return tl::unexpected(std::move(compiled.diagnostics));
     programs.push_back(std::move(compiled.program));
@@ -296,15 +295,13 @@ std::string MeasureText(const SweepRequest& request) {
 
 Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRequest& request) {
   const std::vector<episode::EpisodeName> episodes = EpisodesOf(takes);
-  const Result<Programs> programs = CompileAll(request, episodes.front());
-  if (!programs) return tl::unexpected(programs.error());
+  PREHEND_TRY(const Programs programs, CompileAll(request, episodes.front()));
   std::optional<exchange::LabelReading> labels;
   if (request.truth == Truth::kLabels) {
-    Result<exchange::LabelReading> read = exchange::ReadTruths(
-        takes, request.label_files, request.label_map, *programs->front(),
-        request.skip_bad_labels ? exchange::Backward::kSkip : exchange::Backward::kRefuse);
-    if (!read) return tl::unexpected(std::move(read.error()));
-    labels = std::move(*read);
+    PREHEND_TRY(labels, exchange::ReadTruths(
+                            takes, request.label_files, request.label_map, *programs.front(),
+                            request.skip_bad_labels ? exchange::Backward::kSkip
+                                                    : exchange::Backward::kRefuse));
   }
   const std::size_t slices =
       std::min(episodes.size(), kSlicesPerJob * static_cast<std::size_t>(request.jobs));
@@ -317,12 +314,12 @@ Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRe
       episode::EpisodeOpener opener(request.root);
       std::vector<JudgedSettings> all;
       for (std::size_t i = slice; i < episodes.size(); i += slices)
-        all.push_back(JudgedEpisode(episodes[i], i, labels, request, *programs, opener, measured));
+        all.push_back(JudgedEpisode(episodes[i], i, labels, request, programs, opener, measured));
       return ToWire(all);
     });
   }
   const std::function<void()> tell = [&] {
-    request.progress(static_cast<std::size_t>(measured.load()), programs->size() * episodes.size());
+    request.progress(static_cast<std::size_t>(measured.load()), programs.size() * episodes.size());
   };
   const double limit_s =
       kTimeLimit_s * static_cast<double>(request.one_at_a_time ? request.axes.size() : 1);
@@ -330,12 +327,12 @@ Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRe
                                  request.progress ? tell : std::function<void()>());
 
   SweepResult result;
-  result.grammar = GrammarName(*programs->front());
+  result.grammar = GrammarName(*programs.front());
   result.measure = MeasureText(request);
   if (labels) result.label_warning = exchange::WarningsOf(*labels);
   if (labels) result.counted = labels->counted().Text();
-  result.points.resize(programs->size());
-  std::vector<std::vector<std::int64_t>> begins(programs->size()), ends(begins), latencies(begins);
+  result.points.resize(programs.size());
+  std::vector<std::vector<std::int64_t>> begins(programs.size()), ends(begins), latencies(begins);
   for (std::size_t slice = 0; slice < slices; ++slice) {
     std::vector<JudgedSettings> of_slice;
     if (said[slice].finished) of_slice = FromWire<std::vector<JudgedSettings>>(said[slice].output);
@@ -347,7 +344,7 @@ Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRe
         continue;
       }
       ++result.episodes;
-      for (std::size_t p = 0; p < programs->size(); ++p) {
+      for (std::size_t p = 0; p < programs.size(); ++p) {
         const JudgedSetting& judged = one.settings[p];
         SweepPoint& point = result.points[p];
         point.correct += judged.correct;

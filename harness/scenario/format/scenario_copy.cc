@@ -66,15 +66,14 @@ struct Edit {
 
 Result<std::string> CopyOfScenario(const fs::path& from, const std::string& text,
                                    const fs::path& to) {
-  const Result<YamlDocument> document = ParseYaml(from.string(), text);
-  if (!document) return tl::unexpected(document.error());
+  PREHEND_TRY(const YamlDocument document, ParseYaml(from.string(), text));
   std::vector<Edit> edits;
-  if (const YamlNode* name = document->root.Find("scenario");
+  if (const YamlNode* name = document.root.Find("scenario");
       name && name->kind == YamlNode::Kind::kScalar)
     edits.push_back({name, to.stem().string()});
   const fs::path old_folder = fs::absolute(from).lexically_normal().parent_path();
   const fs::path new_folder = fs::absolute(to).lexically_normal().parent_path();
-  ForEachFile(document->root, [&](const YamlNode& node) {
+  ForEachFile(document.root, [&](const YamlNode& node) {
     const fs::path file = node.text;
     if (old_folder == new_folder || file.is_absolute()) return;
     edits.push_back({&node, (old_folder / file).lexically_relative(new_folder).generic_string()});

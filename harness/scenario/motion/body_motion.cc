@@ -209,9 +209,8 @@ class TrackMaker {
 }  // namespace
 
 Result<BodyTrack> ReadBodyTrack(const std::string& path) {
-  Result<BvhFile> bvh = ReadBvh(path);
-  if (!bvh) return tl::unexpected(std::move(bvh.error()));
-  TrackMaker maker(*bvh);
+  PREHEND_TRY(BvhFile bvh, ReadBvh(path));
+  TrackMaker maker(bvh);
   maker.Make();
   if (!maker.diagnostics.empty()) return tl::unexpected(std::move(maker.diagnostics));
   return std::move(maker.track);

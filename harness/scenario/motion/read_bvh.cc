@@ -286,9 +286,8 @@ class BvhReader {
 }  // namespace
 
 Result<BvhFile> ReadBvh(const std::string& path, const BvhLimits& limits) {
-  Result<std::string> text = ReadTextFile(path, limits.bytes);
-  if (!text) return tl::unexpected(std::move(text.error()));
-  BvhReader reader(path, std::move(*text), limits);
+  PREHEND_TRY(std::string text, ReadTextFile(path, limits.bytes));
+  BvhReader reader(path, std::move(text), limits);
   reader.Read();
   if (!reader.diagnostics.empty()) return tl::unexpected(std::move(reader.diagnostics));
   return std::move(reader.bvh);

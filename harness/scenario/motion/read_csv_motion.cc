@@ -247,9 +247,8 @@ class CsvReader {
 }  // namespace
 
 Result<MotionTrack> ReadMotionCsv(const std::string& path) {
-  Result<std::string> text = ReadTextFile(path);
-  if (!text) return tl::unexpected(std::move(text.error()));
-  CsvReader reader(path, std::move(*text));
+  PREHEND_TRY(std::string text, ReadTextFile(path));
+  CsvReader reader(path, std::move(text));
   reader.Read();
   if (!reader.diagnostics.empty()) return tl::unexpected(std::move(reader.diagnostics));
   return std::move(reader.track);

@@ -123,10 +123,8 @@ class HandReader {
       : more_grasps_(more_grasps), files_(files) {}
 
   Result<HandModel> Read(const std::string& path) {
-    Result<YamlDocument> document = ReadFile(path);
-    if (!document) return tl::unexpected(std::move(document.error()));
-    return document->root.Find("mirror_of") ? ReadMirror(path, *document)
-                                            : ReadHand(path, *document);
+    PREHEND_TRY(YamlDocument document, ReadFile(path));
+    return document.root.Find("mirror_of") ? ReadMirror(path, document) : ReadHand(path, document);
   }
 
  private:
@@ -146,11 +144,10 @@ class HandReader {
 /// Appends the styles of a grasp file. Returns its errors.
 Diagnostics HandReader::AddGrasps(const std::string& path, const HandYaml& hand, SameName same_name,
                                   HandModel& model) {
-  Result<YamlDocument> document = ReadFile(path);
-  if (!document) return std::move(document.error());
-  DiagnosticList errors(*document);
+  PREHEND_TRY(YamlDocument document, ReadFile(path));
+  DiagnosticList errors(document);
   GraspsYaml entry;
-  if (GraspsFormat().Read(document->root, errors, entry)) {
+  if (GraspsFormat().Read(document.root, errors, entry)) {
     CheckName(path, kGraspsEnding, "grasps", entry.name, errors);
     AddStyles(hand.digits, entry.styles, same_name, errors, model.styles);
   }
@@ -194,14 +191,13 @@ Result<HandModel> HandReader::ReadMirror(const std::string& path, const YamlDocu
 
   const auto original_path = FindBeside(path, kHandEnding, "mirror_of", entry.mirror_of, errors);
   if (!original_path) return tl::unexpected(errors.Sorted());
-  Result<YamlDocument> original_file = ReadFile(*original_path);
-  if (!original_file) return tl::unexpected(std::move(original_file.error()));
-  if (original_file->root.Find("mirror_of")) {
+  PREHEND_TRY(YamlDocument original_file, ReadFile(*original_path));
+  if (original_file.root.Find("mirror_of")) {
     errors.Add(entry.mirror_of.where,
                fmt::format("'{}' is itself a mirror image", entry.mirror_of.value));
     return tl::unexpected(errors.Sorted());
   }
-  Result<HandModel> original = ReadHand(*original_path, *original_file);
+  Result<HandModel> original = ReadHand(*original_path, original_file);
   if (original) {
     *original = physics::Mirrored(std::move(*original));
     original->name = entry.name.value;

@@ -339,17 +339,15 @@ Result<Scenario> ReadScenario(const std::string& file, YamlDocument document,
 
 Result<Scenario> ReadScenario(const std::string& file, const std::vector<std::string>& overrides,
                               const ScenarioLibrary& library) {
-  Result<YamlDocument> document = ReadYamlFile(file);
-  if (!document) return tl::unexpected(std::move(document.error()));
-  return ReadScenario(file, std::move(*document), overrides, library);
+  PREHEND_TRY(YamlDocument document, ReadYamlFile(file));
+  return ReadScenario(file, std::move(document), overrides, library);
 }
 
 Result<Scenario> ReadScenarioText(const std::string& file, std::string text,
                                   const std::vector<std::string>& overrides,
                                   const ScenarioLibrary& library) {
-  Result<YamlDocument> document = ParseYaml(file, std::move(text));
-  if (!document) return tl::unexpected(std::move(document.error()));
-  return ReadScenario(file, std::move(*document), overrides, library);
+  PREHEND_TRY(YamlDocument document, ParseYaml(file, std::move(text)));
+  return ReadScenario(file, std::move(document), overrides, library);
 }
 
 std::vector<truth::Claim> ReadClaims(const std::vector<Located<std::string>>& written,

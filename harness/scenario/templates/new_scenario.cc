@@ -319,11 +319,10 @@ std::vector<ThingTemplate> Bodies(const std::vector<Named<std::string>>& named) 
 /// Reads the file of a verb, whose things must be among `known`.
 Result<VerbTemplate> ReadVerb(const std::string& name, const std::string& path,
                               const std::vector<std::string>& known) {
-  const Result<YamlDocument> document = ReadYamlFile(path);
-  if (!document) return tl::unexpected(document.error());
-  Result<VerbTemplate> verb = ReadAs(VerbFormat(), *document);
+  PREHEND_TRY(const YamlDocument document, ReadYamlFile(path));
+  Result<VerbTemplate> verb = ReadAs(VerbFormat(), document);
   if (!verb) return verb;
-  DiagnosticList errors(*document);
+  DiagnosticList errors(document);
   for (const Located<std::string>& thing : verb->things)
     if (std::ranges::count(known, thing.value) == 0)
       errors.AddUnknownName(thing.where, fmt::format("no thing is called '{}'", thing.value),
@@ -405,24 +404,21 @@ std::vector<std::string> VerbNames(const std::string& root) {
 
 Result<Templates> ReadTemplates(const std::string& root) {
   const std::map<std::string, std::string> files = Files(root);
-  const Result<YamlDocument> document = ReadYamlFile(files.at(kThings));
-  if (!document) return tl::unexpected(document.error());
-  const Result<ThingsYaml> things = ReadAs(ThingsFormat(), *document);
-  if (!things) return tl::unexpected(things.error());
-  Result<std::string> frame =
-      ReadTextFile((std::filesystem::path(ShippedRoot()) / kFolder / "scenario.txt").string());
-  if (!frame) return tl::unexpected(frame.error());
-  Templates templates{.frame = std::move(*frame),
-                      .things = Bodies(things->things),
-                      .in = Bodies(things->in),
-                      .on = Bodies(things->on)};
+  PREHEND_TRY(const YamlDocument document, ReadYamlFile(files.at(kThings)));
+  PREHEND_TRY(const ThingsYaml things, ReadAs(ThingsFormat(), document));
+  PREHEND_TRY(
+      std::string frame,
+      ReadTextFile((std::filesystem::path(ShippedRoot()) / kFolder / "scenario.txt").string()));
+  Templates templates{.frame = std::move(frame),
+                      .things = Bodies(things.things),
+                      .in = Bodies(things.in),
+                      .on = Bodies(things.on)};
   std::vector<std::string> known;
   for (const ThingTemplate& thing : templates.things) known.push_back(thing.word);
   for (const auto& [name, path] : files) {
     if (name == kThings) continue;
-    Result<VerbTemplate> verb = ReadVerb(name, path, known);
-    if (!verb) return tl::unexpected(verb.error());
-    templates.verbs.push_back(std::move(*verb));
+    PREHEND_TRY(VerbTemplate verb, ReadVerb(name, path, known));
+    templates.verbs.push_back(std::move(verb));
   }
   std::ranges::stable_sort(templates.verbs, {}, &VerbTemplate::order);
   return templates;

@@ -54,11 +54,10 @@ struct Shown {
 };
 
 Result<Shown> Play(const Moment& moment, episode::EpisodeOpener& opener) {
-  Result<episode::Episode> episode = opener.Open({.file = moment.file, .number = moment.episode});
-  if (!episode) return tl::unexpected(std::move(episode.error()));
-  Result<episode::RunResult> run = episode->Run(true);
-  if (!run) return tl::unexpected(std::move(run.error()));
-  return Shown{std::move(episode->loaded()), std::move(*run)};
+  PREHEND_TRY(episode::Episode episode,
+              opener.Open({.file = moment.file, .number = moment.episode}));
+  PREHEND_TRY(episode::RunResult run, episode.Run(true));
+  return Shown{std::move(episode.loaded()), std::move(run)};
 }
 
 PictureFormat FormatOf(const Moment& moment, const physics::Scene& scene) {

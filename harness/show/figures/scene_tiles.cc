@@ -285,14 +285,13 @@ Result<std::vector<PlayedGrasp>> FindGrasps(std::vector<episode::RunRequest> sce
                                [&](const PlayedGrasp& grasp) { return grasp.held.style == style; });
   };
   for (const episode::RunRequest& scenario : scenarios) {
-    Result<episode::LoadedRun> loaded = episode::LoadRun(scenario, root);
-    if (!loaded) return tl::unexpected(std::move(loaded.error()));
-    if (std::ranges::all_of(StylesOf(loaded->scenario), is_known)) continue;
+    PREHEND_TRY(episode::LoadedRun loaded, episode::LoadRun(scenario, root));
+    if (std::ranges::all_of(StylesOf(loaded.scenario), is_known)) continue;
     episode::RunResult run =
-        episode::RunScenario(loaded->scenario, loaded->program, {.record = true});
-    auto held = LongestGrasp(loaded->scenario, run);
+        episode::RunScenario(loaded.scenario, loaded.program, {.record = true});
+    auto held = LongestGrasp(loaded.scenario, run);
     if (held && !is_known(held->style))
-      grasps.push_back({std::move(*loaded), std::move(run), std::move(*held)});
+      grasps.push_back({std::move(loaded), std::move(run), std::move(*held)});
   }
   return grasps;
 }

@@ -76,13 +76,8 @@ class Acceptance {
 
 grammar::Diagnostics Acceptance::Play(const std::string& path) {
   inputs_ = {files_.GoldenPath(id_).string()};
-  Result<episode::LoadedRun> loaded =
-      episode::LoadRun({.scenario_file = path}, request_.root, &inputs_);
-  if (!loaded) return loaded.error();
-  loaded_ = std::move(*loaded);
-  auto old = files_.ReadGoldenOf(id_);
-  if (!old) return old.error();
-  old_ = std::move(*old);
+  PREHEND_TRY(loaded_, episode::LoadRun({.scenario_file = path}, request_.root, &inputs_));
+  PREHEND_TRY(old_, files_.ReadGoldenOf(id_));
   if (!request_.pictures || old_)
     run_ = episode::RunScenario(loaded_.scenario, loaded_.program, {.record = true});
   return {};
@@ -347,17 +342,16 @@ Result<AcceptOutcome> AcceptScenario(const episode::ScenarioFile& file,
 Result<AcceptOutcome> AcceptRecording(const episode::EpisodeName& name,
                                       const AcceptRequest& request) {
   const FolderLock one_at_a_time(request.root);
-  const Result<JudgedRecording> judged = JudgeRecording(name, request.grammar, request.root);
-  if (!judged) return tl::unexpected(judged.error());
-  const std::string &file = name.file, &golden_file = judged->golden_file;
-  const std::string now = Fingerprint(judged->proposed);
-  AcceptOutcome outcome{.notes = judged->segmented.missing.warnings};
+  PREHEND_TRY(const JudgedRecording judged, JudgeRecording(name, request.grammar, request.root));
+  const std::string &file = name.file, &golden_file = judged.golden_file;
+  const std::string now = Fingerprint(judged.proposed);
+  AcceptOutcome outcome{.notes = judged.segmented.missing.warnings};
   const auto refuse = [&](ExitCode code, std::string why) {
     outcome.code = code;
     outcome.problem = std::move(why);
     return outcome;
   };
-  if (judged->segmented.missing.nothing_left)
+  if (judged.segmented.missing.nothing_left)
     return refuse(ExitCode::kNothing,
                   "no event of the grammar can be recognised; nothing was accepted");
   if (request.reviewed.value_or(now) != now)
@@ -366,18 +360,18 @@ Result<AcceptOutcome> AcceptRecording(const episode::EpisodeName& name,
         fmt::format("the reviewed golden was {}, but the recording now yields {}; "
                     "nothing was accepted\n  if that is right: {}",
                     *request.reviewed, now, AcceptCommandLine(file, now, request.grammar)));
-  if (judged->Agrees() && request.derived.empty()) {
+  if (judged.Agrees() && request.derived.empty()) {
     outcome.text = "nothing to accept: the recording agrees with " + golden_file + "\n";
     return outcome;
   }
   const truth::Golden golden =
-      AcceptedRecording(*judged, request.derived, {request.today, request.reason});
+      AcceptedRecording(judged, request.derived, {request.today, request.reason});
   std::error_code error;
   if (name.number) fs::create_directories(fs::path(golden_file).parent_path(), error);
   const std::string problem = truth::WriteGoldenFile(golden_file, golden);
   if (!problem.empty()) return refuse(ExitCode::kFailure, problem);
   const CheckRequest about{.episode = name, .changes = {request.grammar, {}}, .id = file};
-  outcome.text = ReviewText(*judged, ExplainCommand(about)) + "accepted: " + golden_file + "\n";
+  outcome.text = ReviewText(judged, ExplainCommand(about)) + "accepted: " + golden_file + "\n";
   return outcome;
 }
 

@@ -416,25 +416,23 @@ ScenarioVerdict VerdictOn(CheckedEpisode checked) {
 grammar::Diagnostics Hear(episode::Episode& episode, grammar::Timeline& timeline,
                           CheckedEpisode& checked) {
   if (!checked.request.listen) return {};
-  Result<Heard> heard = checked.request.listen(episode);
-  if (!heard) return std::move(heard.error());
-  timeline = heard->timeline;
-  checked.heard = std::move(*heard);
+  PREHEND_TRY(Heard heard, checked.request.listen(episode));
+  timeline = heard.timeline;
+  checked.heard = std::move(heard);
   return {};
 }
 
 grammar::Diagnostics Segment(episode::Episode& episode, CheckedEpisode& checked) {
   const CheckRequest& request = checked.request;
-  auto segmented = episode.SegmentRecorded();
-  if (!segmented) return std::move(segmented.error());
-  const grammar::Diagnostics unheard = Hear(episode, segmented->timeline, checked);
+  PREHEND_TRY(auto segmented, episode.SegmentRecorded());
+  const grammar::Diagnostics unheard = Hear(episode, segmented.timeline, checked);
   if (!unheard.empty()) return unheard;
   if (!checked.heard || checked.heard->failure.empty())
-    checked.verdict.demonstration = DemonstrationOf(*episode.recording(), segmented->timeline,
-                                                    truth::EventDrawings(*segmented->program));
+    checked.verdict.demonstration = DemonstrationOf(*episode.recording(), segmented.timeline,
+                                                    truth::EventDrawings(*segmented.program));
   if (request.episode.number && request.replays != Replays::kNone)
-    checked.run.result = episode.RunOf(*segmented, /*frames=*/true);
-  checked.recording = std::move(*segmented);
+    checked.run.result = episode.RunOf(segmented, /*frames=*/true);
+  checked.recording = std::move(segmented);
   if (episode.row()) checked.verdict.state_hash = episode.row()->state_hash;
   return {};
 }
@@ -442,9 +440,7 @@ grammar::Diagnostics Segment(episode::Episode& episode, CheckedEpisode& checked)
 /// Of a run that is kept, or of a scenario whose frames somebody wants to see.
 grammar::Diagnostics Replay(episode::Episode& episode, CheckedEpisode& checked) {
   if (checked.request.IsPlayed()) (void)episode.Played();
-  Result<episode::RunResult> run = episode.Run(/*frames=*/true);
-  if (!run) return std::move(run.error());
-  checked.run.result = std::move(*run);
+  PREHEND_TRY(checked.run.result, episode.Run(/*frames=*/true));
   return checked.IsComplete() ? Hear(episode, checked.run.result.timeline, checked)
                               : grammar::Diagnostics();
 }

@@ -240,21 +240,18 @@ grammar::Tick ToleranceOf(const episode::SegmentedRecording& segmented) {
 
 Result<JudgedRecording> JudgeRecording(const episode::EpisodeName& name, const std::string& grammar,
                                        const std::string& root) {
-  Result<episode::Episode> recording = episode::OpenEpisode(name, {grammar, {}}, root);
-  if (!recording) return tl::unexpected(std::move(recording.error()));
-  if (const std::string lack = LackOf(name, *recording); !lack.empty())
+  PREHEND_TRY(episode::Episode recording, episode::OpenEpisode(name, {grammar, {}}, root));
+  if (const std::string lack = LackOf(name, recording); !lack.empty())
     return tl::unexpected(grammar::Diagnostics{{.file = name.file, .place = {}, .message = lack}});
-  Result<episode::SegmentedRecording> segmented = recording->SegmentRecorded();
-  if (!segmented) return tl::unexpected(std::move(segmented.error()));
-  return JudgeSegmented(std::move(*segmented), GoldenOf(name, recording->loaded().scenario, root));
+  PREHEND_TRY(episode::SegmentedRecording segmented, recording.SegmentRecorded());
+  return JudgeSegmented(std::move(segmented), GoldenOf(name, recording.loaded().scenario, root));
 }
 
 Result<JudgedRecording> JudgeSegmented(episode::SegmentedRecording segmented,
                                        const std::string& golden_file) {
-  auto golden = truth::ReadGoldenFile(golden_file, segmented.name);
-  if (!golden) return tl::unexpected(std::move(golden.error()));
+  PREHEND_TRY(auto golden, truth::ReadGoldenFile(golden_file, segmented.name));
   JudgedRecording judged{
-      .segmented = std::move(segmented), .golden = std::move(*golden), .golden_file = golden_file};
+      .segmented = std::move(segmented), .golden = std::move(golden), .golden_file = golden_file};
   const grammar::Timeline& timeline = judged.segmented.timeline;
   const truth::Golden none{.ticks_per_second = timeline.ticks_per_second};
   judged.comparison =

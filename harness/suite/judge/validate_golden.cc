@@ -134,31 +134,27 @@ std::string ScenarioOfGoldenAt(const std::string& path, const std::string& root)
 
 grammar::Diagnostics ValidateGolden(const std::string& path, const std::string& id,
                                     const episode::LoadedRun& loaded) {
-  Result<std::string> text = ReadTextFile(path);
-  if (!text) return std::move(text.error());
-  Result<truth::Golden> golden = truth::ReadGolden(path, *text);
-  if (!golden) return std::move(golden.error());
-  grammar::Diagnostics other = truth::OfAnotherScenario(path, *text, *golden, id);
+  PREHEND_TRY(std::string text, ReadTextFile(path));
+  PREHEND_TRY(truth::Golden golden, truth::ReadGolden(path, text));
+  grammar::Diagnostics other = truth::OfAnotherScenario(path, text, golden, id);
   if (!other.empty()) return other;
-  GoldenValidator checker(path, *text, loaded);
-  checker.CheckGrammar(golden->grammar, loaded.scenario.grammar);
-  for (const truth::GoldenEvent& line : golden->events) checker.CheckLine(line);
+  GoldenValidator checker(path, text, loaded);
+  checker.CheckGrammar(golden.grammar, loaded.scenario.grammar);
+  for (const truth::GoldenEvent& line : golden.events) checker.CheckLine(line);
   return checker.Take();
 }
 
 grammar::Diagnostics ValidateGoldenFile(const std::string& path, const std::string& root,
                                         std::vector<std::string>& inputs) {
   inputs.push_back(path);
-  Result<std::string> text = ReadTextFile(path);
-  if (!text) return std::move(text.error());
-  Result<truth::Golden> golden = truth::ReadGolden(path, *text);
-  if (!golden) return std::move(golden.error());
+  PREHEND_TRY(std::string text, ReadTextFile(path));
+  PREHEND_TRY(truth::Golden golden, truth::ReadGolden(path, text));
   const std::string of = ScenarioOfGoldenAt(path, root);
-  const std::string& id = of.empty() ? golden->scenario : of;
+  const std::string& id = of.empty() ? golden.scenario : of;
   const std::vector<episode::ScenarioFile> all = episode::ListScenarios(root);
   const auto scenario = std::ranges::find(all, id, episode::IdOf);
   if (scenario == all.end()) {
-    return {grammar::DiagnosticAt(path, *text, truth::ScenarioLine(*text),
+    return {grammar::DiagnosticAt(path, text, truth::ScenarioLine(text),
                                   "there is no scenario '" + id + "'",
                                   episode::HintForScenario(all, id))};
   }

@@ -145,13 +145,11 @@ grammar::Diagnostics OfAnotherScenario(std::string_view file, std::string_view t
 Result<std::optional<Golden>> ReadGoldenFile(const fs::path& path, const std::string& scenario) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return std::nullopt;
-  Result<std::string> text = ReadTextFile(path.string());
-  if (!text) return tl::unexpected(std::move(text.error()));
-  Result<Golden> golden = ReadGolden(path.string(), *text);
-  if (!golden) return tl::unexpected(std::move(golden.error()));
-  grammar::Diagnostics other = OfAnotherScenario(path.string(), *text, *golden, scenario);
+  PREHEND_TRY(std::string text, ReadTextFile(path.string()));
+  PREHEND_TRY(Golden golden, ReadGolden(path.string(), text));
+  grammar::Diagnostics other = OfAnotherScenario(path.string(), text, golden, scenario);
   if (!other.empty()) return tl::unexpected(std::move(other));
-  return std::move(*golden);
+  return golden;
 }
 
 std::string WriteGoldenFile(const fs::path& path, const Golden& golden) {
