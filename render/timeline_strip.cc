@@ -218,6 +218,37 @@ float WidestLabel(const TimelineStrip& strip, const Font& font, float size_px) {
   return widest;
 }
 
+void DrawLane(const StripLayout& layout, const StripLane& lane, Canvas* canvas) {
+  const float s = layout.scale;
+  canvas->FillRounded(lane.track, 3 * s, Hex(0xDCE1E7), 0.85f);
+  const float text_size = std::max(kMinStripText_px, kRowText * s);
+  const float label_top =
+      lane.track.y + (lane.track.height - 1.32f * canvas->font().Ascent(text_size)) / 2;
+  canvas->DrawText(layout.label_left, label_top, lane.label, text_size, Hex(0x1B1F24));
+  for (const StripBar& bar : lane.bars) {
+    canvas->FillRounded(bar.rect, 3 * s, bar.color);
+    if (bar.name_place == NamePlace::kNone) continue;
+    const Color ink = bar.name_place == NamePlace::kInside ? TextColorOn(bar.color) : Hex(0x1B1F24);
+    canvas->DrawText(bar.name_left, bar.name_top, bar.name, bar.name_size_px, ink);
+  }
+}
+
+void DrawAxis(const StripLayout& layout, const Rect& playhead_label, Canvas* canvas) {
+  const float s = layout.scale, size = std::max(kMinStripText_px, kSmallText * s);
+  const Color ink = Hex(0x59636E);
+  for (const StripTick& tick : layout.ticks) {
+    const float length = (tick.label.empty() ? 3.5f : 7.0f) * s;
+    canvas->DrawLine({tick.x, layout.axis_top}, {tick.x, layout.axis_top + length},
+                     std::max(1.0f, s), ink, 0.9f);
+    if (tick.label.empty()) continue;
+    const float width = canvas->font().Width(tick.label, size);
+    const float left = std::min(tick.x - width / 2, layout.panel.right() - width - 4 * s);
+    const Rect box = {left, layout.axis_top + 8 * s, width, size};
+    if (!box.Grown(3 * s).Overlaps(playhead_label))
+      canvas->DrawText(left, box.y, tick.label, size, ink);
+  }
+}
+
 }  // namespace
 
 int StripLayout::reserved_px() const {
@@ -281,41 +312,6 @@ StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_
   layout.playhead_label = inside ? Seconds(strip.playhead_s, 0.01) : "";
   return layout;
 }
-
-namespace {
-
-void DrawLane(const StripLayout& layout, const StripLane& lane, Canvas* canvas) {
-  const float s = layout.scale;
-  canvas->FillRounded(lane.track, 3 * s, Hex(0xDCE1E7), 0.85f);
-  const float text_size = std::max(kMinStripText_px, kRowText * s);
-  const float label_top =
-      lane.track.y + (lane.track.height - 1.32f * canvas->font().Ascent(text_size)) / 2;
-  canvas->DrawText(layout.label_left, label_top, lane.label, text_size, Hex(0x1B1F24));
-  for (const StripBar& bar : lane.bars) {
-    canvas->FillRounded(bar.rect, 3 * s, bar.color);
-    if (bar.name_place == NamePlace::kNone) continue;
-    const Color ink = bar.name_place == NamePlace::kInside ? TextColorOn(bar.color) : Hex(0x1B1F24);
-    canvas->DrawText(bar.name_left, bar.name_top, bar.name, bar.name_size_px, ink);
-  }
-}
-
-void DrawAxis(const StripLayout& layout, const Rect& playhead_label, Canvas* canvas) {
-  const float s = layout.scale, size = std::max(kMinStripText_px, kSmallText * s);
-  const Color ink = Hex(0x59636E);
-  for (const StripTick& tick : layout.ticks) {
-    const float length = (tick.label.empty() ? 3.5f : 7.0f) * s;
-    canvas->DrawLine({tick.x, layout.axis_top}, {tick.x, layout.axis_top + length},
-                     std::max(1.0f, s), ink, 0.9f);
-    if (tick.label.empty()) continue;
-    const float width = canvas->font().Width(tick.label, size);
-    const float left = std::min(tick.x - width / 2, layout.panel.right() - width - 4 * s);
-    const Rect box = {left, layout.axis_top + 8 * s, width, size};
-    if (!box.Grown(3 * s).Overlaps(playhead_label))
-      canvas->DrawText(left, box.y, tick.label, size, ink);
-  }
-}
-
-}  // namespace
 
 void DrawStrip(const StripLayout& layout, Canvas* canvas) {
   if (!(layout.panel.height > 0)) return;

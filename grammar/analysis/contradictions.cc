@@ -15,6 +15,12 @@ bool SaysHowItMoves(std::string_view name) {
   return name == "Movable" || name == "Fixed" || name == "Jointed" || name == "Attached";
 }
 
+Op Negated(Op op) {
+  constexpr std::array kNegated = {Op::kGreaterEqual, Op::kGreater,  Op::kLessEqual,
+                                   Op::kLess,         Op::kNotEqual, Op::kEqual};
+  return kNegated[static_cast<std::size_t>(op) - static_cast<std::size_t>(Op::kLess)];
+}
+
 }  // namespace
 
 const std::vector<std::string>& BuiltinClasses() {
@@ -43,16 +49,6 @@ Op Mirrored(Op op) {
                                     Op::kLessEqual, Op::kEqual,        Op::kNotEqual};
   return kMirrored[static_cast<std::size_t>(op) - static_cast<std::size_t>(Op::kLess)];
 }
-
-namespace {
-
-Op Negated(Op op) {
-  constexpr std::array kNegated = {Op::kGreaterEqual, Op::kGreater,  Op::kLessEqual,
-                                   Op::kLess,         Op::kNotEqual, Op::kEqual};
-  return kNegated[static_cast<std::size_t>(op) - static_cast<std::size_t>(Op::kLess)];
-}
-
-}  // namespace
 
 bool Bounds::Add(NodeId index, bool negated) {
   const Node& node = program_.nodes[index];

@@ -77,6 +77,27 @@ std::size_t EditDistance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// Small letters, each word without its ending: "pick_up" of "Picking_up".
+std::string StemOf(std::string_view name) {
+  std::string stem;
+  for (std::size_t begin = 0; begin <= name.size();) {
+    const std::size_t end = std::min(name.find('_', begin), name.size());
+    std::string word(name.substr(begin, end - begin));
+    for (char& letter : word)
+      if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    for (const std::string_view ending : {"ing", "ed", "es", "e", "s"}) {
+      if (word.size() < ending.size() + 3 || !word.ends_with(ending)) continue;
+      word.erase(word.size() - ending.size());
+      break;
+    }
+    const std::size_t size = word.size();
+    if (size > 3 && word[size - 1] == word[size - 2]) word.pop_back();  // putting, put
+    stem += (begin == 0 ? "" : "_") + word;
+    begin = end + 1;
+  }
+  return stem;
+}
+
 }  // namespace
 
 std::string Format(const Diagnostic& diagnostic) {
@@ -120,31 +141,6 @@ Diagnostic DiagnosticAt(std::string_view file, std::string_view text, Place plac
   if (place.line > 0) ShowLine(diagnostic, LineOf(text, place.line), place.column);
   return diagnostic;
 }
-
-namespace {
-
-/// Small letters, each word without its ending: "pick_up" of "Picking_up".
-std::string StemOf(std::string_view name) {
-  std::string stem;
-  for (std::size_t begin = 0; begin <= name.size();) {
-    const std::size_t end = std::min(name.find('_', begin), name.size());
-    std::string word(name.substr(begin, end - begin));
-    for (char& letter : word)
-      if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-    for (const std::string_view ending : {"ing", "ed", "es", "e", "s"}) {
-      if (word.size() < ending.size() + 3 || !word.ends_with(ending)) continue;
-      word.erase(word.size() - ending.size());
-      break;
-    }
-    const std::size_t size = word.size();
-    if (size > 3 && word[size - 1] == word[size - 2]) word.pop_back();  // putting, put
-    stem += (begin == 0 ? "" : "_") + word;
-    begin = end + 1;
-  }
-  return stem;
-}
-
-}  // namespace
 
 std::string NearestName(std::string_view name, const std::vector<std::string>& candidates) {
   // Comparing takes time proportional to both lengths; names of this length are not typed by hand.

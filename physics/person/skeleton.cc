@@ -223,6 +223,14 @@ Body PartOf(std::string name, double radius_m, double length_m) {
           .X_WB = {}};
 }
 
+/// Targets of a standing person with hanging arms, without the head's pose.
+BodyTargets Resting(const Person& person) {
+  BodyTargets targets{.X_WS = person.X_WS};
+  for (int limb = 0; limb < 4; ++limb)
+    targets.limbs[static_cast<std::size_t>(limb)] = RestOf(limb, person, targets);
+  return targets;
+}
+
 }  // namespace
 
 int LimbOf(LimbEnd end) {
@@ -355,18 +363,6 @@ Eigen::Vector3d EyesOf(const Person& person, const Pose& X_WHead) {
 Eigen::Vector3d WristInHand(const Person& person, const HandModel& model) {
   return {-model.palm_size_m.x() / 2 - kForearmRadius * person.height_m, 0, 0};
 }
-
-namespace {
-
-/// Targets of a standing person with hanging arms, without the head's pose.
-BodyTargets Resting(const Person& person) {
-  BodyTargets targets{.X_WS = person.X_WS};
-  for (int limb = 0; limb < 4; ++limb)
-    targets.limbs[static_cast<std::size_t>(limb)] = RestOf(limb, person, targets);
-  return targets;
-}
-
-}  // namespace
 
 BodyTargets Standing(const Scene& scene, const Person& person) {
   BodyTargets targets = Resting(person);

@@ -109,6 +109,10 @@ struct DistanceOf {
   double operator()(const Hull& s) const { return SignedDistance(s, p); }
 };
 
+double DistanceTo(const PlacedShape& part, const Eigen::Vector3d& p_B_m) {
+  return SignedDistance(part.shape, part.X_BS.inverse() * p_B_m);
+}
+
 }  // namespace
 
 BodyIndex FindBody(const Scene& scene, const std::string& name) {
@@ -151,14 +155,6 @@ double WidthAlong(const Body& body, const Pose& X_WB, const Eigen::Vector3d& dir
 double SignedDistance(const Shape& shape, const Eigen::Vector3d& p_S) {
   return std::visit(DistanceOf{p_S}, shape);
 }
-
-namespace {
-
-double DistanceTo(const PlacedShape& part, const Eigen::Vector3d& p_B_m) {
-  return SignedDistance(part.shape, part.X_BS.inverse() * p_B_m);
-}
-
-}  // namespace
 
 const PlacedShape& PartAt(const Body& body, const Eigen::Vector3d& p_B_m) {
   return *std::min_element(body.shapes.begin(), body.shapes.end(),

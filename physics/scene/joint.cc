@@ -28,6 +28,12 @@ double Position(const Scene& scene, const Joint& joint, const Pose& X_WBase, con
   return 0;
 }
 
+/// The frame of a shape's centre of mass; for most shapes it is the shape's own frame.
+Pose CentreOf(const Shape& shape, const Pose& X_RS) {
+  const auto* hull = std::get_if<Hull>(&shape);
+  return hull ? X_RS * hull->X_SC : X_RS;  // the other shapes keep their pose to the last bit
+}
+
 }  // namespace
 
 std::vector<std::vector<std::size_t>> RigidGroups(const Scene& scene) {
@@ -45,16 +51,6 @@ std::vector<std::vector<std::size_t>> RigidGroups(const Scene& scene) {
   std::erase_if(groups, [](const auto& group) { return group.empty(); });
   return groups;
 }
-
-namespace {
-
-/// The frame of a shape's centre of mass; for most shapes it is the shape's own frame.
-Pose CentreOf(const Shape& shape, const Pose& X_RS) {
-  const auto* hull = std::get_if<Hull>(&shape);
-  return hull ? X_RS * hull->X_SC : X_RS;  // the other shapes keep their pose to the last bit
-}
-
-}  // namespace
 
 std::vector<RigidMember> MembersOf(const std::vector<const Body*>& bodies) {
   std::vector<RigidMember> members;

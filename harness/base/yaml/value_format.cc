@@ -97,6 +97,66 @@ bool HasSize(const YamlNode& node, DiagnosticList& errors, std::size_t least, st
 Json ShowString(const void* value) { return Json(*static_cast<const std::string*>(value)); }
 std::string& StringAt(void* value) { return *static_cast<std::string*>(value); }
 
+/// Reports a node that is no list, or has a wrong number of items. The same for mappings.
+bool IsListOf(const YamlNode& node, DiagnosticList& errors, std::size_t least, std::size_t most) {
+  if (node.kind == YamlNode::Kind::kSequence) return HasSize(node, errors, least, most);
+  const std::string wanted = least == most ? fmt::format("a list of {}", least) : "a list";
+  if (node.kind != YamlNode::Kind::kMapping) return ReportExpected(node, errors, wanted);
+  errors.Add(node.where, fmt::format("{}expected {}, found a mapping", LabelOf(node), wanted),
+             "begin each item with '- ' on a line of its own, or put all in [..]");
+  return false;
+}
+
+bool IsMappingOf(const YamlNode& node, DiagnosticList& errors, std::size_t least,
+                 std::size_t most) {
+  if (node.kind == YamlNode::Kind::kMapping) return HasSize(node, errors, least, most);
+  if (node.kind != YamlNode::Kind::kSequence)
+    return ReportExpected(node, errors, "a mapping from names");
+  errors.Add(node.where,
+             fmt::format("{}expected a mapping from names, found a list", LabelOf(node)),
+             "write lines 'NAME: ..' without a leading '- '");
+  return false;
+}
+
+/// The text in small letters with '_' for what separates, or with a capital at its begin, if that
+/// matches; else "".
+std::string WithOtherLetters(const regex_t* matcher, std::string text) {
+  for (char& letter : text) {
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    if (letter == '-' || letter == ' ') letter = '_';
+  }
+  if (text.empty() || Matches(matcher, text)) return text;
+  if (text.front() >= 'a' && text.front() <= 'z')
+    text.front() = static_cast<char>(text.front() - 'a' + 'A');
+  return Matches(matcher, text) ? text : "";
+}
+
+/// `count` numbers in a row, from `value` on.
+ErasedFormat ErasedVector(std::size_t count, double lowest, double highest) {
+  const ValueFormat<double> number = Number(lowest, highest);
+  return {.schema = [=]() -> Json {
+            return {{"type", "array"},
+                    {"items", number.schema().json()},
+                    {"minItems", count},
+                    {"maxItems", count}};
+          },
+          .read =
+              [=](const YamlNode& node, DiagnosticList& errors, void* value) {
+                if (!IsListOf(node, errors, count, count)) return false;
+                std::array<double, 4> numbers{};
+                bool good = true;
+                for (std::size_t i = 0; i < count; ++i)
+                  good &= number.Read(node.children[i], errors, numbers[i]);
+                if (good) std::copy_n(numbers.data(), count, static_cast<double*>(value));
+                return good;
+              },
+          .show =
+              [count](const void* value) {
+                const auto* numbers = static_cast<const double*>(value);
+                return Json(std::vector<double>(numbers, numbers + count));
+              }};
+}
+
 }  // namespace
 
 const Json& Schema::json() const {
@@ -129,31 +189,6 @@ bool ReportExpected(const YamlNode& node, DiagnosticList& errors, const std::str
   errors.Add(node.where, std::move(message), std::move(hint));
   return false;
 }
-
-namespace {
-
-/// Reports a node that is no list, or has a wrong number of items. The same for mappings.
-bool IsListOf(const YamlNode& node, DiagnosticList& errors, std::size_t least, std::size_t most) {
-  if (node.kind == YamlNode::Kind::kSequence) return HasSize(node, errors, least, most);
-  const std::string wanted = least == most ? fmt::format("a list of {}", least) : "a list";
-  if (node.kind != YamlNode::Kind::kMapping) return ReportExpected(node, errors, wanted);
-  errors.Add(node.where, fmt::format("{}expected {}, found a mapping", LabelOf(node), wanted),
-             "begin each item with '- ' on a line of its own, or put all in [..]");
-  return false;
-}
-
-bool IsMappingOf(const YamlNode& node, DiagnosticList& errors, std::size_t least,
-                 std::size_t most) {
-  if (node.kind == YamlNode::Kind::kMapping) return HasSize(node, errors, least, most);
-  if (node.kind != YamlNode::Kind::kSequence)
-    return ReportExpected(node, errors, "a mapping from names");
-  errors.Add(node.where,
-             fmt::format("{}expected a mapping from names, found a list", LabelOf(node)),
-             "write lines 'NAME: ..' without a leading '- '");
-  return false;
-}
-
-}  // namespace
 
 ValueFormat<double> Number(double lowest, double highest) {
   const std::string wanted = fmt::format("a number from {} to {}", lowest, highest);
@@ -226,23 +261,6 @@ ValueFormat<std::string> Text(std::size_t max_length) {
        .show = ShowString});
 }
 
-namespace {
-
-/// The text in small letters with '_' for what separates, or with a capital at its begin, if that
-/// matches; else "".
-std::string WithOtherLetters(const regex_t* matcher, std::string text) {
-  for (char& letter : text) {
-    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-    if (letter == '-' || letter == ' ') letter = '_';
-  }
-  if (text.empty() || Matches(matcher, text)) return text;
-  if (text.front() >= 'a' && text.front() <= 'z')
-    text.front() = static_cast<char>(text.front() - 'a' + 'A');
-  return Matches(matcher, text) ? text : "";
-}
-
-}  // namespace
-
 ValueFormat<std::string> Word(const std::string& pattern, const std::string& wanted,
                               std::size_t max_length) {
   const std::string whole = "^(" + pattern + ")$";
@@ -284,36 +302,6 @@ void CheckLeastMost(const std::string& key, const Eigen::Vector2d& range, Where 
   errors.Add(where,
              fmt::format("{}: expected [min, max], found [{}, {}]", key, range[0], range[1]));
 }
-
-namespace {
-
-/// `count` numbers in a row, from `value` on.
-ErasedFormat ErasedVector(std::size_t count, double lowest, double highest) {
-  const ValueFormat<double> number = Number(lowest, highest);
-  return {.schema = [=]() -> Json {
-            return {{"type", "array"},
-                    {"items", number.schema().json()},
-                    {"minItems", count},
-                    {"maxItems", count}};
-          },
-          .read =
-              [=](const YamlNode& node, DiagnosticList& errors, void* value) {
-                if (!IsListOf(node, errors, count, count)) return false;
-                std::array<double, 4> numbers{};
-                bool good = true;
-                for (std::size_t i = 0; i < count; ++i)
-                  good &= number.Read(node.children[i], errors, numbers[i]);
-                if (good) std::copy_n(numbers.data(), count, static_cast<double*>(value));
-                return good;
-              },
-          .show =
-              [count](const void* value) {
-                const auto* numbers = static_cast<const double*>(value);
-                return Json(std::vector<double>(numbers, numbers + count));
-              }};
-}
-
-}  // namespace
 
 template <>
 ValueFormat<Eigen::Vector2d> Vector<2>(double lowest, double highest) {

@@ -175,6 +175,19 @@ std::string WhyNotText(const std::vector<std::string>& words) {
   return "";
 }
 
+constexpr const char* kFooter =
+    R"(Options:
+  -h,--help             Print this, or of a command what it does and takes; --version: the version
+  --json                Where a command prints results: print JSON instead of text
+  --time-limit-s S      Seconds that most commands may take; 0: no limit; default: 600, of many
+                        episodes 3600, sweeps 86400, a scenario in 'check' 120, 'episode ask' 10,
+                        with --trials or --on-save none
+  -j,--jobs N           Where many are looked at: so many at a time; default: one per core
+  --memory-limit-mb MB  Memory that it may take; 0: no limit; default: 4000, in 'check' 1000
+
+Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 failure, 4 nothing found, 5 goldens wait.
+The project is $PREHEND_HOME, or the nearest folder with a prehend.yaml, or the program's checkout.)";
+
 }  // namespace
 
 ExitCode RunCommandLine(int argc, const char* const* argv, const char* commit) {
@@ -201,23 +214,6 @@ ExitCode RunCommandLine(int argc, const char* const* argv, const char* commit) {
   }
   return ExitCode::kFailure;
 }
-
-namespace {
-
-constexpr const char* kFooter =
-    R"(Options:
-  -h,--help             Print this, or of a command what it does and takes; --version: the version
-  --json                Where a command prints results: print JSON instead of text
-  --time-limit-s S      Seconds that most commands may take; 0: no limit; default: 600, of many
-                        episodes 3600, sweeps 86400, a scenario in 'check' 120, 'episode ask' 10,
-                        with --trials or --on-save none
-  -j,--jobs N           Where many are looked at: so many at a time; default: one per core
-  --memory-limit-mb MB  Memory that it may take; 0: no limit; default: 4000, in 'check' 1000
-
-Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 failure, 4 nothing found, 5 goldens wait.
-The project is $PREHEND_HOME, or the nearest folder with a prehend.yaml, or the program's checkout.)";
-
-}  // namespace
 
 std::vector<Command> AllCommands() {
   // Ten times what the longest scenario takes on a slow machine; there may be many episodes.

@@ -34,6 +34,20 @@ ValueRule RuleFor(const char* what, Number least, Number most) {
           }};
 }
 
+Option With(Option option, bool Option::*said) {
+  option.*said = true;
+  return option;
+}
+
+std::string FilterProblem(const std::string& filter) {
+  const bool negated = filter.starts_with('!');
+  const std::string rest = filter.substr(negated ? 1 : 0);
+  if (!rest.empty() && rest != "tag:") return "";
+  return fmt::format("found '{0}', wanted {1}, like {0}{2}", filter,
+                     rest.empty() ? "what must not match" : "a tag after it",
+                     rest.empty() ? "reach/*" : "smoke");
+}
+
 }  // namespace
 
 ValueRule IntegersFrom(std::int64_t least, std::int64_t most) {
@@ -91,15 +105,6 @@ Option Value(const std::string& name, const std::string& placeholder, const std:
   return {.name = name, .help = help, .placeholder = placeholder, .rule = std::move(rule)};
 }
 
-namespace {
-
-Option With(Option option, bool Option::*said) {
-  option.*said = true;
-  return option;
-}
-
-}  // namespace
-
 Option Required(Option option) { return With(std::move(option), &Option::required); }
 Option Repeatable(Option option) { return With(std::move(option), &Option::repeatable); }
 Option WritesFile(Option option) { return With(std::move(option), &Option::is_output); }
@@ -128,19 +133,6 @@ std::uint64_t ParsedOptions::UnsignedOr(const std::string& name, std::uint64_t f
 double ParsedOptions::NumberOr(const std::string& name, double fallback) const {
   return Has(name) ? NumberFrom<double>(All(name).back()).value() : fallback;
 }
-
-namespace {
-
-std::string FilterProblem(const std::string& filter) {
-  const bool negated = filter.starts_with('!');
-  const std::string rest = filter.substr(negated ? 1 : 0);
-  if (!rest.empty() && rest != "tag:") return "";
-  return fmt::format("found '{0}', wanted {1}, like {0}{2}", filter,
-                     rest.empty() ? "what must not match" : "a tag after it",
-                     rest.empty() ? "reach/*" : "smoke");
-}
-
-}  // namespace
 
 Option ScenarioArgument() { return Required(Argument("scenario", "a name, skill/name or a file")); }
 

@@ -55,19 +55,6 @@ ExitCode RunEpisodes(const ParsedOptions& options, const CommandContext& context
   return json.empty() ? ExitCode::kNothing : ExitCode::kAgrees;
 }
 
-}  // namespace
-
-Command EpisodesCommand() {
-  return {.name = "episode list",
-          .summary = "List what episode files hold",
-          .examples = {"episode list suite.episodes",
-                       "episode list monday.episodes tuesday.episodes --json"},
-          .options = {EpisodeFilesArgument(), JsonOption()},
-          .run = RunEpisodes};
-}
-
-namespace {
-
 ExitCode RunVerify(const ParsedOptions& options, const CommandContext& context) {
   PREHEND_TRY(const auto selected,
               FindEpisodesOrComplain("files", options, context, {episode::Need::kEpisodeFile}));
@@ -113,6 +100,15 @@ ExitCode RunVerify(const ParsedOptions& options, const CommandContext& context) 
 }
 
 }  // namespace
+
+Command EpisodesCommand() {
+  return {.name = "episode list",
+          .summary = "List what episode files hold",
+          .examples = {"episode list suite.episodes",
+                       "episode list monday.episodes tuesday.episodes --json"},
+          .options = {EpisodeFilesArgument(), JsonOption()},
+          .run = RunEpisodes};
+}
 
 Command VerifyCommand() {
   return {.name = "episode verify",

@@ -72,32 +72,6 @@ grammar::Diagnostics Import(const ImportRequest& request) {
   return {{.file = request.file, .message = imported.problem}};
 }
 
-}  // namespace
-
-EpisodeKind EpisodeKindOf(const std::string& typed) {
-  if (IsTakesFile(typed)) return EpisodeKind::kTakes;
-  if (IsEpisodeFile(typed)) return EpisodeKind::kEpisodeFile;
-  return IsJsonLines(typed) ? EpisodeKind::kJsonLines : EpisodeKind::kScenario;
-}
-
-Result<std::vector<EpisodeName>> EpisodesOf(const std::string& path, const std::string& which) {
-  PREHEND_TRY(const auto file, EpisodeFile::Open(path));
-  if (file.episodes().empty())
-    return tl::unexpected(
-        grammar::Diagnostics{{.file = path,
-                              .message = "has no episodes",
-                              .hint = "its recording ended before the first one began"}});
-  std::vector<EpisodeName> names;
-  for (const EpisodeRow& row : file.episodes()) {
-    if (!IsSelected(row, which)) continue;
-    names.push_back({path, row.id, row.scenario,
-                     row.simulated ? Origin::kRecordedRun : Origin::kRecording, row.grammar});
-  }
-  return names;
-}
-
-namespace {
-
 /// The recordings in a folder, or its file of takes; empty if it has neither.
 std::vector<std::string> RecordingsIn(const std::string& folder) {
   namespace fs = std::filesystem;
@@ -176,6 +150,28 @@ class TakeFinder {
 };
 
 }  // namespace
+
+EpisodeKind EpisodeKindOf(const std::string& typed) {
+  if (IsTakesFile(typed)) return EpisodeKind::kTakes;
+  if (IsEpisodeFile(typed)) return EpisodeKind::kEpisodeFile;
+  return IsJsonLines(typed) ? EpisodeKind::kJsonLines : EpisodeKind::kScenario;
+}
+
+Result<std::vector<EpisodeName>> EpisodesOf(const std::string& path, const std::string& which) {
+  PREHEND_TRY(const auto file, EpisodeFile::Open(path));
+  if (file.episodes().empty())
+    return tl::unexpected(
+        grammar::Diagnostics{{.file = path,
+                              .message = "has no episodes",
+                              .hint = "its recording ended before the first one began"}});
+  std::vector<EpisodeName> names;
+  for (const EpisodeRow& row : file.episodes()) {
+    if (!IsSelected(row, which)) continue;
+    names.push_back({path, row.id, row.scenario,
+                     row.simulated ? Origin::kRecordedRun : Origin::kRecording, row.grammar});
+  }
+  return names;
+}
 
 tl::expected<std::vector<Take>, NotFound> FindTakes(std::span<const std::string> typed,
                                                     const std::string& which,

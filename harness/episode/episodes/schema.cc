@@ -85,18 +85,6 @@ CREATE VIEW events_flat AS
   FROM event JOIN episode ON episode.id = event.episode JOIN task ON task.id = episode.task;
 )";
 
-}  // namespace
-
-const char* const kPlanTables = R"(CREATE TABLE IF NOT EXISTS plan(
-  id INTEGER PRIMARY KEY, what TEXT NOT NULL, uuid TEXT NOT NULL, part INTEGER NOT NULL,
-  parts INTEGER NOT NULL);
-CREATE TABLE IF NOT EXISTS plan_owed(
-  plan INTEGER NOT NULL REFERENCES plan, position INTEGER NOT NULL, part INTEGER NOT NULL,
-  name TEXT NOT NULL, uuid TEXT NOT NULL, PRIMARY KEY(plan, position)) WITHOUT ROWID;
-)";
-
-namespace {
-
 std::string AsUuid(std::uint64_t high, std::uint64_t low, unsigned version) {
   high = (high & ~std::uint64_t{0xf000}) | (std::uint64_t{version} << 12);
   low = (low & ~(std::uint64_t{3} << 62)) | (std::uint64_t{1} << 63);
@@ -132,21 +120,6 @@ std::string WhyNotEpisodes(const std::string& path) {
     return fmt::format("is cut off: it has {} of {} bytes", size, wanted);
   return "";
 }
-
-}  // namespace
-
-bool IsEpisodeFile(const std::string& path) {
-  std::error_code error;
-  if (!fs::exists(path, error)) return path.ends_with(".episodes");
-  if (!fs::is_regular_file(path, error)) return false;
-  std::ifstream file(path, std::ios::binary);
-  std::string begin(kMagic.size(), '\0');
-  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  return path.ends_with(".episodes") ||
-         (file.gcount() == static_cast<std::streamsize>(kMagic.size()) && begin == kMagic);
-}
-
-namespace {
 
 /// Whether its tables are those that this program makes, word by word.
 bool IsAsMade(const Database& database) {
@@ -196,6 +169,25 @@ void RefuseOthers(const Database& database) {
 }
 
 }  // namespace
+
+const char* const kPlanTables = R"(CREATE TABLE IF NOT EXISTS plan(
+  id INTEGER PRIMARY KEY, what TEXT NOT NULL, uuid TEXT NOT NULL, part INTEGER NOT NULL,
+  parts INTEGER NOT NULL);
+CREATE TABLE IF NOT EXISTS plan_owed(
+  plan INTEGER NOT NULL REFERENCES plan, position INTEGER NOT NULL, part INTEGER NOT NULL,
+  name TEXT NOT NULL, uuid TEXT NOT NULL, PRIMARY KEY(plan, position)) WITHOUT ROWID;
+)";
+
+bool IsEpisodeFile(const std::string& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return path.ends_with(".episodes");
+  if (!fs::is_regular_file(path, error)) return false;
+  std::ifstream file(path, std::ios::binary);
+  std::string begin(kMagic.size(), '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return path.ends_with(".episodes") ||
+         (file.gcount() == static_cast<std::streamsize>(kMagic.size()) && begin == kMagic);
+}
 
 Database OpenToWrite(const std::string& path) {
   std::error_code error;

@@ -49,6 +49,19 @@ std::vector<const ScenarioFile*> Matching(const std::vector<ScenarioFile>& scena
   return matching;
 }
 
+/// A YAML file, whatever the case of its ending, with a line `scenario: ..`.
+bool LooksLikeScenario(const fs::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::error_code error;
+  if ((ending != ".yaml" && ending != ".yml") || !fs::is_regular_file(file, error)) return false;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("scenario:")) return true;
+  return false;
+}
+
 }  // namespace
 
 scenario::ScenarioLibrary ProjectLibrary(const std::string& root, std::vector<std::string>* files) {
@@ -106,23 +119,6 @@ std::vector<ScenarioFile> ListScenarios(const std::string& root) {
   });
   return scenarios;
 }
-
-namespace {
-
-/// A YAML file, whatever the case of its ending, with a line `scenario: ..`.
-bool LooksLikeScenario(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  std::error_code error;
-  if ((ending != ".yaml" && ending != ".yml") || !fs::is_regular_file(file, error)) return false;
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with("scenario:")) return true;
-  return false;
-}
-
-}  // namespace
 
 std::vector<std::string> ScenariosNotRun(const std::string& root) {
   std::set<fs::path> run;

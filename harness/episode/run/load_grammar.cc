@@ -51,6 +51,32 @@ JoinedGrammars Join(const std::string& joined) {
   return all;
 }
 
+/// Whether the file ships with the program and no scenario names it: `use` of another grammar took
+/// it along. It has no typing errors, and not every episode has all that it knows of.
+bool IsUsedFromLibrary(const std::string& file, const std::string& grammar) {
+  const std::string stem = fs::path(file).stem().string(), joint = "_and_";  // see Join()
+  return fs::path(file).parent_path() == fs::path(ShippedRoot()) / "grammar/library" &&
+         (joint + grammar + joint).find(joint + stem + joint) == std::string::npos;
+}
+
+// Warns of names in the grammar that nothing in the episode has. A class that every scenario knows
+// is no typing error.
+void WarnOfUnknownNames(const std::vector<grammar::NameInSource>& names,
+                        const std::set<std::string>& known, std::string_view message,
+                        const std::string& remedy, grammar::Diagnostics& warnings) {
+  for (const grammar::NameInSource& named : names) {
+    if (known.contains(named.name) || scenario::IsScenarioBuiltinClass(named.name)) continue;
+    const bool is_number = named.name.find_first_not_of("0123456789") == std::string::npos;
+    const std::string near =
+        is_number ? "" : grammar::NearestName(named.name, {known.begin(), known.end()});
+    warnings.push_back(
+        grammar::DiagnosticAt(named.file, ReadTextFile(named.file).value_or(""), named.place,
+                              fmt::format("{} '{}'", message, named.name),
+                              near.empty() ? remedy : "did you mean '" + near + "'?"));
+    warnings.back().is_warning = true;
+  }
+}
+
 }  // namespace
 
 grammar::CompileResult LoadGrammar(const std::string& root, const std::string& name_or_path,
@@ -147,36 +173,6 @@ grammar::CompileResult LoadGrammarOf(const EpisodeHeader& recording, const std::
     unknown.hint.insert(0, "if it is a file of yours, --grammar FILE names it; ");
   return {nullptr, {std::move(unknown)}};
 }
-
-namespace {
-
-/// Whether the file ships with the program and no scenario names it: `use` of another grammar took
-/// it along. It has no typing errors, and not every episode has all that it knows of.
-bool IsUsedFromLibrary(const std::string& file, const std::string& grammar) {
-  const std::string stem = fs::path(file).stem().string(), joint = "_and_";  // see Join()
-  return fs::path(file).parent_path() == fs::path(ShippedRoot()) / "grammar/library" &&
-         (joint + grammar + joint).find(joint + stem + joint) == std::string::npos;
-}
-
-// Warns of names in the grammar that nothing in the episode has. A class that every scenario knows
-// is no typing error.
-void WarnOfUnknownNames(const std::vector<grammar::NameInSource>& names,
-                        const std::set<std::string>& known, std::string_view message,
-                        const std::string& remedy, grammar::Diagnostics& warnings) {
-  for (const grammar::NameInSource& named : names) {
-    if (known.contains(named.name) || scenario::IsScenarioBuiltinClass(named.name)) continue;
-    const bool is_number = named.name.find_first_not_of("0123456789") == std::string::npos;
-    const std::string near =
-        is_number ? "" : grammar::NearestName(named.name, {known.begin(), known.end()});
-    warnings.push_back(
-        grammar::DiagnosticAt(named.file, ReadTextFile(named.file).value_or(""), named.place,
-                              fmt::format("{} '{}'", message, named.name),
-                              near.empty() ? remedy : "did you mean '" + near + "'?"));
-    warnings.back().is_warning = true;
-  }
-}
-
-}  // namespace
 
 grammar::Diagnostics Warnings(const grammar::Program& program,
                               const grammar::EntityTable& entity_table) {

@@ -92,6 +92,34 @@ int PersonOf(const physics::Scene& scene, physics::HandIndex hand) {
   return grammar::kNoEntity;
 }
 
+struct ShapeSeen {
+  grammar::Shape operator()(const physics::Box& box) const { return grammar::Box{box.size_m / 2}; }
+  grammar::Shape operator()(const physics::Sphere& sphere) const {
+    return grammar::Ball{sphere.radius_m};
+  }
+  grammar::Shape operator()(const physics::Cylinder& cylinder) const {
+    return grammar::Cylinder{cylinder.radius_m, cylinder.length_m / 2};
+  }
+  grammar::Shape operator()(const physics::Capsule& capsule) const {
+    return grammar::Capsule{capsule.radius_m, capsule.length_m / 2};
+  }
+  grammar::Shape operator()(const physics::Hull& hull) const {
+    return grammar::Hull{hull.corners_m};
+  }
+};
+
+/// Empty if it fills its bounding box.
+grammar::Solid SolidOf(const physics::Body& body) {
+  const bool is_box = body.shapes.size() == 1 &&
+                      std::holds_alternative<physics::Box>(body.shapes.front().shape) &&
+                      body.shapes.front().X_BS.q.isApprox(Eigen::Quaterniond::Identity());
+  if (is_box) return {};
+  std::vector<grammar::SolidPart> parts;
+  for (const physics::PlacedShape& part : body.shapes)
+    parts.push_back({std::visit(ShapeSeen{}, part.shape), part.X_BS.p_m, part.X_BS.q});
+  return grammar::Solid(std::move(parts));
+}
+
 }  // namespace
 
 ValueFormat<HeaderEntry> HeaderFormat() {
@@ -198,38 +226,6 @@ std::vector<std::string> StyleNames(const physics::Scene& scene) {
   }
   return names;
 }
-
-namespace {
-
-struct ShapeSeen {
-  grammar::Shape operator()(const physics::Box& box) const { return grammar::Box{box.size_m / 2}; }
-  grammar::Shape operator()(const physics::Sphere& sphere) const {
-    return grammar::Ball{sphere.radius_m};
-  }
-  grammar::Shape operator()(const physics::Cylinder& cylinder) const {
-    return grammar::Cylinder{cylinder.radius_m, cylinder.length_m / 2};
-  }
-  grammar::Shape operator()(const physics::Capsule& capsule) const {
-    return grammar::Capsule{capsule.radius_m, capsule.length_m / 2};
-  }
-  grammar::Shape operator()(const physics::Hull& hull) const {
-    return grammar::Hull{hull.corners_m};
-  }
-};
-
-/// Empty if it fills its bounding box.
-grammar::Solid SolidOf(const physics::Body& body) {
-  const bool is_box = body.shapes.size() == 1 &&
-                      std::holds_alternative<physics::Box>(body.shapes.front().shape) &&
-                      body.shapes.front().X_BS.q.isApprox(Eigen::Quaterniond::Identity());
-  if (is_box) return {};
-  std::vector<grammar::SolidPart> parts;
-  for (const physics::PlacedShape& part : body.shapes)
-    parts.push_back({std::visit(ShapeSeen{}, part.shape), part.X_BS.p_m, part.X_BS.q});
-  return grammar::Solid(std::move(parts));
-}
-
-}  // namespace
 
 grammar::EntityTable MakeEntityTable(const scenario::Scenario& scenario) {
   grammar::EntityTable entity_table;

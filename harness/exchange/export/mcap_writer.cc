@@ -87,6 +87,13 @@ std::string BagMetadata(const McapWriter& bag, const std::string& file) {
          quoted + "\n  files:\n    - path: " + quoted + "\n" + times("      ");
 }
 
+/// Names of topics have letters, digits and underscores.
+std::string TopicOf(const std::string& entity, std::size_t number) {
+  std::string word = entity;
+  for (char& c : word) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  return "/shapes/" + (word == entity ? word : fmt::format("{}_{}", word, number));
+}
+
 }  // namespace
 
 std::string QosText(bool latched) {
@@ -216,17 +223,6 @@ std::string WorldName(const grammar::EntityTable& table) {
   while (std::ranges::any_of(table.entities, is_taken)) name += "_";
   return name;
 }
-
-namespace {
-
-/// Names of topics have letters, digits and underscores.
-std::string TopicOf(const std::string& entity, std::size_t number) {
-  std::string word = entity;
-  for (char& c : word) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-  return "/shapes/" + (word == entity ? word : fmt::format("{}_{}", word, number));
-}
-
-}  // namespace
 
 std::string WriteMcap(const Motion& motion, const std::string& name, std::ostream& out) {
   McapWriter bag(out);

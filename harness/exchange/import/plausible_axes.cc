@@ -160,6 +160,27 @@ class WayUp {
   std::vector<std::vector<std::size_t>> last_jump_;  ///< by body and look; 0: none
 };
 
+/// How far things slip in the hands that carry them, as seen from hands that turn, m.
+std::optional<double> Slips_m(const MotionSeen& seen, std::optional<bool> reorder_wxyz) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const Carry& carry : seen.carries) {
+    std::vector<Eigen::Vector3d> seen_from;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (std::size_t k = carry.begin; k < carry.end; ++k) {
+      const BodyLook &hand = seen.looks[carry.hand][k], &thing = seen.looks[carry.thing][k];
+      const Eigen::Quaterniond q = reorder_wxyz ? Reordered(hand.q, *reorder_wxyz) : hand.q;
+      seen_from.push_back(q.conjugate() * (thing.p_m - hand.p_m));
+      middle += seen_from.back();
+    }
+    middle /= static_cast<double>(seen_from.size());
+    for (const Eigen::Vector3d& p : seen_from) sum += (p - middle).squaredNorm();
+    count += seen_from.size();
+  }
+  if (count < 10) return std::nullopt;
+  return std::sqrt(sum / static_cast<double>(count));
+}
+
 }  // namespace
 
 Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign) {
@@ -233,31 +254,6 @@ Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign) {
   }
   return guess;
 }
-
-namespace {
-
-/// How far things slip in the hands that carry them, as seen from hands that turn, m.
-std::optional<double> Slips_m(const MotionSeen& seen, std::optional<bool> reorder_wxyz) {
-  double sum = 0;
-  std::size_t count = 0;
-  for (const Carry& carry : seen.carries) {
-    std::vector<Eigen::Vector3d> seen_from;
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (std::size_t k = carry.begin; k < carry.end; ++k) {
-      const BodyLook &hand = seen.looks[carry.hand][k], &thing = seen.looks[carry.thing][k];
-      const Eigen::Quaterniond q = reorder_wxyz ? Reordered(hand.q, *reorder_wxyz) : hand.q;
-      seen_from.push_back(q.conjugate() * (thing.p_m - hand.p_m));
-      middle += seen_from.back();
-    }
-    middle /= static_cast<double>(seen_from.size());
-    for (const Eigen::Vector3d& p : seen_from) sum += (p - middle).squaredNorm();
-    count += seen_from.size();
-  }
-  if (count < 10) return std::nullopt;
-  return std::sqrt(sum / static_cast<double>(count));
-}
-
-}  // namespace
 
 std::vector<std::string> HeldFarOff(const PoseFile& poses, const ImportMap& map) {
   constexpr double kFar_m = 0.03;  // from the surface: grip_near of grasp_from_gripper

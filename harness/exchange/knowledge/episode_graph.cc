@@ -187,6 +187,10 @@ class EventWriter {
   Graph& graph_;
 };
 
+constexpr const char* kTerminology = "harness/exchange/knowledge/prehend.ttl";
+/// Every class of things that is built in is below it.
+constexpr const char* kRootOfThings = "knowrob:Entity";
+
 }  // namespace
 
 std::vector<Triple> MapTriples(const MapOfTask& map, const Vocabulary& vocabulary) {
@@ -236,14 +240,6 @@ std::vector<Triple> EpisodeTriples(const EpisodeOfTask& episode, const MapOfTask
   for (std::size_t i = 0; i < episode.timeline.events.size(); ++i) writer.Write(i);
   return graph.Taken();
 }
-
-namespace {
-
-constexpr const char* kTerminology = "harness/exchange/knowledge/prehend.ttl";
-/// Every class of things that is built in is below it.
-constexpr const char* kRootOfThings = "knowrob:Entity";
-
-}  // namespace
 
 Result<Vocabulary> Vocabulary::Load() {
   const std::string file = Shipped(kTerminology);

@@ -203,20 +203,6 @@ std::string WithoutText(const LabelFile& file) {
   return grammar::Format(warning);
 }
 
-}  // namespace
-
-Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelMap* map,
-                                      const Events& events) {
-  std::vector<TakeRows> takes;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    TakeRows& take = takes.emplace_back(TakeRows{.file = i, .offset_s = map ? map->offset_s : 0});
-    for (std::size_t k = 0; k < files[i].labels.size(); ++k) take.labels.push_back(k);
-  }
-  return Of(std::move(files), map, events, std::move(takes));
-}
-
-namespace {
-
 const Meaning* TierOf(const Label& label, const LabelMap* map) {
   if (!map) return nullptr;
   const auto tier = map->tiers.find(label.tier);
@@ -249,6 +235,16 @@ std::vector<Label> LabelsOf(const LabelFile& file, const TakeRows& take, const L
 }
 
 }  // namespace
+
+Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelMap* map,
+                                      const Events& events) {
+  std::vector<TakeRows> takes;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    TakeRows& take = takes.emplace_back(TakeRows{.file = i, .offset_s = map ? map->offset_s : 0});
+    for (std::size_t k = 0; k < files[i].labels.size(); ++k) take.labels.push_back(k);
+  }
+  return Of(std::move(files), map, events, std::move(takes));
+}
 
 Result<LabelReading> LabelReading::Of(std::vector<LabelFile> files, const LabelMap* map,
                                       const Events& events, std::vector<TakeRows> takes,

@@ -293,10 +293,6 @@ class TruthReader {
   grammar::Diagnostics problems_;
 };
 
-}  // namespace
-
-namespace {
-
 /// That of the command line or of the takes; none if nobody names one.
 Result<std::optional<LabelMap>> MapOf(const std::vector<episode::Take>& takes,
                                       const std::string& map,

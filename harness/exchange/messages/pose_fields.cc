@@ -209,6 +209,25 @@ class LayoutMaker {
   std::vector<PoseField::Step> steps_;
 };
 
+/// "[Cup]" at the beginning of the text, which it takes away; brackets in names are in pairs.
+std::optional<std::string> TakeKey(std::string_view& text) {
+  int open = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    open += text[i] == '[' ? 1 : text[i] == ']' ? -1 : 0;
+    if (open > 0) continue;
+    std::string key(text.substr(1, i - 1));
+    text.remove_prefix(i + 1);
+    return key;
+  }
+  return std::nullopt;
+}
+
+bool IsMeant(const BodyAddress& address, const PoseField& field) {
+  if (address.keys.size() != field.Lists()) return false;
+  return address.steps.size() <= field.steps.size() &&
+         std::equal(address.steps.begin(), address.steps.end(), field.steps.begin());
+}
+
 }  // namespace
 
 std::size_t PoseField::Lists() const {
@@ -237,29 +256,6 @@ PoseLayout LayoutOf(MessageDefinition definition) {
   LayoutMaker(layout).Make();
   return layout;
 }
-
-namespace {
-
-/// "[Cup]" at the beginning of the text, which it takes away; brackets in names are in pairs.
-std::optional<std::string> TakeKey(std::string_view& text) {
-  int open = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    open += text[i] == '[' ? 1 : text[i] == ']' ? -1 : 0;
-    if (open > 0) continue;
-    std::string key(text.substr(1, i - 1));
-    text.remove_prefix(i + 1);
-    return key;
-  }
-  return std::nullopt;
-}
-
-bool IsMeant(const BodyAddress& address, const PoseField& field) {
-  if (address.keys.size() != field.Lists()) return false;
-  return address.steps.size() <= field.steps.size() &&
-         std::equal(address.steps.begin(), address.steps.end(), field.steps.begin());
-}
-
-}  // namespace
 
 std::optional<BodyAddress> ParseBodyAddress(std::string_view text) {
   BodyAddress address;

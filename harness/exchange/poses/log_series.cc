@@ -30,6 +30,50 @@ bool IsOfTopic(const std::string& from, const std::string& topic) {
          (from.size() == topic.size() || from[topic.size()] == '[' || from[topic.size()] == ':');
 }
 
+/// Of a link, over increasing times.
+class LinkWalk {
+ public:
+  LinkWalk(const FrameLink& link, std::int64_t bridge_ns)
+      : LinkWalk(link, bridge_ns, link.UsualStep_ns()) {}
+
+  std::optional<TimedPose> At(std::int64_t ns) {
+    const std::vector<TimedPose>& poses = link_.poses;
+    if (poses.empty()) return std::nullopt;
+    if (link_.fixed) return poses.back();
+    while (next_ < poses.size() && poses[next_].ns < ns) ++next_;
+    if (next_ == poses.size()) return std::nullopt;
+    const TimedPose& after = poses[next_];
+    if (after.ns == ns) return after;
+    if (next_ == 0) return std::nullopt;
+    const TimedPose& before = poses[next_ - 1];
+    if (after.ns - before.ns > most_gap_ns_) return std::nullopt;
+    const double part =
+        static_cast<double>(ns - before.ns) / static_cast<double>(after.ns - before.ns);
+    return TimedPose{
+        .ns = ns, .p = before.p + part * (after.p - before.p), .q = before.q.slerp(part, after.q)};
+  }
+
+ private:
+  LinkWalk(const FrameLink& link, std::int64_t bridge_ns, std::int64_t step_ns)
+      : link_(link), most_gap_ns_(std::max(bridge_ns, step_ns + step_ns / 2)) {}
+
+  const FrameLink& link_;
+  const std::int64_t most_gap_ns_;
+  std::size_t next_ = 0;
+};
+
+/// All links of a way, the innermost first.
+std::optional<TimedPose> Along(std::vector<LinkWalk>& way, std::int64_t ns) {
+  TimedPose pose{.ns = ns};
+  for (LinkWalk& link : way) {
+    const std::optional<TimedPose> outer = link.At(ns);
+    if (!outer) return std::nullopt;
+    pose.p = outer->p + outer->q * pose.p;
+    pose.q = outer->q * pose.q;
+  }
+  return pose;
+}
+
 }  // namespace
 
 std::string FrameName(std::string name) {
@@ -275,54 +319,6 @@ std::string LogSeries::TakePose(const LogMessage& message, const MessagePose& po
   ++poses_;
   return "";
 }
-
-namespace {
-
-/// Of a link, over increasing times.
-class LinkWalk {
- public:
-  LinkWalk(const FrameLink& link, std::int64_t bridge_ns)
-      : LinkWalk(link, bridge_ns, link.UsualStep_ns()) {}
-
-  std::optional<TimedPose> At(std::int64_t ns) {
-    const std::vector<TimedPose>& poses = link_.poses;
-    if (poses.empty()) return std::nullopt;
-    if (link_.fixed) return poses.back();
-    while (next_ < poses.size() && poses[next_].ns < ns) ++next_;
-    if (next_ == poses.size()) return std::nullopt;
-    const TimedPose& after = poses[next_];
-    if (after.ns == ns) return after;
-    if (next_ == 0) return std::nullopt;
-    const TimedPose& before = poses[next_ - 1];
-    if (after.ns - before.ns > most_gap_ns_) return std::nullopt;
-    const double part =
-        static_cast<double>(ns - before.ns) / static_cast<double>(after.ns - before.ns);
-    return TimedPose{
-        .ns = ns, .p = before.p + part * (after.p - before.p), .q = before.q.slerp(part, after.q)};
-  }
-
- private:
-  LinkWalk(const FrameLink& link, std::int64_t bridge_ns, std::int64_t step_ns)
-      : link_(link), most_gap_ns_(std::max(bridge_ns, step_ns + step_ns / 2)) {}
-
-  const FrameLink& link_;
-  const std::int64_t most_gap_ns_;
-  std::size_t next_ = 0;
-};
-
-/// All links of a way, the innermost first.
-std::optional<TimedPose> Along(std::vector<LinkWalk>& way, std::int64_t ns) {
-  TimedPose pose{.ns = ns};
-  for (LinkWalk& link : way) {
-    const std::optional<TimedPose> outer = link.At(ns);
-    if (!outer) return std::nullopt;
-    pose.p = outer->p + outer->q * pose.p;
-    pose.q = outer->q * pose.q;
-  }
-  return pose;
-}
-
-}  // namespace
 
 std::optional<std::int64_t> FrameLink::Sort() {
   std::ranges::stable_sort(poses, {}, &TimedPose::ns);

@@ -64,44 +64,6 @@ double Dominated(const Segments& in, const Segments& of) {
   return static_cast<double>(frames);
 }
 
-}  // namespace
-
-double PrecisionRecall::F1() const {
-  return precision + recall > 0 ? 2 * precision * recall / (precision + recall) : 0;
-}
-
-std::optional<Deviation> BoundaryDeviation(const Episode& episode) {
-  const std::vector<Tick> truth = InnerBoundaries(episode.truth, episode.ticks);
-  const std::vector<Tick> predicted = InnerBoundaries(episode.prediction, episode.ticks);
-  if (truth.empty() || predicted.empty()) return std::nullopt;
-  return Deviation{MedianDistance(truth, predicted), MedianDistance(predicted, truth)};
-}
-
-PrecisionRecall PairwiseAgreement(const Episode& episode) {
-  std::map<std::string, Tick> truth, predicted;
-  std::map<std::pair<std::string, std::string>, Tick> both;
-  const Segments pieces = Partition(episode.prediction, episode.ticks);
-  for (const Segment& piece : pieces) predicted[piece.label] += Length(piece.interval);
-  for (const Segment& one : Partition(episode.truth, episode.ticks)) {
-    truth[one.label] += Length(one.interval);
-    for (const Segment& piece : pieces)
-      both[{one.label, piece.label}] += std::max<Tick>(0, Overlap(one.interval, piece.interval));
-  }
-  const double matches = SumOfPairs(both), in_truth = SumOfPairs(truth),
-               in_prediction = SumOfPairs(predicted);
-  return {in_prediction > 0 ? matches / in_prediction : 1, in_truth > 0 ? matches / in_truth : 1};
-}
-
-PrecisionRecall PurityAndCoverage(const Episode& episode) {
-  if (episode.ticks == 0) return {};
-  const Segments truth = Partition(episode.truth, episode.ticks),
-                 predicted = Partition(episode.prediction, episode.ticks);
-  const auto all = static_cast<double>(episode.ticks);
-  return {Dominated(predicted, truth) / all, Dominated(truth, predicted) / all};
-}
-
-namespace {
-
 constexpr double kCovered = 0.5;  ///< of a prediction by true events, and of these by predictions
 constexpr double kMostFalsePerHour = 100;
 
@@ -134,27 +96,6 @@ LabelCounts Count(const Episode& episode, const std::string& label) {
   }
   return counts;
 }
-
-}  // namespace
-
-IntersectionScore ScoreByIntersection(const Episode& episode, double ticks_per_second) {
-  std::set<std::string> labels;
-  for (const Segment& one : episode.truth) labels.insert(one.label);
-  if (labels.empty()) return {};
-  const double hours = static_cast<double>(episode.ticks) / ticks_per_second / 3600;
-  IntersectionScore sum{0, 0};
-  for (const std::string& label : labels) {
-    const LabelCounts counts = Count(episode, label);
-    const double missed = counts.truths - counts.found;
-    sum.macro_f1 += 2 * counts.found / (2 * counts.found + counts.false_predictions + missed);
-    const double false_share = counts.false_predictions / hours / kMostFalsePerHour;
-    sum.psds += counts.found / counts.truths * std::max(0.0, 1 - false_share);
-  }
-  const auto count = static_cast<double>(labels.size());
-  return {sum.macro_f1 / count, sum.psds / count};
-}
-
-namespace {
 
 constexpr double kMicrosPerS = 1e6;
 
@@ -195,6 +136,57 @@ Episode Chained(const std::vector<LabelledEpisode>& episodes, double all_s) {
 }
 
 }  // namespace
+
+double PrecisionRecall::F1() const {
+  return precision + recall > 0 ? 2 * precision * recall / (precision + recall) : 0;
+}
+
+std::optional<Deviation> BoundaryDeviation(const Episode& episode) {
+  const std::vector<Tick> truth = InnerBoundaries(episode.truth, episode.ticks);
+  const std::vector<Tick> predicted = InnerBoundaries(episode.prediction, episode.ticks);
+  if (truth.empty() || predicted.empty()) return std::nullopt;
+  return Deviation{MedianDistance(truth, predicted), MedianDistance(predicted, truth)};
+}
+
+PrecisionRecall PairwiseAgreement(const Episode& episode) {
+  std::map<std::string, Tick> truth, predicted;
+  std::map<std::pair<std::string, std::string>, Tick> both;
+  const Segments pieces = Partition(episode.prediction, episode.ticks);
+  for (const Segment& piece : pieces) predicted[piece.label] += Length(piece.interval);
+  for (const Segment& one : Partition(episode.truth, episode.ticks)) {
+    truth[one.label] += Length(one.interval);
+    for (const Segment& piece : pieces)
+      both[{one.label, piece.label}] += std::max<Tick>(0, Overlap(one.interval, piece.interval));
+  }
+  const double matches = SumOfPairs(both), in_truth = SumOfPairs(truth),
+               in_prediction = SumOfPairs(predicted);
+  return {in_prediction > 0 ? matches / in_prediction : 1, in_truth > 0 ? matches / in_truth : 1};
+}
+
+PrecisionRecall PurityAndCoverage(const Episode& episode) {
+  if (episode.ticks == 0) return {};
+  const Segments truth = Partition(episode.truth, episode.ticks),
+                 predicted = Partition(episode.prediction, episode.ticks);
+  const auto all = static_cast<double>(episode.ticks);
+  return {Dominated(predicted, truth) / all, Dominated(truth, predicted) / all};
+}
+
+IntersectionScore ScoreByIntersection(const Episode& episode, double ticks_per_second) {
+  std::set<std::string> labels;
+  for (const Segment& one : episode.truth) labels.insert(one.label);
+  if (labels.empty()) return {};
+  const double hours = static_cast<double>(episode.ticks) / ticks_per_second / 3600;
+  IntersectionScore sum{0, 0};
+  for (const std::string& label : labels) {
+    const LabelCounts counts = Count(episode, label);
+    const double missed = counts.truths - counts.found;
+    sum.macro_f1 += 2 * counts.found / (2 * counts.found + counts.false_predictions + missed);
+    const double false_share = counts.false_predictions / hours / kMostFalsePerHour;
+    sum.psds += counts.found / counts.truths * std::max(0.0, 1 - false_share);
+  }
+  const auto count = static_cast<double>(labels.size());
+  return {sum.macro_f1 / count, sum.psds / count};
+}
 
 FurtherScores ScoreFurther(const std::vector<LabelledEpisode>& episodes, double collar_s,
                            double all_s) {

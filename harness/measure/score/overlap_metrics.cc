@@ -59,6 +59,63 @@ const std::string* LabelAt(const Segments& segments, Tick tick) {
   return nullptr;
 }
 
+std::ptrdiff_t Meeting(const Segment& one, const Segments& others) {
+  return std::ranges::count_if(
+      others, [&](const Segment& other) { return Overlap(one.interval, other.interval) > 0; });
+}
+
+/// Whether a segment that overlaps `one` also overlaps another one of its side.
+bool SharesPartner(const Segment& one, const Segments& others, const Segments& own) {
+  return std::ranges::any_of(others, [&](const Segment& other) {
+    return Overlap(one.interval, other.interval) > 0 && Meeting(other, own) > 1;
+  });
+}
+
+/// Of `own` what `others` do not cover.
+WardFrames UncoveredOf(const Segments& own, const Segments& others) {
+  WardFrames frames;
+  for (const Segment& one : own) {
+    const Segment* last = nullptr;
+    for (const Segment& other : others) {
+      if (Overlap(one.interval, other.interval) <= 0) continue;
+      const Tick from = last ? last->interval.end : one.interval.begin;
+      (last ? frames.between : frames.before) +=
+          static_cast<double>(std::max<Tick>(0, other.interval.begin - from));
+      last = &other;
+    }
+    if (last)
+      frames.after += static_cast<double>(std::max<Tick>(0, one.interval.end - last->interval.end));
+    else
+      frames.alone += static_cast<double>(Length(one.interval));
+  }
+  return frames;
+}
+
+/// How many of `own` meet none of `others`, one that meets no other one, ..
+struct WardSide {
+  int alone = 0, plain = 0, several = 0, shares = 0, both = 0;
+};
+WardSide SideOf(const Segments& own, const Segments& others) {
+  WardSide side;
+  for (const Segment& one : own) {
+    const auto pieces = Meeting(one, others);
+    const bool shares = SharesPartner(one, others, own);
+    ++(pieces == 0            ? side.alone
+       : pieces > 1 && shares ? side.both
+       : pieces > 1           ? side.several
+       : shares               ? side.shares
+                              : side.plain);
+  }
+  return side;
+}
+
+Segments SegmentsOf(const grammar::Timeline& timeline) {
+  Segments segments;
+  for (const grammar::NamedEvent& event : timeline.events)
+    segments.push_back({event.Label(), event.interval});
+  return segments;
+}
+
 }  // namespace
 
 Hits& Hits::operator+=(const Hits& other) {
@@ -247,22 +304,6 @@ Hits BoundaryHits(const Episode& episode, double window) {
   return {hits, static_cast<int>(predicted.size()) - hits, static_cast<int>(truth.size()) - hits};
 }
 
-namespace {
-
-std::ptrdiff_t Meeting(const Segment& one, const Segments& others) {
-  return std::ranges::count_if(
-      others, [&](const Segment& other) { return Overlap(one.interval, other.interval) > 0; });
-}
-
-/// Whether a segment that overlaps `one` also overlaps another one of its side.
-bool SharesPartner(const Segment& one, const Segments& others, const Segments& own) {
-  return std::ranges::any_of(others, [&](const Segment& other) {
-    return Overlap(one.interval, other.interval) > 0 && Meeting(other, own) > 1;
-  });
-}
-
-}  // namespace
-
 void WardFrames::Add(const WardFrames& more, double share) {
   alone += share * more.alone;
   between += share * more.between;
@@ -285,48 +326,6 @@ void Ward::Add(const Ward& other, double ticks_per_second) {
   false_alarm.Add(other.false_alarm, 1 / ticks_per_second);
 }
 
-namespace {
-
-/// Of `own` what `others` do not cover.
-WardFrames UncoveredOf(const Segments& own, const Segments& others) {
-  WardFrames frames;
-  for (const Segment& one : own) {
-    const Segment* last = nullptr;
-    for (const Segment& other : others) {
-      if (Overlap(one.interval, other.interval) <= 0) continue;
-      const Tick from = last ? last->interval.end : one.interval.begin;
-      (last ? frames.between : frames.before) +=
-          static_cast<double>(std::max<Tick>(0, other.interval.begin - from));
-      last = &other;
-    }
-    if (last)
-      frames.after += static_cast<double>(std::max<Tick>(0, one.interval.end - last->interval.end));
-    else
-      frames.alone += static_cast<double>(Length(one.interval));
-  }
-  return frames;
-}
-
-/// How many of `own` meet none of `others`, one that meets no other one, ..
-struct WardSide {
-  int alone = 0, plain = 0, several = 0, shares = 0, both = 0;
-};
-WardSide SideOf(const Segments& own, const Segments& others) {
-  WardSide side;
-  for (const Segment& one : own) {
-    const auto pieces = Meeting(one, others);
-    const bool shares = SharesPartner(one, others, own);
-    ++(pieces == 0            ? side.alone
-       : pieces > 1 && shares ? side.both
-       : pieces > 1           ? side.several
-       : shares               ? side.shares
-                              : side.plain);
-  }
-  return side;
-}
-
-}  // namespace
-
 Ward CompareByWard(const Segments& truth, const Segments& said) {
   const WardSide of_truth = SideOf(truth, said), of_said = SideOf(said, truth);
   return {.correct = of_truth.plain,
@@ -342,17 +341,6 @@ Ward CompareByWard(const Segments& truth, const Segments& said) {
           .missed = UncoveredOf(truth, said),
           .false_alarm = UncoveredOf(said, truth)};
 }
-
-namespace {
-
-Segments SegmentsOf(const grammar::Timeline& timeline) {
-  Segments segments;
-  for (const grammar::NamedEvent& event : timeline.events)
-    segments.push_back({event.Label(), event.interval});
-  return segments;
-}
-
-}  // namespace
 
 std::vector<grammar::Tick> InnerBoundaries(const Segments& segments, grammar::Tick ticks) {
   std::set<grammar::Tick> boundaries;

@@ -115,31 +115,6 @@ Result<std::vector<exchange::LabelFile>> ReadBoth(const LabelFilesRequest& reque
   return files;
 }
 
-}  // namespace
-
-void AddScores(const std::string& grammar, std::vector<EpisodeToScore> episodes, double collar_s,
-               const Collars& collars, LabelScores& scores) {
-  std::string& differences = scores.differences.emplace_back();
-  for (const EpisodeToScore& episode : episodes)
-    if (episode.failure.empty()) differences += DifferencesOf(episode, collar_s);
-  scores.of_grammars.push_back(ScoreOf(grammar, episodes, collar_s, collars));
-  scores.of_grammars.back().ignored_because = "no label means them";
-  for (EpisodeToScore& episode : episodes) {
-    episode.truth = exchange::ByHand(std::move(episode.truth));
-    episode.found = exchange::ByHand(std::move(episode.found));
-  }
-  scores.by_hand.push_back(ScoreOf(grammar, episodes, collar_s, collars));
-  scores.by_hand.back().ignored.clear();
-}
-
-bool LabelScores::HasHands() const {
-  for (std::size_t g = 0; g < by_hand.size(); ++g)
-    if (by_hand[g].events.size() > of_grammars[g].events.size()) return true;
-  return false;
-}
-
-namespace {
-
 /// Takes that are scored together: of one set, and by one grammar.
 struct Together {
   std::string set;
@@ -275,6 +250,27 @@ class LabelScorer {
 };
 
 }  // namespace
+
+void AddScores(const std::string& grammar, std::vector<EpisodeToScore> episodes, double collar_s,
+               const Collars& collars, LabelScores& scores) {
+  std::string& differences = scores.differences.emplace_back();
+  for (const EpisodeToScore& episode : episodes)
+    if (episode.failure.empty()) differences += DifferencesOf(episode, collar_s);
+  scores.of_grammars.push_back(ScoreOf(grammar, episodes, collar_s, collars));
+  scores.of_grammars.back().ignored_because = "no label means them";
+  for (EpisodeToScore& episode : episodes) {
+    episode.truth = exchange::ByHand(std::move(episode.truth));
+    episode.found = exchange::ByHand(std::move(episode.found));
+  }
+  scores.by_hand.push_back(ScoreOf(grammar, episodes, collar_s, collars));
+  scores.by_hand.back().ignored.clear();
+}
+
+bool LabelScores::HasHands() const {
+  for (std::size_t g = 0; g < by_hand.size(); ++g)
+    if (by_hand[g].events.size() > of_grammars[g].events.size()) return true;
+  return false;
+}
 
 Result<LabelScores> ScoreLabels(const LabelsRequest& request, std::string& warnings) {
   return LabelScorer(request, warnings).Score();

@@ -215,6 +215,18 @@ double MedianMs(std::vector<std::int64_t>& microseconds) {
   return static_cast<double>(*middle) / 1000;
 }
 
+/// "40 seconds", "12 minutes", "3.5 hours"
+std::string TimeText(double seconds) {
+  constexpr double kMinute_s = 60, kHour_s = 3600;
+  if (seconds < 1.5 * kMinute_s) return fmt::format("{:.0f} seconds", std::ceil(seconds));
+  if (seconds < 1.5 * kHour_s) return fmt::format("{:.0f} minutes", seconds / kMinute_s);
+  return fmt::format("{:.1f} hours", seconds / kHour_s);
+}
+
+double Seconds(std::chrono::steady_clock::duration time) {
+  return std::chrono::duration<double>(time).count();
+}
+
 }  // namespace
 
 std::string Axis::ValueText(std::size_t i) const {
@@ -367,22 +379,6 @@ Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRe
   std::ranges::sort(result.left_out);
   return result;
 }
-
-namespace {
-
-/// "40 seconds", "12 minutes", "3.5 hours"
-std::string TimeText(double seconds) {
-  constexpr double kMinute_s = 60, kHour_s = 3600;
-  if (seconds < 1.5 * kMinute_s) return fmt::format("{:.0f} seconds", std::ceil(seconds));
-  if (seconds < 1.5 * kHour_s) return fmt::format("{:.0f} minutes", seconds / kMinute_s);
-  return fmt::format("{:.1f} hours", seconds / kHour_s);
-}
-
-double Seconds(std::chrono::steady_clock::duration time) {
-  return std::chrono::duration<double>(time).count();
-}
-
-}  // namespace
 
 SweepProgress::~SweepProgress() {
   if (said_ && is_person_) out_ << kEraseLine << std::flush;

@@ -36,6 +36,18 @@ Reason Failed(std::string what, std::string how, Reasons because = {}) {
           .because = std::move(because)};
 }
 
+// "meets|before within 0.3 s"
+std::string Text(const grammar::ComposeRule::Clause& clause) {
+  std::string text;
+  for (std::size_t i = 0; i < grammar::kAllenNames.size(); ++i) {
+    if ((clause.relations >> i & 1U) == 0) continue;
+    text += (text.empty() ? "" : "|") + std::string(grammar::kAllenNames[i]);
+    if (clause.within_s[i] >= 0)
+      text += " within " + QuantityText(clause.within_s[i], grammar::kSeconds);
+  }
+  return text;
+}
+
 }  // namespace
 
 // "contact(hand, cup)  1.0..2.0 s, 3.0..4.0 s"
@@ -405,22 +417,6 @@ MissingReasons::Cause MissingReasons::OfAny(InstanceId instance, const Window& w
     fewer.because.push_back(Intervals(member, "was there"));
   return {{std::move(fewer)}, 0};
 }
-
-namespace {
-
-// "meets|before within 0.3 s"
-std::string Text(const grammar::ComposeRule::Clause& clause) {
-  std::string text;
-  for (std::size_t i = 0; i < grammar::kAllenNames.size(); ++i) {
-    if ((clause.relations >> i & 1U) == 0) continue;
-    text += (text.empty() ? "" : "|") + std::string(grammar::kAllenNames[i]);
-    if (clause.within_s[i] >= 0)
-      text += " within " + QuantityText(clause.within_s[i], grammar::kSeconds);
-  }
-  return text;
-}
-
-}  // namespace
 
 // That can stand for a part of a composition.
 std::vector<grammar::Interval> MissingReasons::IntervalsFor(InstanceId composition, int part) {

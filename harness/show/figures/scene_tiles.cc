@@ -139,6 +139,17 @@ class SheetDrawing {
   pugi::xml_node svg_;
 };
 
+/// The styles in which the scenario's hands reach.
+std::vector<std::string> StylesOf(const scenario::Scenario& scenario) {
+  std::vector<std::string> styles;
+  for (const physics::ScriptStage& stage : scenario.script.stages) {
+    for (const physics::Step& step : stage.steps)
+      if (const auto* reach = std::get_if<physics::ReachStep>(&step.action))
+        styles.push_back(reach->style);
+  }
+  return styles;
+}
+
 }  // namespace
 
 std::string AddScene(const scenario::Scenario& scenario, const episode::RunResult& run,
@@ -256,21 +267,6 @@ Sheet GraspSheet(const std::vector<HeldScene>& scenes, const SceneFormat& format
   if (!sheet.legend.empty()) sheet.note = "Sensors that touch what is held:";
   return sheet;
 }
-
-namespace {
-
-/// The styles in which the scenario's hands reach.
-std::vector<std::string> StylesOf(const scenario::Scenario& scenario) {
-  std::vector<std::string> styles;
-  for (const physics::ScriptStage& stage : scenario.script.stages) {
-    for (const physics::Step& step : stage.steps)
-      if (const auto* reach = std::get_if<physics::ReachStep>(&step.action))
-        styles.push_back(reach->style);
-  }
-  return styles;
-}
-
-}  // namespace
 
 Result<std::vector<PlayedGrasp>> FindGrasps(std::vector<episode::RunRequest> scenarios,
                                             const std::string& root) {

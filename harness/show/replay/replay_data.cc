@@ -256,34 +256,6 @@ json LegsJson(const scenario::Scenario& scenario, const Snapshot& first) {
   return legs;
 }
 
-}  // namespace
-
-json ReplayJson(const scenario::Scenario& scenario, const episode::RunResult& run) {
-  const Frames frames(run);
-  return {{"ticks_per_second", run.timeline.ticks_per_second},
-          {"end", frames.ticks.back()},
-          {"bodies", BodiesJson(scenario, frames)},
-          {"legs", LegsJson(scenario, run.recording.front())},
-          {"hands", HandsJson(scenario.scene, run, frames)},
-          {"contacts", ContactsJson(frames)},
-          {"gazes", GazesJson(scenario.scene, frames)}};
-}
-
-std::string ReplayData(const scenario::Scenario& scenario, const episode::RunResult& run) {
-  if (run.recording.empty()) return "";
-  const std::string text =
-      ReplayJson(scenario, run).dump(-1, ' ', false, json::error_handler_t::replace);
-  uLongf size = compressBound(text.size());
-  std::string bytes(size, '\0');
-  const int result = compress2(reinterpret_cast<Bytef*>(bytes.data()), &size,
-                               reinterpret_cast<const Bytef*>(text.data()), text.size(), kPacking);
-  if (result != Z_OK) throw std::runtime_error("zlib: no memory");
-  bytes.resize(size);
-  return Base64(bytes);
-}
-
-namespace {
-
 /// Rotations are compared by tan^2 of half the angle between them, without its arc tangent.
 const double kTrackTan2 = std::pow(std::tan(kTrackTolerance_rad / 2), 2);
 
@@ -351,6 +323,30 @@ bool Fits(std::span<const Pose> poses, std::span<const std::int64_t> at, std::si
 }
 
 }  // namespace
+
+json ReplayJson(const scenario::Scenario& scenario, const episode::RunResult& run) {
+  const Frames frames(run);
+  return {{"ticks_per_second", run.timeline.ticks_per_second},
+          {"end", frames.ticks.back()},
+          {"bodies", BodiesJson(scenario, frames)},
+          {"legs", LegsJson(scenario, run.recording.front())},
+          {"hands", HandsJson(scenario.scene, run, frames)},
+          {"contacts", ContactsJson(frames)},
+          {"gazes", GazesJson(scenario.scene, frames)}};
+}
+
+std::string ReplayData(const scenario::Scenario& scenario, const episode::RunResult& run) {
+  if (run.recording.empty()) return "";
+  const std::string text =
+      ReplayJson(scenario, run).dump(-1, ' ', false, json::error_handler_t::replace);
+  uLongf size = compressBound(text.size());
+  std::string bytes(size, '\0');
+  const int result = compress2(reinterpret_cast<Bytef*>(bytes.data()), &size,
+                               reinterpret_cast<const Bytef*>(text.data()), text.size(), kPacking);
+  if (result != Z_OK) throw std::runtime_error("zlib: no memory");
+  bytes.resize(size);
+  return Base64(bytes);
+}
 
 Pose Between(const Pose& a, const Pose& b, double share) {
   return {a.p_m + share * (b.p_m - a.p_m), a.q.slerp(share, b.q)};

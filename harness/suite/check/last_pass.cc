@@ -31,6 +31,40 @@ std::string AsText(const RecordJson& json) {
   return json.dump(1, ' ', false, RecordJson::error_handler_t::replace) + "\n";
 }
 
+constexpr std::size_t kMaxTracedTicks = 20'000;
+
+/// Half of the bits are enough to tell two states apart.
+template <typename State>
+std::uint32_t HashOf(const State& state) {
+  physics::StateHash hash;
+  hash.Add(state);
+  return static_cast<std::uint32_t>(hash.value());
+}
+
+void AddHashes(const physics::Snapshot& snapshot, std::vector<std::uint32_t>& hashes) {
+  for (const physics::BodyState& body : snapshot.bodies) hashes.push_back(HashOf(body));
+  for (const physics::HandState& hand : snapshot.hands) hashes.push_back(HashOf(hand));
+}
+
+std::int64_t WidestGap(const StateTrace& trace) {
+  std::int64_t widest = 0;
+  for (std::size_t i = 1; i < trace.ticks.size(); ++i)
+    widest = std::max(widest, trace.ticks[i] - trace.ticks[i - 1]);
+  return widest;
+}
+
+/// Nothing when both are equally long. If they have states of different ticks, that is known to the
+/// widest gap only.
+std::optional<Divergence> FirstTickOfTheLonger(const StateTrace& a, const StateTrace& b) {
+  const auto last = [](const StateTrace& run) { return run.ticks.empty() ? -1 : run.ticks.back(); };
+  const StateTrace& longer = last(a) > last(b) ? a : b;
+  const std::int64_t end = std::min(last(a), last(b));
+  const std::int64_t unseen = SameTicks(a, b) ? 1 : std::max(WidestGap(a), WidestGap(b));
+  if (last(longer) - end < unseen) return std::nullopt;
+  return Divergence{.tick = *std::upper_bound(longer.ticks.begin(), longer.ticks.end(), end),
+                    .entity = {}};
+}
+
 }  // namespace
 
 std::vector<std::string> ChangedInputs(const LastPass& record) {
@@ -81,44 +115,6 @@ LastPasses::Costs LastPasses::ReadCostsOf(const std::filesystem::path& file) {
 std::string LastPasses::WriteCosts(const Costs& costs) const {
   return WriteTextFile(folder_ / "costs.json", AsText(costs));
 }
-
-namespace {
-
-constexpr std::size_t kMaxTracedTicks = 20'000;
-
-/// Half of the bits are enough to tell two states apart.
-template <typename State>
-std::uint32_t HashOf(const State& state) {
-  physics::StateHash hash;
-  hash.Add(state);
-  return static_cast<std::uint32_t>(hash.value());
-}
-
-void AddHashes(const physics::Snapshot& snapshot, std::vector<std::uint32_t>& hashes) {
-  for (const physics::BodyState& body : snapshot.bodies) hashes.push_back(HashOf(body));
-  for (const physics::HandState& hand : snapshot.hands) hashes.push_back(HashOf(hand));
-}
-
-std::int64_t WidestGap(const StateTrace& trace) {
-  std::int64_t widest = 0;
-  for (std::size_t i = 1; i < trace.ticks.size(); ++i)
-    widest = std::max(widest, trace.ticks[i] - trace.ticks[i - 1]);
-  return widest;
-}
-
-/// Nothing when both are equally long. If they have states of different ticks, that is known to the
-/// widest gap only.
-std::optional<Divergence> FirstTickOfTheLonger(const StateTrace& a, const StateTrace& b) {
-  const auto last = [](const StateTrace& run) { return run.ticks.empty() ? -1 : run.ticks.back(); };
-  const StateTrace& longer = last(a) > last(b) ? a : b;
-  const std::int64_t end = std::min(last(a), last(b));
-  const std::int64_t unseen = SameTicks(a, b) ? 1 : std::max(WidestGap(a), WidestGap(b));
-  if (last(longer) - end < unseen) return std::nullopt;
-  return Divergence{.tick = *std::upper_bound(longer.ticks.begin(), longer.ticks.end(), end),
-                    .entity = {}};
-}
-
-}  // namespace
 
 StateTrace TraceOf(const physics::Scene& scene, std::span<const physics::Snapshot> recording) {
   StateTrace trace;

@@ -102,6 +102,20 @@ constexpr std::array kInvariants = {
               "every event is decided at or after its end, within its rule's bound", CheckLatency},
 };
 
+std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& program) {
+  std::map<std::string, grammar::Wait> latency;
+  for (const grammar::RuleDescription& rule : Describe(program).rules)
+    latency[rule.name] = rule.latency;
+  return latency;
+}
+
+Findings ViolationFinding(std::string reason, std::string details) {
+  if (details.empty()) return {};
+  return {{.exit_code = ExitCode::kDiffers,
+           .reason = std::move(reason),
+           .details = std::move(details)}};
+}
+
 }  // namespace
 
 std::span<const Invariant> Invariants() { return kInvariants; }
@@ -124,24 +138,6 @@ std::string Text(const grammar::LawViolation& violation, Tick ticks_per_second) 
                      truth::IntervalText(violation.when, ticks_per_second), violation.what,
                      law.file, law.place.line, law.Head(), law.says);
 }
-
-namespace {
-
-std::map<std::string, grammar::Wait> LatencyByEvent(const grammar::Program& program) {
-  std::map<std::string, grammar::Wait> latency;
-  for (const grammar::RuleDescription& rule : Describe(program).rules)
-    latency[rule.name] = rule.latency;
-  return latency;
-}
-
-Findings ViolationFinding(std::string reason, std::string details) {
-  if (details.empty()) return {};
-  return {{.exit_code = ExitCode::kDiffers,
-           .reason = std::move(reason),
-           .details = std::move(details)}};
-}
-
-}  // namespace
 
 Findings JudgeInvariants(const CheckedRun& checked) {
   const episode::RunResult& run = checked.result;

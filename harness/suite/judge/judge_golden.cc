@@ -51,56 +51,6 @@ truth::Golden Propose(const JudgedRecording& judged, std::vector<std::string> de
                         .tolerance = ToleranceOf(judged.segmented)});
 }
 
-}  // namespace
-
-Finding DifferenceFinding(const truth::Comparison& comparison, const std::string& explain,
-                          const std::string& facts) {
-  const auto differing =
-      std::ranges::count_if(comparison.pairings, [](const truth::Pairing& pairing) {
-        return pairing.agreement != truth::LineVerdict::kMatched;
-      });
-  return {.exit_code = ExitCode::kDiffers,
-          .reason = fmt::format("{} of {} events differ from the golden", differing,
-                                comparison.pairings.size()),
-          .details = truth::DifferenceText(comparison, explain, facts)};
-}
-
-GoldenComparison CompareWithGolden(const std::optional<truth::Golden>& golden,
-                                   const CheckedRun& checked) {
-  const scenario::Scenario& scenario = checked.loaded.scenario;
-  const grammar::Timeline& timeline = checked.result.timeline;
-  const truth::Golden none{.ticks_per_second = timeline.ticks_per_second};
-  GoldenComparison compared{
-      .has_golden = golden.has_value(),
-      .comparison =
-          truth::Compare(golden.value_or(none), timeline, scenario::DefaultTolerance(scenario)),
-      .truth = CompareWithOracle(scenario, *checked.loaded.program, checked.result),
-      .accepted_differing = golden ? AcceptedDiffering(golden->derived) : 0};
-  compared.pending = PendingGolden(golden, timeline, checked.id, scenario.grammar, compared.truth);
-  return compared;
-}
-
-Findings JudgeGolden(const GoldenComparison& compared, const CheckedRun& checked,
-                     const std::string& cause) {
-  if (!compared.has_golden)
-    return {{.exit_code = ExitCode::kPending,
-             .reason = checked.in_project ? "no golden yet"
-                                          : "no golden: only scenarios below scenarios/ have one",
-             .details = GroundTruthText(compared.truth)}};
-  Findings findings;
-  if (compared.Differs()) {
-    const truth::Comparison& comparison = compared.comparison;
-    const std::string facts = DifferenceContext(checked.loaded.scenario, checked.result.recording,
-                                                *comparison.FirstDivergence());
-    findings.push_back(DifferenceFinding(comparison, checked.explain, facts));
-    findings.back().details += cause;
-  }
-  if (!compared.TruthIsAccepted()) findings.push_back(TruthFinding(compared));
-  return findings;
-}
-
-namespace {
-
 using grammar::Interval;
 using grammar::Tick;
 
@@ -188,6 +138,52 @@ std::string StateText(const grammar::Frame& frame, const std::set<int>& particip
 }
 
 }  // namespace
+
+Finding DifferenceFinding(const truth::Comparison& comparison, const std::string& explain,
+                          const std::string& facts) {
+  const auto differing =
+      std::ranges::count_if(comparison.pairings, [](const truth::Pairing& pairing) {
+        return pairing.agreement != truth::LineVerdict::kMatched;
+      });
+  return {.exit_code = ExitCode::kDiffers,
+          .reason = fmt::format("{} of {} events differ from the golden", differing,
+                                comparison.pairings.size()),
+          .details = truth::DifferenceText(comparison, explain, facts)};
+}
+
+GoldenComparison CompareWithGolden(const std::optional<truth::Golden>& golden,
+                                   const CheckedRun& checked) {
+  const scenario::Scenario& scenario = checked.loaded.scenario;
+  const grammar::Timeline& timeline = checked.result.timeline;
+  const truth::Golden none{.ticks_per_second = timeline.ticks_per_second};
+  GoldenComparison compared{
+      .has_golden = golden.has_value(),
+      .comparison =
+          truth::Compare(golden.value_or(none), timeline, scenario::DefaultTolerance(scenario)),
+      .truth = CompareWithOracle(scenario, *checked.loaded.program, checked.result),
+      .accepted_differing = golden ? AcceptedDiffering(golden->derived) : 0};
+  compared.pending = PendingGolden(golden, timeline, checked.id, scenario.grammar, compared.truth);
+  return compared;
+}
+
+Findings JudgeGolden(const GoldenComparison& compared, const CheckedRun& checked,
+                     const std::string& cause) {
+  if (!compared.has_golden)
+    return {{.exit_code = ExitCode::kPending,
+             .reason = checked.in_project ? "no golden yet"
+                                          : "no golden: only scenarios below scenarios/ have one",
+             .details = GroundTruthText(compared.truth)}};
+  Findings findings;
+  if (compared.Differs()) {
+    const truth::Comparison& comparison = compared.comparison;
+    const std::string facts = DifferenceContext(checked.loaded.scenario, checked.result.recording,
+                                                *comparison.FirstDivergence());
+    findings.push_back(DifferenceFinding(comparison, checked.explain, facts));
+    findings.back().details += cause;
+  }
+  if (!compared.TruthIsAccepted()) findings.push_back(TruthFinding(compared));
+  return findings;
+}
 
 std::string DifferenceContext(const scenario::Scenario& scenario,
                               std::span<const physics::Snapshot> recording,

@@ -195,6 +195,32 @@ Curve CurveOf(const std::string& name, const DecidingSignal& signal,
   return curve;
 }
 
+/// JSON without the characters that HTML would not unescape in a script.
+std::string ScriptText(const nlohmann::json& data) {
+  std::string text;
+  for (const char c : data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) {
+    if (c == '<' || c == '>' || c == '&')
+      text += fmt::format("\\u{:04x}", static_cast<int>(c));
+    else
+      text += c;
+  }
+  return text;
+}
+
+nlohmann::json BoundariesJson(const Explained& explained, grammar::Tick ticks_per_second) {
+  const auto seconds = [&](grammar::Tick tick) {
+    return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
+  };
+  nlohmann::json list = nlohmann::json::array();
+  for (const ExplainedEvent& event : explained.events)
+    list.push_back({{"event", event.event},
+                    {"begin", seconds(event.begin)},
+                    {"end", seconds(event.end)},
+                    {"began", event.began},
+                    {"ended", event.ended}});
+  return list;
+}
+
 }  // namespace
 
 std::string TimelineSvg(std::span<const truth::Comparison> comparisons, const Sides& sides,
@@ -246,36 +272,6 @@ std::string SignalSvg(const DecidingSignal& signal, Tick ticks_per_second) {
   return show::ChartForPage(chart, {.width_px = 480, .panel_texts = 6, .page_class = "signal"},
                             signal.clause + ": " + signal.how);
 }
-
-namespace {
-
-/// JSON without the characters that HTML would not unescape in a script.
-std::string ScriptText(const nlohmann::json& data) {
-  std::string text;
-  for (const char c : data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) {
-    if (c == '<' || c == '>' || c == '&')
-      text += fmt::format("\\u{:04x}", static_cast<int>(c));
-    else
-      text += c;
-  }
-  return text;
-}
-
-nlohmann::json BoundariesJson(const Explained& explained, grammar::Tick ticks_per_second) {
-  const auto seconds = [&](grammar::Tick tick) {
-    return static_cast<double>(tick) / static_cast<double>(ticks_per_second);
-  };
-  nlohmann::json list = nlohmann::json::array();
-  for (const ExplainedEvent& event : explained.events)
-    list.push_back({{"event", event.event},
-                    {"begin", seconds(event.begin)},
-                    {"end", seconds(event.end)},
-                    {"began", event.began},
-                    {"ended", event.ended}});
-  return list;
-}
-
-}  // namespace
 
 void AddHistory(pugi::xml_node body, const std::vector<PastRun>& history) {
   if (history.size() > 1)

@@ -128,72 +128,6 @@ class ClaimJudge {
   Indices related_;               ///< of the first event's, those that lie as claimed
 };
 
-}  // namespace
-
-bool IsAboutLimit(const Claim& claim) {
-  return std::ranges::any_of(claim.events, [](const ClaimedEvent& event) {
-    return std::ranges::count(kLimitEvents, std::string_view(event.name.text)) > 0;
-  });
-}
-
-std::vector<ClaimVerdict> JudgeClaims(const std::vector<Claim>& claims, const std::string& file,
-                                      const ClaimableEvents& known,
-                                      const grammar::Timeline& timeline) {
-  std::vector<ClaimVerdict> verdicts;
-  for (const Claim& claim : claims) {
-    if (IsAboutLimit(claim)) continue;
-    const std::string place = claim.where.source == 0
-                                  ? fmt::format("{}:{}", file, claim.where.place.line)
-                                  : std::string("--set");
-    ClaimVerdict& verdict = verdicts.emplace_back(
-        ClaimVerdict{.claim = claim.text, .place = place, .says = kNotJudged});
-    const std::vector<ClaimProblem> mismatches = Mismatches(claim, known);
-    if (!mismatches.empty()) {
-      verdict.found = "not judged: " + mismatches.front().message;
-      continue;
-    }
-    const ClaimJudge judge(claim, known, timeline);
-    verdict.says = judge.Holds() ? kHolds : kContradicted;
-    verdict.found = judge.Found();
-    verdict.times = judge.Times();
-  }
-  return verdicts;
-}
-
-std::string Text(const ClaimVerdict& verdict) {
-  return fmt::format("expects: '{}' ({}): {}", verdict.claim, verdict.place, verdict.found);
-}
-
-nlohmann::ordered_json ClaimsJson(const std::vector<ClaimVerdict>& verdicts) {
-  nlohmann::ordered_json claims = nlohmann::ordered_json::array();
-  for (const ClaimVerdict& verdict : verdicts)
-    claims.push_back({{"claim", verdict.claim},
-                      {"place", verdict.place},
-                      {"verdict", verdict.says},
-                      {"found", verdict.found}});
-  return claims;
-}
-
-bool IsContradicted(const ClaimVerdict& verdict) { return verdict.says == kContradicted; }
-
-std::string TextOfContradicted(const std::vector<ClaimVerdict>& verdicts) {
-  std::string text;
-  for (const ClaimVerdict& verdict : verdicts) {
-    if (IsContradicted(verdict)) text += Text(verdict) + "\n" + verdict.times;
-  }
-  return text;
-}
-
-std::string TextOfUndecided(const std::vector<ClaimVerdict>& verdicts) {
-  std::string text;
-  for (const ClaimVerdict& verdict : verdicts) {
-    if (verdict.says == kNotJudged) text += Text(verdict) + "\n";
-  }
-  return text;
-}
-
-namespace {
-
 using grammar::EventSignature;
 using Names = std::vector<std::string>;
 
@@ -333,6 +267,68 @@ bool FitsInOrder(const grammar::NamedEvent& event, const EventSignature& signatu
 }
 
 }  // namespace
+
+bool IsAboutLimit(const Claim& claim) {
+  return std::ranges::any_of(claim.events, [](const ClaimedEvent& event) {
+    return std::ranges::count(kLimitEvents, std::string_view(event.name.text)) > 0;
+  });
+}
+
+std::vector<ClaimVerdict> JudgeClaims(const std::vector<Claim>& claims, const std::string& file,
+                                      const ClaimableEvents& known,
+                                      const grammar::Timeline& timeline) {
+  std::vector<ClaimVerdict> verdicts;
+  for (const Claim& claim : claims) {
+    if (IsAboutLimit(claim)) continue;
+    const std::string place = claim.where.source == 0
+                                  ? fmt::format("{}:{}", file, claim.where.place.line)
+                                  : std::string("--set");
+    ClaimVerdict& verdict = verdicts.emplace_back(
+        ClaimVerdict{.claim = claim.text, .place = place, .says = kNotJudged});
+    const std::vector<ClaimProblem> mismatches = Mismatches(claim, known);
+    if (!mismatches.empty()) {
+      verdict.found = "not judged: " + mismatches.front().message;
+      continue;
+    }
+    const ClaimJudge judge(claim, known, timeline);
+    verdict.says = judge.Holds() ? kHolds : kContradicted;
+    verdict.found = judge.Found();
+    verdict.times = judge.Times();
+  }
+  return verdicts;
+}
+
+std::string Text(const ClaimVerdict& verdict) {
+  return fmt::format("expects: '{}' ({}): {}", verdict.claim, verdict.place, verdict.found);
+}
+
+nlohmann::ordered_json ClaimsJson(const std::vector<ClaimVerdict>& verdicts) {
+  nlohmann::ordered_json claims = nlohmann::ordered_json::array();
+  for (const ClaimVerdict& verdict : verdicts)
+    claims.push_back({{"claim", verdict.claim},
+                      {"place", verdict.place},
+                      {"verdict", verdict.says},
+                      {"found", verdict.found}});
+  return claims;
+}
+
+bool IsContradicted(const ClaimVerdict& verdict) { return verdict.says == kContradicted; }
+
+std::string TextOfContradicted(const std::vector<ClaimVerdict>& verdicts) {
+  std::string text;
+  for (const ClaimVerdict& verdict : verdicts) {
+    if (IsContradicted(verdict)) text += Text(verdict) + "\n" + verdict.times;
+  }
+  return text;
+}
+
+std::string TextOfUndecided(const std::vector<ClaimVerdict>& verdicts) {
+  std::string text;
+  for (const ClaimVerdict& verdict : verdicts) {
+    if (verdict.says == kNotJudged) text += Text(verdict) + "\n";
+  }
+  return text;
+}
 
 std::vector<ClaimProblem> UnknownNames(const Claim& claim, const ClaimableEvents& known) {
   Names entities;

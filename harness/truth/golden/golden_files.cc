@@ -16,6 +16,8 @@
 namespace prehend::truth {
 namespace {
 
+namespace fs = std::filesystem;
+
 std::string Quoted(std::string_view text) {
   std::string quoted = "\"";
   for (const char c : text) {
@@ -57,12 +59,6 @@ std::vector<std::string> TableLines(const Golden& golden) {
   }
   return lines;
 }
-
-}  // namespace
-
-namespace fs = std::filesystem;
-
-namespace {
 
 constexpr const char* kExtension = ".timeline";
 constexpr const char* kDifference = ".difference.png";

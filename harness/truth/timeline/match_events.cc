@@ -97,6 +97,25 @@ class Alignment {
   std::vector<std::vector<Quality>> best_;
 };
 
+struct Range {
+  Tick earliest = std::numeric_limits<Tick>::max(), latest = std::numeric_limits<Tick>::min();
+
+  void Add(Tick tick) {
+    earliest = std::min(earliest, tick);
+    latest = std::max(latest, tick);
+  }
+  bool IsKnown() const { return earliest <= latest; }
+  Tick Nearest(Tick tick) const { return std::clamp(tick, earliest, latest); }
+};
+
+struct Allowed {
+  Range begin, end;
+};
+
+bool Overlaps(const NamedEvent& a, const NamedEvent& b) {
+  return a.interval.begin < b.interval.end && b.interval.begin < a.interval.end;
+}
+
 }  // namespace
 
 std::vector<LabelMatches> MatchEvents(std::span<const NamedEvent> expected,
@@ -176,29 +195,6 @@ std::string DescribeDisagreement(const Agreement& agreement, Tick tolerance) {
   }
   return text;
 }
-
-namespace {
-
-struct Range {
-  Tick earliest = std::numeric_limits<Tick>::max(), latest = std::numeric_limits<Tick>::min();
-
-  void Add(Tick tick) {
-    earliest = std::min(earliest, tick);
-    latest = std::max(latest, tick);
-  }
-  bool IsKnown() const { return earliest <= latest; }
-  Tick Nearest(Tick tick) const { return std::clamp(tick, earliest, latest); }
-};
-
-struct Allowed {
-  Range begin, end;
-};
-
-bool Overlaps(const NamedEvent& a, const NamedEvent& b) {
-  return a.interval.begin < b.interval.end && b.interval.begin < a.interval.end;
-}
-
-}  // namespace
 
 Agreement AgreeWithin(std::span<const grammar::Timeline> possible, const grammar::Timeline& found,
                       Tick collar) {
