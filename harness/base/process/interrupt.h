@@ -3,7 +3,6 @@
 // tests/program/interrupt_test.cc
 #pragma once
 
-#include <csignal>
 #include <string>
 
 namespace prehend {

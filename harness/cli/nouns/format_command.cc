@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend grammar format. Tested by tests/grammar/language/format_test.cc
-#include "grammar/contents.h"
 #include "grammar/language/format.h"
 #include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"

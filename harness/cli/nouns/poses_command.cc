@@ -8,7 +8,6 @@
 
 #include "harness/cli/command/command.h"
 #include "harness/episode/run/run_scenario.h"
-#include "harness/episode/run/run_text.h"
 #include "harness/exchange/poses/import_map.h"
 #include "harness/scenario/format/scenario_fields.h"
 #include "harness/truth/timeline/event_text.h"

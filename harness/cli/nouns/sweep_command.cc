@@ -8,7 +8,6 @@
 #include "harness/base/base/atomic_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/episode.h"
-#include "harness/exchange/labels/read_labels.h"
 #include "harness/measure/sweep/sweep.h"
 #include "harness/show/pictures/svg_file.h"
 

@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <chrono>
-#include <cmath>
 #include <string>
 
 namespace prehend::exchange {

@@ -2,8 +2,6 @@
 // See harness/exchange/import/import_demonstrations.h. Tested by tests/program/import_hdf5.py
 #include "harness/exchange/import/import_demonstrations.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "harness/exchange/import/compare_series.h"

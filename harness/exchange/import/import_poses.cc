@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <span>
 
 #include "grammar/base/frame.h"
 #include "grammar/base/wording.h"

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <vector>
 
 #include "harness/exchange/poses/pose_file.h"

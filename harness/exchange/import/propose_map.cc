@@ -20,7 +20,6 @@
 #include "harness/exchange/arrays/row_poses.h"
 #include "harness/exchange/cells/body_words.h"
 #include "harness/exchange/cells/column_names.h"
-#include "harness/exchange/import/import_demonstrations.h"
 #include "harness/exchange/import/import_poses.h"
 #include "harness/exchange/import/plausibility.h"
 #include "harness/exchange/poses/table_layout.h"

@@ -5,7 +5,6 @@
 // tests/program/import_test.cc
 #pragma once
 
-#include <Eigen/Geometry>
 #include <functional>
 #include <set>
 #include <string>

@@ -4,7 +4,6 @@
 // tests/program/watch_map_test.cc
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "grammar/base/wording.h"
-#include "grammar/contents.h"
 #include "harness/base/process/worker_pool.h"
 #include "harness/episode/episode/episode.h"
 #include "harness/measure/coverage/coverage.h"

@@ -9,7 +9,6 @@
 #include <filesystem>
 
 #include "grammar/contents.h"
-#include "harness/base/base/project_paths.h"
 #include "harness/episode/run/load_grammar.h"
 
 namespace prehend::measure {

@@ -3,7 +3,6 @@
 // tests/program/found_test.cc and tests/program/recogniser_test.cc
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 

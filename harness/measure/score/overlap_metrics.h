@@ -6,7 +6,6 @@
 // the reference programs.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 

@@ -3,8 +3,6 @@
 // Tested by tests/program/figure_test.cc
 #pragma once
 
-#include <memory>
-
 #include "grammar/watch_drawing.h"
 #include "harness/show/chart/chart.h"
 

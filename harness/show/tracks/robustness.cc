@@ -2,7 +2,6 @@
 #include "harness/show/tracks/robustness.h"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <map>
 #include <set>

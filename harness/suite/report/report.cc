@@ -11,7 +11,6 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <tuple>
 
 #include "harness/base/base/quoting.h"
 #include "harness/suite/check/causes.h"

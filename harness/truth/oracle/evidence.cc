@@ -3,7 +3,6 @@
 #include "harness/truth/oracle/evidence.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace prehend::truth {
