@@ -193,7 +193,6 @@ Option OutputOption(const std::string& help, const std::string& placeholder) {
 
 Option JobsOption() {
   return {.name = "--jobs",
-          .help = {},
           .placeholder = "N",
           .other_name = "-j",
           .rule = IntegersFrom(1, kMaxJobs),

@@ -139,9 +139,7 @@ suite::SuiteRequest RequestFrom(const ParsedOptions& options, const CommandConte
       .all_pictures = of_some,
       .replays = ReplaysOf(options),
       .only_changed = options.Has("--changed"),
-      .repeat = options.IntOr("--repeat", 1),
-      .shuffle_seed = {},
-      .limits = {}};
+      .repeat = options.IntOr("--repeat", 1)};
   if (options.Has("--shuffle")) request.shuffle_seed = options.UnsignedOr("--shuffle", 0);
   HearWho(options, request);
   request.limits = {.jobs = options.IntOr("--jobs", CoreCount()),

@@ -66,12 +66,8 @@ void AddGolden(const episode::ScenarioFile& file, const ParsedOptions& options,
   if (!loaded || !as_it_is) return;
   const std::size_t asked = loaded->scenario.pictures.size();
   for (const fs::path& picture : suite::UnrequestedPictures(episode::IdOf(file), asked, root))
-    validated.diagnostics.push_back(
-        grammar::Diagnostic{.file = ReadableName(file.path),
-                            .place = {},
-                            .message = suite::UnrequestedText(picture, asked),
-                            .source_line = {},
-                            .hint = {}});
+    validated.diagnostics.push_back(grammar::Diagnostic{
+        .file = ReadableName(file.path), .message = suite::UnrequestedText(picture, asked)});
 }
 
 /// A golden whose scenario no longer exists.
@@ -80,9 +76,7 @@ Validated ValidateOrphan(const suite::UnreferencedGolden& orphan) {
   for (const fs::path& file : orphan.files)
     validated.diagnostics.push_back(grammar::Diagnostic{
         .file = ReadableName(file.string()),
-        .place = {},
         .message = "belongs to no scenario",
-        .source_line = {},
         .hint = "remove it, or bring scenarios/" + orphan.scenario + ".yaml back"});
   return validated;
 }

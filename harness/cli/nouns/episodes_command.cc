@@ -60,7 +60,6 @@ ExitCode RunVerify(const ParsedOptions& options, const CommandContext& context) 
               FindEpisodesOrComplain("files", options, context, {episode::Need::kEpisodeFile}));
   const std::vector<episode::Resegmented> results =
       episode::ResegmentAll(selected, {.root = context.root,
-                                       .choice = {},
                                        .compare = true,
                                        .replay = true,
                                        .jobs = options.IntOr("--jobs", CoreCount())});

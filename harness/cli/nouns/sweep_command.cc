@@ -27,10 +27,8 @@ constexpr double kDefaultMargin_percent = 1;
 /// What both commands have in common. Nothing, after a complaint.
 std::optional<measure::SweepRequest> RequestFrom(const ParsedOptions& options,
                                                  const CommandContext& context) {
-  measure::SweepRequest request{.root = context.root,
-                                .grammar = options.Text("--grammar"),
-                                .settings = options.All("--set"),
-                                .axes = {}};
+  measure::SweepRequest request{
+      .root = context.root, .grammar = options.Text("--grammar"), .settings = options.All("--set")};
   if (const std::string why = measure::SetTruth(options.All("--truth"), request); !why.empty()) {
     Refuse(context, why);
     return std::nullopt;

@@ -83,8 +83,7 @@ Result<EpisodeFile> EpisodeFile::Open(const std::string& path) {
              .ticks = Between(-kMostTicks, find.Integer(6), kMostTicks),
              .state_hash = find.Text(7),
              .outcome = find.Text(8),
-             .recorded_on = find.Text(9),
-             .end = {}};
+             .recorded_on = find.Text(9)};
       row.end = EndOf(row, find);
     }
     return file;
@@ -223,8 +222,7 @@ Result<void> EpisodeFile::EachPart(const EpisodeRow& episode, std::size_t part,
     find.Bind(static_cast<std::int64_t>(part)).Bind(episode.id);
     while (find.Step()) {
       ChunkOfPart chunk{.first_tick = find.Integer(0),
-                        .frames = static_cast<std::size_t>(find.Integer(1)),
-                        .part = {}};
+                        .frames = static_cast<std::size_t>(find.Integer(1))};
       if (!find.IsNothing(2)) chunk.part = find.Bytes(2);
       AtChunk(chunk.first_tick, [&] { look(chunk); });
     }

@@ -45,8 +45,7 @@ std::vector<Plan> PlansIn(const Database& database) {
     plan = {.what = find.Text(1),
             .uuid = find.Uuid(2),
             .number = PartOf(count, find.Integer(3), 0),
-            .count = count,
-            .owed = {}};
+            .count = count};
     for (owed.Reset(), owed.Bind(find.Integer(0)); owed.Step();)
       plan.owed.push_back({owed.Text(0), PartOf(count, owed.Integer(1))});
   }

@@ -293,11 +293,7 @@ std::string RowSource::Columns(const std::string& name, std::size_t width) const
 }
 
 grammar::Diagnostics ErrorOfFile(const std::string& path, std::string why) {
-  return {{.file = ReadableName(path),
-           .place = {},
-           .message = std::move(why),
-           .source_line = {},
-           .hint = {}}};
+  return {{.file = ReadableName(path), .message = std::move(why)}};
 }
 
 Result<std::string> ReadBytes(const std::string& path) {

@@ -78,8 +78,7 @@ class Importer {
     WarnOfTrembling();
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
     if (const std::string problem = SetTicks(); !problem.empty())
-      return tl::unexpected(grammar::Diagnostics{
-          {.file = file_.file, .place = {}, .message = problem, .source_line = {}, .hint = {}}});
+      return tl::unexpected(grammar::Diagnostics{{.file = file_.file, .message = problem}});
     AddFrames();
     WarnOfRestPoses();
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
@@ -403,9 +402,8 @@ class Importer {
           SetVelocity((*before)[i], t_s - before_s, sample);
         if (map_.lost == Lost::kUnknown && IsLost(tracks_[i], t_s)) sample = grammar::NotTracked();
         if (map_.entities[i].value.hand) {
-          frame.hands.push_back({.entity = static_cast<int>(i),
-                                 .ahead_W = pose.q * AheadOf(map_.entities[i].value),
-                                 .collision_spheres = {}});
+          frame.hands.push_back(
+              {.entity = static_cast<int>(i), .ahead_W = pose.q * AheadOf(map_.entities[i].value)});
           frame.collision_spheres.push_back({{pose.p, 0}});
         }
       }

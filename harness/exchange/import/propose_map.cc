@@ -143,10 +143,8 @@ class MapProposer {
     columns_ = ColumnsOf(*text);
     if (!columns_)
       return {{.file = ReadableName(path_),
-               .place = {},
                .message = "no columns are called x, y and z of something, and its head is not one "
                           "of those that are known",
-               .source_line = {},
                .hint = "the map says which columns have what: docs/motion-capture.md"}};
     if (!columns_->unit.empty()) unit_ = "unit: " + columns_->unit, unit_why_ = "";
     says_unit_ = false;

@@ -150,8 +150,7 @@ Diagnostics ReadGoldenLabels(LabelFile& file) {
   for (const truth::GoldenEvent& line : golden.events) {
     file.labels.push_back({.begin_s = static_cast<double>(line.event.interval.begin) / per_s,
                            .end_s = static_cast<double>(line.event.interval.end) / per_s,
-                           .text = line.event.Label(),
-                           .roles = {}});
+                           .text = line.event.Label()});
   }
   return {};
 }

@@ -64,9 +64,7 @@ grammar::Diagnostics LivePoses::Take(const std::string& line, episode::EpisodeSt
   if (count < kMostHeadLines && head_.size() < kMaxPoseFileBytes / 256) return {};
   return {{.file = name_,
            .place = {line_, 1},
-           .message = fmt::format("no row of poses in the first {} lines", line_),
-           .source_line = {},
-           .hint = {}}};
+           .message = fmt::format("no row of poses in the first {} lines", line_)}};
 }
 
 grammar::Diagnostics LivePoses::Begin(const std::string& row, episode::EpisodeStream& stream) {
@@ -75,7 +73,6 @@ grammar::Diagnostics LivePoses::Begin(const std::string& row, episode::EpisodeSt
     return {{.file = name_,
              .place = {line_, 1},
              .message = "these are lines of a recording, which says itself what it means",
-             .source_line = {},
              .hint = "without --map"}};
   if (is_json) head_ = row + "\n";
   PREHEND_TRY(map_, is_json ? ReadImportMap(map_path_, PoseFormat::kJson)

@@ -246,7 +246,7 @@ std::vector<PoseBody> MarkersOf(const ImportMap& map) {
   for (const Named<MappedEntity>& entity : map.entities)
     for (const Located<std::string>& marker : entity.value.markers)
       if (std::ranges::find(markers, marker.value, &PoseBody::name) == markers.end())
-        markers.push_back({.name = marker.value, .samples = {}});
+        markers.push_back({.name = marker.value});
   return markers;
 }
 

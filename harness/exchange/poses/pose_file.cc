@@ -22,7 +22,7 @@ std::vector<PoseBody> BodiesOf(const ImportMap& map, DiagnosticList& errors) {
     if (std::ranges::find(bodies, name, &PoseBody::name) != bodies.end())
       errors.Add(entity.value.from->where, fmt::format("'{}' is two entities", name));
     else
-      bodies.push_back({.name = name, .samples = {}});
+      bodies.push_back({.name = name});
   }
   return bodies;
 }
@@ -129,11 +129,9 @@ Result<PoseFormat> PoseFormatOf(const std::string& poses_path) {
   if (other == kOthers.end()) return PoseFormat::kCsv;
   return tl::unexpected(grammar::Diagnostics{
       {.file = ReadableName(poses_path),
-       .place = {},
        .message = fmt::format(
            "files {} are not read; CSV, BVH, MCAP, bags of ROS, HDF5, JSON, .npz and C3D are",
            ending),
-       .source_line = {},
        .hint = other->second}});
 }
 

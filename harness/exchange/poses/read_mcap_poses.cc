@@ -83,11 +83,7 @@ class McapPoseReader {
 
  private:
   void Fail(std::string message) {
-    problems_.push_back({.file = poses.file,
-                         .place = {},
-                         .message = std::move(message),
-                         .source_line = {},
-                         .hint = {}});
+    problems_.push_back({.file = poses.file, .message = std::move(message)});
   }
 
   /// Of each body its topic or its frame.

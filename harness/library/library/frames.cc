@@ -120,7 +120,6 @@ Episode FrameBuilder::Finish(grammar::Tick end) {
   episode::Recording recording = Unwrap(state_->stream.Whole(end));
   auto impl =
       std::make_shared<Episode::Impl>(Episode::Impl{.name = {.file = "",
-                                                             .number = {},
                                                              .scenario = recording.header.episode,
                                                              .origin = episode::Origin::kRecording,
                                                              .grammar = recording.header.grammar},

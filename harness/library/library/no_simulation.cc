@@ -10,7 +10,6 @@ struct Simulation::State {
   Snapshot snapshot;
   RunStatus status = {.kind = RunStatus::Kind::kFailed,
                       .tick = 0,
-                      .entity = {},
                       .reason = "this library plays no scenario",
                       .advice = "record it with 'prehend run NAME --record x.episodes'"};
   std::vector<ScriptNote> notes;

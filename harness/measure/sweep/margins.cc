@@ -53,8 +53,6 @@ Margin MarginOf(const Axis& axis, std::span<const SweepPoint> points, std::size_
   Margin margin{.parameter = axis.parameter,
                 .value = axis.ValueText(own),
                 .f1 = points[own].f1,
-                .from = {},
-                .to = {},
                 .best = best->f1,
                 .best_at = axis.ValueText(static_cast<std::size_t>(best - points.begin()))};
   margin.has_effect = std::ranges::any_of(

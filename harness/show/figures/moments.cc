@@ -205,9 +205,7 @@ std::optional<HeldMoment> LongestGrasp(const scenario::Scenario& scenario,
   }
   if (!longest) return std::nullopt;
   const grammar::Tick middle = (longest->interval.begin + longest->interval.end) / 2;
-  HeldMoment moment{.time_s = SecondsOf(run, middle),
-                    .style = truth::RoleValue(*longest, "style"),
-                    .sensor_sets = {}};
+  HeldMoment moment{.time_s = SecondsOf(run, middle), .style = truth::RoleValue(*longest, "style")};
   const physics::Scene& scene = scenario.scene;
   const auto hand = std::ranges::find(scene.hands, HandOf(run, *longest), &physics::Hand::name);
   const auto snapshot = std::ranges::find_if(
@@ -270,9 +268,7 @@ Moment MomentOf(const EventAnswer& answer) {
                 .name = answer.event.event,
                 .at_s = seconds(answer.event.interval.begin),
                 .from_s = seconds(answer.event.interval.begin),
-                .to_s = seconds(answer.event.interval.end),
-                .of = {},
-                .marked = {}};
+                .to_s = seconds(answer.event.interval.end)};
   for (const grammar::Role& role : answer.event.roles) moment.of.push_back(role.value);
   return moment;
 }

@@ -113,11 +113,8 @@ std::string Acceptance::MovedWithinTolerance() const {
 /// The next difference is traced back to the run that is accepted now.
 void Acceptance::LeaveBaseline() const {
   const LastPasses records(request_.root);
-  LastPass record{.program = ProgramHash(),
-                  .build = BuildText(),
-                  .passed = false,
-                  .pictures = false,
-                  .verdict = {}};
+  LastPass record{
+      .program = ProgramHash(), .build = BuildText(), .passed = false, .pictures = false};
   record.verdict.scenario = id_;
   record.verdict.inputs = HashFiles(inputs_);
   record.verdict.settings = SettingsOf(loaded_, {}, record.verdict.inputs, request_.root);

@@ -247,7 +247,6 @@ ScenarioVerdict BlankVerdict(const CheckRequest& request, const scenario::Scenar
   FileHashes inputs = HashFiles(files);
   if (!request.file_hash.empty()) inputs[request.episode.file] = request.file_hash;
   return {.scenario = request.id,
-          .shows = {},
           .explain = ExplainCommand(request),
           .command = RepeatCommand(request),
           .inputs = std::move(inputs)};
@@ -259,7 +258,6 @@ CheckedEpisode ToBeChecked(const CheckRequest& request, episode::LoadedRun loade
   CheckedRun run{.id = request.id,
                  .in_project = request.in_project,
                  .loaded = std::move(loaded),
-                 .result = {},
                  .explain = verdict.explain};
   return {.request = request, .run = std::move(run), .verdict = std::move(verdict)};
 }

@@ -61,8 +61,7 @@ std::optional<Divergence> FirstTickOfTheLonger(const StateTrace& a, const StateT
   const std::int64_t end = std::min(last(a), last(b));
   const std::int64_t unseen = SameTicks(a, b) ? 1 : std::max(WidestGap(a), WidestGap(b));
   if (last(longer) - end < unseen) return std::nullopt;
-  return Divergence{.tick = *std::upper_bound(longer.ticks.begin(), longer.ticks.end(), end),
-                    .entity = {}};
+  return Divergence{.tick = *std::upper_bound(longer.ticks.begin(), longer.ticks.end(), end)};
 }
 
 }  // namespace

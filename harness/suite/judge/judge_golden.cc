@@ -238,7 +238,7 @@ Result<JudgedRecording> JudgeRecording(const episode::EpisodeName& name, const s
                                        const std::string& root) {
   PREHEND_TRY(episode::Episode recording, episode::OpenEpisode(name, {grammar, {}}, root));
   if (const std::string lack = LackOf(name, recording); !lack.empty())
-    return tl::unexpected(grammar::Diagnostics{{.file = name.file, .place = {}, .message = lack}});
+    return tl::unexpected(grammar::Diagnostics{{.file = name.file, .message = lack}});
   PREHEND_TRY(episode::SegmentedRecording segmented, recording.SegmentRecorded());
   return JudgeSegmented(std::move(segmented), GoldenOf(name, recording.loaded().scenario, root));
 }
