@@ -13,8 +13,6 @@
 #include "grammar/analysis/analyze_dependencies.h"
 #include "grammar/analysis/require_sight.h"
 #include "grammar/compile/lower.h"
-#include "grammar/compile/lower_definition.h"
-#include "grammar/compile/lower_law.h"
 #include "grammar/compile/mistakes.h"
 #include "grammar/language/parser.h"
 #include "grammar/program/check_ids.h"

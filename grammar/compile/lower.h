@@ -239,4 +239,19 @@ class Lowering {
   std::vector<bool> role_used_;
 };
 
+/// One definition, its form and modifiers: fills in program.rules[index], whose head is there
+/// already. Mistakes go to the diagnostics of `lowering`.
+void LowerDefinitionInto(Program& program, RuleId index, const ast::Definition& definition,
+                         Lowering& lowering);
+
+/// Likewise, the parts and relations of a composition.
+void LowerComposition(Program& program, RuleId index, const ast::Definition& definition,
+                      Lowering& lowering);
+
+/// One law, looked up and checked; needs the heads of all rules. Nothing after an error, which is
+/// appended to `diagnostics`. Tested by tests/grammar/errors.txt and
+/// tests/grammar/check_laws_test.cc
+std::optional<Law> LowerLaw(Symbols& symbols, const GrammarText& source, const ast::Law& law,
+                            Diagnostics& diagnostics);
+
 }  // namespace prehend::grammar

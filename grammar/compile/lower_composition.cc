@@ -8,7 +8,7 @@
 
 #include "grammar/analysis/allen_network.h"
 #include "grammar/base/wording.h"
-#include "grammar/compile/lower_definition.h"
+#include "grammar/compile/lower.h"
 
 namespace prehend::grammar {
 namespace {

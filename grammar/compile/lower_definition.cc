@@ -2,13 +2,12 @@
 // The form of a definition first, then its modifiers; each is checked as soon as it is lowered.
 // Errors: forms of which no interval ever begins or counts, modifiers that a form does not take,
 // how an event is drawn, attributes. Compositions are in grammar/compile/lower_composition.cc.
-#include "grammar/compile/lower_definition.h"
-
 #include <algorithm>
 #include <initializer_list>
 
 #include "grammar/analysis/contradictions.h"
 #include "grammar/base/wording.h"
+#include "grammar/compile/lower.h"
 
 namespace prehend::grammar {
 namespace {

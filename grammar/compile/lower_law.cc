@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Its head and calls, the relations between them, and then whether all roles are named. Errors:
 // unknown events, conditions in a law, roles that do not fit or are not used, unknown relations.
-#include "grammar/compile/lower_law.h"
-
 #include <algorithm>
 
 #include "grammar/base/wording.h"
+#include "grammar/compile/lower.h"
 
 namespace prehend::grammar {
 namespace {

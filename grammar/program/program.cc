@@ -20,4 +20,11 @@ const Approach* ApproachOf(const Rule& rule) {
   return part != nullptr && part->approach ? &*part->approach : nullptr;
 }
 
+std::string Law::Head() const {
+  std::string text = "law " + name + "(";
+  for (const Role& role : roles)
+    text += (&role == &roles.front() ? "" : ", ") + role.name + ": " + role.class_name;
+  return text + ")";
+}
+
 }  // namespace prehend::grammar

@@ -13,7 +13,7 @@
 #include "harness/cli/command/picture_options.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/show/figures/comparison_sheet.h"
-#include "harness/show/figures/drawing_chart.h"
+#include "harness/show/figures/figures.h"
 #include "harness/show/figures/scene_tiles.h"
 #include "harness/show/pictures/svg_file.h"
 #include "harness/suite/check/select_scenarios.h"

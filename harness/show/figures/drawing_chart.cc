@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/figures/drawing_chart.h"
-
 #include <algorithm>
 #include <array>
 #include <string_view>
 
+#include "harness/show/figures/figures.h"
 #include "harness/truth/timeline/event_drawings.h"
 
 namespace prehend::show {

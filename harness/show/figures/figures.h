@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "grammar/watch_drawing.h"
 #include "harness/show/chart/chart.h"
 #include "harness/show/figures/moments.h"
 
@@ -29,5 +30,10 @@ Chart SeriesChart(const scenario::Scenario& scenario, const episode::RunResult& 
 /// What each person sees: a row per entity, the distance to it. Nothing if there is no person.
 std::optional<Chart> GazeChart(const scenario::Scenario& scenario, const episode::RunResult& run,
                                const Window& window);
+
+/// A drawn episode and what a grammar recognises in it, how a form of rule looks: rows of bars for
+/// facts and events, panels of curves for positions and the like.
+Chart DrawingChart(const grammar::Program& program, const grammar::DrawnEpisode& drawn,
+                   const grammar::Timeline& timeline);
 
 }  // namespace prehend::show
