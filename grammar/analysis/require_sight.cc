@@ -5,12 +5,12 @@
 // `during` gets a condition for each role; a composition gets another absence, of a hidden rule
 // that holds while an entity is lost; what `known` denies of a rule gets "or it is lost". Tested by
 // tests/grammar/engine/tracking_test.cc
-#include "grammar/analysis/require_sight.h"
-
 #include <limits>
 #include <map>
 #include <string>
 #include <vector>
+
+#include "grammar/analysis/analyze_dependencies.h"
 
 namespace prehend::grammar {
 namespace {

@@ -11,7 +11,6 @@
 #include <set>
 
 #include "grammar/analysis/analyze_dependencies.h"
-#include "grammar/analysis/require_sight.h"
 #include "grammar/compile/lower.h"
 #include "grammar/compile/mistakes.h"
 #include "grammar/language/parser.h"

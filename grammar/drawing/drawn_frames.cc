@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See grammar/drawing/drawn_episode.h
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,24 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // Needs: Bullet 3.24 built with double precision. The order of creation matters for determinism:
 // bodies from below to above, then hands in scene order. One step of dt per tick, never Bullet's
-// own sub-stepping, whose remainder can drop time. Tested by tests/physics/world/world_test.cc
+// own sub-stepping, whose remainder can drop time. Tested by tests/physics/world/world_test.cc,
+// tests/physics/world/grains_test.cc and tests/physics/person/gaze_test.cc
 #include "physics/bullet/world.h"
 
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
 #include <map>
+#include <memory>
+#include <span>
 #include <tuple>
+#include <vector>
 
 #include "physics/bullet/body.h"
-#include "physics/bullet/contacts.h"
 #include "physics/bullet/core/flat_impacts.h"
 #include "physics/bullet/core/grain_contacts.h"
 #include "physics/bullet/core/parts.h"
 #include "physics/bullet/first_rest.h"
-#include "physics/bullet/grains.h"
 #include "physics/bullet/hand.h"
 #include "physics/scene/joint.h"
+#include "physics/world/contact_hold.h"
 #include "physics/world/joint_spring.h"
 #include "physics/world/sleep_tracker.h"
 
@@ -49,6 +53,156 @@ constexpr int kMovingGroup = 2;
 constexpr int kFirstHandGroup = 4;
 // Persons push moving bodies only. What they do with fixed ones: physics/person/gaze.h.
 constexpr int kPersonGroup = 1 << 30;
+
+/// By collision object, its contact side; for a compound whose shapes belong to several bodies, one
+/// side per shape. A collision object's user index in Bullet is its index here.
+using ContactSides = std::vector<std::vector<ContactSide>>;
+
+/// The side that this shape belongs to; `shape` is Bullet's index of the shape in a compound.
+const ContactSide& SideOf(const ContactSides& sides, const btCollisionObject& object, int shape) {
+  const auto& of_object = sides[static_cast<std::size_t>(object.getUserIndex())];
+  return of_object[of_object.size() == 1 ? 0 : static_cast<std::size_t>(shape)];
+}
+
+/// Contact facts from the manifolds after a step (less than 1 % of a tick), without those between
+/// grains of one body and between bodies that rest.
+void ReadContacts(const btManifoldArray& manifolds, const ContactSides& sides,
+                  TouchingPairs& pairs) {
+  for (int m = 0; m < manifolds.size(); ++m) {
+    const btPersistentManifold& manifold = *manifolds[m];
+    // Grains of one body touch each other in every tick; these contacts are not reported.
+    if (manifold.getBody0()->getUserIndex() == manifold.getBody1()->getUserIndex()) continue;
+    // All shapes of one collision object rest or move together: the first one decides.
+    if (pairs.Rest(SideOf(sides, *manifold.getBody0(), 0), SideOf(sides, *manifold.getBody1(), 0)))
+      continue;
+    for (int k = 0; k < manifold.getNumContacts(); ++k) {
+      const btManifoldPoint& point = manifold.getContactPoint(k);
+      // Bullet's normal points from body 1 into body 0.
+      pairs.Add({.a = SideOf(sides, *manifold.getBody0(), point.m_index0),
+                 .b = SideOf(sides, *manifold.getBody1(), point.m_index1),
+                 .p_W_m = FromBullet(point.getPositionWorldOnB()),
+                 .nhat_BA_W = FromBullet(point.m_normalWorldOnB),
+                 .distance_m = point.getDistance(),
+                 .normal_impulse_n_s = point.getAppliedImpulse()});
+    }
+  }
+}
+
+class SightCallback final : public btCollisionWorld::ClosestConvexResultCallback {
+ public:
+  SightCallback(const ContactSides& sides, const SightLine& line, const btVector3& from,
+                const btVector3& to)
+      : ClosestConvexResultCallback(from, to), sides_(sides), line_(line) {
+    m_collisionFilterGroup = -1;  // every body can be seen, persons included
+    m_collisionFilterMask = -1;
+  }
+
+  btScalar addSingleResult(btCollisionWorld::LocalConvexResult& result,
+                           bool normal_in_world) override {
+    const int shape = result.m_localShapeInfo ? result.m_localShapeInfo->m_triangleIndex : 0;
+    const ContactSide& side = SideOf(sides_, *result.m_hitCollisionObject, shape);
+    if (side.body >= line_.ignore_from && side.body < line_.ignore_to) return m_closestHitFraction;
+    side_ = side;
+    return ClosestConvexResultCallback::addSingleResult(result, normal_in_world);
+  }
+
+  const ContactSide& side() const { return side_; }
+
+ private:
+  const ContactSides& sides_;
+  const SightLine& line_;
+  ContactSide side_;
+};
+
+/// What a person sees: the first surface that a sphere meets on its way from her eyes.
+Sight FirstInSight(const btCollisionWorld& world, const ContactSides& sides,
+                   const SightLine& line) {
+  const btVector3 from = ToBullet(line.from_W_m),
+                  to = ToBullet(Eigen::Vector3d(line.from_W_m + line.length_m * line.toward_W));
+  const btSphereShape ball(line.radius_m);
+  SightCallback callback(sides, line, from, to);
+  world.convexSweepTest(&ball, btTransform(btQuaternion::getIdentity(), from),
+                        btTransform(btQuaternion::getIdentity(), to), callback);
+  if (!callback.hasHit()) return {};
+  return {callback.side().body, callback.side().hand,
+          callback.m_closestHitFraction * line.length_m};
+}
+
+/// A grain farther from the origin than this has left the scene.
+constexpr double kLost_m = 10;
+/// Sleeping speed of a grain, and of a point of its surface.
+constexpr double kGrainSleepSpeed_m_per_s = 0.05;
+
+/// The grains of one body: many Bullet spheres that share one shape.
+class BulletGrains {
+ public:
+  /// Requires a body with grains.
+  explicit BulletGrains(const Body& body);
+
+  std::span<const std::unique_ptr<btRigidBody>> rigids() const { return rigids_; }
+
+  /// Stops grains that left the world, so that spilt grains do not fall for ever.
+  void StopLost();
+
+  /// Whether all grains are asleep.
+  bool rests() const;
+  /// Mean position and velocity.
+  BodyState Mean() const;
+  void AppendCentres(std::vector<Eigen::Vector3d>& centres_W_m) const;
+
+ private:
+  btSphereShape shape_;
+  std::vector<std::unique_ptr<btRigidBody>> rigids_;
+};
+
+BulletGrains::BulletGrains(const Body& body) : shape_(body.grains->radius_m) {
+  const auto count = static_cast<double>(body.grains->p_WG_m.size());
+  Body grain = body;
+  grain.grains.reset();
+  grain.mass_kg = body.mass_kg / count;
+  btVector3 inertia;
+  shape_.calculateLocalInertia(grain.mass_kg, inertia);
+  btRigidBody::btRigidBodyConstructionInfo info = RigidInfo(grain, &shape_, inertia);
+  // Grains in a heap tremble, and they rotate fast for their size: with the thresholds of other
+  // bodies no heap would ever sleep.
+  info.m_linearSleepingThreshold = kGrainSleepSpeed_m_per_s;
+  info.m_angularSleepingThreshold = kGrainSleepSpeed_m_per_s / body.grains->radius_m;
+  for (const Eigen::Vector3d& p_WG_m : body.grains->p_WG_m) {
+    info.m_startWorldTransform.setOrigin(ToBullet(p_WG_m));
+    rigids_.push_back(std::make_unique<btRigidBody>(info));
+  }
+}
+
+void BulletGrains::StopLost() {
+  for (const auto& rigid : rigids_) {
+    const bool lost =
+        rigid->isActive() && rigid->getWorldTransform().getOrigin().length() > kLost_m;
+    if (!lost) continue;
+    rigid->setLinearVelocity({0, 0, 0});
+    rigid->setAngularVelocity({0, 0, 0});
+    rigid->forceActivationState(DISABLE_SIMULATION);
+  }
+}
+
+bool BulletGrains::rests() const {
+  return std::none_of(rigids_.begin(), rigids_.end(),
+                      [](const auto& rigid) { return rigid->isActive(); });
+}
+
+BodyState BulletGrains::Mean() const {
+  BodyState mean{.asleep = rests()};
+  const auto count = static_cast<double>(rigids_.size());
+  for (const auto& rigid : rigids_) {
+    mean.X_WB.p_m += FromBullet(rigid->getWorldTransform().getOrigin()) / count;
+    mean.v_WB_m_per_s += FromBullet(rigid->getLinearVelocity()) / count;
+  }
+  return mean;
+}
+
+void BulletGrains::AppendCentres(std::vector<Eigen::Vector3d>& centres_W_m) const {
+  for (const auto& rigid : rigids_)
+    centres_W_m.push_back(FromBullet(rigid->getWorldTransform().getOrigin()));
+}
 
 class BulletWorld final : public World {
  public:

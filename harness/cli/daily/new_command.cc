@@ -12,7 +12,6 @@
 #include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/run/find_scenario.h"
-#include "harness/scenario/format/scenario_copy.h"
 #include "harness/scenario/format/scenario_fields.h"
 #include "harness/scenario/read/read_scenario.h"
 #include "harness/scenario/templates/new_scenario.h"

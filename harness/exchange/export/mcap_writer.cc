@@ -1,21 +1,65 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tested by tests/mcap/mcap_test.mjs
-#include "harness/exchange/export/mcap_writer.h"
-
+// An MCAP file (https://mcap.dev/spec, version 0) as rosbag2 of ROS 2 writes it: chunks with
+// checksums, an index of the messages of each, definitions, counts. Tested by
+// tests/mcap/mcap_test.mjs
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "grammar/base/frame.h"
+#include "harness/exchange/export/byte_writer.h"
 #include "harness/exchange/export/ros_messages.h"
 #include "harness/exchange/export/write_motion.h"
 
 namespace prehend::exchange {
 namespace {
+
+struct McapTopic {
+  std::string topic, type, definition;
+  bool latched = false;  ///< who subscribes later gets the last message, too
+  std::uint64_t messages = 0;
+};
+
+class McapWriter {
+ public:
+  explicit McapWriter(std::ostream& out);
+
+  /// Returns its number. All topics come before the first message.
+  std::size_t AddTopic(McapTopic topic);
+  void Message(std::size_t topic, std::uint64_t ns, const std::string& cdr);
+  void Finish();
+
+  const std::vector<McapTopic>& topics() const { return topics_; }
+  std::uint64_t messages() const { return messages_; }
+  std::uint64_t first_ns() const { return first_ns_; }
+  std::uint64_t last_ns() const { return last_ns_; }
+
+ private:
+  struct Entry {
+    std::uint64_t ns = 0, offset = 0;
+  };
+  void Put(std::string_view bytes);
+  void EndChunk();
+  std::string Schemas() const;
+  std::string Channels() const;
+  std::string Statistics() const;
+
+  std::ostream& out_;
+  std::uint64_t at_ = 0, messages_ = 0, first_ns_ = 0, last_ns_ = 0, chunks_ = 0;
+  std::uint64_t chunk_first_ns_ = 0, chunk_last_ns_ = 0;
+  std::vector<McapTopic> topics_;
+  std::string chunk_;                        ///< its records so far
+  std::vector<std::vector<Entry>> entries_;  ///< by topic, of the chunk
+  std::string chunk_indexes_;                ///< of the summary
+};
 
 constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 constexpr std::size_t kChunkBytes = 768 * 1024;
@@ -63,6 +107,15 @@ std::vector<std::pair<grammar::Tick, std::string>> EdgesOf(const Motion& motion)
   return edges;
 }
 
+/// The quality of service that rosbag2 notes for a topic.
+std::string QosText(bool latched) {
+  return std::string("- history: 1\n  depth: ") + (latched ? "1" : "100") +
+         "\n  reliability: 1\n  durability: " + (latched ? "1" : "2") +
+         "\n  deadline:\n    sec: 9223372036\n    nsec: 854775807\n  lifespan:\n    sec: "
+         "9223372036\n    nsec: 854775807\n  liveliness: 1\n  liveliness_lease_duration:\n    sec: "
+         "9223372036\n    nsec: 854775807\n  avoid_ros_namespace_conventions: false";
+}
+
 std::string BagMetadata(const McapWriter& bag, const std::string& file) {
   const std::uint64_t length_ns = bag.last_ns() - bag.first_ns();
   const auto times = [&](const char* indent) {
@@ -92,16 +145,6 @@ std::string TopicOf(const std::string& entity, std::size_t number) {
   std::string word = entity;
   for (char& c : word) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
   return "/shapes/" + (word == entity ? word : fmt::format("{}_{}", word, number));
-}
-
-}  // namespace
-
-std::string QosText(bool latched) {
-  return std::string("- history: 1\n  depth: ") + (latched ? "1" : "100") +
-         "\n  reliability: 1\n  durability: " + (latched ? "1" : "2") +
-         "\n  deadline:\n    sec: 9223372036\n    nsec: 854775807\n  lifespan:\n    sec: "
-         "9223372036\n    nsec: 854775807\n  liveliness: 1\n  liveliness_lease_duration:\n    sec: "
-         "9223372036\n    nsec: 854775807\n  avoid_ros_namespace_conventions: false";
 }
 
 McapWriter::McapWriter(std::ostream& out) : out_(out) {
@@ -216,6 +259,8 @@ void McapWriter::Finish() {
   Put(summary + ByteWriter{}.U32(Crc(summary)).bytes);
   Put(kMcapMagic);
 }
+
+}  // namespace
 
 std::string WorldName(const grammar::EntityTable& table) {
   std::string name = "world";

@@ -13,7 +13,6 @@
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/arrays/row_poses.h"
-#include "harness/exchange/import/openings.h"
 #include "harness/exchange/import/plausibility.h"
 #include "harness/exchange/import/rest_poses.h"
 #include "harness/exchange/import/track.h"

@@ -60,4 +60,16 @@ struct Approach {
 };
 Approach NearestApproach(const PoseFile& poses, const ImportMap& map, double metres_per_unit);
 
+/// What looks wrong in the numbers that say how far a gripper or a joint is open.
+struct OpeningDoubt {
+  std::string text;  ///< "": nothing looks wrong
+  std::string hint;
+  bool is_error = false;
+};
+
+/// Values far beyond open and closed: of the most an error, of some a warning. A gripper that
+/// hardly moves is a warning, too. `file`: what messages call the file.
+OpeningDoubt JudgeOpening(const OpeningSeries& series, const Opening& said,
+                          const std::string& file);
+
 }  // namespace prehend::exchange

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Only the values that change are written anew, at the places where they stand.
-#include "harness/scenario/format/scenario_copy.h"
-
 #include <functional>
 #include <vector>
 
 #include "harness/base/yaml/located_yaml.h"
 #include "harness/base/yaml/yaml_scalar.h"
+#include "harness/scenario/format/scenario_fields.h"
 
 namespace prehend::scenario {
 namespace {
