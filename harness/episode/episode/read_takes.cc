@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/episode/take.h. Tested by tests/program/takes_test.cc
 #include <chrono>
 #include <filesystem>
 #include <fstream>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/episode/episodes/plan.h. Tested by tests/program/parts.py
 #include <fmt/format.h>
 #include <unistd.h>
 

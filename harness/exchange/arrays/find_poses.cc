@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/arrays/find_poses.h.
 #include "harness/exchange/arrays/find_poses.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/arrays/json_path.h. Tested by
-// tests/program/import_arrays.py
 #include "harness/exchange/arrays/json_path.h"
 
 #include <algorithm>

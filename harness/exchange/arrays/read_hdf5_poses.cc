@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/arrays/read_hdf5_poses.h. Tested by tests/program/import_hdf5.py
 #include "harness/exchange/arrays/read_hdf5_poses.h"
 
 #include <fmt/format.h>

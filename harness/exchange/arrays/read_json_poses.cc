@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/arrays/read_array_poses.h. Tested by tests/program/import_arrays.py
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/arrays/row_poses.h. Tested by tests/program/import_hdf5.py and
-// tests/program/import_arrays.py
 #include "harness/exchange/arrays/row_poses.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/cells/column_names.h. Tested by
-// tests/harness/exchange/cells/column_names_test.cc
 #include "harness/exchange/cells/column_names.h"
 
 #include <algorithm>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/cells/orientation.h. Tested by
-// tests/harness/exchange/cells/orientation_test.cc
 #include "harness/exchange/cells/orientation.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/cells/table_cells.h. Tested by
-// tests/harness/exchange/cells/table_cells_test.cc
 #include "harness/exchange/cells/table_cells.h"
 
 #include <algorithm>

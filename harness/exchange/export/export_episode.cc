@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/export/export_episode.h. Tested by tests/program/exported.py
 #include "harness/exchange/export/export_episode.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/export/ros_messages.h. Tested by tests/mcap/mcap_test.mjs
 #include "harness/exchange/export/ros_messages.h"
 
 #include <algorithm>

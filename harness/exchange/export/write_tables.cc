@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/export/write_motion.h. Tested by tests/program/exported.py
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,8 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/track.h. Tested by tests/program/import_outliers_test.cc
-//
-// From rest, 100 m/s² (10 g) lead 0.5 m far in a tenth of a second, and 3 cm in a sixtieth: the
-// limit follows the frame rate. What was fast already goes on so.
 #include <algorithm>
 #include <cmath>
 #include <optional>

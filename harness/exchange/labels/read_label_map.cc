@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/labels/label_map.h. Tested by tests/harness/exchange/labels/labels_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/messages/pose_fields.h. Tested by tests/program/import_messages_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/messages/log_file.h. Tested by tests/program/import_mcap_test.cc
 #include <fmt/format.h>
 #include <zlib.h>
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/poses/marker_bodies.h. Tested by tests/program/import_markers.py
 #include "harness/exchange/poses/marker_bodies.h"
 
 #include <fmt/format.h>

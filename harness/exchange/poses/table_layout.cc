@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/poses/table_layout.h. Tested by tests/program/import_layouts_test.cc
 #include "harness/exchange/poses/table_layout.h"
 
 #include <fmt/format.h>

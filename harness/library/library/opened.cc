@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/library/library/episode.h. Tested by tests/python/test_events.py
 #include "harness/library/library/opened.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/measure/recognise/recogniser.h. Tested by tests/program/recogniser_test.cc
 #include "harness/measure/recognise/recogniser.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/measure/score/found_events.h. Tested by tests/program/found_test.cc and
-// tests/program/recogniser_test.cc
 #include "harness/measure/score/found_events.h"
 
 #include <fmt/format.h>
