@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grammar/language/format.h"
-
 #include <algorithm>
 #include <array>
 #include <string_view>
 
 #include "grammar/base/quantity.h"
 #include "grammar/language/lexer.h"
+#include "grammar/language/parser.h"
 
 namespace prehend::grammar {
 namespace {

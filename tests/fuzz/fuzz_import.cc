@@ -13,7 +13,6 @@
 #include <fstream>
 #include <string>
 
-#include "harness/exchange/import/import_demonstrations.h"
 #include "harness/exchange/import/import_poses.h"
 
 namespace {

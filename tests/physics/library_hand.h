@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "harness/scenario/read/read_hand_model.h"
+#include "harness/scenario/read/read_scenario.h"
 
 namespace prehend::physics {
 

@@ -15,7 +15,7 @@
 #include "harness/show/figures/comparison_sheet.h"
 #include "harness/show/figures/figures.h"
 #include "harness/show/figures/scene_tiles.h"
-#include "harness/show/pictures/svg_file.h"
+#include "harness/show/pictures/pictures.h"
 #include "harness/suite/check/select_scenarios.h"
 
 namespace prehend::cli {

@@ -18,7 +18,6 @@
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/segment_recording.h"
-#include "harness/exchange/import/import_demonstrations.h"
 #include "harness/exchange/import/import_poses.h"
 #include "harness/truth/timeline/event_text.h"
 

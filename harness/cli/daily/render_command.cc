@@ -16,7 +16,6 @@
 #include "harness/show/figures/figures.h"
 #include "harness/show/pictures/film.h"
 #include "harness/show/pictures/pictures.h"
-#include "harness/show/pictures/svg_file.h"
 
 namespace prehend::cli {
 namespace {

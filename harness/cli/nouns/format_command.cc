@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // prehend grammar format. Tested by tests/grammar/language/format_test.cc
-#include "grammar/language/format.h"
+#include "grammar/language/parser.h"
 #include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/run/load_grammar.h"

@@ -9,7 +9,7 @@
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/episode.h"
 #include "harness/measure/sweep/sweep.h"
-#include "harness/show/pictures/svg_file.h"
+#include "harness/show/pictures/pictures.h"
 
 namespace prehend::cli {
 namespace {

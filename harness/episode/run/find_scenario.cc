@@ -17,7 +17,7 @@
 #include "grammar/base/diagnostic.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/text_file.h"
-#include "harness/scenario/read/read_hand_model.h"
+#include "harness/scenario/read/read_scenario.h"
 
 namespace prehend::episode {
 namespace {

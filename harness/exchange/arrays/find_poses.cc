@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/exchange/arrays/find_poses.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +9,7 @@
 
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/arrays/json_path.h"
+#include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/cells/column_names.h"
 
 namespace prehend::exchange {

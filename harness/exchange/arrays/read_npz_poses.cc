@@ -10,7 +10,6 @@
 #include <map>
 
 #include "harness/base/base/text_file.h"
-#include "harness/exchange/arrays/find_poses.h"
 #include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/arrays/row_poses.h"
 #include "harness/exchange/hdf5/hdf5_file.h"

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/exchange/cells/orientation.h"
 #include "harness/exchange/cells/table_cells.h"
 
 namespace prehend::exchange {

@@ -3,7 +3,10 @@
 // tests/harness/exchange/cells/table_cells_test.cc
 #pragma once
 
+#include <Eigen/Geometry>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,5 +31,33 @@ inline double AfterMidnight(double time, double first) {
   constexpr double kHalfDay_s = 43'200;
   return time < 2 * kHalfDay_s && time < first - kHalfDay_s ? time + 2 * kHalfDay_s : time;
 }
+
+// Numbers that say how something is turned: quaternions, angles, matrices. Tested by
+// tests/harness/exchange/cells/orientation_test.cc
+
+inline constexpr double kUnitTolerance = 0.01;  ///< of the length of a quaternion
+
+enum class QuaternionOrder { kWxyz, kXyzw };
+enum class OrientationForm { kQuaternion, kEuler, kMatrix, kAxisAngle };
+
+/// How numbers say an orientation.
+struct OrientationFormat {
+  OrientationForm form = OrientationForm::kQuaternion;
+  QuaternionOrder order = QuaternionOrder::kXyzw;
+  /// Of three angles: the axes that are turned about, in the order of the numbers. Capitals are the
+  /// body's own axes, small letters those of the file.
+  std::string euler_order = "XYZ";
+  double radians_per_unit = 1;  ///< of angles
+};
+
+/// 4 numbers of a quaternion, 3 angles, 9 of a matrix row by row, 3 of an axis times its angle.
+std::size_t NumbersOf(OrientationForm form);
+
+/// Returns why they are none, or "".
+std::string ReadOrientation(const OrientationFormat& format, std::span<const double> numbers,
+                            Eigen::Quaterniond& q);
+
+/// What is wrong with the order of angles, or "".
+std::string FaultOfEulerOrder(const std::string& order);
 
 }  // namespace prehend::exchange

@@ -8,7 +8,7 @@
 
 #include "harness/base/base/atomic_file.h"
 #include "harness/episode/episode/episode.h"
-#include "harness/exchange/export/write_motion.h"
+#include "harness/exchange/export/motion.h"
 
 namespace prehend::exchange {
 namespace {

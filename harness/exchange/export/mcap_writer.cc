@@ -16,8 +16,8 @@
 
 #include "grammar/base/frame.h"
 #include "harness/exchange/export/byte_writer.h"
+#include "harness/exchange/export/motion.h"
 #include "harness/exchange/export/ros_messages.h"
-#include "harness/exchange/export/write_motion.h"
 
 namespace prehend::exchange {
 namespace {

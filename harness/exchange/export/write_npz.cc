@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/export/write_motion.h: a zip file of arrays of NumPy (.npy, version 1.0),
+// See harness/exchange/export/motion.h: a zip file of arrays of NumPy (.npy, version 1.0),
 // stored as they are. Tested by tests/program/exported.py
 #include <fmt/format.h>
 #include <zlib.h>
@@ -9,7 +9,7 @@
 
 #include "grammar/base/frame.h"
 #include "harness/exchange/export/byte_writer.h"
-#include "harness/exchange/export/write_motion.h"
+#include "harness/exchange/export/motion.h"
 
 namespace prehend::exchange {
 namespace {

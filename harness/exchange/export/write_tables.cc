@@ -7,7 +7,7 @@
 
 #include "grammar/base/frame.h"
 #include "harness/base/base/quoting.h"
-#include "harness/exchange/export/write_motion.h"
+#include "harness/exchange/export/motion.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::exchange {

@@ -2,13 +2,13 @@
 // Simulators write the same motion twice: before and after each action, in the world and in the
 // frame of one environment. Where a map mixes these, other datasets of the file show it. Tested by
 // tests/program/import_hdf5.py
-#include "harness/exchange/import/import_demonstrations.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+
+#include "harness/exchange/import/import_poses.h"
 
 namespace prehend::exchange {
 namespace {

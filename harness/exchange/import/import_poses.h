@@ -3,11 +3,13 @@
 // tests/program/import_test.cc
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "harness/episode/sense/episode_file.h"
+#include "harness/exchange/arrays/read_hdf5_poses.h"
 #include "harness/exchange/poses/pose_file.h"
 
 namespace prehend::exchange {
@@ -58,5 +60,23 @@ std::string ImportTable(const Imported& imported);
 /// A first map for a file, which `import` accepts: bodies, units, axes and times as they are known
 /// or guessed; sizes are `unknown`; what is doubtful is said in comments.
 Result<std::string> ProposedMap(const std::string& poses_path);
+
+// The demonstrations of an HDF5 file, each a recording.
+// Tested by tests/program/import_hdf5.py
+
+class DemonstrationImport {
+ public:
+  static Result<DemonstrationImport> Open(const std::string& poses_path,
+                                          const std::string& map_path);
+
+  const std::vector<std::string>& groups() const { return demonstrations_->groups(); }
+  /// What is wrong with the map, as a few demonstrations show: nothing comes of the others then.
+  grammar::Diagnostics WrongInMap() const;
+  Result<Imported> Import(const std::string& group) const;
+
+ private:
+  std::unique_ptr<MapFile> map_;
+  std::optional<Demonstrations> demonstrations_;
+};
 
 }  // namespace prehend::exchange

@@ -16,7 +16,6 @@
 #include <set>
 
 #include "harness/base/base/text_file.h"
-#include "harness/exchange/arrays/find_poses.h"
 #include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/arrays/row_poses.h"
 #include "harness/exchange/cells/column_names.h"

@@ -14,7 +14,6 @@
 
 #include "harness/base/base/result.h"
 #include "harness/base/yaml/struct_format.h"
-#include "harness/exchange/cells/orientation.h"
 #include "harness/exchange/cells/table_cells.h"
 
 namespace prehend::exchange {

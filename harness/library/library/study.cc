@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "grammar/contents.h"
-#include "grammar/language/format.h"
+#include "grammar/language/parser.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/exchange/labels/read_truths.h"
 #include "harness/library/library/opened.h"

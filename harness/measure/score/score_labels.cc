@@ -16,7 +16,7 @@
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/segment_recording.h"
-#include "harness/exchange/labels/clock_offset.h"
+#include "harness/exchange/labels/label_map.h"
 #include "harness/truth/timeline/match_events.h"
 
 namespace prehend::measure {

@@ -2,7 +2,7 @@
 // A hand file as it is written: digits are straight chains of phalanges, or jaws that slide; angles
 // are in degrees.
 // Every key is declared once, in harness/scenario/format/hand_fields.cc;
-// harness/scenario/read/read_hand_model.h makes a physics::HandModel of it. Tested by
+// harness/scenario/read/read_scenario.h makes a physics::HandModel of it. Tested by
 // tests/harness/scenario/read/read_hand_model_test.cc
 #pragma once
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario/read/read_hand_model_test.cc
-#include "harness/scenario/read/read_hand_model.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +9,8 @@
 #include "harness/base/base/project_paths.h"
 #include "harness/base/yaml/struct_format.h"
 #include "harness/scenario/format/hand_fields.h"
-#include "harness/scenario/resolve/build_styles.h"
+#include "harness/scenario/read/read_scenario.h"
+#include "harness/scenario/resolve/resolve.h"
 
 namespace prehend::scenario {
 namespace {

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "harness/scenario/resolve/resolve.h"
-#include "harness/scenario/resolve/step_order.h"
 #include "physics/person/skeleton.h"
 
 namespace prehend::scenario {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 
-#include "harness/scenario/resolve/build_styles.h"
 #include "harness/scenario/resolve/resolve.h"
 #include "physics/base/random.h"
 #include "physics/scene/fill_vessel.h"

@@ -7,9 +7,7 @@
 #include <map>
 
 #include "harness/scenario/format/scenario_formats.h"
-#include "harness/scenario/resolve/build_styles.h"
 #include "harness/scenario/resolve/resolve.h"
-#include "harness/scenario/resolve/step_order.h"
 #include "physics/motion/stage_clock.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/joint.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario/read/read_hand_model_test.cc and
 // tests/harness/scenario/format/abstract_entities_test.cc
-#include "harness/scenario/resolve/build_styles.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+
+#include "harness/scenario/resolve/resolve.h"
 
 namespace prehend::scenario {
 namespace {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/scenario/resolve/step_order.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
-#include "harness/scenario/resolve/build_styles.h"
+#include "harness/scenario/resolve/resolve.h"
 #include "physics/motion/stage_clock.h"
 
 namespace prehend::scenario {

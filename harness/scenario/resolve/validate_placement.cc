@@ -2,7 +2,6 @@
 // Sort and sweep along x, then separating axes. Each body is reported once, so that the output
 // stays readable. Tested by tests/harness/scenario/read/read_scenario_test.cc and
 // tests/harness/scenario/resolve/penetration_test.cc
-#include "harness/scenario/resolve/validate_placement.h"
 
 #include <fmt/format.h>
 

@@ -8,8 +8,6 @@
 #include <set>
 
 #include "harness/scenario/resolve/resolve.h"
-#include "harness/scenario/resolve/step_order.h"
-#include "harness/scenario/resolve/validate_placement.h"
 #include "physics/scene/geometry.h"
 #include "physics/scene/joint.h"
 #include "physics/scene/landing.h"

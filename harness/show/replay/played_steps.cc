@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The script is played once more, over the recorded motion: what waits for something happens when
 // it did.
-#include "harness/show/replay/played_steps.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
+#include "harness/show/replay/replay_data.h"
 #include "physics/base/visitors.h"
 #include "physics/hand/script_player.h"
 

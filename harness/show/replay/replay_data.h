@@ -34,4 +34,18 @@ std::vector<std::size_t> KeysOf(std::span<const physics::Pose> poses,
 /// The pose between two others, `share` of the way.
 physics::Pose Between(const physics::Pose& a, const physics::Pose& b, double share);
 
+// When each step of a script was played, for a row beside the events. Tested by
+// tests/harness/show/replay/played_steps_test.cc
+
+struct PlayedStep {
+  std::string who;   ///< a hand or a person
+  std::string what;  ///< "reach milk"
+  grammar::Tick begin = 0, end = 0;
+};
+
+/// In the order in which they began. Nothing without a recording of every tick. A step ends with
+/// the next one of the same actor, or with its stage.
+std::vector<PlayedStep> PlayedSteps(const scenario::Scenario& scenario,
+                                    const episode::RunResult& run);
+
 }  // namespace prehend::show

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/tracks/robustness.h"
-
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -9,6 +7,7 @@
 
 #include "harness/show/explain/phrasing.h"
 #include "harness/show/explain/why_event.h"
+#include "harness/show/tracks/tracks.h"
 
 namespace prehend::show {
 namespace {

@@ -9,7 +9,6 @@
 
 #include "harness/base/base/quoting.h"
 #include "harness/show/explain/phrasing.h"
-#include "harness/show/tracks/robustness.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::show {

@@ -19,7 +19,6 @@
 #include "harness/episode/run/segment_recording.h"
 #include "harness/show/replay/replay_data.h"
 #include "harness/suite/check/attribute_run.h"
-#include "harness/suite/check/draw_differences.h"
 #include "harness/suite/check/last_pass.h"
 #include "harness/suite/judge/accept_golden.h"
 #include "harness/suite/judge/judges.h"

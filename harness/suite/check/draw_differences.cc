@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/check/draw_differences.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <utility>
 
 #include "harness/show/pictures/pictures.h"
+#include "harness/suite/check/check_scenario.h"
 
 namespace prehend::suite {
 namespace {

@@ -12,7 +12,7 @@
 #include "harness/show/explain/explain.h"
 #include "harness/show/explain/phrasing.h"
 #include "harness/show/explain/query.h"
-#include "harness/show/tracks/robustness.h"
+#include "harness/show/tracks/tracks.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {

@@ -13,7 +13,7 @@
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/exit_code.h"
 #include "harness/base/base/result.h"
-#include "harness/show/replay/played_steps.h"
+#include "harness/show/replay/replay_data.h"
 #include "harness/suite/check/attribute.h"
 #include "harness/suite/check/explained.h"
 #include "harness/suite/check/settings.h"

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/show/replay/played_steps.h"
+#include "harness/show/replay/replay_data.h"
 #include "harness/suite/check/explained.h"
 #include "harness/suite/report/history.h"
 #include "harness/truth/golden/compare.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grammar/language/format.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/exchange/cells/orientation.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
+
+#include "harness/exchange/cells/table_cells.h"
 
 namespace prehend::exchange {
 namespace {

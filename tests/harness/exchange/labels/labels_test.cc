@@ -10,7 +10,6 @@
 #include <regex>
 #include <set>
 
-#include "harness/exchange/labels/clock_offset.h"
 #include "harness/exchange/labels/label_map.h"
 #include "harness/exchange/labels/read_labels.h"
 #include "harness/exchange/labels/write_labels.h"

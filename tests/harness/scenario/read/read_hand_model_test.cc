@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/scenario/read/read_hand_model.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+
+#include "harness/scenario/read/read_scenario.h"
 
 namespace prehend::scenario {
 namespace {

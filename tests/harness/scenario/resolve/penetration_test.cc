@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "harness/scenario/resolve/validate_placement.h"
+#include "harness/scenario/resolve/resolve.h"
 
 namespace prehend::scenario {
 namespace {

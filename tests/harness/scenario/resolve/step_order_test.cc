@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lists of steps, and the keys name, after and with: what is built from them, and what is refused.
-#include "harness/scenario/resolve/step_order.h"
-
 #include <gtest/gtest.h>
 
+#include "harness/scenario/resolve/resolve.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::scenario {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/pictures/svg_file.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <fstream>
 #include <sstream>
+
+#include "harness/show/pictures/pictures.h"
 
 namespace prehend::show {
 namespace {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/replay/played_steps.h"
-
 #include <gtest/gtest.h>
 
 #include "harness/episode/run/load_run.h"
+#include "harness/show/replay/replay_data.h"
 
 namespace prehend::show {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Robustness, restated as signal temporal logic says it (as RTAMT computes it on samples at equal
 // times): `always[0, n]` and `once[0, n]` over samples, minimum and maximum.
-#include "harness/show/tracks/robustness.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "harness/show/tracks/tracks.h"
 #include "tests/harness/show/explain/explain_stage.h"
 
 namespace prehend::show::testing {

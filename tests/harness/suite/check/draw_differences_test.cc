@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/check/draw_differences.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -9,6 +7,7 @@
 
 #include "grammar/compile/compile.h"
 #include "harness/show/pictures/pictures.h"
+#include "harness/suite/check/check_scenario.h"
 #include "harness/truth/golden/compare.h"
 
 namespace prehend::suite {
