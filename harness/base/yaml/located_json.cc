@@ -163,21 +163,16 @@ class JsonTree : public nlohmann::json_sax<nlohmann::json> {
     ++cursor_;
     YamlNode node = std::move(open_.back().node);
     open_.pop_back();
-    if (open_.empty()) {
-      root = std::move(node);
-    } else {
-      open_.back().node.children.push_back(std::move(node));
-    }
-    return true;
+    return Store(std::move(node));
   }
 
   bool Attach(YamlNode node) {
     Label(node);
-    if (open_.empty()) {
-      root = std::move(node);
-    } else {
-      open_.back().node.children.push_back(std::move(node));
-    }
+    return Store(std::move(node));
+  }
+
+  bool Store(YamlNode node) {
+    (open_.empty() ? root : open_.back().node.children.emplace_back()) = std::move(node);
     return true;
   }
 

@@ -255,23 +255,25 @@ void TakePoint(const C3dFile& file, const Located<std::string>& from, const Impo
   }
 }
 
-}  // namespace
-
-Result<TableLayout> LayoutOfC3d(const std::string& path) {
+Result<C3dFile> LoadC3d(const std::string& path) {
   PREHEND_TRY(std::string bytes, ReadBytes(path));
   C3dFile file;
   if (const std::string why = file.Load(std::move(bytes)); !why.empty())
     return tl::unexpected(ErrorOfFile(path, why));
+  return file;
+}
+
+}  // namespace
+
+Result<TableLayout> LayoutOfC3d(const std::string& path) {
+  PREHEND_TRY(const C3dFile file, LoadC3d(path));
   TableLayout layout{.name = "a C3D file", .unit = UnitCalled(file.unit)};
   if (file.rate_hz > 0) layout.rate_hz = file.rate_hz;
   return layout;
 }
 
 Result<PoseFile> ReadC3dPoses(const std::string& path, const MapFile& map) {
-  PREHEND_TRY(std::string bytes, ReadBytes(path));
-  C3dFile file;
-  if (const std::string why = file.Load(std::move(bytes)); !why.empty())
-    return tl::unexpected(ErrorOfFile(path, why));
+  PREHEND_TRY(const C3dFile file, LoadC3d(path));
   DiagnosticList errors(map.document);
   if (!map.map.rate_hz)
     errors.Add(map.document.root.where, "'rate_hz' is missing: the file does not say it");
