@@ -151,8 +151,10 @@ class LabelScorer {
       if (!request_.first_is_truth || &source != sources.data()) scores_.opinions.emplace_back();
       for (const Together& group :
            Grouped(request_.takes, is_grammar ? source.text : request_.asking.WhoseEvents())) {
-        PREHEND_TRY(const auto added, Add(group, is_grammar ? nullptr : &foreign, source.text,
-                                          &source == sources.data()));
+        if (const auto added =
+                Add(group, is_grammar ? nullptr : &foreign, source.text, &source == sources.data());
+            !added)
+          return tl::unexpected(added.error());
       }
     }
     return std::move(scores_);
