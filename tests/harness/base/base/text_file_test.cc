@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
 
 namespace prehend {
 namespace {
@@ -133,6 +134,37 @@ TEST_F(TextFile, SaysWhatIsStrangeInAValue) {
   EXPECT_EQ(StrangeIn("a\u202eb"), "character that turns the direction of writing U+202E");
   EXPECT_EQ(StrangeIn("\ufffe"), "code point that is no character U+FFFE");
   EXPECT_EQ(StrangeIn("\xff"), "byte 0xff that is not UTF-8");
+}
+
+Result<std::unique_ptr<int>> Half(int number) {
+  if (number % 2 != 0) return tl::unexpected(grammar::Diagnostics{{.message = "odd"}});
+  return std::make_unique<int>(number / 2);
+}
+
+Result<int> Quarter(int number) {
+  PREHEND_TRY(const std::unique_ptr<int> half, Half(number));
+  int quarter = 0;
+  PREHEND_TRY(const auto again, Half(*half));
+  quarter = *again;
+  return quarter;
+}
+
+grammar::Diagnostics WrongWith(int number) {
+  std::unique_ptr<int> half;
+  PREHEND_TRY(half, Half(number));
+  return *half == 0 ? grammar::Diagnostics{{.message = "nothing"}} : grammar::Diagnostics{};
+}
+
+TEST(Try, TakesTheValueOrReturnsTheError) {
+  EXPECT_EQ(Quarter(12), 3);
+  ASSERT_FALSE(Quarter(3));
+  EXPECT_EQ(Quarter(3).error()[0].message, "odd");
+  ASSERT_FALSE(Quarter(6)) << "the second one fails";
+  EXPECT_EQ(Quarter(6).error().size(), 1u);
+  EXPECT_TRUE(WrongWith(4).empty());
+  ASSERT_EQ(WrongWith(5).size(), 1u) << "where errors are what is returned";
+  EXPECT_EQ(WrongWith(5)[0].message, "odd");
+  EXPECT_EQ(WrongWith(0)[0].message, "nothing");
 }
 
 }  // namespace
