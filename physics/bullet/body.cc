@@ -57,7 +57,7 @@ constexpr double kSleepTurn_rad_per_s = 0.05;
 
 /// A hull in the frame of its centre of mass and principal axes. It has no margin, because a margin
 /// would enlarge the hull or cut its corners; the other body of a contact has one.
-class HullShape final : public btConvexHullShape {
+class HullShape : public btConvexHullShape {
  public:
   explicit HullShape(const Hull& hull) : gyration_m2_(ToBullet(hull.gyration_m2)) {
     for (const Eigen::Vector3d& corner_S : hull.corners_m)
@@ -74,25 +74,42 @@ class HullShape final : public btConvexHullShape {
   btVector3 gyration_m2_;
 };
 
-struct MakeShapeOf {
+/// A part of a compound. Bullet drops its contact points as soon as the bounding boxes of the two
+/// sides part: at once where both stand along the axes of the world, much later where they are
+/// turned. With some room points last alike however the scene is turned.
+template <class BulletShape>
+struct PartOf : BulletShape {
+  using BulletShape::BulletShape;
+  void getAabb(const btTransform& X, btVector3& least, btVector3& most) const override {
+    constexpr btScalar kRoom_m = 0.001;  // a contact ends at half a millimetre
+    BulletShape::getAabb(X, least, most);
+    least -= btVector3(kRoom_m, kRoom_m, kRoom_m);
+    most += btVector3(kRoom_m, kRoom_m, kRoom_m);
+  }
+};
+
+template <template <class> class As>
+struct MakeShapeAs {
   using Result = std::unique_ptr<btCollisionShape>;
 
   Result operator()(const Box& s) const {
     return WithMargin<btBoxShape>(ToBullet(Eigen::Vector3d(s.size_m / 2)));
   }
-  Result operator()(const Sphere& s) const { return std::make_unique<btSphereShape>(s.radius_m); }
+  Result operator()(const Sphere& s) const {
+    return std::make_unique<As<btSphereShape>>(s.radius_m);
+  }
   Result operator()(const Cylinder& s) const {
     return WithMargin<btCylinderShapeZ>(btVector3(s.radius_m, s.radius_m, s.length_m / 2));
   }
   Result operator()(const Capsule& s) const {
-    return std::make_unique<btCapsuleShapeZ>(s.radius_m, s.length_m);
+    return std::make_unique<As<btCapsuleShapeZ>>(s.radius_m, s.length_m);
   }
-  Result operator()(const Hull& s) const { return std::make_unique<HullShape>(s); }
+  Result operator()(const Hull& s) const { return std::make_unique<As<HullShape>>(s); }
 
  private:
   template <class BulletShape>
   static Result WithMargin(const btVector3& half_m) {
-    auto shape = std::make_unique<BulletShape>(half_m);
+    auto shape = std::make_unique<As<BulletShape>>(half_m);
     // Of a body that is no thicker than two margins nothing would be left to search for contacts.
     const double thin_m = std::min({half_m.x(), half_m.y(), half_m.z()});
     shape->setMargin(thin_m > kMargin_m ? kMargin_m : thin_m / 2);
@@ -180,7 +197,7 @@ void BulletJoint::Pull() {
 }
 
 std::unique_ptr<btCollisionShape> MakeShape(const Shape& shape) {
-  return std::visit(MakeShapeOf{}, shape);
+  return std::visit(MakeShapeAs<std::type_identity_t>{}, shape);
 }
 
 btRigidBody::btRigidBodyConstructionInfo RigidInfo(const Body& body, btCollisionShape* shape,
@@ -203,10 +220,13 @@ BulletBody::BulletBody(const std::vector<const Body*>& bodies) {
   btScalar mass = 0;
   for (const Body* body : bodies) mass += root.fixed ? 0 : body->mass_kg;
   btVector3 inertia(0, 0, 0);
-  for (const RigidMember& member : members) shapes_.push_back(MakeShape(member.placed->shape));
+  const bool simple = IsSimple(members);
+  for (const RigidMember& member : members)
+    shapes_.push_back(simple ? MakeShape(member.placed->shape)
+                             : std::visit(MakeShapeAs<PartOf>{}, member.placed->shape));
   btCollisionShape* whole = shapes_.front().get();
   Pose X_CR;
-  if (IsSimple(members)) {
+  if (simple) {
     if (mass > 0) whole->calculateLocalInertia(mass, inertia);
   } else {
     btCompoundShape in_root_frame;

@@ -39,10 +39,12 @@ btScalar HalfThickness(const btCollisionShape& shape) {
       least_m = std::min(least_m, HalfThickness(*compound.getChildShape(i)));
     return least_m;
   }
-  btVector3 least, most;
-  shape.getAabb(btTransform::getIdentity(), least, most);
-  const btVector3 half = (most - least) / 2;
-  return std::min({half.x(), half.y(), half.z()});
+  const auto& convex = static_cast<const btConvexShape&>(shape);
+  const auto half_m = [&](const btVector3& along) {
+    const btVector3 a = convex.localGetSupportingVertex(along);
+    return (a - convex.localGetSupportingVertex(-along)).dot(along) / 2;
+  };
+  return std::min({half_m({1, 0, 0}), half_m({0, 1, 0}), half_m({0, 0, 1})});
 }
 
 // Bullet's own continuous collision detection, which is off, would keep its sizes in these fields.

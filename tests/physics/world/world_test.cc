@@ -181,5 +181,41 @@ TEST_P(WorldTest, AHandHoversAtItsTarget) {
         << model.links[i].name;
 }
 
+/// How far a palm that has pressed on a part of a body is drawn away when the two do not touch any
+/// more.
+double ApartAt_m(double yaw_deg) {
+  const Pose turn{.q = FromRollPitchYaw({0, 0, yaw_deg})};
+  const HandModel model = LibraryHand("human_right");
+  constexpr int kHook = 6;  // the thumb is out of the way
+  const Pose X_WH{{0, 0, 1 + model.palm_size_m.z() / 2}};
+  const Body bench{
+      .name = "bench",
+      .shapes = {{Box{{0.05, 0.05, 0.02}}, {}}, {Box{{0.05, 0.05, 0.02}}, {.p_m = {0, 0, -0.3}}}},
+      .fixed = true,
+      .X_WB = turn * Pose{{0, 0, 0.99}}};
+  const auto world =
+      MakeBulletWorld({.bodies = {bench}, .hands = {{"hand", model, turn * X_WH}}}, {kHook});
+  Snapshot snapshot;
+  constexpr int kPressed = 100, kMost = 1000;
+  constexpr double kDrawn_m_per_s = 0.005;
+  for (int tick = 1 - kPressed; tick < kMost; ++tick) {
+    HandCommand command{.target = {.X_WH = turn * X_WH}, .style = kHook};
+    command.target.X_WH.p_m.z() += kDrawn_m_per_s * std::max(tick, 0) / 480 - 0.001;
+    if (tick > 0) command.target.v_m_per_s.z() = kDrawn_m_per_s;
+    world->Step({command});
+    world->Describe(snapshot);
+    const bool touch = !PointsOf(snapshot).empty();
+    EXPECT_TRUE(touch || tick != 0);
+    if (tick > 0 && !touch) return snapshot.hands[0].palm.X_WB.p_m.z() - X_WH.p_m.z();
+  }
+  return 0;
+}
+
+// Bullet drops the points of a part when bounding boxes along the axes of the world part.
+TEST(BulletWorld, WhatHasPressedOnAPartTouchesItUntilHalfAMillimetreAway) {
+  for (const double yaw_deg : {0.0, 37.0, 90.0})
+    EXPECT_NEAR(ApartAt_m(yaw_deg), 0.0005, 0.0001) << yaw_deg;
+}
+
 }  // namespace
 }  // namespace prehend::physics
