@@ -95,6 +95,18 @@ TEST_F(GrammarCoverage, SaysWhichClausesDecidedAndHowNear) {
   EXPECT_EQ(coverage["shares"]["clauses"], (Json{{"covered", 2}, {"all", 4}}));
 }
 
+// As the engine does: in the first frame after the interval, and not of what was too short.
+TEST_F(GrammarCoverage, AsksForWhatIsRequiredWhereTheEngineDoes) {
+  WriteFile(folder / "shelf.grammar",
+            "grammar shelf\nevent shelved(a: Movable)\n  while height(a) > 10 cm\n  lasting 0.2 s\n"
+            "  requires height(a) < 6 cm\n");
+  const Json coverage = Json::parse(
+      Covered({Kept("a.jsonl", {0.5, 0.5, 0.04, 0.5, 0.5, 0.07, 0.5, 0.04}), "--json"}).out);
+  EXPECT_EQ(coverage["rules"][0]["became"],
+            (Json{{"interval", 1}, {"refused", 1}, {"too short", 1}}));
+  EXPECT_EQ(ClauseOf(coverage, "requires", "height(a) < ")["all"]["decided"], (Json{1, 1}));
+}
+
 TEST_F(GrammarCoverage, NamesASmallestSetAndFailsBelowAShare) {
   const std::string dull = Kept("dull.jsonl", {0.04, 0.5, 0.5, 0.5, 0.07}),
                     same = Kept("same.jsonl", {0.04, 0.5, 0.5, 0.5, 0.07, 0.5, 0.07}),

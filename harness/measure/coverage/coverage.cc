@@ -165,15 +165,18 @@ class Collector {
     if (rule_->If<grammar::FromToRule>() != nullptr) LookAtFromTo(instance, outcomes);
     if (rule_->If<grammar::UntilSinceRule>() != nullptr) LookBack(instance, outcomes);
     LookAtWhole(instance, outcomes);
+    if (rule_->requirement == kNone) return;
     for (const CandidateOutcome& outcome : outcomes) {
-      if (outcome.If<fate::TooShort>() != nullptr || outcome.If<fate::Dropped>() != nullptr)
-        continue;
-      const FrameNumber last = outcome.span.end.frame - 1;
-      if (rule_->requirement != kNone && last >= 0)
-        Decide(
-            rule_->requirement,
-            {.instance = instance, .frame = last, .begin = outcome.span.begin.frame, .end = last});
+      if (!WasRequired(outcome)) continue;
+      const FrameNumber last = std::min(outcome.span.end.frame, past_.frames() - 1);
+      Decide(rule_->requirement,
+             {.instance = instance, .frame = last, .begin = outcome.span.begin.frame, .end = last});
     }
+  }
+  /// What was lost before was not asked for what the rule requires.
+  static bool WasRequired(const CandidateOutcome& outcome) {
+    return outcome.IsInterval() || outcome.If<fate::Refused>() != nullptr ||
+           outcome.If<fate::Unconfirmed>() != nullptr;
   }
 
   void LookAtWhile(InstanceId instance, const grammar::CandidateLog& outcomes) {
