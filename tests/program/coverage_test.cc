@@ -107,6 +107,18 @@ TEST_F(GrammarCoverage, AsksForWhatIsRequiredWhereTheEngineDoes) {
   EXPECT_EQ(ClauseOf(coverage, "requires", "height(a) < ")["all"]["decided"], (Json{1, 1}));
 }
 
+// `one .. per` takes a rule apart; its clauses are those that stand in the file.
+TEST_F(GrammarCoverage, HasTheClausesOfOnePer) {
+  WriteFile(folder / "shelf.grammar",
+            "grammar shelf\nevent beside(a: Movable, b: Entity)\n  while height(a) > 10 cm\n"
+            "  until height(a) < 5 cm\n  one a per b\n");
+  const Json coverage =
+      Json::parse(Covered({Kept("a.jsonl", {0.07, 0.5, 0.07, 0.5, 0.04}), "--json"}).out);
+  ASSERT_EQ(coverage["rules"].size(), 1u);
+  EXPECT_EQ(ClauseOf(coverage, "while", "height(a) > ")["is_threshold"], true);
+  EXPECT_EQ(ClauseOf(coverage, "until", "height(a) < ")["is_threshold"], true);
+}
+
 TEST_F(GrammarCoverage, NamesASmallestSetAndFailsBelowAShare) {
   const std::string dull = Kept("dull.jsonl", {0.04, 0.5, 0.5, 0.5, 0.07}),
                     same = Kept("same.jsonl", {0.04, 0.5, 0.5, 0.5, 0.07, 0.5, 0.07}),

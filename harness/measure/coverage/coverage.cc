@@ -56,7 +56,7 @@ class Collector {
     coverage_.grammar = GrammarName(past_.program());
     for (const grammar::RuleId id : grammar::IdsOf(past_.program().rules)) {
       rule_ = &past_.program().rules[id];
-      if (rule_->hidden || id == grammar::kTouchingRule) continue;
+      if (id == grammar::kTouchingRule) continue;
       List();
       CoveredRule covered{.name = rule_->name,
                           .file = rule_->file,
@@ -68,7 +68,8 @@ class Collector {
         for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) Count(outcome, covered);
         Look(instance);
       }
-      coverage_.rules.push_back(std::move(covered));
+      // What the compiler made of `one .. per` has the clauses of the rule, which has the intervals.
+      if (!rule_->hidden) coverage_.rules.push_back(std::move(covered));
     }
     for (auto& [place, clause] : by_place_) {
       if (!clause.seen.empty()) clause.all = clause.seen.at(0);
