@@ -229,18 +229,24 @@ bool Evidence::Leaves(int hand, int frame, double distance_m, double window_s, i
   const auto is_near = [&](grammar::Tick from, grammar::Tick to) {
     return static_cast<double>(to - from) / recording.scene.world.rate_hz <= window_s / 2;
   };
-  const auto first_near =
-      std::partition_point(begin, now, [&](grammar::Tick t) { return !is_near(t, *now); });
-  const auto past = std::partition_point(now, begin + std::max(end, frame),
-                                         [&](grammar::Tick t) { return is_near(*now, t); });
-  const int first = static_cast<int>(first_near - begin);
-  const int last = static_cast<int>(past - begin) - 1;
-  // What moves is farthest at the ends.
-  for (int i = first; i < frame; ++i)
-    if (Apart_m(hand, frame, i) > distance_m) return true;
-  for (int i = last; i > frame; --i)
-    if (Apart_m(hand, frame, i) > distance_m) return true;
-  return false;
+  const auto leaves = [&] {
+    const auto first_near =
+        std::partition_point(begin, now, [&](grammar::Tick t) { return !is_near(t, *now); });
+    const auto past = std::partition_point(now, begin + std::max(end, frame),
+                                           [&](grammar::Tick t) { return is_near(*now, t); });
+    const int first = static_cast<int>(first_near - begin);
+    const int last = static_cast<int>(past - begin) - 1;
+    // What moves is farthest at the ends.
+    for (int i = first; i < frame; ++i)
+      if (Apart_m(hand, frame, i) > distance_m) return true;
+    for (int i = last; i > frame; --i)
+      if (Apart_m(hand, frame, i) > distance_m) return true;
+    return false;
+  };
+  // A hand that trembles in its place is compared with the whole window; for each choice of the
+  // other numbers it is the same. Near the end the window is another one for each end.
+  if (end <= frame || is_near(*now, *(begin + end - 1))) return leaves();
+  return Cached(leaves_[{hand, distance_m, window_s}], recording.size(), frame, leaves) != 0;
 }
 
 bool InReachRegion(const Recording& recording, int hand, int body, int frame, double radius_m) {

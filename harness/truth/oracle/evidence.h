@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <vector>
 
 #include "harness/truth/oracle/recording.h"
@@ -58,6 +59,7 @@ class Evidence {
  private:
   mutable std::map<Pair, std::vector<double>> distances_;
   mutable std::map<int, std::vector<double>> motions_;
+  mutable std::map<std::tuple<int, double, double>, std::vector<double>> leaves_;
 };
 
 /// Whether the body's true shape reaches into the hand's region of interest: the sphere ahead of
