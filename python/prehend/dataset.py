@@ -16,6 +16,7 @@ from . import recipe as recipes
 from . import scenes
 from .episodes import program
 from .errors import EpisodeError, cell, fail, named
+from .robustness import PLAYED
 
 BATCH, ATTEMPTS, ROLES = 100, 20, ("train", "dev", "test")
 PARTS = ["hand", "object", "support", "a", "b"]  # columns of labels
@@ -258,7 +259,7 @@ def export(options):
     """Other forms of a set: those of the program, and HDF5 as simulators lay it out."""
     if options.to != "hdf5":
         files = sorted(pathlib.Path(options.set).absolute().glob("*.episodes"))
-        done = subprocess.run([program(), "episode", "export", *map(str, files), "--to", options.to, "-o", options.output], check=False)
+        done = subprocess.run([program(), "episode", "export", *map(str, files), *PLAYED, "--to", options.to, "-o", options.output], check=False)
         return done.returncode
     from .datasheet import write_hdf5
     return write_hdf5(options.set, options.output)

@@ -8,15 +8,19 @@ import random
 import subprocess
 
 from .episodes import program
+from .errors import EpisodeError, fail
 
+PLAYED = ["--episode", "status=completed"]  # a draft that failed is in the files, too, and was drawn again
 TURN_DEG, NOISE_M, KEEP_HZ = 73, 0.005, 20
 
 
 def recordings(folder, files, names, out):
     """Each episode as a recording, OUT/NAME.jsonl: what is sensed, and nothing of the scenario."""
     for file in sorted({files[name] for name in names}):
-        subprocess.run([program(), "episode", "export", str(folder / file), "--to", "jsonl", "-o", os.path.join(out, file)], check=True,
-                       capture_output=True)
+        done = subprocess.run([program(), "episode", "export", str(folder / file), *PLAYED, "--to", "jsonl", "-o", os.path.join(out, file)],
+                              capture_output=True, text=True, check=False)
+        if done.returncode:
+            fail(EpisodeError, done.stderr.strip())
     takes = [pathlib.Path(out, files[name], f"{name}.jsonl") for name in names]
     for take in takes:  # all are judged by the events of one grammar
         head, _, rest = take.read_text(encoding="utf-8").partition("\n")

@@ -12,6 +12,7 @@ import sys
 import tempfile
 import unittest
 
+import takes
 from prehend import EpisodeError, baselines, benchmark, dataset, datasheet, errors, recipe, robustness, scenes
 
 HASHED = recipe.read(recipe.HERE / "tabletop.yaml")
@@ -115,6 +116,25 @@ class Table(unittest.TestCase):
         self.assertEqual(after(robustness.noisy), after(robustness.noisy))
         self.assertNotEqual(after(robustness.noisy)[1], lines[1])
         json.dumps(slow)
+
+
+class Drafts(takes.Folder, unittest.TestCase):
+    """A draft that failed stays in its batch's file, and in nothing that is made of the set."""
+
+    def test_what_failed_is_not_exported(self):
+        text = ("scenario: NAME\nshows: a hand that waits\ngrammar: pick_and_place\nworld: {rate_hz: 480, sensing_hz: 60}\nentities:\n"
+                "  table: {class: Table, fixed: true, box: {size_m: [0.8, 0.8, 0.04]}, at_m: [0, 0, 0.7]}\nCUP"
+                "actors: {right_hand: {hand: human_right, at_m: [0, 0, 1]}}\nscript:\n  - right_hand: {wait_s: 0.2}\n")
+        cup = "  cup: {class: Cup, box: {size_m: [0.1, 0.1, 0.1]}, mass_kg: 1, at_m: [0, 0, -19.8]}\n"  # leaves the world, which has 20 m
+        for name, more in (("e00000", ""), ("e00001", cup)):
+            (self.folder / f"{name}.yaml").write_text(text.replace("CUP", more).replace("NAME", name), encoding="utf-8")
+        takes.program("check", self.folder / "e00000.yaml", self.folder / "e00001.yaml", "--no-pictures", "--report", self.folder / "report",
+                      "--record", self.folder / "test_001.episodes", code=3)
+        self.assertEqual(len(takes.program("episode", "list", self.folder / "test_001.episodes").splitlines()), 3)
+        made = robustness.recordings(self.folder, {"e00000": "test_001.episodes"}, ["e00000"], str(self.folder / "plain"))
+        self.assertEqual([pathlib.Path(one).name for one in made], ["e00000.jsonl"])
+        self.assertEqual(dataset.main(["export", str(self.folder), "--to", "csv", "-o", str(self.folder / "poses")]), 0)
+        self.assertEqual({path.name.split(".")[0] for path in (self.folder / "poses").iterdir()}, {"e00000"})
 
 
 class OfStrangers(unittest.TestCase):
