@@ -31,12 +31,12 @@ def episodes(file):
         return [row[0] for row in database.execute("SELECT scenario FROM episode JOIN task ON task.id = task WHERE status <> 'recording'")]
 
 
-def killed(words, file):
-    """Kills it as soon as one episode is complete. Returns how many were."""
+def killed(words, file, complete=1):
+    """Kills it as soon as so many episodes are complete. Returns how many were."""
     process = subprocess.Popen([PROGRAM, *map(str, words)], cwd=SOURCE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     while process.poll() is None:
         try:
-            if len(episodes(file)) > 0:
+            if len(episodes(file)) >= complete:
                 break
         except sqlite3.Error:
             pass
@@ -161,6 +161,37 @@ def trials(folder):
     assert "part 1 of 2 is missing, with 4 episodes: trials/gripper_places_a_box, trial 1, " in missing, missing
 
 
+def imports(folder):
+    """A folder of takes into one file: stopped at any moment, and again; the bytes are those of an unbroken import."""
+    takes, map_, whole, file = folder / "takes", folder / "map.yaml", folder / "imported.episodes", folder / "stopped.episodes"
+    takes.mkdir()
+    map_.write_text("import: 1\nunit: m\naxes: z_up\nquaternion_order: wxyz\ntime_unit: s\ncolumns: {time: t, body: name, position: ['x', 'y', 'z'], "
+                    "quaternion: [qw, qx, qy, qz]}\nentities:\n  table: {at_m: [0, 0, 0.7], fixed: true, class: Table, size_m: [2, 1, 0.04]}\n"
+                    "  cup: {from: cup, class: Cup, size_m: [0.08, 0.08, 0.1]}\n  hand: {from: hand, hand: true, size_m: [0, 0, 0]}\n")
+    for take in range(20):
+        rows = [f"{k / 60:.4f},{name},{x + take / 100:.4f},0,{z:.4f},1,0,0,0" for k in range(240)
+                for name, x, z in (("cup", 0, 0.77), ("hand", 0.3 - k / 1000, 0.9))]
+        (takes / f"take{take:02}.csv").write_text("\n".join(["t,name,x,y,z,qw,qx,qy,qz", *rows]) + "\n")
+    words = lambda out: ["import", takes, "--map", map_, "-o", out]
+    assert run(*words(whole)).stdout.endswith("20 of 20 takes\n")
+    unbroken = whole.read_bytes()
+    kept = [killed(words(file), file, more) for more in (1, 4, 9)]
+    said = run(*words(file))
+    assert kept == sorted(kept) and f"{file}: it has {kept[-1]} of 20 takes already; these are not added again" in said.stderr, (kept, said.stderr)
+    assert file.read_bytes() == unbroken and len(set(episodes(file))) == 20
+    assert "it has 20 of 20 takes already" in run(*words(file)).stderr and file.read_bytes() == unbroken
+    # Half of them on each of two machines, some on both.
+    names = sorted(takes.iterdir())
+    for part, its in ((1, names[:12]), (2, names[8:])):
+        run("import", *its, "--map", map_, "-o", folder / f"imported-{part}.episodes")
+    said = run("episode", "merge", folder / "imported-1.episodes", folder / "imported-2.episodes", "-o", folder / "both.episodes")
+    assert "20 episodes of 2 files; 4 were there twice" in said.stdout, said.stdout
+    run("import", names[0], "--map", map_, "-o", folder / "take.jsonl")
+    for said in ("", f"{folder / 'alone.episodes'}: it has this recording already; it is not added again\n"):
+        assert run("import", folder / "take.jsonl", "-o", folder / "alone.episodes").stderr.endswith(said)
+    assert len(episodes(folder / "alone.episodes")) == 1
+
+
 def bad_use(folder):
     assert "wanted a file NAME.episodes" in run("episode", "merge", folder / "part-1.episodes", "-o", folder / "x.db", code=2).stderr
     assert "no such file" in run("episode", "merge", folder / "none.episodes", "-o", folder / "x.episodes", code=2).stderr
@@ -173,4 +204,5 @@ if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as path:
         suite(pathlib.Path(path))
         trials(pathlib.Path(path))
+        imports(pathlib.Path(path))
         bad_use(pathlib.Path(path))

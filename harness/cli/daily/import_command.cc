@@ -35,10 +35,10 @@ ExitCode LookWith(const grammar::Program& program, episode::Recording& episode,
 
 /// Writes JSON Lines, or adds an episode where `output` is an episode file. `source`: what the
 /// recording was read from. `grammar`: the one whose events the episode has; empty: its own. Prints
-/// what is wrong.
+/// what is wrong. What the file has already is not added again: it is said, or counted by `there`.
 ExitCode WriteRecording(episode::Recording& recording, const std::string& output,
                         const std::string& source, const std::string& grammar,
-                        const CommandContext& context) {
+                        const CommandContext& context, std::size_t* there = nullptr) {
   if (episode::IsEpisodeFile(output)) {
     if (const std::string problem = episode::WhyNotRecordable(output); !problem.empty())
       return Refuse(context, problem);
@@ -47,9 +47,14 @@ ExitCode WriteRecording(episode::Recording& recording, const std::string& output
                                                     .source = source,
                                                     .grammar = grammar,
                                                     .recorded_on = context.today,
-                                                    .program_hash = ProgramHash()},
+                                                    .program_hash = ProgramHash(),
+                                                    .once = true},
                                                    recording);
     if (!imported) return Complain(context, imported.error());
+    if (imported->was_there && there)
+      ++*there;
+    else if (imported->was_there)
+      context.err << output << ": it has this recording already; it is not added again\n";
     if (imported->problem.empty()) return ExitCode::kAgrees;
     return Complain(context, ExitCode::kFailure, imported->problem);
   }
@@ -141,6 +146,7 @@ ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
       {"episode", "frames", "seconds", batch.file.empty() ? "lost_s" : "success"}};
   std::string first, left_out, last;
   std::set<std::string> taken;
+  std::size_t there = 0;
   ExitCode exit_code = ExitCode::kAgrees;
   const auto leave_out = [&](const std::string& name, const std::string& why) {
     warnings.Say("prehend: left out: " + why);
@@ -172,7 +178,7 @@ ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
       if (episode::IsEpisodeFile(output)) episode::BridgeLooks(episode);
       const ExitCode written =
           WriteRecording(episode, OutputOf(output, batch, episode.header.episode),
-                         batch.SourceOf(name), grammar, context);
+                         batch.SourceOf(name), grammar, context, &there);
       if (written != ExitCode::kAgrees) return written;
     }
     const auto& success = episode.header.attributes.success;
@@ -185,6 +191,9 @@ ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
   }
   if (table.size() == 1 && batch.file.empty()) exit_code = ExitCode::kBadInput;
   if (exit_code == ExitCode::kAgrees && !left_out.empty()) exit_code = ExitCode::kDiffers;
+  if (there > 0)
+    context.err << fmt::format("{}: it has {} of {} {} already; these are not added again\n",
+                               output, there, batch.names.size(), batch.noun);
   if (output == "-") return exit_code;
   if (!first.empty()) context.out << first << "\n";
   for (const std::string& line : truth::AlignColumns(table)) context.out << line << "\n";

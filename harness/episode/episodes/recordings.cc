@@ -126,17 +126,26 @@ Result<ImportedRecording> ImportRecording(const ImportRequest& request, Recordin
   end.ticks = recording.end_tick - 1;
   end.state_hash = HashOfFrames(recording);
   end.timeline = imported.segmented.timeline;
+  const NewTask task = TaskOf(request, header, grammars);
   imported.problem = ProblemOf(request.file, [&] {
     const Database database = OpenToWrite(request.file);
     Transaction transaction(database);
-    const std::int64_t task = WriteTask(database, TaskOf(request, header, grammars));
-    const std::int64_t row = WriteEpisode(database, task,
+    const std::string uuid =
+        request.once
+            ? UuidOf(fmt::format("{}\n{}\n{}\n{} {}", task.scenario, task.files.Identity(),
+                                 request.program_hash, HashText(end.state_hash), end.ticks))
+            : "";
+    Statement find = database.Prepare("SELECT 1 FROM episode WHERE uuid = ?");
+    imported.was_there = find.Bind(uuid).Step();
+    if (imported.was_there) return;
+    const std::int64_t row = WriteEpisode(database, WriteTask(database, task),
                                           {.grammar = GrammarName(*imported.segmented.program),
                                            .ticks_per_second = header.entity_table.ticks_per_second,
                                            .engine = kNoEngine,
                                            .seed = 0,
                                            .program_hash = request.program_hash,
-                                           .recorded_on = request.recorded_on});
+                                           .recorded_on = request.recorded_on,
+                                           .uuid = uuid});
     WriteFrames(database, row, recording);
     WriteEnd(database, row, recording.says_its_end ? kCompleted : kUnfinished, end,
              header.entity_table);

@@ -23,11 +23,13 @@ struct ImportRequest {
   std::string grammar;       ///< name or path; empty: the recording's own
   std::string recorded_on;   ///< YYYY-MM-DD
   std::string program_hash;  ///< ProgramHash()
+  bool once = false;         ///< a recording that the file has, by the same program, stays away
 };
 
 struct ImportedRecording {
   SegmentedRecording segmented;  ///< what the grammar recognises in it
   std::string problem;           ///< empty, or why it is not in the file: "FILE: the disk is full"
+  bool was_there = false;        ///< and is not added again
 };
 
 /// Adds a recording to an episode file, with the events that the grammar recognises; all of it or
