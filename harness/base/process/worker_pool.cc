@@ -280,6 +280,8 @@ class Pool {
     }
     WorkerResult result{.finished = WIFEXITED(status) && WEXITSTATUS(status) == 0};
     result.seconds = SecondsSince(worker.start);
+    for (const timeval& time : {usage.ru_utime, usage.ru_stime})
+      result.cpu_s += static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) / 1e6;
     result.peak_memory_kib = usage.ru_maxrss;
     std::string stderr_tail = StderrTail(worker);
     if (result.finished) {

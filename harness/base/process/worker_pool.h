@@ -34,7 +34,7 @@ struct WorkerResult {
   /// "crashed (segmentation fault, signal 11) at 998 MB of memory, limit 1000 MB", ..
   std::string reason;
   std::string stderr_tail;  ///< of a job that failed, unless memory ran out
-  double seconds = 0;
+  double seconds = 0, cpu_s = 0;
   std::int64_t peak_memory_kib = 0;
 };
 

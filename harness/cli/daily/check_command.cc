@@ -304,7 +304,10 @@ Result<episode::Plan> KeepPart(const ParsedOptions& options, const CommandContex
     names.push_back(episode::IdOf(file));
     files.push_back(file.path);
   }
-  PREHEND_TRY(const std::vector<int> parts, suite::PartsOf(shard, names));
+  std::string note;
+  Result<std::vector<int>> wanted = suite::PartsOf(shard, names, &note);
+  context.err << note;
+  PREHEND_TRY(const std::vector<int> parts, std::move(wanted));
   episode::Plan plan;
   if (options.Has("--record") && !options.Has("--repeat") && !options.Has("--changed")) {
     std::vector<std::string> words = {"check"};

@@ -55,6 +55,7 @@ class Suite {
     for (std::size_t i = 0; i < turns.size(); ++i) jobs.push_back(Job(turns[i], last_ticks[i]));
     const auto take = [&](std::size_t job, const WorkerResult& result) {
       const std::size_t scenario = turns[job].scenario;
+      cpu_s_[scenario] = std::max(cpu_s_[scenario], result.cpu_s);
       keep(scenario, VerdictOf(scenario, result, last_ticks[job]));
     };
     if (!interrupt || !interrupt->Came()) RunInWorkers(jobs, request_.limits, take, interrupt);
@@ -252,8 +253,7 @@ class Suite {
         verdicts.back().command += fmt::format(" --repeat {}", request_.repeat);
       const ScenarioVerdict& merged = verdicts.back();
       if (merged.verdict == Verdict::kUnchanged || Changed() || !IsRemembered(i)) continue;
-      const auto cpu_s = cpu_s_.find(i);  // what was run alone, after a crash, has none
-      costs_[merged.scenario] = cpu_s == cpu_s_.end() ? merged.seconds : cpu_s->second;
+      costs_[merged.scenario] = cpu_s_[i];
       // Without its record the next check takes longer; if build/ cannot be written, the report,
       // which is in it, too, is an error.
       if (merged.verdict == Verdict::kPassed) {

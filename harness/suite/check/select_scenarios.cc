@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/suite/check/select_scenarios.h"
 
+#include <fmt/format.h>
 #include <fnmatch.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <numeric>
 #include <tuple>
 
 #include "harness/episode/episode/find_episodes.h"
@@ -183,7 +186,8 @@ std::string ShardProblem(const std::string& text) {
                           : "found '" + text + "', wanted I/N, like 2/3 for the second of three";
 }
 
-Result<std::vector<int>> PartsOf(const Shard& shard, const std::vector<std::string>& names) {
+Result<std::vector<int>> PartsOf(const Shard& shard, const std::vector<std::string>& names,
+                                 std::string* note) {
   std::vector<int> parts(names.size());
   for (std::size_t i = 0; i < names.size(); ++i) parts[i] = static_cast<int>(i) % shard.count + 1;
   if (shard.costs.empty()) return parts;
@@ -208,6 +212,12 @@ Result<std::vector<int>> PartsOf(const Shard& shard, const std::vector<std::stri
     parts[i] = static_cast<int>(least - loads.begin()) + 1;
     *least -= cost;
   }
+  const double all = std::accumulate(loads.begin(), loads.end(), 0.0);
+  const double share = costs.empty() ? 1 : -costs.front().first / all;
+  if (note && shard.count > std::ceil(1 / share))
+    *note = fmt::format(
+        "--shard: {} alone is {:.1f} % of all costs: more than {:.0f} parts end no sooner\n",
+        names[costs.front().second], 100 * share, std::ceil(1 / share));
   return parts;
 }
 

@@ -47,8 +47,10 @@ std::string ShardProblem(const std::string& text);
 
 /// The part, 1 to count, of each: in turn, or, where their costs are known, the most expensive
 /// first and each to the part that has the least so far; one without a cost has the mean of the
-/// others. The same on every machine. An error if the file of costs cannot be read.
-Result<std::vector<int>> PartsOf(const Shard& shard, const std::vector<std::string>& names);
+/// others. The same on every machine. An error if the file of costs cannot be read. `note`: that
+/// there are more parts than help, since one scenario alone costs more than the mean part.
+Result<std::vector<int>> PartsOf(const Shard& shard, const std::vector<std::string>& names,
+                                 std::string* note = nullptr);
 
 /// Those whose part it is. Orphans are of the first shard.
 void KeepShard(const Shard& shard, const std::vector<int>& parts, ScenarioSelection& selection);

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <stdexcept>
 #include <vector>
 
@@ -35,6 +36,23 @@ TEST(WorkerPool, WhatAJobChangesStaysInItsProcess) {
   int counter = 0;
   RunInWorkers({[&] { return std::to_string(++counter); }}, {});
   EXPECT_EQ(counter, 0);
+}
+
+TEST(WorkerPool, ProcessorTimeIsOfTheJobAlone) {
+  const auto sleep = [] {
+    usleep(200'000);
+    return Good();
+  };
+  const auto work = [] {
+    while (clock() < CLOCKS_PER_SEC / 5) {
+    }
+    return Good();
+  };
+  const auto results = RunInWorkers({sleep, work}, {.jobs = 2, .time_limit_s = 60});
+  EXPECT_GE(results[0].seconds, 0.2);
+  EXPECT_LT(results[0].cpu_s, 0.1);
+  EXPECT_GE(results[1].cpu_s, 0.2);
+  EXPECT_LT(results[1].cpu_s, results[1].seconds + 0.02);
 }
 
 TEST(WorkerPool, TicksOutliveTheWorker) {

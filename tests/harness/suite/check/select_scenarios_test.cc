@@ -117,6 +117,15 @@ TEST(Shard, WithCostsEachGoesWhereLeastIs) {
   // The dearest first: b to 1, c to 2, d to 2 (3 is less than 5), then e, of the mean, to 1 (5 is
   // less than 6), then a to 2.
   EXPECT_EQ(*PartsOf({1, 2, file}, {"a", "b", "c", "d", "e"}), (std::vector<int>{2, 1, 2, 2, 1}));
+  // b is 5 of 12. With 4 parts the slowest is that of b, as with 3.
+  std::string note;
+  PartsOf({1, 3, file}, {"a", "b", "c", "d"}, &note);
+  EXPECT_EQ(note, "");
+  EXPECT_EQ(*PartsOf({1, 4, file}, {"a", "b", "c", "d"}, &note), (std::vector<int>{4, 1, 2, 3}));
+  EXPECT_EQ(note, "--shard: b alone is 41.7 % of all costs: more than 3 parts end no sooner\n");
+  note.clear();
+  PartsOf({1, 4, file}, {}, &note);
+  EXPECT_EQ(note, "");
   WriteTextFile(file, "[]");
   const auto none = PartsOf({1, 2, file}, {"a"});
   ASSERT_FALSE(none);
