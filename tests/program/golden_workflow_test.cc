@@ -479,7 +479,7 @@ TEST_F(GoldenWorkflow, WhatRestsOnChaosIsAcceptedOnlyWithAReason) {
   const Said accepted = Do("accept balls --reason why --unsteady chaotic_balls");
   EXPECT_EQ(accepted.exit_code, 0) << accepted.err;
   const std::string golden = ReadFile(Golden("rest/balls"));
-  EXPECT_NE(golden.find("# ensemble: 6 plays\n# unsteady: \"chaotic_balls\"\n"), std::string::npos)
+  EXPECT_NE(golden.find("# ensemble: 7 plays\n# unsteady: \"chaotic_balls\"\n"), std::string::npos)
       << golden;
   EXPECT_NE(golden.find("spread="), std::string::npos);
 }
@@ -507,7 +507,7 @@ TEST_F(GoldenWorkflow, AClaimMustHoldInEachPlay) {
 TEST_F(GoldenWorkflow, WhatIsSteadyAgainLosesTheReason) {
   ASSERT_EQ(Do("accept carton_rests --reason why --unsteady shaky").exit_code, 0);
   const std::string golden = ReadFile(Golden());
-  EXPECT_NE(golden.find("# ensemble: 6 plays\n"), std::string::npos) << golden;
+  EXPECT_NE(golden.find("# ensemble: 7 plays\n"), std::string::npos) << golden;
   EXPECT_EQ(golden.find("unsteady"), std::string::npos) << golden;
 }
 

@@ -2,6 +2,7 @@
 #include "harness/scenario/transform/transform.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -10,69 +11,103 @@ namespace prehend::scenario {
 namespace {
 
 using Eigen::Vector3d;
+using physics::Pose;
 
-/// What is said of places in the world in the steps of a script.
-struct ShiftStep {
-  const Vector3d& by_m;
-  void operator()(std::vector<physics::TimedPose>& poses) const {
-    for (physics::TimedPose& pose : poses) pose.X_WH.p_m += by_m;
+/// A motion of the whole world: what it does to the parts of a scenario, the steps of its script
+/// among them.
+struct Motion {
+  Pose X;
+
+  Eigen::Vector2d Ground(const Eigen::Vector2d& p) const {
+    return (X * Vector3d(p.x(), p.y(), 0)).head<2>();
   }
-  void operator()(physics::CarryStep& step) const { step.to_m += by_m.head<2>(); }
+  /// What is not turned keeps its rotation to the last bit.
+  Pose Of(const Pose& pose) const {
+    return {X * pose.p_m, X.q.z() == 0 ? pose.q : (X.q * pose.q).normalized()};
+  }
+
+  void operator()(physics::Body& body) const {
+    body.X_WB = Of(body.X_WB);
+    if (!body.grains) return;
+    for (Vector3d& p_WG_m : body.grains->p_WG_m) p_WG_m = X * p_WG_m;
+  }
+  void operator()(physics::Joint& joint) const {
+    joint.pivot_W_m = X * joint.pivot_W_m;
+    joint.axis_W = X.q * joint.axis_W;
+  }
+  void operator()(physics::Hand& hand) const { hand.X_WH = Of(hand.X_WH); }
+  void operator()(physics::Person& person) const { person.X_WS = Of(person.X_WS); }
+  void operator()(Outcome::Condition& condition) const {
+    if (!condition.wanted.near_m) return;
+    std::vector<double>& near_m = *condition.wanted.near_m;
+    const Vector3d there = X * Vector3d(near_m[0], near_m[1], near_m.size() > 2 ? near_m[2] : 0);
+    std::copy_n(there.begin(), near_m.size(), near_m.begin());
+  }
+
+  void operator()(physics::ReachStep& step) const { step.offset_m = X.q * step.offset_m; }
+  void operator()(physics::MoveStep& step) const { step.by_m = X.q * step.by_m; }
+  void operator()(physics::PressStep& step) const { step.along_W = X.q * step.along_W; }
+  void operator()(physics::TurnHandStep& step) const {
+    if (!step.own_axes) step.by_rad = X.q * step.by_rad;
+  }
+  void operator()(physics::CarryStep& step) const { step.to_m = Ground(step.to_m); }
   void operator()(physics::PosesStep& step) const {
     for (std::size_t i = 0; i < step.poses.size(); ++i) {
+      Pose& pose = step.poses[i].X_WH;
       const physics::PoseFrame frame = step.frames.empty() ? physics::PoseFrame{} : step.frames[i];
-      if (!frame.own_hand && frame.name.empty()) step.poses[i].X_WH.p_m += by_m;
+      if (!frame.own_hand && frame.name.empty())
+        pose = Of(pose);
+      else if (frame.world_axes)
+        pose = {X.q * pose.p_m, X.q * pose.q * (frame.own_hand ? X.q : Pose{}.q).conjugate()};
     }
   }
   void operator()(physics::LookAtStep& step) const {
-    if (auto* const point_m = std::get_if<Vector3d>(&step.target)) *point_m += by_m;
+    if (auto* const point_m = std::get_if<Vector3d>(&step.target)) *point_m = X * *point_m;
   }
-  void operator()(physics::WalkStep& step) const { step.to_m += by_m.head<2>(); }
+  void operator()(physics::WalkStep& step) const { step.to_m = Ground(step.to_m); }
+  void operator()(physics::TurnStep& step) const {
+    step.to_rad += 2 * std::atan2(X.q.z(), X.q.w());
+  }
   void operator()(physics::MoveLimbStep& step) const {
-    if (step.to_m) *step.to_m += by_m;
+    if (step.to_m) step.to_m = X * *step.to_m;
   }
-  void operator()(physics::HeadPosesStep& step) const { (*this)(step.poses); }
+  void operator()(physics::HeadPosesStep& step) const {
+    for (physics::TimedPose& pose : step.poses) pose.X_WH = Of(pose.X_WH);
+  }
   void operator()(physics::BodyPosesStep& step) const {
-    for (physics::TimedPosture& timed : step.postures) timed.posture.hips_W_m += by_m;
+    for (physics::TimedPosture& timed : step.postures) {
+      timed.posture.hips_W_m = X * timed.posture.hips_W_m;
+      for (Vector3d& direction : timed.posture.directions_W) direction = X.q * direction;
+    }
   }
-  /// They name no place.
-  void operator()(const physics::OneOf<
-                  physics::WaitStep, physics::ReachStep, physics::TriggerStep, physics::MoveStep,
-                  physics::PlaceStep, physics::RetreatStep, physics::FollowJointStep,
-                  physics::TurnHandStep, physics::OrbitStep, physics::PressStep, physics::EyesStep,
-                  physics::TurnStep, physics::LeanStep, physics::SwayStep> auto&) const {}
+  /// They say nothing about the world.
+  void operator()(
+      const physics::OneOf<physics::WaitStep, physics::TriggerStep, physics::PlaceStep,
+                           physics::RetreatStep, physics::FollowJointStep, physics::OrbitStep,
+                           physics::EyesStep, physics::LeanStep, physics::SwayStep> auto&) const {}
 };
-
-/// `order[i]` is what becomes the i-th of `items`.
-template <typename T>
-std::vector<T> InOrder(const std::vector<T>& items, const std::vector<int>& order) {
-  std::vector<T> ordered;
-  for (const int index : order) ordered.push_back(items[static_cast<std::size_t>(index)]);
-  return ordered;
-}
 
 /// All bodies the other way round, but those of persons, which are consecutive.
 Scenario Reordered(Scenario scenario) {
   physics::Scene& scene = scenario.scene;
-  std::vector<int> others;
+  std::vector<std::size_t> others;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    if (!scene.bodies[i].kinematic) others.push_back(static_cast<int>(i));
-  std::vector<int> order(scene.bodies.size());
-  std::iota(order.begin(), order.end(), 0);
-  for (std::size_t i = 0; i < others.size(); ++i)
-    order[static_cast<std::size_t>(others[i])] = others[others.size() - 1 - i];
-  std::vector<int> place(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    place[static_cast<std::size_t>(order[i])] = static_cast<int>(i);
+    if (!scene.bodies[i].kinematic) others.push_back(i);
+  std::vector<int> place(scene.bodies.size());
+  std::iota(place.begin(), place.end(), 0);
+  for (std::size_t i = 0; i < others.size() / 2; ++i) {
+    const std::size_t here = others[i], there = others[others.size() - 1 - i];
+    std::swap(place[here], place[there]);
+    std::swap(scene.bodies[here], scene.bodies[there]);
+    std::swap(scenario.body_classes[here], scenario.body_classes[there]);
+    std::swap(scenario.body_part_of[here], scenario.body_part_of[there]);
+  }
   const auto replaced = [&](int body) {
     return body < 0 ? body : place[static_cast<std::size_t>(body)];
   };
   const auto replace = [&](physics::BodyIndex& body) {
     body = physics::BodyIndex(replaced(body.number()));
   };
-  scene.bodies = InOrder(scene.bodies, order);
-  scenario.body_classes = InOrder(scenario.body_classes, order);
-  scenario.body_part_of = InOrder(scenario.body_part_of, order);
   for (int& whole : scenario.body_part_of) whole = replaced(whole);
   for (physics::Joint& joint : scene.joints) replace(joint.body), replace(joint.base);
   for (Outcome& outcome : scenario.outcomes)
@@ -102,20 +137,35 @@ Scenario WithBystander(Scenario scenario) {
 }  // namespace
 
 std::string_view NameOf(Transform transform) {
-  constexpr std::string_view kNames[] = {"nudge", "shift", "far", "reorder", "bystander"};
+  constexpr std::string_view kNames[] = {"nudge", "shift", "far", "turn", "reorder", "bystander"};
   return kNames[static_cast<std::size_t>(transform)];
+}
+
+std::string WhyDirected(const Scenario& scenario) {
+  if (scenario.scene.world.planar) return "it is planar";
+  const auto trembles = [](const physics::Hand& hand) {
+    return hand.tracking && (hand.tracking->jitter_mm > 0 || hand.tracking->jitter_deg > 0 ||
+                             hand.tracking->tremor_mm > 0);
+  };
+  if (std::ranges::any_of(scenario.scene.hands, trembles))
+    return "the noise of its tracker is drawn along the axes of the world";
+  if (scenario.sensing.sensors.IsPerfect()) return "";
+  return "the noise of its sensors is drawn along the axes of the world";
 }
 
 tl::expected<Scenario, std::string> Transformed(Scenario scenario, Transform transform) {
   switch (transform) {
     case Transform::kNudge:
-      return Shifted(std::move(scenario), {1e-6, 0, 0});
+      return Moved(std::move(scenario), {.p_m = {1e-6, 0, 0}});
     case Transform::kShift:
-      return Shifted(std::move(scenario), {1e-3, 0, 0});
+      return Moved(std::move(scenario), {.p_m = {1e-3, 0, 0}});
     case Transform::kFar: {
       const double along_y_m = scenario.scene.world.planar ? 0 : 2;
-      return Shifted(std::move(scenario), {4, along_y_m, 0});
+      return Moved(std::move(scenario), {.p_m = {4, along_y_m, 0}});
     }
+    case Transform::kTurn:
+      if (const std::string why = WhyDirected(scenario); !why.empty()) return tl::unexpected(why);
+      return Moved(std::move(scenario), {.q = physics::FromRollPitchYaw({0, 0, 37})});
     case Transform::kReorder:
     case Transform::kBystander:
       break;
@@ -127,27 +177,17 @@ tl::expected<Scenario, std::string> Transformed(Scenario scenario, Transform tra
                                           : WithBystander(std::move(scenario));
 }
 
-Scenario Shifted(Scenario scenario, const Vector3d& by_m) {
-  for (physics::Body& body : scenario.scene.bodies) {
-    body.X_WB.p_m += by_m;
-    if (body.grains)
-      for (Vector3d& p_WG_m : body.grains->p_WG_m) p_WG_m += by_m;
-  }
-  for (physics::Joint& joint : scenario.scene.joints) joint.pivot_W_m += by_m;
-  for (physics::Hand& hand : scenario.scene.hands) hand.X_WH.p_m += by_m;
-  for (physics::Person& person : scenario.scene.persons) person.X_WS.p_m += by_m;
+Scenario Moved(Scenario scenario, const Pose& X) {
+  const Motion move{X};
+  std::ranges::for_each(scenario.scene.bodies, move);
+  std::ranges::for_each(scenario.scene.joints, move);
+  std::ranges::for_each(scenario.scene.hands, move);
+  std::ranges::for_each(scenario.scene.persons, move);
   for (physics::ScriptStage& stage : scenario.script.stages) {
-    for (physics::Step& step : stage.steps) std::visit(ShiftStep{by_m}, step.action);
-    for (physics::PersonStep& step : stage.person_steps) std::visit(ShiftStep{by_m}, step.action);
+    for (physics::Step& step : stage.steps) std::visit(move, step.action);
+    for (physics::PersonStep& step : stage.person_steps) std::visit(move, step.action);
   }
-  for (Outcome& outcome : scenario.outcomes) {
-    for (Outcome::Condition& condition : outcome.conditions) {
-      if (!condition.wanted.near_m) continue;
-      std::vector<double>& near_m = *condition.wanted.near_m;
-      for (std::size_t i = 0; i < near_m.size(); ++i)
-        near_m[i] += by_m[static_cast<Eigen::Index>(i)];
-    }
-  }
+  for (Outcome& outcome : scenario.outcomes) std::ranges::for_each(outcome.conditions, move);
   return scenario;
 }
 

@@ -18,10 +18,12 @@ enum class Transform {
   kNudge,      ///< everything 1 um along x: changes rounding only
   kShift,      ///< everything 1 mm along x
   kFar,        ///< everything 4 m along x and, unless planar, 2 m along y
+  kTurn,       ///< everything by 37 degrees about the vertical
   kReorder,    ///< entities are listed the other way round
   kBystander,  ///< a box lies asleep on a slab, 14 m away
 };
-inline constexpr std::array kTransforms = {Transform::kNudge, Transform::kShift, Transform::kFar,
+inline constexpr std::array kTransforms = {Transform::kNudge,   Transform::kShift,
+                                           Transform::kFar,     Transform::kTurn,
                                            Transform::kReorder, Transform::kBystander};
 std::string_view NameOf(Transform transform);
 
@@ -29,7 +31,11 @@ std::string_view NameOf(Transform transform);
 /// not the same story.
 tl::expected<Scenario, std::string> Transformed(Scenario scenario, Transform transform);
 
-/// Each place in it, those of its script and its outcomes included, moved by `by_m`.
-Scenario Shifted(Scenario scenario, const Eigen::Vector3d& by_m);
+/// Why the scenario, turned or mirrored, is another story; "": it is not.
+std::string WhyDirected(const Scenario& scenario);
+
+/// Each place and direction in it, those of its script and its outcomes included, moved by `X`,
+/// which turns about the vertical only.
+Scenario Moved(Scenario scenario, const physics::Pose& X);
 
 }  // namespace prehend::scenario

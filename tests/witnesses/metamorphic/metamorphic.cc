@@ -18,24 +18,8 @@
 namespace prehend::witnesses {
 namespace {
 
-constexpr double kTurn_deg = 37;
 /// In other steps, physics is another approximation of the same motion.
 constexpr double kToleranceAtOtherRate_s = 0.05;
-
-bool IsDrawnInWorldAxes(const physics::TrackerSettings& tracking) {
-  return tracking.jitter_mm > 0 || tracking.jitter_deg > 0 || tracking.tremor_mm > 0;
-}
-
-/// Why the scenario, turned or mirrored, is another story; "": it is not.
-std::string WhyDirected(const scenario::Scenario& scenario) {
-  if (scenario.scene.world.planar) return "it is planar";
-  for (const physics::Hand& hand : scenario.scene.hands) {
-    if (hand.tracking && IsDrawnInWorldAxes(*hand.tracking))
-      return "the noise of its tracker is drawn along the axes of the world";
-  }
-  if (scenario.sensing.sensors.IsPerfect()) return "";
-  return "the noise of its sensors is drawn along the axes of the world";
-}
 
 /// Why a copy would not be alone; "": it is.
 std::string WhyNoRoomForCopy(const scenario::Scenario& scenario) {
@@ -52,10 +36,11 @@ std::string WhyNoRoomForCopy(const scenario::Scenario& scenario) {
 
 /// Why the transform makes another story of the scenario; "": it does not.
 std::string WhyNot(const scenario::Scenario& scenario, const std::string& transform) {
-  if (transform == "turn" || transform == "mirror") {
+  if (transform == "mirror") {
     const std::string why = WhyDirected(scenario);
-    const bool persons = transform == "mirror" && !scenario.scene.persons.empty();
-    return why.empty() && persons ? "a person's right hand would be on the left" : why;
+    return why.empty() && !scenario.scene.persons.empty()
+               ? "a person's right hand would be on the left"
+               : why;
   }
   if (transform == "copies") return WhyNoRoomForCopy(scenario);
   if (transform == "watch" && scenario.sensing.sensing_hz == scenario.scene.world.rate_hz)
@@ -97,10 +82,8 @@ tl::expected<suite::TransformedScenario, std::string> TransformedBy(
   suite::TransformedScenario there{
       .name = transform, .scenario = scenario, .tolerance = scenario::DefaultTolerance(scenario)};
   physics::WorldSettings& world = there.scenario.scene.world;
-  if (transform == "turn") {
-    there.scenario = Moved(scenario, {.X = {.q = physics::FromRollPitchYaw({0, 0, kTurn_deg})}});
-  } else if (transform == "mirror") {
-    there.scenario = Moved(scenario, {.mirrors = true, .X = {}});
+  if (transform == "mirror") {
+    there.scenario = Moved(scenario, WorldMotion{.mirrors = true, .X = {}});
   } else if (transform == "rename") {
     const std::map<std::string, std::string> names = NamesTurnedRound(scenario);
     there.scenario = Renamed(scenario, names);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Metamorphic transforms: each transform of harness/scenario/transform/transform.h, and turned,
-// mirrored, under other names, beside a copy, at other rates. A verdict must not depend on it.
+// Metamorphic transforms: each transform of harness/scenario/transform/transform.h, and mirrored,
+// under other names, beside a copy, at other rates. A verdict must not depend on it.
 // Tested by tests/witnesses/metamorphic/metamorphic_test.cc
 #pragma once
 
@@ -12,11 +12,11 @@
 
 namespace prehend::witnesses {
 
-/// nudge, shift, far, reorder, bystander (harness/scenario/transform/transform.h); and
-/// turn: everything turned by 37 degrees about the vertical; mirror: in the plane y = 0, right
-/// hands become left ones; rename: other names, which the alphabet has the other way round; copies:
-/// a second copy, 13 m away, does the same at the same time; rate: physics in steps half as long,
-/// what is watched, and when, stays; watch: the grammar sees twice as many frames, physics stays.
+/// nudge, shift, far, turn, reorder, bystander (harness/scenario/transform/transform.h); and
+/// mirror: in the plane y = 0, right hands become left ones; rename: other names, which the
+/// alphabet has the other way round; copies: a second copy, 13 m away, does the same at the same
+/// time; rate: physics in steps half as long, what is watched, and when, stays; watch: the grammar
+/// sees twice as many frames, physics stays.
 const std::vector<std::string>& TransformNames();
 
 /// The scenario so changed, whose events are those of the original. Otherwise why the two are not
