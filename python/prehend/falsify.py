@@ -205,7 +205,8 @@ def main(arguments):
         found = search.run()
     failed = f", {search.failed} of them failed" if search.failed else ""
     if not found:
-        nearest = f"; the nearest play shows {search.best[0]:.3g} times the difference" if search.best[0] < FAR else ""
+        nearest = "" if search.best[0] >= FAR else f"; the nearest play shows {search.best[0]:.3g} times the difference" if asked.against else \
+            f"; boundaries are at most {max(0, asked.band_ms / search.best[0] - 1):.3g} ms apart"
         print(f"nothing in {search.plays} plays{failed}{nearest}")
         return 0
     print(f"play {search.plays}{failed}: {'; '.join(found[1])}")

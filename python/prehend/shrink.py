@@ -66,15 +66,11 @@ def text_of(tree):
     return "\n".join(lines) + "\n"
 
 
-def ends(interval):
-    return interval[2], interval[3]
-
-
 def missing_in(found, wanted, tolerance):
     """Events of `wanted` that have no partner in `found` whose two ends are so near: "event(a, b)"."""
     left, lacking = list(found), []
     for event in wanted:
-        same = [one for one in left if one[:2] == event[:2] and all(abs(a - b) <= tolerance for a, b in zip(ends(one), ends(event)))]
+        same = [one for one in left if one[:2] == event[:2] and all(abs(a - b) <= tolerance for a, b in zip(one[2:4], event[2:4]))]
         if same:
             left.remove(same[0])
         else:
@@ -288,6 +284,21 @@ def merge_two(tree, keeps):
     return tree
 
 
+def elsewhere(tree, keeps):
+    """A thing that is fixed and needs no support; or one that falls onto another one while nobody acts."""
+    for name, other in itertools.permutations(tree.get("entities", {}), 2):
+        thing, at_m = tree["entities"][name], tree["entities"][other].get("at_m", [])
+        if "on" in thing and len(at_m) == 3 and len(thing.get("at_m", [])) == 2:
+            idle = {key: one for key, one in tree.items() if key != "actors"} | {"script": []}
+            falls = {key: one for key, one in thing.items() if key != "on"} | {"at_m": [*at_m[:2], at_m[2] + 0.2]}
+            fixed = {key: one for key, one in falls.items() if key != "mass_kg"} | {"fixed": True, "at_m": [*thing["at_m"], at_m[2] + 0.2]}
+            for now, one in ((tree, fixed), (idle, falls))[:1 + bool(tree.get("script"))]:
+                now = {**now, "entities": {**now["entities"], name: one}}
+                if keeps(now):
+                    return now
+    return tree
+
+
 def simpler_values(tree, keeps):
     """Fewer keys of steps and entities, then shorter times and fewer decimals: of all at once, if that does, else of each."""
     for path in reversed(list(places(tree))):
@@ -296,8 +307,7 @@ def simpler_values(tree, keeps):
             tree = changed(tree, path)
     for path in [one for one in places(tree) if str(one[-1]).endswith("_s") and is_number(at(tree, one))]:
         value = at(tree, path)
-        digits = 1 if value >= 1 else 2
-        for other in (0.1, rounded(value / 4, digits), rounded(value / 2, digits)):
+        for other in (0.1, *(rounded(value / part, 1 if value >= 1 else 2) for part in (4, 2))):
             if other < value and keeps(changed(tree, path, other)):
                 tree = changed(tree, path, other)
                 break
@@ -321,7 +331,7 @@ def shrink(tree, player):
     before = None
     while before != tree:
         before = tree
-        tree = merge_two(fewer_parts(tree, player.keeps), player.keeps)
+        tree = elsewhere(merge_two(fewer_parts(tree, player.keeps), player.keeps), player.keeps)
     return simpler_values(tree, player.keeps)
 
 
@@ -381,9 +391,8 @@ def _scenario(asked, condition):
     player = Player(condition, os.path.dirname(os.path.abspath(asked.SCENARIO)), asked.budget)
     before = copy.deepcopy(tree)
     tree["scenario"] = os.path.splitext(os.path.basename(asked.output or asked.SCENARIO))[0]
-    tree["expects"] = [condition.claim] if condition.claim else []
-    if not condition.claim:
-        del tree["expects"]
+    tree.pop("expects", None)
+    tree.update({"expects": [condition.claim]} if condition.claim else {})
     tree = shrink(tree, player)
     tree["shows"] = f"{condition.text}: a part of {before['scenario']}"
     count = lambda one: f"{len(one.get('entities', {}))} entities, {len(one.get('script', []))} steps"

@@ -137,6 +137,17 @@ class Workbench(takes.Folder, unittest.TestCase):
         self.assertEqual(list(left["entities"]), ["shelf", "cup"])
         self.assertEqual(left["script"][-1], {"hand": {"place_on": "shelf"}})
 
+    def test_a_thing_falls_onto_another_one_or_is_fixed(self):
+        tree = {"scenario": "x", "entities": {"table": {"fixed": True, "at_m": [0, 1, 0.7]},
+                                              "cup": {"mass_kg": 0.2, "on": "table", "at_m": [0.3, 0]}},
+                "actors": {"hand": {}}, "script": [{"hand": {"reach": "cup"}}]}
+        idle = shrink.elsewhere(tree, lambda now: not now["script"])
+        self.assertEqual(idle, {"scenario": "x", "script": [], "entities": {
+            "table": {"fixed": True, "at_m": [0, 1, 0.7]}, "cup": {"mass_kg": 0.2, "at_m": [0, 1, 0.7 + 0.2]}}})
+        fixed = shrink.elsewhere(tree, lambda now: now["script"])
+        self.assertEqual(fixed["entities"]["cup"], {"fixed": True, "at_m": [0.3, 0, 0.7 + 0.2]})
+        self.assertEqual(shrink.elsewhere(tree, lambda now: False), tree)
+
     def test_a_scenario_shrinks_to_what_the_condition_needs(self):
         tree = shrink.read(takes.ROOT / "scenarios/put_down/slow_put_down.yaml")
         self.assertEqual(tree["entities"]["milk"]["on"], "table")
