@@ -100,6 +100,91 @@ class StirsAslant(made_takes.Take):
         yield from self.place(hand, x, y)
 
 
+class StirsAtTheEdge(made_takes.Take):
+    """Circles that leave the bowl's region, for a moment at first, then for longer."""
+
+    def stir(self, hand, name, vessel, x, y):
+        yield from self.fetch(hand, name)
+        yield from self.lift(hand)
+        bowl = self.things[vessel].p
+        yield from self.move(hand, add(bowl, [0.14, 0, 0.2]))
+        low = add(self.things[vessel].p, add(hand.p, self.things[name].p, -1))
+        for i in range(round(9.0 * made_takes.HZ)):
+            angle = 2 * math.pi * 1.3 * i / made_takes.HZ
+            hand.p = add(low, [0.105 + 0.0025 * i / made_takes.HZ + 0.035 * math.cos(angle), 0.035 * math.sin(angle), 0.2])
+            yield
+        yield from self.place(hand, x, y)
+
+
+class Rests(made_takes.Take):
+    """A hand comes to the cup, holds it where it is for seconds, and goes."""
+
+    def script(self):
+        def rests():
+            for _ in range(3):
+                yield from self.fetch(self.hands["left_hand"], "cup")
+                yield from self.pause(4.0)
+                yield from self.release(self.hands["left_hand"])
+
+        return [rests(), self.pause(1.0)]
+
+
+def gloves():
+    """Hands with sensors at the finger tips alone; a rail, a tray between two palms, a card, a drawer, a gripper: by formulas."""
+    hz, entities = 50, {
+        "rail": {"class": "Rail", "fixed": True, "size_m": [0.03, 0.4, 0.03]},
+        "tray": {"class": "Tray", "size_m": [0.3, 0.3, 0.02], "mass_kg": 0.5},
+        "card": {"class": "Card", "size_m": [0.09, 0.05, 0.005], "mass_kg": 0.01},
+        "drawer": {"class": "Drawer", "jointed": True, "size_m": [0.4, 0.4, 0.2]},
+        **{side: {"hand": True, "size_m": [0.09, 0.084, 0.025], "sensor_sets": ["thumb", "index", "middle", "palm"]}
+           for side in ("right_hand", "left_hand")}}
+    lines = [{"recording": 1, "episode": "gloves", "grammar": "kitchen", "ticks_per_second": hz, "entities": entities}]
+
+    def drawer(t):  # closes, halts for a tenth of a second, closes; halts for a second, closes
+        moved_s = min(t, 1) + min(max(t - 1.1, 0), 0.5) + min(max(t - 2.6, 0), 1)
+        return max(0.0, 1 - 0.35 * moved_s)
+
+    places = {"rail": [0, 1, 1], "tray": [0, 0, 1], "card": [0, -1, 1], "drawer": [2, 0, 1], "right_hand": [0.02, 1, 1], "left_hand": [-0.5, 0, 1]}
+    for tick in range(12 * hz):
+        t = tick / hz
+        at = dict(places, right_hand=[0.02, 1, 1] if t < 3 else [0.17, 0, 1] if t < 6 else [0, -1, 1], left_hand=[-0.17, 0, 1])
+        facing = {"right_hand": [0.5, -0.5, 0.5, -0.5], "left_hand": [0.5, 0.5, 0.5, 0.5]}
+        touches = []
+        if 1 < t < 2:  # a rail in the hand, whose strength nobody knows
+            touches = [{"a": "right_hand", "b": "rail", "force_n": 20, "sensor_sets": ["thumb", "index"]}]
+        elif 3.5 < t < 5.5:  # a tray between two palms, which feel it and have no sensors there, and touch it with a finger later
+            sets = {"right_hand": ["index"] if t > 4.2 else [], "left_hand": []}
+            touches = [{"a": side, "b": "tray", "force_n": 10, "sensor_sets": sets[side]} for side in sets if t < 4.8 or side == "left_hand"]
+        elif 6.5 < t < 7.5 or 7.8 < t < 9:  # a card between two fingers, let slip for a moment and for longer
+            touches = [] if 7.0 < t < 7.05 else [{"a": "right_hand", "b": "card", "force_n": 1, "sensor_sets": ["index", "middle"]}]
+        samples = {name: {"at_m": place, **({"quat_wxyz": facing[name]} if name in facing else {})} for name, place in at.items()}
+        samples["drawer"].update(joint_position=0.3 * drawer(t), joint_fraction=drawer(t))
+        grip = 0.6 if t > 0.5 else 0.0
+        lines.append({"tick": tick, "samples": samples, "touches": touches,
+                      "hands": {"right_hand": {"trigger": grip if t < 9.5 else 0.0}, "left_hand": {"trigger": 0.0}}})
+    return [*lines, {"end_tick": 12 * hz}]
+
+
+def slow_gripper():
+    """A gripper closes on a block, and opens so slowly that only its place tells when it has let go."""
+    lines = [{"recording": 1, "episode": "slow_gripper", "grammar": "robot_pick_and_place", "ticks_per_second": 20, "entities": {
+        "table": {"class": "Table", "fixed": True, "size_m": [1, 1, 0.04]}, "block": {"class": "Block", "size_m": [0.04, 0.04, 0.04]},
+        "gripper": {"hand": True, "size_m": [0.05, 0.1, 0.1]}}}]
+    for tick in range(15 * 20):
+        t = tick / 20
+        grip = min(0.5, max(0.0, t - 1)) if t < 3 else max(0.0, 0.5 - 0.06 * (t - 3))
+        lines.append({"tick": tick, "hands": {"gripper": {"trigger": grip}}, "samples": {
+            "table": {"at_m": [0, 0, 0.74]}, "block": {"at_m": [0.2, 0, 0.78]}, "gripper": {"at_m": [0.2, 0, 0.79]}}})
+    return lines
+
+
+def hidden(lines, names, begin_s, end_s):
+    """Nobody sees these between two moments."""
+    per_second = lines[0]["ticks_per_second"]
+    return [lines[0], *({**line, "samples": {**line["samples"], **dict.fromkeys(names)}}
+                        if begin_s <= line["tick"] / per_second < end_s else line for line in lines[1:])]
+
+
 def lost(lines, seed, to_the_end=False):
     """As a tracker has it that loses hands and things for moments and for seconds."""
     rng, until = random.Random(seed), {}
@@ -136,13 +221,16 @@ def recordings(folder):
         _, seen[f"slow_{seed}"] = made(f"slow_{seed}", person((pace, pace)), 50 + seed)
     for seed, wobble_deg in enumerate((25, 35, 45)):
         _, seen[f"sloppy_{seed}"] = made(f"sloppy_{seed}", person(wobble_deg=wobble_deg, jitter_m=0.002), 30 + seed)
-    for seed, kind in enumerate((Patient, HandsOver, HandsOver, StirsAslant)):
+    for seed, kind in enumerate((Patient, HandsOver, HandsOver, StirsAslant, StirsAtTheEdge, Rests)):
         name = f"{kind.__name__.lower()}_{seed}"
         facts[name], seen[name] = made(name, person(), 60 + seed, kind)
     for name, seed in (("first", 0), ("second", 1), ("patient_0", 2), ("handsover_1", 3)):
         copy = json.loads(json.dumps(seen[name]))
         seen[f"{name}_lost"] = lost(copy, seed)
         seen[f"{name}_lost_at_last"] = lost(json.loads(json.dumps(seen[name])), 7 + seed, True)
+    facts["gloves"], facts["slow_gripper"] = gloves(), slow_gripper()
+    for number, (begin_s, end_s) in enumerate(((3.5, 4.2), (3.5, 999.0), (2.0, 2.6), (9.0, 9.8))):
+        seen[f"rests_hidden_{number}"] = hidden(json.loads(json.dumps(seen["rests_5"])), ["left_hand"], begin_s, end_s)
     files = []
     for kind, takes in (("facts", facts), ("seen", seen)):
         files.append([])

@@ -108,6 +108,14 @@ class Workbench(takes.Folder, unittest.TestCase):
         self.assertEqual(len(said), 25)
         self.assertEqual(set(said) - found, set())
 
+    def test_clauses_that_nothing_shows_both_ways_are_clauses_of_the_library(self):
+        library = takes.ROOT / "grammar/library"
+        rows = [line.split("\t") for line in (library / "undecided_clauses.tsv").read_text("utf-8").splitlines() if line[0] != "#"]
+        self.assertGreater(len(rows), 20)
+        for file, source, clause, reason in rows:
+            self.assertIn(source, [line.strip() for line in (library / file).read_text("utf-8").splitlines()])
+            self.assertTrue(reason and (clause in source or re.match("bridging|lasting|within|at most", clause)), clause)
+
     def test_a_mutant_of_no_clause_meets_all_episodes(self):
         self.assertEqual(mutate.order_of(mutants.Mutant("x", 1, 1, "y", ""), [], 3)[0], [0, 1, 2])
 
