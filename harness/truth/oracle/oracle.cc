@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "harness/truth/oracle/recording.h"
 #include "harness/truth/oracle/touches.h"
@@ -12,15 +15,22 @@ namespace prehend::truth {
 
 namespace {
 
+/// What was found with some settings: most choices change none of those that it depends on.
+struct Known {
+  std::map<std::tuple<Grasp, int, int, ReachSettings>, int> reaches;
+  std::map<std::tuple<Grasp, std::map<int, Spans>, CarrySettings, double>, Carrying> carryings;
+};
+
 class TimelineBuilder {
  public:
   TimelineBuilder(const Evidence& evidence, const Touches& touches, const OracleSettings& settings,
-                  grammar::Tick end)
+                  grammar::Tick end, Known& known)
       : evidence_(evidence),
         recording_(evidence.recording),
         settings_(settings),
         end_(end),
-        touches_(touches) {
+        touches_(touches),
+        known_(known) {
     timeline_.ticks_per_second = recording_.scene.world.rate_hz;
   }
 
@@ -95,8 +105,12 @@ class TimelineBuilder {
       if (other.span.begin < contact.begin) earliest = std::max(earliest, other.span.begin + 1);
     }
     Add("fixation", RolesOf(grasp), {contact.begin, grasp.span.begin});
-    const int begin =
-        ReachBegin(evidence_, settings_, grasp.hand, grasp.body, earliest, contact.begin);
+    const auto [known, is_new] =
+        known_.reaches.try_emplace({grasp, earliest, contact.begin, settings_});
+    if (is_new)
+      known->second =
+          ReachBegin(evidence_, settings_, grasp.hand, grasp.body, earliest, contact.begin);
+    const int begin = known->second;
     if (recording_.Seconds(begin, contact.begin) < settings_.reach_minimum_s) return {};
     Add("reaching", RolesOf(grasp), {begin, contact.begin});
     return {begin, contact.begin};
@@ -106,7 +120,10 @@ class TimelineBuilder {
     std::map<int, Spans> supports;
     for (const auto& [pair, spans] : touches_.supports)
       if (pair.first == grasp.body) supports[pair.second] = spans;
-    Carrying carrying = FindCarrying(evidence_, settings_, grasp, supports);
+    const auto [known, is_new] =
+        known_.carryings.try_emplace({grasp, supports, settings_, settings_.onset_speed_m_per_s});
+    if (is_new) known->second = FindCarrying(evidence_, settings_, grasp, supports);
+    const Carrying& carrying = known->second;
     for (const Span& span : carrying.slides) Add("sliding", RolesOf(grasp), span);
     for (const Span& span : carrying.pick_ups) Add("picking_up", RolesOf(grasp), span);
     for (const Span& span : carrying.hovers) Add("hovering", RolesOf(grasp), span);
@@ -120,6 +137,7 @@ class TimelineBuilder {
   const OracleSettings& settings_;
   grammar::Tick end_;
   const Touches& touches_;
+  Known& known_;
   grammar::Timeline timeline_;
 };
 
@@ -141,7 +159,8 @@ grammar::Timeline TrueTimeline(const physics::Scene& scene,
                                const OracleSettings& settings) {
   const Recording frames = MakeRecording(scene, recording);
   const Evidence evidence(frames);
-  return TimelineBuilder(evidence, FindTouches(evidence, settings), settings, end).Build();
+  Known known;
+  return TimelineBuilder(evidence, FindTouches(evidence, settings), settings, end, known).Build();
 }
 
 std::vector<grammar::Timeline> PossibleTimelines(const physics::Scene& scene,
@@ -149,12 +168,14 @@ std::vector<grammar::Timeline> PossibleTimelines(const physics::Scene& scene,
                                                  grammar::Tick end) {
   const Recording frames = MakeRecording(scene, recording);
   const Evidence evidence(frames);
+  Known known;
   std::vector<grammar::Timeline> timelines;
   const Touches usual = FindTouches(evidence, {});  // most choices change none of their numbers
   for (const OracleSettings& choice : DefinitionChoices()) {
-    const Touches own = choice == TouchSettings{} ? Touches{} : FindTouches(evidence, choice);
-    const Touches& touches = choice == TouchSettings{} ? usual : own;
-    timelines.push_back(TimelineBuilder(evidence, touches, choice, end).Build());
+    const TouchSettings& touch = choice;
+    const Touches own = touch == TouchSettings{} ? Touches{} : FindTouches(evidence, choice);
+    const Touches& touches = touch == TouchSettings{} ? usual : own;
+    timelines.push_back(TimelineBuilder(evidence, touches, choice, end, known).Build());
   }
   return timelines;
 }

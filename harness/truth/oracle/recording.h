@@ -24,6 +24,7 @@ struct Span {
   int end = 0;
   bool empty() const { return begin >= end; }
   bool Contains(int frame) const { return begin <= frame && frame < end; }
+  auto operator<=>(const Span&) const = default;
 };
 using Spans = std::vector<Span>;  ///< sorted, disjoint, none empty
 

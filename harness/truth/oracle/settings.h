@@ -32,8 +32,8 @@ struct TouchSettings {
   bool operator==(const TouchSettings&) const = default;
 };
 
-/// A cylinder is a region around an anchor: so far sideways, so far up and down.
-struct OracleSettings : TouchSettings {
+/// What the begin of a reach depends on.
+struct ReachSettings {
   double idle_speed_m_per_s = 0.01;    ///< slower is standing still,
   double idle_excursion_m = 0.0025;    ///< and so is getting no farther than this
   double idle_window_s = 0.5;          ///< within half of this before or after
@@ -43,10 +43,14 @@ struct OracleSettings : TouchSettings {
   double reach_radius_m = 0.30;      ///< ball that lies ahead of the palm and touches its centre
   double reach_dead_band_m = 0.025;  ///< moving away by less is not moving away
   double reach_idle_s = 0.5;         ///< standing still for longer ends a reach
-  double reach_minimum_s = 0.1;
   double reach_look_back_s = 10;
-  double reach_brush_s = 0.05;  ///< a shorter touch on the way does not end a reach
 
+  auto operator<=>(const ReachSettings&) const = default;
+};
+
+/// What slides, pick-ups and put-downs depend on, beside how a movement begins. A cylinder is a
+/// region around an anchor: so far sideways, so far up and down.
+struct CarrySettings {
   double slide_speed_m_per_s = 0.01;  ///< along the support, where the two touch
   double slide_window_s = 0.1;        ///< it has to be faster than that on average over this, too
   double slide_moment_s = 0.05;       ///< it has to move for that long; a dip is no longer
@@ -64,6 +68,13 @@ struct OracleSettings : TouchSettings {
   double put_down_slip_s = 0.02;        ///< what lands so soon after it is let go was put down
 
   double carry_way_m = 0.005;  ///< what gets no farther until it stands again was not carried
+
+  auto operator<=>(const CarrySettings&) const = default;
+};
+
+struct OracleSettings : TouchSettings, ReachSettings, CarrySettings {
+  double reach_minimum_s = 0.1;
+  double reach_brush_s = 0.05;  ///< a shorter touch on the way does not end a reach
 };
 
 // The bands of the definitions' numbers. A definition such as "short gaps are bridged" has no sharp

@@ -18,6 +18,7 @@ struct Grasp {
   int body = 0;
   Span span;
   int touched_since = 0;  ///< the hand touches it, and has not grasped it in between
+  auto operator<=>(const Grasp&) const = default;
 };
 
 /// Gaps are bridged as the definitions allow.
