@@ -210,8 +210,12 @@ Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow&
   return loaded;
 }
 
-Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
-                            const LoadedRun& loaded) {
+namespace {
+
+/// `each`, if there is one, sees every frame, else only those are decoded that a grammar sees.
+Result<RunResult> SegmentKept(const EpisodeFile& file, const EpisodeRow& episode,
+                              const LoadedRun& loaded,
+                              const std::function<void(const physics::Snapshot&)>& each) {
   RunResult run;
   run.status = episode.end;
   run.ticks = episode.ticks;
@@ -222,8 +226,11 @@ Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
   Result<void> played;
   const FrameFeed play = [&](const std::function<void(const FrameNews&)>& take) {
     played = frames.Play(
-        [&](const physics::Snapshot& snapshot) { take(sensing.SenseChanges(snapshot)); },
-        [&](std::int64_t tick) { return sensing.Due(tick); });
+        [&](const physics::Snapshot& snapshot) {
+          if (each) each(snapshot);
+          if (sensing.Due(snapshot.tick)) take(sensing.SenseChanges(snapshot));
+        },
+        [&](std::int64_t tick) { return each || sensing.Due(tick); });
     return run.ticks + 1;
   };
   Segmentation segmentation = Segment(loaded.program, MakeEntityTable(loaded.scenario), play);
@@ -236,22 +243,29 @@ Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
   return run;
 }
 
+}  // namespace
+
+Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
+                            const LoadedRun& loaded) {
+  return SegmentKept(file, episode, loaded, {});
+}
+
 Result<RunResult> Replay(const EpisodeFile& file, const EpisodeRow& episode,
                          const LoadedRun& loaded) {
-  Result<RunResult> run = Resegment(file, episode, loaded);
-  if (!run) return run;
   physics::StateHash hash;
-  EpisodeFrames frames(file, episode, LayoutOf(loaded.scenario.scene));
-  const Result<void> played = frames.Play([&](const physics::Snapshot& snapshot) {
-    hash.Add(snapshot);
-    run->recording.push_back(snapshot);
-  });
-  if (!played) return tl::unexpected(played.error());
+  std::vector<physics::Snapshot> recording;
+  Result<RunResult> run =
+      SegmentKept(file, episode, loaded, [&](const physics::Snapshot& snapshot) {
+        hash.Add(snapshot);
+        recording.push_back(snapshot);
+      });
+  if (!run) return run;
   if (!episode.state_hash.empty() && HashText(hash.value()) != episode.state_hash)
     return Failure(file, episode,
                    fmt::format("the file is damaged: its frames have the state hash {}, recorded "
                                "was {}",
                                HashText(hash.value()), episode.state_hash));
+  run->recording = std::move(recording);
   run->state_hash = hash.value();
   return run;
 }

@@ -193,7 +193,8 @@ EpisodeName NameOf(const ScenarioFile& file) {
 }
 
 ScenarioFile ScenarioOf(const EpisodeName& episode, const std::vector<ScenarioFile>& all) {
-  ScenarioFile file = ScenarioAt(all, episode.file);
+  ScenarioFile file =
+      episode.number ? ScenarioFile{.path = episode.file} : ScenarioAt(all, episode.file);
   file.origin = episode.origin;
   file.asked = episode.asked;
   if (!episode.number) return file;

@@ -137,8 +137,8 @@ grammar::Diagnostics UndecidedClaims(const scenario::Scenario& scenario,
 }
 
 bool IsFieldOfScenario(const std::string& name) {
-  return name.find('.') != std::string::npos ||
-         scenario::ScenarioFormat().schema().json().at("properties").contains(name);
+  static const auto kFields = scenario::ScenarioFormat().schema().json().at("properties");
+  return name.find('.') != std::string::npos || kFields.contains(name);
 }
 
 Result<LoadedRun> LoadRun(const RunRequest& request, const std::string& root,
