@@ -101,10 +101,11 @@ ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& re
       context.err << fmt::format("{}: it has {} of {} trials already; these are not played again\n",
                                  file, settings.known.size(), all);
     ProgramHash();  // once, before each trial has a process of its own
-    settings.play = [&](int trial, const episode::RunRequest& varied) {
-      episode::RecordRequest record = RecordingOf(varied, {}, options, context);
+    settings.play = [&](int trial, const episode::RunRequest& varied,
+                        const episode::LoadedRun& loaded, const std::vector<std::string>& files) {
+      episode::RecordRequest record = RecordingOf(varied, files, options, context);
       record.uuid = plan.UuidOfEpisode(plan.owed[static_cast<std::size_t>(trial) - 1].name);
-      return episode::RecordTrial(trial, varied, std::move(record));
+      return episode::RecordTrial(trial, loaded, record);
     };
   }
   const auto report = episode::RunTrials(request, context.root, settings, [&](int done) {

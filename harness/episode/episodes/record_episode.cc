@@ -145,12 +145,9 @@ RunResult PlayScenario(const LoadedRun& loaded, const RunOptions& how, RunRecord
   return run;
 }
 
-TrialResult RecordTrial(int trial, const RunRequest& varied, RecordRequest request) {
-  const Result<LoadedRun> loaded = LoadRun(varied, request.root, &request.files);
-  if (!loaded) return {trial, "failed", grammar::Format(loaded.error()), {}};
-  request.run = varied;
-  RunRecorder recorder(request, loaded->scenario);
-  const RunResult run = PlayScenario(*loaded, {}, &recorder);
+TrialResult RecordTrial(int trial, const LoadedRun& loaded, const RecordRequest& request) {
+  RunRecorder recorder(request, loaded.scenario);
+  const RunResult run = PlayScenario(loaded, {}, &recorder);
   const bool completed = run.status.kind == physics::RunStatus::Kind::kCompleted;
   return {trial, completed ? run.outcome : "failed",
           completed ? "" : run.status.entity + ": " + run.status.reason, recorder.problem()};

@@ -88,8 +88,8 @@ class RunRecorder {
 /// `recorder` may be null.
 RunResult PlayScenario(const LoadedRun& loaded, const RunOptions& how, RunRecorder* recorder);
 
-/// Plays one trial; `request` says where to, and gets what is played.
-TrialResult RecordTrial(int trial, const RunRequest& varied, RecordRequest request);
+/// Plays one trial; `request` says what it is of, and where to.
+TrialResult RecordTrial(int trial, const LoadedRun& loaded, const RecordRequest& request);
 
 /// An episode's status: `recording` until it is finished.
 inline constexpr const char* kBeingRecorded = "recording";

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "harness/base/process/worker_pool.h"
+#include "harness/episode/run/find_scenario.h"
 #include "harness/scenario/format/scenario_fields.h"
 #include "harness/scenario/read/sample_variations.h"
 #include "physics/scene/geometry.h"
@@ -105,9 +107,31 @@ constexpr const char* kFailed = "failed";
 constexpr double kTimeLimit_s = 600;
 constexpr std::size_t kMaxListed = 20;
 
+/// Trials have other values of the same files: hands and grammars are read once, before each trial
+/// has a process of its own. Afterwards `files` are all that were tried.
+struct TrialLoader {
+  const std::string root;
+  std::vector<std::string> files = {};
+  const scenario::ScenarioLibrary library = ProjectLibrary(root, &files);
+  using Compiled = std::pair<grammar::CompileResult, std::vector<std::string>>;
+  std::map<std::pair<std::string, grammar::Overrides>, Compiled> known = {};
+
+  Result<LoadedRun> Load(const RunRequest& request) {
+    files.clear();
+    const auto load_grammar = [&](const std::string& name, const grammar::Overrides& parameters) {
+      const auto [found, is_new] = known.try_emplace({name, parameters});
+      auto& [compiled, its_files] = found->second;
+      if (is_new) compiled = LoadGrammar(root, name, parameters, &its_files);
+      files.insert(files.end(), its_files.begin(), its_files.end());
+      return compiled;
+    };
+    return LoadRun(request, root, library, load_grammar, &files);
+  }
+};
+
 /// What the trials vary: with the changes of the command line in its document.
-Result<LoadedRun> LoadNominal(const RunRequest& request, const std::string& root) {
-  Result<LoadedRun> loaded = LoadRun(request, root);
+Result<LoadedRun> LoadNominal(const RunRequest& request, TrialLoader& loader) {
+  Result<LoadedRun> loaded = loader.Load(request);
   if (!loaded) return loaded;
   for (const std::string& setting : request.settings) {
     if (IsFieldOfScenario(setting.substr(0, setting.find('='))))
@@ -166,14 +190,16 @@ std::size_t CountOf(const std::string& outcome, const TrialReport& report) {
 }  // namespace
 
 Result<RunRequest> RequestOfTrial(const RunRequest& request, const std::string& root, int trial) {
-  PREHEND_TRY(const LoadedRun nominal, LoadNominal(request, root));
+  TrialLoader loader{root};
+  PREHEND_TRY(const LoadedRun nominal, LoadNominal(request, loader));
   return WithDraws(request, nominal, trial);
 }
 
 Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root,
                               const TrialSettings& settings,
                               const std::function<void(int done)>& progress) {
-  PREHEND_TRY(const LoadedRun nominal, LoadNominal(request, root));
+  TrialLoader loader{root};
+  PREHEND_TRY(const LoadedRun nominal, LoadNominal(request, loader));
   const scenario::Scenario& scenario = nominal.scenario;
   if (scenario.outcomes.empty()) {
     return tl::unexpected(grammar::Diagnostics{
@@ -190,11 +216,11 @@ Result<TrialReport> RunTrials(const RunRequest& request, const std::string& root
     if (known != settings.known.end()) continue;
     jobs.push_back([&, trial]() -> std::string {
       const RunRequest varied = WithDraws(request, nominal, trial);
-      const auto loaded = LoadRun(varied, root);
+      const auto loaded = loader.Load(varied);
       if (!loaded)
         return ToWire(TrialResult{
             trial, kFailed, "it cannot be read:\n" + grammar::Format(loaded.error()), {}});
-      if (settings.play) return ToWire(settings.play(trial, varied));
+      if (settings.play) return ToWire(settings.play(trial, varied, *loaded, loader.files));
       return ToWire(RunTrial(loaded->scenario, trial));
     });
   }

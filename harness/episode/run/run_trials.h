@@ -62,7 +62,10 @@ struct TrialSettings {
   int part = 1, parts = 1;  ///< only trial part, part + parts, ..
   int jobs = 1;             ///< processes at a time
   /// Plays a trial in a process of its own, to do more than to classify it. Empty: physics only.
-  std::function<TrialResult(int trial, const RunRequest& varied)> play = {};
+  /// `files`: as LoadRun() says.
+  std::function<TrialResult(int trial, const RunRequest& varied, const LoadedRun& loaded,
+                            const std::vector<std::string>& files)>
+      play = {};
   std::map<int, TrialResult> known = {};  ///< these are not played
 };
 
