@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Ten planted faults in copies of the shipped grammars, shrunk: each at most 1.5 times the smallest scenario that a person found,
-counting entities and steps. Takes minutes."""
+counting entities and steps. Five thresholds that are ten percent off, found by falsify. Takes minutes."""
 import os
 import re
 import unittest
 
-from prehend import shrink
+from prehend import falsify, shrink
 import takes
 
 LIBRARY = takes.ROOT / "grammar/library"
@@ -137,6 +137,19 @@ script:
 """),
 }
 
+# The parameter, ten percent off; a scenario; what may differ in it.
+TEN_PERCENT = {
+    "slide_distance = 2.2 cm": ("slide/four_centimetres_are_a_slide", (("script.3.right_hand.move_by_m.0", 0.002, 0.08),
+                                                                      ("script.3.right_hand.over_s", 0.3, 0.8))),
+    "lift_rise = 3.3 cm": ("pick_up/lift_and_put_back_in_place", (("script.2.right_hand.lift_by_m", 0.01, 0.06),
+                                                                 ("script.2.right_hand.over_s", 0.3, 0.8))),
+    "put_back = 2.97 s": ("put_down/slow_put_down", (("script.6.right_hand.over_s", 1, 6), ("script.5.right_hand.wait_s", 0.1, 1))),
+    "slide_pause = 165 ms": ("slide/two_slides_with_a_rest_between", (("script.3.right_hand.wait_s", 0.02, 0.4),
+                                                                     ("script.4.right_hand.over_s", 0.4, 0.8))),
+    "put_drop = 2.2 cm": ("put_down/low_last_approach_is_no_put_down", (("script.4.right_hand.move_by_m.2", -0.055, -0.02),
+                                                                       ("script.4.right_hand.over_s", 0.4, 0.8))),
+}
+
 
 def size(tree):
     return len(tree["entities"]) + len(tree.get("script", []))
@@ -167,6 +180,19 @@ class Planted(takes.Folder, unittest.TestCase):
             with self.subTest(name):
                 tree, smallest = self.shrunk(name)
                 self.assertLessEqual(size(tree), 1.5 * smallest)
+
+    def test_thresholds_ten_percent_off_are_found(self):
+        for number, (changed, (scenario, ranges)) in enumerate(TEN_PERCENT.items()):
+            tree = shrink.read(takes.ROOT / "scenarios" / f"{scenario}.yaml") | {"scenario": "varied"}
+            tree["vary"] = [{"fields": [field], "uniform": [low, high]} for field, low, high in ranges]
+            (self.folder / "varied.yaml").write_text(shrink.text_of(tree), "utf-8")
+            grammar = self.folder / f"off_{number}.grammar"
+            grammar.write_text(f"grammar off_{number}\nuse pick_and_place with {changed}\n", "utf-8")
+            margin = falsify.Margin(str(grammar), "pick_and_place", 0.05)
+            search = falsify.Search(str(self.folder / "varied.yaml"), falsify.Ranges(tree, ""), margin, 100, str(self.folder))
+            with self.subTest(changed):
+                self.assertTrue(search.run(), changed)
+            print(f"{changed}: {search.plays} plays, {search.found and search.found[1]}", flush=True)
 
     def test_the_result_is_the_same_every_time(self):
         self.assertEqual(self.shrunk("inside"), self.shrunk("inside"))
