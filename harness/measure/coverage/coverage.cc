@@ -68,7 +68,8 @@ class Collector {
         for (const CandidateOutcome& outcome : past_.OutcomesOf(instance)) Count(outcome, covered);
         Look(instance);
       }
-      // What the compiler made of `one .. per` has the clauses of the rule, which has the intervals.
+      // What the compiler made of `one .. per` has the clauses of the rule, which has the
+      // intervals.
       if (!rule_->hidden) coverage_.rules.push_back(std::move(covered));
     }
     for (auto& [place, clause] : by_place_) {
