@@ -66,7 +66,7 @@ TEST(ReadHandModelTest, TheLibrarysHandsAreWhole) {
     ASSERT_TRUE(hand.has_value()) << Format(ErrorsOf(hand).front());
     EXPECT_EQ(hand->name, name);
     EXPECT_EQ(hand->links.size(), 16u);
-    for (const char* style : {"wrap", "medium_wrap", "pinch", "tripod", "lateral", "hook"})
+    for (const char* style : {"wrap", "medium_wrap", "pinch", "tripod", "lateral", "hook", "flat"})
       EXPECT_GE(physics::FindStyle(*hand, style), 0) << style;
     EXPECT_EQ(physics::CheckGains(*hand, 480), "");
     for (const auto& style : hand->styles) EXPECT_EQ(style.effort.size(), 16u);
