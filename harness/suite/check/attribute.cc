@@ -138,9 +138,8 @@ std::vector<Attribution> AttributeDifferences(const truth::Comparison& compariso
     }
     for (const std::size_t i : gone) attributions[i].because = ListOf(undone);
   }
-  for (Attribution& attribution : attributions) {
+  for (Attribution& attribution : attributions)
     if (is_open(attribution)) attribution.because = OtherCause(possible);
-  }
   return attributions;
 }
 

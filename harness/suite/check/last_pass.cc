@@ -68,9 +68,8 @@ std::optional<Divergence> FirstTickOfTheLonger(const StateTrace& a, const StateT
 
 std::vector<std::string> ChangedInputs(const LastPass& record) {
   std::vector<std::string> changed;
-  for (const auto& [path, hash] : record.verdict.inputs) {
+  for (const auto& [path, hash] : record.verdict.inputs)
     if (FileHash(path) != hash) changed.push_back(path);
-  }
   return changed;
 }
 
@@ -99,15 +98,12 @@ std::string LastPasses::Write(const LastPass& record) const {
   return WriteTextFile(folder_ / (record.verdict.scenario + ".json"), AsText(json));
 }
 
-LastPasses::Costs LastPasses::ReadCosts() const { return ReadCostsOf(folder_ / "costs.json"); }
-
 LastPasses::Costs LastPasses::ReadCostsOf(const std::filesystem::path& file) {
   const RecordJson json = ReadJson(file);
   Costs costs;
   if (!json.is_object()) return costs;
-  for (const auto& [scenario, seconds] : json.items()) {
+  for (const auto& [scenario, seconds] : json.items())
     if (seconds.is_number()) costs[scenario] = seconds;
-  }
   return costs;
 }
 

@@ -49,7 +49,7 @@ class LastPasses {
   }
 
   using Costs = std::map<std::string, double>;  ///< id -> seconds
-  Costs ReadCosts() const;
+  Costs ReadCosts() const { return ReadCostsOf(folder_ / "costs.json"); }
   static Costs ReadCostsOf(const std::filesystem::path& file);  ///< of any such file
   std::string WriteCosts(const Costs& costs) const;
 

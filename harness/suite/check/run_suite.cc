@@ -134,10 +134,8 @@ class Suite {
   std::string Id(std::size_t scenario) const { return episode::IdOf(scenarios_[scenario]); }
 
   /// Only these have goldens, and are remembered from one check to the next.
-  bool InProject(std::size_t scenario) const { return scenarios_[scenario].in_project; }
-
   bool IsRemembered(std::size_t scenario) const {
-    return InProject(scenario) && !scenarios_[scenario].episode;
+    return scenarios_[scenario].in_project && !scenarios_[scenario].episode;
   }
 
   bool Changed() const {
@@ -179,8 +177,7 @@ class Suite {
       const auto known = costs_.find(Id(turn.scenario));
       return known == costs_.end() ? std::numeric_limits<double>::infinity() : known->second;
     };
-    std::stable_sort(turns.begin(), turns.end(),
-                     [&](const Turn& a, const Turn& b) { return cost(a) > cost(b); });
+    std::ranges::stable_sort(turns, std::greater{}, cost);
     return turns;
   }
 
@@ -200,7 +197,7 @@ class Suite {
         .pictures = request_.pictures && turn.repetition == 0,
         .all_pictures = request_.all_pictures,
         .leave_nothing_behind = Changed() || turn.repetition > 0 || !IsRemembered(turn.scenario),
-        .in_project = InProject(turn.scenario),
+        .in_project = scenarios_[turn.scenario].in_project,
         .record_file = turn.repetition == 0 ? request_.record_file : "",
         .record_uuid = request_.plan.UuidOfEpisode(Id(turn.scenario)),
         .is_own_record = scenarios_[turn.scenario].path == request_.record_file,
@@ -266,9 +263,8 @@ class Suite {
       }
     }
     (void)records_.WriteCosts(costs_);
-    for (const UnreferencedGolden& orphan : request_.selection.orphans) {
+    for (const UnreferencedGolden& orphan : request_.selection.orphans)
       verdicts.push_back(OrphanVerdict(orphan));
-    }
     return verdicts;
   }
 

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
-#include <numeric>
 #include <tuple>
 
 #include "harness/episode/episode/find_episodes.h"
@@ -113,13 +112,10 @@ tl::expected<ScenarioSelection, NoSelection> SelectScenarios(
     std::ranges::copy_if(all, std::back_inserter(named),
                          [&](const episode::ScenarioFile& file) { return Matches(pattern, file); });
     if (named.size() > before) continue;
-    for (const episode::ScenarioFile& shipped : episode::ShippedScenarios(root)) {
+    for (const episode::ScenarioFile& shipped : episode::ShippedScenarios(root))
       if (Matches(pattern, shipped)) named.push_back(episode::ScenarioAt(all, shipped.path));
-    }
     if (named.size() > before) continue;
-    if (!IsFile(pattern)) {
-      return tl::unexpected(NoSelection{.why = WhyNoMatch(pattern, all)});
-    }
+    if (!IsFile(pattern)) return tl::unexpected(NoSelection{.why = WhyNoMatch(pattern, all)});
     const episode::EpisodeKind kind = episode::EpisodeKindOf(pattern);
     if (kind == episode::EpisodeKind::kTakes) {
       const auto takes = episode::FindTakes({&pattern, 1}, "", root);
@@ -160,9 +156,8 @@ tl::expected<ScenarioSelection, NoSelection> SelectScenarios(
   if (patterns.empty() && filters.empty()) selection.orphans = FindUnreferencedGoldens(all, root);
   if (!selection.scenarios.empty() || !selection.orphans.empty()) return selection;
   std::string problem = "no scenario is selected";
-  for (const std::string& filter : filters) {
+  for (const std::string& filter : filters)
     if (const std::string why = WhyNonePasses(filter, all, library); !why.empty()) problem = why;
-  }
   return tl::unexpected(NoSelection{.why = problem + " ('prehend list' shows all)"});
 }
 
@@ -207,14 +202,15 @@ Result<std::vector<int>> PartsOf(const Shard& shard, const std::vector<std::stri
   }
   std::ranges::sort(costs);
   std::vector<double> loads(static_cast<std::size_t>(shard.count));
+  double all = 0;
   for (const auto& [cost, i] : costs) {
     const auto least = std::ranges::min_element(loads);
     parts[i] = static_cast<int>(least - loads.begin()) + 1;
     *least -= cost;
+    all -= cost;
   }
-  const double all = std::accumulate(loads.begin(), loads.end(), 0.0);
-  const double share = costs.empty() ? 1 : -costs.front().first / all;
-  if (note && shard.count > std::ceil(1 / share))
+  const double share = costs.empty() ? 0 : -costs.front().first / all;
+  if (note && share > 0 && shard.count > std::ceil(1 / share))
     *note = fmt::format(
         "--shard: {} alone is {:.1f} % of all costs: more than {:.0f} parts end no sooner\n",
         names[costs.front().second], 100 * share, std::ceil(1 / share));

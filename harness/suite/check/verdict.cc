@@ -87,9 +87,8 @@ std::string FlakyReason(const std::vector<ScenarioVerdict>& runs) {
   }
   std::string reason = fmt::format("flaky: of {} runs", runs.size());
   const char* separator = " ";
-  for (const auto& [name, count] : counts) {
+  for (const auto& [name, count] : counts)
     reason += fmt::format("{}{} {}", std::exchange(separator, ", "), count, name);
-  }
   if (hashes.size() > 1) reason += fmt::format("; {} different state hashes", hashes.size());
   return reason;
 }
@@ -133,9 +132,7 @@ ScenarioVerdict MergeRepeats(const std::vector<ScenarioVerdict>& runs) {
 
 Tally Count(const std::vector<ScenarioVerdict>& verdicts) {
   const auto count = [&](Verdict wanted) {
-    return static_cast<int>(
-        std::count_if(verdicts.begin(), verdicts.end(),
-                      [&](const ScenarioVerdict& verdict) { return verdict.verdict == wanted; }));
+    return static_cast<int>(std::ranges::count(verdicts, wanted, &ScenarioVerdict::verdict));
   };
   return {.passed = count(Verdict::kPassed),
           .failed = count(Verdict::kFailed) + count(Verdict::kFlaky),
@@ -165,10 +162,7 @@ ExitCode WorstOf(const std::vector<ScenarioVerdict>& verdicts) {
   if (verdicts.empty()) return ExitCode::kNothing;
   for (const ExitCode code :
        {ExitCode::kFailure, ExitCode::kBadInput, ExitCode::kDiffers, ExitCode::kPending}) {
-    const bool found =
-        std::any_of(verdicts.begin(), verdicts.end(),
-                    [&](const ScenarioVerdict& verdict) { return verdict.exit_code == code; });
-    if (found) return code;
+    if (std::ranges::count(verdicts, code, &ScenarioVerdict::exit_code) > 0) return code;
   }
   return ExitCode::kAgrees;
 }
