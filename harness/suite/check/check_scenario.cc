@@ -446,9 +446,9 @@ grammar::Diagnostics Replay(episode::Episode& episode, CheckedEpisode& checked) 
 
 ScenarioVerdict CheckScenario(const CheckRequest& request) {
   std::vector<std::string> files;
-  Result<episode::Episode> episode =
-      request.opener ? request.opener->Open(request.episode, request.changes, &files)
-                     : episode::OpenEpisode(request.episode, request.changes, request.root, &files);
+  episode::EpisodeOpener own(request.root);  // what it unpacks is read until the end
+  episode::EpisodeOpener& opener = request.opener ? *request.opener : own;
+  Result<episode::Episode> episode = opener.Open(request.episode, request.changes, &files);
   if (!episode) return Unreadable(request, BlankVerdict(request, nullptr, files), episode.error());
   CheckedEpisode checked = ToBeChecked(request, episode->loaded(), files);
   grammar::Diagnostics unread;

@@ -74,9 +74,8 @@ std::string AsWritten(const std::string& text, const grammar::ProgramParam& para
 /// As people wrote it: "30 cm", which is 0.3 m.
 std::string ParameterText(const grammar::ProgramParam& param, const episode::RunRequest& request,
                           std::map<std::string, std::string>& texts) {
-  for (const std::string& setting : request.settings) {
+  for (const std::string& setting : request.settings)
     if (setting.starts_with(param.name + "=")) return setting.substr(param.name.size() + 1);
-  }
   const auto [text, is_new] = texts.try_emplace(param.file);
   if (is_new) text->second = ReadTextFile(param.file).value_or("");
   const std::string written = AsWritten(text->second, param);
@@ -86,6 +85,17 @@ std::string ParameterText(const grammar::ProgramParam& param, const episode::Run
 /// A long text is of no use in a line.
 std::string Shortened(const std::string& value) {
   return value.size() <= kLongestValue ? value : value.substr(0, kLongestValue) + "..";
+}
+
+/// What a file was called. Those of an episode are read from copies, in FOLDER/project or, of what
+/// is elsewhere, in FOLDER/outside; the scenario's tells where that is.
+std::string Called(const std::string& file, const episode::LoadedRun& loaded) {
+  const std::string read = loaded.document.sources.empty() ? "" : loaded.document.sources[0].name;
+  const std::string& called = loaded.scenario.file;
+  if (read == called || !read.ends_with(called)) return file;
+  const std::string folder = read.substr(0, read.rfind('/', read.size() - called.size() - 2));
+  if (file.starts_with(folder + "/project/")) return file.substr(folder.size() + 9);
+  return file.starts_with(folder + "/outside/") ? file.substr(folder.size() + 8) : file;
 }
 
 }  // namespace
@@ -106,7 +116,8 @@ Settings SettingsOf(const episode::LoadedRun& loaded, const episode::RunRequest&
   Settings settings;
   std::map<std::string, std::string> texts;
   for (const grammar::ProgramParam& param : grammar::Describe(*loaded.program).params)
-    settings[RelativeTo(root, param.file)][param.name] = ParameterText(param, request, texts);
+    settings[RelativeTo(root, Called(param.file, loaded))][param.name] =
+        ParameterText(param, request, texts);
   for (const auto& [path, hash] : inputs) {
     if (path == loaded.scenario.file)
       AddValues(loaded.document.root, "", settings[RelativeTo(root, path)]);
