@@ -33,12 +33,32 @@ ExitCode LookWith(const grammar::Program& program, episode::Recording& episode,
   return missing.nothing_left ? ExitCode::kNothing : ExitCode::kAgrees;
 }
 
+/// What is said of many demonstrations is said once: with the name of the first one.
+class OnceEach {
+ public:
+  explicit OnceEach(std::ostream& err) : err_(err) {}
+  ~OnceEach() {
+    for (const auto& [key, one] : said_)
+      err_ << one.first
+           << (one.second > 1 ? fmt::format(" (and so of {} others)", one.second - 1) : "") << "\n";
+  }
+  void Say(const std::string& text) {
+    std::string key = text;
+    std::erase_if(key, [](char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-'; });
+    ++said_.try_emplace(key, text, 0).first->second.second;
+  }
+
+ private:
+  std::ostream& err_;
+  std::map<std::string, std::pair<std::string, std::size_t>> said_;
+};
+
 /// Writes JSON Lines, or adds an episode where `output` is an episode file. `source`: what the
 /// recording was read from. `grammar`: the one whose events the episode has; empty: its own. Prints
-/// what is wrong. What the file has already is not added again: it is said, or counted by `there`.
+/// what is wrong. What the file has already is not added again.
 ExitCode WriteRecording(episode::Recording& recording, const std::string& output,
                         const std::string& source, const std::string& grammar,
-                        const CommandContext& context, std::size_t* there = nullptr) {
+                        const CommandContext& context, OnceEach& warnings) {
   if (episode::IsEpisodeFile(output)) {
     if (const std::string problem = episode::WhyNotRecordable(output); !problem.empty())
       return Refuse(context, problem);
@@ -51,10 +71,8 @@ ExitCode WriteRecording(episode::Recording& recording, const std::string& output
                                                     .once = true},
                                                    recording);
     if (!imported) return Complain(context, imported.error());
-    if (imported->was_there && there)
-      ++*there;
-    else if (imported->was_there)
-      context.err << output << ": it has this recording already; it is not added again\n";
+    if (imported->was_there)
+      warnings.Say(output + ": it has this recording already; it is not added again");
     if (imported->problem.empty()) return ExitCode::kAgrees;
     return Complain(context, ExitCode::kFailure, imported->problem);
   }
@@ -87,32 +105,13 @@ ExitCode ImportLines(const std::string& file, const ParsedOptions& options,
   if (!compiled.program) return Complain(context, compiled.diagnostics);
   const ExitCode exit_code = LookWith(*compiled.program, *recording, context);
   if (options.Has("--check")) return exit_code;
-  const ExitCode written = WriteRecording(*recording, output, file, grammar, context);
+  OnceEach warnings(context.err);
+  const ExitCode written = WriteRecording(*recording, output, file, grammar, context, warnings);
   if (written != ExitCode::kAgrees) return written;
   context.out << fmt::format("{}: {}, {} frames\n", output, recording->header.episode,
                              recording->frames.size());
   return exit_code;
 }
-
-/// What is said of many demonstrations is said once: with the name of the first one.
-class OnceEach {
- public:
-  explicit OnceEach(std::ostream& err) : err_(err) {}
-  ~OnceEach() {
-    for (const auto& [key, one] : said_)
-      err_ << one.first
-           << (one.second > 1 ? fmt::format(" (and so of {} others)", one.second - 1) : "") << "\n";
-  }
-  void Say(const std::string& text) {
-    std::string key = text;
-    std::erase_if(key, [](char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-'; });
-    ++said_.try_emplace(key, text, 0).first->second.second;
-  }
-
- private:
-  std::ostream& err_;
-  std::map<std::string, std::pair<std::string, std::size_t>> said_;
-};
 
 /// Several recordings of one kind: demonstrations of a file, or files of takes.
 struct Batch {
@@ -146,7 +145,6 @@ ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
       {"episode", "frames", "seconds", batch.file.empty() ? "lost_s" : "success"}};
   std::string first, left_out, last;
   std::set<std::string> taken;
-  std::size_t there = 0;
   ExitCode exit_code = ExitCode::kAgrees;
   const auto leave_out = [&](const std::string& name, const std::string& why) {
     warnings.Say("prehend: left out: " + why);
@@ -178,7 +176,7 @@ ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
       if (episode::IsEpisodeFile(output)) episode::BridgeLooks(episode);
       const ExitCode written =
           WriteRecording(episode, OutputOf(output, batch, episode.header.episode),
-                         batch.SourceOf(name), grammar, context, &there);
+                         batch.SourceOf(name), grammar, context, warnings);
       if (written != ExitCode::kAgrees) return written;
     }
     const auto& success = episode.header.attributes.success;
@@ -191,9 +189,6 @@ ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
   }
   if (table.size() == 1 && batch.file.empty()) exit_code = ExitCode::kBadInput;
   if (exit_code == ExitCode::kAgrees && !left_out.empty()) exit_code = ExitCode::kDiffers;
-  if (there > 0)
-    context.err << fmt::format("{}: it has {} of {} {} already; these are not added again\n",
-                               output, there, batch.names.size(), batch.noun);
   if (output == "-") return exit_code;
   if (!first.empty()) context.out << first << "\n";
   for (const std::string& line : truth::AlignColumns(table)) context.out << line << "\n";
@@ -310,8 +305,9 @@ ExitCode RunImport(const ParsedOptions& options, const CommandContext& context) 
                                  : ExitCode::kAgrees;
   if (!check) {
     if (episode::IsEpisodeFile(output)) episode::BridgeLooks(episode);
+    OnceEach warnings(context.err);
     const ExitCode written =
-        WriteRecording(episode, output, poses, options.Text("--grammar"), context);
+        WriteRecording(episode, output, poses, options.Text("--grammar"), context, warnings);
     if (written != ExitCode::kAgrees) return written;
   }
   if (output != "-") context.out << exchange::ImportTable(*imported);
