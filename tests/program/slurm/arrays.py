@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""arrays.py PROGRAM [NAMES..]: examples/slurm with real daemons (as root): an array of 8 over the suite with a task that is queued again
-and one that is killed, a time limit, trials, imports, a sweep; then GNU parallel."""
+"""arrays.py PROGRAM [NAMES..]: examples/slurm with real daemons (as root): an array of 8 over the suite, or what the names select of it,
+with a task that is queued again and one that is killed, a time limit, trials, imports, a sweep; then GNU parallel."""
 import contextlib
 import os
 import pathlib
@@ -11,7 +11,9 @@ import subprocess
 import sys
 import tempfile
 import time
-import xml.etree.ElementTree
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import parts
 
 PROGRAM, SOURCE = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(__file__).resolve().parents[3]
 NAMES, PARTS = sys.argv[2:], 8
@@ -43,7 +45,7 @@ def wait_for(condition, seconds, what):
 
 
 def ended(seconds=3600):
-    wait_for(lambda: not {"PENDING", "RUNNING", "COMPLETING", "CONFIGURING"} & set(states().values()), seconds, "jobs end")
+    wait_for(lambda: time.sleep(1) or not {"PENDING", "RUNNING", "COMPLETING", "CONFIGURING"} & set(states().values()), seconds, "jobs end")
 
 
 def episodes(file):
@@ -61,10 +63,6 @@ def workers(folder, part):
             if wanted in words and words[0].endswith("prehend") and os.readlink(process / "cwd") == str(folder):
                 found.append(int(process.name))
     return found
-
-
-def junit(file):
-    return sorted((case.get("classname"), case.get("name"), [one.tag for one in case]) for case in xml.etree.ElementTree.parse(file).iter("testcase"))
 
 
 def suite(folder):
@@ -95,11 +93,8 @@ def suite(folder):
     merged = episodes(folder / "all.episodes")
     assert len(merged) == len(set(merged)) == len(episodes(one))
     assert (folder / "all.episodes").read_bytes() == (folder / "one-merged.episodes").read_bytes()
-    run(PROGRAM, "check", one, "--no-pictures", "--report", folder / "page", "--junit", folder / "one.xml")
-    run(PROGRAM, "check", "all.episodes", "--no-pictures", "--report", folder / "page", "--junit", folder / "all.xml", folder=folder)
-    assert junit(folder / "all.xml") == junit(folder / "one.xml")
-    run(PROGRAM, "report", "all.episodes", "-o", "all.html", folder=folder)
-    print(f"{len(merged)} episodes of {PARTS} parts, each once; the merged file is that of one run")
+    parts.told_the_same(folder, folder / "all.episodes", one, folder / "one-merged.episodes")
+    print(f"{len(merged)} episodes of {PARTS} parts, each once; file, pages, JUnit and scores are those of one run")
     lost = episodes(part(3))
     part(3).unlink()
     said = subprocess.run([PROGRAM, "episode", "merge", *folder.glob("parts/part-*.episodes"), "-o", folder / "less.episodes", "--expect", str(PARTS)],
@@ -142,6 +137,31 @@ def others(folder, one):
         else:
             assert len(episodes(here / "all.episodes")) == (7 if job == "trials" else 4), job
             assert (here / "all.html").exists()
+        if job == "import":
+            (here / "parts/part-take2.jsonl.episodes").unlink()
+            said = subprocess.run(["bash", SUBMIT.with_name("merge.sbatch"), "import.sbatch", "2", "takes"], cwd=here, capture_output=True, text=True)
+            assert said.returncode == 3 and "take2.jsonl is missing; " in said.stderr and len(episodes(here / "all.episodes")) == 3, said
+        if job != "trials":
+            killed(folder / (job + "-killed"), here, words)
+
+
+def killed(folder, unbroken, words):
+    """The first task of a job, killed when it has begun to write; it goes on to the bytes of the other folder's, which nobody killed."""
+    (folder / "parts").mkdir(parents=True)
+    job, _, *rest = words
+    environment = {**os.environ, "SLURM_ARRAY_TASK_ID": "1", "SLURM_JOB_ID": "0", "SLURM_CPUS_PER_TASK": "1"}
+    rest = [unbroken / word if str(word) in ("takes", "one.episodes") else word for word in rest]
+    begin = lambda: subprocess.Popen(["bash", SUBMIT.with_name(job), *map(str, words[1:2] + rest)], cwd=folder, env=environment, start_new_session=True,
+                                     stdout=subprocess.DEVNULL)
+    process = begin()
+    wait_for(lambda: any((folder / "parts").iterdir()) or process.poll() is not None, 60, "it writes")
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    there = sorted(file.name for file in (folder / "parts").iterdir())
+    assert begin().wait() == 0
+    same = [file.name for file in (folder / "parts").iterdir() if file.suffix in (".episodes", ".csv")]
+    assert same and all((folder / "parts" / name).read_bytes() == (unbroken / "parts" / name).read_bytes() for name in same), same
+    print(f"{job} was killed with {there or 'nothing'}; the bytes are those of an unbroken task")
 
 
 def refused(folder):
