@@ -62,7 +62,7 @@ def told(folder, file, file_in_order):
     scores = run("score", "all.episodes", "--json", folder=folder).stdout
     shutil.copyfile(file_in_order, folder / "all.episodes")
     run("report", "all.episodes", "-o", "all.html", folder=folder)
-    times = r"\d+ s of work|<div>\d+\.\d\d s  [^<]*</div>|(?<=>)\d+\.\d s(?=</td>)| time=\"[\d.]+\""
+    times = r"\d+ s of work|, of commit \w+(, with changes)?|<div>\d+\.\d\d s  [^<]*</div>|(?<=>)\d+\.\d s(?=</td>)| time=\"[\d.]+\""
     return [re.sub(times, "", text) for text in (*((folder / name).read_text() for name in ("page/index.html", "all.xml", "all.html")), scores)]
 
 
