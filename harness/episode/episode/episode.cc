@@ -57,7 +57,7 @@ const RunResult& Episode::Played() {
   if (played_) return *played_;
   if (file_) {
     // What was kept is what would be simulated again, if its frames have the hash of then.
-    Result<RunResult> kept = Replay(*file_, row_, loaded_);
+    Result<RunResult> kept = Resegment(*file_, row_, loaded_, /*frames=*/true);
     if (kept) return played_.emplace(std::move(*kept));
   }
   return played_.emplace(RunScenario(loaded_.scenario, loaded_.program, {.record = true}));
@@ -68,8 +68,7 @@ Result<SegmentedRecording> Episode::SegmentRecorded() {
 }
 
 Result<RunResult> Episode::Run(bool frames) {
-  if (name_.origin == Origin::kRecordedRun)
-    return frames ? Replay(*file_, row_, loaded_) : Resegment(*file_, row_, loaded_);
+  if (name_.origin == Origin::kRecordedRun) return Resegment(*file_, row_, loaded_, frames);
   if (name_.origin == Origin::kScenario)
     return played_ ? *played_ : RunScenario(loaded_.scenario, loaded_.program, {.record = frames});
   PREHEND_TRY(SegmentedRecording segmented, SegmentRecorded());

@@ -210,27 +210,25 @@ Result<LoadedRun> EpisodeLoader::Load(const EpisodeFile& file, const EpisodeRow&
   return loaded;
 }
 
-namespace {
-
-/// `each`, if there is one, sees every frame, else only those are decoded that a grammar sees.
-Result<RunResult> SegmentKept(const EpisodeFile& file, const EpisodeRow& episode,
-                              const LoadedRun& loaded,
-                              const std::function<void(const physics::Snapshot&)>& each) {
+Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
+                            const LoadedRun& loaded, bool frames) {
   RunResult run;
   run.status = episode.end;
   run.ticks = episode.ticks;
   run.outcome = episode.outcome;
   run.drawings = truth::EventDrawings(*loaded.program);
   Sensing sensing(loaded.scenario.scene, loaded.scenario.sensing);
-  EpisodeFrames frames(file, episode, LayoutOf(loaded.scenario.scene));
+  EpisodeFrames kept(file, episode, LayoutOf(loaded.scenario.scene));
+  physics::StateHash hash;
   Result<void> played;
   const FrameFeed play = [&](const std::function<void(const FrameNews&)>& take) {
-    played = frames.Play(
+    played = kept.Play(
         [&](const physics::Snapshot& snapshot) {
-          if (each) each(snapshot);
+          if (frames) hash.Add(snapshot);
+          if (frames) run.recording.push_back(snapshot);
           if (sensing.Due(snapshot.tick)) take(sensing.SenseChanges(snapshot));
         },
-        [&](std::int64_t tick) { return each || sensing.Due(tick); });
+        [&](std::int64_t tick) { return frames || sensing.Due(tick); });
     return run.ticks + 1;
   };
   Segmentation segmentation = Segment(loaded.program, MakeEntityTable(loaded.scenario), play);
@@ -238,35 +236,13 @@ Result<RunResult> SegmentKept(const EpisodeFile& file, const EpisodeRow& episode
   if (!segmentation.problem.empty())
     return Failure(file, episode, "the grammar cannot segment it: " + segmentation.problem);
   run.timeline = std::move(segmentation.timeline);
-  run.state_hash = HashOfText(episode.state_hash);
-  PREHEND_TRY(run.notes, file.NotesOf(episode));
-  return run;
-}
-
-}  // namespace
-
-Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
-                            const LoadedRun& loaded) {
-  return SegmentKept(file, episode, loaded, {});
-}
-
-Result<RunResult> Replay(const EpisodeFile& file, const EpisodeRow& episode,
-                         const LoadedRun& loaded) {
-  physics::StateHash hash;
-  std::vector<physics::Snapshot> recording;
-  Result<RunResult> run =
-      SegmentKept(file, episode, loaded, [&](const physics::Snapshot& snapshot) {
-        hash.Add(snapshot);
-        recording.push_back(snapshot);
-      });
-  if (!run) return run;
-  if (!episode.state_hash.empty() && HashText(hash.value()) != episode.state_hash)
+  run.state_hash = frames ? hash.value() : HashOfText(episode.state_hash);
+  if (frames && !episode.state_hash.empty() && HashText(run.state_hash) != episode.state_hash)
     return Failure(file, episode,
                    fmt::format("the file is damaged: its frames have the state hash {}, recorded "
                                "was {}",
-                               HashText(hash.value()), episode.state_hash));
-  run->recording = std::move(recording);
-  run->state_hash = hash.value();
+                               HashText(run.state_hash), episode.state_hash));
+  PREHEND_TRY(run.notes, file.NotesOf(episode));
   return run;
 }
 

@@ -60,14 +60,10 @@ class EpisodeLoader {
   std::size_t writes_read_ = 0;  ///< of the tasks' files, when these were read
 };
 
-/// What the grammar recognises in a run; its frames are not kept. One that is not finished has the
-/// status "failed".
+/// What the grammar recognises in a run. One that is not finished has the status "failed".
+/// `frames`: with every frame, as RunScenario() with RunOptions::record returned it.
 Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
-                            const LoadedRun& loaded);
-
-/// The same, with every frame: as RunScenario() with RunOptions::record returned it.
-Result<RunResult> Replay(const EpisodeFile& file, const EpisodeRow& episode,
-                         const LoadedRun& loaded);
+                            const LoadedRun& loaded, bool frames);
 
 /// The frames of a recording, if they are those that were recorded.
 Result<Recording> ReadWhole(const EpisodeFile& file, const EpisodeRow& episode);

@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "harness/truth/oracle/recording.h"
 #include "harness/truth/oracle/touches.h"

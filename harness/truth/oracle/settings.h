@@ -44,7 +44,6 @@ struct ReachSettings {
   double reach_dead_band_m = 0.025;  ///< moving away by less is not moving away
   double reach_idle_s = 0.5;         ///< standing still for longer ends a reach
   double reach_look_back_s = 10;
-
   auto operator<=>(const ReachSettings&) const = default;
 };
 
@@ -68,7 +67,6 @@ struct CarrySettings {
   double put_down_slip_s = 0.02;        ///< what lands so soon after it is let go was put down
 
   double carry_way_m = 0.005;  ///< what gets no farther until it stands again was not carried
-
   auto operator<=>(const CarrySettings&) const = default;
 };
 

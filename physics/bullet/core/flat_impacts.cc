@@ -124,12 +124,10 @@ class ImpactAlgorithm final : public btConvexConvexAlgorithm {
   }
 };
 
-/// Bullet clears its pools when it makes them; what does not fit is allocated one by one.
-constexpr int kPool = 256;
-
 btDefaultCollisionConstructionInfo WithRoomForImpacts() {
   btDefaultCollisionConstructionInfo info;
-  info.m_defaultMaxPersistentManifoldPoolSize = info.m_defaultMaxCollisionAlgorithmPoolSize = kPool;
+  // Pools are cleared when they are made; what does not fit is allocated one by one.
+  info.m_defaultMaxPersistentManifoldPoolSize = info.m_defaultMaxCollisionAlgorithmPoolSize = 256;
   info.m_customCollisionAlgorithmMaxElementSize =
       static_cast<int>(std::max(sizeof(ImpactAlgorithm), sizeof(btSphereBoxCollisionAlgorithm)));
   return info;

@@ -85,7 +85,7 @@ TEST(EpisodeFileOfMany, GivesBackWhatWasPlayed) {
   EpisodeLoader loader(kRoot);
   const auto loaded = loader.Load(*opened, row);
   ASSERT_TRUE(loaded) << grammar::Format(loaded.error());
-  const auto again = Replay(*opened, row, *loaded);
+  const auto again = Resegment(*opened, row, *loaded, /*frames=*/true);
   ASSERT_TRUE(again) << grammar::Format(again.error());
   EXPECT_EQ(RunTable(*again), RunTable(first.result));
   EXPECT_EQ(again->state_hash, first.result.state_hash);
@@ -137,7 +137,7 @@ TEST(EpisodeFileOfMany, AnEpisodeThatIsNotFinishedSaysSoAndIsReadUpToItsLastChun
   EpisodeLoader loader(kRoot);
   const auto loaded = loader.Load(*opened, row);
   ASSERT_TRUE(loaded);
-  const auto again = Replay(*opened, row, *loaded);
+  const auto again = Resegment(*opened, row, *loaded, /*frames=*/true);
   ASSERT_TRUE(again) << grammar::Format(again.error());
   EXPECT_EQ(again->status.kind, physics::RunStatus::Kind::kFailed);
   EXPECT_NE(StatusText(*again).find("its recording was cut off here"), std::string::npos);
@@ -302,7 +302,7 @@ TEST(EpisodeFileOfMany, EveryDamagedByteIsReportedOrHarmless) {
     }
     EpisodeLoader loader(kRoot);
     const auto loaded = loader.Load(*opened, opened->episodes()[0]);
-    const auto again = loaded ? Replay(*opened, opened->episodes()[0], *loaded)
+    const auto again = loaded ? Resegment(*opened, opened->episodes()[0], *loaded, /*frames=*/true)
                               : Result<RunResult>(tl::unexpected(loaded.error()));
     if (!again) {
       ++refused;
