@@ -5,12 +5,26 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
+#include <optional>
 
 namespace prehend::cli {
 namespace {
 
 bool Looks(const ParsedOptions& options, const char* word) {
   return options.Has("--look") && std::ranges::count(WordsOf(options.Text("--look")), word) > 0;
+}
+
+/// Of SVG.
+constexpr double kPixelsPerInch = 96;
+
+/// Of "89mm" or "89".
+std::optional<double> Millimetres(std::string_view text) {
+  if (text.ends_with("mm")) text.remove_suffix(2);
+  double width_mm = 0;
+  const auto [end, error] = std::from_chars(text.begin(), text.end(), width_mm);
+  const bool is_width = error == std::errc() && end == text.end() && !text.empty();
+  return is_width && width_mm >= 30 && width_mm <= 500 ? std::optional(width_mm) : std::nullopt;
 }
 
 }  // namespace
@@ -38,6 +52,21 @@ std::vector<Option> LookOptions() {
                 "regions: with the regions of interest of what hands do at the moment, and a "
                 "star above each thing that a hand may be reaching for",
                 SomeOf({"print", "transparent", "regions"}))};
+}
+
+Option WidthOption() {
+  return Value("--width", "MM",
+               "width on paper, such as 89mm; texts have 7 pt there (times --text), PNG 600 dots "
+               "per inch",
+               {"30mm to 500mm", [](const std::string& value) {
+                  return Millimetres(value)
+                             ? ""
+                             : "expected a width like 89mm, 30 to 500, found '" + value + "'";
+                }});
+}
+
+double PixelsOf(const ParsedOptions& options) {
+  return options.Has("--width") ? 600 / kPixelsPerInch : 2;
 }
 
 show::PictureFormat FormatOfOptions(const ParsedOptions& options) {
@@ -92,10 +121,12 @@ show::Window WindowOf(const ParsedOptions& options, const episode::RunResult& ru
 
 show::SceneFormat SceneFormatOf(const ParsedOptions& options, const std::string& camera,
                                 double width_px) {
+  const auto paper_mm = Millimetres(options.Text("--width"));
+  const double text_px = paper_mm ? 7 * kPixelsPerInch / 72 : 12;
   return {.camera = options.TextOr("--camera", camera),
           .picture = FormatOfOptions(options),
-          .chart = {.width_px = width_px,
-                    .text_px = 12 * options.NumberOr("--text", 1),
+          .chart = {.width_px = paper_mm ? *paper_mm / 25.4 * kPixelsPerInch : width_px,
+                    .text_px = text_px * options.NumberOr("--text", 1),
                     .transparent = Looks(options, "transparent")}};
 }
 

@@ -16,6 +16,10 @@ namespace prehend::cli {
 std::vector<Option> PartOptions();
 /// --camera, --text, --look.
 std::vector<Option> LookOptions();
+/// --width, of drawings.
+Option WidthOption();
+/// Of a PNG for each of the drawing's.
+double PixelsOf(const ParsedOptions& options);
 
 /// What these options say; the rest is as of a picture.
 show::PictureFormat FormatOfOptions(const ParsedOptions& options);

@@ -74,7 +74,8 @@ ExitCode WriteSheet(const show::Sheet& sheet, const show::SceneFormat& format,
   if (!painter.error().empty())
     return Complain(context, ExitCode::kFailure, "no picture: " + painter.error());
   const std::string file = options.Text("--output");
-  const std::string problem = show::WriteDrawing(file, SheetSvg(sheet, format.chart));
+  const std::string problem =
+      show::WriteDrawing(file, SheetSvg(sheet, format.chart), PixelsOf(options));
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   context.out << file << "\n";
   return ExitCode::kAgrees;
@@ -247,7 +248,8 @@ Command FigureCommand() {
                  IntegersFrom(0, kMostScenes)),
            Value("--at", "TIME,..",
                  "when these are: EVENT.begin, EVENT.end or seconds, with commas between them")},
-          Joined(Joined(LookOptions(), PartOptions()), {GrammarOption(), SettingsOption()})),
+          Joined(Joined(LookOptions(), PartOptions()),
+                 {WidthOption(), GrammarOption(), SettingsOption()})),
       .run = RunFigure};
 }
 

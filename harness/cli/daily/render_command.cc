@@ -26,6 +26,7 @@ constexpr int kLeastSide_px = 64, kMostSide_px = 4096, kMostSheetSide_px = 8192;
 constexpr int kMostColumns = 8;
 constexpr std::size_t kMostPictures = 64;
 constexpr double kComparisonWidth_px = 900;
+constexpr int kSheetTile_px = 360;  ///< width of a scene of a sheet, in pixels of the drawing
 
 struct Size {
   int width_px = 0, height_px = 0;
@@ -85,6 +86,8 @@ show::PictureFormat FormatOf(const ParsedOptions& options) {
 show::PictureChoice ChoiceOf(const ParsedOptions& options) {
   show::PictureChoice choice{.camera = options.Text("--camera"), .all = options.Has("--sheet")};
   if (options.Has("--at")) choice.at = WordsOf(options.Text("--at"));
+  // A sheet's scenes are small.
+  if (choice.all && options.Has("--at") && choice.camera.empty()) choice.camera = "action";
   return choice;
 }
 
@@ -110,13 +113,46 @@ std::string WhyNoSheet(const ParsedOptions& options, std::size_t pictures) {
       columns * format.width_px, rows * format.height_px, kMostSheetSide_px);
 }
 
+/// Scenes with letters in one view each, and the timeline below them.
+show::PictureResult DrawSheet(const ParsedOptions& options, const scenario::Scenario& scenario,
+                              const episode::RunResult& run) {
+  const show::PictureFormat picture = FormatOf(options);
+  show::TileRow row{.columns = options.IntOr("--sheet", 1),
+                    .height_share = static_cast<double>(picture.height_px) / picture.width_px};
+  const int tile_px = options.Has("--size") ? picture.width_px / 2 : kSheetTile_px;
+  show::SceneFormat format = SceneFormatOf(options, "action", row.columns * tile_px);
+  format.picture = picture;
+  std::vector<show::KeyMoment> moments;
+  show::PictureResult result;
+  for (const scenario::PictureYaml& entry : scenario.pictures) {
+    const episode::FoundTime found = episode::FindEventTime(entry.at.value, run);
+    const auto at = episode::ParseEventTime(entry.at.value);
+    moments.push_back({.time_s = show::SecondsOf(run, found.tick),
+                       .caption = at && at->time_s ? "" : entry.at.value,
+                       .camera = entry.camera.value});
+    result.pictures.push_back(
+        {.file = options.Text("--output"),
+         .caption = fmt::format("{}  ·  {:.3f} s", entry.at.value, moments.back().time_s),
+         .missed = found.missed});
+  }
+  show::Chart chart = show::PhasesChart(scenario, run, WindowOf(options, run));
+  if (!picture.title) chart.title.clear();
+  show::ScenePainter painter;
+  show::Sheet sheet =
+      show::WithScenes(std::move(chart), scenario, run, moments, format, painter, std::move(row));
+  if (!picture.strip) sheet.chart.reset();
+  result.error = painter.error();
+  if (result.error.empty())
+    result.error = show::WriteDrawing(options.Text("--output"), SheetSvg(sheet, format.chart),
+                                      PixelsOf(options));
+  return result;
+}
+
 show::PictureResult Draw(const ParsedOptions& options, const episode::LoadedRun& loaded,
                          const episode::RunResult& run, const std::string& root) {
   const std::string output = options.Text("--output");
   const show::PictureFormat format = FormatOf(options);
-  if (options.Has("--sheet"))
-    return show::DrawSheet(loaded.scenario, run, loaded.scenario.pictures,
-                           options.IntOr("--sheet", 1), output, format);
+  if (options.Has("--sheet")) return DrawSheet(options, loaded.scenario, run);
   if (!output.empty())
     return show::DrawPicture(loaded.scenario, run, loaded.scenario.pictures.front(), output,
                              format);
@@ -135,6 +171,11 @@ const Product kProducts[] = {{"--strip", {"--at", "--sheet", "--json", "--size",
                              {"--against", {"--at", "--sheet", "--json", "--size", "--without"}},
                              {"--film", {"--at", "--sheet", "--json", "--output"}}};
 
+/// Lines and texts, scenes as pictures in it: a file of any kind, of any width.
+bool IsDrawing(const ParsedOptions& options) {
+  return options.Has("--strip") || options.Has("--against") || options.Has("--sheet");
+}
+
 /// Why these options do not go together, or "".
 std::string WhyNotTogether(const ParsedOptions& options) {
   const char* asked = nullptr;
@@ -150,6 +191,8 @@ std::string WhyNotTogether(const ParsedOptions& options) {
     if (options.Has("--strip") && !look.empty() && look != "transparent")
       return fmt::format("--look {} does not go with --strip", look);
   }
+  if (options.Has("--width") && !IsDrawing(options))
+    return "--width is for --strip, --sheet and --against; a picture has a --size";
   for (const char* of_film : {"--fps", "--speed"}) {
     if (options.Has(of_film) && !options.Has("--film"))
       return fmt::format("{} is for --film", of_film);
@@ -184,7 +227,7 @@ ExitCode WriteOut(const std::string& svg, const ParsedOptions& options,
       "--output",
       (fs::path(BuildFolder(context.root)) / "pictures" / scenario.skill / (scenario.name + ending))
           .string());
-  const std::string problem = show::WriteDrawing(file, svg);
+  const std::string problem = show::WriteDrawing(file, svg, PixelsOf(options));
   if (!problem.empty()) return Complain(context, ExitCode::kFailure, problem);
   context.out << file.string() << "\n";
   return ExitCode::kAgrees;
@@ -297,7 +340,7 @@ std::string WhyNoOutput(const ParsedOptions& options) {
   std::string why;
   if (output == "-")
     why = "found '-', wanted a file; pictures are not printed";
-  else if (options.Has("--strip") || options.Has("--against"))
+  else if (IsDrawing(options))
     why = show::WhyNoDrawingFile(output);
   else if (output.ends_with(".svg") || output.ends_with(".pdf"))
     why = fmt::format(
@@ -306,8 +349,7 @@ std::string WhyNoOutput(const ParsedOptions& options) {
         output);
   if (why.empty()) why = AtomicFile(output).problem();
   // A picture is a PNG, whatever its file is called.
-  if (why.empty() && !options.Has("--strip") && !options.Has("--against") &&
-      !output.ends_with(".png"))
+  if (why.empty() && !IsDrawing(options) && !output.ends_with(".png"))
     why = fmt::format("found '{}', wanted a file NAME.png", output);
   return why.empty() ? "" : "--output: " + why;
 }
@@ -354,16 +396,18 @@ Command RenderCommand() {
            "render milk_carton_wrap --film milk.webp --speed 0.5"},
       .options = Joined(
           Joined({EpisodeArgument(), EpisodeOption(),
-                  OutputOption("the PNG file; default: build/pictures/SKILL/NAME.png. --strip and "
-                               "--against also write .svg and .pdf"),
+                  OutputOption("the PNG file; default: build/pictures/SKILL/NAME.png. --strip, "
+                               "--sheet and --against also write .svg and .pdf"),
                   Value("--at", "TIME",
                         "when: EVENT.begin, EVENT.end, or seconds; for a sheet several, "
                         "with commas between them"),
-                  Value("--sheet", "N", "all pictures in one file, with so many columns",
+                  Value("--sheet", "N",
+                        "all pictures in one file, with so many columns, above one timeline",
                         IntegersFrom(1, kMostColumns))},
                  OptionsInsteadOfPictures()),
           Joined(Joined(LookOptions(), PartOptions()),
-                 {Value("--size", "WxH", "pixels of a picture; default: 1280x720", Sizes()),
+                 {WidthOption(),
+                  Value("--size", "WxH", "pixels of a picture; default: 1280x720", Sizes()),
                   Repeatable(Value("--without", "PART,..", "leave these out", SomeOf(PartNames()))),
                   GrammarOption(), SettingsOption(),
                   Flag("--json",

@@ -37,6 +37,7 @@ struct KeyMoment {
   double time_s = 0;
   std::string caption;                ///< "reaching begins"
   std::vector<std::string> involved;  ///< the hand and the things that it is about
+  std::string camera = {};            ///< empty: as of the other scenes
 };
 std::vector<KeyMoment> KeyMoments(const episode::RunResult& run, const Window& window,
                                   std::size_t most);

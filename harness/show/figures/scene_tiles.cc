@@ -23,8 +23,11 @@ constexpr double kTextScale = 2;      ///< of labels, as scenes are shown small
 constexpr std::array<std::uint32_t, 7> kSetColors = {0x56B4E9, 0xE69F00, 0x009E73, 0xCC79A7,
                                                      0xF0E442, 0xD55E00, 0x0072B2};
 
-int ColumnsFor(std::size_t tiles, int most) {
+/// So that a short caption has room below each.
+int ColumnsFor(std::size_t tiles, int most, const ChartFormat& format) {
+  constexpr double kCaption = 12;  // heights of the text
   const int count = std::max(1, static_cast<int>(tiles));
+  most = std::clamp(static_cast<int>(format.width_px / (kCaption * format.text_px)), 1, most);
   const int rows = (count + most - 1) / most;
   return (count + rows - 1) / rows;
 }
@@ -64,8 +67,10 @@ class SheetDrawing {
                text);
   }
   void Line(const std::string& text, const char* weight) {
-    Text(kMargin_px, y_ + 1.1 * format_.text_px, text, weight);
-    y_ += 1.8 * format_.text_px;
+    const double line_px = 1.3 * format_.text_px;
+    y_ += line_px * DrawLines(text, weight, kMargin_px, y_ - 0.2 * format_.text_px,
+                              format_.width_px - 2 * kMargin_px, line_px) +
+          0.5 * format_.text_px;
   }
 
   void DrawChart() {
@@ -93,19 +98,24 @@ class SheetDrawing {
                     {"width", SvgNumber(width)},
                     {"height", SvgNumber(height)},
                     {"xlink:href", "data:image/png;base64," + Base64(tile.png)}});
-        lines = std::max(lines, DrawCaption(tile.caption, x, y_ + height, line_px));
+        lines = std::max(lines, DrawLines(tile.caption, "normal", x, y_ + height, width, line_px));
       }
       y_ += height + lines * line_px + 0.9 * format_.text_px;
     }
   }
 
-  /// Returns its number of lines.
-  double DrawCaption(const std::string& caption, double x, double top, double line_px) {
+  /// Broken where it says and where it would be too wide. Returns the number of lines.
+  double DrawLines(const std::string& text, const char* weight, double x, double top, double width,
+                   double line_px) {
+    const auto most = static_cast<std::size_t>(std::max(8.0, width / (0.62 * format_.text_px)));
     double lines = 0;
-    for (std::size_t begin = 0; begin <= caption.size();) {
-      const std::size_t end = std::min(caption.find('\n', begin), caption.size());
+    for (std::size_t begin = 0; begin <= text.size();) {
+      std::size_t end = std::min(text.find('\n', begin), text.size());
+      if (const std::size_t space = text.rfind(' ', begin + most);
+          end - begin > most && space != std::string::npos && space > begin)
+        end = space;
       ++lines;
-      Text(x, top + lines * line_px, caption.substr(begin, end - begin), "normal");
+      Text(x, top + lines * line_px, text.substr(begin, end - begin), weight);
       begin = end + 1;
     }
     return lines;
@@ -188,7 +198,7 @@ std::string WideView(const scenario::Scenario& scenario, const episode::RunResul
 Sheet KeyFrameSheet(const scenario::Scenario& scenario, const episode::RunResult& run,
                     const std::vector<KeyMoment>& moments, const SceneFormat& format,
                     ScenePainter& painter) {
-  TileRow row{.columns = ColumnsFor(moments.size(), kMostColumns)};
+  TileRow row{.columns = ColumnsFor(moments.size(), kMostColumns, format.chart)};
   SceneFormat bare = Bare(format);
   bare.picture.regions = true;
   for (std::size_t i = 0; i < moments.size(); ++i) {
@@ -202,13 +212,14 @@ Sheet KeyFrameSheet(const scenario::Scenario& scenario, const episode::RunResult
 
 Sheet WithScenes(Chart chart, const scenario::Scenario& scenario, const episode::RunResult& run,
                  const std::vector<KeyMoment>& moments, const SceneFormat& format,
-                 ScenePainter& painter) {
+                 ScenePainter& painter, TileRow row) {
   Sheet sheet;
-  TileRow row{.columns = ColumnsFor(moments.size(), kMostColumns), .height_share = kWideScene};
-  SceneFormat wide = format;
-  if (format.camera != "hand" && !moments.empty()) wide.camera = WideView(scenario, run, 0, format);
+  if (row.columns == 0) row.columns = ColumnsFor(moments.size(), kMostColumns, format.chart);
   for (std::size_t i = 0; i < moments.size(); ++i) {
     const double time_s = moments[i].time_s;
+    SceneFormat wide = format;
+    if (!moments[i].camera.empty()) wide.camera = moments[i].camera;
+    if (wide.camera != "hand") wide.camera = WideView(scenario, run, 0, wide);
     chart.marks.push_back({.time_s = time_s, .letter = LetterOf(i)});
     AddScene(scenario, run, time_s,
              fmt::format("({}) {}{:.2f} s", LetterOf(i),
@@ -241,7 +252,7 @@ std::vector<KeyMoment> LongestLooks(const scenario::Scenario& scenario,
 Sheet GraspSheet(const std::vector<HeldScene>& scenes, const SceneFormat& format,
                  ScenePainter& painter) {
   Sheet sheet;
-  TileRow row{.columns = ColumnsFor(scenes.size(), kGraspColumns)};
+  TileRow row{.columns = ColumnsFor(scenes.size(), kGraspColumns, format.chart)};
   SceneFormat bare = Bare(format);
   // Only sets that touch something somewhere have a colour, in the order in which they appear.
   for (const HeldScene& scene : scenes) {

@@ -75,10 +75,11 @@ Sheet KeyFrameSheet(const scenario::Scenario& scenario, const episode::RunResult
                     const std::vector<KeyMoment>& moments, const SceneFormat& format,
                     ScenePainter& painter);
 
-/// Scenes in a row above the chart, which says with letters when they are.
+/// Scenes above the chart, which says with letters when they are. `row` says how they are laid out;
+/// of no columns: as is best.
 Sheet WithScenes(Chart chart, const scenario::Scenario& scenario, const episode::RunResult& run,
                  const std::vector<KeyMoment>& moments, const SceneFormat& format,
-                 ScenePainter& painter);
+                 ScenePainter& painter, TileRow row = {.columns = 0, .height_share = kWideScene});
 
 /// The longest looks in the window, in the order of time: who sees what, for how long, how far it
 /// is.

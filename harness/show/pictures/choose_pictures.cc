@@ -39,11 +39,13 @@ std::string WhyNoDrawingFile(const std::string& path) {
              : "found '" + path + "', wanted a file NAME.svg, NAME.png or NAME.pdf";
 }
 
-std::string WriteDrawing(const std::filesystem::path& path, const std::string& svg) {
+std::string WriteDrawing(const std::filesystem::path& path, const std::string& svg, double pixels) {
   if (path.extension() == ".svg") return WriteTextFile(path, svg);
-  const std::string format = path.extension() == ".pdf" ? "pdf" : "png";
+  const bool is_pdf = path.extension() == ".pdf";
   const ToolResult drawn =
-      RunTool({"rsvg-convert", "--format=" + format, "--zoom=2", "--background-color=white"}, svg);
+      RunTool({"rsvg-convert", is_pdf ? "--format=pdf" : "--format=png",
+               fmt::format("--zoom={}", is_pdf ? 1 : pixels), "--background-color=white"},
+              svg);
   if (drawn.Succeeded()) return WriteTextFile(path, drawn.out);
   std::string why = drawn.problem.empty() ? "rsvg-convert: " + drawn.err : drawn.problem;
   if (why.ends_with("is not installed")) why += "; Debian's package librsvg2-bin has it";

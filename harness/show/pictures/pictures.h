@@ -6,9 +6,11 @@
 // and tests/harness/show/pictures/scene_painter_test.cc
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -59,6 +61,18 @@ struct PictureResult {
   std::string error;  ///< empty, or why (some) pictures could not be drawn
 };
 
+/// When the first of a row's bars begins or ends between these times, but not at once; infinity:
+/// nothing changes.
+template <typename Bars>
+double FirstChange_s(const Bars& bars, double from_s, double to_s) {
+  constexpr double kAtOnce_s = 0.1;
+  double first_s = std::numeric_limits<double>::infinity();
+  for (const auto& bar : bars)
+    for (const double at_s : {bar.begin_s, bar.end_s})
+      if (at_s > from_s + kAtOnce_s && at_s < to_s - kAtOnce_s) first_s = std::min(first_s, at_s);
+  return first_s;
+}
+
 /// Whether this build can draw at all.
 bool CanDrawPictures();
 
@@ -94,12 +108,6 @@ PictureResult DrawGoldens(const scenario::Scenario& scenario, const episode::Run
 PictureResult DrawPicture(const scenario::Scenario& scenario, const episode::RunResult& run,
                           const scenario::PictureYaml& entry, const std::string& file,
                           const PictureFormat& format = {});
-
-/// Several pictures in one file, row by row with so many columns. Each has a letter and its moment
-/// in its title.
-PictureResult DrawSheet(const scenario::Scenario& scenario, const episode::RunResult& run,
-                        const std::vector<scenario::PictureYaml>& entries, int columns,
-                        const std::string& file, const PictureFormat& format = {});
 
 /// Writes the golden in pale grey with every pixel that differs in red; both must have one size.
 /// False when it cannot.
@@ -164,7 +172,8 @@ SceneDifference DifferenceOf(const std::string& first_png, const std::string& se
 std::string WhyNoDrawingFile(const std::string& path);
 
 /// Writes a drawing as what the file's ending says. Returns "", or what went wrong; then an older
-/// file is as it was. PNG has twice the pixels of the drawing's size.
-std::string WriteDrawing(const std::filesystem::path& path, const std::string& svg);
+/// file is as it was. PNG has so many pixels for each of the drawing's.
+std::string WriteDrawing(const std::filesystem::path& path, const std::string& svg,
+                         double pixels = 2);
 
 }  // namespace prehend::show

@@ -30,15 +30,6 @@ std::string CaptionOf(const render::Picture& picture, const episode::RunResult& 
   return picture.title.empty() ? fmt::format("{:.3f} s", SecondsOf(picture, run)) : picture.title;
 }
 
-/// Puts an image into a larger one, which it does not leave.
-void Paste(const render::Image& image, int left, int top, render::Image& onto) {
-  for (int y = 0; y < image.height_px; ++y) {
-    const auto from = image.rgb.begin() + 3ll * y * image.width_px;
-    std::copy(from, from + 3ll * image.width_px,
-              onto.rgb.begin() + 3ll * (1ll * (top + y) * onto.width_px + left));
-  }
-}
-
 /// What is done with a drawn picture; returns an error text or "".
 using Keep = std::function<std::string(const render::Picture&, WrittenPicture& as)>;
 
@@ -176,40 +167,6 @@ PictureResult DrawPicture(const scenario::Scenario& scenario, const episode::Run
         return WriteImage(painter, DrawImage(painter, picture, format), as.file);
       },
       result.pictures);
-  return result;
-}
-
-PictureResult DrawSheet(const scenario::Scenario& scenario, const episode::RunResult& run,
-                        const std::vector<scenario::PictureYaml>& entries, int columns,
-                        const std::string& file, const PictureFormat& format) {
-  PictureResult result;
-  render::Painter painter;
-  result.error = painter.error();
-  if (run.recording.empty()) result.error = "the run recorded nothing to draw";
-  if (!result.error.empty()) return result;
-  const int rows = (static_cast<int>(entries.size()) + columns - 1) / columns;
-  render::Image sheet{columns * format.width_px, rows * format.height_px, {}};
-  sheet.rgb.assign(3ull * sheet.width_px * sheet.height_px, 255);
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const scenario::PictureYaml& entry = entries[i];
-    render::Picture picture = ComposePicture(scenario, run, entry, format);
-    if (format.title) {
-      const char letter = static_cast<char>('a' + i % 26);
-      const auto at = episode::ParseEventTime(entry.at.value);
-      const std::string event = at && at->time_s ? "" : entry.at.value + "  ·  ";
-      picture.title = fmt::format("{}  ·  {}{:.3f} s", letter, event, SecondsOf(picture, run));
-    }
-    const render::Image image = painter.Draw(picture);
-    if (image.rgb.empty()) {
-      result.error = painter.error();
-      return result;
-    }
-    Paste(image, static_cast<int>(i) % columns * format.width_px,
-          static_cast<int>(i) / columns * format.height_px, sheet);
-    result.pictures.push_back(
-        {file, CaptionOf(picture, run), episode::FindEventTime(entry.at.value, run).missed});
-  }
-  if (!render::WritePng(sheet, file)) result.error = "cannot write " + file;
   return result;
 }
 

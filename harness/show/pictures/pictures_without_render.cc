@@ -33,12 +33,6 @@ PictureResult DrawPicture(const scenario::Scenario&, const episode::RunResult&,
   return CannotDraw();
 }
 
-PictureResult DrawSheet(const scenario::Scenario&, const episode::RunResult&,
-                        const std::vector<scenario::PictureYaml>&, int, const std::string&,
-                        const PictureFormat&) {
-  return CannotDraw();
-}
-
 bool WritePictureDifference(const std::string&, const std::string&, const std::string&) {
   return false;
 }

@@ -30,10 +30,12 @@ TEST(SvgFile, TheEndingSaysWhatIsWritten) {
   const std::string png = Slurped(folder / "a.png");
   EXPECT_EQ(png.substr(1, 3), "PNG");
   EXPECT_EQ(png[19], 40) << "twice the width";
+  EXPECT_EQ(WriteDrawing(folder / "b.png", svg, 6.25), "");
+  EXPECT_EQ(Slurped(folder / "b.png")[19], 125) << "600 dots per inch";
   EXPECT_EQ(WriteDrawing(folder / "a.pdf", svg), "");
   EXPECT_EQ(Slurped(folder / "a.pdf").substr(0, 5), "%PDF-");
-  EXPECT_NE(WriteDrawing(folder / "b.png", "no drawing"), "");
-  EXPECT_FALSE(fs::exists(folder / "b.png"));
+  EXPECT_NE(WriteDrawing(folder / "c.png", "no drawing"), "");
+  EXPECT_FALSE(fs::exists(folder / "c.png"));
   fs::remove_all(folder);
 }
 
