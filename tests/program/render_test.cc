@@ -40,12 +40,23 @@ TEST_F(Render, TheTimelineAlone) {
   ASSERT_EQ(said.exit_code, 0) << said.err;
   EXPECT_EQ(said.out, Path("a.svg") + "\n");
   const std::string all = ReadFile(Path("a.svg"));
-  EXPECT_TRUE(Has(all, "transporting") && Has(all, "supported_by"));
+  EXPECT_TRUE(Has(all, "transporting") && Has(all, ">milk on<"));
   ASSERT_EQ(Do({"--strip", "--of", "table", "--without", "title", "-o", Path("b.svg")}).exit_code,
             0);
   const std::string part = ReadFile(Path("b.svg"));
-  EXPECT_TRUE(Has(part, "supported_by"));
+  EXPECT_TRUE(Has(part, ">milk on<"));
   EXPECT_FALSE(Has(part, "transporting") || Has(part, "milk_carton_wrap"));
+}
+
+TEST_F(Render, ATimelineHasTheWidthOfAColumn) {
+  ASSERT_EQ(Do({"--strip", "--width", "89mm", "-o", Path("a.svg")}).exit_code, 0);
+  const std::string svg = ReadFile(Path("a.svg"));
+  EXPECT_TRUE(Has(svg, "width=\"336.378\"") && Has(svg, "font-size=\"9.33333\"")) << svg;
+  Refused({"--width", "89mm"},
+          "--width is for --strip, --sheet and --against; a picture has a --size");
+  const Said narrow = Do({"--strip", "--width", "3mm"});
+  EXPECT_EQ(narrow.exit_code, 2);
+  EXPECT_TRUE(Has(narrow.err, "expected a width like 89mm, 30 to 500, found '3mm'")) << narrow.err;
 }
 
 TEST_F(Render, OptionsThatDoNotGoTogetherAreRefused) {
@@ -83,6 +94,24 @@ class RenderScenes : public Render {
     if (Has(said.err, "PREHEND_RENDER=OFF")) GTEST_SKIP() << said.err;
   }
 };
+
+TEST_F(RenderScenes, ASheetHasOneTimeline) {
+  ASSERT_EQ(Do({"--at", "reaching.begin,grasping.begin,2", "--sheet", "2", "--size", "320x180",
+                "-o", Path("a.svg")})
+                .exit_code,
+            0);
+  const std::string svg = ReadFile(Path("a.svg"));
+  const auto count = [&](const std::string& part) {
+    int found = 0;
+    for (std::size_t at = svg.find(part); at != std::string::npos; at = svg.find(part, at + 1))
+      ++found;
+    return found;
+  };
+  EXPECT_EQ(count("data:image/png;base64,"), 3);
+  EXPECT_EQ(count(">transporting<"), 1);
+  EXPECT_EQ(count(">milk on<"), 1);
+  EXPECT_TRUE(Has(svg, ">(a) reaching.begin<") && Has(svg, ">(c) 2.00 s<")) << svg;
+}
 
 TEST_F(RenderScenes, AnotherGrammarIsBesideThisOne) {
   ASSERT_EQ(Do({"--against", "original_2020", "-o", Path("a.svg")}).exit_code, 0);

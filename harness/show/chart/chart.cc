@@ -38,6 +38,7 @@ class Drawing {
     left_ = 20 + std::clamp(letter_px * static_cast<double>(longest), 50.0, 0.5 * format.width_px);
     right_ = format.width_px - 14;
     for (const Row& row : chart.rows) headings_ += row.heading.empty() ? 0 : 1;
+    LayOutLegend();
   }
 
   double Height() const {
@@ -51,8 +52,11 @@ class Drawing {
 
   void AddTo(pugi::xml_node svg) {
     svg_ = svg;
+    // Above the rows; a long title begins further left.
+    const double title_px = 0.68 * format_.text_px * static_cast<double>(chart_.title.size());
     if (!chart_.title.empty())
-      Text("title", left_, 1.4 * format_.text_px, chart_.title, "start", "bold");
+      Text("title", std::clamp(right_ - title_px, 4.0, left_), 1.4 * format_.text_px, chart_.title,
+           "start", "bold");
     double y = Top();
     DrawTimes(y, Height() - FootPx());
     DrawMarks(Height() - FootPx());
@@ -69,7 +73,7 @@ class Drawing {
       DrawPanel(panel, y, PanelPx());
       y += PanelPx();
     }
-    DrawLegend(Height() - 0.8 * format_.text_px);
+    DrawLegend(Height() - 0.8 * format_.text_px - more_lines_ * LegendPx());
   }
 
  private:
@@ -77,7 +81,10 @@ class Drawing {
   double PanelPx() const { return format_.panel_texts * format_.text_px; }
   double HeadingPx() const { return 1.7 * format_.text_px; }
   bool InPage() const { return !format_.page_class.empty(); }
-  double FootPx() const { return (InPage() ? kPageFoot : kFoot) * format_.text_px; }
+  double LegendPx() const { return 1.5 * format_.text_px; }
+  double FootPx() const {
+    return (InPage() ? kPageFoot : kFoot) * format_.text_px + more_lines_ * LegendPx();
+  }
   double GapPx() const { return 1.6 * format_.text_px; }
   double Top() const {
     return (chart_.title.empty() ? 8 : 2.4 * format_.text_px) +
@@ -130,14 +137,13 @@ class Drawing {
   void DrawRow(const Row& row, double y, double height) {
     Text(row.style, left_ - 8, y + 0.5 * height + 0.35 * format_.text_px, row.name, "end");
     for (const Bar& bar : row.bars) {
-      if (bar.end_s <= chart_.from_s || bar.begin_s >= chart_.to_s) continue;
-      DrawBar(bar, row, y, height);
+      if (IsShown(bar)) DrawBar(bar, row, y, height);
     }
     for (const Hatch& hatch : row.hatches) DrawHatch(hatch, row, y, height);
   }
 
   void DrawBar(const Bar& bar, const Row& row, double y, double height) {
-    const double x = X(bar.begin_s), width = std::max(1.5, X(bar.end_s) - x);
+    const double x = X(bar.begin_s), width = WidthOf(bar);
     const auto [top, tall] = Place(y, height, bar.lane, row.lanes);
     pugi::xml_node node = AddElement(svg_, "rect",
                                      {{"x", Number(x)},
@@ -155,13 +161,11 @@ class Drawing {
       AddElement(node, "title", {}, bar.tip);
     }
     if (!bar.frame.empty()) Paint(node, "", {{"stroke-width", "2"}});
-    const bool fits = 0.62 * format_.text_px * static_cast<double>(bar.text.size()) < width - 6;
-    if (fits || (InPage() && !bar.text.empty())) {
+    if (HasText(bar)) {
       Text("in_bar", x + width / 2, y + 0.5 * height + 0.35 * format_.text_px, bar.text, "middle",
            "normal", IsLight(bar.color) ? "#000000" : "#FFFFFF");
       if (InPage()) AddTimes(svg_.last_child(), bar.begin_s, bar.end_s);
-    } else if (!bar.kind.empty())
-      unnamed_[bar.kind] = bar.color;
+    }
   }
 
   /// Slanted lines in a frame: readable in print and on any colour.
@@ -262,26 +266,50 @@ class Drawing {
     points.clear();
   }
 
-  /// What the colours mean whose bars are too short for their texts.
-  void DrawLegend(double y) {
+  bool IsShown(const Bar& bar) const {
+    return bar.end_s > chart_.from_s && bar.begin_s < chart_.to_s;
+  }
+  double WidthOf(const Bar& bar) const { return std::max(1.5, X(bar.end_s) - X(bar.begin_s)); }
+  bool HasText(const Bar& bar) const {
+    const double text_px = 0.62 * format_.text_px * static_cast<double>(bar.text.size());
+    return text_px < WidthOf(bar) - 6 || (InPage() && !bar.text.empty());
+  }
+
+  /// What the colours mean whose bars are too short for their texts, in lines.
+  void LayOutLegend() {
+    std::map<std::string, std::uint32_t> unnamed;
+    for (const Row& row : chart_.rows)
+      for (const Bar& bar : row.bars)
+        if (IsShown(bar) && !HasText(bar) && !bar.kind.empty()) unnamed[bar.kind] = bar.color;
     double x = left_;
-    for (const auto& [kind, color] : unnamed_) {
+    for (const auto& [kind, color] : unnamed) {
+      const double width =
+          3 * format_.text_px + 0.62 * format_.text_px * static_cast<double>(kind.size());
+      if (x > left_ && x + width > format_.width_px) x = left_, ++more_lines_;
+      keys_.push_back({x, more_lines_ * LegendPx(), kind, color});
+      x += width;
+    }
+  }
+  void DrawLegend(double top) {
+    for (const Key& key : keys_) {
+      const double y = top + key.down;
       AddElement(svg_, "rect",
-                 {{"x", Number(x)},
+                 {{"x", Number(key.x)},
                   {"y", Number(y - 0.8 * format_.text_px)},
                   {"width", Number(format_.text_px)},
                   {"height", Number(0.9 * format_.text_px)},
-                  {"fill", ColorText(color)}});
-      Text("", x + 1.4 * format_.text_px, y, kind, "start");
-      x += 3 * format_.text_px + 0.62 * format_.text_px * static_cast<double>(kind.size());
+                  {"fill", ColorText(key.color)}});
+      Text("", key.x + 1.4 * format_.text_px, y, key.kind, "start");
     }
   }
 
   void DrawTimes(double top, double bottom) {
     Line("base", left_, bottom, right_, bottom, kInk);
     std::vector<AxisTick> ticks = chart_.ticks;
+    const double room = (right_ - left_) / (4 * format_.text_px);
+    const int most = static_cast<int>(std::clamp(room, 3.0, 10.0));
     if (ticks.empty())
-      for (const double tick : RoundTicks(chart_.from_s, chart_.to_s, 10))
+      for (const double tick : RoundTicks(chart_.from_s, chart_.to_s, most))
         ticks.emplace_back(tick, Number(tick));
     for (const auto& [at, text] : ticks) {
       Line("grid", X(at), top, X(at), bottom, "#EEEEEE");
@@ -293,9 +321,14 @@ class Drawing {
 
   const Chart& chart_;
   const ChartFormat& format_;
-  double left_ = 0, right_ = 0, headings_ = 0;
+  double left_ = 0, right_ = 0, headings_ = 0, more_lines_ = 0;
   pugi::xml_node svg_;
-  std::map<std::string, std::uint32_t> unnamed_;
+  struct Key {
+    double x = 0, down = 0;
+    std::string kind;
+    std::uint32_t color = 0;
+  };
+  std::vector<Key> keys_;
 };
 
 }  // namespace

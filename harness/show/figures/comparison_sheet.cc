@@ -100,9 +100,10 @@ class Differ {
 
   void HatchBar(Chart& chart, const NamedEvent& event, const Hatch& hatch) const {
     const double begin_s = Seconds(event.interval.begin);
+    const std::string label = event.Label();
     for (Row& row : chart.rows) {
       for (const Bar& bar : row.bars) {
-        if (bar.kind != event.event || std::abs(bar.begin_s - begin_s) > 1e-6) continue;
+        if (bar.tip != label || std::abs(bar.begin_s - begin_s) > 1e-6) continue;
         row.hatches.push_back(hatch);
         return;
       }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "harness/show/pictures/pictures.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::show {
@@ -34,7 +35,8 @@ Bar BarOf(const episode::RunResult& run, const NamedEvent& event, std::string te
           .end_s = SecondsOf(run, event.interval.end),
           .text = std::move(text),
           .color = run.drawings.Of(event.event).color,
-          .kind = event.event};
+          .kind = event.event,
+          .tip = event.Label()};
 }
 
 /// The phases of each hand, in the order of the hands.
@@ -62,12 +64,17 @@ Chart PhasesChart(const scenario::Scenario& scenario, const episode::RunResult& 
               .to_s = window.to_s,
               .rows = PhaseRows(scenario, run, window)};
   std::vector<Row> others;
+  std::map<std::string, std::string> base;  // of a row's name: without its number
   for (const NamedEvent& event : run.timeline.events) {
     const truth::EventDrawing& drawing = run.drawings.Of(event.event);
     if (drawing.as == DrawnAs::kPhase || drawing.as == DrawnAs::kNothing) continue;
-    if (!window.Shows(scenario, event)) continue;
-    const bool of_hand = drawing.as == DrawnAs::kGrasp;
-    const std::string name = of_hand ? HandOf(run, event) + ": " + event.event : event.event;
+    const bool is_in = SecondsOf(run, event.interval.end) > window.from_s &&
+                       SecondsOf(run, event.interval.begin) < window.to_s;
+    if (!is_in || !window.Shows(scenario, event)) continue;
+    const bool of_hand = drawing.as == DrawnAs::kGrasp, is_on = drawing.as == DrawnAs::kSupport;
+    const std::string name = of_hand ? HandOf(run, event) + ": " + event.event
+                             : is_on ? event.roles[drawing.first].value + " on"
+                                     : event.event;
     auto row = std::ranges::find(others, name, &Row::name);
     // Events of one row that overlap need rows of their own.
     int copy = 1;
@@ -78,15 +85,27 @@ Chart PhasesChart(const scenario::Scenario& scenario, const episode::RunResult& 
     if (row == others.end()) {
       others.push_back({copy == 1 ? name : fmt::format("{} {}", name, copy), {}});
       row = others.end() - 1;
+      base[row->name] = name;
     }
-    row->bars.push_back(BarOf(run, event, of_hand ? OthersOf(run, event) : event.Label()));
-    if (!of_hand) {
+    row->bars.push_back(BarOf(run, event,
+                              of_hand ? OthersOf(run, event)
+                              : is_on ? event.roles[drawing.last].value
+                                      : event.Label()));
+    if (!of_hand && !is_on) {
       std::string& text = row->bars.back().text;  // "contact(milk, table)" -> "milk, table"
       const std::size_t open = text.find('(');
       if (open != std::string::npos) text = text.substr(open + 1, text.size() - open - 2);
     }
   }
-  std::ranges::stable_sort(others, {}, &Row::name);
+  // Rows of hands, then as they change; what stays is last. Numbered rows stay together.
+  std::map<std::string, double> change_s;
+  for (const Row& row : others) {
+    const double first_s = FirstChange_s(row.bars, window.from_s, window.to_s);
+    const auto known = change_s.try_emplace(base[row.name], first_s).first;
+    known->second =
+        row.name.find(": ") != std::string::npos ? -1 : std::min(known->second, first_s);
+  }
+  std::ranges::stable_sort(others, {}, [&](const Row& row) { return change_s[base[row.name]]; });
   chart.rows.insert(chart.rows.end(), others.begin(), others.end());
   return chart;
 }

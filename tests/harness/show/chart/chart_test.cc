@@ -57,6 +57,26 @@ TEST(Chart, NamesTheColoursOfShortBarsAndInterruptsCurves) {
   EXPECT_NE(svg.find("<polyline"), svg.rfind("<polyline"));
 }
 
+TEST(Chart, ALegendThatIsTooLongGoesOnInTheNextLine) {
+  Chart chart{.to_s = 100, .rows = {{"hand", {}}}};
+  for (int i = 0; i < 12; ++i) {
+    const std::string kind = "a_rather_long_name_" + std::to_string(i);
+    chart.rows[0].bars.push_back({8.0 * i, 8.0 * i + 0.1, kind, 0x112233, kind});
+  }
+  pugi::xml_document svg;
+  ASSERT_TRUE(svg.load_string(ChartSvg(chart, {.width_px = 500}).c_str()));
+  const auto keys = svg.select_nodes("//text[starts-with(., 'a_rather_long_name_')]");
+  ASSERT_EQ(keys.size(), 12u);
+  const auto at = [](const auto& key, const char* side) {
+    return key.node().attribute(side).as_double();
+  };
+  for (const auto& key : keys) {
+    EXPECT_LT(at(key, "x") + 0.62 * 12 * 21, 500) << "it is not cut";
+    EXPECT_LT(at(key, "y"), svg.child("svg").attribute("height").as_double());
+  }
+  EXPECT_LT(at(keys[0], "y"), at(keys[11], "y"));
+}
+
 TEST(Chart, OfNothingIsEmptyButValid) {
   pugi::xml_document svg;
   EXPECT_TRUE(svg.load_string(ChartSvg({.panels = {{"nothing", {{"", {}}}}}}).c_str()));

@@ -47,7 +47,20 @@ TEST(ComparisonSheet, HatchesWhereTwoSidesDiffer) {
     ASSERT_EQ(row->hatches.size(), 1u) << name;
     EXPECT_NEAR(row->hatches[0].end_s - row->hatches[0].begin_s, 0.1, 1e-9);
   }
-  EXPECT_TRUE(RowOf(chart, "supported_by (golden)")->hatches.empty());
+  EXPECT_TRUE(RowOf(chart, "milk on (golden)")->hatches.empty());
+}
+
+TEST(ComparisonSheet, HatchesTheThingThatDiffersOfThoseThatBeginTogether) {
+  const auto& [loaded, run] = Of("bimanual/tray_with_three_things_is_carried");
+  const auto is_of_milk = [](const grammar::NamedEvent& event) {
+    return event.event == "supported_by" && event.roles[0].value == "milk";
+  };
+  const auto [golden, comparison] = GoldenLike(
+      run, [&](auto& events) { std::ranges::find_if(events, is_of_milk)->interval.end -= 480; });
+  const Side first{"golden", &golden, &run}, second{"now", &run, &run};
+  const Chart chart = ComparisonChart(loaded.scenario, first, second, comparison, WholeOf(run));
+  EXPECT_EQ(RowOf(chart, "milk on (golden)")->hatches.size(), 1u);
+  EXPECT_TRUE(RowOf(chart, "cup on (golden)")->hatches.empty());
 }
 
 TEST(ComparisonSheet, ShowsTheScenesOfEachDifference) {
