@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace prehend::render {
 namespace {
@@ -44,16 +45,41 @@ LabelRequest RequestLabel(const std::string& text, const Color& color, const Bou
   return request;
 }
 
+/// Where an object is seen, nearest to `wanted` and not at its edge; nowhere: `wanted`.
+Vector2f SeenNear(const Vector2f& wanted, std::uint32_t object,
+                  const std::vector<std::uint32_t>& seen, const View& view) {
+  constexpr int kInside_px = 3;
+  Vector2f nearest = wanted;
+  float least = std::numeric_limits<float>::infinity();
+  for (int y = kInside_px; !seen.empty() && y < view.height_px - kInside_px; ++y) {
+    for (int x = kInside_px; x < view.width_px - kInside_px; ++x) {
+      const std::size_t at = static_cast<std::size_t>(y) * view.width_px + x;
+      if (seen[at] != object) continue;
+      const Vector2f here(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+      const float away = (here - wanted).squaredNorm();
+      const std::size_t row = static_cast<std::size_t>(kInside_px) * view.width_px;
+      if (away < least && seen[at - row] == object && seen[at + row] == object &&
+          seen[at - kInside_px] == object && seen[at + kInside_px] == object) {
+        least = away;
+        nearest = here;
+      }
+    }
+  }
+  return least < 1 ? wanted : nearest;
+}
+
 std::vector<LabelRequest> RequestLabels(const Picture& picture, const DrawList& list,
-                                        const View& view) {
+                                        const View& view, const std::vector<std::uint32_t>& seen) {
   std::vector<LabelRequest> requests;
   // Labels beyond `count` name objects that the scene does not have.
   const auto request = [&](const std::vector<std::string>& labels, std::size_t count,
                            int first_object, const auto& color_of, const auto& name_of) {
     for (std::size_t i = 0; i < std::min(labels.size(), count); ++i) {
       if (labels[i].empty()) continue;
-      const Bounds& bounds = list.objects[first_object + i].bounds;
-      requests.push_back(RequestLabel(labels[i], color_of(i), bounds, view));
+      const std::size_t object = first_object + i;
+      requests.push_back(RequestLabel(labels[i], color_of(i), list.objects[object].bounds, view));
+      requests.back().anchor =
+          SeenNear(requests.back().anchor, static_cast<std::uint32_t>(object), seen, view);
       requests.back().of = name_of(i);
     }
   };
@@ -90,7 +116,7 @@ StripLayout LayOutStripOf(const Picture& picture, const Font& font) {
 }
 
 void AddTitleAndLabels(const Picture& picture, const DrawList& list, const View& view,
-                       const Font& font, Overlay* overlay) {
+                       const std::vector<std::uint32_t>& seen, const Font& font, Overlay* overlay) {
   overlay->is_drawn = std::min(picture.width_px, picture.height_px) >= kMinSideWithText_px;
   if (!overlay->is_drawn) return;
   const float scale = OverlayScale(picture.height_px) * TextScale(picture);
@@ -107,7 +133,7 @@ void AddTitleAndLabels(const Picture& picture, const DrawList& list, const View&
   const LabelObstacles obstacles{.area = Rect{0, 0, width, free_height}.Grown(-5 * scale),
                                  .forbidden = {overlay->title_box.Grown(4 * scale)},
                                  .avoid = PathPixels(list, view)};
-  overlay->labels = PlaceLabels(RequestLabels(picture, list, view), obstacles, font, scale);
+  overlay->labels = PlaceLabels(RequestLabels(picture, list, view, seen), obstacles, font, scale);
 }
 
 void DrawOverlay(const Overlay& overlay, Canvas* canvas) {

@@ -81,7 +81,7 @@ void DrawStrip(const StripLayout& layout, Canvas* canvas);
 struct LabelRequest {
   std::string text;
   Color color;             ///< of the small bar beside the text
-  Eigen::Vector2f anchor;  ///< centre of the object, pixels
+  Eigen::Vector2f anchor;  ///< of what is seen of the object, near its centre, pixels
   Rect extent;             ///< approximate area of the object in the picture
   std::string of = "";     ///< the object's name in the scene
 };
@@ -115,9 +115,10 @@ struct Overlay {
 
 StripLayout LayOutStripOf(const Picture& picture, const Font& font);
 
-/// The strip of *overlay is laid out already.
+/// The strip of *overlay is laid out already. `seen` has the index into list.objects of what is
+/// seen at each pixel, or is empty.
 void AddTitleAndLabels(const Picture& picture, const DrawList& list, const View& view,
-                       const Font& font, Overlay* overlay);
+                       const std::vector<std::uint32_t>& seen, const Font& font, Overlay* overlay);
 
 void DrawOverlay(const Overlay& overlay, Canvas* canvas);
 

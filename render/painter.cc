@@ -35,15 +35,18 @@ struct Plan {
   DrawList list;
   View view;
   Overlay overlay;
+  std::vector<std::uint32_t> seen;  ///< at each pixel; empty: nothing has a label
 };
 
-Plan MakePlan(const Picture& picture, const Font& font) {
+Plan MakePlan(const Picture& picture, const Font& font, SceneRenderer& renderer) {
   Plan plan;
   plan.list = MakeDrawList(picture);
   plan.overlay.strip = LayOutStripOf(picture, font);
   plan.view = MakeView(picture.camera, picture.width_px, picture.height_px,
                        plan.overlay.strip.reserved_px(), plan.list.bounds);
-  AddTitleAndLabels(picture, plan.list, plan.view, font, &plan.overlay);
+  if (!picture.body_labels.empty() || !picture.hand_labels.empty())
+    plan.seen = renderer.RenderIds(plan.list, plan.view);
+  AddTitleAndLabels(picture, plan.list, plan.view, plan.seen, font, &plan.overlay);
   return plan;
 }
 
@@ -95,7 +98,7 @@ const std::string& Painter::error() const { return state_->error; }
 
 Image Painter::Draw(const Picture& picture) {
   if (!state_->Prepare(picture)) return {};
-  const Plan plan = MakePlan(picture, *state_->font);
+  const Plan plan = MakePlan(picture, *state_->font, *state_->renderer);
   Image image = state_->renderer->Render(plan.list, plan.view);
   if (image.rgb.empty()) {
     state_->error = "OpenGL has no memory for a picture of this size";
@@ -108,7 +111,7 @@ Image Painter::Draw(const Picture& picture) {
 
 IdImage Painter::DrawIds(const Picture& picture) {
   if (!state_->Prepare(picture)) return {};
-  const Plan plan = MakePlan(picture, *state_->font);
+  const Plan plan = MakePlan(picture, *state_->font, *state_->renderer);
   IdImage image{
       picture.width_px, picture.height_px, state_->renderer->RenderIds(plan.list, plan.view), {}};
   if (image.ids.empty()) {
@@ -122,7 +125,7 @@ IdImage Painter::DrawIds(const Picture& picture) {
 ListedPicture Painter::DrawListed(const Picture& picture) {
   ListedPicture listed{.image = Draw(picture)};
   if (listed.image.rgb.empty()) return listed;
-  const Plan plan = MakePlan(picture, *state_->font);
+  const Plan plan = MakePlan(picture, *state_->font, *state_->renderer);
   listed.things = state_->renderer->RenderIds(plan.list, plan.view);
   if (listed.things.empty()) {
     state_->error = "OpenGL has no memory for a picture of this size";

@@ -271,7 +271,10 @@ StripLayout LayOutStrip(const TimelineStrip& strip, const Font& font, int width_
   }
   const float text_size = std::max(kMinStripText_px, kRowText * scale);
   const auto width = static_cast<float>(width_px), height = static_cast<float>(height_px);
-  const float label_width = std::min(WidestLabel(strip, font, text_size), 0.2f * width);
+  const float note_width =
+      strip.rows_left_out > 0 ? font.Width("+ 100 more", kSmallText * scale) : 0;
+  const float label_width =
+      std::min(std::max(WidestLabel(strip, font, text_size), note_width), 0.2f * width);
   layout.label_left = (kMargin + kPadding + 2) * scale;
   const TimeAxis axis{strip.begin_s, strip.end_s, layout.label_left + label_width + 14 * scale,
                       width - (kMargin + 2 * kPadding) * scale};

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "render/overlay.h"
+#include "tests/render/demo_picture.h"
 
 namespace prehend::render {
 namespace {
@@ -43,6 +44,33 @@ TEST_F(LabelsTest, NeverOverlapAndStayInside) {
       for (std::size_t k = 0; k < i; ++k) EXPECT_FALSE(box.Overlaps(placed[k].box));
     }
   }
+}
+
+TEST_F(LabelsTest, ALeaderEndsWhereTheThingIsSeen) {
+  const physics::Scene scene = DemoScene();
+  const Picture picture = DemoPicture(scene);
+  const DrawList list = MakeDrawList(picture);
+  const View view = MakeView(picture.camera, picture.width_px, picture.height_px, 0, list.bounds);
+  const auto anchor_of_milk = [&](const std::vector<std::uint32_t>& seen) {
+    Overlay overlay;
+    AddTitleAndLabels(picture, list, view, seen, *font_, &overlay);
+    for (const PlacedLabel& label : overlay.labels)
+      if (label.request.text == "milk") return label.request.anchor;
+    return Eigen::Vector2f(-1, -1);
+  };
+  const auto milk = static_cast<std::uint32_t>(list.first_body + 1);
+  const Eigen::Vector2f middle = *ToPixel(view, list.objects[milk].bounds.center_m());
+  EXPECT_EQ(anchor_of_milk({}), middle);
+  // Something hides all of it but a strip of 20 pixels, 30 pixels to the right.
+  std::vector<std::uint32_t> seen(std::size_t(1) * picture.width_px * picture.height_px, 1);
+  const int left = static_cast<int>(middle.x()) + 30, top = static_cast<int>(middle.y()) - 10;
+  for (int y = top; y < top + 20; ++y)
+    for (int x = left; x < left + 20; ++x)
+      seen[static_cast<std::size_t>(y) * picture.width_px + x] = milk;
+  const Eigen::Vector2f anchor = anchor_of_milk(seen);
+  EXPECT_GE(anchor.x(), left + 3) << "not at its edge";
+  EXPECT_LT(anchor.x(), left + 5);
+  EXPECT_NEAR(anchor.y(), middle.y(), 1);
 }
 
 TEST_F(LabelsTest, ManyLabelsInOnePlaceAreLeftOutRatherThanStacked) {

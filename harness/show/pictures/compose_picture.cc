@@ -287,6 +287,7 @@ class StripComposer {
     for (const grammar::NamedEvent& event : run_.timeline.events)
       if (IsOfHand(run_, event, DrawnAs::kGrasp, hand)) AddBar(event, FirstOf(run_, event), row);
     Append(std::move(row));
+    rows_of_hands_ = strip_.rows.size();
   }
 
   /// Bars have the names of the entities in the last role.
@@ -299,19 +300,37 @@ class StripComposer {
     Append(std::move(row));
   }
 
-  /// A row for each body that stands on something. Where there is no room for all of them, those
-  /// come first with which hands deal.
-  void AddSupports(std::vector<std::string> bodies) {
-    std::erase_if(bodies,
-                  [&](const std::string& body) { return SupportsOf(body).segments.empty(); });
-    if (strip_.rows.size() + bodies.size() > kMaxRows) {
-      std::ranges::stable_partition(
-          bodies, [&](const std::string& body) { return IsDealtWith(run_, selection_, body); });
+  /// A row for a body that stands on something. Bars have the names of the supports.
+  void AddSupports(const std::string& body) {
+    render::StripRow row{body + " on", {}};
+    for (const grammar::NamedEvent& event : run_.timeline.events) {
+      if (!IsDrawnAs(run_, event, DrawnAs::kSupport) || FirstOf(run_, event) != body) continue;
+      AddBar(event, event.roles[run_.drawings.Of(event.event).last].value, row);
     }
-    for (const std::string& body : bodies) Append(SupportsOf(body));
+    Append(std::move(row));
   }
 
-  const render::TimelineStrip& strip() const { return strip_; }
+  /// Where there is no room for all rows: without the things that stay where they are and that no
+  /// hand deals with; if that is not enough, without what is not at the moment, from the end.
+  render::TimelineStrip Strip() {
+    std::vector<render::StripRow>& rows = strip_.rows;
+    const std::size_t all = rows.size();
+    if (all <= kMaxRows) return strip_;
+    std::erase_if(rows, [&](const render::StripRow& row) {
+      return row.label.ends_with(" on") &&
+             FirstChange_s(row.segments, strip_.begin_s, strip_.end_s) > strip_.end_s &&
+             !IsDealtWith(run_, selection_, row.label.substr(0, row.label.size() - 3));
+    });
+    for (std::size_t i = rows.size(); i-- > rows_of_hands_ && rows.size() > kMaxRows;) {
+      const bool is_now = std::ranges::any_of(rows[i].segments, [&](const auto& bar) {
+        return bar.begin_s <= strip_.playhead_s && strip_.playhead_s < bar.end_s;
+      });
+      if (!is_now) rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    rows.resize(std::min(rows.size(), kMaxRows));
+    strip_.rows_left_out = static_cast<int>(all - rows.size());
+    return strip_;
+  }
 
  private:
   void AddBar(const grammar::NamedEvent& event, std::string name, render::StripRow& row) const {
@@ -322,26 +341,14 @@ class StripComposer {
     row.segments.push_back({std::move(name), Seconds(event.interval.begin, run_),
                             Seconds(event.interval.end, run_), EventColor(run_, event)});
   }
-  /// Bars have the names of the supports.
-  render::StripRow SupportsOf(const std::string& body) const {
-    render::StripRow row{body + " on", {}};
-    for (const grammar::NamedEvent& event : run_.timeline.events) {
-      if (!IsDrawnAs(run_, event, DrawnAs::kSupport) || FirstOf(run_, event) != body) continue;
-      AddBar(event, event.roles[run_.drawings.Of(event.event).last].value, row);
-    }
-    return row;
-  }
   void Append(render::StripRow row) {
-    if (row.segments.empty()) return;
-    if (strip_.rows.size() < kMaxRows)
-      strip_.rows.push_back(std::move(row));
-    else
-      ++strip_.rows_left_out;
+    if (!row.segments.empty()) strip_.rows.push_back(std::move(row));
   }
 
   const episode::RunResult& run_;
   const Selection& selection_;
   render::TimelineStrip strip_;
+  std::size_t rows_of_hands_ = 0;
 };
 
 /// Rows per hand: its phases, its grasps; then one per kind of other events; then one of supports
@@ -355,11 +362,9 @@ render::TimelineStrip ComposeStrip(const physics::Scene& scene, const episode::R
     composer.AddGrasps(hand.name);
   }
   for (const std::string& name : OtherEvents(run)) composer.AddEvents(name);
-  std::vector<std::string> movable;
   for (const physics::Body& body : scene.bodies)
-    if (!body.fixed && !body.kinematic) movable.push_back(body.name);
-  composer.AddSupports(std::move(movable));
-  return composer.strip();
+    if (!body.fixed && !body.kinematic) composer.AddSupports(body.name);
+  return composer.Strip();
 }
 
 struct Span_s {
