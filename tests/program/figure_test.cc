@@ -98,6 +98,27 @@ int Count(const std::string& text, const std::string& part) {
   return count;
 }
 
+TEST_F(Figure, TheCasesOfThePaperAreOnOneSheet) {
+  const Said said = Do({"keyframes", "--sheet", "paper", "--width", "180mm", "-o", Path("a.svg")});
+  if (Has(said.err, "PREHEND_RENDER=OFF")) GTEST_SKIP() << said.err;
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const std::string svg = ReadFile(Path("a.svg"));
+  EXPECT_EQ(Count(svg, "data:image/png;base64,"), 10);
+  EXPECT_TRUE(Has(svg, ">(a) reaching: a thing") && Has(svg, ">(j) putting down after"));
+  EXPECT_EQ(Do({"phases", "--sheet", "paper", "-o", Path("b.svg")}).exit_code, 2);
+  EXPECT_EQ(
+      Do({"keyframes", "milk_carton_wrap", "--sheet", "paper", "-o", Path("b.svg")}).exit_code, 2);
+}
+
+TEST_F(Figure, ThePlateIsCarriedByOneHandAndByTwo) {
+  const Said said = Do({"plate", "--scenes", "0", "-o", Path("a.svg")});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const std::string svg = ReadFile(Path("a.svg"));
+  EXPECT_LT(svg.find(">plate_of_a_kilogram_twists_out_of_one_hand,"),
+            svg.find(">two_hands_carry_a_plate_of_a_kilogram,"));
+  EXPECT_EQ(Count(svg, ">tilt, degrees<"), 1) << "two hands keep it level";
+}
+
 TEST_F(Figure, ScenesAreAboveAChart) {
   const Said said = Do({"phases", "-o", Path("a.svg")});
   ASSERT_EQ(said.exit_code, 0) << said.err;
@@ -127,7 +148,7 @@ std::vector<std::string> DocumentedCommands() {
 
 TEST_F(Figure, TheCommandsOfThePageRun) {
   const std::vector<std::string> commands = DocumentedCommands();
-  EXPECT_EQ(commands.size(), 15u);
+  EXPECT_EQ(commands.size(), 16u);
   for (const std::string& command : commands) {
     // Words as a shell splits them; what is written goes to this test's folder.
     std::vector<std::string> words;

@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
+#include <ranges>
+#include <tuple>
 
 #include "harness/show/pictures/pictures.h"
 #include "harness/truth/timeline/event_text.h"
@@ -18,6 +22,8 @@ using grammar::NamedEvent;
 
 constexpr double kForceWindow_s = 0.05;  ///< forces are means over so long
 constexpr double kMoves_m = 0.01;        ///< what rises or sinks less has no curve
+constexpr double kTilts_deg = 5;         ///< likewise what leans over less
+constexpr double kApart_s = 0.1;         ///< scenes of moments that are nearer look the same
 
 /// The roles but that of the hand: "milk".
 std::string OthersOf(const episode::RunResult& run, const NamedEvent& event) {
@@ -139,19 +145,27 @@ Chart SeriesChart(const scenario::Scenario& scenario, const episode::RunResult& 
               .to_s = window.to_s,
               .rows = PhaseRows(scenario, run, window)};
   const physics::Scene& scene = scenario.scene;
-  Panel heights{"height, m", {}}, triggers{"trigger", {}}, forces{"force of touch, N", {}};
+  Panel heights{"height, m", {}}, tilts{"tilt, degrees", {}}, triggers{"trigger", {}},
+      forces{"force of touch, N", {}};
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const physics::Body& body = scene.bodies[i];
     if (body.fixed || body.kinematic || body.grains) continue;
-    Curve curve{body.name, {}};
+    Curve curve{body.name, {}}, tilt{body.name, {}};
     double least = 1e9, most = -1e9;
     for (const physics::Snapshot& snapshot : run.recording) {
       const double height_m = snapshot.bodies[i].X_WB.p_m.z();
       curve.points.emplace_back(SecondsOf(run, snapshot.tick), height_m);
+      const double up = (snapshot.bodies[i].X_WB.q * Eigen::Vector3d::UnitZ()).z();
+      tilt.points.emplace_back(curve.points.back().first,
+                               std::acos(std::clamp(up, -1.0, 1.0)) * 180 / std::numbers::pi);
       least = std::min(least, height_m);
       most = std::max(most, height_m);
     }
-    if (most - least >= kMoves_m) heights.curves.push_back(std::move(curve));
+    if (most - least < kMoves_m) continue;
+    heights.curves.push_back(std::move(curve));
+    const auto lean = std::ranges::max_element(tilt.points, {}, &std::pair<double, double>::second);
+    if (lean != tilt.points.end() && lean->second >= kTilts_deg)
+      tilts.curves.push_back(std::move(tilt));
   }
   const double rate_hz = scene.world.rate_hz, share = 1 / (kForceWindow_s * rate_hz);
   for (std::size_t h = 0; h < scene.hands.size(); ++h) {
@@ -174,9 +188,49 @@ Chart SeriesChart(const scenario::Scenario& scenario, const episode::RunResult& 
     triggers.curves.push_back(std::move(trigger));
     forces.curves.push_back(std::move(force));
   }
-  for (Panel* panel : {&heights, &triggers, &forces})
+  for (Panel* panel : {&heights, &tilts, &triggers, &forces})
     if (!panel->curves.empty()) chart.panels.push_back(std::move(*panel));
   return chart;
+}
+
+std::vector<KeyMoment> SeriesMoments(const Chart& chart, std::size_t count) {
+  std::vector<KeyMoment> moments;
+  // In the order of what tells most: on its way over, level, over; most pressed, up.
+  const std::tuple<const char*, double, double> wanted[] = {{"tilt", 0.5, kTilts_deg},
+                                                            {"tilt", 0.05, kTilts_deg},
+                                                            {"tilt", 0.95, kTilts_deg},
+                                                            {"force", 0.98, 1.0},
+                                                            {"height", 0.98, kMoves_m}};
+  for (const auto& [name, share, least] : wanted) {
+    KeyMoment first{.time_s = chart.to_s + 1};
+    for (const Panel& panel : chart.panels) {
+      if (!panel.name.starts_with(name)) continue;
+      const std::size_t comma = panel.name.find(", ");
+      for (const Curve& curve : panel.curves) {
+        double low = 1e9, high = -1e9;
+        auto in = std::views::filter(curve.points, [&](const auto& point) {
+          return point.first >= chart.from_s && point.first <= chart.to_s;
+        });
+        for (const auto& [time_s, value] : in)
+          low = std::min(low, value), high = std::max(high, value);
+        for (const auto& [time_s, value] : in) {
+          if (high - low < least || value < low + share * (high - low)) continue;
+          if (time_s < first.time_s)
+            first = {.time_s = time_s,
+                     .caption = fmt::format("{} of {}: {:.3g} {}", panel.name.substr(0, comma),
+                                            curve.name, value, panel.name.substr(comma + 2))};
+          break;
+        }
+      }
+    }
+    const auto is_near = [&](const KeyMoment& other) {
+      return std::abs(other.time_s - first.time_s) < kApart_s;
+    };
+    if (!first.caption.empty() && moments.size() < count && std::ranges::none_of(moments, is_near))
+      moments.push_back(first);
+  }
+  std::ranges::sort(moments, {}, &KeyMoment::time_s);
+  return moments;
 }
 
 std::optional<Chart> GazeChart(const scenario::Scenario& scenario, const episode::RunResult& run,

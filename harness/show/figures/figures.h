@@ -22,10 +22,13 @@ Chart PhasesChart(const scenario::Scenario& scenario, const episode::RunResult& 
 Chart SideBySide(Chart chart, const std::string& here, const Chart& other,
                  const std::string& there);
 
-/// What hands do, and over it per moving thing its height, per hand its trigger and the force with
-/// which it touches things.
+/// What hands do, and below it per moving thing its height and tilt, per hand its trigger and the
+/// force with which it touches things.
 Chart SeriesChart(const scenario::Scenario& scenario, const episode::RunResult& run,
                   const Window& window);
+/// When its curves tell most, at most `count` moments in the order of time: begin, half and end of
+/// the tilt; the greatest force; the greatest height.
+std::vector<KeyMoment> SeriesMoments(const Chart& chart, std::size_t count);
 
 /// What each person sees: a row per entity, the distance to it. Nothing if there is no person.
 std::optional<Chart> GazeChart(const scenario::Scenario& scenario, const episode::RunResult& run,

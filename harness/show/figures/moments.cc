@@ -108,30 +108,6 @@ std::vector<KeyMoment> KeyMoments(const episode::RunResult& run, const Window& w
   return found;
 }
 
-std::vector<double> SpreadMoments(const episode::RunResult& run, const Window& window,
-                                  std::size_t count) {
-  double from_s = window.from_s, to_s = window.to_s;
-  const std::vector<Phase> phases = PhasesIn(run, window);
-  if (!phases.empty()) {
-    from_s = std::max(from_s, std::ranges::min_element(phases, {}, &Phase::begin_s)->begin_s);
-    to_s = std::min(to_s, std::ranges::max_element(phases, {}, &Phase::end_s)->end_s);
-  }
-  std::vector<double> times_s;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-    times_s.push_back(from_s + share * (to_s - from_s));
-  }
-  return times_s;
-}
-
-std::vector<KeyMoment> SpreadScenes(const episode::RunResult& run, const Window& window,
-                                    std::size_t count) {
-  std::vector<KeyMoment> moments;
-  for (const double time_s : SpreadMoments(run, window, count))
-    moments.push_back({.time_s = time_s, .caption = ""});
-  return moments;
-}
-
 std::vector<KeyMoment> EventMoments(const episode::RunResult& run, const Window& window,
                                     std::size_t count) {
   std::vector<KeyMoment> moments;

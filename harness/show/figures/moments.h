@@ -38,17 +38,11 @@ struct KeyMoment {
   std::string caption;                ///< "reaching begins"
   std::vector<std::string> involved;  ///< the hand and the things that it is about
   std::string camera = {};            ///< empty: as of the other scenes
+  double track_s = 1;                 ///< so much of the way of its hand leads to it
+  bool keeps_track = false;           ///< that way was kept until the phase was recognised
 };
 std::vector<KeyMoment> KeyMoments(const episode::RunResult& run, const Window& window,
                                   std::size_t most);
-
-/// The middle of so many equal parts of what hands do in the window; of all of it if they do
-/// nothing.
-std::vector<double> SpreadMoments(const episode::RunResult& run, const Window& window,
-                                  std::size_t count);
-/// The same without captions.
-std::vector<KeyMoment> SpreadScenes(const episode::RunResult& run, const Window& window,
-                                    std::size_t count);
 
 /// Key moments but begin and end of the episode, which a chart shows anyway.
 std::vector<KeyMoment> EventMoments(const episode::RunResult& run, const Window& window,

@@ -111,12 +111,13 @@ class SheetDrawing {
     double lines = 0;
     for (std::size_t begin = 0; begin <= text.size();) {
       std::size_t end = std::min(text.find('\n', begin), text.size());
-      if (const std::size_t space = text.rfind(' ', begin + most);
-          end - begin > most && space != std::string::npos && space > begin)
-        end = space;
+      if (end - begin > most) {
+        const std::size_t space = text.rfind(' ', begin + most);
+        end = space != std::string::npos && space > begin ? space : begin + most;
+      }
       ++lines;
       Text(x, top + lines * line_px, text.substr(begin, end - begin), weight);
-      begin = end + 1;
+      begin = end + (end == text.size() || text[end] == ' ' || text[end] == '\n' ? 1 : 0);
     }
     return lines;
   }
@@ -195,18 +196,27 @@ std::string WideView(const scenario::Scenario& scenario, const episode::RunResul
   return fmt::format("{}:{:.3f}", camera.substr(0, camera.rfind(':')), kNearer * view->view_deg);
 }
 
+void AddKeyFrames(const scenario::Scenario& scenario, const episode::RunResult& run,
+                  const std::vector<KeyMoment>& moments, const SceneFormat& format,
+                  ScenePainter& painter, TileRow& row) {
+  SceneFormat bare = Bare(format);
+  bare.picture.regions = bare.picture.paths = bare.picture.path_so_far = true;
+  for (const KeyMoment& moment : moments) {
+    bare.picture.framed = moment.involved;
+    bare.picture.from_s = bare.picture.framed_from_s = moment.time_s - moment.track_s;
+    bare.picture.to_s = bare.picture.framed_to_s = moment.time_s;
+    bare.picture.kept_from_s = moment.keeps_track ? bare.picture.from_s : std::optional<double>();
+    const std::string caption =
+        fmt::format("({}) {}\n{:.2f} s", LetterOf(row.tiles.size()), moment.caption, moment.time_s);
+    AddScene(scenario, run, moment.time_s, caption, bare, painter, row);
+  }
+}
+
 Sheet KeyFrameSheet(const scenario::Scenario& scenario, const episode::RunResult& run,
                     const std::vector<KeyMoment>& moments, const SceneFormat& format,
                     ScenePainter& painter) {
   TileRow row{.columns = ColumnsFor(moments.size(), kMostColumns, format.chart)};
-  SceneFormat bare = Bare(format);
-  bare.picture.regions = true;
-  for (std::size_t i = 0; i < moments.size(); ++i) {
-    bare.picture.framed = moments[i].involved;
-    const std::string caption =
-        fmt::format("({}) {}\n{:.2f} s", LetterOf(i), moments[i].caption, moments[i].time_s);
-    AddScene(scenario, run, moments[i].time_s, caption, bare, painter, row);
-  }
+  AddKeyFrames(scenario, run, moments, format, painter, row);
   return {.title = scenario.name + ", " + scenario.grammar, .rows = {std::move(row)}};
 }
 
@@ -316,6 +326,24 @@ double TileWidth(const ChartFormat& format, int columns) {
 
 std::string SheetSvg(const Sheet& sheet, const ChartFormat& format) {
   return SheetDrawing(sheet, format).Run();
+}
+
+std::string BesideEachOther(const std::vector<std::string>& svgs, const ChartFormat& format) {
+  std::vector<pugi::xml_document> parts(svgs.size());
+  double height = 0;
+  for (std::size_t i = 0; i < svgs.size(); ++i) {
+    parts[i].load_string(svgs[i].c_str());
+    height = std::max(height, parts[i].child("svg").attribute("height").as_double());
+  }
+  ChartFormat all = format;
+  all.width_px *= static_cast<double>(svgs.size());
+  pugi::xml_document document;
+  pugi::xml_node svg = AddDrawing(document, all, height);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double left = format.width_px * static_cast<double>(i);
+    svg.append_copy(parts[i].child("svg")).append_attribute("x").set_value(left);
+  }
+  return ToText(document, Layout::kIndented);
 }
 
 std::string LetterOf(std::size_t number) {

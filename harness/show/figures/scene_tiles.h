@@ -48,6 +48,9 @@ double TileWidth(const ChartFormat& format, int columns);
 
 std::string SheetSvg(const Sheet& sheet, const ChartFormat& format = {});
 
+/// Drawings of one width beside each other.
+std::string BesideEachOther(const std::vector<std::string>& svgs, const ChartFormat& format);
+
 /// "a", "b", .. "z", "aa", ..
 std::string LetterOf(std::size_t number);
 
@@ -70,7 +73,12 @@ std::string AddScene(const scenario::Scenario& scenario, const episode::RunResul
 std::string WideView(const scenario::Scenario& scenario, const episode::RunResult& run,
                      double time_s, const SceneFormat& format);
 
-/// The key moments with letters, on as many columns as there are, at most five.
+/// Adds the key moments with the next letters, and the ways of the hands that lead to them.
+void AddKeyFrames(const scenario::Scenario& scenario, const episode::RunResult& run,
+                  const std::vector<KeyMoment>& moments, const SceneFormat& format,
+                  ScenePainter& painter, TileRow& row);
+
+/// The same on as many columns as there are, at most five.
 Sheet KeyFrameSheet(const scenario::Scenario& scenario, const episode::RunResult& run,
                     const std::vector<KeyMoment>& moments, const SceneFormat& format,
                     ScenePainter& painter);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // See harness/show/pictures/pictures.h. Tested by tests/program/render_test.cc
+#include <fmt/format.h>
+
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/process/child_process.h"
 #include "harness/episode/run/run_scenario.h"

@@ -21,6 +21,7 @@ using grammar::DrawnAs;
 
 /// Paths are thinned to this many points per second; more only costs triangles.
 constexpr double kPathPoints_per_s = 60;
+const render::Color kKept = ColorOf(0xA8DDB5);
 /// Radius of the mark of a contact.
 constexpr float kHandsContact_m = 0.008f, kPersonsContact_m = 0.025f;
 /// Rows of the strip; more would hide the picture.
@@ -38,6 +39,8 @@ struct Selection {
   double from_s = 0, to_s = 1;            ///< of the strip
   double path_from_s = 0, path_to_s = 1;  ///< of paths and ghosts
   std::string hand, entity;               ///< empty: all
+  std::optional<double> kept_from_s;
+  grammar::Tick moment = 0;
 
   bool IsIn(double t_s) const { return path_from_s <= t_s && t_s <= path_to_s; }
   bool HasHand(const std::string& name) const { return hand.empty() || hand == name; }
@@ -98,14 +101,16 @@ const grammar::NamedEvent* PhaseOf(const episode::RunResult& run, const Selectio
 void AppendPath(const physics::Scene& scene, const episode::RunResult& run,
                 const Selection& selection, int hand, std::vector<render::PathInterval>& path) {
   const std::string& name = scene.hands[hand].name;
-  const grammar::NamedEvent* phase = nullptr;
+  const grammar::NamedEvent *phase = nullptr,
+                            *at_last = PhaseOf(run, selection, name, selection.moment);
   double next_point_s = 0;
-  bool first = true;
+  bool first = true, was_kept = false;
   for (const physics::Snapshot& snapshot : run.recording) {
     const double t_s = Seconds(snapshot.tick, run);
     if (!selection.IsIn(t_s)) continue;
     const grammar::NamedEvent* now = PhaseOf(run, selection, name, snapshot.tick);
-    const bool change = first || now != phase;
+    const bool is_kept = selection.kept_from_s && t_s >= *selection.kept_from_s && now != at_last;
+    const bool change = first || now != phase || is_kept != was_kept;
     if (!change && t_s < next_point_s) continue;
     const Eigen::Vector3f point = snapshot.hands[hand].palm.X_WB.p_m.cast<float>();
     if (change) {
@@ -115,10 +120,13 @@ void AppendPath(const physics::Scene& scene, const episode::RunResult& run,
         path.back().label = now->event;
         path.back().color = EventColor(run, *now);
       }
+      if (is_kept) path.back().label = "kept";
+      if (is_kept && now) path.back().color = kKept;
     }
     path.back().points_m.push_back(point);
     next_point_s = t_s + 1 / kPathPoints_per_s;
     phase = now;
+    was_kept = is_kept;
     first = false;
   }
 }
@@ -426,7 +434,9 @@ Selection SelectionOf(const PictureFormat& format, const physics::Scene& scene,
   Selection selection{.from_s = format.from_s.value_or(0),
                       .to_s = format.to_s.value_or(end_s),
                       .hand = format.only,
-                      .entity = format.of};
+                      .entity = format.of,
+                      .kept_from_s = format.kept_from_s,
+                      .moment = moment};
   const bool is_given = format.from_s || format.to_s;
   const bool is_long = !is_given && end_s > kLong_s;
   const Span_s shown =

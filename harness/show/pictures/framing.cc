@@ -122,6 +122,12 @@ void FrameStars(const std::vector<render::Marker>& markers, Framing& framing) {
   }
 }
 
+void FramePaths(const std::vector<render::PathInterval>& path, Framing& framing) {
+  for (const render::PathInterval& interval : path)
+    for (const Eigen::Vector3f& point_m : interval.points_m)
+      framing.AddBall(point_m.cast<double>(), 0);
+}
+
 /// A person who has a body and a hand of the scene is looked over the shoulder: only her hands are
 /// framed, unless `body` asks for all of her.
 bool IsFramed(const scenario::Scenario& scenario, std::size_t body, const std::string& camera) {
@@ -153,6 +159,7 @@ render::Camera CameraFor(const scenario::Scenario& scenario, const episode::RunR
   std::optional<Eigen::Vector3f> from;
   if (name == "hand" && !scenario.scene.hands.empty()) {
     from = FrameHands(scenario, picture.snapshot, format.framed, framing);
+    if (format.framed_from_s) FramePaths(picture.path, framing);
     FrameStars(picture.markers, framing);
   } else {
     framing.ForEachLook([&](const physics::Snapshot& now) { framing.AddHands(now); });

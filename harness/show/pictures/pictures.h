@@ -47,12 +47,15 @@ struct PictureFormat {
   std::string of;  ///< the path of this entity, and events with it in a role; empty: all events
   std::vector<std::string> marked;  ///< things that get a bubble around them
   std::vector<std::string> framed;  ///< the camera shows these things, too, wherever they are
-  /// All cameras but `hand`: what happens between these times. Empty: in the whole episode.
+  /// What happens between these times. Empty: in the whole episode, with the camera `hand` nothing.
   std::optional<double> framed_from_s, framed_to_s;
   /// 0xRRGGBB of the parts of hands with sensors of the set of this name; others look like skin.
   std::map<std::string, std::uint32_t> sensor_colors = {};
   bool path_so_far = false;  ///< paths end at the moment, as in a film
-  bool regions = false;      ///< of interest of the phases at the moment, and candidates
+  /// Since then, what a hand did before its phase of the moment is pale green: a track that was
+  /// kept until that phase was recognised.
+  std::optional<double> kept_from_s = {};
+  bool regions = false;  ///< of interest of the phases at the moment, and candidates
   bool title = true, labels = true, strip = true, ghosts = true, paths = true, gaze = true;
 };
 

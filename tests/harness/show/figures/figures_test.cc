@@ -27,16 +27,54 @@ TEST(Figures, PhasesHaveARowPerHandAndEvent) {
   EXPECT_EQ(both.rows[1].name, "right_hand (yours)");
 }
 
+TEST(Figures, ThingsHaveRowsByNameAndThoseThatStayAreLast) {
+  const auto& [loaded, run] = Of("bimanual/tray_with_three_things_is_carried");
+  const auto names_of = [](const Chart& chart) {
+    std::vector<std::string> names;
+    for (const Row& row : chart.rows)
+      if (row.name.ends_with(" on")) names.push_back(row.name);
+    return names;
+  };
+  const Chart chart = PhasesChart(loaded.scenario, run, WholeOf(run));
+  const std::vector<std::string> names = names_of(chart);
+  ASSERT_EQ(names.size(), 4u);
+  EXPECT_EQ(names[0], "tray on") << "the others stay on it";
+  const auto tray = std::ranges::find(chart.rows, "tray on", &Row::name);
+  ASSERT_EQ(tray->bars.size(), 2u);
+  EXPECT_EQ(tray->bars[0].text, "table");
+  EXPECT_EQ(tray->bars[0].tip, "supported_by(tray, table)");
+  Window in_the_air = WholeOf(run);
+  in_the_air.from_s = 2, in_the_air.to_s = 4;
+  const std::vector<std::string> then = names_of(PhasesChart(loaded.scenario, run, in_the_air));
+  EXPECT_EQ(std::ranges::count(then, "tray on"), 0) << "no bar of it is in the window";
+  EXPECT_EQ(then.size(), 3u);
+}
+
 TEST(Figures, SeriesShowWhatMovesAndWhoPresses) {
   const auto& [loaded, run] = Of("bimanual/two_hands_carry_a_plate_of_a_kilogram");
   const Chart chart = SeriesChart(loaded.scenario, run, WholeOf(run));
-  ASSERT_EQ(chart.panels.size(), 3u);
+  ASSERT_EQ(chart.panels.size(), 3u) << "nothing tilts";
   EXPECT_EQ(chart.panels[0].curves.size(), 2u) << "plate and cake, not the stand";
   ASSERT_EQ(chart.panels[2].curves.size(), 2u);
   const Curve& force = chart.panels[2].curves[0];
   EXPECT_EQ(force.points.size(), run.recording.size());
   EXPECT_LT(force.points.front().second, 1e-9);
   EXPECT_GT(force.points.back().second, 10) << "a kilogram between two hands, newtons";
+}
+
+TEST(Figures, ScenesOfASeriesShowTheTwist) {
+  const auto& [loaded, run] = Of("bimanual/plate_of_a_kilogram_twists_out_of_one_hand");
+  const auto moments = SeriesMoments(SeriesChart(loaded.scenario, run, WholeOf(run)), 3);
+  const auto twist = std::ranges::find_if(moments, [](const KeyMoment& moment) {
+    return moment.caption.starts_with("tilt of plate: ");
+  });
+  ASSERT_NE(twist, moments.end());
+  EXPECT_GT(twist->time_s, 1.85) << "the stand holds it until then";
+  EXPECT_LT(twist->time_s, 2.2) << "it lies on the table then";
+  const auto& [level, its_run] = Of("bimanual/two_hands_carry_a_plate_of_a_kilogram");
+  for (const KeyMoment& moment :
+       SeriesMoments(SeriesChart(level.scenario, its_run, WholeOf(its_run)), 3))
+    EXPECT_EQ(moment.caption.find("tilt"), std::string::npos) << "two hands keep it level";
 }
 
 TEST(Figures, GazeIsWhatPersonsSee) {

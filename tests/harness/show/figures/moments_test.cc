@@ -28,16 +28,6 @@ TEST(Moments, KeyMomentsAreInOrderAndNoMoreThanAskedFor) {
   EXPECT_LE(part.back().time_s, 2);
 }
 
-TEST(Moments, AreSpreadOverWhatHandsDo) {
-  const episode::RunResult& run = Of("pick_and_place/milk_carton_wrap").run;
-  const auto times_s = SpreadMoments(run, WholeOf(run), 3);
-  ASSERT_EQ(times_s.size(), 3u);
-  EXPECT_NEAR(times_s[1] - times_s[0], times_s[2] - times_s[1], 1e-9);
-  EXPECT_GT(times_s[0], 0.5);
-  EXPECT_LT(times_s[2], 3.4) << "the hand has put it down then";
-  EXPECT_EQ(SpreadMoments({}, {.from_s = 0, .to_s = 4}, 2), (std::vector<double>{1, 3}));
-}
-
 TEST(Moments, OfAChartAreInsideOfTheEpisodeOrNamed) {
   const auto& [loaded, run] = Of("pick_and_place/milk_carton_wrap");
   const auto events = EventMoments(run, WholeOf(run), 5);

@@ -36,6 +36,18 @@ TEST_F(SceneTiles, KeyFramesHaveLettersAndSizesOfTheirTiles) {
   EXPECT_EQ(pictures.size(), 4u) << "each shows something else";
 }
 
+TEST_F(SceneTiles, AKeyFrameHasTheWayThatLeadsToIt) {
+  const auto tile = [&](KeyMoment moment) {
+    TileRow row;
+    AddKeyFrames(scenario_, played_.run, {std::move(moment)}, {}, painter_, row);
+    return row.tiles[0].png;
+  };
+  const KeyMoment end{.time_s = 3.4, .caption = "c", .camera = {}, .track_s = 1};
+  KeyMoment kept = end;
+  kept.keeps_track = true;
+  EXPECT_NE(tile(end), tile(kept)) << "what led to the put-down is pale green";
+}
+
 TEST_F(SceneTiles, AChartSaysWhenItsScenesAre) {
   const Sheet sheet = WithScenes({.title = "t", .to_s = 5}, scenario_, played_.run,
                                  {{.time_s = 1, .caption = "one"}, {.time_s = 2}}, {}, painter_);

@@ -47,6 +47,29 @@ TEST(Sheet, TilesAreInRowsAboveTheChart) {
   EXPECT_LT(Number(letters[0], "x") + 5, Number(letters[1], "x")) << "they do not overlap";
 }
 
+TEST(Sheet, ACaptionIsBrokenWhereItsTileEnds) {
+  const Sheet sheet{
+      .rows = {{.tiles = {{"png", "(a) putting_down begins near the place"}}, .columns = 3}}};
+  const std::string svg = SheetSvg(sheet, {.width_px = 336, .text_px = 9.3});
+  EXPECT_NE(svg.find(">(a) putting_down<"), std::string::npos) << svg;
+  EXPECT_NE(svg.find(">begins near the<"), std::string::npos) << svg;
+  const std::string word =
+      SheetSvg({.rows = {{.tiles = {{"png", "pick_and_place(right_hand, milk)"}}, .columns = 3}}},
+               {.width_px = 336, .text_px = 9.3});
+  EXPECT_NE(word.find(">pick_and_place(rig<"), std::string::npos) << word;
+}
+
+TEST(Sheet, DrawingsStandBesideEachOther) {
+  const std::string one = SheetSvg({.title = "one"}), two = SheetSvg({.title = "two", .note = "n"});
+  pugi::xml_document svg;
+  ASSERT_TRUE(svg.load_string(BesideEachOther({one, two}, {}).c_str()));
+  EXPECT_EQ(svg.child("svg").attribute("width").as_double(), 1800);
+  const auto parts = svg.select_nodes("/svg/svg");
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(Number(parts[1], "x"), 900);
+  EXPECT_EQ(svg.child("svg").attribute("height").as_double(), Number(parts[1], "height"));
+}
+
 TEST(Sheet, AHatchIsWithinItsTimeAndRow) {
   const Chart chart{.to_s = 10, .rows = {{"hand", {}, {{2, 3}, {40, 50}}}}};
   pugi::xml_document svg;
