@@ -137,12 +137,12 @@ def others(folder, one):
         else:
             assert len(episodes(here / "all.episodes")) == (7 if job == "trials" else 4), job
             assert (here / "all.html").exists()
+        if job != "trials":
+            killed(folder / (job + "-killed"), here, words)
         if job == "import":
             (here / "parts/part-take2.jsonl.episodes").unlink()
             said = subprocess.run(["bash", SUBMIT.with_name("merge.sbatch"), "import.sbatch", "2", "takes"], cwd=here, capture_output=True, text=True)
             assert said.returncode == 3 and "take2.jsonl is missing; " in said.stderr and len(episodes(here / "all.episodes")) == 3, said
-        if job != "trials":
-            killed(folder / (job + "-killed"), here, words)
 
 
 def killed(folder, unbroken, words):
