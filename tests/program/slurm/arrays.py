@@ -130,6 +130,8 @@ def others(folder, one):
             shutil.copyfile(one, here / "one.episodes")
         run(SUBMIT, *words, folder=here)
         ended()
+        if job != "trials":
+            killed(folder / (job + "-killed"), here, words)
         if job == "sweep":
             lines = (here / "sweep.csv").read_text().splitlines()
             assert len(lines) == 7 and {line.split(",")[0] for line in lines[1:]} == {"20cm", "25cm", "30cm"}, lines
@@ -137,8 +139,6 @@ def others(folder, one):
         else:
             assert len(episodes(here / "all.episodes")) == (7 if job == "trials" else 4), job
             assert (here / "all.html").exists()
-        if job != "trials":
-            killed(folder / (job + "-killed"), here, words)
         if job == "import":
             (here / "parts/part-take2.jsonl.episodes").unlink()
             said = subprocess.run(["bash", SUBMIT.with_name("merge.sbatch"), "import.sbatch", "2", "takes"], cwd=here, capture_output=True, text=True)
