@@ -141,7 +141,7 @@ ExitCode DrawPaperFrames(const ParsedOptions& options, const CommandContext& con
     moment.involved = {"milk", "juice"};
     moment.track_s = frame.track_s;
     moment.keeps_track = frame.keeps_track;
-    AddKeyFrames(played.loaded.scenario, played.run, moments, format, painter, row);
+    AddKeyFrames(played.loaded.scenario, played.run, *moments, format, painter, row);
   }
   return WriteSheet({.rows = {std::move(row)}}, format, painter, options, context);
 }
