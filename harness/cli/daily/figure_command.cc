@@ -111,7 +111,7 @@ constexpr PaperFrame kPaper[] = {
     {kSlide, "sliding.end", kAlmost_s, 1, false, "sliding along the support"},
     {kSlide, "picking_up.begin", 0.05, 1, false, "picking up begins off the support"},
     {kSlide, "picking_up.end", kAlmost_s, 1, false, "picking up ends at the edge of its region"},
-    {kCandidates, "transporting.end", -0.5, 1.2, false, "transporting"},
+    {kCandidates, "transporting.end", -0.5, 1.2, false, "transporting, from region to region"},
     {kCandidates, "putting_down.begin", 0.03, 1, false, "putting down: near the landing place"},
     {kCandidates, "putting_down.end", kAlmost_s, 1.4, true,
      "putting down ends; its begin is found in the track, which is pale green"},
