@@ -104,7 +104,7 @@ TEST_F(Figure, TheCasesOfThePaperAreOnOneSheet) {
   ASSERT_EQ(said.exit_code, 0) << said.err;
   const std::string svg = ReadFile(Path("a.svg"));
   EXPECT_EQ(Count(svg, "data:image/png;base64,"), 10);
-  EXPECT_TRUE(Has(svg, ">(a) reaching: a thing") && Has(svg, ">(j) putting down after"));
+  EXPECT_TRUE(Has(svg, ">(a) reaching: a") && Has(svg, ">(j) putting down"));
   EXPECT_EQ(Do({"phases", "--sheet", "paper", "-o", Path("b.svg")}).exit_code, 2);
   EXPECT_EQ(
       Do({"keyframes", "milk_carton_wrap", "--sheet", "paper", "-o", Path("b.svg")}).exit_code, 2);

@@ -194,7 +194,8 @@ TEST(Knowledge, AllensRelationsAreExclusive) {
   std::set<std::pair<std::string, std::string>> of_any;
   for (const Json& pair :
        Asked({"episode", "ask", days.kb, "allen(A, R, B)", "--json", "--most", "100000"}))
-    of_any.insert({pair["bindings"]["A"]["iri"], pair["bindings"]["B"]["iri"]});
+    of_any.emplace(pair["bindings"]["A"]["iri"].get<std::string>(),
+                   pair["bindings"]["B"]["iri"].get<std::string>());
   EXPECT_EQ(of_any, seen);
   const Said unknown = Prehend({"episode", "ask", days.kb, "label_of(X, L)"});
   EXPECT_EQ(unknown.exit_code, 2);

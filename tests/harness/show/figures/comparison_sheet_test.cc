@@ -84,7 +84,7 @@ TEST(ComparisonSheet, ShowsTheScenesOfEachDifference) {
   EXPECT_TRUE(
       sheet.rows[1].tiles[0].caption.starts_with("(a) fixation(right_hand, milk)\nonly in now: "));
   EXPECT_EQ(sheet.chart->marks.size(), 2u);
-  EXPECT_TRUE(RowOf(*sheet.chart, "supported_by")) << "what both say is one row";
+  EXPECT_TRUE(RowOf(*sheet.chart, "milk on")) << "what both say is one row";
   Window later = WholeOf(run);
   later.from_s = 4;
   EXPECT_TRUE(
