@@ -27,8 +27,8 @@ def checking(folder, part, *more):
     return ["check", WHICH, "--no-pictures", "--jobs", "2", "--report", folder / f"page-{part}", "--record", folder / f"part-{part}.episodes", *more]
 
 
-def episodes(file):
-    with sqlite3.connect(f"file:{file}?mode=ro", uri=True) as database:
+def episodes(file, mode="ro"):
+    with sqlite3.connect(f"file:{file}?mode={mode}", uri=True) as database:
         return [row[0] for row in database.execute("SELECT scenario FROM episode JOIN task ON task.id = task WHERE status <> 'recording'")]
 
 
@@ -45,7 +45,12 @@ def killed(words, file, complete=1):
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     time.sleep(0.2)  # its workers die with it
-    return len(episodes(file))
+    # In a copy: a transaction that was cut off is taken back, which whoever only reads may not do.
+    with tempfile.TemporaryDirectory() as folder:
+        for left in (file, pathlib.Path(f"{file}-journal"), pathlib.Path(f"{file}-wal")):
+            if left.exists():
+                shutil.copy(left, folder)
+        return len(episodes(pathlib.Path(folder) / pathlib.Path(file).name, "rw"))
 
 
 def verdicts(file, folder):
