@@ -85,8 +85,19 @@ const Row kRows[] = {
      "has no golden: that of "},
 };
 
+/// A project with the one scenario: `accept` writes goldens, and those of the library are no
+/// test's to write.
+fs::path ProjectToAcceptIn() {
+  const fs::path project = FreshFolder("episode_kinds_project");
+  WriteFile(project / "prehend.yaml", "");
+  for (const std::string& file :
+       {"scenarios/" + Episodes()[0] + ".yaml", "golden/" + Episodes()[0] + ".timeline"})
+    WriteFile(project / file, ReadFile(fs::path(PREHEND_SOURCE_DIR) / file));
+  return project;
+}
+
 TEST(EpisodeKinds, EveryCommandTakesEachOrSaysWhatIsMissing) {
-  const fs::path folder = FreshFolder("episode_kinds_out");
+  const fs::path folder = FreshFolder("episode_kinds_out"), project = ProjectToAcceptIn();
   int number = 0;
   for (const Row& row : kRows) {
     for (std::size_t kind = 0; kind < kKinds; ++kind) {
@@ -96,7 +107,9 @@ TEST(EpisodeKinds, EveryCommandTakesEachOrSaysWhatIsMissing) {
         if (word == kEpisode) word = Episodes()[kind];
         if (word.starts_with(kOut)) word = out + word.substr(kOut.size());
       }
-      const Said said = Prehend(words, {"CI="});
+      std::vector<std::string> environment = {"CI="};
+      if (words[0] == "accept") environment.push_back("PREHEND_HOME=" + project.string());
+      const Said said = Prehend(words, environment);
       const std::string which =
           row.words[row.words[1] == kEpisode ? 0 : 1] + " of " + kNames[kind] + ": " + said.err;
       EXPECT_EQ(said.exit_code, row.exit_codes[kind]) << which;
@@ -110,8 +123,9 @@ TEST(EpisodeKinds, EveryCommandTakesEachOrSaysWhatIsMissing) {
 }
 
 TEST(EpisodeKinds, AcceptDoesNotAskWhyWhereThereIsNoGolden) {
+  const std::string project = "PREHEND_HOME=" + ProjectToAcceptIn().string();
   for (const std::size_t kept : {1, 3}) {
-    const Said said = Prehend({"accept", Episodes()[kept]}, {"CI="});
+    const Said said = Prehend({"accept", Episodes()[kept]}, {"CI=", project});
     EXPECT_EQ(said.exit_code, 2);
     EXPECT_NE(said.err.find("has no golden: that of "), std::string::npos) << said.err;
   }
