@@ -69,7 +69,7 @@ TEST(Figures, ScenesOfASeriesShowTheTwist) {
     return moment.caption.starts_with("tilt of plate: ");
   });
   ASSERT_NE(twist, moments.end());
-  EXPECT_GT(twist->time_s, 1.35) << "the hand grasps it then";
+  EXPECT_GT(twist->time_s, 1.7) << "it is level until then";
   EXPECT_LT(twist->time_s, 2.2) << "it lies on the table then";
   const auto& [level, its_run] = Of("bimanual/two_hands_carry_a_plate_of_a_kilogram");
   for (const KeyMoment& moment :
