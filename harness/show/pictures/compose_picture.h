@@ -31,6 +31,7 @@ render::Image PaleWithRed(const render::Image& first, const render::Image& secon
 
 /// `name` is one of CamerasOf(): a camera of the scenario, or
 ///  - front, left, right, top, three_quarter: hands, small things and what moves, all the time;
+///    top also what these stand on;
 ///  - action: hands, and small things that move, all the time;
 ///  - body: persons, too;
 ///  - hand: the hands as they are in the picture's snapshot, what is near them, and

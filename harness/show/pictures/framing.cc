@@ -5,6 +5,7 @@
 #include "harness/scenario/scenario/scenario.h"
 #include "harness/show/pictures/compose_picture.h"
 #include "harness/show/pictures/scenery.h"
+#include "physics/scene/geometry.h"
 
 namespace prehend::show {
 namespace {
@@ -16,6 +17,8 @@ constexpr double kMoves_m = 0.02;
 /// What is nearer to a hand than this is framed with it.
 constexpr double kNearHand_m = 0.18;
 constexpr double kNearStar_m = 0.08;
+/// A table larger than this is cut by `top`.
+constexpr double kMostTable_m = 2.5;
 constexpr double kPalmReach_m = 0.11;
 constexpr double kLeastRise =
     0.25;                           ///< of the eye of `hand` above what it looks at, per way across
@@ -70,6 +73,16 @@ class Framing {
   bool IsSmall(std::size_t body) const {
     return 2 * physics::BoundingBox(scenario_.scene.bodies[body]).half_size_m.maxCoeff() <=
            kSceneryFrom_m;
+  }
+  /// Fixed things that what is framed stands on or beside.
+  void AddTables(const physics::Snapshot& now) {
+    const Eigen::AlignedBox3d framed = box_;
+    for (std::size_t i = 0; i < scenario_.scene.bodies.size(); ++i) {
+      const physics::Body& body = scenario_.scene.bodies[i];
+      if (!body.fixed || !physics::IsThing(body) || body.shapes.empty()) continue;
+      const Eigen::AlignedBox3d table = physics::WorldBounds(body, now.bodies[i].X_WB);
+      if (table.intersects(framed) && table.sizes().maxCoeff() <= kMostTable_m) box_.extend(table);
+    }
   }
   const Eigen::AlignedBox3d& box() const { return box_; }
 
@@ -172,6 +185,7 @@ render::Camera CameraFor(const scenario::Scenario& scenario, const episode::RunR
       else if (name != "action")
         framing.AddBody(i, run.recording.front());
     }
+    if (name == "top") framing.AddTables(run.recording.front());
   }
   Eigen::AlignedBox3f box = framing.box().cast<float>();
   if (box.isEmpty()) box = {Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(1, 1, 1)};

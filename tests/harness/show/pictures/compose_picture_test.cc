@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "grammar/compile/compile.h"
+#include "render/view.h"
 
 namespace prehend::show {
 namespace {
@@ -180,6 +181,25 @@ TEST(ComposePictureTest, PartsAreLeftOutWhenAsked) {
   EXPECT_EQ(bare.title, "");
   EXPECT_TRUE(bare.body_labels.empty() && bare.strip.rows.empty() && bare.ghosts.empty() &&
               bare.path.empty());
+}
+
+TEST(ComposePictureTest, TheTableIsWholeFromAbove) {
+  const auto is_whole = [](double half_m, const char* camera) {
+    Stage stage;
+    const physics::Box top{{2 * half_m, 2 * half_m, 0.02}};
+    stage.scenario.scene.bodies[0].shapes = {{top, {}}};
+    const render::Picture picture =
+        ComposePicture(stage.scenario, stage.run, {.at = {"0.5", {}}, .camera = {camera, {}}});
+    const render::View view = MakeView(picture.camera, 1280, 720, 140, {});
+    for (const double x : {-half_m, half_m})
+      for (const double y : {-half_m, half_m})
+        if (const auto at = ToPixel(view, Eigen::Vector3d(x, y, 0).cast<float>()); !at || at->minCoeff() < 0 || at->y() > 580)
+          return false;
+    return true;
+  };
+  EXPECT_TRUE(is_whole(1.2, "top"));
+  EXPECT_FALSE(is_whole(1.2, "front"));  // shows the action
+  EXPECT_FALSE(is_whole(1.3, "top"));    // a large one is cut
 }
 
 TEST(ComposePictureTest, PicturesOfOneScenarioHaveOneCamera) {
