@@ -79,7 +79,7 @@ ExitCode WriteRecording(episode::Recording& recording, const std::string& output
   AtomicFile file(output);
   if (!file.problem().empty()) return Refuse(context, file.problem());
   episode::EpisodeWriter writer(file.stream(), recording.header);
-  for (episode::EpisodeFrame& frame : recording.frames) writer.Write(frame.View());
+  recording.EachFrame([&](episode::EpisodeFrame& frame) { writer.Write(frame.View()); });
   if (recording.says_its_end) writer.Finish(recording.end_tick);
   const std::string problem = file.Commit();
   return problem.empty() ? ExitCode::kAgrees : Complain(context, ExitCode::kFailure, problem);
@@ -180,7 +180,7 @@ ExitCode ImportBatch(const Batch& batch, const ParsedOptions& options,
       if (written != ExitCode::kAgrees) return written;
     }
     const auto& success = episode.header.attributes.success;
-    table.push_back({episode.header.episode, std::to_string(episode.frames.size()),
+    table.push_back({episode.header.episode, std::to_string(imported->frames),
                      fmt::format("{:.2f}", imported->duration_s),
                      batch.file.empty() ? fmt::format("{:.2f}", LostSeconds(*imported))
                      : !success         ? "-"

@@ -84,8 +84,10 @@ RunResult Episode::RunOf(SegmentedRecording segmented, bool frames) {
   run.timeline = std::move(segmented.timeline);
   run.drawings = truth::EventDrawings(*loaded_.program);
   run.state_hash = HashOfFrames(*recording_);
-  for (std::size_t i = 0; frames && i < recording_->frames.size(); ++i)
-    run.recording.push_back(PlaceholderSnapshotAt(recording_->header, recording_->frames[i]));
+  if (frames)
+    recording_->EachFrame([&](const EpisodeFrame& frame) {
+      run.recording.push_back(PlaceholderSnapshotAt(recording_->header, frame));
+    });
   return run;
 }
 
@@ -97,7 +99,7 @@ Result<grammar::Timeline> Episode::Recorded() {
 
 Episode::End Episode::EachFrame(const std::function<void(const grammar::Frame&)>& look) {
   if (recording_) {
-    for (EpisodeFrame& frame : recording_->frames) look(frame.View());
+    recording_->EachFrame([&](EpisodeFrame& frame) { look(frame.View()); });
     return End{recording_->end_tick, ""};
   }
   const scenario::Scenario& scenario = loaded_.scenario;
@@ -205,7 +207,7 @@ Result<Episode> EpisodeOpener::OpenKept(const EpisodeName& name, const GrammarCh
   episode.file_ = file_;
   episode.row_ = row;
   if (row.simulated) return episode;
-  PREHEND_TRY(episode.recording_, ReadWhole(*file_, row));
+  PREHEND_TRY(episode.recording_, ReadRecording(*file_, row));
   return episode;
 }
 

@@ -129,16 +129,6 @@ physics::BodyState StateOf(const grammar::EntitySample& look) {
 
 }  // namespace
 
-Result<Recording> ReadWhole(const EpisodeFile& file, const EpisodeRow& episode) {
-  Result<Recording> recording = ReadRecording(file, episode);
-  if (!recording) return recording;
-  const std::string hash = HashText(HashOfFrames(*recording));
-  if (hash == episode.state_hash) return recording;
-  return Failure(file, episode,
-                 fmt::format("the file is damaged: its frames have the hash {}, recorded was {}",
-                             hash, episode.state_hash));
-}
-
 void EpisodeLoader::Refresh() {
   if (library_.read_hand && writes_read_ == tasks_.writes()) return;
   library_ = ProjectLibrary(tasks_.root());

@@ -65,7 +65,4 @@ class EpisodeLoader {
 Result<RunResult> Resegment(const EpisodeFile& file, const EpisodeRow& episode,
                             const LoadedRun& loaded, bool frames);
 
-/// The frames of a recording, if they are those that were recorded.
-Result<Recording> ReadWhole(const EpisodeFile& file, const EpisodeRow& episode);
-
 }  // namespace prehend::episode

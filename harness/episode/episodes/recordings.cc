@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <sstream>
+#include <stdexcept>
 
 #include "grammar/contents.h"
 #include "harness/episode/episodes/database.h"
@@ -12,6 +12,7 @@
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/frames/recorded_frames.h"
 #include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/run_text.h"
 #include "physics/scene/snapshot.h"
 
 namespace prehend::episode {
@@ -55,59 +56,67 @@ NewTask TaskOf(const ImportRequest& request, const EpisodeHeader& header,
   return task;
 }
 
-void WriteFrames(const Database& database, std::int64_t row, const Recording& recording) {
+void WriteFrames(const Database& database, std::int64_t row, Recording& recording) {
   ChunkRows rows(database, row);
   TablePacker packer;
-  std::span<const EpisodeFrame> left = recording.frames;
-  while (!left.empty()) {
-    const auto frames = left.first(FramesOfChunk(left));
+  std::vector<EpisodeFrame> waiting;
+  const auto write = [&] {
+    const auto frames = std::span(waiting).first(FramesOfChunk(waiting));
     rows.Write({.first_tick = frames.front().tick,
                 .last_tick = frames.back().tick,
                 .frames = frames.size(),
                 .parts = {{kFramesPart, packer.Pack(TablesOfFrames(frames, recording.placed))}}});
-    left = left.subspan(frames.size());
+    waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(frames.size()));
+  };
+  recording.EachFrame([&](const EpisodeFrame& frame) {
+    waiting.push_back(frame);
+    if (waiting.size() >= kMostFramesOfChunk) write();
+  });
+  while (!waiting.empty()) write();
+}
+
+void AddTo(physics::StateHash& hash, const EpisodeFrame& frame) {
+  const auto add = [&](double value) { hash.Add(&value, 1); };
+  const auto add_integer = [&](std::int64_t value) { hash.Add(static_cast<std::uint64_t>(value)); };
+  add_integer(frame.tick);
+  for (const grammar::EntitySample& look : frame.entities) {
+    hash.Add({.X_WB = {look.p_WB_m, look.q_WB},
+              .v_WB_m_per_s = look.v_WB_m_per_s,
+              .w_WB_rad_per_s = look.w_WB_rad_per_s});
+    add(look.joint_position);
+    add(look.joint_fraction);
+    add_integer(look.gazes_at);
+  }
+  for (const grammar::HandSample& hand : frame.hands) {
+    add(hand.trigger);
+    add_integer(hand.style);
+    hash.Add(hand.ahead_W.data(), 3);
+  }
+  for (const auto& of_hand : frame.collision_spheres) {
+    for (const grammar::CollisionSphere& sphere : of_hand) {
+      hash.Add(sphere.p_W_m.data(), 3);
+      add(sphere.radius_m);
+    }
+  }
+  for (const grammar::Touch& touch : frame.touches) {
+    add_integer(touch.a);
+    add_integer(touch.b);
+    add(touch.up_on_a);
+    add(touch.up_on_b);
+    add(touch.normal_force_n);
+    add(touch.vertical_speed_m_per_s);
+    hash.Add(touch.p_W_m.data(), 3);
+    hash.Add(touch.nhat_BA_W.data(), 3);
+    add_integer(touch.sensor_sets);
   }
 }
 
 }  // namespace
 
-std::uint64_t HashOfFrames(const Recording& recording) {
+std::uint64_t HashOfFrames(Recording& recording) {
+  if (recording.hash != 0) return recording.hash;
   physics::StateHash hash;
-  const auto add = [&](double value) { hash.Add(&value, 1); };
-  const auto add_integer = [&](std::int64_t value) { hash.Add(static_cast<std::uint64_t>(value)); };
-  for (const EpisodeFrame& frame : recording.frames) {
-    add_integer(frame.tick);
-    for (const grammar::EntitySample& look : frame.entities) {
-      hash.Add({.X_WB = {look.p_WB_m, look.q_WB},
-                .v_WB_m_per_s = look.v_WB_m_per_s,
-                .w_WB_rad_per_s = look.w_WB_rad_per_s});
-      add(look.joint_position);
-      add(look.joint_fraction);
-      add_integer(look.gazes_at);
-    }
-    for (const grammar::HandSample& hand : frame.hands) {
-      add(hand.trigger);
-      add_integer(hand.style);
-      hash.Add(hand.ahead_W.data(), 3);
-    }
-    for (const auto& of_hand : frame.collision_spheres) {
-      for (const grammar::CollisionSphere& sphere : of_hand) {
-        hash.Add(sphere.p_W_m.data(), 3);
-        add(sphere.radius_m);
-      }
-    }
-    for (const grammar::Touch& touch : frame.touches) {
-      add_integer(touch.a);
-      add_integer(touch.b);
-      add(touch.up_on_a);
-      add(touch.up_on_b);
-      add(touch.normal_force_n);
-      add(touch.vertical_speed_m_per_s);
-      hash.Add(touch.p_W_m.data(), 3);
-      hash.Add(touch.nhat_BA_W.data(), 3);
-      add_integer(touch.sensor_sets);
-    }
-  }
+  recording.EachFrame([&](const EpisodeFrame& frame) { AddTo(hash, frame); });
   return hash.value();
 }
 
@@ -168,21 +177,41 @@ Result<Recording> ReadRecording(const EpisodeFile& file, const EpisodeRow& row) 
   recording.header = std::move(header);
   recording.end_tick = row.ticks + 1;
   recording.says_its_end = row.status == kCompleted;
-  TablePacker packer;
-  const auto take = [&](const EpisodeFile::ChunkOfPart& chunk) {
-    if (!chunk.part) throw Damage("a part is missing");
-    RecordedFrames read = FramesOfTables(packer.Unpack(*chunk.part), recording.header.entity_table);
-    const bool follows =
-        recording.frames.empty() || recording.frames.back().tick < read.frames.front().tick;
-    if (!follows || recording.frames.size() + read.frames.size() > kMaxEpisodeFrames)
-      throw Damage("they do not follow those before them");
-    std::ranges::move(read.frames, std::back_inserter(recording.frames));
-    recording.placed = std::move(read.placed);
+  const auto play = [&file, row, entities = recording.header.entity_table](
+                        const Recording::Look& look, std::vector<bool>* placed) -> Result<void> {
+    TablePacker packer;
+    std::size_t count = 0;
+    grammar::Tick last = row.ticks + 1;  // of none
+    const auto take = [&](const EpisodeFile::ChunkOfPart& chunk) {
+      if (!chunk.part) throw Damage("a part is missing");
+      RecordedFrames read = FramesOfTables(packer.Unpack(*chunk.part), entities);
+      const bool follows = count == 0 || last < read.frames.front().tick;
+      count += read.frames.size();
+      if (!follows || count > kMaxEpisodeFrames)
+        throw Damage("they do not follow those before them");
+      last = read.frames.back().tick;
+      if (placed) *placed = std::move(read.placed);
+      for (EpisodeFrame& frame : read.frames) look(frame);
+    };
+    Result<void> done = file.EachPart(row, kFramesPart, take);
+    if (done && last > row.ticks)
+      return tl::unexpected(NotRead(file, row, "the file is damaged: frames are missing"));
+    return done;
   };
-  const Result<void> done = file.EachPart(row, kFramesPart, take);
+  physics::StateHash hash;
+  const Result<void> done =
+      play([&](const EpisodeFrame& frame) { AddTo(hash, frame); }, &recording.placed);
   if (!done) return tl::unexpected(done.error());
-  if (recording.frames.empty() || recording.frames.back().tick >= recording.end_tick)
-    return tl::unexpected(NotRead(file, row, "the file is damaged: frames are missing"));
+  if (const std::string text = HashText(hash.value()); text != row.state_hash)
+    return tl::unexpected(
+        NotRead(file, row,
+                fmt::format("the file is damaged: its frames have the hash {}, recorded was {}",
+                            text, row.state_hash)));
+  recording.hash = hash.value();
+  recording.play = [play](const Recording::Look& look) {
+    if (const Result<void> again = play(look, nullptr); !again)
+      throw std::runtime_error(grammar::Format(again.error()));
+  };
   return recording;
 }
 

@@ -36,14 +36,15 @@ struct ImportedRecording {
 /// nothing. Reports a grammar that cannot be read or cannot segment it.
 Result<ImportedRecording> ImportRecording(const ImportRequest& request, Recording& recording);
 
-/// The recording again, bit by bit. Its first line went through JSON.
+/// The recording again, bit by bit, if its frames are those that were recorded. Its first line went
+/// through JSON; its frames stay in the file, which outlives it.
 Result<Recording> ReadRecording(const EpisodeFile& file, const EpisodeRow& row);
 
 /// Only its first line.
 Result<EpisodeHeader> ReadRecordingHeader(const EpisodeFile& file, const EpisodeRow& row);
 
 /// What EpisodeRow::state_hash is of a recording.
-std::uint64_t HashOfFrames(const Recording& recording);
+std::uint64_t HashOfFrames(Recording& recording);
 
 // A scene that stands in for a recording, so that pictures of it can be drawn: what is not known is
 // not made up. Things have the shapes that the recording gives, hands a palm without fingers; there

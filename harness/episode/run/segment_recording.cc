@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "grammar/base/frame.h"
@@ -66,37 +67,32 @@ std::string_view RemedyFor(std::string_view fact, bool uses_motion) {
          "pick_and_place_from_motion; docs/facts-from-motion.md";
 }
 
-grammar::Tick MedianStep(const std::vector<EpisodeFrame>& frames) {
-  std::vector<grammar::Tick> steps;
-  for (std::size_t i = 1; i < frames.size(); ++i)
-    steps.push_back(frames[i].tick - frames[i - 1].tick);
+grammar::Tick Median(std::vector<grammar::Tick> steps) {
   if (steps.empty()) return 1;
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
   return *middle;
 }
 
-/// From where it was seen last, by `bridge_s`, to where it is found again.
-std::vector<grammar::Interval> LossesOf(const Recording& recording, std::size_t entity,
-                                        grammar::Tick bridge) {
-  std::vector<grammar::Interval> losses;
-  bool is_lost = false;
-  for (const EpisodeFrame& frame : recording.frames) {
-    const bool was_lost = std::exchange(is_lost, !grammar::IsTracked(frame.entities[entity]));
-    if (is_lost && !was_lost) losses.push_back({frame.tick - bridge, recording.end_tick});
-    if (was_lost && !is_lost) losses.back().end = frame.tick;
+/// By entity, the times from where it was seen last, by `bridge_s`, to where it is found again.
+using Losses = std::vector<std::vector<grammar::Interval>>;
+
+void AddLosses(const EpisodeFrame& frame, const Recording& recording, Losses& losses) {
+  const auto bridge = static_cast<grammar::Tick>(
+      recording.header.bridge_s *
+      static_cast<double>(recording.header.entity_table.ticks_per_second));
+  for (std::size_t i = 0; i < losses.size(); ++i) {
+    const bool was_lost = !losses[i].empty() && losses[i].back().end == recording.end_tick;
+    if (was_lost && grammar::IsTracked(frame.entities[i])) losses[i].back().end = frame.tick;
+    if (!was_lost && !grammar::IsTracked(frame.entities[i]))
+      losses[i].push_back({frame.tick - bridge, recording.end_tick});
   }
-  return losses;
 }
 
 /// A line for each event in which somebody who has a role is lost: for how long that was assumed.
-std::string AssumedText(const Recording& recording, const grammar::Timeline& timeline) {
-  const auto& entities = recording.header.entity_table.entities;
+std::string AssumedText(const std::vector<grammar::EntityInfo>& entities, const Losses& losses,
+                        const grammar::Timeline& timeline) {
   const auto rate = static_cast<double>(timeline.ticks_per_second);
-  const auto bridge = static_cast<grammar::Tick>(recording.header.bridge_s * rate);
-  std::vector<std::vector<grammar::Interval>> losses;
-  for (std::size_t i = 0; i < entities.size(); ++i)
-    losses.push_back(LossesOf(recording, i, bridge));
   std::string text;
   for (const grammar::NamedEvent& event : timeline.events) {
     std::string names, lacks;
@@ -121,15 +117,12 @@ std::string AssumedText(const Recording& recording, const grammar::Timeline& tim
   return text;
 }
 
-}  // namespace
-
-MissingFacts FindMissingFacts(Recording& episode, const grammar::Program& program) {
+MissingFacts MissingOf(const Recording& episode, const grammar::FactsOfEpisode& facts,
+                       const grammar::Program& program) {
   MissingFacts missing;
-  grammar::FactsOfEpisode facts;
   const std::vector<grammar::EntityInfo>& entities = episode.header.entity_table.entities;
   std::vector<bool> placed = episode.placed;
   placed.resize(entities.size());
-  for (EpisodeFrame& frame : episode.frames) facts.Add(frame.View(), episode.header.entity_table);
   for (std::size_t i = 0; i < entities.size(); ++i) {
     if (placed[i]) continue;
     missing.warnings += fmt::format(
@@ -158,6 +151,15 @@ MissingFacts FindMissingFacts(Recording& episode, const grammar::Program& progra
   return missing;
 }
 
+}  // namespace
+
+MissingFacts FindMissingFacts(Recording& episode, const grammar::Program& program) {
+  grammar::FactsOfEpisode facts;
+  episode.EachFrame(
+      [&](EpisodeFrame& frame) { facts.Add(frame.View(), episode.header.entity_table); });
+  return MissingOf(episode, facts, program);
+}
+
 Result<SegmentedRecording> SegmentRecording(Recording& recording,
                                             std::shared_ptr<const grammar::Program> program,
                                             const std::string& file) {
@@ -165,22 +167,34 @@ Result<SegmentedRecording> SegmentRecording(Recording& recording,
   SegmentedRecording segmented{.name = recording.header.episode,
                                .program = program,
                                .end = recording.end_tick,
-                               .frame_ticks = MedianStep(recording.frames),
                                .says_its_end = recording.says_its_end,
-                               .warnings = Warnings(*program, entities),
-                               .missing = FindMissingFacts(recording, *program)};
-  PREHEND_TRY(segmented.timeline, SegmentFrames(recording, program, file));
-  segmented.missing.warnings += AssumedText(recording, segmented.timeline);
+                               .warnings = Warnings(*program, entities)};
+  grammar::FactsOfEpisode facts;
+  Losses losses(entities.entities.size());
+  std::vector<grammar::Tick> steps;
+  std::optional<grammar::Tick> before;
+  const auto look = [&](EpisodeFrame& frame) {
+    if (before) steps.push_back(frame.tick - *before);
+    before = frame.tick;
+    facts.Add(frame.View(), entities);
+    AddLosses(frame, recording, losses);
+  };
+  PREHEND_TRY(segmented.timeline, SegmentFrames(recording, program, file, look));
+  segmented.frame_ticks = Median(std::move(steps));
+  segmented.missing = MissingOf(recording, facts, *program);
+  segmented.missing.warnings += AssumedText(entities.entities, losses, segmented.timeline);
   return segmented;
 }
 
 Result<grammar::Timeline> SegmentFrames(Recording& recording,
                                         const std::shared_ptr<const grammar::Program>& program,
-                                        const std::string& file) {
+                                        const std::string& file, const Recording::Look& each) {
   Segmentation segmentation = Segment(program, recording.header.entity_table,
                                       [&](const std::function<void(const FrameNews&)>& take) {
-                                        for (EpisodeFrame& frame : recording.frames)
+                                        recording.EachFrame([&](EpisodeFrame& frame) {
+                                          if (each) each(frame);
                                           take(frame.View());
+                                        });
                                         return recording.end_tick;
                                       });
   if (!segmentation.problem.empty()) {

@@ -53,10 +53,10 @@ Result<SegmentedRecording> SegmentRecording(Recording& recording,
                                             std::shared_ptr<const grammar::Program> program,
                                             const std::string& file);
 
-/// Only its events.
+/// Only its events. `each` sees each frame, too.
 Result<grammar::Timeline> SegmentFrames(Recording& recording,
                                         const std::shared_ptr<const grammar::Program>& program,
-                                        const std::string& file);
+                                        const std::string& file, const Recording::Look& each = {});
 
 /// A frame, or what is new in it.
 using FrameNews = std::variant<grammar::Frame, grammar::FrameChanges>;

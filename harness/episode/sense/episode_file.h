@@ -6,6 +6,7 @@
 // tests/harness/episode/sense/episode_file_test.cc and tests/program/not_tracked_test.cc
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -94,12 +95,21 @@ struct EpisodeFrame {
 };
 
 struct Recording {
+  using Look = std::function<void(EpisodeFrame& frame)>;
   EpisodeHeader header;
   std::vector<EpisodeFrame> frames;
+  /// Goes through frames that are not kept in memory, and so are not in `frames`.
+  std::function<void(const Look&)> play = {};
+  std::uint64_t hash = 0;      ///< of these, if not 0: HashOfFrames()
   grammar::Tick end_tick = 0;  ///< the first tick after the episode
   std::vector<bool> placed;    ///< by entity: some frame says where it is
   std::vector<LookGaps> gaps;  ///< by entity: how long it is not tracked
   bool says_its_end = false;   ///< it has a line with 'end_tick'; otherwise it may be cut off
+
+  /// In their order; a frame holds until the next one.
+  void EachFrame(const Look& look);
+  /// From now on they are in memory, to be looked at in any order.
+  void Keep();
 };
 
 /// For frames that were not read from a file: what is not tracked for a short time is as it was

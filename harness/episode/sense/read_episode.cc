@@ -491,10 +491,31 @@ grammar::Frame EpisodeFrame::View() {
   return {tick, entities, hands, touches};
 }
 
+void Recording::EachFrame(const Look& look) {
+  if (play) return play(look);
+  for (EpisodeFrame& frame : frames) look(frame);
+}
+
+void Recording::Keep() {
+  if (const auto played = std::exchange(play, nullptr))
+    played([&](const EpisodeFrame& frame) { frames.push_back(frame); });
+}
+
 void BridgeLooks(Recording& episode) {
-  GapTolerance bridge = BridgeOf(episode.header);
-  for (EpisodeFrame& frame : episode.frames) bridge.Fill(frame.tick, frame.entities);
-  episode.gaps = bridge.Gaps();
+  const auto bridged = [fresh = BridgeOf(episode.header)](const auto& play, const auto& look) {
+    GapTolerance bridge = fresh;
+    play([&](EpisodeFrame& frame) {
+      bridge.Fill(frame.tick, frame.entities);
+      look(frame);
+    });
+    return bridge.Gaps();
+  };
+  const auto each = [&](const Recording::Look& look) { episode.EachFrame(look); };
+  episode.gaps = bridged(each, [](const EpisodeFrame&) {});
+  if (episode.play)
+    episode.play = [bridged, play = std::move(episode.play)](const Recording::Look& look) {
+      bridged(play, look);
+    };
 }
 
 struct EpisodeStream::Reader {

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <span>
 
 #include "grammar/base/frame.h"
 #include "grammar/base/wording.h"
@@ -43,15 +46,97 @@ Eigen::Quaterniond Quaternion(const Eigen::Vector4d& wxyz) {
   return Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
 }
 
+/// Frames at the times of all poses, made whenever they are looked at: of an hour they would take
+/// hundreds of megabytes.
+class FrameMaker {
+ public:
+  explicit FrameMaker(ImportMap map) : map_(std::move(map)) {}
+
+  std::vector<Track> tracks;    ///< of the map's entities
+  std::vector<Track> openings;  ///< of `series`
+  std::vector<OpeningSeries> series;
+  std::map<std::int64_t, double> times;  ///< tick -> seconds
+
+  void EachFrame(const episode::Recording::Look& look) {
+    for (auto* all : {&tracks, &openings})
+      for (Track& track : *all) track.next = 0;
+    std::vector<grammar::EntitySample> before;
+    double before_s = 0;
+    for (const auto& [tick, t_s] : times) {
+      episode::EpisodeFrame frame;
+      frame.tick = tick;
+      frame.entities.reserve(tracks.size());
+      for (std::size_t i = 0; i < tracks.size(); ++i) {
+        const std::size_t passed = tracks[i].next;
+        const TimedPose pose = tracks[i].At(t_s);
+        grammar::EntitySample& sample = frame.entities.emplace_back();
+        sample.p_WB_m = pose.p;
+        sample.q_WB = pose.q;
+        if (!before.empty() && !Found(tracks[i], passed) && grammar::IsTracked(before[i]))
+          SetVelocity(before[i], t_s - before_s, sample);
+        if (map_.lost == Lost::kUnknown && IsLost(tracks[i], t_s)) sample = grammar::NotTracked();
+        if (map_.entities[i].value.hand) {
+          frame.hands.push_back(
+              {.entity = static_cast<int>(i), .ahead_W = pose.q * AheadOf(map_.entities[i].value)});
+          frame.collision_spheres.push_back({{pose.p, 0}});
+        }
+      }
+      SetOpenings(t_s, frame);
+      before = frame.entities;
+      before_s = t_s;
+      look(frame);
+    }
+  }
+
+ private:
+  void SetOpenings(double t_s, episode::EpisodeFrame& frame) {
+    for (std::size_t i = 0; i < openings.size(); ++i) {
+      const double open = openings[i].At(t_s).p.x(), within = std::clamp(open, 0.0, 1.0);
+      if (series[i].is_grip) {
+        std::ranges::find(frame.hands, static_cast<int>(series[i].entity),
+                          &grammar::HandSample::entity)
+            ->trigger = 1 - within;
+        continue;
+      }
+      const Opening& said = series[i].Of(map_);
+      grammar::EntitySample& part = frame.entities[series[i].entity];
+      part.joint_fraction = within;
+      part.joint_position = said.closed + open * (said.open - said.closed);
+    }
+  }
+
+  static Eigen::Vector3d AheadOf(const MappedEntity& hand) {
+    return hand.ahead ? Eigen::Vector3d(hand.ahead->value.normalized()) : Eigen::Vector3d::UnitX();
+  }
+
+  /// Whether it was found again since `passed` poses had been passed: then its way is not known.
+  static bool Found(const Track& track, std::size_t passed) {
+    for (std::size_t i = passed; i < track.next; ++i) {
+      if (track.poses[i].after_loss) return true;
+    }
+    return false;
+  }
+
+  static void SetVelocity(const grammar::EntitySample& before, double dt_s,
+                          grammar::EntitySample& sample) {
+    sample.v_WB_m_per_s = (sample.p_WB_m - before.p_WB_m) / dt_s;
+    const Eigen::AngleAxisd turn(sample.q_WB * before.q_WB.conjugate());
+    sample.w_WB_rad_per_s = turn.axis() * turn.angle() / dt_s;
+  }
+
+  const ImportMap map_;
+};
+
 class Importer {
  public:
-  Importer(const PoseFile& file, const MapFile& map, Implausible implausible)
-      : file_(file),
+  Importer(PoseFile file, const MapFile& map, Implausible implausible)
+      : file_(std::move(file)),
         map_file_(map),
         map_(map.map),
         errors_(map.document),
         unit_is_doubtful_(implausible.unit),
-        world_is_doubtful_(implausible.world) {
+        world_is_doubtful_(implausible.world),
+        place_(GuessPlace(file_, map_)) {
     imported_.warnings = std::move(implausible.warnings);
   }
 
@@ -62,9 +147,9 @@ class Importer {
     for (const Named<MappedEntity>& entity : map_.entities) {
       Track& track = tracks_.emplace_back();
       if (entity.value.at_m)
-        track.poses.push_back({0, *entity.value.at_m, Quaternion(entity.value.quat_wxyz)});
+        track.poses.push_back({.p = *entity.value.at_m, .q = Quaternion(entity.value.quat_wxyz)});
       else
-        track.poses = Converted(BodyOf(entity.value), entity.value);
+        Convert(entity.value, track);
     }
     JudgeJumps();
     for (std::size_t i = 0; i < tracks_.size(); ++i) AddTrack(map_.entities[i], tracks_[i]);
@@ -78,8 +163,7 @@ class Importer {
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
     if (const std::string problem = SetTicks(); !problem.empty())
       return tl::unexpected(grammar::Diagnostics{{.file = file_.file, .message = problem}});
-    AddFrames();
-    WarnOfRestPoses();
+    WarnOfRestPoses(AddFrames());
     if (!errors_.empty()) return tl::unexpected(errors_.Sorted());
     WarnOfNoOrientations();
     WarnOfSizes();
@@ -92,24 +176,23 @@ class Importer {
  private:
   void Warn(std::string text) { imported_.warnings.push_back(std::move(text)); }
 
-  void WarnOfRestPoses() {
+  /// `seen`: some of the frames.
+  void WarnOfRestPoses(const episode::Recording& seen) {
     DoubtfulThings turned;
     if (unit_is_doubtful_) return;
-    if (!map_.IsSure(Warning::kUpright)) turned = FindNotUpright(imported_.episode, map_);
+    if (!map_.IsSure(Warning::kUpright)) turned = FindNotUpright(seen, map_);
     for (std::string& text : turned.warnings) Warn(std::move(text));
     DoubtfulThings large = ThingsTooLarge(map_);
     for (std::string& text : large.warnings) Warn(std::move(text));
     turned.things.merge(large.things);
-    if (std::string text = RestOnNothing(imported_.episode, turned.things); !text.empty())
-      Warn(std::move(text));
-    std::string tilt = TiltOfRestPlane(imported_.episode, map_, turned.things);
-    const Guess place = GuessPlace(file_, map_);
+    if (std::string text = RestOnNothing(seen, turned.things); !text.empty()) Warn(std::move(text));
+    std::string tilt = TiltOfRestPlane(seen, map_, turned.things);
     const bool says_place =
-        !world_is_doubtful_ && !place.signs.empty() && !map_.IsSure(Warning::kPlace);
-    if (says_place && place.signs.size() > 1 && tilt.empty() && turned.things.empty())
-      errors_.Add(place.where, place.Text(), place.Remedy());
+        !world_is_doubtful_ && !place_.signs.empty() && !map_.IsSure(Warning::kPlace);
+    if (says_place && place_.signs.size() > 1 && tilt.empty() && turned.things.empty())
+      errors_.Add(place_.where, place_.Text(), place_.Remedy());
     else if (says_place)
-      Warn(place.Text() + ": " + place.Remedy());
+      Warn(place_.Text() + ": " + place_.Remedy());
     if (!tilt.empty()) Warn(std::move(tilt));
   }
 
@@ -124,17 +207,12 @@ class Importer {
                       fmt::join(names, ", ")));
   }
 
-  const PoseBody& BodyOf(const MappedEntity& entity) const {
-    return *std::ranges::find(file_.bodies, entity.from->value, &PoseBody::name);
-  }
-
-  /// Where a pose stands in the file.
-  std::string PlaceOf(const MappedEntity& entity, double t_s) const {
-    const PoseBody& body = BodyOf(entity);
-    const auto sample = std::ranges::lower_bound(body.samples, t_s, {}, &PoseSample::t_s);
-    return sample != body.samples.end() && sample->line > 0
-               ? fmt::format("{}:{}", file_.file, sample->line)
-               : fmt::format("{}, {:.3f} s", file_.file, t_s);
+  /// Where the pose of a track that is nearest after a time stands in the file.
+  std::string PlaceOf(std::size_t track, double t_s) const {
+    const std::vector<TimedPose>& poses = tracks_[track].poses;
+    const auto pose = std::ranges::lower_bound(poses, t_s, {}, &TimedPose::t_s);
+    return pose != poses.end() && pose->line > 0 ? fmt::format("{}:{}", file_.file, pose->line)
+                                                 : fmt::format("{}, {:.3f} s", file_.file, t_s);
   }
 
   /// Poses that leave and come back, those of bodies that were taken for each other, and jumps.
@@ -151,16 +229,15 @@ class Importer {
         drops ? ": they count as lost" : "; in the map, outlier: lost makes gaps of these";
     for (const Exchange& exchange : FindExchanges(poses, found))
       Warn(fmt::format("{}: '{}' and '{}' look exchanged from {:.3f} to {:.3f} s",
-                       PlaceOf(map_.entities[exchange.a].value, exchange.begin_s), name(exchange.a),
-                       name(exchange.b), exchange.begin_s, exchange.end_s));
+                       PlaceOf(exchange.a, exchange.begin_s), name(exchange.a), name(exchange.b),
+                       exchange.begin_s, exchange.end_s));
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
-      const MappedEntity& e = map_.entities[i].value;
       std::vector<TimedPose>& track = tracks_[i].poses;
       if (!found[i].jumps.empty()) {
         const Jump& jump = *std::ranges::max_element(found[i].jumps, {}, &Jump::way_m);
         const double step_s = track[jump.at].t_s - track[jump.at - 1].t_s;
         Warn(fmt::format("{}: '{}' jumps {}, here {:.3f} m and {:.0f} degrees in {:.4f} s",
-                         PlaceOf(e, track[jump.at].t_s), name(i),
+                         PlaceOf(i, track[jump.at].t_s), name(i),
                          grammar::CountOf(found[i].jumps.size(), "time"), jump.way_m, jump.turn_deg,
                          step_s));
       }
@@ -169,7 +246,7 @@ class Importer {
           found[i].outliers, {}, [](const Outlier& o) { return o.off_m + o.off_deg / 180; });
       Warn(
           fmt::format("{}: '{}' goes out and back {}, here {:.3f} m and {:.0f} degrees off in {}{}",
-                      PlaceOf(e, track[worst.begin].t_s), name(i),
+                      PlaceOf(i, track[worst.begin].t_s), name(i),
                       grammar::CountOf(found[i].outliers.size(), "time"), worst.off_m,
                       worst.off_deg, grammar::CountOf(worst.end - worst.begin, "pose"), remedy));
       for (std::size_t k = found[i].outliers.size(); drops && k-- > 0;)
@@ -184,9 +261,9 @@ class Importer {
     report.name = entity.name;
     if (!e.at_m) {
       report.from = e.from->value;
-      const PoseBody& body = BodyOf(e);
-      if (e.upright_at_s) report.axes = (map_.WorldTurn() * OrientationThen(body, e)).conjugate();
-      MarkGaps(UsualStep_s(body.samples), e.from->where, /*of_opening=*/false, track, report);
+      const Kept& kept = kept_[imported_.entities.size()];
+      if (kept.upright) report.axes = (map_.WorldTurn() * *kept.upright).conjugate();
+      MarkGaps(kept.usual_s, e.from->where, /*of_opening=*/false, track, report);
       WarnOfMotion(entity, track.poses, report);
       const double trembling_m = Trembling_m(track.poses);
       if (map_.smooth_s > 0) track.poses = Smoothed(track.poses, map_.smooth_s / 2);
@@ -225,41 +302,21 @@ class Importer {
                     report.rate_hz, 100 * least.open, 100 * most.open);
   }
 
-  void SetOpenings(double t_s, episode::EpisodeFrame& frame) {
-    for (std::size_t i = 0; i < openings_.size(); ++i) {
-      const OpeningSeries& series = file_.openings[i];
-      const double open = openings_[i].At(t_s).p.x(), within = std::clamp(open, 0.0, 1.0);
-      if (series.is_grip) {
-        std::ranges::find(frame.hands, static_cast<int>(series.entity),
-                          &grammar::HandSample::entity)
-            ->trigger = 1 - within;
-        continue;
-      }
-      const Opening& said = series.Of(map_);
-      grammar::EntitySample& part = frame.entities[series.entity];
-      part.joint_fraction = within;
-      part.joint_position = said.closed + open * (said.open - said.closed);
+  /// The file's poses become those of the track.
+  void Convert(const MappedEntity& entity, Track& track) {
+    Kept& kept = kept_[tracks_.size() - 1];
+    std::vector<PoseSample>& samples =
+        std::ranges::find(file_.bodies, entity.from->value, &PoseBody::name)->samples;
+    kept.usual_s = UsualStep_s(samples);
+    poses_ += samples.size();
+    if (entity.upright_at_s) {
+      const double t_s = entity.upright_at_s->value;
+      kept.upright = std::ranges::min_element(samples, {}, [&](const PoseSample& sample) {
+                       return std::abs(sample.t_s - t_s);
+                     })->q;
     }
-  }
-
-  /// At upright_at_s, as in the file.
-  static Eigen::Quaterniond OrientationThen(const PoseBody& body, const MappedEntity& entity) {
-    const double t_s = entity.upright_at_s->value;
-    const auto then = std::ranges::min_element(
-        body.samples, {}, [&](const PoseSample& sample) { return std::abs(sample.t_s - t_s); });
-    return then->q;
-  }
-
-  std::vector<TimedPose> Converted(const PoseBody& body, const MappedEntity& entity) const {
-    std::optional<Eigen::Quaterniond> upright;
-    if (entity.upright_at_s) upright = OrientationThen(body, entity);
-    std::vector<TimedPose> poses;
-    poses.reserve(body.samples.size());
-    for (const PoseSample& sample : body.samples) {
-      const PoseSample at = InRecording(sample, entity, map_, upright);
-      poses.push_back({.t_s = at.t_s, .p = at.p, .q = at.q});
-    }
-    return poses;
+    for (PoseSample& sample : samples) sample = InRecording(sample, entity, map_, kept.upright);
+    track.poses = std::move(samples);
   }
 
   void MarkGaps(double usual_s, const Where& where, bool of_opening, Track& track,
@@ -344,13 +401,11 @@ class Importer {
   /// What nobody can judge without them.
   void WarnOfNoOrientations() {
     if (file_.has_orientations) return;
-    std::size_t poses = 0;
-    for (const PoseBody& body : file_.bodies) poses += body.samples.size();
     Warn(
         fmt::format("the file has positions only, {} of {} {}, and no orientations: every tilt(..) "
                     "is 0, so no pouring is recognised, hold_tips cannot tell what is tipped in a "
                     "hand from what was put down, and up is always up in a thing (boxes, offset_m)",
-                    poses, file_.bodies.size(), file_.bodies.size() == 1 ? "body" : "bodies"));
+                    poses_, file_.bodies.size(), file_.bodies.size() == 1 ? "body" : "bodies"));
   }
 
   std::int64_t TickOf(double t_s) const {
@@ -382,63 +437,43 @@ class Importer {
     return "";
   }
 
-  void AddFrames() {
+  /// Returns those that guesses look at.
+  episode::Recording AddFrames() {
     episode::Recording& episode = imported_.episode;
-    episode.frames.reserve(times_.size());
-    double before_s = 0;
-    for (const auto& [tick, t_s] : times_) {
-      episode::EpisodeFrame frame;
-      frame.tick = tick;
-      frame.entities.reserve(tracks_.size());
-      const auto* before = episode.frames.empty() ? nullptr : &episode.frames.back().entities;
-      for (std::size_t i = 0; i < tracks_.size(); ++i) {
-        const std::size_t passed = tracks_[i].next;
-        const TimedPose pose = tracks_[i].At(t_s);
-        grammar::EntitySample& sample = frame.entities.emplace_back();
-        sample.p_WB_m = pose.p;
-        sample.q_WB = pose.q;
-        if (before && !Found(tracks_[i], passed) && grammar::IsTracked((*before)[i]))
-          SetVelocity((*before)[i], t_s - before_s, sample);
-        if (map_.lost == Lost::kUnknown && IsLost(tracks_[i], t_s)) sample = grammar::NotTracked();
-        if (map_.entities[i].value.hand) {
-          frame.hands.push_back(
-              {.entity = static_cast<int>(i), .ahead_W = pose.q * AheadOf(map_.entities[i].value)});
-          frame.collision_spheres.push_back({{pose.p, 0}});
-        }
-      }
-      SetOpenings(t_s, frame);
-      episode.frames.push_back(std::move(frame));
-      before_s = t_s;
-    }
+    imported_.frames = times_.size();
     episode.placed.assign(tracks_.size(), true);
     episode.says_its_end = true;
-    episode.end_tick = episode.frames.back().tick + 1;
+    episode.end_tick = times_.rbegin()->first + 1;
+    const auto maker = std::make_shared<FrameMaker>(map_);
+    maker->tracks = std::move(tracks_);
+    maker->openings = std::move(openings_);
+    maker->series = std::move(file_.openings);
+    maker->times = std::move(times_);
+    episode.play = [maker](const episode::Recording::Look& look) { maker->EachFrame(look); };
+    episode::Recording seen{.header = episode.header};
+    const auto step =
+        static_cast<grammar::Tick>(kBetweenLooks_s * static_cast<double>(map_.ticks_per_second));
+    episode.EachFrame([&](const episode::EpisodeFrame& frame) {
+      if (seen.frames.empty() || frame.tick - seen.frames.back().tick >= step)
+        seen.frames.push_back(frame);
+    });
+    return seen;
   }
 
-  static Eigen::Vector3d AheadOf(const MappedEntity& hand) {
-    return hand.ahead ? Eigen::Vector3d(hand.ahead->value.normalized()) : Eigen::Vector3d::UnitX();
-  }
+  /// Of an entity's poses as they are in the file.
+  struct Kept {
+    double usual_s = 0;
+    std::optional<Eigen::Quaterniond> upright;  ///< at its upright_at_s
+  };
 
-  /// Whether it was found again since `passed` poses had been passed: then its way is not known.
-  static bool Found(const Track& track, std::size_t passed) {
-    for (std::size_t i = passed; i < track.next; ++i) {
-      if (track.poses[i].after_loss) return true;
-    }
-    return false;
-  }
-
-  static void SetVelocity(const grammar::EntitySample& before, double dt_s,
-                          grammar::EntitySample& sample) {
-    sample.v_WB_m_per_s = (sample.p_WB_m - before.p_WB_m) / dt_s;
-    const Eigen::AngleAxisd turn(sample.q_WB * before.q_WB.conjugate());
-    sample.w_WB_rad_per_s = turn.axis() * turn.angle() / dt_s;
-  }
-
-  const PoseFile& file_;
+  PoseFile file_;
   const MapFile& map_file_;
   const ImportMap& map_;
   DiagnosticList errors_;
   bool unit_is_doubtful_ = false, world_is_doubtful_ = false;
+  const Guess place_;
+  std::vector<Kept> kept_{map_.entities.size()};
+  std::size_t poses_ = 0;  ///< of all bodies
   Imported imported_;
   std::vector<Track> tracks_;
   std::vector<Track> openings_;  ///< of those of the file
@@ -528,13 +563,13 @@ Result<Imported> ImportPoses(PoseFile poses, const MapFile& map) {
   if (map.map.is_left_handed) MirrorPoses(map.map, poses);
   Implausible implausible = FindImplausible(poses, map);
   if (!implausible.errors.empty()) return tl::unexpected(std::move(implausible.errors));
-  return Importer(poses, map, std::move(implausible)).Import();
+  return Importer(std::move(poses), map, std::move(implausible)).Import();
 }
 
 std::string ImportTable(const Imported& imported) {
   const episode::Recording& episode = imported.episode;
   std::string table = fmt::format("{}: {} frames, {:.3f} s\n", episode.header.episode,
-                                  episode.frames.size(), imported.duration_s);
+                                  imported.frames, imported.duration_s);
   std::size_t width = 16;
   for (const EntityReport& one : imported.entities) width = std::max(width, one.from.size());
   table += fmt::format("{:<16} {:<{}} {:>7} {:>7} {:>8} {:>9} {:>5} {:>7}  {:<14} {:<14} {}\n",

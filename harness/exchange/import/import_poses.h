@@ -29,7 +29,8 @@ struct EntityReport {
 };
 
 struct Imported {
-  episode::Recording episode;
+  episode::Recording episode;  ///< its frames are made when they are looked at
+  std::size_t frames = 0;
   std::vector<EntityReport> entities;
   std::string openings;  ///< of each body made of markers, grip and joint a line
   double duration_s = 0;

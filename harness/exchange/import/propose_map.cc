@@ -317,8 +317,7 @@ class MapProposer {
     for (const std::string& warning : imported->warnings)
       if (!warning.starts_with("size_m is unknown") && !warning.ends_with("does not mention"))
         imported_.push_back(warning);
-    summary_ =
-        fmt::format("{:.1f} s, {} frames", imported->duration_s, imported->episode.frames.size());
+    summary_ = fmt::format("{:.1f} s, {} frames", imported->duration_s, imported->frames);
   }
 
   Result<MapFile> Read() const {

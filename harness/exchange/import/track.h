@@ -7,14 +7,11 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "harness/exchange/poses/pose_file.h"
+
 namespace prehend::exchange {
 
-struct TimedPose {
-  double t_s = 0;
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();
-  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
-  bool after_loss = false;  ///< how it came here is not known
-};
+using TimedPose = PoseSample;
 
 /// An entity over time.
 struct Track {

@@ -41,9 +41,10 @@ Poses PosesIn(const episode::EpisodeFrame& frame) {
 Result<void> EachPoses(episode::Episode& episode,
                        const std::function<void(std::int64_t tick, const Poses&)>& look,
                        const std::function<bool(std::int64_t tick)>& wanted) {
-  if (const episode::Recording* recording = episode.recording()) {
-    for (const episode::EpisodeFrame& frame : recording->frames)
+  if (episode::Recording* recording = episode.recording()) {
+    recording->EachFrame([&](const episode::EpisodeFrame& frame) {
       if (wanted(frame.tick)) look(frame.tick, PosesIn(frame));
+    });
     return {};
   }
   return episode::EpisodeFrames(*episode.file(), *episode.row(),
@@ -52,7 +53,10 @@ Result<void> EachPoses(episode::Episode& episode,
 }
 
 Result<Poses> FirstPoses(episode::Episode& episode) {
-  if (episode.recording()) return PosesIn(episode.recording()->frames.front());
+  if (episode::Recording* recording = episode.recording()) {
+    recording->Keep();
+    return PosesIn(recording->frames.front());
+  }
   PREHEND_TRY(const auto first,
               episode::EpisodeFrames(*episode.file(), *episode.row(),
                                      episode::LayoutOf(episode.loaded().scenario.scene))

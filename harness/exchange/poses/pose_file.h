@@ -21,6 +21,7 @@ struct PoseSample {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();            ///< in the file's unit and axes
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();  ///< in the file's axes
   int line = 0;                                           ///< 0: the file has no lines
+  bool after_loss = false;                                ///< how it came here is not known
 };
 
 struct PoseBody {

@@ -593,6 +593,7 @@ Result<PoseFile> ReadCsvPoses(const std::string& path, const MapFile& map) {
   reader.Read();
   if (Diagnostics problems = reader.Problems(); !problems.empty())
     return tl::unexpected(std::move(problems));
+  reader.poses.text = std::string();  // it is large, and all messages about it have been made
   return std::move(reader.poses);
 }
 

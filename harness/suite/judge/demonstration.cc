@@ -321,13 +321,17 @@ std::optional<Mishap> FirstCause(const Demonstration& one, const Demonstration* 
 
 }  // namespace
 
-std::optional<Demonstration> DemonstrationOf(const episode::Recording& recording,
+std::optional<Demonstration> DemonstrationOf(episode::Recording& recording,
                                              const grammar::Timeline& timeline,
                                              const truth::EventDrawings& drawings) {
-  const bool has_gripper = std::ranges::any_of(recording.frames, [](const auto& frame) {
-    return std::ranges::any_of(frame.hands, [](const auto& hand) { return hand.trigger > 0; });
+  bool has_gripper = false;
+  recording.EachFrame([&](const auto& frame) {
+    has_gripper = has_gripper || std::ranges::any_of(frame.hands, [](const auto& hand) {
+                    return hand.trigger > 0;
+                  });
   });
   if (!has_gripper) return std::nullopt;
+  recording.Keep();
   return Reader(recording, timeline, drawings).Read();
 }
 

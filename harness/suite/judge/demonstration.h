@@ -39,7 +39,7 @@ struct Demonstration {
 };
 
 /// Nothing if no gripper ever closes in it. What grasps and supports are say `drawings`.
-std::optional<Demonstration> DemonstrationOf(const episode::Recording& recording,
+std::optional<Demonstration> DemonstrationOf(episode::Recording& recording,
                                              const grammar::Timeline& timeline,
                                              const truth::EventDrawings& drawings);
 

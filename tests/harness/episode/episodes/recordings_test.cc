@@ -46,7 +46,7 @@ struct Imported {
 };
 
 TEST(Recordings, BecomeEpisodesAndComeBack) {
-  const Imported made;
+  Imported made;
   EXPECT_EQ(made.imported.problem, "");
   ASSERT_EQ(made.imported.segmented.timeline.events.size(), 3);
 
@@ -62,9 +62,14 @@ TEST(Recordings, BecomeEpisodesAndComeBack) {
   EXPECT_EQ(opened->EntitiesOf(row)->size(), 3);
   EXPECT_EQ(opened->EntitiesOf(row)->at(2).part_of, 1);
 
-  const auto read = ReadRecording(*opened, row);
+  auto read = ReadRecording(*opened, row);
   ASSERT_TRUE(read);
+  EXPECT_TRUE(read->frames.empty()) << "they stay in the file";
+  const std::uint64_t hash = HashOfFrames(*read);
+  read->Keep();
   EXPECT_EQ(read->frames.size(), 2);
+  read->hash = 0;
+  EXPECT_EQ(HashOfFrames(*read), hash) << "of frames in memory, too";
   EXPECT_EQ(read->end_tick, 100);
   EXPECT_TRUE(read->says_its_end);
   EXPECT_EQ(read->placed, (std::vector<bool>{true, true, true}));
