@@ -118,8 +118,8 @@ void StepWatch::NoteFixed(std::vector<ScriptNote>& notes) const {
              " into " + scene_.body(who.second).name + ", which is fixed" +
              (entered.is_through ? ", and comes out on another side of it" : "") +
              (follows_hand ? "; lead its hand another way, or let her stand elsewhere"
-                           : "; give the step 'max_force_n', and she stops before it, or lead her "
-                             "around it")});
+                           : "; walking, and a limb that moves, stop before it with 'max_force_n'; "
+                             "or lead her around it")});
   }
 }
 

@@ -59,8 +59,12 @@ std::string_view LineOf(std::string_view text, int line) {
   return rest;
 }
 
+char Small(char letter) {
+  return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+}
+
 // Optimal string alignment distance by rows: Levenshtein's, with two swapped neighbours counted as
-// one mistake.
+// one mistake, and capitals as none.
 std::size_t EditDistance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last, last, row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
@@ -68,7 +72,7 @@ std::size_t EditDistance(std::string_view a, std::string_view b) {
     before_last = std::exchange(last, row);
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substitution = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      const std::size_t substitution = last[j - 1] + (Small(a[i - 1]) == Small(b[j - 1]) ? 0 : 1);
       row[j] = std::min({substitution, row[j - 1] + 1, last[j] + 1});
       const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
       if (swapped) row[j] = std::min(row[j], before_last[j - 2] + 1);
@@ -83,8 +87,7 @@ std::string StemOf(std::string_view name) {
   for (std::size_t begin = 0; begin <= name.size();) {
     const std::size_t end = std::min(name.find('_', begin), name.size());
     std::string word(name.substr(begin, end - begin));
-    for (char& letter : word)
-      if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    std::ranges::transform(word, word.begin(), Small);
     for (const std::string_view ending : {"ing", "ed", "es", "e", "s"}) {
       if (word.size() < ending.size() + 3 || !word.ends_with(ending)) continue;
       word.erase(word.size() - ending.size());

@@ -104,9 +104,9 @@ std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, HandIndex han
   if (sides.size() >= 2) return "";
   if (sides.size() == 1)
     return "it has closed and touches " + scene.body(object).name + " with its " + *sides.begin() +
-           " only, which is no grasp: close it farther ('close_to: 1'), or reach for it from "
-           "another "
-           "side";
+           " only, which is no grasp: " +
+           (now.hand(hand).trigger < 1 ? "close it farther ('close_to: 1'), or " : "") +
+           "reach for it from another side";
   const HandState& state = now.hand(hand);
   const HandClearance clearance(scene, hand, state.joints);
   const double away_m = clearance.To(object, state.palm.X_WB, now);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "physics/motion/trajectory.h"
 #include "physics/scene/geometry.h"
@@ -250,15 +251,10 @@ void PersonPlayer::AimLimbs(const Snapshot& now) {
     targets_.limbs[static_cast<std::size_t>(limb)] = LimbAt(limb, now);
 }
 
-bool PersonPlayer::StopBeforeFixed() {
-  const auto stop = [&](Yielding& motion) {
-    motion.behind_s += motion.pace / scene_.world.rate_hz;
-    motion.pace = 0;
-  };
+std::vector<PersonPlayer::Yielding*> PersonPlayer::WhatGoesIntoFixed() {
+  std::vector<Yielding*> motions;
   const auto yields = [](const LimbMotion& limb) { return limb.yielding.max_force_n.has_value(); };
-  if (body_ || leaving_ || (!walk_.max_force_n && std::ranges::none_of(limbs_, yields)))
-    return false;
-  bool stops = false;
+  if (body_ || leaving_ || (!walk_.max_force_n && std::ranges::none_of(limbs_, yields))) return {};
   for (const FixedTouch& touch : fixed_.TouchedBy(person_, PlacesOf(person_, targets_, places_))) {
     const auto before = std::ranges::find_if(touches_, [&](const FixedTouch& old) {
       return old.part == touch.part && old.thing == touch.thing;
@@ -271,15 +267,40 @@ bool PersonPlayer::StopBeforeFixed() {
       if (touch.part < parts.begin || touch.part >= parts.end) continue;
       follows_hand = HandAt(i, person_) != kNone;
       LimbMotion& limb = limbs_[static_cast<std::size_t>(i)];
-      if (!yields(limb)) continue;
-      stop(limb.yielding);
-      stops = true;
+      if (yields(limb)) motions.push_back(&limb.yielding);
     }
-    if (!walk_.max_force_n || follows_hand) continue;
-    stop(walk_);
-    stops = true;
+    if (walk_.max_force_n && !follows_hand) motions.push_back(&walk_);
   }
-  return stops;
+  return motions;
+}
+
+void PersonPlayer::StopBeforeFixed(const Snapshot& now) {
+  // Halved so often, a step of 30 mm is known to less than what touches. At the pace at which she
+  // tries again a whole step is.
+  constexpr int kHalvings = 10;
+  constexpr double kFast = 0.02;
+  struct Stopped {
+    double behind_s, step_s;
+  };
+  std::map<Yielding*, Stopped> stopped;
+  for (Yielding* motion : WhatGoesIntoFixed())
+    stopped[motion] = {motion->behind_s, motion->pace / scene_.world.rate_hz};
+  if (stopped.empty()) return;
+  const auto go = [&](double share) {
+    for (const auto& [motion, was] : stopped)
+      motion->behind_s = was.behind_s + (1 - share) * was.step_s;
+    AimStance();
+    AimLimbs(now);
+  };
+  const bool is_fast =
+      std::ranges::any_of(stopped, [](const auto& each) { return each.first->pace > kFast; });
+  double free = 0, share = 0.5;
+  for (int i = 0; is_fast && i < kHalvings; ++i, share /= 2) {
+    go(free + share);
+    if (WhatGoesIntoFixed().empty()) free += share;
+  }
+  go(free);
+  for (const auto& [motion, was] : stopped) motion->pace = 0;
 }
 
 void PersonPlayer::Advance(const Snapshot& now, World& world) {
@@ -292,10 +313,7 @@ void PersonPlayer::Advance(const Snapshot& now, World& world) {
     if (yielding.max_force_n) Yield(yielding, ResistanceTo(limb, now));
   }
   AimLimbs(now);
-  if (StopBeforeFixed()) {
-    AimStance();
-    AimLimbs(now);
-  }
+  StopBeforeFixed(now);
   HoldPosture();
   TurnHead(now);
   places_ = PlacesOf(person_, targets_, places_);

@@ -72,8 +72,10 @@ class PersonPlayer {
   /// Where she stands and how she leans; where her limbs go.
   void AimStance();
   void AimLimbs(const Snapshot& now);
-  /// Stops what yields for this tick where it would go into a fixed thing, or deeper into it.
-  bool StopBeforeFixed();
+  /// What yields and goes into a fixed thing, or deeper into it, as all is aimed now.
+  std::vector<Yielding*> WhatGoesIntoFixed();
+  /// Stops it for this tick where it begins to touch.
+  void StopBeforeFixed(const Snapshot& now);
   /// Slows a motion down that meets too much resistance, and speeds it up again afterwards.
   void Yield(Yielding& motion, double resistance_n) const;
   /// Force of contacts against the motion of a limb, or of her walk, newtons.

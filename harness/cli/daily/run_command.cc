@@ -214,8 +214,12 @@ ExitCode PlayOne(const episode::ScenarioFile& file, const episode::RunRequest& r
       recorder ? &*recorder : nullptr);
   const bool completed = run.status.kind == physics::RunStatus::Kind::kCompleted;
   // Of an unfinished run the claims may still come true.
-  const std::vector<truth::ClaimVerdict> claims =
-      completed ? suite::JudgeClaims(*loaded, run.timeline) : std::vector<truth::ClaimVerdict>{};
+  std::vector<truth::ClaimVerdict> claims;
+  if (completed) {
+    claims = suite::JudgeClaims(*loaded, run.timeline);
+    std::ranges::move(suite::JudgeLimitClaims(loaded->scenario, run.notes),
+                      std::back_inserter(claims));
+  }
   Print(*loaded, run, claims, options, context);
   if (recorder && !recorder->problem().empty())
     return Complain(context, ExitCode::kFailure, "--record: " + recorder->problem());

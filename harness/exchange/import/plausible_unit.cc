@@ -197,7 +197,8 @@ DoubtfulThings ThingsTooLarge(const ImportMap& map) {
     const MappedEntity& e = map.entities[i].value;
     const Eigen::Vector3d& size = e.size_m;
     if (!e.from || e.fixed || size.maxCoeff() <= kMostSize_m) continue;
-    const double factor = size.maxCoeff() / 100 <= kMostSize_m ? 100 : 1000;
+    const bool in_millimetres = map.MetresPerUnit() < 0.002 && size.maxCoeff() > 10;
+    const double factor = in_millimetres || size.maxCoeff() / 100 > kMostSize_m ? 1000 : 100;
     large.things.insert(i);
     large.warnings.push_back(fmt::format(
         "'{}' is {:g} x {:g} x {:g} m large, and size_m is in metres; if these are {}: size_m: "

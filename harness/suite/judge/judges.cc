@@ -17,23 +17,42 @@ std::vector<truth::ClaimVerdict> JudgeClaims(const episode::LoadedRun& loaded,
                      episode::ClaimableIn(scenario, *loaded.program), timeline);
 }
 
+namespace {
+
+/// "sinks_into(pot, coaster)".
+std::string LimitIn(const truth::Claim& claim) {
+  const truth::ClaimedEvent& limit = claim.events.front();
+  return fmt::format("{}({}, {})", limit.name.text, limit.roles[0].value.text,
+                     limit.roles[1].value.text);
+}
+
+}  // namespace
+
+std::vector<truth::ClaimVerdict> JudgeLimitClaims(const scenario::Scenario& scenario,
+                                                  const std::vector<physics::ScriptNote>& notes) {
+  std::vector<truth::ClaimVerdict> verdicts;
+  for (const truth::Claim& claim : scenario.expects) {
+    if (!truth::IsAboutLimit(claim)) continue;
+    const auto note = std::ranges::find(
+        notes, LimitIn(claim), [](const auto& each) { return physics::LimitOf(each.text); });
+    const bool holds = note != notes.end();
+    verdicts.push_back({.claim = claim.text,
+                        .place = fmt::format("{}:{}", scenario.file, claim.where.place.line),
+                        .says = holds ? truth::kHolds : truth::kContradicted,
+                        .found = holds ? "found: " + note->text : "found none"});
+  }
+  return verdicts;
+}
+
 Findings JudgeLimits(const scenario::Scenario& scenario,
                      const std::vector<physics::ScriptNote>& notes) {
   std::map<std::string, std::string> found;  // by what a claim says of it
   for (const physics::ScriptNote& note : notes)
     if (const std::string limit = physics::LimitOf(note.text); !limit.empty())
       found.emplace(limit, note.text);
-  Findings findings;
-  for (const truth::Claim& claim : scenario.expects) {
-    if (!truth::IsAboutLimit(claim)) continue;
-    const std::vector<truth::ClaimRole>& roles = claim.events.front().roles;
-    const std::string limit = fmt::format("{}({}, {})", claim.events.front().name.text,
-                                          roles[0].value.text, roles[1].value.text);
-    if (found.erase(limit) > 0) continue;
-    const std::string text = fmt::format("expects: '{}' ({}:{}): found none", claim.text,
-                                         scenario.file, claim.where.place.line);
-    findings.push_back({.exit_code = ExitCode::kDiffers, .reason = text, .details = text + "\n"});
-  }
+  for (const truth::Claim& claim : scenario.expects)
+    if (truth::IsAboutLimit(claim)) found.erase(LimitIn(claim));
+  Findings findings = ClaimFindings(JudgeLimitClaims(scenario, notes));
   for (const auto& [limit, text] : found)
     findings.push_back(
         {.exit_code = ExitCode::kDiffers,

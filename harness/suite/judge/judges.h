@@ -64,6 +64,10 @@ inline constexpr const char* kUntilClaimsHold =
 std::vector<truth::ClaimVerdict> JudgeClaims(const episode::LoadedRun& loaded,
                                              const grammar::Timeline& timeline);
 
+/// Of claims that the physics gets something wrong, by what a run notes.
+std::vector<truth::ClaimVerdict> JudgeLimitClaims(const scenario::Scenario& scenario,
+                                                  const std::vector<physics::ScriptNote>& notes);
+
 /// One per note of a run that the physics got something wrong, which the scenario does not expect;
 /// one per such thing that it expects and that did not happen.
 Findings JudgeLimits(const scenario::Scenario& scenario,

@@ -40,6 +40,7 @@ TEST(NearestName, FindsTypingMistakesOnly) {
   const std::vector<std::string> names = {"grasping", "reaching", "cm"};
   EXPECT_EQ(NearestName("graspin", names), "grasping");
   EXPECT_EQ(NearestName("raeching", names), "reaching");
+  EXPECT_EQ(NearestName("Cup_QW", {"Cup_x", "Cup_qx", "Cup_qw"}), "Cup_qw");
   EXPECT_EQ(NearestName("mc", names), "") << "one swap, but of a name too short to tell";
   EXPECT_EQ(NearestName("tabel", {"table"}), "table");
   EXPECT_EQ(NearestName("pouring", names), "");

@@ -48,6 +48,11 @@ TEST_F(JudgeClaimsOfARun, WhatThePhysicsGetsWrongIsExpectedOrAFinding) {
   EXPECT_NE(found[0].details.find("expects: ['sinks_into(carton, table)']"), std::string::npos);
   EXPECT_TRUE(JudgeLimits(expecting.loaded.scenario, notes).empty());
   EXPECT_TRUE(JudgeClaims(expecting.loaded, expecting.result.timeline).empty());
+  const auto says = [&](const std::vector<physics::ScriptNote>& noted) {
+    return JudgeLimitClaims(expecting.loaded.scenario, noted).at(0).says;
+  };
+  EXPECT_EQ(says(notes), truth::kHolds);
+  EXPECT_EQ(says({}), truth::kContradicted);
   const Findings missing = JudgeLimits(expecting.loaded.scenario, {});
   ASSERT_EQ(missing.size(), 1u);
   EXPECT_EQ(missing[0].reason,
