@@ -360,6 +360,27 @@ TEST(Import, AThingThatTremblesIsNamedAndMeansOverATimeMakeItSmooth) {
     EXPECT_NE(events.find(event), std::string::npos) << event << "\n" << events;
 }
 
+TEST(Import, FaultsFarInALongFileAreShownWithTheirLines) {
+  std::string csv = Csv();
+  for (int i = 301; i <= 30'000; ++i) {
+    for (const char* name : {"Mug", "Glove"}) {
+      Row row = name[0] == 'M' ? CupAt(5) : HandAt(5);
+      row.t_s = i / 60.0;
+      csv += AsWritten(name, row);
+    }
+  }
+  const auto folder = FreshFolder("long_file");
+  const std::string rows = "\n400.0000,Mug,";
+  const Said said = ImportCsv(folder, Replaced(csv, rows, rows + "left"), kMap);
+  EXPECT_NE(said.exit_code, 0);
+  EXPECT_NE(said.err.find("poses.csv:48002:14: error: expected a number, found 'left"),
+            std::string::npos)
+      << said.err;
+  EXPECT_NE(said.err.find("400.0000,Mug,left"), std::string::npos) << said.err;
+  EXPECT_EQ(ImportCsv(folder, csv, kMap, {"--check"}).out.substr(0, 41),
+            "a_cup_is_carried: 30001 frames, 500.000 s");
+}
+
 TEST(Import, AllThatTrembleByAMillimetreAreNamedInOneLine) {
   const auto folder = FreshFolder("import");
   int frame = 0;

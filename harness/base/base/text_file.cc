@@ -7,8 +7,9 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <utility>
+
+#include "harness/base/base/text_blocks.h"
 
 namespace prehend {
 namespace {
@@ -93,10 +94,10 @@ constexpr const char* kNoCharacter = "\uFFFD";
 
 /// Without the line itself: printing it could garble a terminal.
 Diagnostic NotText(const std::string& file, std::string_view text, std::size_t offset,
-                   std::string message) {
+                   std::string message, int first_line = 1) {
   const auto before = text.substr(0, offset);
   const auto line_start = before.rfind('\n') + 1;  // npos + 1 == 0: the first line
-  const int line = 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n'));
+  const int line = first_line + static_cast<int>(std::count(before.begin(), before.end(), '\n'));
   return {.file = file,
           .place = {line, 1 + static_cast<int>(offset - line_start)},
           .message = std::move(message),
@@ -112,7 +113,7 @@ bool IsUtf16(std::string_view text) {
 }
 
 std::string WithUnixLineEnds(std::string text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (text.find('\r') == std::string::npos) return text;
   std::string out;
   out.reserve(text.size());
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -120,6 +121,37 @@ std::string WithUnixLineEnds(std::string text) {
     out += text[i];
   }
   return out;
+}
+
+Diagnostics CheckLines(const std::string& file, std::string_view text, int first_line) {
+  const auto not_text = [&](std::size_t offset, std::string message) {
+    return NotText(file, text, offset, std::move(message), first_line);
+  };
+  for (std::size_t i = 0; i < text.size();) {
+    if ((text[i] >= ' ' && text[i] <= '~') || text[i] == '\n') {
+      ++i;
+      continue;
+    }
+    if (text[i] == '\r') {
+      Diagnostic alone = not_text(i, "a carriage return without a line feed");
+      alone.hint = "lines end with a line feed, or with both";
+      return {std::move(alone)};
+    }
+    const std::size_t length = Utf8Length(text.substr(i));
+    if (length == 0) {
+      return {not_text(
+          i, fmt::format("byte 0x{:02x} is not UTF-8", static_cast<unsigned char>(text[i])))};
+    }
+    const char32_t code = CodePoint(text.substr(i, length));
+    if (const auto name = NameOfStrange(code); !name.empty()) {
+      const auto number = static_cast<unsigned>(code);
+      return {not_text(
+          i, length == 1 ? fmt::format("{} 0x{:02x}; this looks like a binary file", name, number)
+                         : fmt::format("{} U+{:04X}", name, number))};
+    }
+    i += length;
+  }
+  return {};
 }
 
 /// Why the file at `path` cannot be read as text, found without opening it; empty when it can.
@@ -190,47 +222,51 @@ Diagnostics CheckText(const std::string& file, std::string_view text) {
     wide.hint = "save it as UTF-8";
     return {std::move(wide)};
   }
-  for (std::size_t i = 0; i < text.size();) {
-    if (text[i] == '\r') {
-      Diagnostic alone = NotText(file, text, i, "a carriage return without a line feed");
-      alone.hint = "lines end with a line feed, or with both";
-      return {std::move(alone)};
-    }
-    const std::size_t length = Utf8Length(text.substr(i));
-    if (length == 0) {
-      return {
-          NotText(file, text, i,
-                  fmt::format("byte 0x{:02x} is not UTF-8", static_cast<unsigned char>(text[i])))};
-    }
-    const char32_t code = CodePoint(text.substr(i, length));
-    if (const auto name = NameOfStrange(code); !name.empty()) {
-      const auto number = static_cast<unsigned>(code);
-      return {NotText(file, text, i,
-                      length == 1
-                          ? fmt::format("{} 0x{:02x}; this looks like a binary file", name, number)
-                          : fmt::format("{} U+{:04X}", name, number))};
-    }
-    i += length;
+  return CheckLines(file, text, 1);
+}
+
+TextBlocks::TextBlocks(const std::string& path, std::uintmax_t most_bytes) : path_(path) {
+  std::string why = ReadableName(path) != path
+                        ? "the name of this file holds what is no printable text; rename it"
+                        : WhyNotReadable(path, most_bytes);
+  if (why.empty()) stream_.open(path, std::ios::binary);
+  if (!stream_) why = std::string("cannot be read: ") + std::strerror(errno);
+  if (!why.empty()) Refuse(std::move(why));
+}
+
+void TextBlocks::Refuse(std::string why) {
+  problems_ = {{.file = ReadableName(path_), .message = std::move(why)}};
+}
+
+std::string TextBlocks::Next() {
+  constexpr std::size_t kBytes = 1 << 20;
+  std::string bytes = std::exchange(rest_, "");
+  while (problems_.empty() && stream_) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + kBytes);
+    stream_.read(bytes.data() + before, kBytes);
+    bytes.resize(before + static_cast<std::size_t>(stream_.gcount()));
+    const std::size_t end = bytes.rfind('\n') + 1;
+    if (!stream_ || end <= before) continue;
+    rest_ = bytes.substr(end);
+    bytes.resize(end);
+    break;
   }
-  return {};
+  if (stream_.bad()) Refuse("cannot be read to its end");
+  if (!problems_.empty()) return "";
+  const bool is_first = std::exchange(is_first_, false);
+  if (is_first && bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
+  std::string block = WithUnixLineEnds(std::move(bytes));
+  problems_ = is_first ? CheckText(path_, block) : CheckLines(path_, block, lines_ + 1);
+  lines_ += static_cast<int>(std::ranges::count(block, '\n'));
+  return problems_.empty() ? block : "";
 }
 
 Result<std::string> ReadTextFile(const std::string& path, std::uintmax_t most_bytes) {
-  const auto refuse = [&](std::string why) {
-    Diagnostic diagnostic;
-    diagnostic.file = ReadableName(path);
-    diagnostic.message = std::move(why);
-    return tl::unexpected(grammar::Diagnostics{diagnostic});
-  };
-  if (ReadableName(path) != path)
-    return refuse("the name of this file holds what is no printable text; rename it");
-  if (auto why = WhyNotReadable(path, most_bytes); !why.empty()) return refuse(std::move(why));
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return refuse(std::string("cannot be read: ") + std::strerror(errno));
-  std::string text = WithUnixLineEnds({std::istreambuf_iterator<char>(stream), {}});
-  if (stream.bad()) return refuse("cannot be read to its end");
-  if (auto diagnostics = CheckText(path, text); !diagnostics.empty())
-    return tl::unexpected(std::move(diagnostics));
+  TextBlocks blocks(path, most_bytes);
+  std::string text;
+  for (std::string block; !(block = blocks.Next()).empty();) text += block;
+  if (!blocks.problems().empty()) return tl::unexpected(blocks.problems());
   return text;
 }
 

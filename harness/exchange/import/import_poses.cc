@@ -58,17 +58,22 @@ class FrameMaker {
   std::map<std::int64_t, double> times;  ///< tick -> seconds
 
   void EachFrame(const episode::Recording::Look& look) {
-    for (auto* all : {&tracks, &openings})
-      for (Track& track : *all) track.next = 0;
+    const auto each_track = [&](const auto& todo) {
+      std::ranges::for_each(tracks, todo);
+      std::ranges::for_each(openings, todo);
+    };
+    each_track([](Track& track) { track.next = 0; });
     std::vector<grammar::EntitySample> before;
     double before_s = 0;
+    std::size_t count = 0;
     for (const auto& [tick, t_s] : times) {
+      if (++count % 4096 == 0) each_track([](Track& track) { LetGo(track.poses); });
       episode::EpisodeFrame frame;
       frame.tick = tick;
       frame.entities.reserve(tracks.size());
       for (std::size_t i = 0; i < tracks.size(); ++i) {
         const std::size_t passed = tracks[i].next;
-        const TimedPose pose = tracks[i].At(t_s);
+        const PoseSample pose = tracks[i].At(t_s);
         grammar::EntitySample& sample = frame.entities.emplace_back();
         sample.p_WB_m = pose.p;
         sample.q_WB = pose.q;
@@ -209,19 +214,20 @@ class Importer {
 
   /// Where the pose of a track that is nearest after a time stands in the file.
   std::string PlaceOf(std::size_t track, double t_s) const {
-    const std::vector<TimedPose>& poses = tracks_[track].poses;
-    const auto pose = std::ranges::lower_bound(poses, t_s, {}, &TimedPose::t_s);
+    const PoseSeries& poses = tracks_[track].poses;
+    const auto pose = std::ranges::lower_bound(poses, t_s, {}, &PoseSample::t_s);
     return pose != poses.end() && pose->line > 0 ? fmt::format("{}:{}", file_.file, pose->line)
                                                  : fmt::format("{}, {:.3f} s", file_.file, t_s);
   }
 
   /// Poses that leave and come back, those of bodies that were taken for each other, and jumps.
   void JudgeJumps() {
-    std::vector<const std::vector<TimedPose>*> poses;
+    std::vector<const PoseSeries*> poses;
     std::vector<JumpsOfTrack> found;
     for (const Track& track : tracks_) {
       poses.push_back(&track.poses);
       found.push_back(FindJumps(track.poses));
+      LetGo(track.poses);
     }
     const auto name = [&](std::size_t i) { return map_.entities[i].value.from->value; };
     const bool drops = map_.outlier == OutlierRule::kLost;
@@ -232,7 +238,7 @@ class Importer {
                        PlaceOf(exchange.a, exchange.begin_s), name(exchange.a), name(exchange.b),
                        exchange.begin_s, exchange.end_s));
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
-      std::vector<TimedPose>& track = tracks_[i].poses;
+      PoseSeries& track = tracks_[i].poses;
       if (!found[i].jumps.empty()) {
         const Jump& jump = *std::ranges::max_element(found[i].jumps, {}, &Jump::way_m);
         const double step_s = track[jump.at].t_s - track[jump.at - 1].t_s;
@@ -269,7 +275,8 @@ class Importer {
       if (map_.smooth_s > 0) track.poses = Smoothed(track.poses, map_.smooth_s / 2);
       NoteTrembling(trembling_m, track.poses, report);
     }
-    for (const TimedPose& pose : track.poses) report.extent.extend(pose.p);
+    for (const PoseSample& pose : track.poses) report.extent.extend(pose.p);
+    LetGo(track.poses);
     if (report.extent.min().minCoeff() < -kFarthest_m ||
         report.extent.max().maxCoeff() > kFarthest_m)
       errors_.Add(entity.name_where, fmt::format("'{}' is farther than {:g} m from the origin",
@@ -305,7 +312,7 @@ class Importer {
   /// The file's poses become those of the track.
   void Convert(const MappedEntity& entity, Track& track) {
     Kept& kept = kept_[tracks_.size() - 1];
-    std::vector<PoseSample>& samples =
+    PoseSeries& samples =
         std::ranges::find(file_.bodies, entity.from->value, &PoseBody::name)->samples;
     kept.usual_s = UsualStep_s(samples);
     poses_ += samples.size();
@@ -317,11 +324,12 @@ class Importer {
     }
     for (PoseSample& sample : samples) sample = InRecording(sample, entity, map_, kept.upright);
     track.poses = std::move(samples);
+    LetGo(track.poses);
   }
 
   void MarkGaps(double usual_s, const Where& where, bool of_opening, Track& track,
                 EntityReport& report) {
-    std::vector<TimedPose>& poses = track.poses;
+    PoseSeries& poses = track.poses;
     report.poses = poses.size();
     report.rate_hz = usual_s > 0 ? 1 / usual_s : 0;
     double longest_s = 0, longest_from_s = 0, bridge_s = 0;
@@ -342,6 +350,7 @@ class Importer {
     for (std::size_t i = 1; i < poses.size(); ++i)
       poses[i].after_loss = take(poses[i - 1].t_s, poses[i].t_s, true);
     track.lost_after = take(poses.back().t_s, file_.last_s, false);
+    LetGo(poses);
     if (report.lost == 0) return;
     const std::string text =
         fmt::format("'{}' {} for {:.3f} s from {:.3f} s on; in all {}, {:.3f} s", report.from,
@@ -359,7 +368,7 @@ class Importer {
                                          : ""));
   }
 
-  void WarnOfMotion(const Named<MappedEntity>& entity, const std::vector<TimedPose>& poses,
+  void WarnOfMotion(const Named<MappedEntity>& entity, const PoseSeries& poses,
                     const EntityReport& report) {
     std::size_t uneven = 0;
     Eigen::AlignedBox3d extent;
@@ -376,8 +385,7 @@ class Importer {
   }
 
   /// `as_read_m`: how much it trembles in the file, which decides over how long to take means.
-  void NoteTrembling(double as_read_m, const std::vector<TimedPose>& poses,
-                     const EntityReport& report) {
+  void NoteTrembling(double as_read_m, const PoseSeries& poses, const EntityReport& report) {
     const double trembling_m = map_.smooth_s > 0 ? Trembling_m(poses) : as_read_m;
     // What goes farther from frame to frame jumps, and means hide nothing of that.
     if (trembling_m <= kTrembles_m || trembling_m > kMostTrembling_m) return;
@@ -418,7 +426,7 @@ class Importer {
     for (const auto* all : {&tracks_, &openings_})
       for (const Track& track : *all) tracks.push_back(&track);
     for (const Track* const track : tracks) {
-      const std::vector<TimedPose>& poses = track->poses;
+      const PoseSeries& poses = track->poses;
       auto at = times_.begin();  // most are there already
       for (std::size_t i = 0; i < poses.size(); ++i) {
         if (i > 0 && TickOf(poses[i].t_s) == TickOf(poses[i - 1].t_s))
@@ -428,6 +436,7 @@ class Importer {
               poses[i].t_s - poses[i - 1].t_s, map_.ticks_per_second);
         at = std::next(times_.try_emplace(at, TickOf(poses[i].t_s), poses[i].t_s));
       }
+      LetGo(poses);
     }
     times_.emplace(0, 0.0);
     times_.emplace(TickOf(file_.last_s), file_.last_s);

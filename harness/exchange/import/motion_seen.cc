@@ -2,6 +2,8 @@
 #include "harness/exchange/import/motion_seen.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <limits>
 
 namespace prehend::exchange {
@@ -22,6 +24,7 @@ std::vector<BodyLook> LooksAt(const PoseBody& body, double last_s, double look_s
     if (next == body.samples.size() || body.samples[next].t_s >= t_s + look_s) continue;
     looks[k] = {body.samples[next].p * metres_per_unit, body.samples[next].q};
   }
+  LetGo(body.samples);
   return looks;
 }
 
@@ -114,6 +117,38 @@ MotionSeen MotionIn(const PoseFile& poses, const ImportMap& map, double metres_p
   }
   MotionFinder(seen).Find();
   return seen;
+}
+
+double UsualStep_s(const PoseSeries& samples) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    steps.push_back(samples[i].t_s - samples[i - 1].t_s);
+  LetGo(samples);
+  return Median(std::move(steps));
+}
+
+double MedianOfPoses(const PoseFile& poses,
+                     const std::function<double(const PoseSample&)>& number) {
+  // As bits, numbers that are not negative are sorted alike: 16 bits of it by each time through.
+  std::uint64_t median = 0;
+  std::size_t before = 0;  ///< how many there are up to it, of those that begin with these bits
+  for (const PoseBody& body : poses.bodies) before += body.samples.size();
+  if (before == 0) return 0;
+  before /= 2;
+  for (int shift = 48; shift >= 0; shift -= 16) {
+    std::vector<std::size_t> counts(1 << 16);
+    for (const PoseBody& body : poses.bodies) {
+      for (const PoseSample& sample : body.samples) {
+        const auto bits = std::bit_cast<std::uint64_t>(number(sample)) >> shift;
+        if (bits >> 16 == median) ++counts[bits & 0xFFFF];
+      }
+      LetGo(body.samples);
+    }
+    std::size_t next = 0;
+    while (before >= counts[next]) before -= counts[next++];
+    median = median << 16 | next;
+  }
+  return std::bit_cast<double>(median);
 }
 
 double Median(std::vector<double> values) {

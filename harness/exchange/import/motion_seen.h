@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <vector>
 
 #include "harness/exchange/poses/pose_file.h"
@@ -46,13 +47,10 @@ MotionSeen MotionIn(const PoseFile& poses, const ImportMap& map, double metres_p
 /// The middle one, of an even number the upper; 0 of none.
 double Median(std::vector<double> values);
 
+/// The same of `number` of all poses of the file, at least 0 each, without keeping them.
+double MedianOfPoses(const PoseFile& poses, const std::function<double(const PoseSample&)>& number);
+
 /// The usual time between two of them, s.
-template <class Sample>
-double UsualStep_s(const std::vector<Sample>& samples) {
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < samples.size(); ++i)
-    steps.push_back(samples[i].t_s - samples[i - 1].t_s);
-  return Median(std::move(steps));
-}
+double UsualStep_s(const PoseSeries& samples);
 
 }  // namespace prehend::exchange

@@ -22,7 +22,7 @@ double Degrees(double rad) { return rad * 180 / static_cast<double>(EIGEN_PI); }
 
 class JumpFinder {
  public:
-  explicit JumpFinder(const std::vector<TimedPose>& poses) : poses_(poses) {}
+  explicit JumpFinder(const PoseSeries& poses) : poses_(poses) {}
 
   JumpsOfTrack Find() {
     JumpsOfTrack found;
@@ -72,7 +72,7 @@ class JumpFinder {
 
   /// The first pose that is back where it was before step i.
   std::optional<std::size_t> ComesBack(std::size_t i) const {
-    const TimedPose& before = poses_[i - 1];
+    const PoseSample& before = poses_[i - 1];
     const Speeds usual = FastestOf(i > kNeighbours ? i - kNeighbours : 0, i);
     for (std::size_t k = i + 1; k < poses_.size(); ++k) {
       const double s = poses_[k].t_s - before.t_s;
@@ -90,7 +90,7 @@ class JumpFinder {
 
   Outlier OutlierIn(std::size_t begin, std::size_t end) const {
     Outlier outlier{begin, end, 0, 0};
-    const TimedPose &before = poses_[begin - 1], &after = poses_[end];
+    const PoseSample &before = poses_[begin - 1], &after = poses_[end];
     for (std::size_t k = begin; k < end; ++k) {
       const double part = (poses_[k].t_s - before.t_s) / (after.t_s - before.t_s);
       outlier.off_m =
@@ -101,14 +101,14 @@ class JumpFinder {
     return outlier;
   }
 
-  const std::vector<TimedPose>& poses_;
+  const PoseSeries& poses_;
 };
 
 }  // namespace
 
-JumpsOfTrack FindJumps(const std::vector<TimedPose>& poses) { return JumpFinder(poses).Find(); }
+JumpsOfTrack FindJumps(const PoseSeries& poses) { return JumpFinder(poses).Find(); }
 
-std::vector<Exchange> FindExchanges(const std::vector<const std::vector<TimedPose>*>& tracks,
+std::vector<Exchange> FindExchanges(const std::vector<const PoseSeries*>& tracks,
                                     std::vector<JumpsOfTrack>& found) {
   std::vector<Exchange> exchanges;
   const auto erase = [&](std::size_t body, std::size_t at) {
@@ -116,7 +116,7 @@ std::vector<Exchange> FindExchanges(const std::vector<const std::vector<TimedPos
   };
   for (std::size_t a = 0; a < tracks.size(); ++a) {
     for (std::size_t b = a + 1; b < tracks.size(); ++b) {
-      const std::vector<TimedPose>&ours = *tracks[a], &theirs = *tracks[b];
+      const PoseSeries &ours = *tracks[a], &theirs = *tracks[b];
       std::vector<double> times_s;
       for (std::size_t i = 1, k = 1; i < ours.size(); ++i) {
         while (k < theirs.size() && theirs[k].t_s < ours[i].t_s - kSameTime_s) ++k;
@@ -135,7 +135,9 @@ std::vector<Exchange> FindExchanges(const std::vector<const std::vector<TimedPos
       for (std::size_t i = 0; i < times_s.size(); i += 2)
         exchanges.push_back(
             {a, b, times_s[i], i + 1 < times_s.size() ? times_s[i + 1] : ours.back().t_s});
+      LetGo(theirs);
     }
+    LetGo(*tracks[a]);
   }
   return exchanges;
 }

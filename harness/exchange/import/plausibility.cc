@@ -24,6 +24,7 @@ double UsualSpeed(const PoseFile& poses) {
     for (std::size_t i = 1; i < body.samples.size(); ++i)
       speeds.push_back((body.samples[i].p - body.samples[i - 1].p).norm() /
                        (body.samples[i].t_s - body.samples[i - 1].t_s));
+    LetGo(body.samples);
     std::ranges::sort(speeds);
     if (!speeds.empty()) fastest = std::max(fastest, speeds[speeds.size() * 95 / 100]);
   }
@@ -81,6 +82,7 @@ class Judge {
           if (next < body.samples.size())
             jump_m = std::max(jump_m, body.samples[next].p.norm() * map_.MetresPerUnit());
       }
+      LetGo(body.samples);
       if (jump_m < kJump_m) continue;
       Guess guess{entity.value.from->where, Warning::kZero, {}, "zero_is_missing: true"};
       guess.signs = {fmt::format("'{}' is at exactly 0, 0, 0 in {} of {} poses", body.name, zeros,
@@ -135,8 +137,10 @@ class Judge {
   Guess Fractions() const {
     Guess guess{map_.UnitWhere(), Warning::kUnit, {}, "give positions in a unit of length"};
     Eigen::AlignedBox3d extent;
-    for (const PoseBody& body : poses_.bodies)
+    for (const PoseBody& body : poses_.bodies) {
       for (const PoseSample& sample : body.samples) extent.extend(sample.p);
+      LetGo(body.samples);
+    }
     int flat = 0;
     const Eigen::Vector3d sizes = extent.sizes();
     if (sizes.minCoeff(&flat) > 0 || sizes.maxCoeff() * map_.MetresPerUnit() < 0.1) return guess;
@@ -191,6 +195,7 @@ Approach NearestApproach(const PoseFile& poses, const ImportMap& map, double met
         const double distance_m = (p_B.cwiseAbs() - e.size_m / 2).cwiseMax(0).norm();
         if (distance_m < nearest.distance_m) nearest = {distance_m, &place, &body};
       }
+      LetGo(body.samples);
     }
   }
   return nearest;

@@ -292,14 +292,9 @@ Guess GuessOrder(const PoseFile& poses, const ImportMap& map) {
               {},
               fmt::format("quaternion_order: {}", is_wxyz ? "xyzw" : "wxyz")};
   // A body that stands as when it was defined has w near 1.
-  std::vector<double> as_read, other;
-  for (const PoseBody& body : poses.bodies) {
-    for (const PoseSample& sample : body.samples) {
-      as_read.push_back(std::abs(sample.q.w()));
-      other.push_back(std::abs(is_wxyz ? sample.q.z() : sample.q.x()));
-    }
-  }
-  const double w = Median(std::move(as_read)), other_w = Median(std::move(other));
+  const double w = MedianOfPoses(poses, [](const auto& at) { return std::abs(at.q.w()); });
+  const double other_w =
+      MedianOfPoses(poses, [&](const auto& at) { return std::abs(is_wxyz ? at.q.z() : at.q.x()); });
   const bool looks_so = w <= 0.5 && other_w >= 0.85;
   if (looks_so)
     guess.signs.push_back(

@@ -34,14 +34,14 @@ struct Lengths {
 
 Lengths LengthsIn(const PoseFile& poses, const MotionSeen& seen) {
   Lengths lengths;
-  std::vector<double> distances, speeds;
+  std::vector<double> speeds;
   Eigen::AlignedBox3d extent, hands;
   for (std::size_t body = 0; body < poses.bodies.size(); ++body) {
     for (const PoseSample& sample : poses.bodies[body].samples) {
-      distances.push_back(sample.p.norm());
       extent.extend(sample.p);
       if (seen.entities[body]->hand) hands.extend(sample.p);
     }
+    LetGo(poses.bodies[body].samples);
   }
   for (std::size_t body = 0; body < seen.looks.size(); ++body) {
     for (std::size_t k = 0; k < seen.looks[body].size(); ++k) {
@@ -51,7 +51,7 @@ Lengths LengthsIn(const PoseFile& poses, const MotionSeen& seen) {
       if (way > 0) speeds.push_back(way / seen.look_s);
     }
   }
-  lengths.from_origin = Median(std::move(distances));
+  lengths.from_origin = MedianOfPoses(poses, [](const PoseSample& at) { return at.p.norm(); });
   lengths.span = extent.isEmpty() ? 0 : extent.diagonal().norm();
   lengths.hands = hands.isEmpty() ? 0 : hands.diagonal().norm();
   std::ranges::sort(speeds);

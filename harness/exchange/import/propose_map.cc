@@ -263,7 +263,7 @@ class MapProposer {
     bool has_table = false;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       Draft& body = bodies_[i];
-      const std::vector<PoseSample>& samples = poses.bodies[i].samples;
+      const PoseSeries& samples = poses.bodies[i].samples;
       const auto rest = std::ranges::find_if(
           seen.rests, [&](const Rest& one) { return one.body == i && one.stands; });
       if (poses.has_orientations && !poses.stature && rest != seen.rests.end())
@@ -275,6 +275,7 @@ class MapProposer {
           zeros_ = zeros_ || (samples[k].p.isZero(0) && next < samples.size() &&
                               samples[next].p.norm() * scale > kFromZero_m);
       }
+      LetGo(samples);
       body.fixed = !body.hand && extent.diagonal().norm() * scale < kTableMoves_m &&
                    IsTable(WordsIn(body.name));
       has_table = has_table || body.fixed;

@@ -11,7 +11,7 @@ namespace prehend::exchange {
 namespace {
 
 /// The poses from `begin` on, up to where it is lost.
-std::size_t EndOfSight(const std::vector<TimedPose>& poses, std::size_t begin) {
+std::size_t EndOfSight(const PoseSeries& poses, std::size_t begin) {
   std::size_t end = begin + 1;
   while (end < poses.size() && !poses[end].after_loss) ++end;
   return end;
@@ -20,18 +20,18 @@ std::size_t EndOfSight(const std::vector<TimedPose>& poses, std::size_t begin) {
 /// How far a pose is off the polynomial of degree `order` - 1 through as many of its neighbours, as
 /// the standard deviation that noise on each axis would have: half of all are below that times the
 /// median of a chi distribution of three axes. Of the slowest quarter: what is fast bends more.
-double OffNeighbours_m(const std::vector<TimedPose>& poses, std::size_t order) {
+double OffNeighbours_m(const PoseSeries& poses, std::size_t order) {
   constexpr double kMedianOfThree = 1.538;
   std::vector<std::pair<double, double>> of_way;
   of_way.reserve(poses.size());
   for (std::size_t last = order; last < poses.size(); ++last) {
-    const std::span<const TimedPose> some(&poses[last - order], order + 1);
-    if (std::ranges::any_of(some.subspan(1), &TimedPose::after_loss)) continue;
+    const std::span<const PoseSample> some(&poses[last - order], order + 1);
+    if (std::ranges::any_of(some.subspan(1), &PoseSample::after_loss)) continue;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double squares = 0;
-    for (const TimedPose& pose : some) {
+    for (const PoseSample& pose : some) {
       double weight = 1;
-      for (const TimedPose& other : some) {
+      for (const PoseSample& other : some) {
         if (&other != &pose)
           weight *= (some.back().t_s - some.front().t_s) / (pose.t_s - other.t_s);
       }
@@ -55,8 +55,8 @@ bool IsLost(const Track& track, double t_s) {
   return track.next == track.poses.size() ? track.lost_after : track.poses[track.next].after_loss;
 }
 
-std::vector<TimedPose> Smoothed(const std::vector<TimedPose>& poses, double half_s) {
-  std::vector<TimedPose> smooth = poses;
+PoseSeries Smoothed(const PoseSeries& poses, double half_s) {
+  PoseSeries smooth = poses;
   for (std::size_t begin = 0; begin < poses.size(); begin = EndOfSight(poses, begin)) {
     const std::size_t end = EndOfSight(poses, begin);
     for (std::size_t i = begin, first = begin; i < end; ++i) {
@@ -81,7 +81,7 @@ std::vector<TimedPose> Smoothed(const std::vector<TimedPose>& poses, double half
   return smooth;
 }
 
-double Trembling_m(const std::vector<TimedPose>& poses) {
+double Trembling_m(const PoseSeries& poses) {
   constexpr double kOfTrembling = 3.2;  // largest share of both that such repetition has
   const double bends_m = OffNeighbours_m(poses, 2), rough_m = OffNeighbours_m(poses, 6);
   return bends_m < kOfTrembling * rough_m ? bends_m : rough_m;

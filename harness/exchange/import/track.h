@@ -11,20 +11,18 @@
 
 namespace prehend::exchange {
 
-using TimedPose = PoseSample;
-
 /// An entity over time.
 struct Track {
-  std::vector<TimedPose> poses;
+  PoseSeries poses;
   bool lost_before = false, lost_after = false;  ///< before its first and after its last pose
   std::size_t next = 0;  ///< the first one that is later than the present time
 
-  TimedPose At(double t_s) {
+  PoseSample At(double t_s) {
     while (next < poses.size() && poses[next].t_s <= t_s) ++next;
     if (next == 0) return poses.front();
-    const TimedPose& before = poses[next - 1];
+    const PoseSample& before = poses[next - 1];
     if (next == poses.size() || poses[next].after_loss) return before;
-    const TimedPose& after = poses[next];
+    const PoseSample& after = poses[next];
     const double part = (t_s - before.t_s) / (after.t_s - before.t_s);
     if (part <= 0) return before;
     return {.t_s = t_s,
@@ -38,12 +36,12 @@ bool IsLost(const Track& track, double t_s);
 
 /// The mean of the poses at most `half_s` before or after each; less at both ends, so that it is
 /// not drawn to one side.
-std::vector<TimedPose> Smoothed(const std::vector<TimedPose>& poses, double half_s);
+PoseSeries Smoothed(const PoseSeries& poses, double half_s);
 
 /// The standard deviation of its position on each axis, as far as it is noise. A smooth path bends
 /// from frame to frame, but a polynomial through six neighbours follows it; what repeats faster
 /// than every four frames is off both.
-double Trembling_m(const std::vector<TimedPose>& poses);
+double Trembling_m(const PoseSeries& poses);
 
 /// The poses from `begin` up to `end` are off the way between the ones around them.
 struct Outlier {
@@ -62,7 +60,7 @@ struct JumpsOfTrack {
   std::vector<Jump> jumps;  ///< what does not come back
 };
 
-JumpsOfTrack FindJumps(const std::vector<TimedPose>& poses);
+JumpsOfTrack FindJumps(const PoseSeries& poses);
 
 /// From `begin` to `end`, s, each of two tracks is where the other one was.
 struct Exchange {
@@ -71,7 +69,7 @@ struct Exchange {
 };
 
 /// `found`: by track. What an exchange explains is taken out of the jumps; outliers stay.
-std::vector<Exchange> FindExchanges(const std::vector<const std::vector<TimedPose>*>& tracks,
+std::vector<Exchange> FindExchanges(const std::vector<const PoseSeries*>& tracks,
                                     std::vector<JumpsOfTrack>& found);
 
 }  // namespace prehend::exchange

@@ -64,6 +64,7 @@ void MirrorPoses(const ImportMap& map, PoseFile& poses) {
       // Turns are the other way round, but for the part about the mirror's own axis.
       sample.q.vec() = -map.Mirrored(sample.q.vec());
     }
+    LetGo(body.samples);
   }
   if (poses.stature) poses.stature = map.Mirrored(*poses.stature);
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/base/base/paged_memory.h"
 #include "harness/episode/sense/episode_file.h"
 #include "harness/exchange/poses/import_map.h"
 
@@ -24,9 +25,12 @@ struct PoseSample {
   bool after_loss = false;                                ///< how it came here is not known
 };
 
+/// Whoever has gone through one lets go of it: those of all bodies may be larger than memory.
+using PoseSeries = PagedVector<PoseSample>;
+
 struct PoseBody {
   std::string name;
-  std::vector<PoseSample> samples;  ///< times increase; where it is not tracked there is none
+  PoseSeries samples;  ///< times increase; where it is not tracked there is none
 };
 
 /// How far a gripper or a joint of the map is open, over time.

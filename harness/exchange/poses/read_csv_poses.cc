@@ -14,6 +14,7 @@
 
 #include "grammar/base/wording.h"
 #include "harness/base/base/quoting.h"
+#include "harness/base/base/text_blocks.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/poses/marker_bodies.h"
 #include "harness/exchange/poses/pose_file.h"
@@ -37,7 +38,7 @@ std::string WithBody(const std::string& column, const std::string& body) {
 
 /// Where the values of a body stand in a row.
 struct Seats {
-  std::vector<std::size_t> position, orientation;
+  std::vector<std::size_t> all;      ///< three of its position, then those of its orientation
   std::optional<std::size_t> error;  ///< of its orientation and position, as the tracker says
 };
 
@@ -70,23 +71,31 @@ class CsvPoseReader {
     if (!map_.columns.quaternion.empty()) poses.quaternion_order = orientation_.order;
   }
 
-  void Read() {
-    const std::string_view text = poses.text;
+  /// `blocks`: what follows the text.
+  void Read(TextBlocks& blocks) {
     TakeHead();
-    bool goes_on = map_errors_.empty();
-    for (std::size_t begin = 0;
-         goes_on && begin < text.size() && problems_.size() < kMostComplaints;) {
-      const std::size_t end = std::min(text.find('\n', begin), text.size());
-      const std::string_view line = text.substr(begin, end - begin);
-      begin = end + 1;
-      goes_on = TakeLine(line, begin >= text.size());
+    for (bool goes_on = map_errors_.empty(); goes_on;) {
+      std::string next = blocks.Next();
+      const std::string_view text = poses.text;
+      for (std::size_t begin = 0;
+           goes_on && begin < text.size() && problems_.size() < kMostComplaints;) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string_view line = text.substr(begin, end - begin);
+        begin = end + 1;
+        goes_on = TakeLine(line, next.empty() && begin >= text.size());
+      }
+      if (next.empty() || problems_.size() >= kMostComplaints) break;
+      poses.text = std::move(next);
+      lines_before_ = line_;
     }
     if (!map_errors_.empty()) return;
     if (line_ < header_line_)
       Complain({1, 1}, fmt::format("{} lines; the header is on line {}", line_, header_line_));
     if (!problems_.empty()) return;
-    for (PoseBody& body : poses.bodies)
+    for (PoseBody& body : poses.bodies) {
       for (PoseSample& sample : body.samples) sample.t_s -= poses.first_s;
+      LetGo(body.samples);
+    }
     for (OpeningSeries& opening : poses.openings)
       for (OpeningSeries::Sample& sample : opening.samples) sample.t_s -= poses.first_s;
     poses.last_s -= poses.first_s;
@@ -139,6 +148,7 @@ class CsvPoseReader {
     for (PoseBody& body : poses.bodies) body.samples.clear();
     for (OpeningSeries& opening : poses.openings) opening.samples.clear();
     poses.text = line;
+    lines_before_ = line_;
     poses.unused.clear();
     const std::size_t rows = poses.rows;
     TakeLine(poses.text, /*is_last=*/false);
@@ -159,7 +169,7 @@ class CsvPoseReader {
  private:
   void Complain(Place place, std::string message, std::string hint = {}) {
     const int line = place.line;
-    if (streams_) place.line = 1;  // of the text
+    place.line -= lines_before_;
     problems_.push_back(
         grammar::DiagnosticAt(poses.file, poses.text, place, std::move(message), std::move(hint)));
     problems_.back().place.line = line;
@@ -372,13 +382,13 @@ class CsvPoseReader {
   Seats SeatsOf(const std::string& body) {
     Seats seats;
     for (const Located<std::string>& column : map_.columns.position)
-      seats.position.push_back(SeatOf(column, WithBody(column.value, body)));
+      seats.all.push_back(SeatOf(column, WithBody(column.value, body)));
     const bool turns =
         !layout_ || map_.columns.IsOfOneBody() || std::ranges::count(layout_->turning, body) > 0;
     const auto error = seats_by_name_.find(body + " " + (layout_ ? layout_->error : ""));
     if (layout_ && turns && error != seats_by_name_.end()) seats.error = error->second;
     for (const Located<std::string>& column : map_.columns.Orientation())
-      if (turns) seats.orientation.push_back(SeatOf(column, WithBody(column.value, body)));
+      if (turns) seats.all.push_back(SeatOf(column, WithBody(column.value, body)));
     return seats;
   }
 
@@ -484,31 +494,28 @@ class CsvPoseReader {
 
   void TakePose(const std::vector<CsvCell>& cells, const Seats& seats, double t_s, Wanted& wanted) {
     PoseBody& body = *wanted.body;
-    std::vector<std::size_t> all = seats.position;
-    all.insert(all.end(), seats.orientation.begin(), seats.orientation.end());
     const auto missing = [&](std::size_t seat) { return IsMissing(cells[seat]); };
-    if (std::ranges::all_of(all, missing)) return;
-    if (const auto one = std::ranges::find_if(all, missing); one != all.end())
+    if (std::ranges::all_of(seats.all, missing)) return;
+    if (const auto one = std::ranges::find_if(seats.all, missing); one != seats.all.end())
       return Complain({line_, cells[*one].column},
                       fmt::format("'{}' has a pose without '{}'", body.name, names_[*one]),
                       "where a body is not tracked, all of its cells are empty");
-    std::vector<double> values;
-    for (const std::size_t seat : all) {
+    values_.clear();
+    for (const std::size_t seat : seats.all) {
       const auto value = Number(cells[seat]);
       if (!value) return;
-      values.push_back(*value);
+      values_.push_back(*value);
     }
-    PoseSample sample{.t_s = t_s, .p = {values[0], values[1], values[2]}, .q = {}, .line = line_};
-    sample.q.setIdentity();
+    PoseSample sample{.t_s = t_s, .p = {values_[0], values_[1], values_[2]}, .line = line_};
     if (map_.zero_is_missing && sample.p.isZero(0)) return;
-    const Place place{line_, cells[all.back()].column};
+    const Place place{line_, cells[seats.all.back()].column};
     if (!body.samples.empty() && t_s <= body.samples.back().t_s)
       return Complain(place, fmt::format("'{}' has two poses at {:.6g} s", body.name, t_s));
-    if (!seats.orientation.empty()) {
+    if (seats.all.size() > 3) {
       const std::string fault =
-          ReadOrientation(orientation_, std::span(values).subspan(3), sample.q);
+          ReadOrientation(orientation_, std::span(values_).subspan(3), sample.q);
       if (!fault.empty())
-        return Complain({line_, cells[seats.orientation.front()].column},
+        return Complain({line_, cells[seats.all[3]].column},
                         fmt::format("'{}': {}", body.name, fault),
                         orientation_.form == OrientationForm::kQuaternion
                             ? "are these the four columns of one body's orientation?"
@@ -519,6 +526,7 @@ class CsvPoseReader {
       if (!error || !wanted.errors.Take(*error, wanted.most_error, t_s, line_)) return;
     }
     body.samples.push_back(sample);
+    if (body.samples.size() % 4096 == 1) LetGo(body.samples);  // also when it has just grown
   }
 
   void TakeOpening(const std::vector<CsvCell>& cells, const std::vector<std::size_t>& seats,
@@ -559,6 +567,7 @@ class CsvPoseReader {
   std::string stem_;
   OrientationFormat orientation_;
   int line_ = 0, header_line_ = 0;
+  int lines_before_ = 0;  ///< the text
   bool streams_ = false;
   double row_s_ = 0;  ///< of the last row
   std::vector<std::string> names_;
@@ -572,6 +581,7 @@ class CsvPoseReader {
   std::map<std::string, double> last_times_s_;  ///< by body; of a row with all bodies under ""
   std::size_t steps_ = 0, whole_steps_ = 0, unit_steps_ = 0;  ///< of times
   Seats shared_;
+  std::vector<double> values_;                           ///< of a pose
   std::vector<std::vector<std::size_t>> opening_seats_;  ///< of each of the openings
 };
 
@@ -588,12 +598,15 @@ PoseLines::PoseLines(const std::string& name, std::string head, const MapFile& m
 }
 
 Result<PoseFile> ReadCsvPoses(const std::string& path, const MapFile& map) {
-  PREHEND_TRY(std::string text, ReadTextFile(path, kMaxPoseFileBytes));
-  CsvPoseReader reader(path, std::move(text), map);
-  reader.Read();
+  // What is wrong with the text comes before what is wrong with poses.
+  TextBlocks all(path, kMaxPoseFileBytes), blocks(path, kMaxPoseFileBytes);
+  while (!all.Next().empty()) {
+  }
+  if (!all.problems().empty()) return tl::unexpected(all.problems());
+  CsvPoseReader reader(path, blocks.Next(), map);
+  reader.Read(blocks);
   if (Diagnostics problems = reader.Problems(); !problems.empty())
     return tl::unexpected(std::move(problems));
-  reader.poses.text = std::string();  // it is large, and all messages about it have been made
   return std::move(reader.poses);
 }
 
