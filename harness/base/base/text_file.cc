@@ -7,9 +7,8 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <utility>
-
-#include "harness/base/base/text_blocks.h"
 
 namespace prehend {
 namespace {
@@ -225,48 +224,44 @@ Diagnostics CheckText(const std::string& file, std::string_view text) {
   return CheckLines(file, text, 1);
 }
 
-TextBlocks::TextBlocks(const std::string& path, std::uintmax_t most_bytes) : path_(path) {
-  std::string why = ReadableName(path) != path
-                        ? "the name of this file holds what is no printable text; rename it"
-                        : WhyNotReadable(path, most_bytes);
-  if (why.empty()) stream_.open(path, std::ios::binary);
-  if (!stream_) why = std::string("cannot be read: ") + std::strerror(errno);
-  if (!why.empty()) Refuse(std::move(why));
-}
-
-void TextBlocks::Refuse(std::string why) {
-  problems_ = {{.file = ReadableName(path_), .message = std::move(why)}};
-}
-
-std::string TextBlocks::Next() {
-  constexpr std::size_t kBytes = 1 << 20;
-  std::string bytes = std::exchange(rest_, "");
-  while (problems_.empty() && stream_) {
+Diagnostics ReadTextBlocks(const std::string& path, std::uintmax_t most_bytes,
+                           const TakeBlock& take) {
+  constexpr std::size_t kBlockBytes = 1 << 20;
+  const auto refuse = [&](std::string why) {
+    return Diagnostics{{.file = ReadableName(path), .message = std::move(why)}};
+  };
+  if (ReadableName(path) != path)
+    return refuse("the name of this file holds what is no printable text; rename it");
+  if (auto why = WhyNotReadable(path, most_bytes); !why.empty()) return refuse(std::move(why));
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return refuse(std::string("cannot be read: ") + std::strerror(errno));
+  Diagnostics problems;
+  std::string bytes;
+  int lines = 0;
+  for (bool is_last = false; !is_last && problems.empty();) {
     const std::size_t before = bytes.size();
-    bytes.resize(before + kBytes);
-    stream_.read(bytes.data() + before, kBytes);
-    bytes.resize(before + static_cast<std::size_t>(stream_.gcount()));
-    const std::size_t end = bytes.rfind('\n') + 1;
-    if (!stream_ || end <= before) continue;
-    rest_ = bytes.substr(end);
-    bytes.resize(end);
-    break;
+    bytes.resize(before + kBlockBytes);
+    stream.read(bytes.data() + before, kBlockBytes);
+    bytes.resize(before + static_cast<std::size_t>(stream.gcount()));
+    is_last = stream.peek() == std::ifstream::traits_type::eof();
+    const std::size_t cut = std::string_view(bytes).substr(before).rfind('\n');
+    if (cut == std::string_view::npos && !is_last) continue;
+    const std::size_t end = is_last ? bytes.size() : before + cut + 1;
+    const std::size_t begin = lines == 0 && bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+    std::string block = WithUnixLineEnds(bytes.substr(begin, end - begin));
+    bytes.erase(0, end);
+    problems = lines == 0 ? CheckText(path, block) : CheckLines(path, block, lines + 1);
+    lines += static_cast<int>(std::ranges::count(block, '\n'));
+    if (problems.empty()) take(std::move(block), is_last);
   }
-  if (stream_.bad()) Refuse("cannot be read to its end");
-  if (!problems_.empty()) return "";
-  const bool is_first = std::exchange(is_first_, false);
-  if (is_first && bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
-  std::string block = WithUnixLineEnds(std::move(bytes));
-  problems_ = is_first ? CheckText(path_, block) : CheckLines(path_, block, lines_ + 1);
-  lines_ += static_cast<int>(std::ranges::count(block, '\n'));
-  return problems_.empty() ? block : "";
+  return stream.bad() ? refuse("cannot be read to its end") : problems;
 }
 
 Result<std::string> ReadTextFile(const std::string& path, std::uintmax_t most_bytes) {
-  TextBlocks blocks(path, most_bytes);
   std::string text;
-  for (std::string block; !(block = blocks.Next()).empty();) text += block;
-  if (!blocks.problems().empty()) return tl::unexpected(blocks.problems());
+  const auto add = [&](const std::string& block, bool) { text += block; };
+  if (Diagnostics problems = ReadTextBlocks(path, most_bytes, add); !problems.empty())
+    return tl::unexpected(std::move(problems));
   return text;
 }
 

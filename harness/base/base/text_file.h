@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,13 @@ inline constexpr std::uintmax_t kMaxTextFileBytes = 4u << 20;
 /// without reading it), a directory or device, and what CheckText() reports.
 Result<std::string> ReadTextFile(const std::string& path,
                                  std::uintmax_t most_bytes = kMaxTextFileBytes);
+
+/// Of a file that may be larger than memory: whole lines, about a megabyte of them.
+using TakeBlock = std::function<void(std::string block, bool is_last)>;
+
+/// The same, block by block: what is wrong with the text is known where it comes.
+grammar::Diagnostics ReadTextBlocks(const std::string& path, std::uintmax_t most_bytes,
+                                    const TakeBlock& take);
 
 /// Reports a text that is empty, is not UTF-8, or holds control characters (a binary file): those
 /// of ASCII and U+0080 to U+009F, which terminals obey; what turns the direction of writing (U+202A

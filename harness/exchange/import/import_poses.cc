@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <span>
 
 #include "grammar/base/frame.h"
 #include "grammar/base/wording.h"
@@ -57,7 +56,8 @@ class FrameMaker {
   std::vector<OpeningSeries> series;
   std::map<std::int64_t, double> times;  ///< tick -> seconds
 
-  void EachFrame(const episode::Recording::Look& look) {
+  /// `step`: those that are nearer to the one before, in ticks, are left out.
+  void EachFrame(const episode::Recording::Look& look, std::int64_t step = 0) {
     const auto each_track = [&](const auto& todo) {
       std::ranges::for_each(tracks, todo);
       std::ranges::for_each(openings, todo);
@@ -66,10 +66,11 @@ class FrameMaker {
     std::vector<grammar::EntitySample> before;
     double before_s = 0;
     std::size_t count = 0;
+    episode::EpisodeFrame frame{.tick = -step};
     for (const auto& [tick, t_s] : times) {
       if (++count % 4096 == 0) each_track([](Track& track) { LetGo(track.poses); });
-      episode::EpisodeFrame frame;
-      frame.tick = tick;
+      if (tick - frame.tick < step) continue;
+      frame = {.tick = tick};
       frame.entities.reserve(tracks.size());
       for (std::size_t i = 0; i < tracks.size(); ++i) {
         const std::size_t passed = tracks[i].next;
@@ -348,7 +349,7 @@ class Importer {
     };
     track.lost_before = take(0, poses.front().t_s, false);
     for (std::size_t i = 1; i < poses.size(); ++i)
-      poses[i].after_loss = take(poses[i - 1].t_s, poses[i].t_s, true);
+      if (take(poses[i - 1].t_s, poses[i].t_s, true)) poses[i].after_loss = true;
     track.lost_after = take(poses.back().t_s, file_.last_s, false);
     LetGo(poses);
     if (report.lost == 0) return;
@@ -453,19 +454,12 @@ class Importer {
     episode.placed.assign(tracks_.size(), true);
     episode.says_its_end = true;
     episode.end_tick = times_.rbegin()->first + 1;
-    const auto maker = std::make_shared<FrameMaker>(map_);
-    maker->tracks = std::move(tracks_);
-    maker->openings = std::move(openings_);
-    maker->series = std::move(file_.openings);
-    maker->times = std::move(times_);
-    episode.play = [maker](const episode::Recording::Look& look) { maker->EachFrame(look); };
+    maker_->series = std::move(file_.openings);
+    episode.play = [maker = maker_](const auto& look) { maker->EachFrame(look); };
     episode::Recording seen{.header = episode.header};
-    const auto step =
-        static_cast<grammar::Tick>(kBetweenLooks_s * static_cast<double>(map_.ticks_per_second));
-    episode.EachFrame([&](const episode::EpisodeFrame& frame) {
-      if (seen.frames.empty() || frame.tick - seen.frames.back().tick >= step)
-        seen.frames.push_back(frame);
-    });
+    maker_->EachFrame(
+        [&](const episode::EpisodeFrame& frame) { seen.frames.push_back(frame); },
+        static_cast<grammar::Tick>(kBetweenLooks_s * static_cast<double>(map_.ticks_per_second)));
     return seen;
   }
 
@@ -484,9 +478,9 @@ class Importer {
   std::vector<Kept> kept_{map_.entities.size()};
   std::size_t poses_ = 0;  ///< of all bodies
   Imported imported_;
-  std::vector<Track> tracks_;
-  std::vector<Track> openings_;  ///< of those of the file
-  std::map<std::int64_t, double> times_;
+  const std::shared_ptr<FrameMaker> maker_ = std::make_shared<FrameMaker>(map_);
+  std::vector<Track>&tracks_ = maker_->tracks, &openings_ = maker_->openings;
+  std::map<std::int64_t, double>& times_ = maker_->times;
   std::vector<std::string> trembling_;
   double trembles_m_ = 0;  ///< the most
   double smooth_s_ = 0.2;  ///< over so long means no longer tremble

@@ -47,6 +47,7 @@ class JumpFinder {
 
   /// Whether step i is longer than the steps from `first` up to `last` lead to.
   bool IsSudden(std::size_t i, std::size_t first, std::size_t last) const {
+    if (Way_m(i) <= kLeast_m && Turn_rad(i) <= kLeast_rad) return false;  // as most are
     const Speeds usual = FastestOf(first, last);
     const double s = Seconds(i);
     return Way_m(i) > std::max(kLeast_m, kMost_m_per_s2 * s * s) + kFaster * usual.m_per_s * s ||
@@ -115,15 +116,20 @@ std::vector<Exchange> FindExchanges(const std::vector<const PoseSeries*>& tracks
     std::erase_if(found[body].jumps, [&](const Jump& jump) { return jump.at == at; });
   };
   for (std::size_t a = 0; a < tracks.size(); ++a) {
+    const PoseSeries& ours = *tracks[a];
+    std::vector<std::pair<std::size_t, double>> leaps;  ///< and their ways
+    for (std::size_t i = 1; i < ours.size(); ++i)
+      if (const double way_m = (ours[i].p - ours[i - 1].p).norm(); !(way_m < kPassing_m))
+        leaps.emplace_back(i, way_m);
     for (std::size_t b = a + 1; b < tracks.size(); ++b) {
-      const PoseSeries &ours = *tracks[a], &theirs = *tracks[b];
+      const PoseSeries& theirs = *tracks[b];
       std::vector<double> times_s;
-      for (std::size_t i = 1, k = 1; i < ours.size(); ++i) {
+      std::size_t k = 1;
+      for (const auto& [i, way_m] : leaps) {
         while (k < theirs.size() && theirs[k].t_s < ours[i].t_s - kSameTime_s) ++k;
         if (k >= theirs.size()) break;
-        const double way_m = (ours[i].p - ours[i - 1].p).norm();
         const double near_m = std::max(kLeast_m, kSamePlace * way_m);
-        if (way_m < kPassing_m || std::abs(theirs[k].t_s - ours[i].t_s) > kSameTime_s ||
+        if (std::abs(theirs[k].t_s - ours[i].t_s) > kSameTime_s ||
             (ours[i].p - theirs[k - 1].p).norm() > near_m ||
             (theirs[k].p - ours[i - 1].p).norm() > near_m)
           continue;
@@ -137,7 +143,7 @@ std::vector<Exchange> FindExchanges(const std::vector<const PoseSeries*>& tracks
             {a, b, times_s[i], i + 1 < times_s.size() ? times_s[i + 1] : ours.back().t_s});
       LetGo(theirs);
     }
-    LetGo(*tracks[a]);
+    LetGo(ours);
   }
   return exchanges;
 }

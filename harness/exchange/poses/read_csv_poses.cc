@@ -14,7 +14,6 @@
 
 #include "grammar/base/wording.h"
 #include "harness/base/base/quoting.h"
-#include "harness/base/base/text_blocks.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/poses/marker_bodies.h"
 #include "harness/exchange/poses/pose_file.h"
@@ -71,28 +70,32 @@ class CsvPoseReader {
     if (!map_.columns.quaternion.empty()) poses.quaternion_order = orientation_.order;
   }
 
-  /// `blocks`: what follows the text.
-  void Read(TextBlocks& blocks) {
-    TakeHead();
-    for (bool goes_on = map_errors_.empty(); goes_on;) {
-      std::string next = blocks.Next();
-      const std::string_view text = poses.text;
-      for (std::size_t begin = 0;
-           goes_on && begin < text.size() && problems_.size() < kMostComplaints;) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        const std::string_view line = text.substr(begin, end - begin);
-        begin = end + 1;
-        goes_on = TakeLine(line, next.empty() && begin >= text.size());
-      }
-      if (next.empty() || problems_.size() >= kMostComplaints) break;
-      poses.text = std::move(next);
-      lines_before_ = line_;
+  void Read(std::string block, bool is_last) {
+    if (!goes_on_) return;
+    poses.text = std::move(block);
+    lines_before_ = line_;
+    if (line_ == 0) {
+      TakeHead();
+      goes_on_ = map_errors_.empty();
     }
+    const std::string_view text = poses.text;
+    for (std::size_t begin = 0;
+         goes_on_ && begin < text.size() && problems_.size() < kMostComplaints;) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size());
+      const std::string_view line = text.substr(begin, end - begin);
+      begin = end + 1;
+      goes_on_ = TakeLine(line, is_last && begin >= text.size());
+    }
+  }
+
+  /// After the last line.
+  void Finish() {
     if (!map_errors_.empty()) return;
     if (line_ < header_line_)
       Complain({1, 1}, fmt::format("{} lines; the header is on line {}", line_, header_line_));
     if (!problems_.empty()) return;
     for (PoseBody& body : poses.bodies) {
+      if (poses.first_s == 0) break;
       for (PoseSample& sample : body.samples) sample.t_s -= poses.first_s;
       LetGo(body.samples);
     }
@@ -568,7 +571,7 @@ class CsvPoseReader {
   OrientationFormat orientation_;
   int line_ = 0, header_line_ = 0;
   int lines_before_ = 0;  ///< the text
-  bool streams_ = false;
+  bool streams_ = false, goes_on_ = true;
   double row_s_ = 0;  ///< of the last row
   std::vector<std::string> names_;
   std::map<std::string, std::size_t> seats_by_name_;
@@ -599,12 +602,15 @@ PoseLines::PoseLines(const std::string& name, std::string head, const MapFile& m
 
 Result<PoseFile> ReadCsvPoses(const std::string& path, const MapFile& map) {
   // What is wrong with the text comes before what is wrong with poses.
-  TextBlocks all(path, kMaxPoseFileBytes), blocks(path, kMaxPoseFileBytes);
-  while (!all.Next().empty()) {
+  CsvPoseReader reader(path, "", map);
+  for (const bool reads : {false, true}) {
+    Diagnostics problems =
+        ReadTextBlocks(path, kMaxPoseFileBytes, [&](std::string block, bool is_last) {
+          if (reads) reader.Read(std::move(block), is_last);
+        });
+    if (!problems.empty()) return tl::unexpected(std::move(problems));
   }
-  if (!all.problems().empty()) return tl::unexpected(all.problems());
-  CsvPoseReader reader(path, blocks.Next(), map);
-  reader.Read(blocks);
+  reader.Finish();
   if (Diagnostics problems = reader.Problems(); !problems.empty())
     return tl::unexpected(std::move(problems));
   return std::move(reader.poses);

@@ -8,8 +8,6 @@
 #include <fstream>
 #include <memory>
 
-#include "harness/base/base/text_blocks.h"
-
 namespace prehend {
 namespace {
 
@@ -142,15 +140,16 @@ TEST_F(TextFile, IsReadInBlocksOfWholeLines) {
   std::string text;
   for (int i = 0; text.size() < 3'500'000; ++i) text += "line " + std::to_string(i) + "\r\n";
   const std::string path = Write("long", "\xEF\xBB\xBF" + text + "cut off");
-  TextBlocks blocks(path, 1 << 30);
   std::string together;
-  int count = 0;
-  for (std::string block; !(block = blocks.Next()).empty(); together += block, ++count) {
+  std::vector<bool> last;
+  const auto take = [&](const std::string& block, bool is_last) {
     EXPECT_TRUE(block.ends_with('\n') || block.ends_with("\ncut off"));
     EXPECT_LT(block.size(), 1'200'000);
-  }
-  EXPECT_EQ(count, 4);
-  EXPECT_EQ(blocks.problems().size(), 0);
+    together += block;
+    last.push_back(is_last);
+  };
+  EXPECT_EQ(ReadTextBlocks(path, 1 << 30, take).size(), 0);
+  EXPECT_EQ(last, (std::vector<bool>{false, false, false, true}));
   EXPECT_EQ(together, ReadTextFile(path, 1 << 30));
   EXPECT_EQ(together.find('\r'), std::string::npos);
   EXPECT_TRUE(together.starts_with("line 0\nline 1\n"));
@@ -160,13 +159,14 @@ TEST_F(TextFile, FaultsOfLaterBlocksAreWhereTheyAre) {
   std::string text;
   for (int i = 0; i < 400'000; ++i) text += "line\n";
   const std::string path = Write("fault", text + "ab\xff\n");
-  TextBlocks blocks(path, 1 << 30);
-  EXPECT_TRUE(blocks.Next().starts_with("line\n"));
-  EXPECT_EQ(blocks.Next(), "");
-  ASSERT_EQ(blocks.problems().size(), 1);
-  EXPECT_EQ(blocks.problems()[0].message, "byte 0xff is not UTF-8");
-  EXPECT_EQ(blocks.problems()[0].place.line, 400'001);
-  EXPECT_EQ(blocks.problems()[0].place.column, 3);
+  std::size_t bytes = 0;
+  const auto problems =
+      ReadTextBlocks(path, 1 << 30, [&](const std::string& block, bool) { bytes += block.size(); });
+  EXPECT_EQ(bytes, 1'048'575) << "those before it were taken";
+  ASSERT_EQ(problems.size(), 1);
+  EXPECT_EQ(problems[0].message, "byte 0xff is not UTF-8");
+  EXPECT_EQ(problems[0].place.line, 400'001);
+  EXPECT_EQ(problems[0].place.column, 3);
 }
 
 Result<std::unique_ptr<int>> Half(int number) {
