@@ -16,6 +16,23 @@ event suported_by(object: Movable, support: Thing) while supported_by(object, su
 constexpr const char* kSilent = R"(grammar silent
 event touching_it(object: Movable, support: Thing) while touching(object, support)
 )";
+constexpr const char* kOwnClosing = R"(grammar own_closing
+event closing(hand: Hand) while trigger(hand) < 0.5
+)";
+constexpr const char* kDrawerSprings = R"(scenario: drawer_springs
+shows: a spring opens a drawer while a hand is far away
+entities:
+  cabinet: {fixed: true, box: {size_m: [0.4, 0.4, 0.4]}, at_m: [0, 0, 0.5]}
+  drawer:
+    box: {size_m: [0.02, 0.3, 0.1]}
+    mass_kg: 1
+    at_m: [-0.25, 0, 0.5]
+    slider: {to: cabinet, axis: [-1, 0, 0], range_m: [0, 0.3], spring_n_per_m: 20, rest_m: 0.15, damping_n_s_per_m: 8}
+actors:
+  right_hand: {hand: human_right, at_m: [-1, -1, 1]}
+script:
+  - right_hand: {wait_s: 2}
+)";
 
 class ScoreCommand : public SmallProject {
  protected:
@@ -83,6 +100,28 @@ TEST_F(ScoreCommand, EventsCanBeChosen) {
   EXPECT_NE(wrong.err.find("defines no 'suported_by'; did you mean 'supported_by'?"),
             std::string::npos)
       << wrong.err;
+}
+
+TEST_F(ScoreCommand, FurnitureCountsIfAGrammarHasIt) {
+  WriteFile(Scenario("drawer_springs"), kDrawerSprings);
+  WriteFile(root_ / "own_closing.grammar", kOwnClosing);
+  const auto scores = [&](const std::string& options) {
+    const Said said = Do("score drawer_springs --json" + options);
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    return Json::parse(said.out)["grammars"];
+  };
+  EXPECT_EQ(scores(" --grammar contact")[0]["total"]["true"], 0) << "it speaks of no furniture";
+  const Json furniture = scores(" --grammar furniture")[0];
+  EXPECT_EQ(furniture["total"]["true"], 4)
+      << "closed, half closed, half open, opening; " << furniture.dump(1);
+  EXPECT_EQ(furniture["total"]["f1_50"], 1.0);
+  const Json both = scores(" --grammar contact --grammar furniture")[0];
+  EXPECT_EQ(both["total"]["true"], 4) << "all are scored on the same truth";
+  EXPECT_EQ(both["total"]["ward"]["deleted"], 4);
+  const Json chosen = scores(" --event opening --grammar contact")[0];
+  EXPECT_EQ(chosen["not_covered"], Json::array({"opening"}));
+  const Json own = scores(GrammarOption("own_closing"))[0];
+  EXPECT_EQ(own["ignored"]["closing"], 1) << "an event of a hand is none of furniture";
 }
 
 TEST_F(ScoreCommand, EveryCommaHasNamesBesideIt) {

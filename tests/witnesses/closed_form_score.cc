@@ -100,7 +100,7 @@ ClosedFormEvaluator EvaluatedGrammar(const std::string& name,
             grammar::Timeline found =
                 episode::Resegment(recording.scenario, recording.frames, program, recording.end);
             std::erase_if(found.events,
-                          [](const auto& event) { return !truth::OracleDefines(event.event); });
+                          [](const auto& event) { return !truth::OracleDefines(event); });
             return found;
           }};
 }

@@ -115,9 +115,9 @@ ExitCode RunLabels(const ParsedOptions& options, const CommandContext& context) 
 }
 
 /// `score`: against what physically happened, in scenarios.
-ExitCode RunScenarios(const measure::Asking& asking, const measure::NotCovered& not_covered,
-                      const std::vector<std::string>& events, const grammar::Overrides& settings,
-                      const ParsedOptions& options, const CommandContext& context) {
+ExitCode RunScenarios(const measure::Asking& asking, const measure::ToScore& to_score,
+                      const grammar::Overrides& settings, const ParsedOptions& options,
+                      const CommandContext& context) {
   const auto selection =
       suite::SelectScenarios(options.All("names"), options.All("--filter"), context.root);
   if (!selection) return Complain(context, selection.error().exit_code, selection.error().why);
@@ -130,10 +130,12 @@ ExitCode RunScenarios(const measure::Asking& asking, const measure::NotCovered& 
     std::string id = file.episode && !file.in_project
                          ? file.skill + (file.skill.empty() ? "" : "/") + file.name
                          : episode::IdOf(file);
-    requests.push_back({NameOf(file), std::move(id), context.root, &asking, events, settings});
+    requests.push_back(
+        {NameOf(file), std::move(id), context.root, &asking, to_score.events, settings});
   }
   const double collar_s = CollarFrom(options);
-  const auto scores = measure::ScoreScenarios(requests, asking, not_covered, collar_s, CoreCount());
+  const auto scores =
+      measure::ScoreScenarios(requests, asking, to_score.not_covered, collar_s, CoreCount());
   context.err << scores.notes;
   ExitCode worst = ExitCode::kAgrees;
   for (const measure::NotScored& one : scores.not_scored) {
@@ -175,10 +177,10 @@ ExitCode RunScore(const ParsedOptions& options, const CommandContext& context) {
   const std::vector<std::string> events = measure::EventsIn(options.All("--event"));
   if (const std::string unknown = measure::UnknownEvent(events); !unknown.empty())
     return Refuse(context, unknown);
-  const Result<measure::NotCovered> not_covered =
+  const Result<measure::ToScore> to_score =
       measure::CompileToScore(context.root, asking.sources, *settings, events);
-  if (!not_covered) return Complain(context, not_covered.error());
-  return RunScenarios(asking, *not_covered, events, *settings, options, context);
+  if (!to_score) return Complain(context, to_score.error());
+  return RunScenarios(asking, *to_score, *settings, options, context);
 }
 
 }  // namespace

@@ -43,8 +43,7 @@ grammar::Timeline Scored(const grammar::Timeline& timeline,
                          const std::vector<std::string>& wanted) {
   grammar::Timeline scored = timeline;
   std::erase_if(scored.events, [&](const grammar::NamedEvent& event) {
-    return !truth::OracleDefines(event.event) ||
-           (!wanted.empty() && std::ranges::find(wanted, event.event) == wanted.end());
+    return !truth::OracleDefines(event) || std::ranges::count(wanted, event.event) == 0;
   });
   return scored;
 }
@@ -53,7 +52,7 @@ grammar::Timeline Scored(const grammar::Timeline& timeline,
 std::map<std::string, int> Ignored(const grammar::Timeline& found) {
   std::map<std::string, int> counts;
   for (const grammar::NamedEvent& event : found.events) {
-    if (!truth::OracleDefines(event.event)) ++counts[event.event];
+    if (!truth::OracleDefines(event)) ++counts[event.event];
   }
   return counts;
 }
@@ -62,7 +61,8 @@ std::map<std::string, int> Ignored(const grammar::Timeline& found) {
 exchange::ComparedRoles JudgedRoles(const grammar::Program& program) {
   exchange::ComparedRoles roles;
   for (const grammar::EventSignature& event : grammar::EventSignatures(program))
-    if (truth::OracleDefines(event.name)) roles[event.name] = event.roles;
+    if (truth::OracleDefines(event.name, event.roles.empty() ? "" : event.roles.front()))
+      roles[event.name] = event.roles;
   return roles;
 }
 
@@ -147,10 +147,8 @@ ScenarioOnWire Played(const ScoreRequest& request) {
 std::vector<std::string> SilentOf(const std::vector<std::string>& events,
                                   const std::function<bool(const std::string&)>& has) {
   std::vector<std::string> silent;
-  for (const std::string_view event : truth::OracleEvents()) {
-    const bool judged = events.empty() || std::ranges::find(events, event) != events.end();
-    if (judged && !has(std::string(event))) silent.emplace_back(event);
-  }
+  for (const std::string& event : events)
+    if (!has(event)) silent.push_back(event);
   return silent;
 }
 
@@ -226,9 +224,10 @@ std::vector<std::string> EventsIn(const std::vector<std::string>& lists) {
 }
 
 std::string UnknownEvent(const std::vector<std::string>& events) {
-  const std::vector<std::string> known(truth::OracleEvents().begin(), truth::OracleEvents().end());
+  std::vector<std::string> known(truth::OracleEvents().begin(), truth::OracleEvents().end());
+  known.insert(known.end(), truth::FurnitureEvents().begin(), truth::FurnitureEvents().end());
   for (const std::string& event : events) {
-    if (truth::OracleDefines(event)) continue;
+    if (std::ranges::count(known, event) > 0) continue;
     if (event.empty()) return "--event: a name is missing next to a comma; write NAME,NAME";
     const std::string near = grammar::NearestName(event, known);
     return fmt::format("--event: docs/events.md defines no '{}'; {}", event,
@@ -238,19 +237,29 @@ std::string UnknownEvent(const std::vector<std::string>& events) {
   return "";
 }
 
-Result<NotCovered> CompileToScore(const std::string& root, const std::vector<Source>& sources,
-                                  const grammar::Overrides& settings,
-                                  const std::vector<std::string>& events) {
-  NotCovered not_covered;
-  for (const Source& source : sources) {
-    std::vector<std::string>& silent = not_covered.emplace_back();
-    if (source.kind != Source::Kind::kGrammar) continue;
-    const grammar::CompileResult compiled = episode::LoadGrammar(root, source.text, settings);
+Result<ToScore> CompileToScore(const std::string& root, const std::vector<Source>& sources,
+                               const grammar::Overrides& settings,
+                               const std::vector<std::string>& events) {
+  ToScore to_score{.events = events, .not_covered = NotCovered(sources.size())};
+  std::vector<exchange::ComparedRoles> judged(sources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    if (sources[i].kind != Source::Kind::kGrammar) continue;
+    const grammar::CompileResult compiled = episode::LoadGrammar(root, sources[i].text, settings);
     if (!compiled.program) return tl::unexpected(compiled.diagnostics);
-    silent = SilentOf(events,
-                      [&](const std::string& event) { return HasEvent(*compiled.program, event); });
+    judged[i] = JudgedRoles(*compiled.program);
   }
-  return not_covered;
+  if (events.empty()) {
+    to_score.events.assign(truth::OracleEvents().begin(), truth::OracleEvents().end());
+    for (const std::string_view name : truth::FurnitureEvents())
+      if (const std::string event(name);
+          std::ranges::any_of(judged, [&](const auto& roles) { return roles.contains(event); }))
+        to_score.events.push_back(event);
+  }
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    if (sources[i].kind == Source::Kind::kGrammar)
+      to_score.not_covered[i] = SilentOf(
+          to_score.events, [&](const std::string& event) { return judged[i].contains(event); });
+  return to_score;
 }
 
 ScenarioScores ScoreScenarios(const std::vector<ScoreRequest>& requests, const Asking& asking,

@@ -20,16 +20,21 @@ struct ScoreRequest {
   std::string id;
   std::string root;
   const Asking* asking = nullptr;
-  std::vector<std::string> events;   ///< only these are scored; empty: all that the oracle defines
+  std::vector<std::string> events;   ///< only these are scored
   grammar::Overrides settings = {};  ///< of parameters of all grammars
 };
 
 /// Judged events that no rule of a grammar prints, for each source; none of others than grammars.
-/// `events`: only these are judged; empty: all that the oracle defines.
 using NotCovered = std::vector<std::vector<std::string>>;
-Result<NotCovered> CompileToScore(const std::string& root, const std::vector<Source>& sources,
-                                  const grammar::Overrides& settings,
-                                  const std::vector<std::string>& events);
+struct ToScore {
+  std::vector<std::string> events;
+  NotCovered not_covered;
+};
+/// `events`: only these are judged; empty: all that the oracle defines, of furniture those that one
+/// of the grammars has.
+Result<ToScore> CompileToScore(const std::string& root, const std::vector<Source>& sources,
+                               const grammar::Overrides& settings,
+                               const std::vector<std::string>& events);
 
 /// The names between the commas; empty ones stay, so that they can be reported.
 std::vector<std::string> EventsIn(const std::vector<std::string>& lists);

@@ -141,9 +141,8 @@ tl::expected<grammar::Timeline, std::string> TruthOf(const SweepRequest& request
 JudgedSetting Judged(const grammar::Timeline& truth, grammar::Timeline found,
                      const SweepRequest& request, grammar::Tick ticks) {
   if (request.truth == Truth::kOracle)
-    std::erase_if(found.events, [](const grammar::NamedEvent& event) {
-      return !truth::OracleDefines(event.event);
-    });
+    std::erase_if(found.events,
+                  [](const grammar::NamedEvent& event) { return !truth::OracleDefines(event); });
   const auto per_s = static_cast<double>(truth.ticks_per_second);
   const auto micro = [&](grammar::Tick offset) {
     return static_cast<std::int64_t>(

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <regex>
+#include <set>
 
 #include "grammar/contents.h"
 #include "harness/truth/golden/compare.h"
@@ -52,10 +53,14 @@ OracleComparison CompareWithOracle(const scenario::Scenario& scenario,
   std::vector<grammar::Timeline> possible =
       truth::PossibleTimelines(scenario.scene, run.recording, run.ticks + 1);
   grammar::Timeline found = run.timeline;
-  std::erase_if(found.events, [](const auto& event) { return !truth::OracleDefines(event.event); });
   // A grammar is not judged by events that it has no rules for.
-  for (grammar::Timeline& truth : possible)
-    std::erase_if(truth.events, [&](const auto& event) { return !HasEvent(program, event.event); });
+  std::set<std::string> judged;
+  for (const grammar::EventSignature& event : EventSignatures(program))
+    if (truth::OracleDefines(event.name, event.roles.empty() ? "" : event.roles.front()))
+      judged.insert(event.name);
+  const auto is_other = [&](const auto& event) { return !judged.contains(event.event); };
+  std::erase_if(found.events, is_other);
+  for (grammar::Timeline& truth : possible) std::erase_if(truth.events, is_other);
   const grammar::Tick tolerance = scenario::DefaultTolerance(scenario);
   const std::size_t others = run.timeline.events.size() - found.events.size();
   return {.agreement = truth::AgreeWithin(possible, found, tolerance),

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "harness/truth/oracle/furniture.h"
 #include "harness/truth/oracle/recording.h"
 #include "harness/truth/oracle/touches.h"
 
@@ -17,6 +18,7 @@ namespace {
 struct Known {
   std::map<std::tuple<Grasp, int, int, ReachSettings>, int> reaches;
   std::map<std::tuple<Grasp, std::map<int, Spans>, CarrySettings, double>, Carrying> carryings;
+  std::map<std::tuple<FurnitureSettings, double>, std::vector<Part>> parts;
 };
 
 class TimelineBuilder {
@@ -40,6 +42,7 @@ class TimelineBuilder {
             {{"object", recording_.name(pair.first)}, {"support", recording_.name(pair.second)}},
             span);
     for (const Grasp& grasp : touches_.grasps) AddGrasp(grasp);
+    AddFurniture();
     grammar::Sort(timeline_);
     return std::move(timeline_);
   }
@@ -49,17 +52,35 @@ class TimelineBuilder {
     return frame < recording_.size() ? recording_.ticks[frame] : end_;
   }
 
-  void Add(const char* event, std::vector<grammar::Role> roles, Span span) {
+  void Add(const char* event, std::vector<grammar::Role> roles, Span span,
+           std::vector<grammar::NamedValue> values = {}) {
     const grammar::Interval interval{TickOf(span.begin), TickOf(span.end)};
     if (interval.begin >= interval.end) return;  // it began with the last frame
-    timeline_.events.push_back(
-        {event, std::move(roles), interval, interval.end, span.end == recording_.size()});
+    timeline_.events.push_back({event, std::move(roles), interval, interval.end,
+                                span.end == recording_.size(), std::move(values)});
   }
 
   void AddContacts() {
     for (const auto& [pair, spans] : touches_.contacts) {
       const auto [a, b] = std::minmax(recording_.name(pair.first), recording_.name(pair.second));
       for (const Span& span : spans) Add("contact", {{"a", a}, {"b", b}}, span);
+    }
+  }
+
+  void AddFurniture() {
+    constexpr std::array kStates = {"closed", "half_closed", "half_open", "open"};
+    const auto [known, is_new] = known_.parts.try_emplace({settings_, settings_.contact_bridge_s});
+    if (is_new) known->second = FindParts(evidence_, settings_, settings_.contact_bridge_s);
+    for (const Part& part : known->second) {
+      const grammar::Role role{"part", recording_.name(part.body)};
+      for (std::size_t i = 0; i < kStates.size(); ++i)
+        for (const Span& span : part.states[i]) Add(kStates[i], {role}, span);
+      for (const PartMotion& motion : part.motions) {
+        Add(motion.opens ? "opening" : "closing", {role}, motion.span, {{"way", motion.way, ""}});
+        for (const auto& [agent, touch] : motion.by)
+          Add(motion.opens ? "opened_by" : "closed_by", {role, {"agent", recording_.name(agent)}},
+              touch);
+      }
     }
   }
 
@@ -148,8 +169,19 @@ std::span<const std::string_view> OracleEvents() {
   return kDefined;
 }
 
-bool OracleDefines(std::string_view event) {
-  return std::ranges::find(OracleEvents(), event) != OracleEvents().end();
+std::span<const std::string_view> FurnitureEvents() {
+  static constexpr std::array<std::string_view, 8> kDefined = {
+      "closed", "half_closed", "half_open", "open", "opening", "closing", "opened_by", "closed_by"};
+  return kDefined;
+}
+
+bool OracleDefines(std::string_view event, std::string_view first_role) {
+  return std::ranges::count(OracleEvents(), event) > 0 ||
+         (first_role == "part" && std::ranges::count(FurnitureEvents(), event) > 0);
+}
+
+bool OracleDefines(const grammar::NamedEvent& event) {
+  return OracleDefines(event.event, event.roles.empty() ? "" : event.roles.front().name);
 }
 
 grammar::Timeline TrueTimeline(const physics::Scene& scene,

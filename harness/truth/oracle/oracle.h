@@ -17,10 +17,14 @@
 
 namespace prehend::truth {
 
-/// The events that docs/events.md defines, in its order.
+/// The events of hands and objects that docs/events.md defines, in its order.
 std::span<const std::string_view> OracleEvents();
-/// Whether this is one of them, so that the oracle can judge it.
-bool OracleDefines(std::string_view event);
+/// Those of furniture.
+std::span<const std::string_view> FurnitureEvents();
+/// Whether this is one of either, so that the oracle can judge it. Those of furniture are about a
+/// `part`: grammars have a `closing(hand)` of their own.
+bool OracleDefines(std::string_view event, std::string_view first_role);
+bool OracleDefines(const grammar::NamedEvent& event);
 
 /// The true events of a run, sorted, with one choice of the definitions' numbers. `recording` has
 /// the snapshots in the order of their ticks, best of every tick of physics; events begin and end

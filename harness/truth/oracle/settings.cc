@@ -50,6 +50,12 @@ std::span<const Band> DefinitionBands() {
       Band{"put window", &S::put_down_window_s, 0.08, 0.12},
       Band{"put slip", &S::put_down_slip_s, 0.015, 0.025},
       Band{"carry way", &S::carry_way_m, 0.004, 0.006},
+      Band{"part speed", &S::part_speed_per_s, 0.04, 0.06},
+      Band{"part window", &S::part_window_s, 0.08, 0.12},
+      Band{"part onset", &S::part_onset, 0.0005, 0.002},
+      Band{"part halt", &S::part_halt_s, 0.16, 0.24},
+      Band{"part way", &S::part_way, 0.08, 0.12},
+      Band{"part touch", &S::part_touch_s, 0.08, 0.12},
   };
   return kBands;
 }

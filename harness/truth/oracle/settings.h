@@ -70,7 +70,18 @@ struct CarrySettings {
   auto operator<=>(const CarrySettings&) const = default;
 };
 
-struct OracleSettings : TouchSettings, ReachSettings, CarrySettings {
+/// What motions of furniture depend on. A fraction of a joint's range has no unit.
+struct FurnitureSettings {
+  double part_speed_per_s = 0.05;  ///< slower is standing still,
+  double part_window_s = 0.1;      ///< on average over this
+  double part_onset = 0.001;       ///< it moves when it has got so far, until there is no more left
+  double part_halt_s = 0.2;        ///< a shorter one is bridged
+  double part_way = 0.1;           ///< what gets no farther has not been opened or closed
+  double part_touch_s = 0.1;       ///< a shorter touch counts if the motion begins in it
+  auto operator<=>(const FurnitureSettings&) const = default;
+};
+
+struct OracleSettings : TouchSettings, ReachSettings, CarrySettings, FurnitureSettings {
   double reach_minimum_s = 0.1;
   double reach_brush_s = 0.05;  ///< a shorter touch on the way does not end a reach
 };

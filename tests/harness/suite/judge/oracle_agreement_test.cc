@@ -39,7 +39,7 @@ TEST(OracleAgreement, DisagreementsOfTheLibraryAreFewAndExplained) {
     })) << episode::IdOf(file);
     judged += static_cast<int>(std::ranges::count_if(
         (*golden)->events,
-        [](const truth::GoldenEvent& line) { return truth::OracleDefines(line.event.event); }));
+        [](const truth::GoldenEvent& line) { return truth::OracleDefines(line.event); }));
     const int of_this = AcceptedDiffering(derived);
     differing += of_this;
     EXPECT_EQ(of_this > 0, page.find("| `" + episode::IdOf(file) + "` | ") != std::string::npos)
