@@ -11,7 +11,6 @@
 #include "render/image/canvas.h"
 #include "render/inventory.h"
 #include "render/picture.h"
-#include "render/view.h"
 
 namespace prehend::render {
 

@@ -3,8 +3,8 @@
 // Tested by tests/render/painter_test.cc
 #include "render/draw_list.h"
 #include "render/gl/gl_functions.h"
+#include "render/gl/gl_objects.h"
 #include "render/gl/osmesa_context.h"
-#include "render/gl/shaders.h"
 #include "render/inventory.h"
 #include "render/overlay.h"
 #include "render/picture.h"

@@ -14,7 +14,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/gl/shaders.h"
+#include "render/gl/gl_objects.h"
 
 namespace prehend::render {
 

@@ -9,7 +9,6 @@
 
 #include "render/draw_list.h"
 #include "render/gl/gl_objects.h"
-#include "render/view.h"
 
 namespace prehend::render {
 

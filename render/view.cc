@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Camera and light matrices, and the named cameras.
 // Tested by tests/render/view_test.cc
-#include "render/view.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+
+#include "render/draw_list.h"
 
 namespace prehend::render {
 namespace {

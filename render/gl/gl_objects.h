@@ -5,15 +5,66 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "physics/scene/scene.h"
 #include "render/gl/gl_functions.h"
-#include "render/gl/mesh.h"
 
 namespace prehend::render {
+
+// Triangle meshes. A vertex is a corner and an outward direction; a mesh is drawn as
+//   position = corner * half_size + direction * rounding
+// (the Minkowski sum of a solid and a ball), so one unit mesh gives every rounded box, ball,
+// capsule or cylinder without distorted bevels. Tested by tests/render/gl/mesh_test.cc
+
+struct Vertex {
+  Eigen::Vector3f corner;
+  Eigen::Vector3f direction;  ///< unit
+};
+
+struct Mesh {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> triangles;  ///< three indices each, counter-clockwise from outside
+};
+
+/// Corners at +-1; `segments` per quarter turn of an edge. Half size 0 gives a ball, (0, 0, h) a
+/// capsule.
+Mesh RoundedBoxMesh(int segments);
+/// Unit radius and half length around z, with rounded rims.
+Mesh RoundedCylinderMesh(int segments);
+/// Base of unit radius at z = 0, tip at z = 1.
+Mesh ConeMesh(int segments);
+/// Flat faces; corners are the hull's own: draw it with half size 1.
+Mesh HullMesh(const physics::Hull& hull);
+/// A tube along the points; corners are the points themselves: draw it with half size 1. Empty for
+/// fewer than two points.
+Mesh TubeMesh(const std::vector<Eigen::Vector3f>& points, int segments);
+
+/// The shortest rotation from one direction to another, as physics::RotationBetween.
+Eigen::Quaternionf RotationBetween(const Eigen::Vector3f& from, const Eigen::Vector3f& to);
+
+// The shader sources (GLSL 3.30). render/gl/gl_objects.cc describes what each computes.
+// Tested by tests/render/painter_test.cc
+
+/// Version of the pixels: raise it whenever they change on purpose. Part of the fingerprint.
+inline constexpr int kRendererVersion = 3;
+
+extern const char* const
+    kSolidVertexShader;  ///< corner * half_size + direction * rounding, to world and clip
+extern const char* const kSurfaceFragmentShader;  ///< light, shadow, ground grid, region rim; needs
+                                                  ///< #version, FINISH and SHADOWS before it
+extern const char* const kDepthFragmentShader;    ///< depth only
+extern const char* const kIdFragmentShader;       ///< the object's number
+extern const char* const kScreenVertexShader;     ///< one triangle over the whole target
+extern const char* const kBackdropFragmentShader;
+extern const char* const kOcclusionFragmentShader;
+extern const char* const kOcclusionBlurFragmentShader;
+extern const char* const kDarkenFragmentShader;  ///< factor by which corners darken
 
 class Program {
  public:

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "render/gl/mesh.h"
+#include "render/gl/gl_objects.h"
 
 namespace prehend::render {
 namespace {

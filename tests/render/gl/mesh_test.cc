@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/gl/mesh.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+
+#include "render/gl/gl_objects.h"
 
 namespace prehend::render {
 namespace {
