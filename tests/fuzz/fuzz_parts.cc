@@ -12,7 +12,7 @@
 #include <string>
 
 #include "grammar/drawing/drawn_episode.h"
-#include "harness/scenario/motion/hand_motion.h"
+#include "harness/scenario/motion/body_motion.h"
 #include "harness/scenario/read/read_scenario.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tested by tests/harness/scenario/read/read_hand_model_test.cc
-#include "harness/scenario/format/hand_fields.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <numbers>
 
 #include "harness/base/yaml/struct_format.h"
+#include "harness/scenario/format/scenario_formats.h"
 
 namespace prehend::scenario {
 namespace {

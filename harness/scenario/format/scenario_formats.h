@@ -10,6 +10,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "harness/base/yaml/diagnostic_list.h"
@@ -18,6 +20,7 @@
 #include "harness/scenario/format/scenario_yaml.h"
 #include "harness/scenario/scenario/scenario.h"
 #include "physics/motion/script.h"
+#include "physics/scene/hand_model.h"
 #include "physics/scene/run_limits.h"
 
 namespace prehend::scenario {
@@ -47,7 +50,7 @@ ValueFormat<LightYaml> LightFormat();
 /// Reports keys that apply only to physical bodies: mass, surface, joints, support.
 void CheckAbstract(const YamlNode& node, const EntityYaml& entity, DiagnosticList& errors);
 
-// harness/scenario/format/actor_fields.cc
+// harness/scenario/format/entity_fields.cc
 ValueFormat<ActorYaml> ActorFormat();
 ValueFormat<physics::Eyes> EyesFormat();
 
@@ -88,5 +91,85 @@ inline constexpr std::size_t kMaxClaimLength = 500;  ///< in bytes
 inline constexpr double kMaxDuration_s = 3'600;
 inline constexpr std::size_t kMaxVariations = 64;
 inline constexpr std::size_t kMaxOutcomes = 16;
+
+// A hand file as it is written: digits are straight chains of phalanges, or jaws that slide; angles
+// are in degrees.
+// Every key is declared once, in harness/scenario/format/hand_fields.cc;
+// harness/scenario/read/read_scenario.h makes a physics::HandModel of it. Tested by
+// tests/harness/scenario/read/read_hand_model_test.cc
+
+struct PalmYaml {
+  Eigen::Vector3d size_m = physics::HandModel{}.palm_size_m;
+  double mass_kg = physics::HandModel{}.palm_mass_kg;
+  double inertia_scale = physics::HandModel{}.palm_inertia_scale;
+  Located<std::string> sensor_set;
+};
+
+/// A phalanx, or a jaw, which slides along a line, like a gripper's.
+struct LinkYaml : physics::HandLink {
+  Located<std::string> called;     ///< a phalanx, after its digit
+  Located<Eigen::Vector2d> range;  ///< degrees of a phalanx, metres of a jaw
+};
+
+/// Has either phalanges or a jaw.
+struct DigitYaml {
+  Located<std::string> sensor_set;
+  Eigen::Vector3d base_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
+  std::vector<LinkYaml> phalanges;
+  std::optional<LinkYaml> jaw;
+};
+
+/// Numbers for the joints of digits, by the digit's name.
+using PerDigit = std::vector<Named<Located<std::vector<Located<double>>>>>;
+
+struct GripYaml {
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d post_m = Eigen::Vector3d::Zero();
+  double opening_m = physics::GraspStyle{}.opening_m;
+};
+
+struct StyleYaml {
+  GripYaml grip;
+  std::optional<physics::GraspApproach> above, side;
+  Located<PerDigit> effort;
+  std::vector<Located<PerDigit>> frames_deg;  ///< of digits with phalanges
+  std::vector<Located<PerDigit>> frames_m;    ///< of jaws
+};
+
+struct GainsYaml {
+  physics::PidGains translation, rotation;
+};
+
+struct HandYaml {
+  Located<std::string> name;
+  std::vector<std::string> sensor_sets;
+  Eigen::Vector3d ahead = Eigen::Vector3d::UnitX();
+  double friction = physics::HandModel{}.friction;
+  double spinning_friction = physics::HandModel{}.spinning_friction;
+  PalmYaml palm;
+  GainsYaml gains;
+  physics::JointDriver driver;
+  std::vector<Named<DigitYaml>> digits;
+  std::vector<Located<std::string>> grasps;  ///< names of grasp files
+  std::vector<Named<StyleYaml>> styles;
+};
+
+/// A grasp file: styles for hands that have these digits.
+struct GraspsYaml {
+  Located<std::string> name;
+  std::vector<Named<StyleYaml>> styles;
+};
+
+/// The mirror image of another hand file.
+struct MirrorYaml {
+  Located<std::string> name;
+  Located<std::string> mirror_of;
+};
+
+// Built once, since that takes longer than reading a hand.
+const ValueFormat<HandYaml>& HandFormat();
+const ValueFormat<MirrorYaml>& MirrorFormat();
+const ValueFormat<GraspsYaml>& GraspsFormat();
 
 }  // namespace prehend::scenario

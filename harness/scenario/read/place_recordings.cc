@@ -9,7 +9,6 @@
 
 #include "harness/scenario/format/scenario_formats.h"
 #include "harness/scenario/motion/body_motion.h"
-#include "harness/scenario/motion/hand_motion.h"
 #include "harness/scenario/read/read_parts.h"
 #include "harness/scenario/read/read_scenario.h"
 #include "physics/person/skeleton.h"

@@ -8,7 +8,7 @@
 
 #include "harness/base/base/project_paths.h"
 #include "harness/base/yaml/struct_format.h"
-#include "harness/scenario/format/hand_fields.h"
+#include "harness/scenario/format/scenario_formats.h"
 #include "harness/scenario/read/read_scenario.h"
 #include "harness/scenario/resolve/resolve.h"
 

@@ -7,7 +7,7 @@
 
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/base/yaml/value_format.h"
-#include "harness/scenario/format/hand_fields.h"
+#include "harness/scenario/format/scenario_formats.h"
 #include "harness/scenario/format/scenario_yaml.h"
 #include "harness/scenario/scenario/scenario.h"
 #include "physics/motion/script.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/scenario/motion/hand_motion.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -8,6 +6,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "harness/scenario/motion/body_motion.h"
 #include "tests/harness/scenario_fixture.h"
 
 namespace prehend::scenario {
