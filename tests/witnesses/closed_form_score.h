@@ -13,7 +13,7 @@
 #include "grammar/monitor.h"
 #include "harness/base/base/result.h"
 #include "harness/measure/score/evaluators.h"
-#include "harness/truth/oracle/settings.h"
+#include "harness/truth/oracle/recording.h"
 #include "tests/witnesses/closed_form/agreement.h"
 #include "tests/witnesses/closed_form/closed_form.h"
 

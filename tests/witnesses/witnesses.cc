@@ -9,7 +9,7 @@
 
 #include "harness/episode/run/load_grammar.h"
 #include "harness/suite/judge/judges.h"
-#include "harness/truth/golden/golden_files.h"
+#include "harness/truth/golden/golden.h"
 #include "tests/witnesses/closed_form_score.h"
 #include "tests/witnesses/metamorphic/metamorphic.h"
 

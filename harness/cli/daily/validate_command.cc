@@ -16,7 +16,7 @@
 #include "harness/episode/run/load_run.h"
 #include "harness/suite/check/verdict.h"
 #include "harness/suite/judge/validate_golden.h"
-#include "harness/truth/golden/golden_files.h"
+#include "harness/truth/golden/golden.h"
 
 namespace prehend::cli {
 namespace {

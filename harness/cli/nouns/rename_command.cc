@@ -8,7 +8,7 @@
 #include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/run/load_run.h"
-#include "harness/truth/golden/golden_files.h"
+#include "harness/truth/golden/golden.h"
 
 namespace prehend::cli {
 namespace {

@@ -19,7 +19,7 @@
 #include "harness/exchange/labels/read_labels.h"
 #include "harness/exchange/labels/read_truths.h"
 #include "harness/measure/score/overlap_metrics.h"
-#include "harness/truth/golden/golden_files.h"
+#include "harness/truth/golden/golden.h"
 #include "harness/truth/oracle/oracle.h"
 #include "harness/truth/timeline/match_events.h"
 

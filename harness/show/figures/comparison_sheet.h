@@ -10,7 +10,7 @@
 #include "harness/show/figures/figures.h"
 #include "harness/show/figures/scene_tiles.h"
 #include "harness/truth/golden/compare.h"
-#include "harness/truth/golden/golden_files.h"
+#include "harness/truth/golden/golden.h"
 
 namespace prehend::show {
 

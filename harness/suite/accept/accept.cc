@@ -19,7 +19,7 @@
 #include "harness/suite/judge/other_view.h"
 #include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/golden/compare.h"
-#include "harness/truth/golden/golden_files.h"
+#include "harness/truth/golden/golden.h"
 
 namespace prehend::suite {
 namespace {

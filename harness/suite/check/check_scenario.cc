@@ -23,7 +23,7 @@
 #include "harness/suite/judge/accept_golden.h"
 #include "harness/suite/judge/judges.h"
 #include "harness/suite/judge/other_view.h"
-#include "harness/truth/golden/golden_files.h"
+#include "harness/truth/golden/golden.h"
 
 namespace prehend::suite {
 namespace {

@@ -16,7 +16,7 @@
 #include "harness/episode/sense/sensing.h"
 #include "harness/suite/judge/accept_golden.h"
 #include "harness/suite/judge/judges.h"
-#include "harness/truth/golden/golden_files.h"
+#include "harness/truth/golden/golden.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "harness/suite/judge/validate_golden.h"
-#include "harness/truth/golden/golden_files.h"
+#include "harness/truth/golden/golden.h"
 #include "physics/scene/run_limits.h"
 
 namespace prehend::suite {

@@ -11,7 +11,7 @@
 #include "grammar/contents.h"
 #include "harness/base/base/text_file.h"
 #include "harness/episode/sense/episode_format.h"
-#include "harness/truth/golden/golden_files.h"
+#include "harness/truth/golden/golden.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {

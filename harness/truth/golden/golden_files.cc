@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The canonical text of a golden. Tested by tests/harness/truth/golden/golden_test.cc
-#include "harness/truth/golden/golden_files.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/text_file.h"
+#include "harness/truth/golden/golden.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::truth {

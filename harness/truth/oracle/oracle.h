@@ -11,7 +11,7 @@
 
 #include "grammar/base/frame.h"
 #include "grammar/base/timeline.h"
-#include "harness/truth/oracle/settings.h"
+#include "harness/truth/oracle/recording.h"
 #include "physics/scene/scene.h"
 #include "physics/scene/snapshot.h"
 

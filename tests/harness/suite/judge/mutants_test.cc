@@ -11,7 +11,7 @@
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/text_file.h"
 #include "harness/truth/golden/compare.h"
-#include "harness/truth/golden/golden_files.h"
+#include "harness/truth/golden/golden.h"
 #include "tests/harness/suite/judge/played_scenario.h"
 
 namespace prehend::suite {

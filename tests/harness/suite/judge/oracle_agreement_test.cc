@@ -11,7 +11,7 @@
 
 #include "harness/episode/run/find_scenario.h"
 #include "harness/suite/judge/compare_with_oracle.h"
-#include "harness/truth/golden/golden_files.h"
+#include "harness/truth/golden/golden.h"
 #include "harness/truth/oracle/oracle.h"
 
 namespace prehend::suite {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Goldens on disk: where they are, what is refused, what is pending.
-#include "harness/truth/golden/golden_files.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <random>
 
 #include "harness/suite/judge/validate_golden.h"
+#include "harness/truth/golden/golden.h"
 
 namespace prehend::truth {
 namespace {

@@ -14,7 +14,7 @@
 #include "grammar/describe.h"
 #include "harness/episode/run/find_scenario.h"
 #include "harness/episode/run/load_grammar.h"
-#include "harness/truth/golden/golden_files.h"
+#include "harness/truth/golden/golden.h"
 
 namespace prehend::truth {
 namespace {

@@ -15,7 +15,7 @@
 
 #include "grammar/program/program.h"
 #include "harness/episode/run/load_grammar.h"
-#include "harness/truth/oracle/settings.h"
+#include "harness/truth/oracle/recording.h"
 
 namespace prehend::truth {
 namespace {
