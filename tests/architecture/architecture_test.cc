@@ -66,8 +66,8 @@ const std::vector<LibraryRule>& LibraryRules() {
       {"LZ4", std::regex("lz4.*\\.h"), std::regex("harness/exchange/messages/log_file\\.cc")},
       {"HDF5", std::regex("(hdf5|H5.*)\\.h"), std::regex("harness/exchange/hdf5/.*")},
       {"zlib", std::regex("zlib\\.h"),
-       std::regex("harness/(show/replay/replay_data|exchange/(messages/mcap_file|hdf5/"
-                  "hdf5_file|arrays/read_npz_poses)|"
+       std::regex("harness/(show/replay/replay_data|exchange/(messages/log_file|hdf5/"
+                  "hdf5_file|arrays/read_hdf5_poses)|"
                   "exchange/export/.*)\\.cc")},
       {"OpenGL and OSMesa", std::regex("(GL/.*|GLES.*|EGL/.*)"), std::regex("render/.*")},
       {"libpng", std::regex("png\\.h"), std::regex("(render|tests/render)/.*")},

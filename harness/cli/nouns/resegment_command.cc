@@ -10,7 +10,7 @@
 #include "harness/episode/episode/episode.h"
 #include "harness/episode/episode/resegment_many.h"
 #include "harness/episode/run/run_text.h"
-#include "harness/exchange/labels/write_labels.h"
+#include "harness/exchange/labels/read_truths.h"
 
 namespace prehend::cli {
 namespace {

@@ -9,7 +9,6 @@
 
 #include "grammar/base/wording.h"
 #include "harness/base/base/text_file.h"
-#include "harness/exchange/arrays/json_path.h"
 #include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/arrays/row_poses.h"
 

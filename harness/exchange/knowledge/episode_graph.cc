@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/exchange/knowledge/episode_graph.h"
 
+#include <bson/bson.h>
 #include <fmt/format.h>
+#include <serd/serd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <memory>
 
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/text_file.h"
@@ -191,6 +194,126 @@ constexpr const char* kTerminology = "harness/exchange/knowledge/prehend.ttl";
 /// Every class of things that is built in is below it.
 constexpr const char* kRootOfThings = "knowrob:Entity";
 
+using Environment = std::unique_ptr<SerdEnv, decltype(&serd_env_free)>;
+
+const std::uint8_t* Bytes(const char* text) { return reinterpret_cast<const std::uint8_t*>(text); }
+const std::uint8_t* Bytes(const std::string& text) { return Bytes(text.c_str()); }
+
+SerdNode NodeOf(const std::string& name) { return serd_node_from_string(SERD_CURIE, Bytes(name)); }
+
+std::string TextOf(const SerdNode* node) {
+  return node && node->buf ? std::string(reinterpret_cast<const char*>(node->buf), node->n_bytes)
+                           : std::string();
+}
+
+std::size_t Append(const void* bytes, std::size_t count, void* text) {
+  static_cast<std::string*>(text)->append(static_cast<const char*>(bytes), count);
+  return count;
+}
+
+/// What a reader has found so far.
+struct Found {
+  Environment environment{nullptr, &serd_env_free};
+  std::vector<Triple> triples;
+  std::string problem;
+};
+
+std::string NameOf(const Found& found, const SerdNode* node) {
+  if (node->type == SERD_BLANK) return "_:" + TextOf(node);
+  SerdNode full = serd_env_expand_node(found.environment.get(), node);
+  const std::string name = ShortName(TextOf(full.buf ? &full : node));
+  serd_node_free(&full);
+  return name;
+}
+
+SerdStatus AddPrefix(void* handle, const SerdNode* name, const SerdNode* iri) {
+  return serd_env_set_prefix(static_cast<Found*>(handle)->environment.get(), name, iri);
+}
+
+SerdStatus AddStatement(void* handle, SerdStatementFlags, const SerdNode*, const SerdNode* subject,
+                        const SerdNode* predicate, const SerdNode* object, const SerdNode* type,
+                        const SerdNode*) {
+  Found& found = *static_cast<Found*>(handle);
+  Object said;
+  if (object->type == SERD_LITERAL)
+    said = {TextOf(object), type && type->buf ? NameOf(found, type) : "xsd:string"};
+  else
+    said = Named(NameOf(found, object));
+  found.triples.push_back({NameOf(found, subject), NameOf(found, predicate), std::move(said)});
+  return SERD_SUCCESS;
+}
+
+SerdStatus AddError(void* handle, const SerdError* error) {
+  Found& found = *static_cast<Found*>(handle);
+  if (found.problem.empty())
+    found.problem = fmt::format("line {}, column {}: {}", error->line, error->col,
+                                reinterpret_cast<const char*>(serd_strerror(error->status)));
+  return SERD_SUCCESS;
+}
+
+/// A BSON document that frees itself.
+class Document {
+ public:
+  Document() { bson_init(&bson_); }
+  ~Document() { bson_destroy(&bson_); }
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
+
+  Document& Text(const char* key, const std::string& text) {
+    bson_append_utf8(&bson_, key, -1, text.c_str(), static_cast<int>(text.size()));
+    return *this;
+  }
+  Document& Number(const char* key, double number) {
+    bson_append_double(&bson_, key, -1, number);
+    return *this;
+  }
+  Document& Integer(const char* key, std::int64_t number) {
+    bson_append_int64(&bson_, key, -1, number);
+    return *this;
+  }
+  Document& Time(const char* key, std::int64_t milliseconds) {
+    bson_append_date_time(&bson_, key, -1, milliseconds);
+    return *this;
+  }
+  Document& Inner(const char* key, const Document& inner) {
+    bson_append_document(&bson_, key, -1, &inner.bson_);
+    return *this;
+  }
+  Document& List(const char* key, const std::vector<std::string>& texts) {
+    Document list;
+    for (std::size_t i = 0; i < texts.size(); ++i) list.Text(std::to_string(i).c_str(), texts[i]);
+    bson_append_array(&bson_, key, -1, &list.bson_);
+    return *this;
+  }
+  void AppendTo(std::string& bytes) const {
+    bytes.append(reinterpret_cast<const char*>(bson_get_data(&bson_)), bson_.len);
+  }
+
+ private:
+  bson_t bson_;
+};
+
+std::vector<std::string> InFull(const std::vector<std::string>& names) {
+  std::vector<std::string> full;
+  for (const std::string& name : names) full.push_back(FullName(name));
+  return full;
+}
+
+void AddValue(Document& document, const char* key, const Object& object) {
+  if (object.type.empty())
+    document.Text(key, FullName(object.text));
+  else if (object.type == "xsd:double")
+    document.Number(key, std::stod(object.text));
+  else if (object.type == "xsd:integer")
+    document.Integer(key, std::stoll(object.text));
+  else
+    document.Text(key, object.text);
+}
+
+bool IsAnnotation(const Triple& triple) {
+  return triple.predicate == "rdfs:label" || triple.predicate == "rdfs:comment";
+}
+
 }  // namespace
 
 std::vector<Triple> MapTriples(const MapOfTask& map, const Vocabulary& vocabulary) {
@@ -309,6 +432,130 @@ std::string Vocabulary::ClassOf(const std::string& name) const {
   const std::string short_name = "knowrob:" + CamelCase(name);
   const bool means_another = known_.contains(short_name) && !things_.contains(short_name);
   return means_another ? short_name + "Object" : short_name;
+}
+
+Object Named(std::string name) { return {std::move(name), ""}; }
+Object Text(std::string text) { return {std::move(text), "xsd:string"}; }
+Object Number(double number) { return {fmt::format("{}", number), "xsd:double"}; }
+Object Integer(std::int64_t number) { return {std::to_string(number), "xsd:integer"}; }
+
+std::string FullName(std::string_view name) {
+  const std::size_t colon = name.find(':');
+  for (const Prefix& prefix : kPrefixes) {
+    if (name.substr(0, colon) == prefix.name)
+      return std::string(prefix.iri) + std::string(name.substr(colon + 1));
+  }
+  return std::string(name);
+}
+
+std::string ShortName(std::string_view iri) {
+  for (const Prefix& prefix : kPrefixes) {
+    if (iri.starts_with(prefix.iri))
+      return std::string(prefix.name) + ":" + std::string(iri.substr(prefix.iri.size()));
+  }
+  return std::string(iri);
+}
+
+std::string ToTurtle(const std::vector<Triple>& triples) {
+  std::string text;
+  const Environment environment(serd_env_new(nullptr), &serd_env_free);
+  const std::unique_ptr<SerdWriter, decltype(&serd_writer_free)> writer(
+      serd_writer_new(SERD_TURTLE, SERD_STYLE_ABBREVIATED, environment.get(), nullptr, &Append,
+                      &text),
+      &serd_writer_free);
+  for (const Prefix& prefix : kPrefixes) {
+    const std::string name(prefix.name), iri(prefix.iri);
+    const SerdNode name_node = serd_node_from_string(SERD_LITERAL, Bytes(name)),
+                   iri_node = serd_node_from_string(SERD_URI, Bytes(iri));
+    serd_env_set_prefix(environment.get(), &name_node, &iri_node);
+    serd_writer_set_prefix(writer.get(), &name_node, &iri_node);
+  }
+  for (const Triple& triple : triples) {
+    const SerdNode subject = NodeOf(triple.subject), predicate = NodeOf(triple.predicate);
+    const bool is_name = triple.object.type.empty();
+    const bool is_string = triple.object.type == "xsd:string";
+    const SerdNode object = is_name
+                                ? NodeOf(triple.object.text)
+                                : serd_node_from_string(SERD_LITERAL, Bytes(triple.object.text));
+    const SerdNode type = is_name || is_string ? SERD_NODE_NULL : NodeOf(triple.object.type);
+    serd_writer_write_statement(writer.get(), 0, nullptr, &subject, &predicate, &object, &type,
+                                nullptr);
+  }
+  serd_writer_finish(writer.get());
+  return text;
+}
+
+std::vector<Triple> ReadTurtle(const std::string& text, std::string& problem) {
+  Found found;
+  found.environment.reset(serd_env_new(nullptr));
+  const std::unique_ptr<SerdReader, decltype(&serd_reader_free)> reader(
+      serd_reader_new(SERD_TURTLE, &found, nullptr, nullptr, &AddPrefix, &AddStatement, nullptr),
+      &serd_reader_free);
+  serd_reader_set_error_sink(reader.get(), &AddError, &found);
+  serd_reader_read_string(reader.get(), Bytes(text));
+  problem = found.problem;
+  return problem.empty() ? std::move(found.triples) : std::vector<Triple>();
+}
+
+void Hierarchy::Add(const std::vector<Triple>& triples) {
+  for (const Triple& triple : triples) {
+    if (triple.predicate == "rdfs:subClassOf" || triple.predicate == "rdfs:subPropertyOf")
+      above_[triple.subject].insert(triple.object.text);
+  }
+}
+
+std::vector<std::string> Hierarchy::Above(const std::string& name) const {
+  std::vector<std::string> all = {name};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto found = above_.find(all[i]);
+    if (found == above_.end()) continue;
+    for (const std::string& above : found->second)
+      if (std::ranges::find(all, above) == all.end()) all.push_back(above);
+  }
+  return all;
+}
+
+std::string TriplesBson(const std::vector<Triple>& triples, const Hierarchy& hierarchy) {
+  std::string bytes;
+  for (const Triple& triple : triples) {
+    if (IsAnnotation(triple)) continue;
+    Document document;
+    document.Text("s", FullName(triple.subject)).Text("p", FullName(triple.predicate));
+    AddValue(document, "o", triple.object);
+    document.List("p*", InFull(hierarchy.Above(triple.predicate)));
+    if (triple.object.type.empty())
+      document.List("o*", InFull(hierarchy.Above(triple.object.text)));
+    document.AppendTo(bytes);
+  }
+  return bytes;
+}
+
+std::string AnnotationsBson(const std::vector<Triple>& triples) {
+  std::string bytes;
+  for (const Triple& triple : triples) {
+    if (!IsAnnotation(triple)) continue;
+    Document document;
+    document.Text("s", FullName(triple.subject)).Text("p", FullName(triple.predicate));
+    document.Text("string", triple.object.text).AppendTo(bytes);
+  }
+  return bytes;
+}
+
+std::string TransformsBson(const std::vector<Transform>& transforms) {
+  std::string bytes;
+  std::int64_t number = 0;
+  for (const Transform& transform : transforms) {
+    Document header, translation, rotation, pose, document;
+    header.Integer("seq", number++).Time("stamp", transform.milliseconds).Text("frame_id", "world");
+    const Eigen::Vector3d& p_m = transform.X_WE.p_m;
+    translation.Number("x", p_m.x()).Number("y", p_m.y()).Number("z", p_m.z());
+    const Eigen::Quaterniond& q = transform.X_WE.q;
+    rotation.Number("x", q.x()).Number("y", q.y()).Number("z", q.z()).Number("w", q.w());
+    pose.Inner("translation", translation).Inner("rotation", rotation);
+    document.Inner("header", header).Text("child_frame_id", transform.entity);
+    document.Inner("transform", pose).AppendTo(bytes);
+  }
+  return bytes;
 }
 
 }  // namespace prehend::exchange

@@ -4,17 +4,62 @@
 // tests/program/knowledge_test.cc
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/base/base/result.h"
 #include "harness/episode/episodes/episode_file.h"
-#include "harness/exchange/knowledge/triples.h"
 #include "physics/base/pose.h"
 
 namespace prehend::exchange {
+
+// Statements of subject, predicate and object (RDF 1.1), as Turtle. Names are written short,
+// "knowrob:Reaching", with the prefixes of kPrefixes. Tested by
+// tests/harness/exchange/knowledge/triples_test.cc
+
+struct Prefix {
+  std::string_view name, iri;
+};
+inline constexpr Prefix kPrefixes[] = {
+    {"rdf", "http://www.w3.org/1999/02/22-rdf-syntax-ns#"},
+    {"rdfs", "http://www.w3.org/2000/01/rdf-schema#"},
+    {"owl", "http://www.w3.org/2002/07/owl#"},
+    {"xsd", "http://www.w3.org/2001/XMLSchema#"},
+    {"dul", "http://www.ontologydesignpatterns.org/ont/dul/DUL.owl#"},
+    {"soma", "http://www.ease-crc.org/ont/SOMA.owl#"},
+    {"knowrob", "http://knowrob.org/kb/knowrob.owl#"},
+    {"prehend", "http://prehend.local/prehend.owl#"},
+    {"log", "http://prehend.local/log.owl#"}};
+
+/// What a statement says of its subject: another name, or a value with its type.
+struct Object {
+  std::string text;
+  std::string type;  ///< "xsd:double"; empty: `text` is a name
+};
+Object Named(std::string name);
+Object Text(std::string text);
+Object Number(double number);
+Object Integer(std::int64_t number);
+
+struct Triple {
+  std::string subject, predicate;
+  Object object;
+};
+
+/// "knowrob:Reaching" in full.
+std::string FullName(std::string_view name);
+/// The other way round; a name without a prefix stays as it is.
+std::string ShortName(std::string_view iri);
+
+/// A document with its prefixes. Statements of one subject that follow each other are joined.
+std::string ToTurtle(const std::vector<Triple>& triples);
+
+/// The statements of a document, names in short; or nothing, and why not in `problem`.
+std::vector<Triple> ReadTurtle(const std::string& text, std::string& problem);
 
 /// How an event is written down.
 struct EventTerm {
@@ -70,5 +115,35 @@ struct EpisodeOfTask {
 
 std::vector<Triple> EpisodeTriples(const EpisodeOfTask& episode, const MapOfTask& map,
                                    const Vocabulary& vocabulary);
+
+// An episode as the collections of a NEEM (narrative-enabled episodic memory): triples, tf and
+// annotations as BSON, as mongodump writes them. Tested by
+// tests/harness/exchange/knowledge/neem_test.cc
+
+/// Which classes and properties are below which.
+class Hierarchy {
+ public:
+  void Add(const std::vector<Triple>& triples);
+  /// The name itself, then everything above it.
+  std::vector<std::string> Above(const std::string& name) const;
+
+ private:
+  std::map<std::string, std::set<std::string>> above_;
+};
+
+/// One document per statement: s, p, o, and p*, o* with what stands above p and o.
+std::string TriplesBson(const std::vector<Triple>& triples, const Hierarchy& hierarchy);
+
+/// One document per label or comment: s, p, string.
+std::string AnnotationsBson(const std::vector<Triple>& triples);
+
+/// A pose of an entity at a time, in the world.
+struct Transform {
+  std::int64_t milliseconds = 0;  ///< since 1970
+  std::string entity;             ///< in full
+  physics::Pose X_WE;
+};
+/// One document per transform: header (seq, stamp, frame_id), child_frame_id, transform.
+std::string TransformsBson(const std::vector<Transform>& transforms);
 
 }  // namespace prehend::exchange

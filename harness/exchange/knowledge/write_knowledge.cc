@@ -10,7 +10,6 @@
 #include "harness/base/process/child_process.h"
 #include "harness/episode/episode/episode.h"
 #include "harness/exchange/knowledge/episode_graph.h"
-#include "harness/exchange/knowledge/neem.h"
 
 namespace prehend::exchange {
 namespace {

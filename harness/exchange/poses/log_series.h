@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "harness/exchange/messages/message_reader.h"
 #include "harness/exchange/messages/pose_fields.h"
 #include "harness/exchange/poses/import_map.h"
 

@@ -15,7 +15,6 @@
 #include "grammar/base/wording.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
-#include "harness/exchange/poses/marker_bodies.h"
 #include "harness/exchange/poses/pose_file.h"
 #include "harness/exchange/poses/table_layout.h"
 

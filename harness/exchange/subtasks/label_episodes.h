@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "harness/episode/episode/find_episodes.h"
-#include "harness/exchange/export/motion.h"
+#include "harness/exchange/export/export_episode.h"
 #include "harness/exchange/poses/import_map.h"
 
 namespace prehend::exchange {

@@ -11,7 +11,7 @@
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/run_text.h"
-#include "harness/exchange/labels/write_labels.h"
+#include "harness/exchange/labels/read_truths.h"
 
 namespace prehend {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/exchange/knowledge/neem.h"
-
 #include <bson/bson.h>
 #include <gtest/gtest.h>
+
+#include "harness/exchange/knowledge/episode_graph.h"
 
 namespace prehend::exchange {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/exchange/knowledge/triples.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/exchange/knowledge/episode_graph.h"
 
 namespace prehend::exchange {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "harness/exchange/labels/label_map.h"
 #include "harness/exchange/labels/read_labels.h"
-#include "harness/exchange/labels/write_labels.h"
+#include "harness/exchange/labels/read_truths.h"
 
 namespace prehend::exchange {
 namespace {
