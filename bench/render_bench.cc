@@ -10,7 +10,7 @@
 #include "harness/base/base/project_paths.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
-#include "harness/show/pictures/compose_picture.h"
+#include "harness/show/pictures/scenery.h"
 #include "render/inventory.h"
 #include "render/picture.h"
 

@@ -8,9 +8,9 @@
 #include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/run/run_text.h"
-#include "harness/show/explain/decisive.h"
 #include "harness/show/explain/explain.h"
 #include "harness/show/explain/query.h"
+#include "harness/show/explain/why_event.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::cli {

@@ -13,7 +13,6 @@
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/picture_options.h"
 #include "harness/episode/run/load_grammar.h"
-#include "harness/show/figures/comparison_sheet.h"
 #include "harness/show/figures/figures.h"
 #include "harness/show/figures/scene_tiles.h"
 #include "harness/show/pictures/pictures.h"

@@ -14,7 +14,6 @@
 #include "harness/cli/daily/recogniser_choice.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/show/figures/figures.h"
-#include "harness/show/pictures/film.h"
 #include "harness/show/pictures/pictures.h"
 
 namespace prehend::cli {

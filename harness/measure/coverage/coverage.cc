@@ -10,7 +10,7 @@
 
 #include "grammar/contents.h"
 #include "harness/show/explain/clauses.h"
-#include "harness/show/explain/phrasing.h"
+#include "harness/show/explain/query.h"
 
 namespace prehend::measure {
 namespace {

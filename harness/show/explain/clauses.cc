@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/show/explain/phrasing.h"
+#include "harness/show/explain/query.h"
 
 namespace prehend::show {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "grammar/base/allen.h"
-#include "harness/show/explain/phrasing.h"
+#include "harness/show/explain/query.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::show {

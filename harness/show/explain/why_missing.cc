@@ -8,7 +8,7 @@
 #include <limits>
 #include <set>
 
-#include "harness/show/explain/phrasing.h"
+#include "harness/show/explain/query.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::show {

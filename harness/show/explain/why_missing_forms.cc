@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "grammar/base/allen.h"
-#include "harness/show/explain/phrasing.h"
 #include "harness/show/explain/query.h"
 #include "harness/show/explain/why_missing.h"
 #include "harness/truth/timeline/event_text.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/figures/comparison_sheet.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "harness/show/figures/figures.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::show {

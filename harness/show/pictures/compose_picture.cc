@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Events are drawn as the grammar asks (harness/truth/timeline/event_drawings.h). Tested by
 // tests/harness/show/pictures/compose_picture_test.cc
-#include "harness/show/pictures/compose_picture.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -10,7 +10,6 @@
 #include "harness/episode/sense/episode_format.h"
 #include "harness/episode/sense/sensing.h"
 #include "harness/show/explain/explain.h"
-#include "harness/show/explain/phrasing.h"
 #include "harness/show/explain/query.h"
 #include "harness/show/tracks/tracks.h"
 #include "harness/truth/timeline/event_text.h"

@@ -13,7 +13,7 @@
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
-#include "harness/show/figures/comparison_sheet.h"
+#include "harness/show/figures/figures.h"
 #include "harness/truth/golden/compare.h"
 
 namespace prehend::suite {

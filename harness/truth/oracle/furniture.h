@@ -10,7 +10,6 @@
 
 #include "harness/truth/oracle/evidence.h"
 #include "harness/truth/oracle/recording.h"
-#include "harness/truth/oracle/recording.h"
 
 namespace prehend::truth {
 

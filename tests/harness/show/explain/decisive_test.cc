@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The decisive clause, against a search that writes other numbers into the text of the grammar and
 // watches again: on 200 random rules of every form and random episodes.
-#include "harness/show/explain/decisive.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <set>
 
 #include "grammar/name_events.h"
+#include "harness/show/explain/why_event.h"
 #include "tests/harness/show/explain/explain_stage.h"
 
 namespace prehend::show::testing {

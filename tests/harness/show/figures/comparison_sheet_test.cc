@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/figures/comparison_sheet.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "harness/show/figures/figures.h"
 #include "harness/show/pictures/pictures.h"
 #include "tests/harness/show/figures/played.h"
 

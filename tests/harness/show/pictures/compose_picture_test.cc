@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/pictures/compose_picture.h"
-
 #include <gtest/gtest.h>
 
 #include "grammar/compile/compile.h"
+#include "harness/show/pictures/scenery.h"
 #include "render/view.h"
 
 namespace prehend::show {

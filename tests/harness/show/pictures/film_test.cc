@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/show/pictures/film.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/show/pictures/pictures.h"
 
 namespace prehend::show {
 namespace {
