@@ -12,7 +12,7 @@
 #include "grammar/base/timeline.h"
 #include "grammar/monitor.h"
 #include "harness/base/base/result.h"
-#include "harness/measure/score/evaluators.h"
+#include "harness/measure/score/further_scores.h"
 #include "harness/truth/oracle/recording.h"
 #include "tests/witnesses/closed_form/agreement.h"
 #include "tests/witnesses/closed_form/closed_form.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/cli/daily/recogniser_choice.h"
 
-#include "harness/measure/score/found_events.h"
+#include "harness/measure/score/score.h"
 
 namespace prehend::cli {
 

@@ -6,7 +6,7 @@
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/episode.h"
 #include "harness/episode/episode/find_episodes.h"
-#include "harness/measure/score/found_events.h"
+#include "harness/measure/score/score.h"
 
 namespace prehend::cli {
 namespace {

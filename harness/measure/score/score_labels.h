@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "harness/exchange/labels/read_truths.h"
-#include "harness/measure/score/found_events.h"
 #include "harness/measure/score/score.h"
 
 namespace prehend::measure {

@@ -9,7 +9,6 @@
 #include "grammar/monitor.h"
 #include "harness/base/base/result.h"
 #include "harness/episode/run/find_scenario.h"
-#include "harness/measure/score/found_events.h"
 #include "harness/measure/score/score.h"
 
 namespace prehend::measure {

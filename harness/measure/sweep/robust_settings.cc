@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <optional>
+#include <span>
 
+#include "grammar/base/quantity.h"
 #include "grammar/base/wording.h"
+#include "grammar/describe.h"
+#include "harness/episode/episode/episode.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/measure/sweep/sweep.h"
 #include "harness/show/chart/chart.h"
+#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::measure {
 namespace {
@@ -65,6 +74,85 @@ std::uint32_t ColorOf(double share) {  // from dark blue over green to yellow
                                                   : middle + (high - middle) * (2 * share - 1));
   };
   return mix(68, 33, 253) << 16 | mix(1, 145, 231) << 8 | mix(84, 140, 37);
+}
+
+constexpr std::array kFactors = {0.125, 0.177, 0.25, 0.354, 0.5, 0.707, 0.841, 1.0,
+                                 1.19,  1.414, 2.0,  2.83,  4.0, 5.66,  8.0};
+
+constexpr std::size_t kAxesOfScenarios = 16;  ///< at once
+
+using CompileWith = std::function<grammar::CompileResult(const grammar::Overrides&)>;
+
+/// The values that the grammar accepts; `own` becomes the index of the parameter's own one.
+Axis AxisOf(const grammar::ProgramParam& param, const grammar::Overrides& fixed,
+            const CompileWith& compile, std::size_t& own) {
+  Axis axis{.parameter = param.name};
+  const std::string text = grammar::QuantityText(param.value);
+  if (const std::size_t blank = text.find(' '); blank != std::string::npos)
+    axis.unit = text.substr(blank + 1);
+  for (const double factor : kFactors) {
+    const double value = param.value.value * factor;
+    axis.values.push_back(factor == 1.0 ? value : std::stod(fmt::format("{:.3g}", value)));
+    grammar::Overrides overrides = fixed;
+    overrides[param.name] = axis.ValueText(axis.values.size() - 1);
+    const bool is_own = factor == 1.0;
+    if (is_own)
+      own = axis.values.size() - 1;
+    else if (!compile(overrides).program)
+      axis.values.pop_back();
+  }
+  return axis;
+}
+
+Margin MarginOf(const Axis& axis, std::span<const SweepPoint> points, std::size_t own,
+                double within) {
+  auto best = std::ranges::max_element(points, {}, &SweepPoint::f1);
+  if (points[own].f1 == best->f1) best = points.begin() + static_cast<std::ptrdiff_t>(own);
+  Margin margin{.parameter = axis.parameter,
+                .value = axis.ValueText(own),
+                .f1 = points[own].f1,
+                .best = best->f1,
+                .best_at = axis.ValueText(static_cast<std::size_t>(best - points.begin()))};
+  margin.has_effect = std::ranges::any_of(
+      points, [&](const SweepPoint& point) { return point.f1 != points[own].f1; });
+  const auto is_good = [&](std::size_t i) { return points[i].f1 >= best->f1 - within; };
+  if (!is_good(own)) return margin;
+  std::size_t from = own, to = own;
+  while (from > 0 && is_good(from - 1)) --from;
+  while (to + 1 < points.size() && is_good(to + 1)) ++to;
+  margin.from = axis.ValueText(from);
+  margin.to = axis.ValueText(to);
+  margin.open_below = from == 0;
+  margin.open_above = to + 1 == points.size();
+  margin.near_edge = (from == own && own > 0) || (to == own && own + 1 < points.size());
+  return margin;
+}
+
+/// A parameter with the values that are tried.
+struct TriedAxis {
+  Axis axis;
+  std::size_t own = 0;  ///< index of its own value
+};
+
+std::optional<grammar::Diagnostics> UnknownAmong(const std::vector<std::string>& names,
+                                                 const std::vector<grammar::ProgramParam>& params) {
+  std::vector<std::string> known;
+  for (const grammar::ProgramParam& param : params) known.push_back(param.name);
+  for (const std::string& name : names) {
+    if (std::ranges::count(known, name) > 0) continue;
+    const std::string near = grammar::NearestName(name, known);
+    return grammar::Diagnostics{
+        {.message = fmt::format("--over: the grammar has no parameter '{}'", name),
+         .hint = near.empty() ? "" : fmt::format("did you mean '{}'?", near)}};
+  }
+  return std::nullopt;
+}
+
+/// Narrow ranges first; of all, what is not in its range.
+double Width(const Margin& margin) {
+  if (margin.from.empty()) return 0;
+  const double from = std::stod(margin.from), to = std::stod(margin.to);
+  return 1 + (margin.open_below ? 8 : 0) + (margin.open_above ? 8 : 0) + to / from;
 }
 
 }  // namespace
@@ -202,6 +290,106 @@ std::string HeatMapSvg(const std::vector<Axis>& axes, const std::vector<SweepPoi
   const double texts_px = 7.2 * static_cast<double>(chart.axis.size());
   return show::ChartSvg(chart,
                         {.width_px = 110 + std::max(texts_px, 56 * static_cast<double>(columns))});
+}
+
+Result<Margins> FindMargins(const std::vector<episode::Take>& takes, SweepRequest request,
+                            double within, const std::vector<std::string>& only,
+                            const std::function<void(const Margins&)>& so_far) {
+  PREHEND_TRY(const grammar::Overrides fixed, episode::ParameterSettings(request.settings));
+  episode::EpisodeOpener opener(request.root);
+  const CompileWith compile = [&](const grammar::Overrides& overrides) {
+    return opener.Compile(takes.front().episode, request.grammar, overrides);
+  };
+  const grammar::CompileResult compiled = compile(fixed);
+  if (!compiled.program) return tl::unexpected(compiled.diagnostics);
+  const std::vector<grammar::ProgramParam> params = grammar::Describe(*compiled.program).params;
+  if (auto unknown = UnknownAmong(only, params)) return tl::unexpected(std::move(*unknown));
+  Margins all;
+  std::vector<TriedAxis> tried;
+  std::size_t settings = 0, before = 0;
+  for (const grammar::ProgramParam& param : params) {
+    if (!only.empty() && std::ranges::count(only, param.name) == 0) continue;
+    if (param.value.value == 0) {
+      all.without.push_back(param.name);
+      continue;
+    }
+    tried.emplace_back();
+    tried.back().axis = AxisOf(param, fixed, compile, tried.back().own);
+    settings += tried.back().axis.values.size();
+  }
+  // What is told is about all of them.
+  const auto progress = request.progress;
+  if (progress) {
+    request.progress = [&](std::size_t done, std::size_t) {
+      progress(before * takes.size() + done, settings * takes.size());
+    };
+  }
+  // A scenario is played for each call. Of what is only read, each parameter is told as it comes.
+  const bool plays = std::ranges::any_of(takes, [](const episode::Take& take) {
+    return take.episode.origin == episode::Origin::kScenario;
+  });
+  const std::size_t at_once = plays ? kAxesOfScenarios : 1;
+  request.one_at_a_time = true;
+  for (std::size_t first = 0; first < tried.size(); first += at_once) {
+    const auto some = std::span(tried).subspan(first, std::min(at_once, tried.size() - first));
+    request.axes.clear();
+    for (const TriedAxis& one : some) request.axes.push_back(one.axis);
+    PREHEND_TRY(SweepResult swept, Sweep(takes, request));
+    std::span<const SweepPoint> points = swept.points;
+    before += points.size();
+    for (const TriedAxis& one : some) {
+      const std::size_t own_points = one.axis.values.size();
+      all.margins.push_back(MarginOf(one.axis, points.first(own_points), one.own, within));
+      points = points.subspan(own_points);
+    }
+    std::ranges::stable_sort(all.margins, {}, Width);
+    all.sweep = std::move(swept);
+    if (all.sweep.episodes == 0) break;
+    if (so_far) so_far(all);
+  }
+  return all;
+}
+
+std::string MarginsText(const Margins& margins, double within) {
+  std::vector<std::vector<std::string>> rows = {
+      {"parameter", "value", "F1", "stays from", "to", "best", "at", ""}};
+  std::vector<std::string> idle;
+  for (const Margin& margin : margins.margins) {
+    if (!margin.has_effect) {
+      idle.push_back(margin.parameter);
+      continue;
+    }
+    rows.push_back({margin.parameter, margin.value, fmt::format("{:.1f}", 100 * margin.f1),
+                    margin.from.empty() ? "-" : (margin.open_below ? "<= " : "") + margin.from,
+                    margin.to.empty() ? "-" : (margin.open_above ? ">= " : "") + margin.to,
+                    fmt::format("{:.1f}", 100 * margin.best), margin.best_at,
+                    margin.from.empty() ? "warning: not among the best"
+                    : margin.near_edge  ? "warning: at an edge"
+                                        : ""});
+  }
+  std::string text = fmt::format("{}, {}\n", margins.sweep.grammar,
+                                 grammar::CountOf(margins.sweep.episodes, "recording"));
+  for (const std::string& line : truth::AlignColumns(rows)) text += line + "\n";
+  text += fmt::format(
+      "each parameter from an eighth to eight times its value, the others as they are;\n"
+      "a score stays if it is within {:g} percent of the best of its row\n{}\n",
+      100 * within, margins.sweep.measure);
+  text += margins.sweep.counted;
+  if (std::ranges::all_of(margins.margins, [](const Margin& margin) { return margin.best == 0; }))
+    return text + "every score is 0: no event is right with any value of any parameter\n";
+  if (!idle.empty())
+    text += fmt::format("without any effect on these recordings: {}\n", fmt::join(idle, ", "));
+  if (!margins.without.empty())
+    text += fmt::format("not tried, because they are 0: {}\n", fmt::join(margins.without, ", "));
+  return text;
+}
+
+std::string MarginsCsv(const Margins& margins) {
+  std::string text = "parameter,value,f1,from,to,open_below,open_above,best,best_at,near_edge\n";
+  for (const Margin& m : margins.margins)
+    text += fmt::format("{},{},{:.6g},{},{},{:d},{:d},{:.6g},{},{:d}\n", m.parameter, m.value, m.f1,
+                        m.from, m.to, m.open_below, m.open_above, m.best, m.best_at, m.near_edge);
+  return text;
 }
 
 }  // namespace prehend::measure

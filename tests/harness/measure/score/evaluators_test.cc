@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/measure/score/evaluators.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/measure/score/further_scores.h"
 
 namespace prehend::measure {
 namespace {
