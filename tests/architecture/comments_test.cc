@@ -38,7 +38,7 @@ std::string_view CommentIn(std::string_view line, bool is_cmake) {
   return {};
 }
 
-/// The paths of the project in a text, from its root: "harness/suite/report/junit.cc". The last
+/// The paths of the project in a text, from its root: "harness/suite/report/history.cc". The last
 /// character is none of a sentence.
 std::vector<std::string> PathsIn(std::string_view text) {
   static const std::regex path(

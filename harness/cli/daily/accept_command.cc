@@ -10,7 +10,6 @@
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/suite/accept/accept.h"
-#include "harness/suite/accept/review.h"
 #include "harness/suite/judge/judges.h"
 
 namespace prehend::cli {

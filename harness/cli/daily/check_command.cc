@@ -18,7 +18,6 @@
 #include "harness/episode/episodes/schema.h"
 #include "harness/suite/check/causes.h"
 #include "harness/suite/check/run_suite.h"
-#include "harness/suite/report/charts.h"
 #include "harness/suite/report/report.h"
 
 namespace prehend::cli {

@@ -16,7 +16,7 @@
 #include "harness/show/figures/figures.h"
 #include "harness/show/figures/scene_tiles.h"
 #include "harness/show/pictures/pictures.h"
-#include "harness/suite/check/select_scenarios.h"
+#include "harness/suite/check/run_suite.h"
 
 namespace prehend::cli {
 namespace {

@@ -12,7 +12,7 @@
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/run/find_scenario.h"
 #include "harness/scenario/read/read_scenario.h"
-#include "harness/suite/check/select_scenarios.h"
+#include "harness/suite/check/run_suite.h"
 
 namespace prehend::cli {
 namespace {

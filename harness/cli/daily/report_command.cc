@@ -17,7 +17,7 @@
 #include "harness/cli/daily/recogniser_choice.h"
 #include "harness/measure/score/score_labels.h"
 #include "harness/suite/check/causes.h"
-#include "harness/suite/check/check_request.h"
+#include "harness/suite/check/last_pass.h"
 #include "harness/suite/check/run_suite.h"
 #include "harness/suite/report/report.h"
 #include "harness/truth/golden/compare.h"

@@ -17,7 +17,7 @@
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/run_trials.h"
 #include "harness/suite/check/check_scenario.h"
-#include "harness/suite/check/select_scenarios.h"
+#include "harness/suite/check/run_suite.h"
 #include "harness/suite/judge/judges.h"
 #include "harness/suite/report/report.h"
 

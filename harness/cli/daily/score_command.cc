@@ -10,7 +10,7 @@
 #include "harness/measure/score/score.h"
 #include "harness/measure/score/score_labels.h"
 #include "harness/measure/score/score_scenarios.h"
-#include "harness/suite/check/select_scenarios.h"
+#include "harness/suite/check/run_suite.h"
 
 namespace prehend::cli {
 namespace {

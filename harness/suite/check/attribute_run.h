@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/suite/check/attribute.h"
-#include "harness/suite/check/check_request.h"
 #include "harness/suite/check/last_pass.h"
+#include "harness/suite/check/settings.h"
 #include "harness/suite/judge/judges.h"
 
 namespace prehend::suite {

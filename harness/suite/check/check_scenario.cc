@@ -20,9 +20,9 @@
 #include "harness/show/replay/replay_data.h"
 #include "harness/suite/check/attribute_run.h"
 #include "harness/suite/check/last_pass.h"
-#include "harness/suite/judge/accept_golden.h"
 #include "harness/suite/judge/judges.h"
 #include "harness/suite/judge/other_view.h"
+#include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/golden/golden.h"
 
 namespace prehend::suite {

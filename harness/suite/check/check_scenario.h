@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "harness/episode/run/run_scenario.h"
-#include "harness/suite/check/check_request.h"
+#include "harness/suite/check/last_pass.h"
 #include "harness/suite/check/verdict.h"
 
 namespace prehend::suite {

@@ -5,13 +5,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "grammar/describe.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/yaml/located_yaml.h"
-#include "harness/suite/judge/clauses.h"
+#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {
 namespace {
@@ -96,6 +98,152 @@ std::string Called(const std::string& file, const episode::LoadedRun& loaded) {
   const std::string folder = read.substr(0, read.rfind('/', read.size() - called.size() - 2));
   if (file.starts_with(folder + "/project/")) return file.substr(folder.size() + 9);
   return file.starts_with(folder + "/outside/") ? file.substr(folder.size() + 8) : file;
+}
+
+constexpr std::size_t kMostUndone = 8;
+constexpr std::size_t kMostNamed = 4;
+
+/// The same difference is not there any more.
+bool IsGone(const truth::Pairing& difference, const truth::Comparison& without) {
+  if (difference.expected) {
+    return std::ranges::any_of(without.pairings, [&](const truth::Pairing& pairing) {
+      return pairing.agreement == truth::LineVerdict::kMatched &&
+             pairing.golden_line == difference.golden_line;
+    });
+  }
+  return std::ranges::none_of(without.pairings, [&](const truth::Pairing& pairing) {
+    return pairing.agreement != truth::LineVerdict::kMatched && pairing.actual &&
+           pairing.actual->event == difference.actual->event &&
+           pairing.actual->interval.begin == difference.actual->interval.begin;
+  });
+}
+
+/// "begins later", "begins and ends earlier", "missing", "object: milk -> cup".
+std::string WhatDiffers(const truth::Pairing& pairing) {
+  if (pairing.agreement == truth::LineVerdict::kChanged && !pairing.changes.empty())
+    return fmt::format("{}", fmt::join(pairing.changes, ", "));
+  if (pairing.agreement == truth::LineVerdict::kRelabelled && pairing.actual)
+    return "recognised as " + pairing.actual->event;
+  if (pairing.agreement != truth::LineVerdict::kShifted)
+    return std::string(Name(pairing.agreement));
+  const auto moved = [&](grammar::Tick offset) { return std::abs(offset) > pairing.tolerance; };
+  const auto direction = [](grammar::Tick offset) { return offset > 0 ? "later" : "earlier"; };
+  const bool begin = moved(pairing.begin_offset), end = moved(pairing.end_offset);
+  if (begin && end && (pairing.begin_offset > 0) == (pairing.end_offset > 0))
+    return fmt::format("begins and ends {}", direction(pairing.begin_offset));
+  if (begin && end)
+    return fmt::format("begins {}, ends {}", direction(pairing.begin_offset),
+                       direction(pairing.end_offset));
+  return begin ? fmt::format("begins {}", direction(pairing.begin_offset))
+               : fmt::format("ends {}", direction(pairing.end_offset));
+}
+
+Attribution Described(const truth::Pairing& pairing, grammar::Tick ticks_per_second) {
+  const bool is_shift = pairing.agreement == truth::LineVerdict::kShifted;
+  const grammar::Tick most = std::abs(pairing.begin_offset) >= std::abs(pairing.end_offset)
+                                 ? pairing.begin_offset
+                                 : pairing.end_offset;
+  return {.event = pairing.event().event,
+          .what = WhatDiffers(pairing),
+          .shift_ms = is_shift ? truth::MillisecondsOf(most, ticks_per_second) : 0,
+          .question = truth::QuestionAbout(pairing, ticks_per_second)};
+}
+
+/// "`milk.mass_kg` 0.4 -> 8 in slide/x.yaml", of at most so many.
+std::string ListOf(const std::vector<const SettingChange*>& changes) {
+  std::string text;
+  for (std::size_t i = 0; i < changes.size() && i < kMostNamed; ++i) {
+    const bool last_of_file =
+        i + 1 >= std::min(changes.size(), kMostNamed) || changes[i + 1]->file != changes[i]->file;
+    text += (i == 0 ? "" : ", ") + ChangeText(*changes[i]) +
+            (last_of_file ? " in " + changes[i]->file : "");
+  }
+  if (changes.size() > kMostNamed) text += fmt::format(" and {} more", changes.size() - kMostNamed);
+  return text;
+}
+
+/// What nothing explains that could be undone.
+std::string OtherCause(const PossibleCauses& possible) {
+  std::vector<const SettingChange*> fields, clauses;
+  for (const SettingChange& change : possible.changes) {
+    if (change.of == SettingChange::Of::kField) fields.push_back(&change);
+    if (change.of == SettingChange::Of::kClause) clauses.push_back(&change);
+  }
+  if (possible.motion_differs && !fields.empty()) return ListOf(fields);
+  fields.insert(fields.begin(), clauses.begin(), clauses.end());
+  return possible.other_changes.empty()
+             ? ListOf(fields)
+             : fmt::format("{}", fmt::join(possible.other_changes, ", "));
+}
+
+/// Each change of the grammar by itself, then all of a rule, then all.
+std::vector<std::vector<const SettingChange*>> ToUndo(const PossibleCauses& possible) {
+  std::vector<const SettingChange*> of_grammar;
+  for (const SettingChange& change : possible.changes) {
+    const bool is_whole = change.before.empty() || change.after.empty();
+    if (change.of == SettingChange::Of::kField || of_grammar.size() >= kMostUndone) continue;
+    if (change.of == SettingChange::Of::kClause || !is_whole) of_grammar.push_back(&change);
+  }
+  std::vector<std::vector<const SettingChange*>> sets;
+  std::map<std::string, std::vector<const SettingChange*>> rules;
+  for (const SettingChange* change : of_grammar) {
+    sets.push_back({change});
+    if (change->of == SettingChange::Of::kClause)
+      rules[change->file + change->name.substr(0, change->name.find(' '))].push_back(change);
+  }
+  for (auto& [rule, changes] : rules)
+    if (changes.size() > 1 && changes.size() < of_grammar.size()) sets.push_back(changes);
+  if (of_grammar.size() > 1) sets.push_back(std::move(of_grammar));
+  return sets;
+}
+
+using Words = std::vector<std::string>;
+
+Words WordsOf(std::string_view text) {
+  Words words;
+  for (std::size_t begin = 0; (begin = text.find_first_not_of(" \t\r\n", begin)) < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(" \t\r\n", begin), text.size());
+    words.emplace_back(text.substr(begin, end - begin));
+    begin = end;
+  }
+  return words;
+}
+
+/// A colour in quotes is none.
+std::string_view WithoutComment(std::string_view line) {
+  bool is_quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') is_quoted = !is_quoted;
+    if (line[i] == '#' && !is_quoted) return line.substr(0, i);
+  }
+  return line;
+}
+
+std::string Joined(const Words& words) { return fmt::format("{}", fmt::join(words, " ")); }
+
+/// A comma is a word, so that a list that goes on has the same last element.
+Words PiecesOf(std::string_view text) {
+  std::string spaced;
+  for (const char c : text) spaced += c == ',' ? std::string(" , ") : std::string(1, c);
+  return WordsOf(spaced);
+}
+
+/// Commas and connectives at its ends say nothing.
+std::string Middle(const Words& words, std::size_t begin, std::size_t end) {
+  std::string text = Joined({words.begin() + static_cast<std::ptrdiff_t>(begin),
+                             words.begin() + static_cast<std::ptrdiff_t>(end)});
+  for (std::size_t at = 0; (at = text.find(" ,")) != std::string::npos;) text.erase(at, 1);
+  if (text.ends_with(",")) text.pop_back();
+  for (const std::string_view word : {", ", "and ", "or "})
+    if (text.starts_with(word)) text.erase(0, word.size());
+  return text;
+}
+
+std::ptrdiff_t Depth(const Words& words, std::size_t end) {
+  std::ptrdiff_t depth = 0;
+  for (std::size_t i = 0; i < end; ++i)
+    depth += std::ranges::count(words[i], '(') - std::ranges::count(words[i], ')');
+  return depth;
 }
 
 }  // namespace
@@ -188,6 +336,138 @@ std::string ChangeText(const SettingChange& change) {
   if (before.empty()) return fmt::format("`{}` added: {}", change.name, after);
   if (after.empty()) return fmt::format("`{}` removed: {}", change.name, before);
   return fmt::format("`{}` {} -> {}", change.name, before, after);
+}
+
+std::vector<Attribution> AttributeDifferences(const truth::Comparison& comparison,
+                                              const PossibleCauses& possible,
+                                              const CompareWith& compare_with) {
+  const std::vector<const truth::Pairing*> differing = comparison.Differing();
+  std::vector<Attribution> attributions;
+  for (const truth::Pairing* pairing : differing)
+    attributions.push_back(Described(*pairing, comparison.ticks_per_second));
+  const auto is_open = [](const Attribution& attribution) { return attribution.because.empty(); };
+  const auto gone_without = [&](const std::vector<const SettingChange*>& undone) {
+    std::vector<std::size_t> gone;
+    const auto without = compare_with(undone);
+    for (std::size_t i = 0; without && i < differing.size(); ++i)
+      if (is_open(attributions[i]) && IsGone(*differing[i], *without)) gone.push_back(i);
+    return gone;
+  };
+  for (std::vector<const SettingChange*> undone : ToUndo(possible)) {
+    if (undone.size() > 1 && std::ranges::none_of(attributions, is_open)) break;
+    const std::vector<std::size_t> gone = gone_without(undone);
+    // Of several together those that are needed.
+    for (std::size_t k = undone.size(); !gone.empty() && undone.size() > 1 && k-- > 0;) {
+      std::vector<const SettingChange*> fewer = undone;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(k));
+      if (gone_without(fewer) == gone) undone = std::move(fewer);
+    }
+    for (const std::size_t i : gone) attributions[i].because = ListOf(undone);
+  }
+  for (Attribution& attribution : attributions)
+    if (is_open(attribution)) attribution.because = OtherCause(possible);
+  return attributions;
+}
+
+std::string CauseOfFailure(
+    const PossibleCauses& possible,
+    const std::function<bool(const std::vector<const SettingChange*>& undone)>& holds_without) {
+  if (holds_without) {
+    for (const auto& undone : ToUndo(possible))
+      if (holds_without(undone)) return ListOf(undone);
+    const std::string other = possible.motion_differs ? OtherCause(possible) : "";
+    if (!other.empty()) return other;
+  }
+  std::vector<const SettingChange*> all;
+  for (const SettingChange& change : possible.changes) all.push_back(&change);
+  return all.empty() ? OtherCause(possible) : ListOf(all);
+}
+
+std::vector<Clause> ClausesOf(std::string_view grammar) {
+  std::vector<Clause> clauses;
+  std::string rule;
+  bool is_law = false;
+  std::size_t indent = 0;  // of the rule's clauses; 0: none yet
+  for (std::size_t begin = 0; begin < grammar.size();) {
+    const std::size_t line_end = std::min(grammar.find('\n', begin), grammar.size());
+    const std::string_view line = grammar.substr(begin, line_end - begin);
+    const std::size_t start = begin;
+    begin = line_end + 1;
+    const std::string_view said = WithoutComment(line);
+    const Words words = WordsOf(said);
+    if (words.empty()) continue;
+    const std::size_t depth = said.find_first_not_of(" \t");
+    const std::size_t end = start + said.find_last_not_of(" \t\r") + 1;
+    if (depth == 0) {
+      rule.clear();
+      if (words.size() > 3 && words[0] == "param")
+        clauses.push_back({words[1], Joined({words.begin() + 3, words.end()}), start, end});
+      if (words.size() < 2 || words[0] == "param" || words[0] == "use" || words[0] == "grammar")
+        continue;
+      // "symmetric event contact(..)"
+      const auto kind = static_cast<std::ptrdiff_t>(words[0] == "symmetric" && words.size() > 2);
+      const std::string& head = words[static_cast<std::size_t>(kind) + 1];
+      rule = head.substr(0, head.find('('));
+      is_law = words[0] == "law";
+      indent = 0;
+      clauses.push_back({rule + " roles", Joined({words.begin() + kind + 1, words.end()}),
+                         static_cast<std::size_t>(grammar.find(head, start)), end});
+    } else if (!rule.empty() && (indent == 0 || (depth <= indent && !is_law))) {
+      indent = depth;
+      std::string name = rule + " " + (is_law ? "law" : words[0]);
+      const auto twins = std::ranges::count_if(clauses, [&](const Clause& one) {
+        return one.name == name || one.name.starts_with(name + " ");
+      });
+      if (twins > 0) name += fmt::format(" {}", twins + 1);
+      clauses.push_back({std::move(name), Joined(words), start + depth, end});
+    } else if (!rule.empty()) {
+      clauses.back().text += " " + Joined(words);
+      clauses.back().end = end;
+    }
+  }
+  return clauses;
+}
+
+std::string WithClause(std::string_view grammar, const std::string& name, const std::string& text) {
+  const std::string rule = name.substr(0, name.find(' ') + 1);
+  std::size_t begin = std::string::npos, end = 0;
+  std::string put = text;
+  for (const Clause& clause : ClausesOf(grammar)) {
+    if (clause.name == name) {
+      begin = clause.begin;
+      end = clause.end;
+      put = text;
+      break;
+    }
+    // One that is not there any more stands behind the others.
+    if (!clause.name.starts_with(rule) || clause.name == rule + "drawn") continue;
+    begin = end = clause.end;
+    put = "\n  " + text;
+  }
+  if (begin == std::string::npos) return "";
+  return fmt::format("{}{}{}", grammar.substr(0, begin), put, grammar.substr(end));
+}
+
+std::string ClauseChangeText(std::string_view before, std::string_view after) {
+  const Words old = PiecesOf(before), now = PiecesOf(after);
+  const std::size_t most = std::min(old.size(), now.size());
+  std::size_t first = 0, last = 0;
+  while (first < most && old[first] == now[first]) ++first;
+  while (last < most - first && old[old.size() - 1 - last] == now[now.size() - 1 - last]) ++last;
+  // What is negated, not only that it is.
+  const auto negates = [&](const Words& words) {
+    return words.size() == first + last + 1 && words[first] == "not";
+  };
+  if (last > 0 && (negates(old) || negates(now))) --last;
+  // Never from the midst of a call.
+  while (first > 0 && (Depth(old, first) > 0 || Depth(now, first) > 0)) --first;
+  while (last > 0 && (Depth(old, old.size() - last) > 0 || Depth(now, now.size() - last) > 0))
+    --last;
+  const std::string was = Middle(old, first, old.size() - last),
+                    is = Middle(now, first, now.size() - last);
+  if (is.empty()) return fmt::format("lost `{}`", was);
+  if (was.empty()) return fmt::format("gained `{}`", is);
+  return fmt::format("`{}` -> `{}`", was, is);
 }
 
 }  // namespace prehend::suite

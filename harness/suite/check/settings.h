@@ -4,13 +4,17 @@
 // tests/harness/suite/check/settings_test.cc
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "harness/base/base/content_hash.h"
 #include "harness/episode/run/load_run.h"
+#include "harness/truth/golden/compare.h"
 
 namespace prehend::suite {
 
@@ -45,5 +49,66 @@ std::string ChangeText(const SettingChange& change);
 
 /// A path as people know it: relative to the project if it is in there.
 std::string RelativeTo(const std::string& root, const std::string& path);
+
+// Why each single difference from the golden is there. Each changed parameter and each changed
+// clause of a rule is undone by itself, then all of a rule, and the recorded motion is segmented
+// once more: what then agrees with the golden was its effect. What differs even with all of them
+// undone is attributed to what else changed. So two causes in one scenario are told apart. Tested
+// by tests/harness/suite/check/attribute_test.cc
+
+/// A difference of a scenario, and what it is attributed to.
+struct Attribution {
+  std::string event;     ///< its name; "" of a failure that is no difference, as of a law
+  std::string what;      ///< "begins later", "missing", "object: milk -> cup"
+  double shift_ms = 0;   ///< of the boundary that moved most, recognised - expected; else 0
+  std::string because;   ///< "`reach_radius` 30 cm -> 20 cm in x.grammar"; "" is unknown
+  std::string question;  ///< to `prehend explain`
+};
+
+/// What is known about a run that differs.
+struct PossibleCauses {
+  std::vector<SettingChange> changes;      ///< of values since the last pass
+  std::vector<std::string> other_changes;  ///< changed files without a changed value, the program
+  bool motion_differs = false;             ///< it moves differently from the last pass
+};
+
+/// The comparison of the same recorded motion, with these parameters and clauses set back. Nothing
+/// if that cannot be done.
+using CompareWith = std::function<std::optional<truth::Comparison>(
+    const std::vector<const SettingChange*>& undone)>;
+
+/// One for each of comparison.Differing(), in its order. Undoes at most 8 changes.
+std::vector<Attribution> AttributeDifferences(const truth::Comparison& comparison,
+                                              const PossibleCauses& possible,
+                                              const CompareWith& compare_with);
+
+/// Why a scenario fails that agrees with its golden, or cannot be read: the first changes without
+/// which it holds, else what else changed. Without `holds_without`, all that changed.
+std::string CauseOfFailure(
+    const PossibleCauses& possible,
+    const std::function<bool(const std::vector<const SettingChange*>& undone)>& holds_without);
+
+// The clauses of a grammar's rules as they are written, so that a changed one can be named and put
+// back. Tested by tests/harness/suite/check/clauses_test.cc
+
+/// Of a rule, a condition, a law, a definition: "transporting(..)" has "transporting roles",
+/// "transporting outside", "transporting drawn"; of a law "NAME law" is all that it demands. A
+/// parameter is one by itself: "far" is "2 cm".
+struct Clause {
+  std::string name;  ///< of the rule, and the clause's first word; a second such clause: ".. 2"
+  std::string text;  ///< without comments, one space where there were some
+  std::size_t begin = 0, end = 0;  ///< in the file
+};
+
+/// In their order. A rule begins at the left margin; its clauses are indented as its first one is,
+/// and go on where a line is indented further.
+std::vector<Clause> ClausesOf(std::string_view grammar);
+
+/// The file with this clause as it was: another text, none, or one again. "" without its rule.
+std::string WithClause(std::string_view grammar, const std::string& name, const std::string& text);
+
+/// "lost `putting_down(hand, object)`", "gained ..", "`>= 2 cm` -> `>= 5 cm`": what lies between
+/// the words that both begin and end with.
+std::string ClauseChangeText(std::string_view before, std::string_view after);
 
 }  // namespace prehend::suite

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/judge/demonstration.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <map>
 
 #include "harness/base/base/quoting.h"
+#include "harness/suite/judge/judges.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {

@@ -22,12 +22,14 @@
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_scenario.h"
 #include "harness/episode/run/segment_recording.h"
+#include "harness/episode/sense/episode_file.h"
 #include "harness/scenario/scenario/scenario.h"
 #include "harness/show/pictures/pictures.h"
-#include "harness/suite/judge/compare_with_oracle.h"
+#include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/claims/judge_claims.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/golden/golden.h"
+#include "harness/truth/timeline/event_drawings.h"
 #include "physics/scene/snapshot.h"
 
 namespace prehend::suite {
@@ -274,5 +276,42 @@ TransformedPlay Play(const TransformedScenario& there, const episode::LoadedRun&
 
 /// What is wrong with it whatever a golden says.
 Findings BrokenIn(const TransformedPlay& play, const std::string& name);
+
+// What a demonstration of a robot does with things and what goes wrong in it, from its events, its
+// poses and its gripper: docs/robot-demonstrations.md, "Why did it fail". Tested by
+// tests/program/failed_demonstrations.py
+
+/// Something goes wrong, at a moment.
+struct Mishap {
+  grammar::Tick tick = 0;
+  std::string what;      ///< "cube_3 missed, gripper closed on nothing"
+  std::string object;    ///< that has to be taken again
+  std::string question;  ///< options of `explain`
+  bool is_miss = false;
+};
+
+/// A thing is grasped and put somewhere.
+struct Handling {
+  std::string event, hand, object;
+  std::string support;  ///< what it rests on afterwards; or ""
+  grammar::Tick begin = 0, end = 0;
+  bool open_end = false;  ///< it is held to the end of the episode
+};
+
+struct Demonstration {
+  std::optional<bool> success;  ///< as the file says
+  grammar::Tick ticks_per_second = 1, end = 1;
+  std::vector<Handling> handled;  ///< by begin; only the last time of several in a row
+  std::vector<Mishap> mishaps;    ///< by tick
+};
+
+/// Nothing if no gripper ever closes in it. What grasps and supports are say `drawings`.
+std::optional<Demonstration> DemonstrationOf(episode::Recording& recording,
+                                             const grammar::Timeline& timeline,
+                                             const truth::EventDrawings& drawings);
+
+/// Of each that failed, the first thing that went wrong and was not made good; compared with what
+/// most of those do that succeeded.
+std::vector<std::optional<Mishap>> FirstCauses(const std::vector<const Demonstration*>& all);
 
 }  // namespace prehend::suite

@@ -9,7 +9,7 @@
 #include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/segment_recording.h"
-#include "harness/suite/judge/accept_golden.h"
+#include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/golden/golden.h"
 
 namespace prehend::suite {

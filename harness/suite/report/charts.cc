@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/report/charts.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 
 #include "harness/base/base/quoting.h"
 #include "harness/show/chart/chart.h"
+#include "harness/suite/report/report.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {

@@ -14,7 +14,6 @@
 
 #include "harness/base/base/quoting.h"
 #include "harness/suite/check/causes.h"
-#include "harness/suite/report/charts.h"
 
 namespace prehend::suite {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A difference belongs to the change without which it is not there.
-#include "harness/suite/check/attribute.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/suite/check/settings.h"
 
 namespace prehend::suite {
 namespace {

@@ -3,8 +3,8 @@
 #include "harness/suite/check/check_scenario.h"
 
 #include "harness/suite/check/last_pass.h"
-#include "harness/suite/judge/accept_golden.h"
 #include "harness/suite/judge/judges.h"
+#include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/golden/golden.h"
 #include "tests/harness/episode/run/count_reads.h"
 #include "tests/harness/suite/judge/checked_run.h"

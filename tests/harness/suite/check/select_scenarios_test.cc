@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which scenarios patterns, filters and shards select, and what is said when there are none.
-#include "harness/suite/check/select_scenarios.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 
 #include "harness/base/base/atomic_file.h"
+#include "harness/suite/check/run_suite.h"
 
 namespace prehend::suite {
 namespace {

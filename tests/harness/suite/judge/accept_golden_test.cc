@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a person wrote into a golden survives the next acceptance, and the count of events that
 // follow from the definitions is renewed when it is not true any more.
-#include "harness/suite/judge/accept_golden.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/suite/judge/validate_golden.h"
 
 namespace prehend::suite {
 namespace {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a golden says about where it comes from, on a real run that is then falsified.
-#include "harness/suite/judge/compare_with_oracle.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "harness/episode/run/load_run.h"
+#include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/oracle/oracle.h"
 #include "harness/truth/timeline/event_text.h"
 

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "harness/episode/run/find_scenario.h"
-#include "harness/suite/judge/compare_with_oracle.h"
+#include "harness/suite/judge/validate_golden.h"
 #include "harness/truth/golden/golden.h"
 #include "harness/truth/oracle/oracle.h"
 

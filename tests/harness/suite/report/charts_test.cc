@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/suite/report/charts.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
+
+#include "harness/suite/report/report.h"
 
 namespace prehend::suite {
 namespace {

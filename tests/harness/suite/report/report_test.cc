@@ -7,8 +7,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "harness/suite/report/charts.h"
-
 namespace prehend::suite {
 namespace {
 
