@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/cli/command/options.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,6 +7,8 @@
 #include <iterator>
 #include <optional>
 #include <utility>
+
+#include "harness/cli/command/command.h"
 
 namespace prehend::cli {
 namespace {
