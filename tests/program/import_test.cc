@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <iomanip>
@@ -359,46 +358,6 @@ TEST(Import, AThingThatTremblesIsNamedAndMeansOverATimeMakeItSmooth) {
   const std::string events = Events(folder);
   for (const char* event : {"picking_up", "transporting", "putting_down", "pick_and_place"})
     EXPECT_NE(events.find(event), std::string::npos) << event << "\n" << events;
-}
-
-/// As Csv(), and then both bodies rest for a long time.
-std::string LongCsv(int last_row) {
-  std::string csv = Csv();
-  for (int i = 301; i <= last_row; ++i) {
-    for (const char* name : {"Mug", "Glove"}) {
-      Row row = name[0] == 'M' ? CupAt(5) : HandAt(5);
-      row.t_s = i / 60.0;
-      csv += AsWritten(name, row);
-    }
-  }
-  return csv;
-}
-
-TEST(Import, ALongTableTakesLittleMemory) {
-  const auto folder = FreshFolder("little_memory");
-  WriteFile(folder / "poses.csv", LongCsv(72'000));
-  WriteFile(folder / "map.yaml", kMap);
-  const std::string command = "cd " + folder.string() +
-                              " && ulimit -d 30000 && '" PREHEND_BINARY_DIR
-                              "/prehend' import poses.csv --map map.yaml -o take.jsonl > said 2>&1";
-  EXPECT_EQ(std::system(command.c_str()), 0) << "20 MB, and 97 MB if all poses are kept\n"
-                                             << ReadFile(folder / "said");
-  EXPECT_NE(ReadFile(folder / "said").find("a_cup_is_carried: 72001 frames, 1200.000 s"),
-            std::string::npos);
-}
-
-TEST(Import, FaultsFarInALongFileAreShownWithTheirLines) {
-  const std::string csv = LongCsv(30'000);
-  const auto folder = FreshFolder("long_file");
-  const std::string rows = "\n400.0000,Mug,";
-  const Said said = ImportCsv(folder, Replaced(csv, rows, rows + "left"), kMap);
-  EXPECT_NE(said.exit_code, 0);
-  EXPECT_NE(said.err.find("poses.csv:48002:14: error: expected a number, found 'left"),
-            std::string::npos)
-      << said.err;
-  EXPECT_NE(said.err.find("400.0000,Mug,left"), std::string::npos) << said.err;
-  EXPECT_EQ(ImportCsv(folder, csv, kMap, {"--check"}).out.substr(0, 41),
-            "a_cup_is_carried: 30001 frames, 500.000 s");
 }
 
 TEST(Import, AllThatTrembleByAMillimetreAreNamedInOneLine) {

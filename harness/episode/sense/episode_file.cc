@@ -298,4 +298,14 @@ void EpisodeWriter::Finish(grammar::Tick end_tick) {
   out_ << Json{{"end_tick", end_tick}}.dump() << "\n";
 }
 
+void Recording::EachFrame(const Look& look) {
+  if (play) return play(look);
+  for (EpisodeFrame& frame : frames) look(frame);
+}
+
+void Recording::Keep() {
+  if (const auto played = std::exchange(play, nullptr))
+    played([&](const EpisodeFrame& frame) { frames.push_back(frame); });
+}
+
 }  // namespace prehend::episode

@@ -112,8 +112,8 @@ struct Recording {
   void Keep();
 };
 
-/// For frames that were not read from a file: what is not tracked for a short time is as it was
-/// seen last.
+/// For frames that are played, and were not read from a file: what is not tracked for a short time
+/// is as it was seen last.
 void BridgeLooks(Recording& episode);
 
 /// Reports errors with file, line and column. The limits are those above.

@@ -491,31 +491,18 @@ grammar::Frame EpisodeFrame::View() {
   return {tick, entities, hands, touches};
 }
 
-void Recording::EachFrame(const Look& look) {
-  if (play) return play(look);
-  for (EpisodeFrame& frame : frames) look(frame);
-}
-
-void Recording::Keep() {
-  if (const auto played = std::exchange(play, nullptr))
-    played([&](const EpisodeFrame& frame) { frames.push_back(frame); });
-}
-
 void BridgeLooks(Recording& episode) {
-  const auto bridged = [fresh = BridgeOf(episode.header)](const auto& play, const auto& look) {
+  const auto bridged = [fresh = BridgeOf(episode.header),
+                        bare = std::move(episode.play)](const Recording::Look& look) {
     GapTolerance bridge = fresh;
-    play([&](EpisodeFrame& frame) {
+    bare([&](EpisodeFrame& frame) {
       bridge.Fill(frame.tick, frame.entities);
       look(frame);
     });
     return bridge.Gaps();
   };
-  const auto each = [&](const Recording::Look& look) { episode.EachFrame(look); };
-  episode.gaps = bridged(each, [](const EpisodeFrame&) {});
-  if (episode.play)
-    episode.play = [bridged, play = std::move(episode.play)](const Recording::Look& look) {
-      bridged(play, look);
-    };
+  episode.gaps = bridged([](EpisodeFrame&) {});
+  episode.play = bridged;
 }
 
 struct EpisodeStream::Reader {

@@ -58,17 +58,12 @@ class FrameMaker {
 
   /// `step`: those that are nearer to the one before, in ticks, are left out.
   void EachFrame(const episode::Recording::Look& look, std::int64_t step = 0) {
-    const auto each_track = [&](const auto& todo) {
-      std::ranges::for_each(tracks, todo);
-      std::ranges::for_each(openings, todo);
-    };
-    each_track([](Track& track) { track.next = 0; });
+    for (auto* all : {&tracks, &openings})
+      for (Track& track : *all) track.next = 0;
     std::vector<grammar::EntitySample> before;
     double before_s = 0;
-    std::size_t count = 0;
     episode::EpisodeFrame frame{.tick = -step};
     for (const auto& [tick, t_s] : times) {
-      if (++count % 4096 == 0) each_track([](Track& track) { LetGo(track.poses); });
       if (tick - frame.tick < step) continue;
       frame = {.tick = tick};
       frame.entities.reserve(tracks.size());

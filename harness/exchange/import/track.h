@@ -18,7 +18,8 @@ struct Track {
   std::size_t next = 0;  ///< the first one that is later than the present time
 
   PoseSample At(double t_s) {
-    while (next < poses.size() && poses[next].t_s <= t_s) ++next;
+    while (next < poses.size() && poses[next].t_s <= t_s)
+      if (++next % 4096 == 0) LetGo(poses);
     if (next == 0) return poses.front();
     const PoseSample& before = poses[next - 1];
     if (next == poses.size() || poses[next].after_loss) return before;

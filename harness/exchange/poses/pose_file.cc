@@ -265,6 +265,17 @@ void RefuseAbsentBodies(const PoseFile& poses, const ImportMap& map, DiagnosticL
   }
 }
 
+void BeginAtZero(PoseFile& poses) {
+  for (PoseBody& body : poses.bodies) {
+    for (PoseSample& sample : body.samples) sample.t_s -= poses.first_s;
+    LetGo(body.samples);
+  }
+  for (OpeningSeries& opening : poses.openings)
+    for (OpeningSeries::Sample& sample : opening.samples) sample.t_s -= poses.first_s;
+  poses.last_s -= poses.first_s;
+  poses.first_s = 0;
+}
+
 void MirrorPoses(const ImportMap& map, PoseFile& poses) {
   for (PoseBody& body : poses.bodies) {
     for (PoseSample& sample : body.samples) {

@@ -74,6 +74,7 @@ std::vector<OpeningSeries> OpeningsOf(const ImportMap& map);
 /// Bodies with less than two poses are errors.
 void RefuseAbsentBodies(const PoseFile& poses, const ImportMap& map, DiagnosticList& errors);
 
+void BeginAtZero(PoseFile& poses);
 /// Left-handed positions and orientations, seen in a mirror.
 void MirrorPoses(const ImportMap& map, PoseFile& poses);
 

@@ -29,17 +29,6 @@ constexpr std::size_t kMostHeaderBytes = 100'000;
 constexpr std::size_t kLeastSteps = 20;
 constexpr int kMostPreamble = 100;  ///< lines in which the names of the columns are looked for
 
-std::string WithBody(const std::string& column, const std::string& body) {
-  const std::size_t at = column.find("{}");
-  return at == std::string::npos ? column : std::string(column).replace(at, 2, body);
-}
-
-/// Where the values of a body stand in a row.
-struct Seats {
-  std::vector<std::size_t> all;      ///< three of its position, then those of its orientation
-  std::optional<std::size_t> error;  ///< of its orientation and position, as the tracker says
-};
-
 class CsvPoseReader {
  public:
   CsvPoseReader(const std::string& path, std::string text, const MapFile& map)
@@ -72,11 +61,9 @@ class CsvPoseReader {
   void Read(std::string block, bool is_last) {
     if (!goes_on_) return;
     poses.text = std::move(block);
-    lines_before_ = line_;
-    if (line_ == 0) {
-      TakeHead();
-      goes_on_ = map_errors_.empty();
-    }
+    lines_before_text_ = line_;
+    if (line_ == 0) TakeHead();
+    goes_on_ = map_errors_.empty();
     const std::string_view text = poses.text;
     for (std::size_t begin = 0;
          goes_on_ && begin < text.size() && problems_.size() < kMostComplaints;) {
@@ -87,21 +74,12 @@ class CsvPoseReader {
     }
   }
 
-  /// After the last line.
   void Finish() {
     if (!map_errors_.empty()) return;
     if (line_ < header_line_)
       Complain({1, 1}, fmt::format("{} lines; the header is on line {}", line_, header_line_));
     if (!problems_.empty()) return;
-    for (PoseBody& body : poses.bodies) {
-      if (poses.first_s == 0) break;
-      for (PoseSample& sample : body.samples) sample.t_s -= poses.first_s;
-      LetGo(body.samples);
-    }
-    for (OpeningSeries& opening : poses.openings)
-      for (OpeningSeries::Sample& sample : opening.samples) sample.t_s -= poses.first_s;
-    poses.last_s -= poses.first_s;
-    poses.first_s = 0;
+    if (poses.first_s != 0) BeginAtZero(poses);
     if (poses.rows < 2)
       return Complain({line_, 1},
                       grammar::CountOf(poses.rows, "row") + "; a recording has at least 2");
@@ -150,7 +128,7 @@ class CsvPoseReader {
     for (PoseBody& body : poses.bodies) body.samples.clear();
     for (OpeningSeries& opening : poses.openings) opening.samples.clear();
     poses.text = line;
-    lines_before_ = line_;
+    lines_before_text_ = line_;
     poses.unused.clear();
     const std::size_t rows = poses.rows;
     TakeLine(poses.text, /*is_last=*/false);
@@ -171,7 +149,7 @@ class CsvPoseReader {
  private:
   void Complain(Place place, std::string message, std::string hint = {}) {
     const int line = place.line;
-    place.line -= lines_before_;
+    place.line -= lines_before_text_;
     problems_.push_back(
         grammar::DiagnosticAt(poses.file, poses.text, place, std::move(message), std::move(hint)));
     problems_.back().place.line = line;
@@ -510,9 +488,9 @@ class CsvPoseReader {
     }
     PoseSample sample{.t_s = t_s, .p = {values_[0], values_[1], values_[2]}, .line = line_};
     if (map_.zero_is_missing && sample.p.isZero(0)) return;
-    const Place place{line_, cells[seats.all.back()].column};
     if (!body.samples.empty() && t_s <= body.samples.back().t_s)
-      return Complain(place, fmt::format("'{}' has two poses at {:.6g} s", body.name, t_s));
+      return Complain({line_, cells[seats.all.back()].column},
+                      fmt::format("'{}' has two poses at {:.6g} s", body.name, t_s));
     if (seats.all.size() > 3) {
       const std::string fault =
           ReadOrientation(orientation_, std::span(values_).subspan(3), sample.q);
@@ -568,8 +546,7 @@ class CsvPoseReader {
   const TableLayout* const layout_;
   std::string stem_;
   OrientationFormat orientation_;
-  int line_ = 0, header_line_ = 0;
-  int lines_before_ = 0;  ///< the text
+  int line_ = 0, header_line_ = 0, lines_before_text_ = 0;
   bool streams_ = false, goes_on_ = true;
   double row_s_ = 0;  ///< of the last row
   std::vector<std::string> names_;

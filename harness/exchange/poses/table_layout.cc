@@ -441,4 +441,9 @@ Result<MapFile> ReadMapWith(Result<YamlDocument> document, PoseFormat format,
   return file;
 }
 
+std::string WithBody(const std::string& column, const std::string& body) {
+  const std::size_t at = column.find("{}");
+  return at == std::string::npos ? column : std::string(column).replace(at, 2, body);
+}
+
 }  // namespace prehend::exchange

@@ -49,4 +49,13 @@ Result<MapFile> ReadMapOfTable(Result<YamlDocument> document, const std::string&
 /// Likewise of a table that begins so.
 Result<MapFile> ReadMapOfHead(Result<YamlDocument> document, std::string_view head);
 
+/// Where the values of a body stand in a row.
+struct Seats {
+  std::vector<std::size_t> all;      ///< three of its position, then those of its orientation
+  std::optional<std::size_t> error;  ///< of its orientation and position, as the tracker says
+};
+
+/// The name of a column in which '{}' stands for that of a body.
+std::string WithBody(const std::string& column, const std::string& body);
+
 }  // namespace prehend::exchange
