@@ -91,13 +91,16 @@ TEST(DefinitionBands, AreThoseOfThePage) {
   }
 }
 
-TEST(DefinitionBands, HoldEveryParameterOfPickAndPlace) {
-  const auto compiled = episode::LoadGrammar(PREHEND_SOURCE_DIR, "pick_and_place");
-  ASSERT_TRUE(compiled.program);
-  std::set<std::string> on_the_page = {"grip_sides", "grip_window", "lift_sky"};
+TEST(DefinitionBands, HoldEveryParameterOfTheGrammarsThatAreJudged) {
+  std::set<std::string> on_the_page = {"grip_sides", "grip_window", "lift_sky",  "closed_below",
+                                       "half_below", "open_from",   "band_slack"};
   std::map<std::string, double> parameters;
-  for (const grammar::ProgramParam& parameter : compiled.program->params)
-    parameters[parameter.name] = parameter.value.value;
+  for (const char* grammar : {"pick_and_place", "furniture"}) {
+    const auto compiled = episode::LoadGrammar(PREHEND_SOURCE_DIR, grammar);
+    ASSERT_TRUE(compiled.program);
+    for (const grammar::ProgramParam& parameter : compiled.program->params)
+      parameters[parameter.name] = parameter.value.value;
+  }
   for (const Row& row : TableOfThePage()) {
     for (const std::string& name : row.parameters) {
       on_the_page.insert(name);
