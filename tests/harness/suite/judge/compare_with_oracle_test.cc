@@ -90,6 +90,32 @@ TEST_F(DerivationTest, EventsWithoutADefinitionAreCountedNotJudged) {
       << OracleLine(compared);
 }
 
+TEST(CompareWithOracle, JudgesFurniture) {
+  const episode::RunRequest request{.scenario_file = PREHEND_SOURCE_DIR
+                                    "/scenarios/body/foot_closes_the_drawer.yaml"};
+  auto read = episode::LoadRun(request, PREHEND_SOURCE_DIR);
+  ASSERT_TRUE(read) << grammar::Format(ErrorsOf(read));
+  episode::RunResult run = episode::RunScenario(read->scenario, read->program, {.record = true});
+  const auto compared = [&] { return CompareWithOracle(read->scenario, *read->program, run); };
+  EXPECT_EQ(compared().Differing(), 0) << GroundTruthText(compared());
+  const auto closing =
+      std::ranges::find(run.timeline.events, "closing", &grammar::NamedEvent::event);
+  ASSERT_NE(closing, run.timeline.events.end());
+  // Half a window too soon: before the foot touches it.
+  closing->interval.begin -= 24;
+  EXPECT_EQ(compared().Differing(), 1);
+  EXPECT_NE(GroundTruthText(compared()).find("ground truth: closing(drawer) begins 47.9 ms later"),
+            std::string::npos)
+      << GroundTruthText(compared());
+  // Closed by nobody.
+  closing->interval.begin += 24;
+  std::erase_if(run.timeline.events, [](const auto& event) { return event.event == "closed_by"; });
+  EXPECT_EQ(compared().Differing(), 1);
+  EXPECT_NE(GroundTruthText(compared()).find("ground truth: closed_by(drawer, anna_right_toes) "),
+            std::string::npos)
+      << GroundTruthText(compared());
+}
+
 TEST(AcceptedDiffering, IsReadFromTheLineOfAGolden) {
   EXPECT_EQ(AcceptedDiffering({}), 0);
   EXPECT_EQ(AcceptedDiffering({"seen in the picture", "12 of 13 events follow"}), 0);
