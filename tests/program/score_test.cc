@@ -27,7 +27,9 @@ entities:
     box: {size_m: [0.02, 0.3, 0.1]}
     mass_kg: 1
     at_m: [-0.25, 0, 0.5]
-    slider: {to: cabinet, axis: [-1, 0, 0], range_m: [0, 0.3], spring_n_per_m: 20, rest_m: 0.15, damping_n_s_per_m: 8}
+    slider:
+      {to: cabinet, axis: [-1, 0, 0], range_m: [0, 0.3], spring_n_per_m: 20, rest_m: 0.15,
+       damping_n_s_per_m: 8}
 actors:
   right_hand: {hand: human_right, at_m: [-1, -1, 1]}
 script:
