@@ -3,7 +3,7 @@
 
 #include "grammar/compile/compile.h"
 #include "harness/show/pictures/scenery.h"
-#include "render/view.h"
+#include "render/draw_list.h"
 
 namespace prehend::show {
 namespace {
