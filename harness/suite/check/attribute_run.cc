@@ -9,7 +9,7 @@
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/text_file.h"
 #include "harness/episode/run/segment_recording.h"
-#include "harness/suite/check/settings.h"
+#include "harness/suite/judge/clauses.h"
 
 namespace prehend::suite {
 namespace {
