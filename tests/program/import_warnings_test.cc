@@ -189,7 +189,8 @@ TEST(ImportWarnings, SizesThatNoHandMovesAreNamed) {
             std::string::npos)
       << said.err;
   EXPECT_EQ(said.err.find("'table: "), std::string::npos) << said.err;
-  const std::string map = Replaced(SwingingMap("30"), "unit: m", "metres_per_unit: 0.001\nsure: [unit]");
+  const std::string map =
+      Replaced(SwingingMap("30"), "unit: m", "metres_per_unit: 0.001\nsure: [unit]");
   const Said of_millimetres = ImportCsv(
       folder, SwingingCsv(30), Replaced(map, "[0.07, 0.07, 0.1]", "[70, 70, 100]"), {"--check"});
   EXPECT_NE(of_millimetres.err.find("if these are millimetres: size_m: [0.07, 0.07, 0.1]\n"),

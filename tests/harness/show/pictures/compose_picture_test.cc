@@ -192,7 +192,8 @@ TEST(ComposePictureTest, TheTableIsWholeFromAbove) {
     const render::View view = MakeView(picture.camera, 1280, 720, 140, {});
     for (const double x : {-half_m, half_m})
       for (const double y : {-half_m, half_m})
-        if (const auto at = ToPixel(view, Eigen::Vector3d(x, y, 0).cast<float>()); !at || at->minCoeff() < 0 || at->y() > 580)
+        if (const auto at = ToPixel(view, Eigen::Vector3d(x, y, 0).cast<float>());
+            !at || at->minCoeff() < 0 || at->y() > 580)
           return false;
     return true;
   };
