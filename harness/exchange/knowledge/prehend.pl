@@ -18,7 +18,7 @@
             safe_query/1,       % +Goal
             ask_main/0
           ]).
-:- use_module(library(semweb/rdf_db), [rdf/3 as rdf3, rdf_load/2 as load_file]).
+:- use_module(library(semweb/rdf_db), [rdf/3 as rdf3, rdf_load/2 as load_rdf]).
 :- use_module(library(semweb/turtle)).
 :- use_module(library(lists)).
 :- use_module(library(apply)).
@@ -76,11 +76,19 @@ load_knowledge(Folder) :-
     (   exists_file(Words) -> true
     ;   throw(refused("~w has no prehend.ttl: 'prehend episode knowledge' writes such a folder"-[Folder]))
     ),
-    load_file(Words, [silent(true)]),
+    load_file(Words),
     forall(( member(Part, [maps, episodes]), directory_file_path(Place, Part, Below), exists_directory(Below),
              directory_files(Below, Names), msort(Names, Sorted), member(Name, Sorted),
              file_name_extension(_, ttl, Name), directory_file_path(Below, Name, File) ),
-           ( exists_file(File) -> load_file(File, [silent(true)]) ; throw(refused("~w is no file"-[File])) )).
+           ( exists_file(File) -> load_file(File) ; throw(refused("~w is no file"-[File])) )).
+load_file(File) :-
+    ( nb_current(prehend_tells, true) -> put_line(_{end: loading, file: File}) ; true ),
+    catch(load_rdf(File, [silent(true), on_error(error)]), error(Error, Context),
+          (   Error = syntax_error(What), Context = stream(_, Line, Column, _)
+          ->  throw(refused("~w:~w:~w: it is no Turtle, or is cut off: ~w"-[File, Line, Column, What]))
+          ;   throw(refused("~w cannot be read: ~p"-[File, Error]))
+          )),
+    ( size_file(File, 0) -> throw(refused("~w is empty: it says nothing"-[File])) ; true ).
 % A relative name could be a scheme of Prolog's, as in http://x.
 place(Name, Place) :-
     working_directory(Here, Here), ( sub_atom(Name, 0, _, _, '/') -> Place = Name ; atom_concat(Here, Name, Place) ).
