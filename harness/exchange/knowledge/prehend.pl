@@ -63,6 +63,7 @@ plain(type(Type, Text), Value) :- !,
     ;   atom_number(Text, Value) -> true
     ;   Value = Text
     ).
+plain(lang(_, Text), Text) :- !.
 plain(Text, Text).
 
 % --- loading ---------------------------------------------------------------------------------------------------------
@@ -420,7 +421,7 @@ shown(trajectory(X), [S, E], _{what: trajectory, of: Label, from: S, to: E}) :-
 shown(marker(X), T, _{what: marker, of: Label, from: T, to: T}) :- number(T), label_of(X, Label).
 
 label_of(X, _) :- var(X), throw(refused("found ~q, wanted an individual: entity(X, ..) before it says which"-[X])).
-label_of(X, Label) :- atom(X), once(value(X, rdfs:label, Label)).
+label_of(X, Label) :- atom(X), once(( value(X, rdfs:label, Label), atom(Label) )).
 
 % --- queries as text -------------------------------------------------------------------------------------------------
 
@@ -543,8 +544,10 @@ key(Told, Key) :- ( acyclic_term(Told) -> Key = Told ; as_text("~q", [Told], Key
 is_hidden(Name = _) :- sub_atom(Name, 0, 1, _, '_').
 
 with_episode(Shown, Shown.put(_{file: File, number: Number})) :-
-    once(value(Shown.episode, prehend:recordedIn, File)),
-    once(value(Shown.episode, prehend:recordNumber, Number)).
+    (   value(Shown.episode, prehend:recordedIn, File), atom(File),
+        value(Shown.episode, prehend:recordNumber, Number), integer(Number) -> true
+    ;   throw(refused("~w cannot be shown: wanted a text recordedIn and an integer recordNumber"-[Shown.episode]))
+    ).
 
 put_binding(Name = Value, Bindings, Bindings.put(Name, Said)) :- in_json(Value, Said).
 in_json(Value, '_') :- var(Value), !.
