@@ -37,7 +37,7 @@ void RigidRows::Setup(const Pools& pools) {
     pushes_[At(i)] = SixOf(body.internalGetPushVelocity(), body.internalGetTurnVelocity());
   }
   others_.clear();
-  FindSingleBodies(pools);
+  single_bodies_.Setup(single_, pools.bodies, speeds_, pools.contacts, pools.frictions);
   Flatten(pools, pools.joints, 1, joints_);
   Flatten(pools, pools.contacts, 1, contacts_);
   for (Row& row : contacts_) row.most = kNoLimit;
@@ -54,7 +54,7 @@ void RigidRows::Setup(const Pools& pools) {
 }
 
 void RigidRows::FindSingleBodies(const Pools& pools) {
-  single_.resize(speeds_.size());
+  single_.resize(At(pools.bodies.size()));
   for (std::size_t i = 0; i < single_.size(); ++i) {
     const btSolverBody& body = pools.bodies[static_cast<int>(i)];
     single_[i] = Moves(body) && !IsGrain(body) && !pools.shared[i];
@@ -66,7 +66,12 @@ void RigidRows::FindSingleBodies(const Pools& pools) {
         single_[At(a)] = single_[At(b)] = 0;
     }
   }
-  single_bodies_.Setup(single_, pools.bodies, speeds_, pools.contacts, pools.frictions);
+}
+
+bool RigidRows::MayCreep(const btSolverConstraint& contact,
+                         const btAlignedObjectArray<btSolverBody>& bodies) const {
+  return !IsSingle(contact) && !IsGrain(bodies[contact.m_solverBodyIdA]) &&
+         !IsGrain(bodies[contact.m_solverBodyIdB]);
 }
 
 bool RigidRows::IsSingle(const btSolverConstraint& source) const {

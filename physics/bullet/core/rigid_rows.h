@@ -26,6 +26,11 @@ class RigidRows {
     btConstraintArray &joints, &contacts, &frictions, &rolling;
     const std::vector<char>& shared;  ///< by body: other rows change its speeds, too
   };
+  /// To be called before Setup().
+  void FindSingleBodies(const Pools& pools);
+  /// Neither a contact of a grain nor of a body that touches only what does not move.
+  bool MayCreep(const btSolverConstraint& contact,
+                const btAlignedObjectArray<btSolverBody>& bodies) const;
   void Setup(const Pools& pools);
 
   /// The solver's change of the speeds of a body, by its index in Pools::bodies.
@@ -57,7 +62,6 @@ class RigidRows {
   };
   using Rows = std::vector<Row>;
 
-  void FindSingleBodies(const Pools& pools);
   bool IsSingle(const btSolverConstraint& source) const;
   /// Computes the order of groups of `group` rows, which have the same bodies. Groups with a common
   /// body keep their order, and so do the rows of a group. Groups of single bodies are left out.

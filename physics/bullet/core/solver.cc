@@ -64,6 +64,8 @@ btScalar BulletSolver::solveGroupCacheFriendlySetup(
   const btScalar result = btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(
       bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, drawer);
   FindShared();
+  rigid_.FindSingleBodies(RigidPools());
+  HoldRigidAnchors(info);
   rigid_.Setup(RigidPools());
   if (grain_contacts_)
     grains_.Setup(grain_contacts_->contacts(), m_tmpSolverBodyPool, rigid_, info);
@@ -85,16 +87,45 @@ btScalar BulletSolver::solveGroupCacheFriendlySetup(
   return result;
 }
 
+template <class Constraint>
+FrictionAnchors::Drift BulletSolver::AddAnchor(const Constraint& contact,
+                                               const FrictionAnchors::Side& a,
+                                               const FrictionAnchors::Side& b) {
+  return anchors_.Add(*static_cast<const btManifoldPoint*>(contact.m_originalContactPoint), {a, b});
+}
+
+FrictionAnchors::Side BulletSolver::RigidSideOf(int body) const {
+  return {.rigid = body < 0 ? nullptr : m_tmpSolverBodyPool[body].m_originalBody};
+}
+
+void BulletSolver::HoldRigidAnchors(const btContactSolverInfo& info) {
+  rigid_anchors_.clear();
+  const btScalar rate = info.m_erp / info.m_timeStep;
+  for (int i = 0; i < m_tmpSolverContactConstraintPool.size(); ++i) {
+    const btSolverConstraint& contact = m_tmpSolverContactConstraintPool[i];
+    if (!rigid_.MayCreep(contact, m_tmpSolverBodyPool)) continue;
+    rigid_anchors_.push_back({i, anchors_.size()});
+    const btVector3 way = AddAnchor(contact, RigidSideOf(contact.m_solverBodyIdA),
+                                    RigidSideOf(contact.m_solverBodyIdB))
+                              .way;
+    btSolverConstraint* const rows =
+        &m_tmpSolverContactFrictionConstraintPool[contact.m_frictionIndex];
+    for (btSolverConstraint* row : {rows, rows + 1})
+      row->m_rhs -= rate * way.dot(row->m_contactNormal1) * row->m_jacDiagABInv;
+  }
+}
+
 void BulletSolver::HoldAnchors(const btContactSolverInfo& info) {
   drifts_.clear();
   first_anchor_ = anchors_.size();
-  const auto rigid = [&](const btMultiBody* multibody, int body) {
-    return multibody || body < 0 ? nullptr : m_tmpSolverBodyPool[body].m_originalBody;
+  const auto side = [&](const btMultiBody* multibody, int link, int body) {
+    return multibody ? FrictionAnchors::Side{multibody, link} : RigidSideOf(body);
   };
   for (const Row& row : normals_) {
     const btMultiBodySolverConstraint& source = *row.source;
-    drifts_.push_back(anchors_.Add(source, rigid(source.m_multiBodyA, source.m_solverBodyIdA),
-                                   rigid(source.m_multiBodyB, source.m_solverBodyIdB)));
+    drifts_.push_back(AddAnchor(source,
+                                side(source.m_multiBodyA, source.m_linkA, source.m_solverBodyIdA),
+                                side(source.m_multiBodyB, source.m_linkB, source.m_solverBodyIdB)));
   }
   const btScalar rate = info.m_erp / info.m_timeStep;
   const auto drift_of = [&](const Row& row) {
@@ -124,6 +155,14 @@ void BulletSolver::ForgetSlidingAnchors() {
       anchors_.ForgetRoll(anchor_of(rolling_[i]));
   for (const Row& row : spinning_)
     if (slides(row, square(row))) anchors_.ForgetSpin(anchor_of(row));
+  for (const auto& [i, anchor] : rigid_anchors_) {
+    const btSolverConstraint& contact = m_tmpSolverContactConstraintPool[i];
+    const btSolverConstraint* const rows =
+        &m_tmpSolverContactFrictionConstraintPool[contact.m_frictionIndex];
+    const btScalar limit = kSticks * rows[0].m_friction * contact.m_appliedImpulse;
+    const btScalar first = rows[0].m_appliedImpulse, second = rows[1].m_appliedImpulse;
+    if (first * first + second * second >= limit * limit) anchors_.Slip(anchor);
+  }
 }
 
 void BulletSolver::allSolved(const btContactSolverInfo& info, btIDebugDraw* drawer) {
@@ -382,8 +421,8 @@ btScalar BulletSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies,
                                                      const btContactSolverInfo& info) {
   for (const Rows* rows : {&joints_, &normals_, &frictions_, &rolling_, &spinning_})
     for (const Row& row : *rows) row.source->m_appliedImpulse = row.impulse;
-  ForgetSlidingAnchors();
   rigid_.WriteBack(RigidPools());
+  ForgetSlidingAnchors();
   grains_.WriteBack();
   for (const MultibodyUse& use : multibodies_) ApplySpeeds(use);
   return btMultiBodyConstraintSolver::solveGroupCacheFriendlyFinish(bodies, body_count, info);

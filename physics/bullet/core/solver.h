@@ -83,7 +83,12 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   /// Rows with a common body keep their order, and with it every bit of the results.
   void Interleave(Rows& rows);
   void Flatten(btMultiBodyConstraintArray& sources, Rows& rows);
+  template <class Constraint>
+  FrictionAnchors::Drift AddAnchor(const Constraint& contact, const FrictionAnchors::Side& a,
+                                   const FrictionAnchors::Side& b);
+  FrictionAnchors::Side RigidSideOf(int body) const;
   /// Friction also removes the way by which contacts that stick have drifted.
+  void HoldRigidAnchors(const btContactSolverInfo& info);
   void HoldAnchors(const btContactSolverInfo& info);
   void ForgetSlidingAnchors();
   Side MakeSide(btMultiBody* multibody, int solver_body, int jacobian, int speeds,
@@ -126,7 +131,12 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   Responses friction_responses_, rolling_responses_;  ///< by pair of rows
   FrictionAnchors anchors_;
   std::vector<FrictionAnchors::Drift> drifts_;  ///< by contact
-  std::size_t first_anchor_ = 0;                ///< of this group's contacts
+  std::size_t first_anchor_ = 0;                ///< of this group's contacts with hands
+  struct RigidAnchor {
+    int contact;
+    std::size_t anchor;
+  };
+  std::vector<RigidAnchor> rigid_anchors_;
   MultibodyInertias inertias_;
   std::deque<MultibodyUse> multibodies_;
   std::vector<btScalar> joint_speeds_, coefficients_;
