@@ -65,8 +65,11 @@ std::string AdviceFor(const Scene& scene, const Snapshot& snapshot, const Contac
 double MassRatioAt(const Scene& scene, const Snapshot& snapshot, const ContactPoint& contact) {
   double least_kg = std::numeric_limits<double>::infinity(), most_kg = 0;
   for (const ContactPoint& other : snapshot.contacts) {
-    const bool is_near = other.a == contact.a || other.a == contact.b || other.b == contact.a ||
-                         other.b == contact.b;
+    // What is fixed, as a table is, passes no load on to what else stands on it.
+    const auto meets = [&](const ContactSide& side) {
+      return MassOf(scene, side) > 0 && (other.a == side || other.b == side);
+    };
+    const bool is_near = meets(contact.a) || meets(contact.b);
     for (const ContactSide& side : {other.a, other.b}) {
       const double mass_kg = MassOf(scene, side);
       if (!is_near || mass_kg <= 0) continue;

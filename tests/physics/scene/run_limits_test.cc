@@ -59,5 +59,22 @@ TEST(RunChecksTest, WhatIsPressedIntoAnotherByAHugeMassIsAdvisedOfIt) {
             "a mass presses on one that is 1000000 times smaller; make them more similar");
 }
 
+TEST(RunChecksTest, WhatStandsBesideOnTheSameTablePressesOnNothing) {
+  Scene scene;
+  scene.bodies = {{.name = "table", .fixed = true},
+                  {.name = "plate", .mass_kg = 0.2},
+                  {.name = "pot", .mass_kg = 20},
+                  {.name = "feather", .mass_kg = 0.001},
+                  {.name = "tray", .mass_kg = 1}};
+  const auto between = [](int a, int b) {
+    return ContactPoint{.a = {.body = BodyIndex(a)}, .b = {.body = BodyIndex(b)}};
+  };
+  Snapshot now;
+  now.contacts = {between(0, 1), between(1, 2), between(3, 0), between(2, 4)};
+  EXPECT_DOUBLE_EQ(MassRatioAt(scene, now, now.contacts[0]), 100) << "pot on plate";
+  EXPECT_DOUBLE_EQ(MassRatioAt(scene, now, now.contacts[1]), 100) << "and tray on pot";
+  EXPECT_DOUBLE_EQ(MassRatioAt(scene, now, now.contacts[2]), 1) << "the feather bears nothing";
+}
+
 }  // namespace
 }  // namespace prehend::physics
