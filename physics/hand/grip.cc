@@ -10,41 +10,39 @@ namespace {
 /// A joint presses if it is held back by more than this.
 constexpr double kHeldBack_rad = 0.01, kHeldBack_m = 0.0005;
 
-/// The link with which the digit of a link begins.
-std::size_t DigitOf(const HandModel& model, std::size_t link) {
-  while (model.links[link].parent != kNone) link = model.links[link].parent.index();
-  return link;
-}
-
 }  // namespace
 
 const std::vector<double>& Grip::Targets(const HandModel& model, const GraspStyle& style,
-                                         double trigger, const std::vector<double>& joints) {
+                                         double trigger, const std::vector<double>& joints,
+                                         double lets_go_to) {
   std::vector<double> before = JointTargets(style, trigger);
   before.swap(targets_);
   const bool falls = trigger < trigger_;
   if (trigger != trigger_) opens_ = falls;
   trigger_ = trigger;
+  if (!opens_ || trigger <= to_) shifts_.clear();
   if (!opens_ || before.size() != targets_.size()) return targets_;
-  // A joint presses if it is held back from closing. One that would not open lets nothing go.
-  const std::vector<double> open = JointTargets(style, 0);
-  std::vector<bool> presses(targets_.size()), digit_presses(targets_.size());
-  std::vector<bool> side_presses(model.sensor_sets.size());
-  for (std::size_t i = 0; i < targets_.size(); ++i) {
-    const HandLink& link = model.links[i];
-    presses[i] = targets_[i] - joints[i] > (link.slides ? kHeldBack_m : kHeldBack_rad);
-    if (!presses[i]) continue;
-    digit_presses[DigitOf(model, i)] = true;
-    if (targets_[i] > open[i]) side_presses[static_cast<std::size_t>(link.sensor_set)] = true;
+  const auto is_held_back = [&](std::size_t i, double target) {
+    return target - joints[i] > (model.links[i].slides ? kHeldBack_m : kHeldBack_rad);
+  };
+  if (shifts_.empty()) to_ = lets_go_to;
+  const std::vector<double> open = JointTargets(style, 0), end = JointTargets(style, to_);
+  bool waits = false;  // One that would not open lets nothing go.
+  if (shifts_.empty() && falls && trigger > to_) {
+    for (std::size_t i = 0; i < end.size(); ++i) {
+      shifts_.push_back(is_held_back(i, before[i]) ? joints[i] - before[i] : 0);
+      waits |= end[i] > open[i] && is_held_back(i, end[i]);
+    }
+    if (waits) shifts_.clear();
   }
-  for (std::size_t i = 0; i < targets_.size(); ++i) {
-    bool waits = false;
-    for (std::size_t side = 0; side < side_presses.size(); ++side)
-      waits |= side_presses[side] &&
-               (falls || side != static_cast<std::size_t>(model.links[i].sensor_set));
-    if (waits && !(falls ? presses[i] : digit_presses[DigitOf(model, i)]))
-      targets_[i] = std::max(targets_[i], before[i]);
-  }
+  for (std::size_t i = 0; i < shifts_.size(); ++i)
+    targets_[i] = targets_[i] > end[i] ? std::max(targets_[i] + shifts_[i], end[i])
+                                       : targets_[i] + shifts_[i];
+  if (!shifts_.empty()) return targets_;
+  for (std::size_t i = 0; i < targets_.size(); ++i)
+    waits |= targets_[i] > open[i] && is_held_back(i, targets_[i]);
+  for (std::size_t i = 0; i < targets_.size(); ++i)
+    if (waits && !is_held_back(i, targets_[i])) targets_[i] = std::max(targets_[i], before[i]);
   return targets_;
 }
 

@@ -255,7 +255,7 @@ void ScriptPlayer::GiveWay(const Snapshot& now) {
     HandState& hand = hands_[h];
     hand.yields_m_per_s.setZero();
     hand.yields_rad_per_s.setZero();
-    hand.lets_go = false;
+    hand.lets_go = hand.placing && hand.placing->Stands();
     if (!Rests(hand)) continue;
     if (hand.took && hand.closes) KeepStanding(h, now);
     if (!IsHeldBack(scene_, now, HandIndex(h))) continue;

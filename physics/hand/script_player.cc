@@ -522,8 +522,8 @@ const std::vector<HandCommand>* ScriptPlayer::Advance(const Snapshot& now) {
   if (!problem_.empty() || (settling_ && tick_in_stage_ == settle_ticks)) return nullptr;
   ++tick_in_stage_;
   for (const HandState& hand : hands_) {
-    HandCommand& command =
-        commands_.emplace_back(HandCommand{TargetOf(hand), hand.style, hand.lets_go});
+    HandCommand& command = commands_.emplace_back(HandCommand{TargetOf(hand), hand.style});
+    if (hand.lets_go) command.lets_go_to = hand.target.trigger;
     double& height_m = command.target.X_WH.p_m.z();
     if (hand.placing) height_m = hand.placing->HeightOf(height_m);
     if (hand.pressing) command.target.X_WH.p_m += hand.pressing->depth_m * hand.pressing->along_W;

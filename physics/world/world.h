@@ -4,6 +4,7 @@
 // planar scenes, physics/box2d/world.h. Tested by tests/physics/world/world_test.cc
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "physics/motion/trajectory.h"
@@ -14,8 +15,9 @@ namespace prehend::physics {
 /// Command to one hand for one tick.
 struct HandCommand {
   TargetState target;
-  int style = 0;         ///< index into HandModel::styles
-  bool lets_go = false;  ///< it opens around what stands: its arm is to push no longer
+  int style = 0;  ///< index into HandModel::styles
+  /// It lets go of what stands, its arm is to push no longer: the trigger to which it opens.
+  std::optional<double> lets_go_to = std::nullopt;
 };
 
 /// A line of sight: the path of a sphere.

@@ -39,5 +39,55 @@ TEST(GripTest, NoDigitOpensWhileAnotherPresses) {
   EXPECT_EQ(grip.Targets(model, model.styles[0], 0.9, {0.6, 0.3}), (Joints{0.9, 0.45}));
 }
 
+/// Both fingers closed, the first held back at 0.4 by what stands.
+Grip Closed(const HandModel& model) {
+  Grip grip;
+  grip.Targets(model, model.styles[0], 1, {0.4, 0.5});
+  return grip;
+}
+
+void ExpectTargets(const Joints& targets, const Joints& right) {
+  ASSERT_EQ(targets.size(), right.size());
+  for (std::size_t i = 0; i < right.size(); ++i) EXPECT_NEAR(targets[i], right[i], 1e-12) << i;
+}
+
+TEST(GripTest, WhatLetsGoOpensFromWhereItsJointsStoppedAtOnce) {
+  const HandModel model = TwoFingers();
+  Grip grip = Closed(model);
+  ExpectTargets(grip.Targets(model, model.styles[0], 0.9, {0.4, 0.5}, 0), {0.3, 0.45});
+  ExpectTargets(grip.Targets(model, model.styles[0], 0.7, {0.3, 0.45}, 0), {0.1, 0.35});
+  // What has got to where it is to be stays there.
+  ExpectTargets(grip.Targets(model, model.styles[0], 0.5, {0.1, 0.35}, 0), {0, 0.25});
+  ExpectTargets(grip.Targets(model, model.styles[0], 0, {0, 0.25}, 0), {0, 0});
+  // A trigger that rises closes as if nothing had been.
+  ExpectTargets(grip.Targets(model, model.styles[0], 0.5, {0, 0}), {0.5, 0.25});
+}
+
+TEST(GripTest, WhatLetsGoAndStopsHalfWayOpensNoFartherThanItsTrigger) {
+  const HandModel model = TwoFingers();
+  Grip grip = Closed(model);
+  ExpectTargets(grip.Targets(model, model.styles[0], 0.9, {0.4, 0.5}, 0.2), {0.3, 0.45});
+  ExpectTargets(grip.Targets(model, model.styles[0], 0.6, {0.3, 0.45}, 0.2), {0.2, 0.3});
+  ExpectTargets(grip.Targets(model, model.styles[0], 0.2, {0.2, 0.3}, 0.2), {0.2, 0.1});
+  // A second opening begins anew.
+  ExpectTargets(grip.Targets(model, model.styles[0], 0.1, {0.2, 0.1}, 0), {0.1, 0.05});
+}
+
+TEST(GripTest, GripThatIsOnlyLoosenedPressesOn) {
+  const HandModel model = TwoFingers();
+  Grip grip = Closed(model);
+  EXPECT_EQ(grip.Targets(model, model.styles[0], 0.9, {0.4, 0.5}, 0.6), (Joints{0.9, 0.5}));
+}
+
+TEST(GripTest, JointThatIsBentBackBeyondItsOpenPlaceDoesNotPressWhileTheHandOpens) {
+  HandModel model = TwoFingers();
+  model.styles[0].frames = {{0.3, 0}, {0.1, 0.5}};
+  Grip grip;
+  grip.Targets(model, model.styles[0], 1, {0, 0.5});
+  ExpectTargets(grip.Targets(model, model.styles[0], 0.9, {0, 0.5}, 0), {0.02, 0.45});
+  ExpectTargets(grip.Targets(model, model.styles[0], 0.5, {0, 0.45}, 0), {0.1, 0.25});
+  ExpectTargets(grip.Targets(model, model.styles[0], 0, {0, 0.25}, 0), {0.3, 0});
+}
+
 }  // namespace
 }  // namespace prehend::physics
