@@ -42,7 +42,7 @@ const std::vector<double>& Grip::Targets(const HandModel& model, const GraspStyl
   for (std::size_t i = 0; i < targets_.size(); ++i)
     waits |= targets_[i] > open[i] && is_held_back(i, targets_[i]);
   for (std::size_t i = 0; i < targets_.size(); ++i)
-    if (waits && !is_held_back(i, targets_[i])) targets_[i] = std::max(targets_[i], before[i]);
+    if (falls && waits && !is_held_back(i, targets_[i])) targets_[i] = std::max(targets_[i], before[i]);
   return targets_;
 }
 
