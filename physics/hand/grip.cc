@@ -10,6 +10,12 @@ namespace {
 /// A joint presses if it is held back by more than this.
 constexpr double kHeldBack_rad = 0.01, kHeldBack_m = 0.0005;
 
+/// The link with which the digit of a link begins.
+std::size_t DigitOf(const HandModel& model, std::size_t link) {
+  while (model.links[link].parent != kNone) link = model.links[link].parent.index();
+  return link;
+}
+
 }  // namespace
 
 const std::vector<double>& Grip::Targets(const HandModel& model, const GraspStyle& style,
@@ -27,22 +33,36 @@ const std::vector<double>& Grip::Targets(const HandModel& model, const GraspStyl
   };
   if (shifts_.empty()) to_ = lets_go_to;
   const std::vector<double> open = JointTargets(style, 0), end = JointTargets(style, to_);
-  bool waits = false;  // One that would not open lets nothing go.
+  bool stays = false;  // within what it holds
   if (shifts_.empty() && falls && trigger > to_) {
     for (std::size_t i = 0; i < end.size(); ++i) {
       shifts_.push_back(is_held_back(i, before[i]) ? joints[i] - before[i] : 0);
-      waits |= end[i] > open[i] && is_held_back(i, end[i]);
+      stays |= end[i] > open[i] && is_held_back(i, end[i]);
     }
-    if (waits) shifts_.clear();
+    if (stays) shifts_.clear();
   }
   for (std::size_t i = 0; i < shifts_.size(); ++i)
     targets_[i] = targets_[i] > end[i] ? std::max(targets_[i] + shifts_[i], end[i])
                                        : targets_[i] + shifts_[i];
   if (!shifts_.empty()) return targets_;
-  for (std::size_t i = 0; i < targets_.size(); ++i)
-    waits |= targets_[i] > open[i] && is_held_back(i, targets_[i]);
-  for (std::size_t i = 0; i < targets_.size(); ++i)
-    if (falls && waits && !is_held_back(i, targets_[i])) targets_[i] = std::max(targets_[i], before[i]);
+  // A joint presses if it is held back from closing. One that would not open lets nothing go.
+  std::vector<bool> presses(targets_.size()), digit_presses(targets_.size());
+  std::vector<bool> side_presses(model.sensor_sets.size());
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    presses[i] = is_held_back(i, targets_[i]);
+    if (!presses[i]) continue;
+    digit_presses[DigitOf(model, i)] = true;
+    if (targets_[i] > open[i])
+      side_presses[static_cast<std::size_t>(model.links[i].sensor_set)] = true;
+  }
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    bool others_press = false;
+    for (std::size_t side = 0; side < side_presses.size(); ++side)
+      others_press |= side_presses[side] &&
+                      (falls || side != static_cast<std::size_t>(model.links[i].sensor_set));
+    if (others_press && !(falls ? presses[i] : digit_presses[DigitOf(model, i)]))
+      targets_[i] = std::max(targets_[i], before[i]);
+  }
   return targets_;
 }
 

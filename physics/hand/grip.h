@@ -2,7 +2,8 @@
 // Where the joints of a hand go while its trigger rises and falls. A hand that lets go of what
 // stands opens from where its joints stopped. Otherwise, as long as one presses still, held back by
 // what the hand holds, the others stay where they are, because a post that gave way early would be
-// followed by what it holds. Tested by tests/physics/hand/grip_test.cc
+// followed by what it holds. When the trigger stops half-way, only the digits on the other side
+// (another sensor set) still wait. Tested by tests/physics/hand/grip_test.cc
 #pragma once
 
 #include <vector>
@@ -21,8 +22,8 @@ class Grip {
 
  private:
   std::vector<double> targets_;
-  std::vector<double>
-      shifts_;  ///< of a hand that lets go: where joints stopped, from their targets
+  /// Of a hand that lets go: where joints stopped, from their targets.
+  std::vector<double> shifts_;
   double trigger_ = 0, to_ = 1;
   bool opens_ = false;
 };
