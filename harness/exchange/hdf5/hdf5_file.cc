@@ -285,6 +285,7 @@ Diagnostics Hdf5File::WhyNotOpened(const std::string& path) const {
       before = part;
       continue;
     }
+    if (!Has(before)) break;  // or this would be asked of it again, without end
     const Result<std::vector<std::string>> names = NamesIn(before);
     if (!names) break;
     const std::string name = part.substr(part.rfind('/') + 1);

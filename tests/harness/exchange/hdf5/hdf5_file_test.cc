@@ -51,6 +51,10 @@ with h5py.File('a.hdf5', 'w') as f:
 whole = open('a.hdf5', 'rb').read()
 open('cut.hdf5', 'wb').write(whole[:len(whole) // 2])
 open('text.hdf5', 'w').write('words')
+with h5py.File('latest.hdf5', 'w', libver='latest') as f: f.create_group('data')
+whole = bytearray(open('latest.hdf5', 'rb').read())
+whole[whole.index(b'OHDR') + 20] ^= 0xff
+open('root.hdf5', 'wb').write(whole)
 )";
 
 class Hdf5FileTest : public ::testing::Test {
@@ -167,6 +171,17 @@ TEST_F(Hdf5FileTest, LimitsWhatAFileCanCost) {
     EXPECT_EQ(WhyNot(name), fmt::format("'data/demo_2/{}' is damaged: a chunk is not as long as it "
                                         "should be; ",
                                         name));
+}
+
+TEST_F(Hdf5FileTest, ADamagedRootIsToldOnce) {
+  const auto file = Hdf5File::Open((folder / "root.hdf5").string());
+  ASSERT_TRUE(file) << "it is opened when it is looked at";
+  for (const char* path : {"", "/", "data", "data/demo_0"}) {
+    const auto names = file->NamesIn(path);
+    ASSERT_FALSE(names) << path;
+    EXPECT_NE(names.error().front().message.find("is damaged: "), std::string::npos)
+        << names.error().front().message;
+  }
 }
 
 }  // namespace
