@@ -227,9 +227,29 @@ def bad_use(folder):
     assert "no file of costs" in run("check", WHICH, "--shard", "1/2:" + str(folder / "none.json"), code=2).stderr
 
 
+def begun(words, is_begun, **more):
+    process = subprocess.Popen([PROGRAM, *map(str, words)], cwd=SOURCE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
+    while not is_begun():
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.005)
+    return process
+
+
+def full_disk(folder):
+    """Exit code 3, and nothing is left: a small limit for the size of files stands for a full disk."""
+    for words, left in ((["episode", "merge", folder / "part-1.episodes", "-o", folder / "full" / "a.episodes"], []),
+                        (["check", "reach/*", "--shard", "1/1", "--no-pictures", "--report", folder / "page", "--record", folder / "full" / "b.episodes"], None)):
+        (folder / "full").mkdir(exist_ok=True)
+        said = subprocess.run(["bash", "-c", 'ulimit -f 20; exec "$@"', "x", PROGRAM, *map(str, words)], capture_output=True, text=True, cwd=SOURCE)
+        assert said.returncode == 3 and any(why in said.stderr for why in ("become larger than it may", "disk is full", "disk I/O error")), said
+        assert left is None or list((folder / "full").iterdir()) == left
+        shutil.rmtree(folder / "full")
+
+
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as path:
         suite(pathlib.Path(path))
         trials(pathlib.Path(path))
         imports(pathlib.Path(path))
+        full_disk(pathlib.Path(path))
         bad_use(pathlib.Path(path))

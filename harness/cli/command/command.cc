@@ -43,6 +43,20 @@ WorkerLimits LimitsOf(const ParsedOptions& options, const std::vector<std::strin
 }
 
 }  // namespace
+/// What the machine lacks now is no bad input.
+ExitCode CodeOf(const std::string& problem) {
+  constexpr const char* kOfMachine[] = {"the disk is full",
+                                        "is the disk full?",
+                                        "another process is writing",
+                                        "the file would become larger than it may",
+                                        "No space left on device",
+                                        "Disk quota exceeded",
+                                        "disk I/O error"};
+  const bool is_of_machine = std::ranges::any_of(
+      kOfMachine, [&](const char* why) { return problem.find(why) != std::string::npos; });
+  return is_of_machine ? ExitCode::kFailure : ExitCode::kBadInput;
+}
+
 
 Command Limited(Command command, double time_limit_s) {
   std::vector<std::string> endless;
@@ -139,7 +153,7 @@ ExitCode Complain(const CommandContext& context, const grammar::Diagnostics& dia
     return std::filesystem::exists(diagnostic.file, error);
   });
   if (can_be_fixed) context.err << "  again: " << CommandText(context.words) << "\n";
-  return ExitCode::kBadInput;
+  return diagnostics.empty() ? ExitCode::kBadInput : CodeOf(diagnostics.front().message);
 }
 
 ExitCode WarnOfScenariosNotRun(const CommandContext& context) {
@@ -153,7 +167,7 @@ ExitCode WarnOfScenariosNotRun(const CommandContext& context) {
 }
 
 ExitCode Refuse(const CommandContext& context, const std::string& message) {
-  return Complain(context, ExitCode::kBadInput, message);
+  return Complain(context, CodeOf(message), message);
 }
 
 void Warn(const CommandContext& context, const grammar::Diagnostics& warnings) {
