@@ -235,6 +235,27 @@ def begun(words, is_begun, **more):
     return process
 
 
+def one_writer(folder):
+    """Two processes never write the same part; who only adds episodes may do so at the same time."""
+    file = folder / "written.episodes"
+    words = ["check", "long/a_table_is_set_for_two", "milk_carton_wrap", "--no-pictures", "--jobs", "1", "--record", file, "--report"]
+    first = begun([*words, folder / "first"], lambda: file.exists() and file.stat().st_size > 100_000)
+    refused = f"prehend: --record: {file}: another process is writing this file\n"
+    for second in ([*words, folder / "second", "--shuffle", "3"], ["run", "milk_carton_wrap", "--record", file]):
+        assert refused in run(*second, code=3).stderr
+    assert "another process is writing this file" in run("episode", "merge", folder / "part-1.episodes", "-o", file, code=3).stderr
+    said = first.communicate()
+    assert first.returncode == 0, said
+    assert len(set(episodes(file))) == len(episodes(file)) == 2
+    run("episode", "verify", file)
+    run(*words, folder / "again")  # what is complete is not played again
+    together = folder / "together.episodes"
+    first = begun(["run", "long/a_table_is_set_for_two", "--record", together], lambda: together.exists() and together.stat().st_size > 100_000)
+    run("run", "milk_carton_wrap", "--record", together)
+    assert first.wait() == 0 and len(episodes(together)) == 2
+    run("episode", "verify", together)
+
+
 def full_disk(folder):
     """Exit code 3, and nothing is left: a small limit for the size of files stands for a full disk."""
     for words, left in ((["episode", "merge", folder / "part-1.episodes", "-o", folder / "full" / "a.episodes"], []),
@@ -251,5 +272,6 @@ if __name__ == "__main__":
         suite(pathlib.Path(path))
         trials(pathlib.Path(path))
         imports(pathlib.Path(path))
+        one_writer(pathlib.Path(path))
         full_disk(pathlib.Path(path))
         bad_use(pathlib.Path(path))

@@ -265,9 +265,7 @@ std::string WhyNotWritten(const ParsedOptions& options, const std::string& page)
   std::string problem = WhyNotWritable(page);
   if (!problem.empty()) return "--report: " + problem;
   if (options.Has("--junit")) problem = WhyNotWritable(options.Text("--junit"));
-  if (!problem.empty()) return "--junit: " + problem;
-  if (options.Has("--record")) problem = episode::WhyNotRecordable(options.Text("--record"));
-  return problem.empty() ? "" : "--record: " + problem;
+  return problem.empty() ? "" : "--junit: " + problem;
 }
 
 suite::SuiteProgress ProgressOn(const CommandContext& context) {
@@ -396,6 +394,11 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   const std::string page = (fs::path(request.report_folder) / "index.html").string();
   std::string problem = WhyNotWritten(options, page);
   if (!problem.empty()) return Refuse(context, problem);
+  tl::expected<episode::WriteLock, std::string> lock;
+  if (options.Has("--record"))
+    lock = episode::LockToRecord(
+        request.record_file, plan->uuid.empty() ? episode::Writer::kAdds : episode::Writer::kAlone);
+  if (!lock) return Refuse(context, "--record: " + lock.error());
   if (const Result<void> begun = GoOn(*plan, request, context); !begun)
     return Complain(context, begun.error());
   Interrupt interrupt;

@@ -60,8 +60,8 @@ ExitCode WriteRecording(episode::Recording& recording, const std::string& output
                         const std::string& source, const std::string& grammar,
                         const CommandContext& context, OnceEach& warnings) {
   if (episode::IsEpisodeFile(output)) {
-    if (const std::string problem = episode::WhyNotRecordable(output); !problem.empty())
-      return Refuse(context, problem);
+    const auto lock = episode::LockToRecord(output, episode::Writer::kAdds);
+    if (!lock) return Refuse(context, lock.error());
     const auto imported = episode::ImportRecording({.file = output,
                                                     .root = context.root,
                                                     .source = source,

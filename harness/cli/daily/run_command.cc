@@ -89,11 +89,12 @@ ExitCode CountTrials(const ParsedOptions& options, const episode::RunRequest& re
                                   .parts = plan.count,
                                   .jobs = options.IntOr("--jobs", CoreCount())};
   const std::string file = options.Text("--record");
+  tl::expected<episode::WriteLock, std::string> lock;
   if (options.Has("--record")) {
     if (!episode::IsEpisodeFile(file))
       return Refuse(context, "--record: many trials need an episode file, NAME.episodes");
-    if (const std::string problem = episode::WhyNotRecordable(file); !problem.empty())
-      return Refuse(context, "--record: " + problem);
+    lock = episode::LockToRecord(file, episode::Writer::kAlone);
+    if (!lock) return Refuse(context, "--record: " + lock.error());
     auto known = KnownTrials(file, plan);
     if (!known) return Complain(context, known.error());
     settings.known = std::move(*known);
@@ -204,6 +205,10 @@ ExitCode PlayOne(const episode::ScenarioFile& file, const episode::RunRequest& r
   const Result<episode::LoadedRun> loaded = episode::LoadRun(request, context.root, &files);
   if (!loaded) return Complain(context, loaded.error());
   Warn(context, loaded->warnings);
+  tl::expected<episode::WriteLock, std::string> lock;
+  if (options.Has("--record") && episode::IsEpisodeFile(options.Text("--record")))
+    lock = episode::LockToRecord(options.Text("--record"), episode::Writer::kAdds);
+  if (!lock) return Refuse(context, "--record: " + lock.error());
   std::optional<episode::RunRecorder> recorder;
   if (options.Has("--record")) {
     recorder.emplace(RecordingOf(request, files, options, context), loaded->scenario);

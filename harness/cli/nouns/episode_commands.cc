@@ -13,6 +13,7 @@
 #include "harness/episode/episode/resegment_many.h"
 #include "harness/episode/episodes/episode_file.h"
 #include "harness/episode/episodes/plan.h"
+#include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/exchange/export/export_episode.h"
@@ -116,6 +117,8 @@ ExitCode RunMerge(const ParsedOptions& options, const CommandContext& context) {
   const std::string output = options.Text("--output");
   if (!episode::IsEpisodeFile(output))
     return Refuse(context, "--output: found '" + output + "', wanted a file NAME.episodes");
+  const auto lock = episode::LockToRecord(output, episode::Writer::kReplaces);
+  if (!lock) return Refuse(context, lock.error());
   const auto merged = episode::MergeEpisodes(files, output);
   if (!merged) return Complain(context, merged.error());
   context.out << fmt::format("{}: {} episodes of {} files", output, merged->episodes, files.size());

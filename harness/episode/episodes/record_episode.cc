@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/episode/episodes/record_episode.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -157,15 +162,24 @@ struct EpisodeRecorder::State {
   Database database;
   const scenario::Scenario& scenario;
   std::int64_t episode;
+  std::string uuid;
   ChunkWriter writer;
   ChunkRows rows;
 
-  State(Database opened, const scenario::Scenario& played, std::int64_t id)
+  State(Database opened, const scenario::Scenario& played, std::int64_t id, std::string its_uuid)
       : database(std::move(opened)),
         scenario(played),
         episode(id),
+        uuid(std::move(its_uuid)),
         writer(LayoutOf(played.scene)),
         rows(database, id) {}
+
+  /// Where locks do nothing, another process may have taken its row.
+  void CheckIsOwn() const {
+    Statement own = database.Prepare("SELECT 1 FROM episode WHERE id = ? AND uuid = ?");
+    if (!own.Bind(episode).Bind(uuid).Step())
+      throw DatabaseError("another process has removed the episode that was written");
+  }
 };
 
 EpisodeRecorder::EpisodeRecorder(const RecordRequest& request, const scenario::Scenario& scenario)
@@ -174,9 +188,11 @@ EpisodeRecorder::EpisodeRecorder(const RecordRequest& request, const scenario::S
     Database database = OpenToWrite(request.file);
     Transaction transaction(database);
     const std::int64_t task = WriteTask(database, TaskOf(request, scenario));
-    const std::int64_t episode = WriteEpisode(database, task, EpisodeOf(request, scenario));
+    NewEpisode begun = EpisodeOf(request, scenario);
+    if (begun.uuid.empty()) begun.uuid = NewUuid();
+    const std::int64_t episode = WriteEpisode(database, task, begun);
     transaction.Commit();
-    state_ = std::make_unique<State>(std::move(database), scenario, episode);
+    state_ = std::make_unique<State>(std::move(database), scenario, episode, begun.uuid);
   });
 }
 
@@ -194,6 +210,7 @@ void EpisodeRecorder::WriteChunk() {
   const Chunk chunk = state.writer.Take();
   problem_ = ProblemOf(file_, [&] {
     Transaction transaction(state.database);
+    state.CheckIsOwn();
     state.rows.Write(chunk);
     transaction.Commit();
   });
@@ -206,14 +223,36 @@ void EpisodeRecorder::Finish(const RunResult& run) {
   const bool completed = run.status.kind == physics::RunStatus::Kind::kCompleted;
   problem_ = ProblemOf(file_, [&] {
     Transaction transaction(state.database);
+    state.CheckIsOwn();
     WriteEnd(state.database, state.episode, completed ? kCompleted : kFailed, run,
              MakeEntityTable(state.scenario));
     transaction.Commit();
   });
 }
 
-std::string WhyNotRecordable(const std::string& file) {
-  return ProblemOf(file, [&] { (void)OpenToWrite(file); });
+tl::expected<WriteLock, std::string> LockToRecord(const std::string& file, Writer writer) {
+  WriteLock lock;
+  const std::string problem = ProblemOf(file, [&] {
+    if (writer != Writer::kReplaces) (void)OpenToWrite(file);
+    bool is_other = true;
+    for (int tries = 100; is_other; --tries) {
+      const int locked = open(file.c_str(), O_RDWR | O_CLOEXEC);
+      if (locked < 0) return;  // there is none to replace
+      lock = WriteLock(nullptr, [locked](void*) { close(locked); });
+      // Of the open file, so that workers have it, and of a byte that SQLite does not lock.
+      const short type = writer == Writer::kAdds ? F_RDLCK : F_WRLCK;
+      struct flock byte = {.l_type = type, .l_start = std::int64_t{1} << 61, .l_len = 1};
+      const bool taken = fcntl(locked, F_OFD_SETLK, &byte) != 0 && errno == EAGAIN;
+      struct stat opened = {}, named = {};
+      const bool replaced = fstat(locked, &opened) != 0 || stat(file.c_str(), &named) != 0 ||
+                            opened.st_ino != named.st_ino;
+      is_other = taken || replaced;
+      if (tries == 0) throw DatabaseError("another process is writing this file");
+      if (is_other) usleep(10'000);  // workers of one that was killed may still be dying
+    }
+  });
+  if (!problem.empty()) return tl::unexpected(problem);
+  return lock;
 }
 
 std::int64_t WriteTask(const Database& database, const NewTask& task) {

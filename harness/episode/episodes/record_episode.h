@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes an episode into an episode file while it is played. A chunk is one transaction: whenever
 // the program is killed, the file has all chunks that were written, and an episode that did not
-// come to its end says so. Several processes may write into one file. The rows of an episode: its
+// come to its end says so. Several processes may add to one file. The rows of an episode: its
 // task with what that was made from, its begin, its chunks, its end. All throw DatabaseError.
 // Tested by tests/harness/episode/episodes/episode_file_test.cc
 #pragma once
@@ -59,8 +59,16 @@ class EpisodeRecorder {
   std::unique_ptr<State> state_;
 };
 
-/// Empty, or why episodes cannot be recorded there. Creates the file with its tables.
-std::string WhyNotRecordable(const std::string& file);
+/// While it lives, others do not write into the file. A process that is forked has it too, and the
+/// system takes it from processes that died.
+using WriteLock = std::shared_ptr<void>;
+enum class Writer {
+  kAdds,      ///< new episodes, beside others that do
+  kAlone,     ///< goes on with what was cut off, which could be another's
+  kReplaces,  ///< the whole file, if there is one
+};
+/// Or why nothing can be recorded there, or nothing now. Creates the file with its tables.
+tl::expected<WriteLock, std::string> LockToRecord(const std::string& file, Writer writer);
 
 // A scenario is played, judged by its outcomes, and written where that is asked for. Tested by
 // tests/program/recording_test.cc and tests/program/episodes_test.cc
