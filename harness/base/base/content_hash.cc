@@ -7,8 +7,10 @@
 #include <sys/stat.h>
 #include <xxhash.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 
 namespace prehend {
 namespace {
@@ -36,13 +38,15 @@ std::uint64_t ContentHashAt(std::uint64_t place, std::string_view bytes) {
 std::string FileHash(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return kNoFile;
-  const auto size = std::filesystem::file_size(path, error);
-  if (error) return kNoFile;
   std::ifstream file(path, std::ios::binary);
-  std::string bytes(size, '\0');
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
-  return file.is_open() && !file.bad() ? ContentHash(bytes) : kNoFile;
+  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(),
+                                                                       XXH3_freeState);
+  XXH3_64bits_reset(state.get());
+  std::array<char, 1 << 16> bytes;  // a file may be larger than the memory
+  while (file.read(bytes.data(), bytes.size()), file.gcount() > 0)
+    XXH3_64bits_update(state.get(), bytes.data(), static_cast<std::size_t>(file.gcount()));
+  if (!file.is_open() || file.bad()) return kNoFile;
+  return fmt::format("{:016x}", XXH3_64bits_digest(state.get()));
 }
 
 FileHashes HashFiles(const std::vector<std::string>& paths) {

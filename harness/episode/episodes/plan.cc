@@ -10,6 +10,7 @@
 
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/quoting.h"
+#include "harness/base/base/text_file.h"
 #include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/episodes/schema.h"
 
@@ -77,7 +78,9 @@ Plan MakePlan(const std::vector<std::string>& words, std::vector<std::string> fi
     std::error_code error;
     for (fs::recursive_directory_iterator entry(fs::path(root) / folder, error), end;
          !error && entry != end; entry.increment(error))
-      if (entry->is_regular_file(error)) files.push_back(entry->path().string());
+      // What is larger is read by nothing of a scenario.
+      if (entry->is_regular_file(error) && entry->file_size(error) <= kMaxTextFileBytes)
+        files.push_back(entry->path().string());
   }
   Plan plan;
   for (const std::string& word : words)

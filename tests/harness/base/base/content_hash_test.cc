@@ -21,6 +21,10 @@ TEST(ContentHash, OfAFileIsThatOfItsBytes) {
   std::ofstream(path, std::ios::binary) << "a\r\nb";
   EXPECT_EQ(FileHash(path), ContentHash("a\r\nb"));
   EXPECT_EQ(FileHash("/no/such/file"), "none");
+  std::string large;  // it is read in pieces
+  for (int i = 0; i < 200'000; ++i) large += static_cast<char>(i * 7);
+  std::ofstream(path + "_large", std::ios::binary) << large;
+  EXPECT_EQ(FileHash(path + "_large"), ContentHash(large));
   EXPECT_EQ(HashFiles({path, "/no/such/file"}),
             (FileHashes{{path, ContentHash("a\r\nb")}, {"/no/such/file", "none"}}));
 }
