@@ -503,6 +503,45 @@ TEST(Knowledge, CirclesOfAFileEndAndListsHaveNames) {
   EXPECT_EQ(list.out.find("http"), std::string::npos) << list.out;
 }
 
+// What was damaged, or written by somebody else, is named; no answer is lost without a word.
+TEST(Knowledge, AFolderThatCannotBeReadIsRefusedWithItsPlace) {
+  const fs::path folder = FreshFolder("knowledge_damaged");
+  const auto with = [&](const char* name, const char* begin, const std::string& end,
+                        const std::string& by) {
+    const fs::path kb = folder / name;
+    fs::copy(ThreeDays().kb, kb, fs::copy_options::recursive);
+    for (const auto& file : fs::directory_iterator(kb / "episodes")) {
+      if (file.path().extension() != ".ttl") continue;
+      std::string text = ReadFile(file.path());
+      const std::size_t at = text.find(begin);
+      EXPECT_NE(at, std::string::npos) << name;
+      const std::size_t to = end.empty() ? text.size() : text.find(end, at);
+      WriteFile(file.path(), text.replace(at, to - at, by));
+    }
+    return kb.string();
+  };
+  const std::string shows = "entity(A, [an, action]), occurs(A, [S, E]), show(world(S))";
+  for (const auto& [kb, query, why] :
+       std::vector<std::tuple<std::string, std::string, std::string>>{
+           {with("cut", "recordedIn", "", ""), "true", "it is no Turtle, or is cut off"},
+           {with("mark", "", "@", "\xef\xbb\xbf"), "true", ".ttl:1:1: it is no Turtle"},
+           {with("empty", "", "", ""), "true", "is empty: it says nothing"},
+           {with("number", "recordedIn", " ;", "recordedIn 5"), shows, "wanted a text recordedIn"},
+           {with("text", "recordNumber", " ;", "recordNumber \"one\""), shows,
+            "an integer recordNumber"},
+           {with("nested", "@", "@",
+                 "<http://x/a> <http://x/b> " + std::string(20000, '(') + std::string(20000, ')') +
+                     " .\n"),
+            "true", ".ttl: SWI-Prolog was ended by signal 11 while it read this"}}) {
+    const Said said = Prehend({"episode", "ask", kb, query});
+    EXPECT_EQ(said.exit_code, 2) << kb << said.out;
+    EXPECT_NE(said.err.find(why), std::string::npos) << kb << said.err;
+    EXPECT_EQ(said.err.find("internal error"), std::string::npos) << said.err;
+  }
+  const std::string in_english = with("english", "recordedIn", " ;", "recordedIn \"abc\"@en");
+  EXPECT_EQ(Prehend({"episode", "ask", in_english, shows}).exit_code, 0);
+}
+
 TEST(Knowledge, HostileQueriesAreRefusedOrStopped) {
   const Recorded& days = ThreeDays();
   for (const auto& [query, why] : std::vector<std::pair<std::string, std::string>>{

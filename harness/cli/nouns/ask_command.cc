@@ -53,6 +53,7 @@ Answered AskSwipl(const std::string& folder, const std::string& query, int most,
                .memory_bytes = static_cast<std::size_t>(kMemory_MB * kMebibyte)});
   Answered answered;
   bool is_loaded = false, ended = false;
+  std::string loading;  // the file that is read
   for (std::size_t begin = 0; begin < said.out.size();) {
     const std::size_t end = std::min(said.out.find('\n', begin), said.out.size());
     const Json line =
@@ -70,6 +71,7 @@ Answered AskSwipl(const std::string& folder, const std::string& query, int most,
       answered.notes.push_back(
           fmt::format("nothing is called '{}' in these episodes{}", name, KnownWords(line)));
     }
+    if (end_word == "loading") loading = line["file"].get<std::string>() + ": ";
     is_loaded = is_loaded || end_word == "loaded";
     ended = ended || end_word == "done" || end_word == "refused";
     if (end_word == "refused") answered.problem = line["why"].get<std::string>() + KnownWords(line);
@@ -79,6 +81,8 @@ Answered AskSwipl(const std::string& folder, const std::string& query, int most,
   if (said.problem.starts_with("took more than"))
     answered.problem = is_loaded ? fmt::format("the query took more than {:g} s", time_limit_s)
                                  : "reading the folder " + said.problem;
+  if (!is_loaded && said.problem.starts_with("was ended"))
+    answered.problem = loading + "SWI-Prolog " + said.problem + " while it read this";
   if (said.problem.ends_with("is not installed"))
     answered.problem += "; Debian's package swi-prolog-nox has it";
   if (said.problem.empty()) answered.problem = "SWI-Prolog ended without an answer: " + said.err;

@@ -466,7 +466,7 @@ ask_all(Folder, Most, Seconds, End) :-
     read_string(user_input, _, Text),
     read_query(Text, Goal, Names),
     safe_query(Goal),
-    load_knowledge(Folder),
+    nb_setval(prehend_tells, true), load_knowledge(Folder),
     put_line(_{end: loaded}),
     State = count(0),
     catch(call_with_time_limit(Seconds, ( known_words(Goal), answers(Goal, Names, Most, State) )), Error, true),
@@ -582,7 +582,7 @@ text_of(Iri, Text) :- atom_string(Iri, Text).
 % Variables are written as _.
 as_text(Format, Arguments0, Text) :-
     copy_term(Arguments0, Arguments), term_variables(Arguments, Variables), maplist(=('$VAR'('_')), Variables),
-    format(string(Text), Format, Arguments).
+    catch(format(string(Text), Format, Arguments), error(resource_error(_), _), Text = "a term is too deep to be written").
 
 why(refused(Format-Arguments), Why) :- !, as_text(Format, Arguments, Why).
 why(error(resource_error(What), _), Why) :- !, format(string(Why), "the query needs too much ~w", [What]).
