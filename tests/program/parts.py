@@ -156,11 +156,13 @@ def hostile(part, folder):
                             ("UPDATE plan SET uuid = '../../x'", 2, "the file is damaged"),
                             (many.format(20000, "plan(what, uuid, part, parts) SELECT 'x', uuid, 1, 1") + ", plan WHERE plan.id = 1", 2, "20001 plans"),
                             ("UPDATE plan SET parts = 10000", 3, "part 3 of 10000 is missing"),
-                            (many.format(100000, "plan_owed(plan, position, part, name, uuid) SELECT 1, i + 1000, i % 10000 + 1, 'n' || i, ''"), 3, "and 9950 parts more")):
+                            (many.format(100000, "plan_owed(plan, position, part, name, uuid) SELECT 1, i + 1000, i % 10000 + 1, 'n' || i, ''"), 3, "and 9950 parts more"),
+                            (many.format(300, "plan(id, what, uuid, part, parts) SELECT i + 9, 'x' || i, printf('%08x-0000-4000-8000-000000000000', i), 1, 1") + ";" +
+                             many.format(300, "plan_owed(plan, position, part, name, uuid) SELECT i + 9, 0, 1, 'n', ''"), 3, "\nand so of 252 more\n")):
         if said.startswith("and"):
             sql = "UPDATE plan SET parts = 10000; " + sql
         told = after(sql, "episode", "merge", "-o", folder / "no.episodes", code=code)
-        assert said in told and len(told) < 400000 and "\x1b" not in told, told[:300]
+        assert said in told and len(told) < 50 * 2300 and "\x1b" not in told, told[:300]
     for sql, said in (("UPDATE event SET begin_tick = 'abc'", "found 'abc', wanted an integer"), ("UPDATE event SET begin_tick = 1.5", "wanted an integer"),
                       ("UPDATE event SET end_tick = 1 << 62", "wanted an integer"), ("UPDATE event SET end_tick = begin_tick - 1", "found the number"),
                       ("UPDATE episode SET ticks_per_second = 0", "found the number 0, wanted 1"),
@@ -267,6 +269,26 @@ def full_disk(folder):
         shutil.rmtree(folder / "full")
 
 
+def nothing_left(folder):
+    """No folder for temporary files stays, however a command ends."""
+    temporary = folder / "temporary"
+    temporary.mkdir()
+    more = {"env": {**os.environ, "TMPDIR": str(temporary)}, "start_new_session": True}
+    file = folder / "part-1.episodes"
+    for word in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+        for words in (["check", file, "--no-pictures", "--jobs", "2", "--report", folder / "page"], ["episode", "verify", file, "--jobs", "2"]):
+            stopped = begun(words, lambda: any(temporary.iterdir()), **more)
+            stopped.send_signal(word)
+            stopped.communicate()
+            assert stopped.returncode in (-word, 0, 3) and not list(temporary.iterdir()), (words, word, stopped.returncode, list(temporary.iterdir()))
+    for limit in ("0.05", "0.1", "0.2"):
+        subprocess.run([PROGRAM, "episode", "verify", file, "--time-limit-s", limit], capture_output=True, cwd=SOURCE, **more)
+        assert not list(temporary.iterdir()), limit
+    for descriptors in range(4, 12):
+        subprocess.run(["bash", "-c", f'ulimit -n {descriptors}; exec "$@"', "x", PROGRAM, "episode", "verify", file, "--jobs", "1"], capture_output=True, cwd=SOURCE, **more)
+        assert not list(temporary.iterdir()), descriptors
+
+
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as path:
         suite(pathlib.Path(path))
@@ -274,4 +296,5 @@ if __name__ == "__main__":
         imports(pathlib.Path(path))
         one_writer(pathlib.Path(path))
         full_disk(pathlib.Path(path))
+        nothing_left(pathlib.Path(path))
         bad_use(pathlib.Path(path))

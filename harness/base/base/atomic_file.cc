@@ -2,16 +2,21 @@
 #include "harness/base/base/atomic_file.h"
 
 #include <fcntl.h>
+#include <ftw.h>
+#include <signal.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cctype>
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
 #include <system_error>
 
+#include "harness/base/base/content_hash.h"
 #include "harness/base/base/text_file.h"
 
 namespace prehend {
@@ -44,12 +49,32 @@ std::string WhyNotReplaceable(const fs::path& path) {
 /// By which an open file without a name can be opened and linked.
 fs::path NameOf(int file) { return "/proc/self/fd/" + std::to_string(file); }
 
+/// What names of temporary folders begin with; their maker's number follows, which is another
+/// process's on another machine or in a container.
+std::string BeginOfTemporary() {
+  std::error_code error;
+  std::string boot;
+  std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), boot);
+  boot += fs::read_symlink("/proc/self/ns/pid", error).string();
+  return "prehend-" + ContentHash(boot).substr(8) + "-";
+}
+
+/// With one descriptor, however deep it is.
+void RemoveFolder(const fs::path& folder) {
+  const auto remove_one = [](const char* path, const struct stat*, int, FTW*) {
+    (void)std::remove(path);
+    return 0;
+  };
+  nftw(folder.c_str(), remove_one, 1, FTW_DEPTH | FTW_PHYS);
+}
+
 }  // namespace
 
 TemporaryFolder::TemporaryFolder() {
   std::error_code error;
   // mkdtemp() puts other letters in the place of the six.
-  std::string name = (fs::temp_directory_path(error) / "prehend-XXXXXX").string();
+  std::string name = (fs::temp_directory_path(error) / BeginOfTemporary()).string() +
+                     std::to_string(getpid()) + "-XXXXXX";
   if (!error && !mkdtemp(name.data())) error.assign(errno, std::generic_category());
   if (error)
     problem_ = "no folder for temporary files: " + error.message();
@@ -58,8 +83,29 @@ TemporaryFolder::TemporaryFolder() {
 }
 
 TemporaryFolder::~TemporaryFolder() {
+  if (!path_.empty()) RemoveFolder(path_);
+}
+
+void RemoveLeftFolders() {
   std::error_code error;
-  if (!path_.empty()) fs::remove_all(path_, error);
+  const fs::path above = fs::temp_directory_path(error);
+  const std::string begin = BeginOfTemporary();
+  bool is_one_alive = true;
+  for (int round = 0; is_one_alive && round < 5; ++round) {
+    if (round > 0) usleep(10'000);  // those that were killed may still be dying
+    is_one_alive = false;
+    for (fs::directory_iterator at(above, error), end; !error && at != end; at.increment(error)) {
+      const std::string name = at->path().filename().string();
+      struct stat status = {};
+      if (!name.starts_with(begin) || lstat(at->path().c_str(), &status) != 0 ||
+          status.st_uid != geteuid())
+        continue;
+      const pid_t maker = std::atoi(name.c_str() + begin.size());
+      const bool is_left = maker > 0 && kill(maker, 0) != 0 && errno == ESRCH;
+      if (is_left) RemoveFolder(at->path());
+      is_one_alive |= !is_left;
+    }
+  }
 }
 
 std::string FileNameOf(std::string_view text) {

@@ -89,4 +89,7 @@ class TemporaryFolder {
   std::string problem_;
 };
 
+/// Those of processes that were killed.
+void RemoveLeftFolders();
+
 }  // namespace prehend

@@ -325,14 +325,17 @@ class Pool {
 
 }  // namespace
 
-LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& limits) {
+LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& limits,
+                           Interrupt* interrupt) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
     return {.status = 0, .reason = "no pipe: " + std::string(std::strerror(errno))};
   std::cout.flush();
+  prctl(PR_SET_CHILD_SUBREAPER, 1);
   const pid_t process = fork();
   if (process == 0) {
     close(ends[0]);
+    if (interrupt) interrupt->ReleaseInWorker();
     const auto work = [&] {
       const int status = job();
       return std::cout.flush() ? status : kOutputExit;
@@ -346,15 +349,18 @@ LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& 
   std::string said;
   for (bool open = process > 0; open;) {
     const double left_s = limits.time_limit_s - SecondsSince(start);
-    pollfd end{.fd = ends[0], .events = POLLIN, .revents = 0};
+    const int stop = interrupt && !late ? interrupt->fd() : -1;
+    pollfd both[2] = {{.fd = ends[0], .events = POLLIN, .revents = 0},
+                      {.fd = stop, .events = POLLIN, .revents = 0}};
+    const pollfd& end = both[0];
     const bool has_limit = limits.time_limit_s > 0 && !late;
-    poll(&end, 1, has_limit ? std::max(0, static_cast<int>(1000 * left_s) + 1) : -1);
+    poll(both, 2, has_limit ? std::max(0, static_cast<int>(1000 * left_s) + 1) : -1);
     if (end.revents != 0) {
       char buffer[4096];
       const ssize_t count = read(ends[0], buffer, sizeof buffer);
       if (count > 0) said.append(buffer, static_cast<std::size_t>(count));
       open = count > 0 || (count < 0 && errno == EINTR);
-    } else if (has_limit && SecondsSince(start) > limits.time_limit_s) {
+    } else if (both[1].revents != 0 || (has_limit && SecondsSince(start) > limits.time_limit_s)) {
       kill(process, SIGKILL);
       late = true;
     }
@@ -364,6 +370,9 @@ LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& 
   int status = 0;
   rusage usage{};
   while (wait4(process, &status, 0, &usage) < 0 && errno == EINTR) {
+  }
+  // Workers of one that was killed die with it, and are this process's then.
+  while (WIFSIGNALED(status) && (waitpid(-1, nullptr, 0) > 0 || errno == EINTR)) {
   }
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGPIPE) {
     // Nobody reads any more, as in "prehend list | head": ended quietly, as other programs.

@@ -63,7 +63,9 @@ struct LimitedEnd {
 /// Runs one job in a process of its own that writes to this one's standard output and error. What
 /// it throws is thrown again, as std::runtime_error. `time_limit_s` 0: none; `jobs` does not
 /// matter. It dies with this process.
-LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& limits);
+/// When `interrupt` comes, the job is killed.
+LimitedEnd RunWithinLimits(const std::function<int()>& job, const WorkerLimits& limits,
+                           Interrupt* interrupt = nullptr);
 
 /// As CBOR, since JSON has no infinite numbers and refuses bytes that are no UTF-8.
 template <typename T>

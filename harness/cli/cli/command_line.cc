@@ -14,6 +14,7 @@
 #include <iostream>
 #include <optional>
 
+#include "harness/base/base/atomic_file.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
@@ -211,6 +212,7 @@ ExitCode RunCommandLine(int argc, const char* const* argv, const char* commit) {
   } catch (const std::exception& problem) {
     std::cerr << "prehend: internal error: " << problem.what()
               << "\n  again: " << CommandText(words) << "\n";
+    if (code == ExitCode::kFailure) RemoveLeftFolders();
   }
   return ExitCode::kFailure;
 }

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "harness/base/base/atomic_file.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/process/worker_pool.h"
@@ -42,7 +43,6 @@ WorkerLimits LimitsOf(const ParsedOptions& options, const std::vector<std::strin
           .memory_limit_bytes = memory_limit_mb * kMegabyte};
 }
 
-}  // namespace
 /// What the machine lacks now is no bad input.
 ExitCode CodeOf(const std::string& problem) {
   constexpr const char* kOfMachine[] = {"the disk is full",
@@ -57,6 +57,7 @@ ExitCode CodeOf(const std::string& problem) {
   return is_of_machine ? ExitCode::kFailure : ExitCode::kBadInput;
 }
 
+}  // namespace
 
 Command Limited(Command command, double time_limit_s) {
   std::vector<std::string> endless;
@@ -67,8 +68,11 @@ Command Limited(Command command, double time_limit_s) {
       Joined(std::move(command.options), {TimeLimitOption(0, 86400), MemoryLimitOption()});
   command.run = [run = std::move(command.run), endless, time_limit_s](
                     const ParsedOptions& options, const CommandContext& context) {
+    Interrupt interrupt;
     const LimitedEnd end = RunWithinLimits([&] { return static_cast<int>(run(options, context)); },
-                                           LimitsOf(options, endless, time_limit_s));
+                                           LimitsOf(options, endless, time_limit_s), &interrupt);
+    if (interrupt.Came()) RemoveLeftFolders();
+    interrupt.EndProcess();
     if (end.reason.empty()) return static_cast<ExitCode>(end.status);
     const bool by_limit =
         end.reason.starts_with("no end after") || end.reason.starts_with("it needs more memory");

@@ -419,6 +419,7 @@ ExitCode RunCheck(const ParsedOptions& options, const CommandContext& context) {
   if (!stopped.empty()) {
     context.out.flush();
     context.err << "prehend" << stopped << std::endl;
+    RemoveLeftFolders();
     interrupt.EndProcess();
   }
   if (problem.empty()) problem = NotRecordedText(verdicts);
