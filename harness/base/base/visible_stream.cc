@@ -5,10 +5,13 @@
 
 namespace prehend {
 
-VisibleBuffer::VisibleBuffer(std::ostream& stream) : stream_(stream), below_(stream.rdbuf(this)) {}
+VisibleBuffer::VisibleBuffer(std::ostream& stream, std::size_t most_bytes)
+    : stream_(stream), below_(stream.rdbuf(this)), most_bytes_(most_bytes) {}
 
 VisibleBuffer::~VisibleBuffer() {
   if (!begun_.empty()) below_->sputn("\uFFFD", 3);
+  const std::string more = BeyondText();
+  PassOn(more);
   stream_.rdbuf(below_);
 }
 
@@ -17,12 +20,33 @@ bool VisibleBuffer::Write(std::string_view bytes) {
   text += bytes;
   begun_ = text.substr(text.size() - BegunUtf8(text));
   text.resize(text.size() - begun_.size());
-  const std::string visible = VisibleText(text);
+  const std::string visible = most_bytes_ > 0 ? Cut(VisibleText(text)) : VisibleText(text);
   const auto size = static_cast<std::streamsize>(visible.size());
   return below_->sputn(visible.data(), size) == size;
 }
 
+std::string VisibleBuffer::BeyondText() const {
+  return beyond_ == 0 ? "" : "... (" + std::to_string(beyond_) + " bytes more)";
+}
+
+std::string VisibleBuffer::Cut(std::string_view text) {
+  std::string cut;
+  for (const char c : text) {
+    const bool is_within =
+        (c & 0xc0) == 0x80 ? beyond_ == 0 : column_ < most_bytes_ && beyond_ == 0;
+    if (c == '\n') {
+      cut += BeyondText() + c;
+      column_ = beyond_ = 0;
+    } else {
+      ++(is_within ? column_ : beyond_);
+      if (is_within) cut += c;
+    }
+  }
+  return cut;
+}
+
 void VisibleBuffer::PassOn(std::string_view code) {
+  column_ = beyond_ = 0;
   below_->sputn(code.data(), static_cast<std::streamsize>(code.size()));
 }
 

@@ -193,7 +193,7 @@ The project is $PREHEND_HOME, or the nearest folder with a prehend.yaml, or the 
 
 ExitCode RunCommandLine(int argc, const char* const* argv, const char* commit) {
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
-  const VisibleBuffer out(std::cout), err(std::cerr);
+  const VisibleBuffer out(std::cout), err(std::cerr, kMostLine_bytes);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error that says so
   try {
     if (const std::string why = WhyNotText(words); !why.empty()) {

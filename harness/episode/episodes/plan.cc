@@ -176,18 +176,22 @@ std::vector<Standing> StandingFinder::Standings() const {
 
 std::string TextOf(const std::vector<Standing>& standings) {
   std::string text;
+  std::size_t lines = 0, untold = 0;
   for (const Standing& standing : standings) {
+    if (lines >= kMostNamed && !standing.missing.empty()) ++untold;
+    if (lines >= kMostNamed) continue;
     const Plan& plan = standing.plan;
     std::map<int, std::vector<std::string>> missing;
     for (const Plan::Owed& owed : standing.missing) missing[owed.part].push_back(owed.name);
     std::map<int, std::size_t> owed_by;
     for (const Plan::Owed& owed : plan.owed) ++owed_by[owed.part];
-    std::size_t lines = 0;
+    std::size_t told = 0;
     for (auto& [part, names] : missing) {
-      if (++lines > kMostNamed) {
-        text += fmt::format("{}: and {} parts more\n", plan.what, missing.size() - kMostNamed);
+      if (lines == kMostNamed) {
+        text += fmt::format("{}: and {} parts more\n", plan.what, missing.size() - told);
         break;
       }
+      ++lines, ++told;
       const std::size_t owed = owed_by[part];
       const std::size_t count = names.size(), more = count - std::min(count, kMostNamed);
       names.resize(count - more);
@@ -201,6 +205,7 @@ std::string TextOf(const std::vector<Standing>& standings) {
       text += fmt::format("{}\n", fmt::join(names, ", "));
     }
   }
+  if (untold > 0) text += fmt::format("and so of {} more\n", untold);
   return text;
 }
 

@@ -54,5 +54,21 @@ TEST(VisibleStream, TheProgramsOwnCodesPass) {
   EXPECT_EQ(plain.str(), "\r\x1b[K");
 }
 
+TEST(VisibleStream, ALineOfMessagesIsAsLongAsAPersonReads) {
+  std::ostringstream stream;
+  {
+    const VisibleBuffer visible(stream, 10);
+    stream << "0123456789\n"
+           << "01234"
+           << "56789abc"
+           << "d\n12345678é9é0\n";
+    stream << "in progress" << kEraseLine << "done\n";
+    stream << "0123456789" << 123;
+  }
+  EXPECT_EQ(stream.str(),
+            "0123456789\n0123456789... (4 bytes more)\n12345678é... (4 bytes more)\n"
+            "in progres\r\033[Kdone\n0123456789... (3 bytes more)");
+}
+
 }  // namespace
 }  // namespace prehend
