@@ -100,7 +100,11 @@ tl::expected<Validated, ExitCode> Validate(const std::string& typed, const Parse
     validated.diagnostics = suite::ValidateGoldenFile(typed, context.root, validated.inputs);
     return validated;
   }
-  PREHEND_TRY(const auto file, FindScenarioOrComplain(typed, context));
+  const std::vector<episode::ScenarioFile> all = episode::ListScenarios(context.root);
+  const auto listed = std::ranges::find(all, typed, &episode::ScenarioFile::path);
+  PREHEND_TRY(const auto file, listed == all.end()
+                                   ? FindScenarioOrComplain(typed, context)
+                                   : tl::expected<episode::ScenarioFile, ExitCode>(*listed));
   Validated validated{.file = ReadableName(file.path)};
   Result<episode::LoadedRun> loaded =
       episode::LoadRun(RequestOf(options, file.path), context.root, &validated.inputs);
@@ -126,7 +130,7 @@ std::vector<std::string> Names(const ParsedOptions& options, const CommandContex
   if (!names.empty()) return names;
   if (options.Has("--grammar")) return {options.Text("--grammar")};
   for (const episode::ScenarioFile& file : episode::ListScenarios(context.root))
-    names.push_back(episode::IdOf(file));
+    names.push_back(file.path);  // a name may be that of several
   return names;
 }
 
