@@ -289,6 +289,34 @@ def nothing_left(folder):
         assert not list(temporary.iterdir()), descriptors
 
 
+def projects(folder):
+    """What lies in a project without being a part of it."""
+    project = folder / "project"
+    (project / "scenarios").mkdir(parents=True)
+    (project / "prehend.yaml").write_text("project: 1\n")
+    shutil.copyfile(SOURCE / "scenarios/pick_and_place/milk_carton_wrap.yaml", project / "scenarios/milk_carton_wrap.yaml")
+    with open(project / "scenarios/take.mp4", "wb") as film:
+        film.truncate(1 << 40)
+    here = {"capture_output": True, "text": True, "cwd": project, "env": {key: value for key, value in os.environ.items() if key != "PREHEND_HOME"}}
+    said = subprocess.run([PROGRAM, "check", "--no-pictures", "--record", "a.episodes"], timeout=120, **here)
+    assert said.returncode == 5, said  # it has no golden
+    # One that is there twice and one that is not there: each is named by its file.
+    (project / "scenarios/loop").symlink_to(".")
+    (project / "scenarios/dangling.yaml").symlink_to("nope")
+    said = subprocess.run([PROGRAM, "validate"], **here)
+    assert said.returncode == 2, said
+    for name in ("scenarios/milk_carton_wrap.yaml", "scenarios/loop/milk_carton_wrap.yaml"):
+        assert f"ok: {project / name}\n" in said.stdout, said
+    for name in ("scenarios/dangling.yaml", "scenarios/loop/dangling.yaml"):
+        assert f"{project / name}: error: " in said.stderr, said
+    # Recorded work is not replaced by another kind of file.
+    before = (project / "a.episodes").read_bytes()
+    for words in (["check", "milk_carton_wrap", "--junit", "a.episodes"], ["run", "milk_carton_wrap", "--report", "a.episodes"]):
+        said = subprocess.run([PROGRAM, *words], **here)
+        assert said.returncode == 2 and "is a file of episodes; name another file" in said.stderr, said
+    assert (project / "a.episodes").read_bytes() == before
+
+
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as path:
         suite(pathlib.Path(path))
@@ -297,4 +325,5 @@ if __name__ == "__main__":
         one_writer(pathlib.Path(path))
         full_disk(pathlib.Path(path))
         nothing_left(pathlib.Path(path))
+        projects(pathlib.Path(path))
         bad_use(pathlib.Path(path))

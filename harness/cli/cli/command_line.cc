@@ -19,6 +19,7 @@
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/base/visible_stream.h"
+#include "harness/episode/episodes/schema.h"
 
 namespace prehend::cli {
 namespace {
@@ -91,6 +92,10 @@ std::optional<Refusal> RefuseOutputsThatAreInputs(const std::string& root, const
     for (const std::string& file : options.All(output.name)) {
       if (file == "-") continue;
       std::error_code error;
+      const bool is_for_episodes =
+          output.name == "--record" || command.name == "import" || command.name == "episode merge";
+      if (!is_for_episodes && fs::exists(file, error) && episode::IsEpisodeFile(file))
+        return RefuseToWrite(output, file, "a file of episodes");
       if (IsBelow(file, fs::path(root) / kProjectFile))
         return RefuseToWrite(output, file, "what makes a folder a project");
       for (const char* const folder : kFolders) {
@@ -207,12 +212,12 @@ ExitCode RunCommandLine(int argc, const char* const* argv, const char* commit) {
     const auto* const info = std::get_if<InfoText>(&parsed);
     const ExitCode code = info ? Print(*info) : Run(std::get<ChosenCommand>(parsed), words);
     std::cout.flush();
+    if (code == ExitCode::kFailure) RemoveLeftFolders();
     if (std::cout) return code;
     std::cerr << "prehend: the output could not be written\n";
   } catch (const std::exception& problem) {
     std::cerr << "prehend: internal error: " << problem.what()
               << "\n  again: " << CommandText(words) << "\n";
-    if (code == ExitCode::kFailure) RemoveLeftFolders();
   }
   return ExitCode::kFailure;
 }
