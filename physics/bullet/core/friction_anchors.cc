@@ -5,8 +5,6 @@
 
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
-#include <algorithm>
-
 namespace prehend::physics {
 namespace {
 
@@ -37,8 +35,7 @@ void FrictionAnchors::BeginTick() {
   for (const Anchor& anchor : present_)
     if (anchor.sticks) before_.push_back(anchor);
   present_.clear();
-  // No result depends on the order of pairs, which follows from addresses.
-  std::ranges::stable_sort(before_, {}, &Anchor::sides);
+  next_ = 0;
 }
 
 FrictionAnchors::Drift FrictionAnchors::Add(const btManifoldPoint& point, const Sides& sides) {
@@ -51,12 +48,22 @@ FrictionAnchors::Drift FrictionAnchors::Add(const btManifoldPoint& point, const 
   now.nhat_A = n * R_WA;
   const Anchor* same = nullptr;
   btScalar nearest = kSamePoint_m * kSamePoint_m;
-  for (const Anchor& old : std::ranges::equal_range(before_, sides, {}, &Anchor::sides)) {
+  // Those of two bodies are neighbours, and the next ones are where they were in the last tick.
+  std::optional<std::size_t> first;
+  for (std::size_t k = 0; k < before_.size(); ++k) {
+    const std::size_t place = (next_ + k) % before_.size();
+    const Anchor& old = before_[place];
+    if (old.sides != sides) {
+      if (first) break;
+      continue;
+    }
+    if (!first) first = place;
     const btScalar distance = (old.p_A - now.p_A).length2();
     if (distance >= nearest) continue;
     nearest = distance;
     same = &old;
   }
+  if (first) next_ = *first;
   Drift drift;
   if (same) {
     drift.way = X_WA * same->p_A - X_WB * same->p_B;

@@ -13,6 +13,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -31,7 +32,7 @@ class FrictionAnchors {
     const btMultiBody* multibody = nullptr;
     int link = 0;
     const btRigidBody* rigid = nullptr;  ///< null: of a multibody, or fixed
-    auto operator<=>(const Side&) const = default;
+    bool operator==(const Side&) const = default;
     btTransform Place() const;
   };
   using Sides = std::pair<Side, Side>;
@@ -61,6 +62,7 @@ class FrictionAnchors {
     bool sticks, slid;
   };
   std::vector<Anchor> before_, present_;
+  std::size_t next_ = 0;  ///< in before_: where to look first
 };
 
 }  // namespace prehend::physics
