@@ -17,6 +17,10 @@ constexpr btScalar kNoLimit = std::numeric_limits<btScalar>::infinity();
 constexpr std::size_t kFrictionRows = 2;  // two directions
 constexpr std::size_t kRollingRows = 3;   // spinning, then two directions of rolling
 
+/// Rows of two bodies are solved once more per so much that one is heavier, up to the most.
+constexpr btScalar kMassRatioOfRepeat = 2.5;
+constexpr int kMostRepeats = 20;
+
 std::size_t At(int index) { return static_cast<std::size_t>(index); }
 
 bool IsGrain(const btSolverBody& body) {
@@ -37,6 +41,7 @@ void RigidRows::Setup(const Pools& pools) {
     pushes_[At(i)] = SixOf(body.internalGetPushVelocity(), body.internalGetTurnVelocity());
   }
   others_.clear();
+  FindRepeats(pools);
   single_bodies_.Setup(single_, pools.bodies, speeds_, pools.contacts, pools.frictions);
   Flatten(pools, pools.joints, 1, joints_);
   Flatten(pools, pools.contacts, 1, contacts_);
@@ -68,10 +73,30 @@ void RigidRows::FindSingleBodies(const Pools& pools) {
   }
 }
 
-bool RigidRows::MayCreep(const btSolverConstraint& contact,
-                         const btAlignedObjectArray<btSolverBody>& bodies) const {
-  return !IsSingle(contact) && !IsGrain(bodies[contact.m_solverBodyIdA]) &&
-         !IsGrain(bodies[contact.m_solverBodyIdB]);
+void RigidRows::FindRepeats(const Pools& pools) {
+  repeats_.assign(At(pools.bodies.size()), 1);
+  most_repeats_ = 1;
+  for (int i = 0; i < pools.contacts.size(); ++i) {
+    const int a = pools.contacts[i].m_solverBodyIdA, b = pools.contacts[i].m_solverBodyIdB;
+    const btSolverBody &first = pools.bodies[a], &second = pools.bodies[b];
+    if (!Moves(first) || !Moves(second) || IsGrain(first) || IsGrain(second) ||
+        pools.shared[At(a)] || pools.shared[At(b)])
+      continue;
+    const btScalar of_a = first.internalGetInvMass().x(), of_b = second.internalGetInvMass().x();
+    const btScalar ratio = std::max(of_a, of_b) / std::min(of_a, of_b) / kMassRatioOfRepeat;
+    int& repeats = repeats_[At(of_a > of_b ? a : b)];
+    repeats = std::max(repeats, static_cast<int>(std::min<btScalar>(ratio, kMostRepeats)));
+    most_repeats_ = std::max(most_repeats_, repeats);
+  }
+}
+
+bool RigidRows::MayCreep(const btSolverConstraint& contact, const Pools& pools) const {
+  const int a = contact.m_solverBodyIdA, b = contact.m_solverBodyIdB;
+  const auto is_loose = [&](int body) {
+    return Moves(pools.bodies[body]) && !pools.shared[At(body)];
+  };
+  return (is_loose(a) || is_loose(b)) && !IsSingle(contact) && !IsGrain(pools.bodies[a]) &&
+         !IsGrain(pools.bodies[b]);
 }
 
 bool RigidRows::IsSingle(const btSolverConstraint& source) const {
@@ -133,6 +158,7 @@ RigidRows::Row RigidRows::MakeRow(const btSolverConstraint& source, const Pools&
           .impulse = source.m_appliedImpulse,
           .pressure = nullptr,
           .iterations = source.m_overrideNumSolverIterations,
+          .repeats = std::max(repeats_[At(a)], repeats_[At(b)]),
           .grain = IsGrain(pools.bodies[a]) || IsGrain(pools.bodies[b]),
           .source = &source};
   if (side_a.speeds && side_b.speeds) {
@@ -223,11 +249,20 @@ btScalar RigidRows::Solve(int iteration, int contact_iterations) {
   if (iteration >= contact_iterations) return largest;
   const bool with_grains = iteration % kGrainPeriod == 0;
   if (with_grains) grains_change_ = 0;
+  for (int repeat = 0; repeat < most_repeats_; ++repeat)
+    largest = std::max(largest, SolveContacts(repeat, with_grains));
+  return std::max(largest, grains_change_);
+}
+
+btScalar RigidRows::SolveContacts(int repeat, bool with_grains) {
+  btScalar largest = 0;
   const auto changed = [&](const Row& row, btScalar change) {
     btScalar& most = row.grain ? grains_change_ : largest;
     most = std::max(most, change);
   };
-  const auto waits = [&](const Row& row) { return row.grain && !with_grains; };
+  const auto waits = [&](const Row& row) {
+    return row.repeats <= repeat || (row.grain && !with_grains);
+  };
   for (Row& row : contacts_)
     if (!waits(row)) changed(row, Solve(row));
   for (std::size_t i = 0; i + 1 < frictions_.size(); i += kFrictionRows) {
@@ -249,7 +284,7 @@ btScalar RigidRows::Solve(int iteration, int contact_iterations) {
     changed(roll,
             SolvePair(roll, rolling_[i + 2], limit(roll), rolling_responses_[i / kRollingRows]));
   }
-  return std::max(largest, grains_change_);
+  return largest;
 }
 
 btScalar RigidRows::SolvePenetrations() {

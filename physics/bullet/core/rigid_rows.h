@@ -28,9 +28,9 @@ class RigidRows {
   };
   /// To be called before Setup().
   void FindSingleBodies(const Pools& pools);
-  /// Neither a contact of a grain nor of a body that touches only what does not move.
-  bool MayCreep(const btSolverConstraint& contact,
-                const btAlignedObjectArray<btSolverBody>& bodies) const;
+  /// Whether no hand touches one of its bodies, which moves and also touches something else that
+  /// does. Not of grains.
+  bool MayCreep(const btSolverConstraint& contact, const Pools& pools) const;
   void Setup(const Pools& pools);
 
   /// The solver's change of the speeds of a body, by its index in Pools::bodies.
@@ -57,6 +57,7 @@ class RigidRows {
     btScalar impulse;
     const btScalar* pressure;  ///< of a friction row: impulse of its contact
     int iterations;            ///< of a joint: number of iterations
+    int repeats;               ///< in each iteration
     bool grain;                ///< one of the bodies is a grain
     const btSolverConstraint* source;
   };
@@ -68,6 +69,10 @@ class RigidRows {
   void Arrange(const btConstraintArray& sources, std::size_t group,
                const btAlignedObjectArray<btSolverBody>& bodies);
   void Flatten(const Pools& pools, const btConstraintArray& sources, std::size_t group, Rows& rows);
+  /// How often the rows of each body are solved per iteration: more often those of a body that
+  /// bears much heavier ones, which converge slowly. Not of what a hand touches, too.
+  void FindRepeats(const Pools& pools);
+  btScalar SolveContacts(int repeat, bool with_grains);
   Row MakeRow(const btSolverConstraint& source, const Pools& pools, std::vector<Six>& speeds);
   void TakePenetrations(const Pools& pools);
   [[gnu::always_inline]] const RigidSide* OtherOf(const Row& row) const;
@@ -85,6 +90,8 @@ class RigidRows {
   void ComputeResponses(const Rows& rows, std::size_t group, Responses& responses) const;
 
   std::vector<char> single_;  ///< by body
+  std::vector<int> repeats_;  ///< by body
+  int most_repeats_ = 1;
   SingleBodies single_bodies_;
   Rows joints_, contacts_, frictions_, rolling_, penetrations_;
   Responses friction_responses_, rolling_responses_;  ///< by pair of rows

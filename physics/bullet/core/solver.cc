@@ -99,11 +99,12 @@ FrictionAnchors::Side BulletSolver::RigidSideOf(int body) const {
 }
 
 void BulletSolver::HoldRigidAnchors(const btContactSolverInfo& info) {
+  const RigidRows::Pools pools = RigidPools();
   rigid_anchors_.clear();
   const btScalar rate = info.m_erp / info.m_timeStep;
   for (int i = 0; i < m_tmpSolverContactConstraintPool.size(); ++i) {
     const btSolverConstraint& contact = m_tmpSolverContactConstraintPool[i];
-    if (!rigid_.MayCreep(contact, m_tmpSolverBodyPool)) continue;
+    if (!rigid_.MayCreep(contact, pools)) continue;
     rigid_anchors_.push_back({i, anchors_.size()});
     const btVector3 way = AddAnchor(contact, RigidSideOf(contact.m_solverBodyIdA),
                                     RigidSideOf(contact.m_solverBodyIdB))

@@ -34,6 +34,7 @@ class RandomRows {
     btConstraintArray contacts = contacts_, frictions = frictions_;
     RigidRows rows;
     const RigidRows::Pools pools{bodies_, none_, contacts, frictions, none_, shared};
+    rows.FindSingleBodies(pools);
     rows.Setup(pools);
     for (int i = 0; i < iterations; ++i) rows.Solve(i, iterations);
     rows.WriteBack(pools);

@@ -88,5 +88,31 @@ TEST(Resting, WhatLiesOnATippedThingSlidesWhereFrictionEnds) {
   }
 }
 
+/// A board on four cups of 0.1 kg, which stand on the table.
+TEST(Resting, ABoardOnFourLooseFeetStandsStill) {
+  for (const double mass_kg : {1.0, 2.0, 8.0}) {
+    Scene scene = MakeScene(Tabletop{.shape = Box{{0.5, 0.5, 0.03}}, .mass_kg = mass_kg});
+    scene.hands.clear();
+    const Pose X_WB = {{0, 0, kTop_m + 0.115}};
+    scene.bodies[kObject].X_WB = X_WB;
+    for (const double x_m : {-0.2, 0.2})
+      for (const double y_m : {-0.2, 0.2})
+        scene.bodies.push_back({.name = "cup",
+                                .shapes = {{Cylinder{0.03, 0.1}, {}}},
+                                .mass_kg = 0.1,
+                                .friction = 0.8,
+                                .X_WB = {{x_m, y_m, kTop_m + 0.05}}});
+    Script script;
+    script.settle_s = 30;
+    Simulation simulation(std::move(scene), script);
+    double moved_m = 0;
+    while (simulation.Step())
+      moved_m =
+          std::max(moved_m, (simulation.snapshot().bodies[kObject].X_WB.p_m - X_WB.p_m).norm());
+    EXPECT_EQ(simulation.snapshot().tick, 30 * 480);
+    EXPECT_LT(moved_m, 0.001) << mass_kg << " kg";
+  }
+}
+
 }  // namespace
 }  // namespace prehend::physics
