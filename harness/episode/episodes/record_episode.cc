@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -251,8 +252,11 @@ tl::expected<WriteLock, std::string> LockToRecord(const std::string& file, Write
       if (is_other) usleep(10'000);  // workers of one that was killed may still be dying
     }
   });
-  if (!problem.empty()) return tl::unexpected(problem);
-  return lock;
+  if (problem.empty()) return lock;
+  std::error_code error;  // what got no room for its tables is no file
+  if (std::filesystem::is_regular_file(file, error) && std::filesystem::is_empty(file, error))
+    std::filesystem::remove(file, error);
+  return tl::unexpected(problem);
 }
 
 std::int64_t WriteTask(const Database& database, const NewTask& task) {
