@@ -19,7 +19,6 @@
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/base/visible_stream.h"
-#include "harness/episode/episodes/schema.h"
 
 namespace prehend::cli {
 namespace {
@@ -94,7 +93,8 @@ std::optional<Refusal> RefuseOutputsThatAreInputs(const std::string& root, const
       std::error_code error;
       const bool is_for_episodes =
           output.name == "--record" || command.name == "import" || command.name == "episode merge";
-      if (!is_for_episodes && fs::exists(file, error) && episode::IsEpisodeFile(file))
+      if (!is_for_episodes && fs::is_regular_file(file, error) &&
+          episode::EpisodeKindOf(file) == episode::EpisodeKind::kEpisodeFile)
         return RefuseToWrite(output, file, "a file of episodes");
       if (IsBelow(file, fs::path(root) / kProjectFile))
         return RefuseToWrite(output, file, "what makes a folder a project");
