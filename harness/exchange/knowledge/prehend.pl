@@ -582,12 +582,15 @@ text_of(Iri, Text) :- atom_string(Iri, Text).
 % Variables are written as _.
 as_text(Format, Arguments0, Text) :-
     copy_term(Arguments0, Arguments), term_variables(Arguments, Variables), maplist(=('$VAR'('_')), Variables),
-    catch(format(string(Text), Format, Arguments), error(resource_error(_), _), Text = "a term is too deep to be written").
+    format(string(Text), Format, Arguments).
 
-why(refused(Format-Arguments), Why) :- !, as_text(Format, Arguments, Why).
+told(Format, Arguments, Text) :-
+    catch(as_text(Format, Arguments, Text), error(resource_error(_), _), Text = "a term is too deep to be written").
+
+why(refused(Format-Arguments), Why) :- !, told(Format, Arguments, Why).
 why(error(resource_error(What), _), Why) :- !, format(string(Why), "the query needs too much ~w", [What]).
-why(error(type_error(evaluable, Found), _), Why) :- !, as_text("found ~q, wanted a number", [Found], Why).
-why(error(type_error(Type, Found), _), Why) :- !, as_text("found ~q, wanted a ~w", [Found, Type], Why).
+why(error(type_error(evaluable, Found), _), Why) :- !, told("found ~q, wanted a number", [Found], Why).
+why(error(type_error(Type, Found), _), Why) :- !, told("found ~q, wanted a ~w", [Found, Type], Why).
 why(error(evaluation_error(What), _), Why) :- !, format(string(Why), "a number cannot be computed: ~w", [What]).
 why(error(instantiation_error, _), Why) :- !, Why = "a variable has no value where one is needed".
 why(error(Formal, _), Why) :- !, format(string(Why), "~p", [Formal]).
