@@ -155,7 +155,7 @@ TEST(Query, EachAnswerIsDrawn) {
   const Said bad = Prehend({"episode", "query", file, "--show", file});
   if (bad.err.find("draws no pictures") != std::string::npos) GTEST_SKIP() << bad.err;
   EXPECT_EQ(bad.exit_code, 2);
-  EXPECT_NE(bad.err.find(file + " is what is read"), std::string::npos) << bad.err;
+  EXPECT_NE(bad.err.find(file + " is a file of episodes"), std::string::npos) << bad.err;
   const auto answers =
       Asked(file, {"--event", "*ing", "--role", "any=Handle", "--show", folder.string()});
   ASSERT_GT(answers.size(), 1u);
