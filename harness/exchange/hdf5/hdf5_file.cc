@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <array>
+#include <csignal>
+#include <ctime>
 #include <filesystem>
 #include <regex>
 #include <string_view>
@@ -31,6 +33,27 @@ void SetUp() {
   }();
   static_cast<void>(done);
 }
+
+/// The library never leaves a heap of no size: a call that takes longer ends the process.
+class WithinTime {
+ public:
+  WithinTime() {
+    sigevent event = {};
+    event.sigev_notify = SIGEV_SIGNAL;
+    event.sigev_signo = SIGXCPU;
+    const itimerspec at_most = {.it_interval = {}, .it_value = {.tv_sec = 20, .tv_nsec = 0}};
+    is_made_ = timer_create(CLOCK_THREAD_CPUTIME_ID, &event, &timer_) == 0;
+    if (is_made_) timer_settime(timer_, 0, &at_most, nullptr);
+  }
+  WithinTime(const WithinTime&) = delete;
+  ~WithinTime() {
+    if (is_made_) timer_delete(timer_);
+  }
+
+ private:
+  timer_t timer_ = {};
+  bool is_made_ = false;
+};
 
 /// What the library found wrong last, where it began.
 std::string InnermostError() {
@@ -233,6 +256,7 @@ std::string Hdf5Object::Text() const {
 }
 
 Result<Hdf5File> Hdf5File::Open(const std::string& path) {
+  const WithinTime within_time;
   SetUp();
   Hdf5File file;
   file.path_ = path;
@@ -257,6 +281,7 @@ Diagnostics Hdf5File::Error(std::string message, std::string hint) const {
 }
 
 Result<Hdf5Id> Hdf5File::OpenObject(const std::string& path) const {
+  const WithinTime within_time;
   Hdf5Id object(H5Oopen(file_, path.empty() ? "/" : path.c_str(), H5P_DEFAULT));
   if (!object) return tl::unexpected(WhyNotOpened(path));
   const H5I_type_t type = H5Iget_type(object);
@@ -306,6 +331,7 @@ bool Hdf5File::Has(const std::string& object) const {
 }
 
 Result<Hdf5Object> Hdf5File::Describe(const std::string& path) const {
+  const WithinTime within_time;
   PREHEND_TRY(const Hdf5Id object, OpenObject(path));
   Hdf5Object description;
   description.kind = Hdf5Kind::kGroup;
@@ -315,6 +341,7 @@ Result<Hdf5Object> Hdf5File::Describe(const std::string& path) const {
 }
 
 Result<std::vector<std::string>> Hdf5File::NamesIn(const std::string& path) const {
+  const WithinTime within_time;
   PREHEND_TRY(const Hdf5Id group, OpenObject(path));
   if (H5Iget_type(group) != H5I_GROUP)
     return tl::unexpected(Error(fmt::format("'{}' is a dataset; expected a group", path)));
@@ -338,6 +365,7 @@ Result<std::vector<std::string>> Hdf5File::NamesIn(const std::string& path) cons
 
 std::optional<Hdf5Value> Hdf5File::Attribute(const std::string& path,
                                              const std::string& name) const {
+  const WithinTime within_time;
   const Result<Hdf5Id> object = OpenObject(path);
   if (!object || H5Aexists(*object, name.c_str()) <= 0) return std::nullopt;
   const Hdf5Id attribute(H5Aopen(*object, name.c_str(), H5P_DEFAULT));
@@ -357,6 +385,7 @@ std::optional<Hdf5Value> Hdf5File::Attribute(const std::string& path,
 }
 
 Result<std::vector<double>> Hdf5File::Read(const std::string& path, const Hdf5Part& part) const {
+  const WithinTime within_time;
   PREHEND_TRY(const Hdf5Id dataset, OpenObject(path));
   const auto refuse = [&](const std::string& why) {
     return tl::unexpected(Error(fmt::format("'{}' {}", path, why)));
@@ -399,6 +428,7 @@ std::optional<Hdf5Part> Hdf5PartOf(const std::string& text) {
 }
 
 std::string AddSignals(const std::string& path, std::span<const Hdf5Signal> signals) {
+  const WithinTime within_time;
   if (const Result<Hdf5File> readable = Hdf5File::Open(path); !readable)
     return readable.error().front().message;
   Hdf5Id file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
