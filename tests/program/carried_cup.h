@@ -3,6 +3,8 @@
 // to 3 s, and has put it down at 3.5 s; of poses only, in metres, z up.
 #pragma once
 
+#include <cstdio>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,6 +33,30 @@ inline Row HandAt(double t) {
   const Row cup = CupAt(t);
   const double away = Along({{0.2, 0.4}, {1, 0}, {3.7, 0}, {4.3, 0.4}}, t);
   return {t, cup.x - 0.08 - away, 0, cup.z + away / 2};
+}
+
+inline constexpr const char* kCupMap = R"(import: 1
+episode: a_cup_is_carried
+unit: m
+axes: z_up
+quaternion_order: wxyz
+time_unit: s
+columns:
+  time: t
+  body: name
+  position: ['x', 'y', 'z']
+  quaternion: [qw, qx, qy, qz]
+entities:
+  table: {at_m: [0, 0, 0.7], fixed: true, class: Table, size_m: [2.0, 1.0, 0.04]}
+  cup: {from: Mug, class: Cup, size_m: [0.08, 0.08, 0.1]}
+  hand: {from: Glove, hand: true, size_m: [0, 0, 0]}
+)";
+
+inline std::string AsWritten(const char* name, Row row) {
+  char text[200];
+  std::snprintf(text, sizeof text, "%.4f,%s,%.5f,%.5f,%.5f,1,0,0,0\n", row.t_s, name, row.x, row.y,
+                row.z);
+  return text;
 }
 
 }  // namespace prehend::house

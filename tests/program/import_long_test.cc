@@ -14,23 +14,6 @@
 namespace prehend::house {
 namespace {
 
-constexpr const char* kMap = R"(import: 1
-episode: a_cup_is_carried
-unit: m
-axes: z_up
-quaternion_order: wxyz
-time_unit: s
-columns:
-  time: t
-  body: name
-  position: ['x', 'y', 'z']
-  quaternion: [qw, qx, qy, qz]
-entities:
-  table: {at_m: [0, 0, 0.7], fixed: true, class: Table, size_m: [2.0, 1.0, 0.04]}
-  cup: {from: Mug, class: Cup, size_m: [0.08, 0.08, 0.1]}
-  hand: {from: Glove, hand: true, size_m: [0, 0, 0]}
-)";
-
 /// At 60 Hz. After five seconds both bodies rest.
 std::string LongCsv(int last_row) {
   std::string csv = "t,name,x,y,z,qw,qx,qy,qz\n";
@@ -38,10 +21,7 @@ std::string LongCsv(int last_row) {
     for (const char* name : {"Mug", "Glove"}) {
       const double t_s = i / 60.0;
       const Row row = (name[0] == 'M' ? CupAt : HandAt)(std::min(t_s, 5.0));
-      char text[200];
-      std::snprintf(text, sizeof text, "%.4f,%s,%.5f,%.5f,%.5f,1,0,0,0\n", t_s, name, row.x, row.y,
-                    row.z);
-      csv += text;
+      csv += AsWritten(name, {t_s, row.x, row.y, row.z});
     }
   }
   return csv;
@@ -50,7 +30,7 @@ std::string LongCsv(int last_row) {
 TEST(ImportLong, TablesTakeLittleMemory) {
   const auto folder = FreshFolder("little_memory");
   WriteFile(folder / "poses.csv", LongCsv(72'000));
-  WriteFile(folder / "map.yaml", kMap);
+  WriteFile(folder / "map.yaml", kCupMap);
   const Said said =
       Prehend({"import", (folder / "poses.csv").string(), "--map", (folder / "map.yaml").string(),
                "-o", (folder / "take.jsonl").string()},
@@ -63,13 +43,13 @@ TEST(ImportLong, FaultsAreShownWithTheirLines) {
   const std::string csv = LongCsv(30'000);
   const auto folder = FreshFolder("long_file");
   const std::string rows = "\n400.0000,Mug,";
-  const Said said = ImportCsv(folder, Replaced(csv, rows, rows + "left"), kMap);
+  const Said said = ImportCsv(folder, Replaced(csv, rows, rows + "left"), kCupMap);
   EXPECT_NE(said.exit_code, 0);
   EXPECT_NE(said.err.find("poses.csv:48002:14: error: expected a number, found 'left"),
             std::string::npos)
       << said.err;
   EXPECT_NE(said.err.find("400.0000,Mug,left"), std::string::npos) << said.err;
-  EXPECT_EQ(ImportCsv(folder, csv, kMap, {"--check"}).out.substr(0, 41),
+  EXPECT_EQ(ImportCsv(folder, csv, kCupMap, {"--check"}).out.substr(0, 41),
             "a_cup_is_carried: 30001 frames, 500.000 s");
 }
 

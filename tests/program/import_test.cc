@@ -19,31 +19,7 @@
 namespace prehend::house {
 namespace {
 
-constexpr const char* kMap = R"(import: 1
-episode: a_cup_is_carried
-unit: m
-axes: z_up
-quaternion_order: wxyz
-time_unit: s
-columns:
-  time: t
-  body: name
-  position: ['x', 'y', 'z']
-  quaternion: [qw, qx, qy, qz]
-entities:
-  table: {at_m: [0, 0, 0.7], fixed: true, class: Table, size_m: [2.0, 1.0, 0.04]}
-  cup: {from: Mug, class: Cup, size_m: [0.08, 0.08, 0.1]}
-  hand: {from: Glove, hand: true, size_m: [0, 0, 0]}
-)";
-
 using Writer = std::function<std::string(const char* name, Row row)>;
-
-std::string AsWritten(const char* name, Row row) {
-  char text[200];
-  std::snprintf(text, sizeof text, "%.4f,%s,%.5f,%.5f,%.5f,1,0,0,0\n", row.t_s, name, row.x, row.y,
-                row.z);
-  return text;
-}
 
 /// Five seconds at 60 Hz, both bodies.
 std::string Csv(const Writer& write = AsWritten) {
@@ -61,7 +37,7 @@ std::string Events(const std::filesystem::path& folder) {
 
 TEST(Import, PosesBecomeARecordingInWhichACupIsCarried) {
   const auto folder = FreshFolder("import");
-  const Said said = ImportCsv(folder, Csv(), kMap);
+  const Said said = ImportCsv(folder, Csv(), kCupMap);
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_EQ(said.err, "");
   EXPECT_TRUE(said.out.starts_with("a_cup_is_carried: 301 frames, 5.000 s\n")) << said.out;
@@ -72,7 +48,7 @@ TEST(Import, PosesBecomeARecordingInWhichACupIsCarried) {
 
 TEST(Import, UnitsAxesOrdersAndLayoutsMakeNoDifference) {
   const auto folder = FreshFolder("import");
-  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kCupMap).exit_code, 0);
   const std::string events = Events(folder);
 
   // Millimetres, y up, xyzw, milliseconds, semicolons.
@@ -83,7 +59,7 @@ TEST(Import, UnitsAxesOrdersAndLayoutsMakeNoDifference) {
                          row.x * 1e3, row.z * 1e3, -row.y * 1e3);
            return std::string(text);
          }).substr(std::string("t,name,x,y,z,qw,qx,qy,qz\n").size());
-  std::string map = Replaced(kMap, "unit: m\n", "unit: mm\nseparator: semicolon\n");
+  std::string map = Replaced(kCupMap, "unit: m\n", "unit: mm\nseparator: semicolon\n");
   map = Replaced(map, "z_up", "y_up");
   map = Replaced(map, "wxyz", "xyzw");
   map = Replaced(map, "time_unit: s", "time_unit: ms");
@@ -101,7 +77,7 @@ TEST(Import, UnitsAxesOrdersAndLayoutsMakeNoDifference) {
                   hand.x, hand.y, hand.z);
     csv += text;
   }
-  map = Replaced(kMap, "time_unit: s", "time_unit: frame\nrate_hz: 60");
+  map = Replaced(kCupMap, "time_unit: s", "time_unit: frame\nrate_hz: 60");
   map = Replaced(map, "  body: name\n", "");
   map = Replaced(map, "  time: t\n", "  time: frame\n");
   map = Replaced(map, "['x', 'y', 'z']", "['{} x', '{} y', '{} z']");
@@ -113,7 +89,7 @@ TEST(Import, UnitsAxesOrdersAndLayoutsMakeNoDifference) {
 
 TEST(Import, AnOffsetIsInTheFrameOfTheBodyAsItStandsUpright) {
   const auto folder = FreshFolder("import");
-  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kCupMap).exit_code, 0);
   const std::string events = Events(folder);
   // The cup's markers hang 5 cm above it, and its frame lies on its side.
   const Said said = ImportCsv(
@@ -122,14 +98,14 @@ TEST(Import, AnOffsetIsInTheFrameOfTheBodyAsItStandsUpright) {
         row.z += 0.05;
         return Replaced(AsWritten(name, row), ",1,0,0,0\n", ",0.70710678,0.70710678,0,0\n");
       }),
-      Replaced(kMap, "{from: Mug,", "{from: Mug, upright_at_s: 0.5, offset_m: [0, 0, -0.05],"));
+      Replaced(kCupMap, "{from: Mug,", "{from: Mug, upright_at_s: 0.5, offset_m: [0, 0, -0.05],"));
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_EQ(Events(folder), events);
 }
 
 TEST(Import, MarkersAxesHoldForEachTakeHoweverTheThingStands) {
   const auto folder = FreshFolder("import");
-  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kCupMap).exit_code, 0);
   const std::string events = Events(folder);
   // The cup's markers are 5 cm beside it, their frame lies on its side, and in the second take it
   // is turned round.
@@ -143,7 +119,7 @@ TEST(Import, MarkersAxesHoldForEachTakeHoweverTheThingStands) {
   const std::string first = take(0.05, "0.70710678,0.70710678,0,0");
   const std::string second = take(-0.05, "0,0,0.70710678,0.70710678");
   const auto map = [](const std::string& axes) {
-    return Replaced(kMap, "{from: Mug,", "{from: Mug, offset_m: [-0.05, 0, 0], " + axes + ",");
+    return Replaced(kCupMap, "{from: Mug,", "{from: Mug, offset_m: [-0.05, 0, 0], " + axes + ",");
   };
   const Said told = ImportCsv(folder, first, map("upright_at_s: 0.5"));
   EXPECT_EQ(Events(folder), events);
@@ -168,7 +144,7 @@ TEST(Import, AShortGapIsBridgedAndALongOneIsRefusedOrHeld) {
       return lost ? std::string() : AsWritten(name, row);
     });
   };
-  const Said bridged = ImportCsv(folder, without(2.5, 2.58), kMap);
+  const Said bridged = ImportCsv(folder, without(2.5, 2.58), kCupMap);
   EXPECT_EQ(bridged.exit_code, 0) << bridged.err;
   EXPECT_NE(
       bridged.out.find("cup              Mug                  297    59.9        1     0.083"),
@@ -176,7 +152,7 @@ TEST(Import, AShortGapIsBridgedAndALongOneIsRefusedOrHeld) {
       << bridged.out;
 
   std::filesystem::remove(folder / "take.jsonl");
-  const Said lost = ImportCsv(folder, without(2.2, 2.9), kMap);
+  const Said lost = ImportCsv(folder, without(2.2, 2.9), kCupMap);
   EXPECT_EQ(lost.exit_code, 2);
   EXPECT_NE(
       lost.err.find("map.yaml:14:15: error: 'Mug' is not tracked for 0.700 s from 2.200 s on"),
@@ -184,7 +160,7 @@ TEST(Import, AShortGapIsBridgedAndALongOneIsRefusedOrHeld) {
       << lost.err;
   EXPECT_FALSE(std::filesystem::exists(folder / "take.jsonl"));
 
-  const Said held = ImportCsv(folder, without(2.2, 2.9), std::string(kMap) + "lost: hold\n");
+  const Said held = ImportCsv(folder, without(2.2, 2.9), std::string(kCupMap) + "lost: hold\n");
   EXPECT_EQ(held.exit_code, 0) << held.err;
   EXPECT_NE(held.err.find("held where it was"), std::string::npos) << held.err;
   // It does not fly to where it is found again.
@@ -193,10 +169,11 @@ TEST(Import, AShortGapIsBridgedAndALongOneIsRefusedOrHeld) {
 
 TEST(Import, CheckWritesNothingAndSaysWhatAGrammarWillMiss) {
   const auto folder = FreshFolder("import");
-  const Said said = ImportCsv(folder, Csv(), kMap, {"--check"});
+  const Said said = ImportCsv(folder, Csv(), kCupMap, {"--check"});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_NE(said.out.find("Glove"), std::string::npos);
-  const Said touches = ImportCsv(folder, Csv(), kMap, {"--check", "--grammar", "pick_and_place"});
+  const Said touches =
+      ImportCsv(folder, Csv(), kCupMap, {"--check", "--grammar", "pick_and_place"});
   EXPECT_EQ(touches.exit_code, 4);
   EXPECT_NE(touches.err.find("this recording has no touches"), std::string::npos) << touches.err;
   EXPECT_FALSE(std::filesystem::exists(folder / "take.jsonl"));
@@ -224,54 +201,56 @@ TEST(Import, EveryFaultIsFoundAndNamedAndNothingIsWritten) {
   };
   const std::string mug = AsWritten("Mug", CupAt(1));
   const std::vector<Fault> faults = {
-      {"millimetres", scaled(1e3), kMap, "map.yaml:3:7: error: the poses are 8"},
-      {"metres as mm", Csv(), Replaced(kMap, "unit: m", "unit: mm"),
+      {"millimetres", scaled(1e3), kCupMap, "map.yaml:3:7: error: the poses are 8"},
+      {"metres as mm", Csv(), Replaced(kCupMap, "unit: m", "unit: mm"),
        "map.yaml:3:7: error: all poses are within 0.9"},
       {"y up", Csv([](const char* name, Row row) {
          return AsWritten(name, {row.t_s, row.x, row.z, row.y});
        }),
-       kMap, "map.yaml:4:7: error: nothing is lifted along z, but 'Mug' rises 0.2"},
+       kCupMap, "map.yaml:4:7: error: nothing is lifted along z, but 'Mug' rises 0.2"},
       {"milliseconds", Csv([](const char* name, Row row) {
          return AsWritten(name, {row.t_s * 1e3, row.x, row.y, row.z});
        }),
-       kMap, "map.yaml:6:12: error: poses are 16.67 s apart: 0.06 Hz; the times look like millis"},
-      {"another rate", Csv(), Replaced(kMap, "time_unit: s", "time_unit: s\nrate_hz: 120"),
+       kCupMap,
+       "map.yaml:6:12: error: poses are 16.67 s apart: 0.06 Hz; the times look like millis"},
+      {"another rate", Csv(), Replaced(kCupMap, "time_unit: s", "time_unit: s\nrate_hz: 120"),
        "map.yaml:7:10: error: rate_hz: 120, but poses are 0.0167 s apart: 59.88 Hz"},
-      {"not of length one", Replaced(Csv(), mug, Replaced(mug, ",1,0,0,0\n", ",1,0,0.5,0\n")), kMap,
+      {"not of length one", Replaced(Csv(), mug, Replaced(mug, ",1,0,0,0\n", ",1,0,0.5,0\n")),
+       kCupMap,
        "poses.csv:122:36: error: 'Mug': expected a unit quaternion, found one of length 1.118"},
-      {"time goes back", change("\n1.0000,Mug", "\n0.9000,Mug"), kMap,
+      {"time goes back", change("\n1.0000,Mug", "\n0.9000,Mug"), kCupMap,
        "poses.csv:122:1: error: the times of 'Mug' must increase from row to row: 0.9 s after"},
-      {"nan", change("\n1.0000,Mug,0.00000", "\n1.0000,Mug,nan"), kMap,
+      {"nan", change("\n1.0000,Mug,0.00000", "\n1.0000,Mug,nan"), kCupMap,
        "poses.csv:122:12: error: expected a number, found 'nan'"},
-      {"no number", change("\n1.0000,Mug,0.00000", "\n1.0000,Mug,left"), kMap,
+      {"no number", change("\n1.0000,Mug,0.00000", "\n1.0000,Mug,left"), kCupMap,
        "poses.csv:122:12: error: expected a number, found 'left'"},
-      {"cut", Csv().substr(0, Csv().size() - 12), kMap, "is the file cut off?"},
-      {"half a pose", change("\n1.0000,Mug,0.00000", "\n1.0000,Mug,"), kMap,
+      {"cut", Csv().substr(0, Csv().size() - 12), kCupMap, "is the file cut off?"},
+      {"half a pose", change("\n1.0000,Mug,0.00000", "\n1.0000,Mug,"), kCupMap,
        "poses.csv:122:12: error: 'Mug' has a pose without 'x'"},
-      {"twice", Replaced(Csv(), mug, mug + mug), kMap,
+      {"twice", Replaced(Csv(), mug, mug + mug), kCupMap,
        "poses.csv:123:42: error: 'Mug' has two poses at 1 s"},
       {"lost as zero", Csv([](const char* name, Row row) {
          if (name[0] == 'M' && row.t_s > 2.5 && row.t_s < 2.58) row = {row.t_s, 0, 0, 0};
          return AsWritten(name, row);
        }),
-       kMap, "map.yaml:14:15: error: 'Mug' is at exactly 0, 0, 0 in 4 of 301 poses"},
-      {"far from the table", Csv(), Replaced(kMap, "at_m: [0, 0, 0.7]", "at_m: [5, 0, 0.7]"),
+       kCupMap, "map.yaml:14:15: error: 'Mug' is at exactly 0, 0, 0 in 4 of 301 poses"},
+      {"far from the table", Csv(), Replaced(kCupMap, "at_m: [0, 0, 0.7]", "at_m: [5, 0, 0.7]"),
        "map.yaml:13:3: error: nothing tracked comes nearer to 'table' than 3.6"},
-      {"no such column", Csv(), Replaced(kMap, "time: t", "time: tt"),
+      {"no such column", Csv(), Replaced(kCupMap, "time: t", "time: tt"),
        "map.yaml:8:9: error: no column is called 'tt'"},
-      {"no such body", Csv(), Replaced(kMap, "from: Mug", "from: Mugg"),
+      {"no such body", Csv(), Replaced(kCupMap, "from: Mug", "from: Mugg"),
        "map.yaml:14:15: error: 'Mugg' has 0 poses in the file"},
-      {"no such key", Csv(), Replaced(kMap, "unit: m", "units: m"), "did you mean 'unit'?"},
-      {"a column twice", Replaced(Csv(), "t,name,x,y,z", "t,name,x,y,x"), kMap,
+      {"no such key", Csv(), Replaced(kCupMap, "unit: m", "units: m"), "did you mean 'unit'?"},
+      {"a column twice", Replaced(Csv(), "t,name,x,y,z", "t,name,x,y,x"), kCupMap,
        "poses.csv:1:12: error: a second column is called 'x'"},
-      {"semicolons", Semicolons(Csv()), kMap,
+      {"semicolons", Semicolons(Csv()), kCupMap,
        "poses.csv:1:2: error: the names of the columns are separated by semicolons"},
-      {"only numbers", "0,1,2,3,4\n1,1,2,3,4\n", kMap,
+      {"only numbers", "0,1,2,3,4\n1,1,2,3,4\n", kCupMap,
        "poses.csv:1:1: error: expected the names of the columns, found numbers"},
-      {"UTF-16", std::string("\xFF\xFEt\0,\0", 6), kMap,
+      {"UTF-16", std::string("\xFF\xFEt\0,\0", 6), kCupMap,
        "poses.csv:1:1: error: expected UTF-8, found UTF-16"},
-      {"no rows", "t,name,x,y,z,qw,qx,qy,qz\n", kMap, "0 rows; a recording has at least 2"},
-      {"empty", "", kMap, "poses.csv: error: the file is empty"},
+      {"no rows", "t,name,x,y,z,qw,qx,qy,qz\n", kCupMap, "0 rows; a recording has at least 2"},
+      {"empty", "", kCupMap, "poses.csv: error: the file is empty"},
   };
   for (const Fault& fault : faults) {
     const auto folder = FreshFolder("import");
@@ -288,7 +267,7 @@ TEST(Import, OneSignAloneIsAWarningWithBothReadings) {
   const Said said = ImportCsv(folder, Csv([](const char* name, Row row) {
                                 return Replaced(AsWritten(name, row), ",1,0,0,0\n", ",0,0,0,1\n");
                               }),
-                              kMap);
+                              kCupMap);
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_NE(said.err.find("warning: the first of four numbers, as w, is 0.00 (median, without its "
                           "sign), the last is 1.00: this looks like xyzw: quaternion_order: xyzw; "
@@ -301,7 +280,7 @@ TEST(Import, WhatTheMapIsSureOfIsNoError) {
   const auto folder = FreshFolder("import");
   const Said said = ImportCsv(
       folder, Csv(),
-      Replaced(kMap, "at_m: [0, 0, 0.7]", "at_m: [5, 0, 0.7]") + std::string("sure: [place]\n"));
+      Replaced(kCupMap, "at_m: [0, 0, 0.7]", "at_m: [5, 0, 0.7]") + std::string("sure: [place]\n"));
   EXPECT_EQ(said.exit_code, 0) << said.err;
 }
 
@@ -310,7 +289,7 @@ TEST(Import, WhatTheMapIsSureOfIsNoError) {
 TEST(Import, AWarningIsCalledAsThePageAndTheMapCallIt) {
   const auto folder = FreshFolder("import");
   for (const char* warning : {"unit", "axes", "quaternion_order", "time", "place", "zero"}) {
-    const Said said = ImportCsv(folder, Csv(), std::string(kMap) + "sure: [" + warning + "]\n");
+    const Said said = ImportCsv(folder, Csv(), std::string(kCupMap) + "sure: [" + warning + "]\n");
     EXPECT_EQ(said.exit_code, 0) << warning << said.err;
   }
 }
@@ -318,7 +297,7 @@ TEST(Import, AWarningIsCalledAsThePageAndTheMapCallIt) {
 // As files of one body each, put together: the glove began a frame earlier.
 TEST(Import, OneBodyMayFollowTheOther) {
   const auto folder = FreshFolder("import");
-  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kCupMap).exit_code, 0);
   const std::string in_turn = ReadFile(folder / "take.jsonl");
   std::string of_mug, of_glove;
   Csv([&](const char* name, Row row) {
@@ -326,11 +305,11 @@ TEST(Import, OneBodyMayFollowTheOther) {
     return std::string();
   });
   const std::string head = "t,name,x,y,z,qw,qx,qy,qz\n";
-  ASSERT_EQ(ImportCsv(folder, head + of_mug + of_glove, kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, head + of_mug + of_glove, kCupMap).exit_code, 0);
   EXPECT_EQ(ReadFile(folder / "take.jsonl"), in_turn);
   const std::size_t second = of_mug.find('\n') + 1;
   const Said late = ImportCsv(folder, head + of_mug.substr(second) + of_glove,
-                              kMap + std::string("lost: unknown\n"), {"--check"});
+                              kCupMap + std::string("lost: unknown\n"), {"--check"});
   EXPECT_EQ(late.exit_code, 0) << late.err;
   EXPECT_TRUE(late.out.starts_with("a_cup_is_carried: 301 frames, 5.000 s\n")) << late.out;
 }
@@ -346,13 +325,13 @@ std::string TremblingCsv() {
 
 TEST(Import, AThingThatTremblesIsNamedAndMeansOverATimeMakeItSmooth) {
   const auto folder = FreshFolder("import");
-  const Said rough = ImportCsv(folder, TremblingCsv(), kMap);
+  const Said rough = ImportCsv(folder, TremblingCsv(), kCupMap);
   EXPECT_EQ(rough.exit_code, 0);
   EXPECT_NE(rough.err.find("warning: 'Mug' trembles by 4.2 mm from frame to frame, which hides how "
                            "it moves; smooth_s: 0.2 takes means over that long\n"),
             std::string::npos)
       << rough.err;
-  const Said smooth = ImportCsv(folder, TremblingCsv(), kMap + std::string("smooth_s: 0.2\n"));
+  const Said smooth = ImportCsv(folder, TremblingCsv(), kCupMap + std::string("smooth_s: 0.2\n"));
   EXPECT_EQ(smooth.exit_code, 0);
   EXPECT_EQ(smooth.err, "");
   const std::string events = Events(folder);
@@ -367,7 +346,7 @@ TEST(Import, AllThatTrembleByAMillimetreAreNamedInOneLine) {
                                  row.x += ++frame % 4 < 2 ? 0.001 : -0.001;
                                  return AsWritten(name, row);
                                }),
-                               kMap);
+                               kCupMap);
   EXPECT_EQ(rough.exit_code, 0);
   EXPECT_NE(rough.err.find("warning: 'Mug', 'Glove' tremble by up to 1.1 mm from frame to frame, "
                            "which hides how they move; smooth_s: 0.2 takes means over that long\n"),
@@ -383,7 +362,7 @@ TEST(Import, NothingIsSmoothedOverATimeInWhichItWasLost) {
     if (t < 0.7 || t > 1.3) csv += AsWritten("Mug", {t, t < 1 ? 0.0 : 0.25, 0, 0.75});
     csv += AsWritten("Glove", {t, 0.125, 0, 0.875});
   }
-  const std::string map = kMap + std::string("lost: unknown\n");
+  const std::string map = kCupMap + std::string("lost: unknown\n");
   ASSERT_EQ(ImportCsv(folder, csv, map).exit_code, 0);
   const std::string as_is = ReadFile(folder / "take.jsonl");
   ASSERT_EQ(ImportCsv(folder, csv, map + "smooth_s: 0.5\n").exit_code, 0);
@@ -392,7 +371,7 @@ TEST(Import, NothingIsSmoothedOverATimeInWhichItWasLost) {
 
 TEST(Import, ThingsThatRestOnNothingAreNamedWithWhatTheMapCouldSay) {
   const auto folder = FreshFolder("import");
-  std::string map = kMap;
+  std::string map = kCupMap;
   const std::size_t table = map.find("  table:");
   map.erase(table, map.find('\n', table) + 1 - table);
   const Said without = ImportCsv(folder, Csv(), map);
@@ -414,7 +393,7 @@ TEST(Import, ThingsThatRestOnNothingAreNamedWithWhatTheMapCouldSay) {
   EXPECT_EQ(with.err, "");
   EXPECT_NE(Events(folder).find("picking_up"), std::string::npos);
 
-  const Said low = ImportCsv(folder, Csv(), Replaced(kMap, "[0, 0, 0.7]", "[0, 0, 0.6]"));
+  const Said low = ImportCsv(folder, Csv(), Replaced(kCupMap, "[0, 0, 0.7]", "[0, 0, 0.6]"));
   EXPECT_NE(low.err.find("rests with the lowest point at 0.72 m"), std::string::npos) << low.err;
 }
 
@@ -511,8 +490,8 @@ TEST(Import, EpisodeFilesTakePosesAndRecordings) {
   const auto folder = FreshFolder("import");
   const std::string takes = (folder / "takes.episodes").string(),
                     lines = (folder / "take.jsonl").string();
-  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
-  EXPECT_EQ(ImportCsv(folder, Csv(), kMap, {"-o", takes}).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kCupMap).exit_code, 0);
+  EXPECT_EQ(ImportCsv(folder, Csv(), kCupMap, {"-o", takes}).exit_code, 0);
   const Said said = Prehend({"import", lines, "-o", takes});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_EQ(said.out, takes + ": a_cup_is_carried, 301 frames\n");
@@ -535,7 +514,7 @@ TEST(Import, WhatHappensBeforeTickZeroIsKept) {
   const std::string takes = (folder / "takes.episodes").string(),
                     lines = (folder / "take.jsonl").string(),
                     early = (folder / "early.jsonl").string();
-  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kCupMap).exit_code, 0);
   std::ofstream out(early);
   std::istringstream in(ReadFile(lines));
   constexpr int kEarlier = 20'000;
@@ -563,7 +542,7 @@ TEST(Import, EpisodesOfRecordingsAreCheckedAgainstTheGoldenBesideTheirSource) {
   const auto folder = FreshFolder("import");
   const std::string takes = (folder / "takes.episodes").string(),
                     lines = (folder / "take.jsonl").string();
-  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kCupMap).exit_code, 0);
   ASSERT_EQ(Prehend({"import", lines, "-o", takes}).exit_code, 0);
   const Said pending = Prehend({"check", takes});
   EXPECT_EQ(pending.exit_code, 5) << "no golden yet";
@@ -579,7 +558,7 @@ TEST(Import, WhatARecordingDoesNotHaveIsSaid) {
   const auto folder = FreshFolder("import");
   const std::string takes = (folder / "takes.episodes").string(),
                     lines = (folder / "take.jsonl").string();
-  ASSERT_EQ(ImportCsv(folder, Csv(), kMap).exit_code, 0);
+  ASSERT_EQ(ImportCsv(folder, Csv(), kCupMap).exit_code, 0);
   ASSERT_EQ(Prehend({"import", lines, "-o", takes}).exit_code, 0);
   const Said score = Prehend({"score", takes});
   EXPECT_EQ(score.exit_code, 2);

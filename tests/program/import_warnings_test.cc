@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "tests/program/carried_cup.h"
 #include "tests/program/import_csv.h"
 #include "tests/program/program.h"
 
@@ -271,6 +272,49 @@ TEST(ImportWarnings, AGrammarThatDoesNotExistIsWrongWhereItIsNamed) {
   EXPECT_NE(unnamed.err.find("if it is a file of yours, --grammar FILE names it"),
             std::string::npos)
       << unnamed.err;
+}
+
+/// What `import` says of the story of tests/program/carried_cup.h.
+std::string SaidOfCup(const std::string& from, const std::string& to) {
+  std::string csv = "t,name,x,y,z,qw,qx,qy,qz\n";
+  for (int i = 0; i <= 300; ++i) {
+    csv += AsWritten("Mug", CupAt(i / 60.0));
+    csv += AsWritten("Glove", HandAt(i / 60.0));
+  }
+  std::string map = Replaced(kCupMap, from, to);
+  if (to == "from: Glove") map = Replaced(map, "from: Glove, hand", "from: Mug, hand");
+  const Said said = ImportCsv(FreshFolder("import_warnings"), csv, map);
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  return said.err;
+}
+
+TEST(ImportWarnings, AThingThatComesToAHandIsTakenForIt) {
+  EXPECT_EQ(SaidOfCup("from: Mug", "from: Glove"),
+            "warning: the thing 'Glove' goes 0.52 m with no hand near, and the hand 'Mug' moves "
+            "only together with it: are they exchanged? (from: Mug and from: Glove); or, if not, "
+            "sure: [place]\n");
+}
+
+TEST(ImportWarnings, MeansOverLongTimesTellHowFarTheyAreOff) {
+  for (const char* fine : {"0.1", "0.2"})
+    EXPECT_EQ(SaidOfCup("import: 1", std::string("import: 1\nsmooth_s: ") + fine), "") << fine;
+  const std::string said = SaidOfCup("import: 1", "import: 1\nsmooth_s: 1");
+  EXPECT_NE(said.find("warning: smooth_s: 1 moves 'Mug' by more than 20 mm in "), said.npos)
+      << said;
+  EXPECT_NE(said.find(": what takes less time than that is smoothed away\n"), said.npos) << said;
+}
+
+TEST(ImportWarnings, ThingsThatStandInATableOrAboveItAreNamed) {
+  const auto at = [](const char* z_m) { return SaidOfCup("[0, 0, 0.7]", z_m); };
+  const std::string asks =
+      "'table': is at_m or size_m of 'table', or offset_m or size_m of 'cup' wrong?\n";
+  EXPECT_EQ(at("[0, 0, 0.71]"), "");
+  EXPECT_EQ(at("[0, 0, 0.69]"), "");
+  EXPECT_EQ(at("[0, 0, 0.73]"), "warning: 'cup' rests 30 mm deep in " + asks);
+  EXPECT_EQ(at("[0, 0, 0.745]"), "warning: 'cup' rests 45 mm deep in " + asks);
+  EXPECT_EQ(at("[0, 0, 0.68]"), "warning: 'cup' rests 20 mm above " + asks);
+  // It is in a bowl, of which only the box is known.
+  EXPECT_EQ(SaidOfCup("[2.0, 1.0, 0.04]", "[2.0, 1.0, 0.2]"), "");
 }
 
 TEST(ImportWarnings, BracesWithoutQuotesAreExplained) {

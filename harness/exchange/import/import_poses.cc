@@ -28,6 +28,7 @@ constexpr double kFarthest_m = 1e4;  ///< of the recording format
 constexpr double kUnmoved_m = 0.001;
 constexpr double kTrembles_m = 0.0008;  ///< more than this hides how things move
 constexpr double kMostTrembling_m = 0.5;
+constexpr double kSmoothedOff_m = 0.02;
 
 std::string EpisodeName(const ImportMap& map, const std::string& path) {
   if (!map.episode.empty()) return map.episode;
@@ -186,7 +187,7 @@ class Importer {
     DoubtfulThings large = ThingsTooLarge(map_);
     for (std::string& text : large.warnings) Warn(std::move(text));
     turned.things.merge(large.things);
-    if (std::string text = RestOnNothing(seen, turned.things); !text.empty()) Warn(std::move(text));
+    for (std::string& text : RestOddly(seen, turned.things)) Warn(std::move(text));
     std::string tilt = TiltOfRestPlane(seen, map_, turned.things);
     const bool says_place =
         !world_is_doubtful_ && !place_.signs.empty() && !map_.IsSure(Warning::kPlace);
@@ -268,7 +269,11 @@ class Importer {
       MarkGaps(kept.usual_s, e.from->where, /*of_opening=*/false, track, report);
       WarnOfMotion(entity, track.poses, report);
       const double trembling_m = Trembling_m(track.poses);
-      if (map_.smooth_s > 0) track.poses = Smoothed(track.poses, map_.smooth_s / 2);
+      if (map_.smooth_s > 0) {
+        PoseSeries smooth = Smoothed(track.poses, map_.smooth_s / 2);
+        WarnOfSmoothing(track.poses, smooth, report);
+        track.poses = std::move(smooth);
+      }
       NoteTrembling(trembling_m, track.poses, report);
     }
     for (const PoseSample& pose : track.poses) report.extent.extend(pose.p);
@@ -378,6 +383,24 @@ class Importer {
     if (entity.value.hand && extent.diagonal().norm() < 0.01)
       Warn(fmt::format("the hand '{}' never leaves {:.1f} mm", entity.name,
                        extent.diagonal().norm() * 1e3));
+  }
+
+  /// Means over a time in which a body turns round cut off where it went.
+  void WarnOfSmoothing(const PoseSeries& read, const PoseSeries& smooth,
+                       const EntityReport& report) {
+    std::size_t off = 0;
+    double most_m = 0;
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      const double off_m = (read[i].p - smooth[i].p).norm();
+      off += off_m > kSmoothedOff_m;
+      most_m = std::max(most_m, off_m);
+    }
+    if (off * 20 <= read.size()) return;
+    Warn(fmt::format(
+        "smooth_s: {:g} moves '{}' by more than {:g} mm in {:.0f} % of its poses, by "
+        "{:.0f} mm at most: what takes less time than that is smoothed away",
+        map_.smooth_s, report.from, 1e3 * kSmoothedOff_m,
+        100.0 * static_cast<double>(off) / static_cast<double>(read.size()), 1e3 * most_m));
   }
 
   /// `as_read_m`: how much it trembles in the file, which decides over how long to take means.

@@ -9,7 +9,7 @@
 namespace prehend::exchange {
 namespace {
 
-constexpr double kStill_m = 0.01, kMoves_m_per_s = 0.06;
+constexpr double kStill_m = 0.01;
 constexpr std::size_t kLeastStill = 5;  ///< looks
 constexpr double kSlips_m = 0.06;       ///< between a hand and what it carries
 constexpr double kCarries_m = 0.8;

@@ -12,7 +12,8 @@
 
 namespace prehend::exchange {
 
-inline constexpr double kHandReach_m = 0.2;  ///< nearer, a hand may hold what is still
+inline constexpr double kHandReach_m = 0.2;     ///< nearer, a hand may hold what is still
+inline constexpr double kMoves_m_per_s = 0.06;  ///< slower, it is still
 
 /// A pose at the time of a look; NaN where there is none.
 struct BodyLook {

@@ -51,7 +51,7 @@ class Judge {
       if (poses_.quaternion_order) Add(GuessOrder(poses_, map_));
       found_.world = found_.warnings.size() > before;
       if (!found_.world)
-        for (std::string& line : HeldFarOff(poses_, map_))
+        for (std::string& line : OddlyHeld(poses_, map_))
           found_.warnings.push_back(std::move(line));
     }
     found_.errors = errors_.Sorted();

@@ -43,8 +43,8 @@ Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign = fal
 Guess GuessOrder(const PoseFile& poses, const ImportMap& map);
 Guess GuessHandedness(const PoseFile& poses, const ImportMap& map);
 
-/// What grippers carry far off their origins, each a line.
-std::vector<std::string> HeldFarOff(const PoseFile& poses, const ImportMap& map);
+/// What grippers carry far off their origins, and what looks exchanged with a hand, each a line.
+std::vector<std::string> OddlyHeld(const PoseFile& poses, const ImportMap& map);
 
 /// What a hand cannot move.
 DoubtfulThings ThingsTooLarge(const ImportMap& map);

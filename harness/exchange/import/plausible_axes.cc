@@ -13,6 +13,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "harness/exchange/import/plausibility.h"
 
@@ -255,8 +256,52 @@ Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign) {
   return guess;
 }
 
-std::vector<std::string> HeldFarOff(const PoseFile& poses, const ImportMap& map) {
+namespace {
+
+/// How far a body goes while none of `others` is within reach of it, m.
+double WayAlone_m(const MotionSeen& seen, std::size_t body, bool others_are_hands) {
+  double way_m = 0;
+  const std::vector<BodyLook>& looks = seen.looks[body];
+  for (std::size_t k = 1; k < looks.size(); ++k) {
+    const double step_m = (looks[k].p_m - looks[k - 1].p_m).norm();
+    if (!(step_m > kMoves_m_per_s * seen.look_s)) continue;
+    bool alone = true;
+    for (std::size_t other = 0; alone && other < seen.looks.size(); ++other) {
+      if (seen.entities[other]->hand != others_are_hands) continue;
+      const MappedEntity& thing = *seen.entities[others_are_hands ? body : other];
+      // Of what is lost nobody knows.
+      alone =
+          (seen.looks[other][k].p_m - looks[k].p_m).norm() > thing.size_m.norm() / 2 + kHandReach_m;
+    }
+    if (alone) way_m += step_m;
+  }
+  return way_m;
+}
+
+/// Things do not come to hands that wait for them.
+std::vector<std::string> HandsThatAreFetched(const MotionSeen& seen) {
+  constexpr double kComes_m = 0.1, kOfIt = 0.1;
+  std::set<std::pair<std::size_t, std::size_t>> pairs;  // of thing and hand
+  for (const Carry& carry : seen.carries) pairs.emplace(carry.thing, carry.hand);
+  std::vector<std::string> lines;
+  for (const auto& [thing, hand] : pairs) {
+    const double way_m = WayAlone_m(seen, thing, true);
+    if (way_m < kComes_m || WayAlone_m(seen, hand, false) > kOfIt * way_m) continue;
+    const std::string& is_thing = seen.entities[thing]->from->value;
+    const std::string& is_hand = seen.entities[hand]->from->value;
+    lines.push_back(fmt::format(
+        "the thing '{}' goes {:.2f} m with no hand near, and the hand '{}' moves only together "
+        "with it: are they exchanged? (from: {} and from: {}); or, if not, sure: [place]",
+        is_thing, way_m, is_hand, is_hand, is_thing));
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<std::string> OddlyHeld(const PoseFile& poses, const ImportMap& map) {
   constexpr double kFar_m = 0.03;  // from the surface: grip_near of grasp_from_gripper
+  if (map.IsSure(Warning::kPlace)) return {};
   const MotionSeen seen = MotionIn(poses, map, map.MetresPerUnit());
   std::map<std::size_t, std::array<std::vector<double>, 3>> held;  // by hand, in its axes
   std::map<std::size_t, std::vector<double>> gaps_m;
@@ -271,9 +316,9 @@ std::vector<std::string> HeldFarOff(const PoseFile& poses, const ImportMap& map)
         held[carry.hand][i].push_back(off_m[static_cast<Eigen::Index>(i)]);
     }
   }
-  std::vector<std::string> lines;
+  std::vector<std::string> lines = HandsThatAreFetched(seen);
   for (const auto& [hand, axes] : held) {
-    if (map.IsSure(Warning::kPlace) || Median(gaps_m[hand]) < kFar_m) continue;
+    if (Median(gaps_m[hand]) < kFar_m) continue;
     const Eigen::Vector3d& now = seen.entities[hand]->offset_m;
     lines.push_back(fmt::format(
         "what the gripper '{}' carries is {:.2f} m off its origin, which must lie between its "

@@ -39,8 +39,9 @@ std::string TiltOfRestPlane(const episode::Recording& episode, const ImportMap& 
                             const std::set<std::size_t>& untrue);
 
 /// Names the things that rest mostly where nothing is below them and no hand could hold them, at
-/// which height, and what the map could say; "" if there are none. Not of `untrue`, whose boxes
-/// mean nothing.
-std::string RestOnNothing(const episode::Recording& episode, const std::set<std::size_t>& untrue);
+/// which height, and what the map could say; and each that rests mostly inside what is fixed. Not
+/// of `untrue`, whose boxes mean nothing.
+std::vector<std::string> RestOddly(const episode::Recording& episode,
+                                   const std::set<std::size_t>& untrue);
 
 }  // namespace prehend::exchange

@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kOnTop_m = 0.05;  ///< lie_about of grammar/library/support_from_motion.grammar
 constexpr double kHigh_m = 1.6;
+constexpr double kOff_m = 0.015;
 constexpr double kLeast_s = 1;  ///< a shorter rest says nothing
 
 Eigen::AlignedBox3d BoxOf(const grammar::EntityInfo& entity, const grammar::EntitySample& look) {
@@ -32,6 +33,10 @@ bool IsAbove(const Eigen::AlignedBox3d& upper, const Eigen::AlignedBox3d& lower)
          (lower.min().head<2>().array() < upper.max().head<2>().array()).all();
 }
 
+bool IsMovable(const grammar::EntityInfo& entity) {
+  return std::ranges::find(entity.classes, "Movable") != entity.classes.end();
+}
+
 /// Without "-0.0".
 double Tenths(double x) { return std::round(10 * x) / 10 + 0.0; }
 
@@ -39,6 +44,8 @@ double Tenths(double x) { return std::round(10 * x) / 10 + 0.0; }
 struct RestPoses {
   std::vector<double> bottoms_m;  ///< of all rests
   std::size_t supported = 0;      ///< on how many of them something was near below
+  std::vector<double> off_m;      ///< how far over what is fixed it was, of those
+  std::size_t off = 0;            ///< the last such entity
   Eigen::AlignedBox2d place;
 };
 
@@ -75,6 +82,11 @@ RestPoses RestPosesOf(const episode::Recording& episode, std::size_t thing) {
       const bool inside = below.contains(box.center());
       if (!IsAbove(box, below) || (std::abs(above_m) > kOnTop_m && !inside)) continue;
       ++rests.supported;
+      const bool juts = box.min().z() < below.min().z();  // out of what it would be in
+      if (std::abs(above_m) > kOff_m && (!inside || juts) && !IsMovable(entities[other])) {
+        rests.off_m.push_back(above_m);
+        rests.off = other;
+      }
       break;
     }
   });
@@ -83,27 +95,32 @@ RestPoses RestPosesOf(const episode::Recording& episode, std::size_t thing) {
 
 }  // namespace
 
-std::string RestOnNothing(const episode::Recording& episode, const std::set<std::size_t>& untrue) {
+std::vector<std::string> RestOddly(const episode::Recording& episode,
+                                   const std::set<std::size_t>& untrue) {
   const auto& entities = episode.header.entity_table.entities;
-  std::vector<std::string> names;
+  std::vector<std::string> names, lines;
   std::vector<double> bottoms_m;
   Eigen::AlignedBox2d place;
   for (std::size_t i = 0; i < entities.size(); ++i) {
-    if (untrue.contains(i) || entities[i].classes.front() == "Hand" ||
-        std::ranges::find(entities[i].classes, "Movable") == entities[i].classes.end())
+    if (untrue.contains(i) || entities[i].classes.front() == "Hand" || !IsMovable(entities[i]))
       continue;
     const RestPoses rests = RestPosesOf(episode, i);
-    if (static_cast<double>(rests.bottoms_m.size()) * kBetweenLooks_s < kLeast_s ||
-        2 * rests.supported >= rests.bottoms_m.size())
-      continue;
+    if (static_cast<double>(rests.bottoms_m.size()) * kBetweenLooks_s < kLeast_s) continue;
+    if (2 * rests.off_m.size() > rests.bottoms_m.size())
+      lines.push_back(fmt::format(
+          "'{0}' rests {1:.0f} mm {2} '{3}': is at_m or size_m of '{3}', or offset_m or size_m of "
+          "'{0}' wrong?",
+          entities[i].name, 1e3 * std::abs(Median(rests.off_m)),
+          Median(rests.off_m) < 0 ? "deep in" : "above", entities[rests.off].name));
+    if (2 * rests.supported >= rests.bottoms_m.size()) continue;
     names.push_back(fmt::format("'{}'", entities[i].name));
     bottoms_m.push_back(Median(rests.bottoms_m));
     place.extend(rests.place);
   }
-  if (names.empty()) return "";
+  if (names.empty()) return lines;
   const double height_m = Median(bottoms_m);
   const Eigen::Vector2d middle = place.center(), size = place.sizes().array() + 0.4;
-  return fmt::format(
+  lines.push_back(fmt::format(
       "{} {} with the lowest point at {:.2f} m, and nothing in the map has its top within {:g} cm "
       "of "
       "that: no support, pick-up or put-down is recognised; what it stands on could be 'table: "
@@ -111,7 +128,8 @@ std::string RestOnNothing(const episode::Recording& episode, const std::set<std:
       "0.04]}}'{}",
       fmt::join(names, ", "), names.size() == 1 ? "rests" : "rest", height_m, 100 * kOnTop_m,
       Tenths(middle.x()), Tenths(middle.y()), height_m - 0.02, size.x(), size.y(),
-      height_m > kHigh_m ? "; that is higher than people work: is unit right?" : "");
+      height_m > kHigh_m ? "; that is higher than people work: is unit right?" : ""));
+  return lines;
 }
 
 }  // namespace prehend::exchange
