@@ -34,6 +34,8 @@ constexpr double kSoft_s = 0.05;
 constexpr double kSamePlace = 1e-9;
 /// A grip from here on is meant to hold something.
 constexpr double kClosed = 0.5;
+/// Hands that press are sent up to 4 cm into a thing; farther off, a hand did not get there.
+constexpr double kNotedWay_m = 0.05;
 /// A hand that reaches less than this share of the force is noted.
 constexpr double kNotedForceShare = 0.8;
 
@@ -189,6 +191,20 @@ void ScriptPlayer::NoteTheGrip(std::size_t hand, const Snapshot& now) {
   if (note.empty()) return;
   notes_.push_back({now.tick, HandIndex(hand), std::move(note)});
   hands_[hand].grip_note = GripNote{now.tick, state.object};
+}
+
+void ScriptPlayer::NoteTheWay(std::size_t hand, const Snapshot& now) {
+  const HandState& state = hands_[hand];
+  if (!state.step || (state.waiting && state.waiting->met)) return;
+  const Step& step = script_.stages[stage_ - 1].steps[*state.step];
+  if (!std::holds_alternative<MoveStep>(step.action) &&
+      !std::holds_alternative<CarryStep>(step.action))
+    return;
+  const HandIndex index(hand);
+  const double off_m = (TargetOf(state).X_WH.p_m - now.hand(index).palm.X_WB.p_m).norm();
+  if (off_m < kNotedWay_m) return;
+  std::string note = NoteAboutWay(scene_, now, index, off_m);
+  notes_.push_back({now.tick, index, std::move(note)});
 }
 
 void ScriptPlayer::WithdrawNotes(const Snapshot& now) {

@@ -432,6 +432,7 @@ bool ScriptPlayer::EndSteps(const Snapshot& now) {
       CheckThatItStands(h, now);
       if (problem_.empty()) CheckGuard(h, now);
       NoteTheGrip(h, now);
+      NoteTheWay(h, now);
       Settle(hands_[h]);
     }
     clock_.Finish(i);
@@ -453,7 +454,10 @@ bool ScriptPlayer::EndStage(const Snapshot& now) {
     CheckThatItStands(h, now);
   for (std::size_t h = 0; h < hands_.size() && !clock_.is_ordered() && problem_.empty(); ++h)
     CheckGuard(h, now);
-  for (std::size_t h = 0; h < hands_.size() && !clock_.is_ordered(); ++h) NoteTheGrip(h, now);
+  for (std::size_t h = 0; h < hands_.size() && !clock_.is_ordered(); ++h) {
+    NoteTheGrip(h, now);
+    NoteTheWay(h, now);
+  }
   return problem_.empty();
 }
 

@@ -154,6 +154,7 @@ class ScriptPlayer {
   bool Happens(const Until& until, HandIndex own, const Snapshot& now) const;
   /// Notes that a hand has closed beside what it reached for.
   void NoteTheGrip(std::size_t hand, const Snapshot& now);
+  void NoteTheWay(std::size_t hand, const Snapshot& now);
   /// Fingers follow late: a hand that takes hold after all, before it opens, needs no note.
   void WithdrawNotes(const Snapshot& now);
   void Press(const Snapshot& now);

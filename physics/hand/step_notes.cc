@@ -123,4 +123,19 @@ std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, HandIndex han
          " moved, or is it too thin for this style?";
 }
 
+std::string NoteAboutWay(const Scene& scene, const Snapshot& now, HandIndex hand, double off_m) {
+  std::set<std::string> touched;
+  for (const ContactPoint& contact : now.contacts) {
+    if (contact.a.hand == hand && contact.b.body != kNone)
+      touched.insert(scene.body(contact.b.body).name);
+    if (contact.b.hand == hand && contact.a.body != kNone)
+      touched.insert(scene.body(contact.a.body).name);
+  }
+  std::string names;
+  for (const std::string& name : touched) names += (names.empty() ? "" : ", ") + name;
+  return "the move ends with the hand " + Millimetres(off_m) + " away from where it was to go" +
+         (names.empty() ? "" : ", at " + names) +
+         "; the next step goes on from where it was to go, not from where it is";
+}
+
 }  // namespace prehend::physics

@@ -25,4 +25,7 @@ bool IsHeldBySides(const Scene& scene, const Snapshot& now, HandIndex hand, Body
 std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, HandIndex hand,
                           BodyIndex object);
 
+/// About a hand that ends a move `off_m` away from where it was to go: what it pushes against.
+std::string NoteAboutWay(const Scene& scene, const Snapshot& now, HandIndex hand, double off_m);
+
 }  // namespace prehend::physics

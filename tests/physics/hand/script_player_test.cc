@@ -189,6 +189,31 @@ TEST(ScriptPlayerTest, AHandThatTakesHoldLaterIsNotNoted) {
   EXPECT_EQ(notes(One(TriggerStep{0}, 0.01)), 1u) << "it opened before";
 }
 
+TEST(ScriptPlayerTest, NotesAMoveThatEndsElsewhere) {
+  const auto notes = [](double down_m) {
+    const Scene scene = MakeScene({});
+    const double to_table_m = scene.hands[0].X_WH.p_m.z() - kTop_m;
+    Simulation simulation(scene,
+                          {.stages = {One(MoveStep{{0.1, -0.1, -to_table_m - down_m}}, 0.8),
+                                      One(WaitStep{}, 0.2), One(MoveStep{{0, 0, 0.1}}, 0.6)}});
+    while (simulation.Step()) {
+    }
+    Texts texts;
+    for (const auto& note : simulation.notes()) texts.push_back(note.text);
+    return texts;
+  };
+  EXPECT_EQ(notes(-0.03), Texts{}) << "it presses, as it is to";
+  const Texts said = notes(0.2);
+  ASSERT_EQ(said.size(), 2u) << "it presses on while it is lifted by less";
+  for (const std::string& text : said) {
+    EXPECT_TRUE(text.starts_with("the move ends with the hand ")) << text;
+    EXPECT_TRUE(
+        text.ends_with(" away from where it was to go, at table; the next step goes on "
+                       "from where it was to go, not from where it is"))
+        << text;
+  }
+}
+
 TEST(ScriptPlayerTest, ABeatLastsAsLongAsItsLongestStep) {
   Scene scene = MakeScene({});
   scene.hands.push_back({"other", LibraryHand("human_left"), {{-0.3, 0.3, 1.1}}});
