@@ -57,13 +57,14 @@ std::vector<std::string> BlocksOf(const std::string& language) {
   return blocks;
 }
 
-/// What stands between backticks in the n-th cell of a row "| 1 | .. |".
-std::string CellOf(const std::string& row, int n) {
-  const std::string page = ReadFile(PREHEND_SOURCE_DIR "/docs/knowledge.md");
-  std::size_t at = page.find("| `", page.find("\n| " + row + " | `") + 3);
-  for (int i = 0; i < n; ++i) at = page.find("| `", at + 1);
-  const std::size_t begin = at + 3;
-  return page.substr(begin, page.find("` |", begin) - begin);
+/// The options of the page's `episode query` commands, in their order.
+std::vector<std::string> QueriesOfThePage() {
+  std::istringstream page(ReadFile(PREHEND_SOURCE_DIR "/docs/knowledge.md"));
+  const std::string_view command = "prehend episode query day.episodes ";
+  std::vector<std::string> options;
+  for (std::string line; std::getline(page, line);)
+    if (line.starts_with(command)) options.push_back(line.substr(command.size()));
+  return options;
 }
 
 /// Begins and ends to the tenth of a millisecond.
@@ -90,9 +91,9 @@ std::string Output(const std::string& command) {
 
 TEST(Knowledge, ThePapersQuestionsHaveTheSameAnswersInEveryLanguage) {
   const Recorded& days = ThreeDays();
-  const std::vector<std::string> prolog = BlocksOf("prolog"), sparql = BlocksOf("sparql");
-  ASSERT_EQ(prolog.size(), 3u);
-  ASSERT_EQ(sparql.size(), 3u);
+  const std::vector<std::string> prolog = BlocksOf("prolog"), sparql = BlocksOf("sparql"),
+                                 sql = BlocksOf("sql"), queries = QueriesOfThePage();
+  for (const auto* language : {&prolog, &sparql, &sql, &queries}) ASSERT_EQ(language->size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::string row = std::to_string(i + 1);
     Times asked, queried, selected;
@@ -101,16 +102,16 @@ TEST(Knowledge, ThePapersQuestionsHaveTheSameAnswersInEveryLanguage) {
     ASSERT_EQ(asked.size(), 1u) << row;
 
     std::vector<std::string> words = {"episode", "query", days.file, "--json"};
-    std::istringstream options(CellOf(row, 0));
+    std::istringstream options(queries[i]);
     for (std::string word; options >> std::quoted(word, '\'');) words.push_back(word);
     for (const Json& answer : Asked(words))
       queried.insert(Rounded(answer["begin_s"], answer["end_s"]));
     EXPECT_EQ(queried, asked) << row;
 
-    const std::string sql = Output("sqlite3 -json '" + days.file + "' \"" + CellOf(row, 1) + "\"");
-    for (const Json& answer : Json::parse(sql, nullptr, false))
+    const std::string rows = Output("sqlite3 -json '" + days.file + "' \"" + sql[i] + "\"");
+    for (const Json& answer : Json::parse(rows, nullptr, false))
       selected.insert(Rounded(answer["begin_s"], answer["end_s"]));
-    EXPECT_EQ(selected, asked) << row << ": " << sql;
+    EXPECT_EQ(selected, asked) << row << ": " << rows;
 
     const auto file = (days.folder / ("q" + row + ".rq")).string();
     WriteFile(file, sparql[i]);
