@@ -207,16 +207,15 @@ const GapTolerance::Seen* GapTolerance::LastOf(std::size_t entity, grammar::Tick
 void GapTolerance::Fill(grammar::Tick tick, std::vector<grammar::EntitySample>& looks) {
   for (std::size_t i = 0; i < looks.size(); ++i) {
     Entity& entity = seen_[i];
-    if (grammar::IsTracked(looks[i])) {
+    if (!entity.tracked)  // what a frame says holds until the next one
+      (LastOf(i, *before_) ? entity.gaps.bridged : entity.gaps.unknown) += tick - *before_;
+    const bool is_tracked = grammar::IsTracked(looks[i]);
+    if (entity.tracked && !is_tracked) ++entity.gaps.gaps;
+    entity.tracked = is_tracked;
+    if (is_tracked)
       entity.last = {tick, looks[i]};
-      entity.tracked = true;
-      continue;
-    }
-    if (entity.tracked) ++entity.gaps.gaps;
-    entity.tracked = false;
-    const Seen* last = LastOf(i, tick);
-    (last ? entity.gaps.bridged : entity.gaps.unknown) += before_ ? tick - *before_ : 0;
-    if (last) looks[i] = last->look;
+    else if (const Seen* last = LastOf(i, tick))
+      looks[i] = last->look;
   }
   before_ = tick;
 }

@@ -459,10 +459,27 @@ class Importer {
     }
     times_.emplace(0, 0.0);
     times_.emplace(TickOf(file_.last_s), file_.last_s);
+    if (map_.lost == Lost::kUnknown) AddEndsOfSight();
     if (times_.size() > episode::kMaxEpisodeFrames)
       return fmt::format("{} different times; a recording has at most {} frames", times_.size(),
                          episode::kMaxEpisodeFrames);
     return "";
+  }
+
+  /// Where nothing else is seen when a body becomes unknown, there is a frame that says so.
+  void AddEndsOfSight() {
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+      const PoseSeries& poses = tracks_[i].poses;
+      for (std::size_t k = 1; k <= poses.size(); ++k) {
+        if (!(k < poses.size() ? poses[k].after_loss : tracks_[i].lost_after)) continue;
+        const double end_s = poses[k - 1].t_s + map_.bridge_s;
+        const std::int64_t tick = TickOf(end_s) + 1;  // at its end a bridge still holds
+        const auto next = times_.lower_bound(tick);
+        if (next != times_.end() && next->second > end_s + kGap * kept_[i].usual_s)
+          times_.emplace_hint(next, tick, end_s + 1.0 / static_cast<double>(map_.ticks_per_second));
+      }
+      LetGo(poses);
+    }
   }
 
   /// Returns those that guesses look at.

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kOnTop_m = 0.05;  ///< lie_about of grammar/library/support_from_motion.grammar
 constexpr double kHigh_m = 1.6;
-constexpr double kOff_m = 0.015;
+constexpr double kOffTop_m = 0.015;
 constexpr double kLeast_s = 1;  ///< a shorter rest says nothing
 
 Eigen::AlignedBox3d BoxOf(const grammar::EntityInfo& entity, const grammar::EntitySample& look) {
@@ -83,7 +83,7 @@ RestPoses RestPosesOf(const episode::Recording& episode, std::size_t thing) {
       if (!IsAbove(box, below) || (std::abs(above_m) > kOnTop_m && !inside)) continue;
       ++rests.supported;
       const bool juts = box.min().z() < below.min().z();  // out of what it would be in
-      if (std::abs(above_m) > kOff_m && (!inside || juts) && !IsMovable(entities[other])) {
+      if (std::abs(above_m) > kOffTop_m && (!inside || juts) && !IsMovable(entities[other])) {
         rests.off_m.push_back(above_m);
         rests.off = other;
       }

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an import makes of times in which nothing is tracked.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/program/carried_cup.h"
+#include "tests/program/import_csv.h"
+#include "tests/program/program.h"
+
+namespace prehend::house {
+namespace {
+
+/// At 60 Hz. No body has a row from 1.2 to 3.6 s, when the cup is lifted, carried 40 cm and put
+/// down.
+std::string CsvWithAGap() {
+  std::string csv = "t,name,x,y,z,qw,qx,qy,qz\n";
+  for (int i = 0; i <= 360; ++i) {
+    if (i > 72 && i < 216) continue;
+    csv += AsWritten("Mug", CupAt(i / 60.0)) + AsWritten("Glove", HandAt(i / 60.0));
+  }
+  return csv;
+}
+
+/// What `episode resegment` says of the take.
+Said Segment(const std::filesystem::path& folder, const std::string& lost) {
+  const Said imported = ImportCsv(folder, CsvWithAGap(), kCupMap + lost);
+  EXPECT_EQ(imported.exit_code, 0) << imported.err;
+  return Prehend({"episode", "resegment", (folder / "take.jsonl").string()});
+}
+
+TEST(ImportGaps, WhenAllIsLostAFrameSaysSo) {
+  const auto folder = FreshFolder("all_is_lost");
+  const Said said = Segment(folder, "lost: unknown\n");
+  const std::string recording = ReadFile(folder / "take.jsonl");
+  EXPECT_NE(recording.find("{\"tick\":13001,\"samples\":{\"cup\":null,\"hand\":null}"),
+            std::string::npos)
+      << recording;
+  EXPECT_EQ(said.out.find("grasping"), std::string::npos) << said.out;
+  EXPECT_NE(said.err.find("'cup' is not tracked in 1 gap: 0.000 s are bridged, in 2.300 s it is "
+                          "unknown"),
+            std::string::npos)
+      << said.err;
+}
+
+TEST(ImportGaps, WhatIsHeldNeedsNoSuchFrame) {
+  const auto folder = FreshFolder("all_is_held");
+  Segment(folder, "lost: hold\n");
+  EXPECT_EQ(ReadFile(folder / "take.jsonl").find("null"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace prehend::house
