@@ -43,6 +43,18 @@ TEST(ImportGaps, WhenAllIsLostAFrameSaysSo) {
       << said.err;
 }
 
+// The cup stands 40 cm from where it was lost: no support goes on.
+TEST(ImportGaps, ASupportEndsWhereTheThingIsLost) {
+  const Said said = Segment(FreshFolder("support_is_lost"), "lost: unknown\n");
+  EXPECT_EQ(said.out,
+            "event         begin_s  end_s    roles\n"
+            "contact       0.00000  1.30010  a=cup       b=table\n"
+            "supported_by  0.00000  1.30010  object=cup  support=table\n"
+            "contact       3.60000  6.00010  a=cup       b=table        open_end\n"
+            "supported_by  3.60000  6.00010  object=cup  support=table  open_end\n"
+            "completed: 6.00000 s, 60000 ticks\n");
+}
+
 TEST(ImportGaps, WhatIsHeldNeedsNoSuchFrame) {
   const auto folder = FreshFolder("all_is_held");
   Segment(folder, "lost: hold\n");
