@@ -20,8 +20,8 @@
 #include "harness/exchange/arrays/row_poses.h"
 #include "harness/exchange/cells/body_words.h"
 #include "harness/exchange/cells/column_names.h"
+#include "harness/exchange/doubts/plausibility.h"
 #include "harness/exchange/import/import_poses.h"
-#include "harness/exchange/import/plausibility.h"
 #include "harness/exchange/poses/table_layout.h"
 
 namespace prehend::exchange {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "harness/exchange/import/motion_seen.h"
+#include "harness/exchange/doubts/motion_seen.h"
 
 namespace prehend::exchange {
 namespace {

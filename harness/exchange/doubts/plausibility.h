@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/exchange/import/motion_seen.h"
-#include "harness/exchange/import/rest_poses.h"
+#include "harness/exchange/doubts/motion_seen.h"
+#include "harness/exchange/doubts/rest_poses.h"
 
 namespace prehend::exchange {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/plausibility.h. Tested by tests/program/import_grip_test.cc
+// See harness/exchange/doubts/plausibility.h. Tested by tests/program/import_grip_test.cc
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "harness/exchange/import/plausibility.h"
+#include "harness/exchange/doubts/plausibility.h"
 
 namespace prehend::exchange {
 namespace {

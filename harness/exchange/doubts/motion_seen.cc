@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/exchange/import/motion_seen.h"
+#include "harness/exchange/doubts/motion_seen.h"
 
 #include <algorithm>
 #include <bit>

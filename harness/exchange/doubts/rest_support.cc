@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/rest_poses.h.
+// See harness/exchange/doubts/rest_poses.h.
 //
 // The lowest point of the box of what rests must be near the top of another box that it is above.
 // Half of the times are enough: a hand may hold it still for a while.
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "grammar/base/frame.h"
-#include "harness/exchange/import/motion_seen.h"
-#include "harness/exchange/import/rest_poses.h"
+#include "harness/exchange/doubts/motion_seen.h"
+#include "harness/exchange/doubts/rest_poses.h"
 
 namespace prehend::exchange {
 namespace {

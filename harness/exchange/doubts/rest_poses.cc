@@ -5,8 +5,8 @@
 // is below: if it would stand there, but hovers or sinks in as it lies, it does not lie.
 //
 // Several things that are turned the same way rest on a frame that is not upright: of that,
-// harness/exchange/import/rest_poses.h says something.
-#include "harness/exchange/import/rest_poses.h"
+// harness/exchange/doubts/rest_poses.h says something.
+#include "harness/exchange/doubts/rest_poses.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

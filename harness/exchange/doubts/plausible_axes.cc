@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/plausibility.h.
+// See harness/exchange/doubts/plausibility.h.
 //
 // Which way is up is told by four signs: what is carried from rest to rest is lifted on the way;
 // what stands has the map's tables below; things that are set down anew have turned about up; heads
@@ -15,7 +15,7 @@
 #include <optional>
 #include <set>
 
-#include "harness/exchange/import/plausibility.h"
+#include "harness/exchange/doubts/plausibility.h"
 
 namespace prehend::exchange {
 namespace {

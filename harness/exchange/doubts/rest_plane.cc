@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/rest_poses.h.
+// See harness/exchange/doubts/rest_poses.h.
 //
 // Places of rest are at least 5 cm apart. Things stand: each place is half the thing's height above
 // the plane. That depends on which way is up, so the plane is fitted several times. What lies
@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "grammar/base/frame.h"
-#include "harness/exchange/import/motion_seen.h"
-#include "harness/exchange/import/rest_poses.h"
+#include "harness/exchange/doubts/motion_seen.h"
+#include "harness/exchange/doubts/rest_poses.h"
 
 namespace prehend::exchange {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/exchange/import/plausibility.h"
+#include "harness/exchange/doubts/plausibility.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// See harness/exchange/import/plausibility.h.
+// See harness/exchange/doubts/plausibility.h.
 //
 // Three families of signs do not depend on each other: how far and how fast what is tracked moves,
 // where it is, and how large it is. Another unit is named if it would explain most of them.
@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 
-#include "harness/exchange/import/plausibility.h"
+#include "harness/exchange/doubts/plausibility.h"
 
 namespace prehend::exchange {
 namespace {

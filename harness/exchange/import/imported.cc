@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// See harness/exchange/import/import_poses.h: what a recording has before its frames, and what is
+// told of it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "harness/exchange/import/import_poses.h"
+
+namespace prehend::exchange {
+namespace {
+
+std::string EpisodeName(const ImportMap& map, const std::string& path) {
+  if (!map.episode.empty()) return map.episode;
+  std::string name = std::filesystem::path(path).stem().string();
+  for (char& c : name) {
+    const bool is_plain =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!is_plain) c = '_';
+  }
+  if (name.empty() || (name[0] >= '0' && name[0] <= '9')) name = "take_" + name;
+  return name;
+}
+
+}  // namespace
+
+episode::EpisodeHeader HeaderOf(const MapFile& file, const std::string& poses_path) {
+  const ImportMap& map = file.map;
+  episode::EpisodeHeader header;
+  header.episode = EpisodeName(map, poses_path);
+  header.grammar = map.grammar.value;
+  if (file.document.root.Find("grammar"))
+    header.grammar_named = ErrorAt(file.document, map.grammar.where);
+  header.bridge_s = map.bridge_s;
+  header.entity_table.ticks_per_second = map.ticks_per_second;
+  for (const Named<MappedEntity>& entity : map.entities) {
+    const MappedEntity& e = entity.value;
+    grammar::EntityInfo& info = header.entity_table.entities.emplace_back();
+    info.name = entity.name;
+    info.half_size_m = e.size_m / 2;
+    if (e.part_of)
+      info.part_of = static_cast<int>(
+          std::ranges::find(map.entities, e.part_of->value, &Named<MappedEntity>::name) -
+          map.entities.begin());
+    if (e.hand) {
+      info.classes = {"Hand", "Entity"};
+      info.sensor_sets = {"fingers", "thumb", "palm"};
+    } else {
+      info.classes = {e.class_name,
+                      e.joint     ? "Jointed"
+                      : e.part_of ? "Attached"
+                      : e.fixed   ? "Fixed"
+                                  : "Movable",
+                      "Thing", "Entity"};
+    }
+  }
+  return header;
+}
+
+std::string ImportTable(const Imported& imported) {
+  const episode::Recording& episode = imported.episode;
+  std::string table = fmt::format("{}: {} frames, {:.3f} s\n", episode.header.episode,
+                                  imported.frames, imported.duration_s);
+  std::size_t width = 16;
+  for (const EntityReport& one : imported.entities) width = std::max(width, one.from.size());
+  table += fmt::format("{:<16} {:<{}} {:>7} {:>7} {:>8} {:>9} {:>5} {:>7}  {:<14} {:<14} {}\n",
+                       "entity", "from", width, "poses", "Hz", "bridged", "s", "lost", "s", "x, m",
+                       "y, m", "z, m");
+  for (const EntityReport& one : imported.entities) {
+    const auto range = [&](int axis) {
+      return fmt::format("{:.2f}..{:.2f}", one.extent.min()[axis], one.extent.max()[axis]);
+    };
+    table += fmt::format(
+        "{:<16} {:<{}} {:>7} {:>7.1f} {:>8} {:>9.3f} {:>5} {:>7.3f}  {:<14} {:<14} {}\n", one.name,
+        one.from.empty() ? "(the map)" : one.from, width, one.poses, one.rate_hz, one.bridged,
+        one.bridged_s, one.lost, one.lost_s, range(0), range(1), range(2));
+  }
+  table += imported.openings;
+  for (const EntityReport& one : imported.entities) {
+    if (!one.axes) continue;
+    const double sign = one.axes->w() < 0 ? -1 : 1;
+    // Without "-0.00000".
+    const Eigen::Vector4d q = (one.axes->coeffs() * (1e5 * sign)).array().round() / 1e5 + 0.0;
+    table += fmt::format(
+        "{}: upright_at_s of this file is axes_quat_wxyz: [{:.5f}, {:.5f}, {:.5f}, {:.5f}]\n",
+        one.name, q.w(), q.x(), q.y(), q.z());
+  }
+  return table;
+}
+
+}  // namespace prehend::exchange
