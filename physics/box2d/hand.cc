@@ -3,6 +3,8 @@
 // joint with a motor. Tested by tests/physics/box2d/world_test.cc
 #include "physics/box2d/hand.h"
 
+#include <algorithm>
+
 #include "physics/scene/planar.h"
 
 namespace prehend::physics {
@@ -96,18 +98,17 @@ void Box2dHand::Drive(const HandCommand& command, double dt_s) {
   std::vector<double> joints;
   for (const Motor& motor : motors_) joints.push_back(Joint(motor));
   const std::vector<double>& targets = grip_.Targets(model_, style, command.target.trigger, joints);
-  for (std::size_t i = 0; i < motors_.size(); ++i) {
-    const HandLink& link = model_.links[i];
-    Drive(motors_[i], WantedSpeed(model_.driver, link, targets[i], joints[i], dt_s),
-          link.strength * style.effort[i]);
-  }
+  const double ticks = std::min(dt_s * JointDriver::kStiffnessRate_hz, 1.0);
+  for (std::size_t i = 0; i < motors_.size(); ++i)
+    Drive(motors_[i], WantedSpeed(model_.driver, model_.links[i], targets[i], joints[i], dt_s),
+          model_.driver.damping * ticks, model_.links[i].strength * style.effort[i]);
 }
 
-void Box2dHand::Drive(const Motor& motor, double wanted_speed, double strength) {
+void Box2dHand::Drive(const Motor& motor, double wanted_speed, double damping, double strength) {
   const auto drive = [&](auto& joint, double speed_scale) {
     // Box2D's motors enforce their speed at once; a softer driver asks for a share of the change.
     const double now = joint.GetJointSpeed(), wanted = motor.sign * wanted_speed * speed_scale;
-    joint.SetMotorSpeed(static_cast<float>(now + model_.driver.damping * (wanted - now)));
+    joint.SetMotorSpeed(static_cast<float>(now + damping * (wanted - now)));
   };
   if (motor.slide) {
     drive(*motor.slide, kLengthScale);

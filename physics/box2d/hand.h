@@ -39,7 +39,7 @@ class Box2dHand {
   Motor MakeMotor(const HandLink& link, const Eigen::Vector3d& axis_W,
                   const Eigen::Vector3d& pivot_W_m, double start, b2Body& parent, b2Body& body);
   double Joint(const Motor& motor) const;
-  void Drive(const Motor& motor, double wanted_speed, double strength);
+  void Drive(const Motor& motor, double wanted_speed, double damping, double strength);
 
   HandModel model_;
   HandIndex index_ = {};

@@ -125,8 +125,7 @@ void BulletHand::Drive(const HandCommand& command, double dt_s, double gravity_m
 }
 
 void BulletHand::DrivePalm(const HandCommand& command, double dt_s, double gravity_m_per_s2) {
-  const Wrench wrench =
-      pids_.Output(PalmState(), command.target, dt_s, command.lets_go_to.has_value());
+  const Wrench wrench = pids_.Output(PalmState(), command.target, dt_s, bool(command.lets_go_to));
   // The arm carries the hand's own weight, so that the PIDs feel only what the hand holds.
   const Eigen::Vector3d up(0, 0, gravity_m_per_s2);
   multibody_->addBaseForce(ToBullet(Eigen::Vector3d(wrench.force_n + up * model_.palm_mass_kg)));
@@ -143,10 +142,11 @@ void BulletHand::DriveJoints(const GraspStyle& style, double trigger, double dt_
     joints.push_back(multibody_->getJointPos(static_cast<int>(i)));
   const std::vector<double>& targets =
       grip_.Targets(model_, style, trigger, joints, command_.lets_go_to.value_or(1));
+  const double damping = driver.damping * std::min(dt_s * JointDriver::kStiffnessRate_hz, 1.0);
   for (std::size_t i = 0; i < targets.size(); ++i) {
     motors_[i]->setPositionTarget(0, 0);
     motors_[i]->setVelocityTarget(WantedSpeed(driver, model_.links[i], targets[i], joints[i], dt_s),
-                                  driver.damping);
+                                  damping);
     motors_[i]->setMaxAppliedImpulse(model_.links[i].strength * style.effort[i] * dt_s);
   }
 }

@@ -223,7 +223,7 @@ double WantedSpeed(const JointDriver& driver, const HandLink& link, double targe
                    double dt_s) {
   const double limit = link.slides ? driver.max_slide_m_per_s : driver.max_speed_rad_per_s;
   const double ticks = dt_s * JointDriver::kStiffnessRate_hz;
-  const double share = std::min(driver.stiffness * ticks * ticks, 1.0);
+  const double share = std::min(driver.stiffness * ticks * std::max(ticks, 1.0), 1.0);
   return std::clamp(share * (target - joint) / dt_s, -limit, limit);
 }
 

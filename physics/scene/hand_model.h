@@ -43,11 +43,11 @@ struct PidGains {
 
 /// Velocity servo of a joint, with limited torque.
 struct JointDriver {
-  /// At other rates the share of a tick grows with the square of its length. A joint that holds
-  /// something then yields alike, by what the solver leaves over, which does so, too.
+  /// Shares are of a tick at this rate. In shorter ticks both are smaller, so that a joint follows
+  /// alike, and yields alike to a load: by what the solver leaves over, which goes with the square.
   static constexpr double kStiffnessRate_hz = 480;
-  double stiffness = 0.2;  ///< share of the error removed per tick at that rate
-  double damping = 1.0;    ///< 0..1: how firmly the target velocity is enforced
+  double stiffness = 0.2;  ///< share of the angle's error that is removed
+  double damping = 1.0;    ///< 0..1: the same of the speed's
   double max_speed_rad_per_s = 12;
   double max_slide_m_per_s = 0.3;  ///< the same for links that slide
 };

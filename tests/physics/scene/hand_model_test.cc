@@ -67,13 +67,13 @@ TEST(HandModelTest, GainsThatCannotFollowOrDivergeAreNamed) {
   EXPECT_EQ(why(&PidGains::integral, 0), "");
 }
 
-TEST(HandModelTest, OfAnErrorAShareIsRemovedThatGoesWithTheSquareOfATick) {
+TEST(HandModelTest, OfAnErrorAShareIsRemovedThatGoesWithATickAndWithTheSquareOfALongOne) {
   const JointDriver driver;
   const auto share = [&](double rate_hz) {
     return WantedSpeed(driver, {}, 0.001, 0, 1 / rate_hz) / rate_hz / 0.001;
   };
   EXPECT_EQ(WantedSpeed(driver, {}, 0.001, 0, 1.0 / 480), driver.stiffness * 0.001 / (1.0 / 480));
-  EXPECT_NEAR(share(960), driver.stiffness / 4, 1e-9);
+  EXPECT_NEAR(share(960), driver.stiffness / 2, 1e-9);
   EXPECT_NEAR(share(240), driver.stiffness * 4, 1e-9);
   EXPECT_NEAR(share(120), 1, 1e-9) << "not more than all of it";
 }

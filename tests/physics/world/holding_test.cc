@@ -161,6 +161,37 @@ TEST(Holding, WhenALiftBeginsIsNoChance) {
         << moved_m;
 }
 
+/// Begins and ends of touches between the hand and the thing, seconds.
+std::vector<double> Touches(int rate_hz, const Tabletop& tabletop, const std::string& style) {
+  Scene scene = MakeScene(tabletop);
+  scene.world.rate_hz = rate_hz;
+  Simulation simulation(scene, MakeScript({.style = style}));
+  std::vector<double> changes_s;
+  while (simulation.Step()) {
+    const Snapshot& now = simulation.snapshot();
+    const bool touches = std::ranges::any_of(now.contacts, [](const ContactPoint& contact) {
+      return contact.b.hand != kNone || contact.a.hand != kNone;
+    });
+    if (touches == (changes_s.size() % 2 == 0))
+      changes_s.push_back(static_cast<double>(now.tick) / rate_hz);
+  }
+  return changes_s;
+}
+
+TEST(Holding, AHandTakesAndLetsGoAlikeInShorterTicks) {
+  const std::pair<Tabletop, std::string> cases[] = {
+      {{}, "wrap"},
+      {{.shape = Cylinder{0.033, 0.12}, .mass_kg = 0.3}, "wrap"},
+      {{.shape = Box{{0.04, 0.04, 0.04}}, .mass_kg = 0.1}, "pinch"}};
+  for (const auto& [tabletop, style] : cases) {
+    const std::vector<double> here_s = Touches(480, tabletop, style);
+    const std::vector<double> there_s = Touches(960, tabletop, style);
+    ASSERT_EQ(here_s.size(), there_s.size()) << style;
+    for (std::size_t i = 0; i < here_s.size(); ++i)
+      EXPECT_NEAR(there_s[i], here_s[i], 0.006) << style << ", change " << i;
+  }
+}
+
 /// Tilt of a carton, degrees, when it is put down after the hand has turned it by 6 degrees.
 double TiltAtTheLanding(std::optional<bool> keep_upright) {
   Script script;

@@ -181,6 +181,34 @@ TEST_P(WorldTest, AHandHoversAtItsTarget) {
         << model.links[i].name;
 }
 
+/// How late a hand's first joint follows a trigger that rises by 1 in 2 s.
+double LateBy_s(bool planar, int rate_hz) {
+  const HandModel model = LibraryHand(planar ? "planar_gripper" : "human_right");
+  Scene scene{.hands = {{"hand", model, {{0, 0, 1}}}}};
+  scene.world.rate_hz = rate_hz;
+  scene.world.planar = planar;
+  const auto world = planar ? MakeBox2dWorld(scene, {0}) : MakeBulletWorld(scene, {0});
+  HandCommand command{.target = {.X_WH = {{0, 0, 1}}}};
+  const std::vector<double> open = JointTargets(model.styles[0], 0);
+  const std::vector<double> half = JointTargets(model.styles[0], 0.5);
+  Snapshot snapshot;
+  for (int tick = 1; tick <= rate_hz; ++tick) {
+    command.target.trigger = tick / (2.0 * rate_hz);
+    world->Step({command});
+  }
+  world->Describe(snapshot);
+  return (half[0] - snapshot.hands[0].joints[0]) / (half[0] - open[0]);
+}
+
+// A tick more or less is no cause: in it the joint already follows.
+TEST_P(WorldTest, JointsFollowAlikeInShorterTicks) {
+  const bool planar = GetParam() == Engine::kBox2d;
+  const double late_s = LateBy_s(planar, 480);
+  EXPECT_NEAR(late_s, 0.010, 0.003);
+  for (const int rate_hz : {960, 1920})
+    EXPECT_NEAR(LateBy_s(planar, rate_hz), late_s, 0.002) << rate_hz;
+}
+
 /// How far a palm that has pressed on a part of a body is drawn away when the two do not touch any
 /// more.
 double ApartAt_m(double yaw_deg) {
