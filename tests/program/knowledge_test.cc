@@ -60,10 +60,9 @@ std::vector<std::string> BlocksOf(const std::string& language) {
 /// The options of the page's `episode query` commands, in their order.
 std::vector<std::string> QueriesOfThePage() {
   std::istringstream page(ReadFile(PREHEND_SOURCE_DIR "/docs/knowledge.md"));
-  const std::string_view command = "prehend episode query day.episodes ";
   std::vector<std::string> options;
   for (std::string line; std::getline(page, line);)
-    if (line.starts_with(command)) options.push_back(line.substr(command.size()));
+    if (line.starts_with("prehend episode query")) options.push_back(line.substr(line.find("--")));
   return options;
 }
 
