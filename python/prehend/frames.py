@@ -169,6 +169,9 @@ def doubts(entities, poses):
     seen = {one: at for one, at in seen.items() if len(at)}
     if seen and (span := np.ptp(np.concatenate(list(seen.values())), axis=0).max()) > 20:
         told.append(f"positions are up to {span:g} m apart\n  hint: metres are wanted; divide millimetres by 1000")
+    for one, at in seen.items():
+        if sizes[one].get("fixed") and (way := np.ptp(np.quantile(at, (0.025, 0.975), axis=0), axis=0).max()) > 0.03:
+            told.append(f"'{one}' is said to be fixed, and moves by {way:.2f} m\n  hint: fixed is only what never moves")
     if told:
         return "\n".join(told)
     for one, at in seen.items():

@@ -295,6 +295,12 @@ TEST(ImportWarnings, AThingThatComesToAHandIsTakenForIt) {
             "sure: [place]\n");
 }
 
+TEST(ImportWarnings, WhatIsFixedAndMovesIsNamed) {
+  EXPECT_EQ(SaidOfCup("class: Cup", "class: Cup, fixed: true"),
+            "warning: 'cup' moves by 0.40 m, and the map says that it is fixed, which is only what "
+            "never moves\n");
+}
+
 TEST(ImportWarnings, MeansOverLongTimesTellHowFarTheyAreOff) {
   for (const char* fine : {"0.1", "0.2"})
     EXPECT_EQ(SaidOfCup("import: 1", std::string("import: 1\nsmooth_s: ") + fine), "") << fine;

@@ -226,6 +226,15 @@ class Doubtful(unittest.TestCase):
         self.assertIn("nothing is below 'cup'", self.told(entities=no_table))
         self.assertIn("nothing is below 'cup'", self.told({one: at[:, [0, 2, 1]] for one, at in GOOD.items()}), "y is up")
 
+    def test_fixed(self):
+        fixed = {**takes.ENTITIES, "cup": {"class": "Cup", "size_m": (0.07, 0.07, 0.2), "fixed": True}}
+        moved = GOOD["cup"] + np.outer(np.arange(N) > N / 2, (0.5, 0, 0))
+        self.assertEqual(self.told({**GOOD, "cup": moved}, fixed), "'cup' is said to be fixed, and moves by 0.50 m\n"
+                         "  hint: fixed is only what never moves")
+        still = np.repeat(GOOD["cup"][:1], len(GOOD["cup"]), axis=0)
+        still[7] += (0.5, 0, 0)  # an error of the tracker
+        self.assertEqual(self.told({**GOOD, "cup": still}, fixed), "")
+
     def test_live(self):
         with self.assertWarns(prehend.DoubtfulFrames):
             updated((0, {"cup": (0, 0, 860), "right_hand": (300, 0, 900)}))

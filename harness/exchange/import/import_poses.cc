@@ -28,6 +28,7 @@ constexpr double kUnmoved_m = 0.001;
 constexpr double kTrembles_m = 0.0008;  ///< more than this hides how things move
 constexpr double kMostTrembling_m = 0.5;
 constexpr double kSmoothedOff_m = 0.02;
+constexpr double kFixedMoves_m = 0.03;
 
 Eigen::Quaterniond Quaternion(const Eigen::Vector4d& wxyz) {
   return Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
@@ -370,6 +371,19 @@ class Importer {
     if (entity.value.hand && extent.diagonal().norm() < 0.01)
       Warn(fmt::format("the hand '{}' never leaves {:.1f} mm", entity.name,
                        extent.diagonal().norm() * 1e3));
+    if (!entity.value.fixed) return;
+    double way_m = 0;  // but for errors of some frames
+    for (const int axis : {0, 1, 2}) {
+      std::vector<double> at_m;
+      for (const PoseSample& pose : poses) at_m.push_back(pose.p[axis]);
+      std::ranges::sort(at_m);
+      way_m = std::max(way_m, at_m[at_m.size() * 39 / 40] - at_m[at_m.size() / 40]);
+    }
+    if (way_m > kFixedMoves_m)
+      Warn(
+          fmt::format("'{}' moves by {:.2f} m, and the map says that it is fixed, which is only "
+                      "what never moves",
+                      entity.name, way_m));
   }
 
   /// Means over a time in which a body turns round cut off where it went.
