@@ -6,6 +6,7 @@ import io
 import json
 import os
 import pathlib
+import statistics
 import tarfile
 
 from . import recipe as recipes
@@ -92,9 +93,8 @@ def write(folder, manifest, rows):
     classes = []
     for kind in kinds:
         of_kind = [(row, one) for row, one in labels if one["event"] == kind]
-        seconds = sorted(one["end_s"] - one["begin_s"] for _, one in of_kind)
         classes.append([kind, *(sum(row["role"] == role for row, _ in of_kind) for role in ROLES), len(of_kind),
-                        round(seconds[len(seconds) // 2], 3), f"{sum(one['grammar'] == 'agrees' for _, one in of_kind) / len(of_kind):.3f}"])
+                        round(statistics.median(one["end_s"] - one["begin_s"] for _, one in of_kind), 3), f"{sum(one['grammar'] == 'agrees' for _, one in of_kind) / len(of_kind):.3f}"])
     header = ["event", *ROLES, "all", "median_s", "grammar_agrees"]
     write_table(folder / "classes.csv", header, classes)
     splits = [[role, "", sum(row["role"] == role for row in rows)] for role in ROLES]

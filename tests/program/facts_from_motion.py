@@ -21,6 +21,7 @@ import copy
 import json
 import pathlib
 import random
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -83,7 +84,7 @@ def print_boundaries(errors):
     print("| boundary | how many | median, ms | 95 % within, ms | worst, ms | of |\n|---|---|---|---|---|---|")
     for (event, edge), all_of in sorted(errors.items()):
         by_size = sorted(all_of, key=lambda e: abs(e[0]))
-        middle = sorted(e for e, _ in all_of)[len(all_of) // 2]
+        middle = statistics.median(e for e, _ in all_of)
         within = abs(by_size[int(0.95 * (len(by_size) - 1))][0])
         worst, where = by_size[-1]
         print(f"| {event} {edge}s | {len(all_of)} | {middle:+.0f} | {within:.0f} | {worst:+.0f} | {where} |")

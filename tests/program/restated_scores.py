@@ -7,6 +7,7 @@ import json
 import math
 import os
 import random
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -234,7 +235,7 @@ def quantiles(values):
     def nearest(ranked, share):
         return ranked[min(max(math.ceil(share * len(ranked)), 1), len(ranked)) - 1] if ranked else 0
     by_size = sorted(values, key=abs)
-    return {"median": nearest(sorted(values), 0.5), "p95": nearest(by_size, 0.95), "max": nearest(by_size, 1)}
+    return {"median": statistics.median(values) if values else 0, "p95": nearest(by_size, 0.95), "max": nearest(by_size, 1)}
 
 
 def boundaries(segments, end):

@@ -5,6 +5,7 @@ printed. The recording's frames go through a FIFO to `prehend grammar watch --js
 must be the events that `prehend episode resegment` finds. Prints the lags, and ends with 1 if the events differ."""
 import json
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -52,12 +53,11 @@ def main():
     found = json.loads(subprocess.run([program, "episode", "resegment", recording, "--json"] + grammar, capture_output=True).stdout)
     key = lambda event: json.dumps(event, sort_keys=True)
     same = sorted(map(key, events)) == sorted(map(key, found["events"]))
-    lags.sort()
     print(f"{len(sent)} frames in {(max(sent) - min(sent)) / rate:.2f} s; {len(events)} events, "
           f"{'the same as' if same else 'NOT those of'} resegment")
     if lags:
-        print(f"{len(lags)} lines printed with the frame that decided them: after {lags[len(lags) // 2]:.2f} ms (median), "
-              f"{lags[-1]:.2f} ms (longest)")
+        print(f"{len(lags)} lines printed with the frame that decided them: after {statistics.median(lags):.2f} ms (median), "
+              f"{max(lags):.2f} ms (longest)")
     return 0 if same else 1
 
 

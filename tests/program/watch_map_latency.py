@@ -6,6 +6,7 @@ time alone; `open`: with --open. Prints percentiles, processor time per frame, a
 import json
 import os
 import resource
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -92,7 +93,7 @@ def main():
     print(f"{frames} frames, {events} events; {(used.ru_utime + used.ru_stime) / frames * 1e6:.0f} us of processor time a frame; "
           f"memory {memory[0]} KiB after a tenth, {memory[-1]} KiB at the end")
     if lags and not fast:
-        print(f"{len(lags)} lines with the frame that decided them: median {lags[len(lags) // 2]:.2f} ms, "
+        print(f"{len(lags)} lines with the frame that decided them: median {statistics.median(lags):.2f} ms, "
               f"99 % {lags[min(len(lags) - 1, len(lags) * 99 // 100)]:.2f} ms, longest {lags[-1]:.2f} ms")
 
 

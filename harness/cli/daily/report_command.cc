@@ -100,7 +100,7 @@ suite::ReportTable AgreementOf(const std::string& first, const measure::Score& s
                            score.set.empty() ? "" : ", set " + score.set, first),
       .rows = {{"", first, "found", "F1@50, %", "begin, ms", "end, ms"}}};
   const auto add = [&](const measure::EventScore& event) {
-    const auto median = [](const measure::BoundaryErrors& errors) {
+    const auto median = [](const measure::TimeErrors& errors) {
       return errors.seconds.empty() ? "" : fmt::format("{:+.0f}", 1000 * errors.Median());
     };
     table.rows.push_back({event.event, std::to_string(event.truths), std::to_string(event.found),

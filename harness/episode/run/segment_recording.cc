@@ -13,6 +13,7 @@
 #include "grammar/contents.h"
 #include "grammar/name_events.h"
 #include "grammar/never_recognised.h"
+#include "harness/base/base/median.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/process/worker_pool.h"
 #include "harness/episode/run/load_grammar.h"
@@ -65,13 +66,6 @@ std::string_view RemedyFor(std::string_view fact, bool uses_motion) {
            "grasping(a, b) are made of motion";
   return "make these facts of motion, 'use contact from motion' above the other lines, or "
          "pick_and_place_from_motion; docs/facts-from-motion.md";
-}
-
-grammar::Tick Median(std::vector<grammar::Tick> steps) {
-  if (steps.empty()) return 1;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
 }
 
 /// By entity, the times from where it was seen last, by `bridge_s`, to where it is found again.
@@ -180,7 +174,7 @@ Result<SegmentedRecording> SegmentRecording(Recording& recording,
     AddLosses(frame, recording, losses);
   };
   PREHEND_TRY(segmented.timeline, SegmentFrames(recording, program, file, look));
-  segmented.frame_ticks = Median(std::move(steps));
+  segmented.frame_ticks = steps.empty() ? 1 : Median(std::move(steps));
   segmented.missing = MissingOf(recording, facts, *program);
   segmented.missing.warnings += AssumedText(entities.entities, losses, segmented.timeline);
   return segmented;

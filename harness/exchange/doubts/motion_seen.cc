@@ -151,11 +151,4 @@ double MedianOfPoses(const PoseFile& poses,
   return std::bit_cast<double>(median);
 }
 
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 }  // namespace prehend::exchange

@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "harness/base/base/median.h"
 #include "harness/exchange/poses/pose_file.h"
 
 namespace prehend::exchange {
@@ -45,10 +46,8 @@ struct MotionSeen {
 
 MotionSeen MotionIn(const PoseFile& poses, const ImportMap& map, double metres_per_unit);
 
-/// The middle one, of an even number the upper; 0 of none.
-double Median(std::vector<double> values);
-
-/// The same of `number` of all poses of the file, at least 0 each, without keeping them.
+/// The middle one, of an even number the upper, of `number` of all poses of the file, at least 0
+/// each, without keeping them. 0 of none.
 double MedianOfPoses(const PoseFile& poses, const std::function<double(const PoseSample&)>& number);
 
 /// The usual time between two of them, s.

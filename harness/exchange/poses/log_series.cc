@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/base/base/median.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/poses/pose_file.h"
 
@@ -336,10 +337,7 @@ std::optional<std::int64_t> FrameLink::Sort() {
 std::int64_t FrameLink::UsualStep_ns() const {
   std::vector<std::int64_t> steps;
   for (std::size_t i = 1; i < poses.size(); ++i) steps.push_back(poses[i].ns - poses[i - 1].ns);
-  if (steps.empty()) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::ranges::nth_element(steps, middle);
-  return *middle;
+  return Median(std::move(steps));
 }
 
 std::string FrameTree::RootOf(const std::string& frame) const {

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <map>
 
+#include "harness/base/base/median.h"
 #include "harness/base/base/text_file.h"
 
 namespace prehend::exchange {
@@ -168,11 +169,8 @@ class MarkerBody {
           values[k].push_back(
               (fit.q.conjugate() * (complete[i][k / 3] - fit.p))[static_cast<int>(k % 3)]);
       }
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        const auto middle = values[k].begin() + std::ssize(values[k]) / 2;
-        std::ranges::nth_element(values[k], middle);
-        shape_[k / 3][static_cast<int>(k % 3)] = *middle;
-      }
+      for (std::size_t k = 0; k < values.size(); ++k)
+        shape_[k / 3][static_cast<int>(k % 3)] = Median(std::move(values[k]));
       third = OffTheLine(shape_, least);
       if (third == 0) return "its markers are on one line: turns about it are not seen";
       shape_ = InOwnAxes(shape_, third);

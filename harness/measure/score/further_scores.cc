@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "harness/base/base/median.h"
 #include "harness/truth/timeline/event_text.h"
 #include "harness/truth/timeline/match_events.h"
 
@@ -42,9 +43,7 @@ double NearestOf(const std::vector<Tick>& boundaries, Tick tick) {
 double MedianDistance(const std::vector<Tick>& from, const std::vector<Tick>& to) {
   std::vector<double> distances;
   for (const Tick boundary : from) distances.push_back(NearestOf(to, boundary));
-  std::ranges::sort(distances);
-  const std::size_t half = distances.size() / 2;
-  return distances.size() % 2 == 1 ? distances[half] : (distances[half - 1] + distances[half]) / 2;
+  return Median(std::move(distances));
 }
 
 double PairsIn(Tick frames) {

@@ -20,14 +20,6 @@ namespace {
 
 using grammar::NamedEvent;
 
-template <class Less = std::less<double>>
-double Quantile(std::vector<double> values, double share, Less less = {}) {
-  if (values.empty()) return 0;
-  std::stable_sort(values.begin(), values.end(), less);
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
-}
-
 /// If `event` is empty, all events.
 grammar::Timeline OfKind(const grammar::Timeline& timeline, const std::string& event) {
   grammar::Timeline only{.ticks_per_second = timeline.ticks_per_second};
@@ -73,7 +65,7 @@ void AddEpisode(const EpisodeToScore& judged, const LabelledEpisode& episode,
   }
   for (const NamedEvent& one : found_events.events) {
     if (one.decided < 0) continue;  // nothing says when
-    score.latency_s.push_back(static_cast<double>(one.decided - one.interval.end) / per_s);
+    score.late.seconds.push_back(static_cast<double>(one.decided - one.interval.end) / per_s);
   }
 }
 
@@ -167,13 +159,13 @@ std::string WhoseOf(const grammar::NamedEvent& event) {
 
 }  // namespace
 
-double BoundaryErrors::Median() const { return Quantile(seconds, 0.5); }
-
-double BoundaryErrors::QuantileByMagnitude(double share) const {
-  return Quantile(seconds, share, [](double a, double b) { return std::abs(a) < std::abs(b); });
+double TimeErrors::QuantileByMagnitude(double share) const {
+  if (seconds.empty()) return 0;
+  std::vector<double> sorted = seconds;
+  std::ranges::stable_sort(sorted, {}, [](double error) { return std::abs(error); });
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+  return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
 }
-
-double EventScore::LatencyQuantile(double share) const { return Quantile(latency_s, share); }
 
 Score ScoreOf(const std::string& grammar, const std::vector<EpisodeToScore>& all, double collar_s,
               const Collars& collars) {

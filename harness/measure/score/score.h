@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "grammar/base/timeline.h"
+#include "harness/base/base/median.h"
 #include "harness/episode/episode/episode.h"
 #include "harness/exchange/labels/label_map.h"
 #include "harness/exchange/labels/read_truths.h"
@@ -62,13 +63,12 @@ struct EpisodeToScore {
   double offset_s = 0;  ///< of the clock of its labels and video
 };
 
-/// Signed offsets (found - true) of the boundaries of matched events, in seconds.
-struct BoundaryErrors {
+/// Signed offsets of the boundaries of matched events (found - true), or from ends to decisions.
+struct TimeErrors {
   std::vector<double> seconds;
 
-  /// Nearest-rank quantiles, 0 if there are none: of the signed offsets, and of the offsets sorted
-  /// by magnitude (with their sign).
-  double Median() const;
+  double Median() const { return prehend::Median(seconds); }
+  /// Nearest rank, with its sign; 0 if there are none.
   double QuantileByMagnitude(double share) const;
 };
 
@@ -76,15 +76,12 @@ struct EventScore {
   std::string event;  ///< "all" for the total
   int truths = 0, found = 0;
   Ward ward;
-  BoundaryErrors begin, end;
+  TimeErrors begin, end, late;  ///< late: from an event's end to its decision
   Hits overlap_10, overlap_25, overlap_50;
   EventErrors within_collar;
   FrameCounts frames;
   double edit = 100;  ///< mean over the tracks of the episodes (harness/measure/score/score.h)
   FurtherScores further;
-  std::vector<double> latency_s;  ///< from an event's end to its decision
-
-  double LatencyQuantile(double share) const;
 };
 
 /// Means over the kinds of events, each of which counts as much as any other.

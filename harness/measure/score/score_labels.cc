@@ -289,7 +289,7 @@ std::string LabelScoresText(const LabelScores& scores, double collar_s, bool dif
     text += fmt::format(" all {:.2f}\n", score.total.frames.Kappa());
     std::string collars;  // 95 % of the boundaries of an event are at most so far apart
     for (const EventScore& event : score.events) {
-      BoundaryErrors both = event.begin;
+      TimeErrors both = event.begin;
       both.seconds.insert(both.seconds.end(), event.end.seconds.begin(), event.end.seconds.end());
       if (both.seconds.empty()) continue;
       const double apart_ms = 1000 * std::abs(both.QuantileByMagnitude(0.95));

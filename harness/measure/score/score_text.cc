@@ -27,7 +27,7 @@ std::string SignedMs(double seconds) {
 }
 
 /// "median/p95/max", all signed; the last two are by magnitude.
-std::string Milliseconds(const BoundaryErrors& errors) {
+std::string Milliseconds(const TimeErrors& errors) {
   if (errors.seconds.empty()) return "-";
   return fmt::format("{}/{}/{}", SignedMs(errors.Median()),
                      SignedMs(errors.QuantileByMagnitude(0.95)),
@@ -75,10 +75,10 @@ Row RowOf(const EventScore& s) {
           fmt::format("{:.1f}", s.edit),
           Percent(s.frames.Accuracy()),
           Percent(s.within_collar.AsHits().F1()),
-          s.latency_s.empty()
-              ? "-"
-              : fmt::format("{:.0f}/{:.0f}/{:.0f}", kMsPerS * s.LatencyQuantile(0.5),
-                            kMsPerS * s.LatencyQuantile(0.95), kMsPerS * s.LatencyQuantile(1))};
+          s.late.seconds.empty() ? "-"
+                                 : fmt::format("{:.0f}/{:.0f}/{:.0f}", kMsPerS * s.late.Median(),
+                                               kMsPerS * s.late.QuantileByMagnitude(0.95),
+                                               kMsPerS * s.late.QuantileByMagnitude(1))};
 }
 
 /// "mean": of the kinds of events above it.
@@ -159,7 +159,7 @@ std::string MomentsText(const Score& score) {
 
 using Json = nlohmann::ordered_json;
 
-Json BoundaryJson(const BoundaryErrors& errors) {
+Json TimeJson(const TimeErrors& errors) {
   return {{"median", errors.Median()},
           {"p95", errors.QuantileByMagnitude(0.95)},
           {"max", errors.QuantileByMagnitude(1)}};
@@ -210,8 +210,8 @@ Json EventScoreJson(const EventScore& s) {
               {"merge", ward.false_alarm.between},
               {"overfill_begin", ward.false_alarm.before},
               {"overfill_end", ward.false_alarm.after}}}}},
-          {"begin_s", BoundaryJson(s.begin)},
-          {"end_s", BoundaryJson(s.end)},
+          {"begin_s", TimeJson(s.begin)},
+          {"end_s", TimeJson(s.end)},
           {"f1_10", s.overlap_10.F1()},
           {"f1_25", s.overlap_25.F1()},
           {"f1_50", s.overlap_50.F1()},
@@ -220,10 +220,7 @@ Json EventScoreJson(const EventScore& s) {
           {"kappa", s.frames.Kappa()},
           {"collar_f", s.within_collar.AsHits().F1()},
           {"collar_error_rate", s.within_collar.ErrorRate()},
-          {"latency_s",
-           {{"median", s.LatencyQuantile(0.5)},
-            {"p95", s.LatencyQuantile(0.95)},
-            {"max", s.LatencyQuantile(1)}}},
+          {"latency_s", TimeJson(s.late)},
           {"further", FurtherJson(s)}};
 }
 

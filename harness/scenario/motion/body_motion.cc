@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <map>
 
+#include "harness/base/base/median.h"
+
 namespace prehend::scenario {
 namespace {
 
@@ -220,9 +222,7 @@ double MedianInterval(const std::vector<TrackSample>& samples) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < samples.size(); ++i)
     intervals.push_back(samples[i].t_s - samples[i - 1].t_s);
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return Median(std::move(intervals));
 }
 
 class TrackChecker {

@@ -10,6 +10,7 @@
 #include <set>
 #include <tuple>
 
+#include "harness/base/base/median.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {
@@ -44,7 +45,7 @@ Effect Summed(const EffectKey& key, Gathered& gathered) {
   Effect effect{.event = std::get<0>(key), .what = std::get<1>(key), .count = gathered.count};
   std::ranges::sort(gathered.shifts_ms, {}, [](double shift) { return std::abs(shift); });
   if (!gathered.shifts_ms.empty()) {
-    effect.median_ms = gathered.shifts_ms[gathered.shifts_ms.size() / 2];
+    effect.median_ms = Median(gathered.shifts_ms);
     effect.least_ms = gathered.shifts_ms.front();
     effect.most_ms = gathered.shifts_ms.back();
   }
