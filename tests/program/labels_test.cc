@@ -2,7 +2,9 @@
 // From recordings and people's labels to a table, as docs/labels.md says.
 #include <gtest/gtest.h>
 
+#include <iomanip>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/program/program.h"
 
@@ -263,6 +265,38 @@ TEST_F(Labelled, ASweepMeasuresLabelsAsScoreDoes) {
   EXPECT_EQ(svg.exit_code, 0) << svg.err;
   EXPECT_FALSE(Has(ReadFile(Path("sweep.svg")), "#d00"));
   EXPECT_TRUE(Has(ReadFile(Path("sweep.svg")), "every setting scores 0"));
+}
+
+TEST_F(Labelled, ASweepTellsErrorsWithTheirSignAsScoreDoes) {
+  const std::string take = Take("milk.jsonl");
+  // Of an even number of begins, and of ends, that are found too early or too late.
+  WriteFile(folder_ / "a.csv",
+            "begin_s,end_s,label,tier\n1.75,4.2,hold,right\n2.0,3.3,carry,right\n");
+  const std::vector<std::string> truth = {"--truth", Path("a.csv"), "--map", map_};
+  const auto run = [&](std::vector<std::string> words) {
+    words.insert(words.end(), truth.begin(), truth.end());
+    const Said said = Prehend(words);
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    return said.out;
+  };
+  const auto score = nlohmann::json::parse(
+      run({"score", take, "--set", "hold_way=3 mm", "--json"}))["grammars"][0]["total"];
+  const double begin_ms = 1000 * score["begin_s"]["median"].get<double>(),
+               end_ms = 1000 * score["end_s"]["median"].get<double>();
+  EXPECT_LT(begin_ms, 0);
+  const std::string swept =
+      run({"grammar", "sweep", take, "--over", "hold_way=3mm..4mm:2", "-o", Path("sweep.csv")});
+  std::istringstream rows(ReadFile(Path("sweep.csv")));
+  std::string row;
+  std::getline(rows, row);
+  EXPECT_EQ(row, "hold_way,f1,correct,extra,missed,begin_error_ms,end_error_ms,latency_ms");
+  std::getline(rows, row);
+  std::ostringstream errors, said;
+  errors << std::fixed << std::setprecision(3) << "," << begin_ms << "," << end_ms << ",";
+  EXPECT_TRUE(Has(row, errors.str())) << row << errors.str();
+  said << std::fixed << std::setprecision(1) << std::showpos << "begin " << begin_ms << " ms, end "
+       << end_ms << " ms, ";
+  EXPECT_TRUE(Has(swept, said.str())) << swept << said.str();
 }
 
 TEST_F(Labelled, ScoreSetsParameters) {

@@ -242,7 +242,7 @@ std::string RobustSettingsText(const std::vector<Axis>& axes, const SweepResult&
   for (std::size_t i = 0; i < axes.size(); ++i)
     text += fmt::format(" {} = {}", axes[i].parameter, axes[i].ValueText(chosen.at[i]));
   return text +
-         fmt::format(" (F1 {:.2f} %, begin {:.1f} ms, end {:.1f} ms, latency {:.1f} ms)\n",
+         fmt::format(" (F1 {:.2f} %, begin {:+.1f} ms, end {:+.1f} ms, latency {:.1f} ms)\n",
                      100 * chosen.f1, chosen.begin_ms, chosen.end_ms, chosen.latency_ms) +
          warnings;
 }

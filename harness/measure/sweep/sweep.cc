@@ -11,6 +11,7 @@
 #include <string>
 
 #include "grammar/contents.h"
+#include "harness/base/base/median.h"
 #include "harness/base/base/visible_stream.h"
 #include "harness/base/process/worker_pool.h"
 #include "harness/episode/episode/episode.h"
@@ -25,10 +26,10 @@
 
 namespace prehend::measure {
 
-/// What one setting recognises in one episode. Times are magnitudes.
+/// What one setting recognises in one episode.
 struct JudgedSetting {
   int correct = 0, extra = 0, missed = 0;  ///< events
-  std::vector<std::int64_t> begin_us, end_us, latency_us;
+  std::vector<double> begin_ms, end_ms, latency_ms;
 };
 
 /// One episode under all settings, or why it is left out.
@@ -38,8 +39,8 @@ struct JudgedSettings {
   bool is_unread = false;  ///< it is left out since it cannot be read
 };
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedSetting, correct, extra, missed, begin_us, end_us,
-                                   latency_us)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedSetting, correct, extra, missed, begin_ms, end_ms,
+                                   latency_ms)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JudgedSettings, settings, left_out, is_unread)
 
 namespace {
@@ -144,10 +145,7 @@ JudgedSetting Judged(const grammar::Timeline& truth, grammar::Timeline found,
     std::erase_if(found.events,
                   [](const grammar::NamedEvent& event) { return !truth::OracleDefines(event); });
   const auto per_s = static_cast<double>(truth.ticks_per_second);
-  const auto micro = [&](grammar::Tick offset) {
-    return static_cast<std::int64_t>(
-        std::llround(1e6 * static_cast<double>(std::abs(offset)) / per_s));
-  };
+  const auto ms = [&](grammar::Tick offset) { return 1000 * static_cast<double>(offset) / per_s; };
   const LabelledEpisode episode = Labelled(truth, found, ticks);
   const Hits hits =
       request.by_overlap
@@ -159,12 +157,12 @@ JudgedSetting Judged(const grammar::Timeline& truth, grammar::Timeline found,
   for (const truth::LabelAgreement& label :
        truth::Agree(truth, found, static_cast<grammar::Tick>(request.collar_s * per_s)).labels) {
     for (const truth::Match& match : label.matches) {
-      judged.begin_us.push_back(micro(match.begin_offset()));
-      judged.end_us.push_back(micro(match.end_offset()));
+      judged.begin_ms.push_back(ms(match.begin_offset()));
+      judged.end_ms.push_back(ms(match.end_offset()));
     }
   }
   for (const grammar::NamedEvent& event : found.events)
-    judged.latency_us.push_back(micro(event.decided - event.interval.end));
+    judged.latency_ms.push_back(ms(event.decided - event.interval.end));
   return judged;
 }
 
@@ -204,14 +202,6 @@ JudgedSettings JudgedEpisode(const episode::EpisodeName& name, std::size_t index
     ++measured;
   }
   return judged;
-}
-
-double MedianMs(std::vector<std::int64_t>& microseconds) {
-  if (microseconds.empty()) return 0;
-  const auto middle =
-      microseconds.begin() + static_cast<std::ptrdiff_t>((microseconds.size() - 1) / 2);
-  std::ranges::nth_element(microseconds, middle);
-  return static_cast<double>(*middle) / 1000;
 }
 
 /// "40 seconds", "12 minutes", "3.5 hours"
@@ -343,7 +333,7 @@ Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRe
   if (labels) result.label_warning = exchange::WarningsOf(*labels);
   if (labels) result.counted = labels->counted().Text();
   result.points.resize(programs.size());
-  std::vector<std::vector<std::int64_t>> begins(programs.size()), ends(begins), latencies(begins);
+  std::vector<std::vector<double>> begins(programs.size()), ends(begins), latencies(begins);
   for (std::size_t slice = 0; slice < slices; ++slice) {
     std::vector<JudgedSettings> of_slice;
     if (said[slice].finished) of_slice = FromWire<std::vector<JudgedSettings>>(said[slice].output);
@@ -361,9 +351,9 @@ Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRe
         point.correct += judged.correct;
         point.extra += judged.extra;
         point.missed += judged.missed;
-        begins[p].insert(begins[p].end(), judged.begin_us.begin(), judged.begin_us.end());
-        ends[p].insert(ends[p].end(), judged.end_us.begin(), judged.end_us.end());
-        latencies[p].insert(latencies[p].end(), judged.latency_us.begin(), judged.latency_us.end());
+        begins[p].insert(begins[p].end(), judged.begin_ms.begin(), judged.begin_ms.end());
+        ends[p].insert(ends[p].end(), judged.end_ms.begin(), judged.end_ms.end());
+        latencies[p].insert(latencies[p].end(), judged.latency_ms.begin(), judged.latency_ms.end());
       }
     }
   }
@@ -371,9 +361,9 @@ Result<SweepResult> Sweep(const std::vector<episode::Take>& takes, const SweepRe
     SweepPoint& point = result.points[p];
     if (!request.one_at_a_time) point.at = IndicesOf(p, request.axes);
     point.f1 = Hits{point.correct, point.extra, point.missed}.F1();
-    point.begin_ms = MedianMs(begins[p]);
-    point.end_ms = MedianMs(ends[p]);
-    point.latency_ms = MedianMs(latencies[p]);
+    point.begin_ms = Median(begins[p]);
+    point.end_ms = Median(ends[p]);
+    point.latency_ms = Median(latencies[p]);
   }
   std::ranges::sort(result.left_out);
   return result;
