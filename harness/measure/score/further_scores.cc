@@ -194,11 +194,10 @@ IntersectionScore ScoreByIntersection(const Episode& episode, double ticks_per_s
 
 FurtherScores ScoreFurther(const std::vector<LabelledEpisode>& episodes, double collar_s,
                            double all_s) {
-  Mean map, pairwise, purity, coverage, from_truth_s, from_found_s;
+  Mean pairwise, purity, coverage, from_truth_s, from_found_s;
   FurtherScores scores;
   for (const LabelledEpisode& episode : episodes) {
     const double per_s = episode.ticks_per_second;
-    map.Add(MeanAveragePrecision(episode.whole.truth, episode.whole.prediction, 0.5));
     for (const Episode& label : episode.by_label) {
       scores.boundary_hits += BoundaryHits(label, collar_s * per_s);
       pairwise.Add(PairwiseAgreement(label).F1());
@@ -211,7 +210,7 @@ FurtherScores ScoreFurther(const std::vector<LabelledEpisode>& episodes, double 
       }
     }
   }
-  scores.map_50 = map.Or(1);
+  scores.map_50 = MeanAveragePrecision(episodes, 0.5);
   scores.pairwise_f1 = pairwise.Or(1);
   scores.purity = purity.Or(1);
   scores.coverage = coverage.Or(1);

@@ -57,7 +57,7 @@ IntersectionScore ScoreByIntersection(const Episode& episode, double ticks_per_s
 /// All of them, over the episodes in which an event is true or found. Labels are events with their
 /// roles; each label is scored alone, because events of different labels overlap.
 struct FurtherScores {
-  double map_50 = 1;   ///< mean over the episodes of the mean average precision at IoU 0.5
+  double map_50 = 1;   ///< mean average precision at IoU 0.5
   Hits boundary_hits;  ///< boundaries within the collar, pooled
   /// Means over the labels of the episodes.
   double pairwise_f1 = 1, purity = 1, coverage = 1;

@@ -166,26 +166,27 @@ double EditScore(const Segments& truth, const Segments& prediction) {
   return 100 * (1 - static_cast<double>(row.back()) / static_cast<double>(longer));
 }
 
-double MeanAveragePrecision(const Segments& truth, const Segments& prediction,
-                            double least_overlap) {
-  std::map<std::string, std::pair<Segments, Segments>> by_label;
-  for (const Segment& segment : truth) by_label[segment.label].first.push_back(segment);
-  const auto labels = static_cast<double>(by_label.size());
-  for (const Segment& segment : prediction) by_label[segment.label].second.push_back(segment);
-  double sum = 0;
-  for (const auto& [label, sides] : by_label) {
-    const auto& [wanted, found] = sides;
-    std::vector<int> partner;
-    const double hits = LargestMatching(
-        static_cast<int>(wanted.size()), static_cast<int>(found.size()),
-        [&, &wanted = wanted, &found = found](int i, int j) {
-          return Closeness(wanted[i].interval, found[j].interval) >= least_overlap;
-        },
-        partner);
-    if (hits > 0)
-      sum += hits / static_cast<double>(wanted.size()) * hits / static_cast<double>(found.size());
+double MeanAveragePrecision(const std::vector<LabelledEpisode>& episodes, double least_overlap) {
+  std::map<std::string, Hits> by_label;
+  for (const LabelledEpisode& episode : episodes) {
+    for (const Episode& one : episode.by_label) {
+      const int truths = static_cast<int>(one.truth.size()),
+                found = static_cast<int>(one.prediction.size());
+      const auto fits = [&](int i, int j) {
+        return Closeness(one.truth[i].interval, one.prediction[j].interval) >= least_overlap;
+      };
+      std::vector<int> partner;
+      const int hits = LargestMatching(truths, found, fits, partner);
+      by_label[(truths > 0 ? one.truth : one.prediction).front().label] +=
+          {hits, found - hits, truths - hits};
+    }
   }
-  return Ratio(sum, labels, prediction.empty() ? 1 : 0);
+  double sum = 0, labels = 0;
+  for (const auto& [label, hits] : by_label) {
+    sum += hits.Precision() * hits.Recall();
+    labels += hits.correct + hits.missed > 0;
+  }
+  return Ratio(sum, labels, by_label.empty() ? 1 : 0);
 }
 
 FrameCounts& FrameCounts::operator+=(const FrameCounts& other) {

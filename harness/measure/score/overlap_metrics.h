@@ -66,11 +66,11 @@ Hits HitsByOverlap(const Segments& truth, const Segments& prediction, double lea
 /// labels. Both empty: 100.
 double EditScore(const Segments& truth, const Segments& prediction);
 
-/// Mean over the labels of the truth of the average precision at this temporal IoU (ActivityNet).
-/// Events have no confidence, so that none comes before another: precision times recall, the area
-/// below a curve of one point.
-double MeanAveragePrecision(const Segments& truth, const Segments& prediction,
-                            double least_overlap);
+/// Mean over the labels that are true in some episode of the average precision at this temporal
+/// IoU, of all episodes together (ActivityNet). Events have no confidence, so that none comes
+/// before another: precision times recall, the area below a curve of one point. If nothing is true:
+/// 1 if nothing is predicted, either, else 0.
+double MeanAveragePrecision(const std::vector<LabelledEpisode>& episodes, double least_overlap);
 
 /// Per frame: what the truth says and what is predicted. Segments must not overlap within a side.
 struct FrameCounts {

@@ -51,6 +51,13 @@ Episode EpisodeOf(const std::string& name) {
   return {40, kTruth, {}};
 }
 
+grammar::Timeline TimelineOf(const Segments& segments) {
+  grammar::Timeline timeline{.ticks_per_second = 10};
+  for (const Segment& one : segments)
+    timeline.events.push_back({.event = one.label, .interval = one.interval});
+  return timeline;
+}
+
 class ScoreMetrics : public testing::TestWithParam<std::string> {
  protected:
   ScoreMetrics() {
@@ -91,12 +98,14 @@ TEST_P(ScoreMetrics, F1ByOverlap) {
 
 TEST_P(ScoreMetrics, MeanAveragePrecision) {
   const std::vector<double> overlaps = {0.3, 0.5, 0.75, 0.95};
+  const LabelledEpisode episode =
+      Labelled(TimelineOf(episode_.truth), TimelineOf(episode_.prediction), episode_.ticks);
   for (std::size_t i = 0; i < overlaps.size(); ++i) {
     // The reference ranks predictions by time; of two for one event only the second is false then.
     // Ours have no confidence: both halves of a reach, and of a transport, share a precision of
     // 0.5.
     const bool is_ranked = GetParam() == "C_flicker" && i == 0;
-    EXPECT_NEAR(MeanAveragePrecision(episode_.truth, episode_.prediction, overlaps[i]),
+    EXPECT_NEAR(MeanAveragePrecision({episode}, overlaps[i]),
                 is_ranked ? 0.625 : printed_["map@.3,.5,.75,.95"][i].get<double>(), kPrinted)
         << overlaps[i];
   }

@@ -60,13 +60,31 @@ TEST(Tracks, AnOrderThatDiffersCosts) {
 
 // Whether a false event comes first or last says nothing of how sure anybody was.
 TEST(MeanAveragePrecision, DoesNotDependOnWhenAFalseEventHappens) {
-  const Segments truth = {{"a", {10, 20}}, {"a", {40, 50}}};
+  const Events truth = {Of("a", {}, 10, 20), Of("a", {}, 40, 50)};
   for (const grammar::Tick begin : {0, 25, 90}) {
-    Segments found = truth;
-    found.push_back({"a", {begin, begin + 5}});
-    std::ranges::sort(found, {}, [](const Segment& one) { return one.interval.begin; });
-    EXPECT_NEAR(MeanAveragePrecision(truth, found, 0.5), 2.0 / 3, 1e-12) << begin;
+    Events found = truth;
+    found.push_back(Of("a", {}, begin, begin + 5));
+    std::ranges::sort(found, {}, [](const auto& one) { return one.interval.begin; });
+    EXPECT_NEAR(MeanAveragePrecision({Labelled({100, truth}, {100, found}, 100)}, 0.5), 2.0 / 3,
+                1e-12)
+        << begin;
   }
+}
+
+// As ActivityNet does it: all videos of a class together, and only classes of the truth.
+TEST(MeanAveragePrecision, IsOfAllEpisodesTogether) {
+  const auto a = Of("a", {}, 10, 20), b = Of("b", {}, 10, 20), c = Of("c", {}, 10, 20);
+  const auto episode = [](const Events& truth, const Events& found) {
+    return Labelled({100, truth}, {100, found}, 100);
+  };
+  const LabelledEpisode right = episode({a, b}, {a, b}), false_a = episode({}, {a}),
+                        false_c = episode({}, {c}), with_c = episode({a}, {a, c});
+  EXPECT_EQ(MeanAveragePrecision({right}, 0.5), 1);
+  EXPECT_EQ(MeanAveragePrecision({right, false_a}, 0.5), 0.75) << "a: 1 of 2; b: 1";
+  EXPECT_EQ(MeanAveragePrecision({right, false_c}, 0.5), 1) << "c is true nowhere";
+  EXPECT_EQ(MeanAveragePrecision({with_c}, 0.5), 1) << "nor here";
+  EXPECT_EQ(MeanAveragePrecision({false_c}, 0.5), 0) << "nothing is true";
+  EXPECT_EQ(MeanAveragePrecision({}, 0.5), 1);
 }
 
 TEST(MeanOfKinds, CountsEachKindOnce) {
