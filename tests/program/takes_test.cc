@@ -264,6 +264,39 @@ TEST_F(Takes, WhatIsCutOrOutsideIsSaid) {
   }
 }
 
+TEST_F(Takes, LabelsThatBecomeOneAreSaid) {
+  const std::string take = Recording("a", {{1, 2}, {3, 4}});
+  const auto counted = [&](const std::string& rows, const std::string& map) {
+    const std::vector<std::string> words = {take, "--truth",
+                                            Write("c.csv", "begin_s,end_s,label\n" + rows), "--map",
+                                            Write("m.yaml", map)};
+    const auto json = Json(words);
+    const auto merged = json["counted"]["merged"].get<int>();
+    EXPECT_EQ(json["counted"]["labels"].get<int>() - merged, json["grammars"][0]["total"]["true"]);
+    EXPECT_EQ(Has(Score(words).out,
+                  merged == 0 ? "counted: 2 labels of 1 take\n"
+                              : "counted: 3 labels of 1 take; 1 became part of another\n"),
+              "");
+    return merged;
+  };
+  const std::string map = "labels: {near: {event: near}}\n";
+  EXPECT_EQ(counted("1,2,near\n3,4,near\n", map), 0);
+  EXPECT_EQ(counted("1,2,near\n1.5,2.5,near\n3,4,near\n", map), 1) << "they overlap";
+  EXPECT_EQ(counted("1,2,near\n1,2,near\n3,4,near\n", map), 1) << "a row twice";
+  EXPECT_EQ(counted("1,1.4,near\n1.5,2,near\n3,4,near\n", map + "join_s: 0.2\n"), 1) << "joined";
+}
+
+// Frames that nobody marked are no events, neither of the labels nor of what was found.
+TEST_F(Takes, BackgroundIsNoEvent) {
+  const std::string take = Recording("a", {{1, 2}});
+  const std::string rows = "begin_s,end_s,label\n0,1,background\n1,2,near\n2,4.9,background\n";
+  const Said said = Score(
+      {take, "--truth", Write("c.csv", rows), "--found", Write("f.csv", rows), "--map", map_});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(Has(said.out, "left out: 2 labels without a meaning (background)\n"), "");
+  EXPECT_EQ(said.out.find("ignored: background"), std::string::npos) << said.out;
+}
+
 TEST_F(Takes, LabelsOfAMomentLieInEvents) {
   const std::string take = Recording("a", {{1, 2}, {3, 4}});
   const std::string head = "begin_s,end_s,label\n";

@@ -30,6 +30,7 @@ ExitCode PrintScores(const Result<measure::LabelScores>& scores, double collar_s
     json["counted"] = {{"takes", counted.takes},
                        {"labels", counted.labels},
                        {"of_a_moment", counted.moments},
+                       {"merged", counted.merged},
                        {"cut", counted.cut},
                        {"left_out",
                         {{"of_other_takes", counted.OfOtherTakes()},

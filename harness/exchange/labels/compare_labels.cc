@@ -135,6 +135,7 @@ Counted& Counted::operator+=(const Counted& more) {
   labels += more.labels;
   moments += more.moments;
   cut += more.cut;
+  merged += more.merged;
   without_text += more.without_text;
   for (const auto& [label, count] : more.ignored) ignored[label] += count;
   backward.insert(more.backward.begin(), more.backward.end());
@@ -159,10 +160,11 @@ std::string Counted::Text() const {
   std::string text = fmt::format("counted: {} of {}", grammar::CountOf(labels, "label"),
                                  grammar::CountOf(takes, "take"));
   if (moments > 0) text += fmt::format(", and {} of a moment", moments);
+  if (merged > 0) text += fmt::format("; {} became part of another", merged);
   if (cut > 0) text += fmt::format("; {} cut at an end of the recording", cut);
   std::vector<std::string> left_out = {
       CountedText(OfOtherTakes(), "row", "of other takes"),
-      CountedText(ignored, "label", "that the map ignores"),
+      CountedText(ignored, "label", "without a meaning"),
       without_text > 0 ? grammar::CountOf(without_text, "label") + " without text" : "",
       Backward() > 0 ? grammar::CountOf(Backward(), "label") + " with an end before the begin"
                      : ""};

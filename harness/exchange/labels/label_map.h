@@ -76,6 +76,7 @@ struct TakeRows {
 struct Counted {
   std::size_t takes = 0, labels = 0, moments = 0;
   std::size_t cut = 0;  ///< of the labels, those that begin before their recording or end after it
+  std::size_t merged = 0;  ///< by how many they are more than what became of them
   std::map<std::string, std::size_t> ignored;  ///< by the text of the label
   std::size_t without_text = 0;
   std::map<std::string, std::size_t> backward;  ///< by file

@@ -303,7 +303,7 @@ Result<grammar::Timeline> Foreign::Find(const std::vector<episode::Take>& takes,
   if (!said) return tl::unexpected(std::move(said.error()));
   episode.notes += exchange::WarningsOf(*said);
   for (const auto& [label, count] : said->counted().ignored)
-    episode.ignored[label] += static_cast<int>(count);
+    if (label != "background") episode.ignored[label] += static_cast<int>(count);
   return said->Found(0, watched.entities.entities, rate, episode.ticks, compared);
 }
 

@@ -184,12 +184,14 @@ class LabelScorer {
       warnings_ += strange;
     if (is_first) scores_.counted += truths->counted();
     std::vector<EpisodeToScore> all;
+    std::size_t true_events = 0;
     for (std::size_t i = 0; i < names.size(); ++i) {
       PREHEND_TRY(const auto episode, Open(names[i], group.asked));
       if (episode->recording() && !foreign)
         AddMissing(episode::FindMissingFacts(*episode->recording(), *compiled.program));
       PREHEND_TRY(EpisodeToScore labelled,
                   Labelled(*episode, request_.takes[group.takes[i]], i, *truths));
+      true_events += labelled.truth.events.size();
       if (is_first)
         scores_.counted.cut +=
             truths->Cut(i, static_cast<double>(labelled.ticks) /
@@ -208,6 +210,7 @@ class LabelScorer {
                                         named, labelled.failure);
       all.push_back(std::move(labelled));
     }
+    if (is_first) scores_.counted.merged += truths->counted().labels - true_events;
     if (std::ranges::none_of(all, [](const auto& one) { return one.failure.empty(); })) return {};
     const std::string& name = named.empty() && group.asked.empty() ? GrammarName(*compiled.program)
                               : named.empty()                      ? group.asked
@@ -333,6 +336,7 @@ Result<LabelScores> ScoreLabelFiles(const LabelFilesRequest& request, std::strin
   PREHEND_TRY(const auto reading,
               exchange::LabelReading::Of(std::move(files), map ? &*map : nullptr, events));
   warnings += exchange::WarningsOf(reading);
+  std::size_t merged = reading.counted().labels;
   std::vector<EpisodeToScore> all;
   for (std::size_t i = 0; i < count; ++i) {
     const double end_s = std::max(reading.EndOf(i), reading.EndOf(count + i));
@@ -345,6 +349,7 @@ Result<LabelScores> ScoreLabelFiles(const LabelFilesRequest& request, std::strin
     pair.moments = reading.TakeMoments(
         i, pair.truth, std::llround(request.collar_s * static_cast<double>(kTicksPerSecond)),
         pair.found);
+    merged -= pair.truth.events.size() + pair.found.events.size();
     all.push_back(std::move(pair));
   }
   LabelScores scores;
@@ -352,6 +357,7 @@ Result<LabelScores> ScoreLabelFiles(const LabelFilesRequest& request, std::strin
             request.is_collar_asked ? Collars{} : reading.collars_s(), scores);
   scores.counted = reading.counted();
   scores.counted.takes = count;
+  scores.counted.merged = merged;
   scores.of_people = true;
   return scores;
 }
