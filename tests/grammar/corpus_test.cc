@@ -95,5 +95,50 @@ TEST(Corpus, EveryCaseGivesItsEvents) {
   EXPECT_GE(count, 1u);
 }
 
+// A column lasts 50 ms, so a touch of two columns is a brush where 160 ms are none.
+TEST(Corpus, ABrushOnTheWayEndsNoApproach) {
+  const std::string scene =
+      "hand x                      |0123456789abcdefghijklmnopqrstuvvvvvvvvv|\n"
+      "cup x                       |vvvvvvvvvvvvvvvvvvvvvvvvvvvvvvvvvvvvvvvv|\n"
+      "cup on table                |########################################|\n"
+      "hand grip                   |................................########|\n";
+  struct Case {
+    std::string touches, reach, grasp;
+    std::string going_to = "";  ///< to the grasp; if it differs
+  };
+  const std::vector<Case> cases = {
+      // The brush is over, for more than 100 ms, when the hand takes the cup.
+      {"|......................11.........2222222|", "|[================================.......|",
+       "|.................................[======|"},
+      // A longer touch is none: the approach begins after it.
+      {"|....................1111.........2222222|", "|........................[========.......|",
+       "|.................................[======|"},
+      // What grasps in so short a touch does not brush, be it at once or later.
+      {"|.................................22.....|", "|[================================.......|",
+       "|.................................[=.....|"},
+      {"|................................12......|", "|[===============================........|",
+       "|.................................[......|", "|[================================.......|"},
+  };
+  for (const auto& [grammar, reach, brush] :
+       {std::tuple{"pick_and_place", "reaching", "reach_brush"},
+        std::tuple{"hand_actions", "going_to", "act_brush"}}) {
+    const auto program = CompileLibrary(grammar, {{brush, "160 ms"}});
+    for (const Case& of : cases) {
+      SCOPED_TRACE(grammar + of.touches);
+      const CorpusCase drawn =
+          ReadCorpusText("brush",
+                         "== a brush\n" + scene + "hand holds cup              " + of.touches +
+                             "\n--\n" + reach + "(hand, cup) " +
+                             (reach[0] == 'g' && !of.going_to.empty() ? of.going_to : of.reach) +
+                             "\ngrasping(hand, cup) " + of.grasp + "\n")
+              .at(0);
+      std::vector<Row> found;
+      for (const Row& row : DrawEvents(drawn, RunCase(drawn, program).timeline, {}))
+        if (row.name.starts_with(reach) || row.name.starts_with("grasping")) found.push_back(row);
+      EXPECT_EQ(Text(Sorted(drawn.expected)), Text(Sorted(found)));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace prehend::grammar::testing
