@@ -326,6 +326,30 @@ TEST(FurnitureByHolder, WhoHoldsTheHandleOpensTheDrawer) {
   }
 }
 
+// It opens or shuts at half of its range per second, to the end or to 0.2 s before it.
+TEST(Joints, WhatStillMovesWhenTheEpisodeEndsIsOpenThen) {
+  for (const double frame_s : {0.002, 1.0 / 30, 0.05}) {
+    for (const double stop_s : {2.0, 1.8}) {
+      for (const bool opens : {true, false}) {
+        const auto open = [&](double s) {
+          const double way = Line({{1, 0}, {stop_s, (stop_s - 1) / 2}}, s);
+          return opens ? way : 1 - way;
+        };
+        const Box drawer = {
+            .name = "drawer", .size_m = {0.3, 0.4, 0.2}, .at = Stays({0.2, 0, 0.4}), .open = open};
+        const Found found = Watch("joints", {}, {drawer}, 2, frame_s);
+        const std::string label = opens ? "opening(drawer)" : "closing(drawer)";
+        ASSERT_TRUE(found.contains(label)) << frame_s;
+        EXPECT_NEAR(found.at(label).first, 1, frame_s + 0.002) << frame_s;
+        if (stop_s == 2)
+          EXPECT_EQ(found.at(label).second, 2.001) << frame_s;
+        else
+          EXPECT_NEAR(found.at(label).second, stop_s, frame_s + 0.002) << frame_s;
+      }
+    }
+  }
+}
+
 TEST(Reached, ATargetThatNobodyGrasps) {
   const auto arm = [](double s) {
     return Vector3d(Line({{1, 0.3}, {2, 0}, {3, 0}, {4, 0.3}}, s), 0, 0.3);
