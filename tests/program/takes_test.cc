@@ -107,6 +107,35 @@ TEST_F(Takes, OneTableOfManyRecordings) {
             "");
 }
 
+// Globs overlap, and takes of several folders have one name.
+TEST_F(Takes, NothingCountsTwice) {
+  const std::string one = Recording("a/take", {{1, 2}}), other = Recording("b/take", {{3, 4}}),
+                    same = (folder_ / "a" / ".." / "a" / "take.jsonl").string();
+  Write("lab/take.csv", "begin_s,end_s,label\n1,2,near\n");
+  const auto scores = Json({one, same, one, "--truth", Path("lab"), "--map", map_});
+  EXPECT_EQ(scores["counted"]["takes"], 1);
+  EXPECT_EQ(scores["counted"]["labels"], 1);
+  EXPECT_EQ(scores["grammars"][0]["total"]["true"], 1);
+  const std::string takes =
+      Write("takes.yaml",
+            "map: map.yaml\ntakes:\n  - {recording: a/take.jsonl, labels: "
+            "lab/take.csv}\n  - {recording: ./a/take.jsonl, labels: lab/take.csv}\n");
+  EXPECT_EQ(Json({takes})["counted"]["takes"], 1);
+
+  const Said said = Score({one, other, "--truth", Path("lab"), "--map", map_});
+  EXPECT_EQ(said.exit_code, 2) << said.out;
+  EXPECT_EQ(Has(said.err, "the same labels of " + Path("lab/take.csv") + " would count for " + one +
+                              " and for " + other + ", both called 'take'"),
+            "")
+      << said.err;
+  const std::string named =
+      Write("named.yaml",
+            "map: map.yaml\ntakes:\n  - {recording: a/take.jsonl, labels: "
+            "lab/take.csv}\n  - {recording: b/take.jsonl, labels: lab/b.csv}\n");
+  Write("lab/b.csv", "begin_s,end_s,label\n3,4,near\n");
+  EXPECT_EQ(Json({named})["grammars"][0]["total"]["f1_50"], 1);
+}
+
 TEST_F(Takes, WhereNothingHappensFalseAlarmsCount) {
   const std::string take = Recording("a", {{1, 2}, {3, 4}}),
                     nothing = Write("nothing.csv", "begin_s,end_s,label\n");

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <tuple>
 
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/quoting.h"
@@ -128,7 +129,14 @@ class TakeFinder {
   NotFound unread;
 
  private:
+  /// Once: globs overlap, and a path may be written in several ways.
   void Add(EpisodeName episode, const TakeEntry& entry) {
+    std::error_code error;
+    std::string file = fs::weakly_canonical(episode.file, error).string();
+    if (error) file = episode.file;
+    if (!known_.insert({std::move(file), episode.number, entry.take.labels, entry.take.rows})
+             .second)
+      return;
     episode.asked = entry.grammar;
     takes.push_back(entry.take);
     takes.back().episode = std::move(episode);
@@ -147,6 +155,9 @@ class TakeFinder {
 
   const std::string& which_;
   const std::string& root_;
+  std::set<
+      std::tuple<std::string, decltype(EpisodeName::number), std::string, decltype(Take::rows)>>
+      known_;
 };
 
 }  // namespace

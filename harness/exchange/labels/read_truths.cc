@@ -57,6 +57,7 @@ std::string FileIn(const std::string& folder, const episode::EpisodeName& episod
 struct WantedRows {
   std::string column;
   std::vector<std::string> values;
+  auto operator<=>(const WantedRows&) const = default;
 };
 
 /// Reads the labels of takes, each file once. With `clock`, what somebody found in them.
@@ -153,7 +154,26 @@ class TruthReader {
                                           : given[i]);
       if (problem.empty()) problem = why;
     }
+    if (problem.empty() && given.size() == 1) problem = MeantTwice(paths);
     return paths;
+  }
+
+  /// Two recordings that are called alike, for which the same labels would count, or "".
+  std::string MeantTwice(const std::vector<std::string>& paths) const {
+    std::map<std::pair<std::string, std::vector<WantedRows>>, std::size_t> first;
+    for (std::size_t i = 0; i < takes_.size(); ++i) {
+      const auto [known, is_new] = first.try_emplace({paths[i], WantedOf(takes_[i])}, i);
+      if (is_new) continue;
+      const auto text = [&](std::size_t k) {
+        const episode::EpisodeName& one = takes_[k].episode;
+        return one.file + (one.number ? fmt::format(" (episode {})", *one.number) : "");
+      };
+      return fmt::format(
+          "the same {} of {} would count for {} and for {}, both called '{}'; a "
+          "file of takes names the labels of each (docs/labels.md)",
+          what_, paths[i], text(known->second), text(i), takes_[i].episode.scenario);
+    }
+    return "";
   }
 
   std::vector<std::string> Endings() const {
