@@ -88,7 +88,7 @@ inline constexpr std::size_t kMaxPoses = 10'000;  ///< in all steps together
 inline constexpr std::size_t kMaxPictures = 32;
 inline constexpr std::size_t kMaxClaims = 64;
 inline constexpr std::size_t kMaxClaimLength = 500;  ///< in bytes
-inline constexpr double kMaxDuration_s = 3'600;
+inline constexpr double kMaxDuration_s = 1'800;
 inline constexpr std::size_t kMaxVariations = 64;
 inline constexpr std::size_t kMaxOutcomes = 16;
 
