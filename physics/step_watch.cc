@@ -107,6 +107,7 @@ void StepWatch::NoteFixed(std::vector<ScriptNote>& notes) const {
     if (entered.deepest.depth_m <= kInto_m) continue;
     const Person& person = scene_.persons[who.first];
     const int part = entered.deepest.part;
+    const bool starts = entered.tick <= 1;
     bool follows_hand = false;
     for (int limb = 0; limb < 4; ++limb) {
       const PartRange parts = PartsOfLimb(person, limb);
@@ -114,12 +115,15 @@ void StepWatch::NoteFixed(std::vector<ScriptNote>& notes) const {
     }
     notes.push_back(
         {entered.tick, kNone,
-         scene_.body(person.head + part).name + " goes " + Millimetres(entered.deepest.depth_m) +
-             " into " + scene_.body(who.second).name + ", which is fixed" +
+         scene_.body(person.head + part).name + (starts ? " starts " : " goes ") +
+             Millimetres(entered.deepest.depth_m) + (starts ? " in " : " into ") +
+             scene_.body(who.second).name + ", which is fixed" +
              (entered.is_through ? ", and comes out on another side of it" : "") +
-             (follows_hand ? "; lead its hand another way, or let her stand elsewhere"
-                           : "; walking, and a limb that moves, stop before it with 'max_force_n'; "
-                             "or lead her around it")});
+             (starts ? "; let her start elsewhere"
+              : follows_hand
+                  ? "; lead its hand another way, or let her stand elsewhere"
+                  : "; walking, and a limb that moves, stop before it with 'max_force_n'; "
+                    "or lead her around it")});
   }
 }
 

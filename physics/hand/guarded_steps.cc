@@ -186,8 +186,8 @@ void ScriptPlayer::NoteTheGrip(std::size_t hand, const Snapshot& now) {
   const Step& step = script_.stages[stage_ - 1].steps[*state.step];
   const auto* grip = std::get_if<TriggerStep>(&step.action);
   const bool met = state.waiting && state.waiting->met;
-  if (!grip || grip->trigger < kClosed || met || !state.closes) return;
-  std::string note = NoteAboutGrip(scene_, now, HandIndex(hand), state.object);
+  if (!grip || grip->trigger < kClosed || met || !state.closes || state.let_go) return;
+  std::string note = NoteAboutGrip(scene_, now, HandIndex(hand), state.object, grip->trigger);
   if (note.empty()) return;
   notes_.push_back({now.tick, HandIndex(hand), std::move(note)});
   hands_[hand].grip_note = GripNote{now.tick, state.object};

@@ -95,8 +95,11 @@ void ScriptPlayer::CheckThatItStands(std::size_t hand, const Snapshot& now) {
   const Pose& X_WHeld = now.body(placing->body).X_WB;
   std::string problem = "place_on: '" + held.name + "' does not stand on '" + below.name + "'";
   if (const auto landing_m = LandingHeight(below, now.body(placing->support).X_WB, held, X_WHeld)) {
-    const double low_m = WorldBounds(held, X_WHeld).min().z();
-    problem += ", but is held " + Millimetres(low_m - *landing_m) + " above it";
+    const double above_m = WorldBounds(held, X_WHeld).min().z() - *landing_m;
+    problem += std::lround(1000 * above_m) > 0
+                   ? ", but is held " + Millimetres(above_m) + " above it"
+                   : ", but is held as it touches it: '" + below.name +
+                         "' bears less than half of its weight, or gives way";
   }
   Fail(index, problem);
 }

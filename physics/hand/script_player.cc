@@ -85,6 +85,20 @@ class ScriptPlayer::Resolver {
   void Follow(const Segment& segment);
   void Follow(const std::vector<TimedPose>& poses);
   BodyIndex HeldBody() const;
+  struct Landing {
+    BodyIndex body;
+    double height_m = 0, drop_m = 0;
+    double mass_kg = 0;  ///< of all that is glued to it
+  };
+  /// Of what is held, and what is glued to it: straight down on the support.
+  std::optional<Landing> FirstToLand(BodyIndex held, BodyIndex support) const;
+  /// Of what it is to carry or to put down.
+  void NoteLoss(BodyIndex held) {
+    if (HandsOn(held, now_) == 0)
+      note_ = "no hand touches '" + scene_.body(held).name +
+              "', which this step is to move: was it lost on the way? 'poses' tells where it is at "
+              "each moment";
+  }
   /// Where it is; a problem if there is no such thing.
   Pose PoseOf(const PoseFrame& frame);
   Pose InWorld(const Pose& X_FH, const PoseFrame& frame);
@@ -146,6 +160,7 @@ void ScriptPlayer::Resolver::operator()(const ReachStep& reach) {
     const ReachPlan plan = PlanReach(scene_, now_, query);
     hand_.style = style;
     hand_.object = object;
+    hand_.let_go = false;
     hand_.came_along_W = plan.toward_W;
     note_ = NoteAboutReach(scene_, now_, query, plan);
     Follow(plan.segment);
@@ -156,6 +171,8 @@ void ScriptPlayer::Resolver::operator()(const TriggerStep& trigger) {
   Segment segment = StraightSegment(hand_.target, hand_.target.X_WH, step_.over_s);
   segment.trigger_end = trigger.trigger;
   hand_.closes = trigger.trigger > hand_.target.trigger;
+  if (!hand_.closes && hand_.object != kNone && HandsOn(hand_.object, now_) > 0)
+    hand_.let_go = true;
   Follow(segment);
 }
 
@@ -175,10 +192,32 @@ BodyIndex ScriptPlayer::Resolver::HeldBody() const {
 
 void ScriptPlayer::Resolver::operator()(const CarryStep& carry) {
   Eigen::Vector3d centre = hand_.target.X_WH.p_m;
-  if (const BodyIndex held = HeldBody(); held != kNone)
+  if (const BodyIndex held = HeldBody(); held != kNone) {
     centre = now_.body(held).X_WB * BoundingBox(scene_.body(held)).p_BC_m;
+    NoteLoss(held);
+  }
   if (step_.keep_upright.value_or(false)) TurnUpright(HeldBody());
   MoveBy({carry.to_m.x() - centre.x(), carry.to_m.y() - centre.y(), 0}, step_.over_s);
+}
+
+std::optional<ScriptPlayer::Resolver::Landing> ScriptPlayer::Resolver::FirstToLand(
+    BodyIndex held, BodyIndex support) const {
+  std::optional<Landing> first;
+  double mass_kg = 0;
+  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+    const BodyIndex part(i);
+    if (RootOf(scene_, part) != RootOf(scene_, held)) continue;
+    const Body& body = scene_.bodies[i];
+    mass_kg += body.mass_kg;
+    const Pose X_WB = turn_ * now_.body(part).X_WB;
+    const std::optional<double> height_m =
+        LandingHeight(scene_.body(support), now_.body(support).X_WB, body, X_WB);
+    if (!height_m) continue;
+    const double drop_m = WorldBounds(body, X_WB).min().z() - *height_m;
+    if (!first || drop_m < first->drop_m) first = {part, *height_m, drop_m};
+  }
+  if (first) first->mass_kg = mass_kg;
+  return first;
 }
 
 void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
@@ -188,31 +227,27 @@ void ScriptPlayer::Resolver::operator()(const PlaceStep& place) {
   } else if (held == kNone) {
     problem_ = "place_on: the hand holds nothing and has not reached for anything";
   } else {
-    const Body &below = scene_.body(support), &thing = scene_.body(held);
-    const Pose& X_WBelow = now_.body(support).X_WB;
+    const Body& below = scene_.body(support);
+    NoteLoss(held);
     if (step_.keep_upright.value_or(true)) TurnUpright(held);
-    Pose X_WThing = turn_ * now_.body(held).X_WB;
-    std::optional<double> landing_m = LandingHeight(below, X_WBelow, thing, X_WThing);
-    if (!step_.keep_upright && landing_m && !IsLevelAt(*landing_m, below, X_WBelow)) {
+    std::optional<Landing> lands = FirstToLand(held, support);
+    if (!step_.keep_upright && lands &&
+        !IsLevelAt(lands->height_m, below, now_.body(support).X_WB)) {
       turn_ = {};
-      X_WThing = now_.body(held).X_WB;
-      landing_m = LandingHeight(below, X_WBelow, thing, X_WThing);
+      lands = FirstToLand(held, support);
     }
-    if (!landing_m) {
-      problem_ = "place_on: no part of '" + place.support + "' is below '" + thing.name + "'";
-      problem_ += HandsOn(held, now_) > 0
-                      ? ": carry it there first"
-                      : ", which no hand touches now: was it lost on the way? 'poses' tells where "
-                        "it is at each moment";
+    if (!lands) {
+      problem_ = "place_on: no part of '" + place.support + "' is below '" +
+                 scene_.body(held).name + "'" +
+                 (note_.empty() ? ": carry it there first" : "; " + note_);
       return;
     }
-    const double drop = WorldBounds(thing, X_WThing).min().z() - *landing_m;
     const double stiffness = scene_.hand(step_.hand).model.translation.proportional;
     const double weight_n =
-        thing.mass_kg * scene_.world.gravity_m_per_s2 / std::max(HandsOn(held, now_), 1);
+        lands->mass_kg * scene_.world.gravity_m_per_s2 / std::max(HandsOn(held, now_), 1);
     const double spring = std::min(weight_n / std::max(stiffness, 1.0), kMaxSpring_m);
-    MoveBy({0, 0, -drop - kPress_m - spring}, kLoweringShare * step_.over_s);
-    hand_.placing = Placing{.body = held, .support = support, .weight_n = weight_n};
+    MoveBy({0, 0, -lands->drop_m - kPress_m - spring}, kLoweringShare * step_.over_s);
+    hand_.placing = Placing{.body = lands->body, .support = support, .weight_n = weight_n};
   }
 }
 

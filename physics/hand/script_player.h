@@ -121,6 +121,7 @@ class ScriptPlayer {
     bool closes = false;          ///< with the present step the trigger rises
     bool took = false;            ///< what stands, and it has not moved on since
     bool lets_go = false;         ///< it opens, held back by what it holds
+    bool let_go = false;          ///< it has opened on what it reached for last
     std::optional<GripNote> grip_note = std::nullopt;
   };
   class Resolver;

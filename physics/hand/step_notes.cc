@@ -69,8 +69,11 @@ std::string NoteAboutObstacle(const Scene& scene, const Snapshot& now, const Rea
            Millimetres(-worst.distance_m) + " into " + obstacle +
            " on the way: write 'open_to: 0' before the reach";
   return "no way to grasp " + object + " keeps clear of everything: the open hand will push " +
-         Millimetres(-worst.distance_m) + " into " + obstacle +
-         "; try 'from: above' or 'from: side', another style or 'point_m', or make room";
+         Millimetres(-worst.distance_m) + " into " + obstacle + "; try " +
+         (query.approach == Approach::kAbove  ? "'from: side'"
+          : query.approach == Approach::kSide ? "'from: above'"
+                                              : "'from: above' or 'from: side'") +
+         ", another style or" + (query.point_m ? " another" : "") + " 'point_m', or make room";
 }
 
 }  // namespace
@@ -98,23 +101,22 @@ bool IsHeldBySides(const Scene& scene, const Snapshot& now, HandIndex hand, Body
   return SidesThatTouch(scene, now, hand, object).size() >= 2;
 }
 
-std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, HandIndex hand,
-                          BodyIndex object) {
+std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, HandIndex hand, BodyIndex object,
+                          double closes_to) {
   const std::set<std::string> sides = SidesThatSqueeze(scene, now, hand, object);
   if (sides.size() >= 2) return "";
   if (sides.size() == 1)
     return "it has closed and touches " + scene.body(object).name + " with its " + *sides.begin() +
            " only, which is no grasp: " +
-           (now.hand(hand).trigger < 1 ? "close it farther ('close_to: 1'), or " : "") +
+           (closes_to < 1 ? "close it farther ('close_to: 1'), or " : "") +
            "reach for it from another side";
   const HandState& state = now.hand(hand);
   const HandClearance clearance(scene, hand, state.joints);
   const double away_m = clearance.To(object, state.palm.X_WB, now);
   const std::string& name = scene.body(object).name;
-  const double grip = state.trigger;
-  if (grip < 1 && away_m < kNearlyThere_m)
-    return "it has closed to " + TwoDigits(grip) + " and does not touch " + name + ", which is " +
-           Millimetres(std::max(away_m, 0.0)) + " away: close it farther";
+  if (closes_to < 1 && away_m < kNearlyThere_m)
+    return "it has closed to " + TwoDigits(closes_to) + " and does not touch " + name +
+           ", which is " + Millimetres(std::max(away_m, 0.0)) + " away: close it farther";
   const std::string how_far = away_m >= HandClearance::kFar_m
                                   ? "more than " + Millimetres(HandClearance::kFar_m)
                                   : Millimetres(std::max(away_m, 0.0));

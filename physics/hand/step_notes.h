@@ -20,10 +20,10 @@ std::string NoteAboutReach(const Scene& scene, const Snapshot& now, const ReachQ
 /// Whether two sides of the hand touch `object`, an index into Scene::bodies: it holds it.
 bool IsHeldBySides(const Scene& scene, const Snapshot& now, HandIndex hand, BodyIndex object);
 
-/// About a hand that has closed, at the end of the step: that it touches `object`, an index into
-/// Scene::bodies, with one side only or not at all.
-std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, HandIndex hand,
-                          BodyIndex object);
+/// About a hand that has closed, its trigger at `closes_to`, at the end of the step: that it
+/// touches `object`, an index into Scene::bodies, with one side only or not at all.
+std::string NoteAboutGrip(const Scene& scene, const Snapshot& now, HandIndex hand, BodyIndex object,
+                          double closes_to);
 
 /// About a hand that ends a move `off_m` away from where it was to go: what it pushes against.
 std::string NoteAboutWay(const Scene& scene, const Snapshot& now, HandIndex hand, double off_m);

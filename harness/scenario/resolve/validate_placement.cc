@@ -435,7 +435,7 @@ class OnPaper {
           e.place_on.where,
           fmt::format("place_on: the centre of '{}' is not above '{}': it would tip over", held,
                       below),
-          where + "; carry it farther");
+          where + "; carry its centre over it");
     }
     if (const auto [other, depth_m] = InTheWay(object, *standing, support, hand);
         other != physics::kNone) {

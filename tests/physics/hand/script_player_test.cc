@@ -252,8 +252,9 @@ TEST(ScriptPlayerTest, PlacingOnWhatIsNotBelowNamesTheStep) {
   while (player.Advance(still.snapshot())) {
   }
   EXPECT_EQ(player.problem(),
-            "milk.yaml:12:5: place_on: no part of 'post' is below 'object', which no hand touches "
-            "now: was it lost on the way? 'poses' tells where it is at each moment");
+            "milk.yaml:12:5: place_on: no part of 'post' is below 'object'; no hand touches 'object', "
+            "which this step is to move: was it lost on the way? 'poses' tells where it is at each "
+            "moment");
 }
 
 /// Whether the object touches the table.

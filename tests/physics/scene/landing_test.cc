@@ -31,6 +31,22 @@ TEST(LandingTest, ALevelSurfaceHasItsOwnHeightToTheBit) {
   }
 }
 
+TEST(LandingTest, WhatStandsAlreadyLandsWhereItStands) {
+  const Body table = Of(Box{{1.2, 0.8, 0.04}}), book = Of(Box{{0.02, 0.12, 0.2}});
+  unsigned random = 1;
+  const auto within = [&](double most) {
+    random = random * 1664525u + 1013904223u;
+    return most * (2 * (random / 4294967296.0) - 1);
+  };
+  for (int i = 0; i < 3000; ++i) {
+    const Vector3d at(within(0.4), within(0.2), 0.86 + within(0.0005)),
+        turn(within(0.02), within(0.02), within(0.3));
+    const auto landing = LandingHeight(table, At({0, 0, 0.74}), book, At(at, turn));
+    ASSERT_TRUE(landing) << at.transpose() << ", " << turn.transpose();
+    EXPECT_NEAR(*landing, 0.76, kNear_m) << at.transpose() << ", " << turn.transpose();
+  }
+}
+
 TEST(LandingTest, OnATiltedBoardOnlyWhatIsBelowCounts) {
   const Body board = Of(Box{{0.6, 0.3, 0.02}});
   const Pose X_WS = At({0, 0, 1}, {0, -15, 0});  // it rises along x

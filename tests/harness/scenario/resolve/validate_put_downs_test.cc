@@ -72,7 +72,7 @@ TEST(ValidatePutDowns, TheCentreIsAboveTheSupport) {
   EXPECT_EQ(
       After(carried_to("-0.43")),
       "18:28: place_on: the centre of 'milk' is not above 'table': it would tip over | by the "
-      "steps before, 'milk' is at [0.20, -0.43, 1.06]; carry it farther\n");
+      "steps before, 'milk' is at [0.20, -0.43, 1.06]; carry its centre over it\n");
   // A carton on the edge stands or falls with a few millimetres of the grasp.
   EXPECT_EQ(After(carried_to("-0.405")), "");
 }
