@@ -20,7 +20,9 @@ Texts NotesOf(const Scene& scene, const Script& script) {
   Texts texts;
   for (const ScriptNote& note : simulation.notes()) {
     // Anna stands so near that her left hand hangs in the table.
-    if (note.text.starts_with("anna_left_hand goes 51 mm into table, which is fixed")) continue;
+    if (note.text ==
+        "anna_left_hand starts 51 mm in table, which is fixed; let her start elsewhere")
+      continue;
     texts.push_back((note.hand == kNone ? "" : scene.hand(note.hand).name + ": ") + note.text);
   }
   return texts;

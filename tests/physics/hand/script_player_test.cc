@@ -111,11 +111,9 @@ TEST(ScriptPlayerTest, NotesAReachThatCannotKeepClear) {
   Body roof{.name = "roof", .shapes = {{Box{{1, 1, 0.02}}, {}}}, .fixed = true};
   roof.X_WB.p_m = {0.2, 0.1, 1.05};
   scene.bodies.push_back(roof);
-  EXPECT_EQ(
-      NotesOf(scene, from_above),
-      Texts{"no way to grasp object keeps clear of everything: the open hand will push 22 mm "
-            "into roof; try 'from: above' or 'from: side', another style or 'point_m', or make "
-            "room"});
+  EXPECT_EQ(NotesOf(scene, from_above),
+            Texts{"no way to grasp object keeps clear of everything: the open hand will push 22 mm "
+                  "into roof; try 'from: side', another style or 'point_m', or make room"});
 }
 
 TEST(ScriptPlayerTest, NotesAThingThatIsTooWideForTheStyle) {
@@ -251,10 +249,11 @@ TEST(ScriptPlayerTest, PlacingOnWhatIsNotBelowNamesTheStep) {
   ScriptPlayer player(scene, {.stages = {One(ReachStep{"object"}, 0.01), place}});
   while (player.Advance(still.snapshot())) {
   }
-  EXPECT_EQ(player.problem(),
-            "milk.yaml:12:5: place_on: no part of 'post' is below 'object'; no hand touches 'object', "
-            "which this step is to move: was it lost on the way? 'poses' tells where it is at each "
-            "moment");
+  EXPECT_EQ(
+      player.problem(),
+      "milk.yaml:12:5: place_on: no part of 'post' is below 'object'; no hand touches 'object', "
+      "which this step is to move: was it lost on the way? 'poses' tells where it is at each "
+      "moment");
 }
 
 /// Whether the object touches the table.
@@ -270,6 +269,56 @@ Script HastyPutDown() {
   return {.stages = {One(ReachStep{"object"}, 0.8), One(TriggerStep{1}, 0.6),
                      One(MoveStep{{0, 0, 0.25}}, 0.15), One(CarryStep{{0.2, -0.3}}, 0.3),
                      One(PlaceStep{"table"}, 0.2), One(TriggerStep{0}, 0.3)}};
+}
+
+// A bucket and its bar: the bucket lands, not the bar.
+TEST(ScriptPlayerTest, WhatIsGluedToWhatIsHeldIsPutDownWithIt) {
+  Scene scene = MakeScene({});
+  scene.bodies[kObject].X_WB.p_m.z() += 0.1;
+  Body bar{.name = "bar", .shapes = {{Box{{0.02, 0.1, 0.02}}, {}}}, .mass_kg = 0.1};
+  bar.X_WB.p_m = scene.bodies[kObject].X_WB.p_m + Eigen::Vector3d(0, 0, 0.15);
+  scene.bodies.push_back(bar);
+  scene.joints.push_back({.body = BodyIndex(2), .base = BodyIndex(kObject)});
+  const ScriptStage reach = One(ReachStep{"bar"}, 0.01);
+  const double at_m = EndOf(scene, {.stages = {reach}}).X_WH.p_m.z();
+  const double down_m =
+      at_m - EndOf(scene, {.stages = {reach, One(PlaceStep{"table"}, 0.5)}}).X_WH.p_m.z();
+  EXPECT_GT(down_m, 0.102);
+  EXPECT_LT(down_m, 0.112) << "2 mm, and at most 10 mm of the palm's spring";
+}
+
+TEST(ScriptPlayerTest, NotesWhatIsLostOnTheWay) {
+  const Scene scene = MakeScene({});
+  Simulation still(scene, {});
+  for (const StepAction& step :
+       {StepAction(CarryStep{{0.2, -0.4}}), StepAction(PlaceStep{"table"})}) {
+    ScriptPlayer player(scene, {.stages = {One(ReachStep{"object"}, 0.01), One(step, 0.5)}});
+    while (player.Advance(still.snapshot())) {
+    }
+    EXPECT_EQ(player.problem(), "");
+    ASSERT_EQ(player.notes().size(), 1u);
+    EXPECT_EQ(player.notes()[0].text,
+              "no hand touches 'object', which this step is to move: was it lost on the way? "
+              "'poses' tells where it is at each moment");
+  }
+}
+
+TEST(ScriptPlayerTest, AFistThatHasLetGoMissesNothing) {
+  const auto notes = [](std::vector<ScriptStage> stages) {
+    stages.insert(stages.begin(), {One(ReachStep{"object"}, 0.6), One(TriggerStep{1}, 0.4)});
+    const Scene scene = MakeScene({});
+    Simulation simulation(scene, {.stages = std::move(stages)});
+    while (simulation.Step()) {
+    }
+    return simulation.notes().size();
+  };
+  const ScriptStage opens = One(TriggerStep{0}, 0.3), leaves = One(MoveStep{{-0.2, 0, 0.1}}, 0.5),
+                    closes = One(TriggerStep{1}, 0.4);
+  EXPECT_EQ(notes({opens, leaves, closes}), 0u);
+  EXPECT_EQ(notes({opens, leaves,
+                   One(ReachStep{"object", "wrap", Approach::kAbove, {0, 0, 0.15}}, 0.6), closes}),
+            1u)
+      << "it reached for it again";
 }
 
 TEST(ScriptPlayerTest, WhatIsPutDownInHasteStandsBeforeTheHandOpens) {
