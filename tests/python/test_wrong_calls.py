@@ -132,6 +132,8 @@ CALLS = {
     "an update after the end": (lambda: updated((1, {})).finish() or updated((1, {})).finish(0.2), F, "is not after|before its last"),
     # episodes
     "a file that is not there": (lambda: prehend.open("takes/nowhere.jsonl"), E, "no such file"),
+    "poses of a tracker": (lambda: prehend.open(takes.ROOT / "docs/motion_capture/poses.csv"), E,
+                           "neither a recording nor a scenario; .*'prehend import .*poses.csv -o NAME.jsonl'"),
     "a glob without files": (lambda: prehend.open("nowhere/*.jsonl"), E, "no file matches"),
     "an unknown scenario": (lambda: prehend.open("milk_carton_warp"), E, "did you mean 'milk_carton_wrap'"),
     "an array": (lambda: prehend.open([np.zeros(3)]), E, r"ndarray.*prehend\.episode"),

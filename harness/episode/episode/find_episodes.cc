@@ -120,6 +120,12 @@ class TakeFinder {
     for (const std::string& file : in_folder)
       if (auto none = Add(file, entry)) return none;
     if (!in_folder.empty()) return std::nullopt;
+    std::error_code error;
+    if (!typed.ends_with(".yaml") && !typed.ends_with(".yml") &&
+        std::filesystem::is_regular_file(typed, error))
+      return NotFound{.message = fmt::format(
+                          "{} is neither a recording nor a scenario; of poses '{}' makes one",
+                          typed, CommandText({"import", typed, "-o", "NAME.jsonl"}))};
     PREHEND_TRY(auto scenario, ScenarioNamed(typed, root_));
     Add(std::move(scenario), entry);
     return std::nullopt;
