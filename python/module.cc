@@ -409,14 +409,15 @@ PYBIND11_MODULE(_prehend, m) {
     return all;
   });
   m.def("episode_of", &EpisodeOf);
-  m.def("score",
-        [](const std::vector<std::tuple<Events, Events, grammar::Tick, grammar::Tick>>& all,
-           double collar_s) {
-          std::vector<Compared> episodes;
-          for (const auto& [found, truth, per_second, end] : all)
-            episodes.push_back({ToTimeline(found, per_second), ToTimeline(truth, per_second), end});
-          return ScoreJson(episodes, collar_s);
-        });
+  m.def("score", [](const Grammar& grammar,
+                    const std::vector<std::tuple<Episode, Events, std::string, grammar::Tick>>& all,
+                    const std::string& map, std::optional<double> collar_s) {
+    std::vector<Compared> episodes;
+    for (const auto& [episode, found, labels, end] : all)
+      episodes.push_back(
+          {episode, ToTimeline(found, episode.entities().ticks_per_second), labels, end});
+    return ScoreJson(grammar, episodes, map, collar_s);
+  });
   m.def("margins", &MarginsCsv, Unlocked());
   m.def("timeline_svg", [](const Events& events, grammar::Tick per_second, grammar::Tick end,
                            const Grammar* grammar) {

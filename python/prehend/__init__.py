@@ -16,15 +16,16 @@ own. It is applied to recordings of trackers and robots, to arrays, and to what 
 `Grammar.monitor` watches live data. Metres, seconds, radians, newtons; z is up; quaternions are
 (w, x, y, z). Errors are `Error`, a ValueError, with file, line, column and remedy. Every rule that
 asks for what the data do not have is a warning, `MissingFacts`; data that look wrong (millimetres, no
-table, z not up) are a warning, `DoubtfulFrames`. `Events`, a DataFrame, has its own help.
+table, z not up) are a warning, `DoubtfulFrames`; labels that do, `DoubtfulLabels`. `Events`, a
+DataFrame, has its own help.
 
 docs/python.md has it on a page; the grammars are described in docs/events.md.
 """
 from ._prehend import __version__
 from .episodes import Episode, Episodes, episode, open, program  # pylint: disable=redefined-builtin
-from .errors import DoubtfulFrames, EpisodeError, Error, FrameError, GrammarError, MissingFacts
+from .errors import DoubtfulFrames, DoubtfulLabels, EpisodeError, Error, FrameError, GrammarError, MissingFacts
 from .events import Events, Explanation
 from .grammar import Grammar, Monitor
 
 __all__ = ["open", "episode", "Episode", "Episodes", "Explanation", "Grammar", "Monitor", "program", "Error",
-           "EpisodeError", "FrameError", "GrammarError", "MissingFacts", "DoubtfulFrames"]  # Events: 19,000 lines of pandas
+           "EpisodeError", "FrameError", "GrammarError", "MissingFacts", "DoubtfulFrames", "DoubtfulLabels"]  # Events: 19,000 lines of pandas

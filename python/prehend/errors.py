@@ -60,6 +60,10 @@ class DoubtfulFrames(UserWarning):
     """Poses or sizes that can hardly be meant: another unit, no table, z not up."""
 
 
+class DoubtfulLabels(UserWarning):
+    """Labels that can hardly be meant: they overlap, have no text, or fit once they are moved."""
+
+
 def named(name):
     """A name from somebody's file that becomes a name of ours: it leaves no folder."""
     if not re.fullmatch(r"[A-Za-z0-9_][\w.-]*", str(name), re.ASCII):

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Grammars: compiled, and applied to episodes, arrays and live data."""
+import contextlib
 import csv
 import io
 import json
 import os
-import pathlib
 import tempfile
 from typing import Optional, Union
 
@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from . import _prehend, episodes, events, frames
-from .errors import DoubtfulFrames, Error, FrameError, GrammarError, fail, warn
+from .errors import DoubtfulFrames, DoubtfulLabels, Error, FrameError, GrammarError, fail, warn
 
 
 class Grammar:
@@ -105,8 +105,8 @@ class Grammar:
         one = self._episode(frames_, **arrays)
         return one.explain(event, grammar=self)
 
-    def score(self, found, truth, map=None, collar_s: float = 0.05) -> pd.DataFrame:  # pylint: disable=redefined-builtin
-        """How well events agree with true ones.
+    def score(self, found, truth, map=None, collar_s: Optional[float] = None) -> pd.DataFrame:  # pylint: disable=redefined-builtin
+        """How well events agree with true ones: the figures of `prehend score`.
 
         Parameters
         ----------
@@ -117,31 +117,33 @@ class Grammar:
             roles, or label ("grasping(right_hand, cup)", or the event alone).
         map : path, optional
             What labels of a file mean (docs/labels.md).
-        collar_s : float
-            For the columns collar_f and collar_error_rate.
+        collar_s : float, optional
+            For the columns collar_f and collar_error_rate; by default as the map says, or 0.05.
 
         Returns
         -------
         pandas.DataFrame
             By event, and "all": true, found, f1_10, f1_25, f1_50 (0 to 1), edit, Ward's classes,
             boundary errors in seconds, latency, and more; docs/regression-suite.md says what each
-            is. Events that no label names are not judged.
+            is. Events that no label names are not judged; without any label and a map all are.
+            `DoubtfulLabels` warns of labels that overlap, or that are found if all are moved.
         """
         many = lambda one: one if isinstance(one, (list, tuple, episodes.Episodes)) else [one]
         found, truth = many(found), many(truth)
-        if len(found) != len(truth):
+        if len(found) != len(truth) or not len(found):
             fail(Error, f"{len(found)} of found, {len(truth)} of truth", "one truth for each episode, in the same order")
         compared = []
-        for one, labels in zip(found, truth):
-            if isinstance(one, pd.DataFrame) and not isinstance(one, events.Events):
-                fail(Error, "found: a table does not say which entities there are",
-                     "what segment() returned, monitor.events(told), or an episode")
-            one = one if isinstance(one, events.Events) else self.segment(one)
-            source = one._has_source()
-            with _file_of(labels, self) as file:
-                true = source.episode.read_labels(self._compiled, file, str(map or ""))
-            compared.append((one._tuples(), [event[:5] for event in true], source.episode.ticks_per_second(), source.end))
-        scores = json.loads(_prehend.score(compared, float(collar_s)))
+        with contextlib.ExitStack() as files:
+            for one, labels in zip(found, truth):
+                if isinstance(one, pd.DataFrame) and not isinstance(one, events.Events):
+                    fail(Error, "found: a table does not say which entities there are",
+                         "what segment() returned, monitor.events(told), or an episode")
+                one = one if isinstance(one, events.Events) else self.segment(one)
+                source = one._has_source()
+                compared.append((source.episode, one._tuples(), files.enter_context(_file_of(labels, self)), source.end))
+            scores, strange = _prehend.score(self._compiled, compared, str(map or ""), collar_s)
+        warn(strange, DoubtfulLabels)
+        scores = json.loads(scores)
         return pd.json_normalize(scores["events"] + [scores["total"]], sep="_").set_index("event")
 
     def margins(self, episodes_, truth, map=None, over=(), within: float = 0.01) -> pd.DataFrame:  # pylint: disable=redefined-builtin
@@ -168,20 +170,15 @@ class Grammar:
         opened = episodes.open(episodes_) if isinstance(episodes_, (str, os.PathLike)) else episodes_
         opened = opened if isinstance(opened, (list, tuple, episodes.Episodes)) else [opened]
         truth = truth if isinstance(truth, (list, tuple)) else [truth]
-        with tempfile.TemporaryDirectory(prefix="prehend_") as folder:
-            files, labels = [], []
-            for number, one in enumerate(opened):
-                files.append(one.file or os.path.join(folder, f"{number}.jsonl"))
+        with tempfile.TemporaryDirectory(prefix="prehend_") as folder, contextlib.ExitStack() as tables:
+            files = [one.file or os.path.join(folder, f"{number}.jsonl") for number, one in enumerate(opened)]
+            for file, one in zip(files, opened):
                 if not one.file:
-                    one.write(files[-1])
-            for number, one in enumerate(truth):
-                is_file = isinstance(one, (str, os.PathLike))
-                labels.append(os.fspath(one) if is_file else os.path.join(folder, f"{number}.csv"))
-                if not is_file:
-                    with _file_of(one, self) as file:
-                        pathlib.Path(labels[-1]).write_text(pathlib.Path(file).read_text("utf-8"), "utf-8")
-            text = _prehend.margins(list(dict.fromkeys(files)), self._compiled, labels, str(map or ""), list(over),
-                                    float(within))
+                    one.write(file)
+            labels = [tables.enter_context(_file_of(one, self)) for one in truth]
+            text, strange = _prehend.margins(list(dict.fromkeys(files)), self._compiled, labels, str(map or ""), list(over),
+                                             float(within))
+        warn(strange, DoubtfulLabels)
         return pd.read_csv(io.StringIO(text)).set_index("parameter")
 
     def __repr__(self):
@@ -191,37 +188,29 @@ class Grammar:
         return self._compiled.describe()
 
 
-class _file_of:  # pylint: disable=invalid-name
+@contextlib.contextmanager
+def _file_of(labels, grammar):
     """Labels as a file: a table is written, as long as it is needed."""
-
-    def __init__(self, labels, grammar):
-        self._labels, self._grammar, self._file = labels, grammar, None
-
-    def __enter__(self):
-        if isinstance(self._labels, (str, os.PathLike)):
-            return os.fspath(self._labels)
-        table = self._labels
-        if not isinstance(table, pd.DataFrame):
-            fail(Error, f"truth: found a {type(table).__name__}, wanted a DataFrame or a file of labels")
-        missing = {"begin_s", "end_s"} - set(table.columns)
-        if missing or not {"event", "label"} & set(table.columns):
-            fail(Error, f"truth: the table has the columns {list(table.columns)}",
-                 "wanted begin_s, end_s and label; or event and a column for each role")
-        roles = dict(zip(self._grammar.events.index, self._grammar.events["roles"]))
-        with tempfile.NamedTemporaryFile("w", suffix=".csv", delete=False, encoding="utf-8", newline="") as self._file:
-            rows = csv.writer(self._file)
-            rows.writerow(["begin_s", "end_s", "label"])
-            for row in table.to_dict("records"):
-                label = row.get("label", row.get("event"))
-                named = [row.get(role) for role in roles.get(label, [])] if "label" not in row else []
-                if named and all(isinstance(one, str) and one for one in named):
-                    label = f"{label}({', '.join(named)})"
-                rows.writerow([repr(float(row["begin_s"])), repr(float(row["end_s"])), label])
-        return self._file.name
-
-    def __exit__(self, *_):
-        if self._file:
-            os.unlink(self._file.name)
+    if isinstance(labels, (str, os.PathLike)):
+        yield os.fspath(labels)
+        return
+    if not isinstance(labels, pd.DataFrame):
+        fail(Error, f"truth: found a {type(labels).__name__}, wanted a DataFrame or a file of labels")
+    if {"begin_s", "end_s"} - set(labels.columns) or not {"event", "label"} & set(labels.columns):
+        fail(Error, f"truth: the table has the columns {list(labels.columns)}",
+             "wanted begin_s, end_s and label; or event and a column for each role")
+    roles = dict(zip(grammar.events.index, grammar.events["roles"]))
+    with tempfile.NamedTemporaryFile("w", suffix=".csv", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file)
+        rows.writerow(["begin_s", "end_s", "label"])
+        for row in labels.to_dict("records"):
+            label = row.get("label", row.get("event"))
+            named = [row.get(role) for role in roles.get(label, [])] if "label" not in row else []
+            if named and all(isinstance(one, str) and one for one in named):
+                label = f"{label}({', '.join(named)})"
+            rows.writerow([repr(float(row["begin_s"])), repr(float(row["end_s"])), label])
+        file.flush()
+        yield file.name
 
 
 class Monitor:

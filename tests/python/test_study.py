@@ -46,6 +46,43 @@ class Study(takes.Folder, unittest.TestCase):
         two = self.grammar.score([self.milk, found], [by_name, by_name])
         self.assertEqual(two.loc["all", "true"], 2)
 
+    def test_labels_are_counted_as_the_program_does(self):
+        head, *rows = self.labels.read_text().splitlines()
+        few = [head, rows[0], rows[4]]
+        cases = {"no label": ([head], self.map), "no label and no map": (["begin_s,end_s,label"], None),
+                 "few labels": (few, self.map), "a row twice": ([*few, rows[4]], self.map),
+                 "rows that overlap": ([*few, "3.35,3.6,put down,right"], self.map),
+                 "a moment": ([head, "2,2,carry,right", rows[1]], self.map),
+                 "a moment alone": ([head, "2,2,carry,right"], self.map)}
+        collars = self.folder / "collars.yaml"
+        collars.write_text(self.map.read_text() + "collar_ms: {reaching: 400}\njoin_s: 5\n")
+        cases["collars, and labels that are joined"] = ([head, *rows, "4.5,4.7,put down,right"], collars)
+        for name, (lines, meaning) in cases.items():
+            with self.subTest(name), warnings.catch_warnings():
+                warnings.simplefilter("ignore", prehend.DoubtfulLabels)
+                file = self.folder / "some.csv"
+                file.write_text("\n".join(lines) + "\n")
+                told = json.loads(takes.program("score", self.folder / "milk.jsonl", "--truth", file, "--json",
+                                                *(["--map", meaning] if meaning else [])))["grammars"][0]
+                want = pd.json_normalize(told["events"] + [told["total"]], sep="_").set_index("event")
+                pd.testing.assert_frame_equal(self.grammar.score(self.milk, file, map=meaning), want)
+        empty = pd.DataFrame({"begin_s": [], "end_s": [], "label": []})
+        total = self.grammar.score(self.milk, empty).loc["all"]
+        self.assertEqual((total["true"], total["found"]), (0, len(self.milk.events)))
+        self.assertEqual(total["ward_inserted"], total["found"], "all that is found is too much")
+
+    def test_rows_that_overlap_are_said(self):
+        once = pd.DataFrame({"begin_s": [1.5], "end_s": [4.1], "label": ["grasping"]})
+        with self.assertWarnsRegex(prehend.DoubtfulLabels, "a label overlaps another one of the same event") as told:
+            scores = self.grammar.score(self.milk, pd.concat([once, once]))
+        self.assertEqual(told.filename, __file__)
+        self.assertEqual(scores.loc["all", "true"], 1)
+        with self.assertWarnsRegex(prehend.DoubtfulLabels, "a label overlaps"):
+            self.grammar.margins(self.milk, pd.concat([once, once]), over=["hold_way"])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.grammar.score(self.milk, once)
+
     def test_margins_are_the_programs(self):
         mine = self.grammar.margins(self.milk, str(self.labels), map=self.map, over=["hold_way", "hold_slip"])
         file = self.folder / "margins.csv"

@@ -12,7 +12,7 @@
 #include "harness/episode/run/load_grammar.h"
 #include "harness/exchange/labels/read_truths.h"
 #include "harness/library/library/opened.h"
-#include "harness/measure/score/score.h"
+#include "harness/measure/score/score_labels.h"
 #include "harness/measure/sweep/sweep.h"
 #include "harness/show/chart/chart.h"
 #include "harness/show/explain/explain.h"
@@ -30,25 +30,6 @@ show::Watched Watch(episode::Episode& episode) {
   show::Watched watched = show::Watch(episode);
   if (!watched.problem.empty()) Refuse(episode.name().file, watched.problem);
   return watched;
-}
-
-/// Of each event the roles that all true ones have.
-exchange::ComparedRoles RolesOf(const std::vector<Compared>& episodes) {
-  exchange::ComparedRoles roles;
-  std::set<std::string> seen;
-  for (const Compared& episode : episodes) {
-    for (const grammar::NamedEvent& event : episode.truth.events) {
-      std::vector<std::string>& common = roles[event.event];
-      const bool is_first = seen.insert(event.event).second;
-      for (const grammar::Role& role : event.roles) {
-        if (is_first) common.push_back(role.name);
-      }
-      std::erase_if(common, [&](const std::string& name) {
-        return std::ranges::count(event.roles, name, &grammar::Role::name) == 0;
-      });
-    }
-  }
-  return roles;
 }
 
 }  // namespace
@@ -136,26 +117,35 @@ grammar::Timeline ReadLabels(const Episode& episode, const Grammar* grammar,
   });
 }
 
-std::string ScoreJson(const std::vector<Compared>& episodes, double collar_s) {
-  const exchange::ComparedRoles roles = RolesOf(episodes);
+Warned ScoreJson(const Grammar& grammar, const std::vector<Compared>& episodes,
+                 const std::string& map, std::optional<double> collar_s) {
+  std::vector<episode::EpisodeName> names;
+  std::vector<std::string> files;
+  for (const Compared& one : episodes) {
+    names.push_back(one.episode.impl().name);
+    files.push_back(one.labels);
+  }
+  const double collar = collar_s.value_or(measure::LabelsRequest().collar_s);
+  const auto truths =
+      Unwrap(exchange::ReadTruths(episode::TakesOf(names), files, map, *grammar.program()));
   std::vector<measure::EpisodeToScore> all;
   for (const Compared& one : episodes) {
-    if (one.found.ticks_per_second != one.truth.ticks_per_second)
-      Refuse("", "found and true events count time in different ticks",
-             "take both from the same episode");
+    const grammar::EntityTable table = one.episode.entities();
+    const std::size_t take = all.size();
     measure::EpisodeToScore& scored = all.emplace_back();
     scored.ticks = one.end;
-    scored.truth = exchange::Compared(one.truth, roles);
-    scored.found = exchange::Compared(one.found, roles);
-    for (const grammar::NamedEvent& event : one.found.events)
-      if (!roles.contains(event.event)) ++scored.ignored[event.event];
+    scored.truth = Unwrap(truths.Truth(take, table.entities, table.ticks_per_second, scored.ticks));
+    measure::AddFound(one.found, take, truths, collar, scored);
   }
-  return measure::ScoresJson({measure::ScoreOf("", all, collar_s)}, collar_s)["grammars"][0].dump();
+  const measure::Score score = measure::ScoreOf(
+      "", all, collar, collar_s ? measure::Collars() : measure::Collars(truths.collars_s()));
+  return {measure::ScoresJson({score}, collar)["grammars"][0].dump(),
+          exchange::WarningsOf(truths) + measure::ClockWarning(grammar.name(), all, truths)};
 }
 
-std::string MarginsCsv(const std::vector<std::string>& files, const Grammar& grammar,
-                       const std::vector<std::string>& truth, const std::string& map,
-                       const std::vector<std::string>& over, double within) {
+Warned MarginsCsv(const std::vector<std::string>& files, const Grammar& grammar,
+                  const std::vector<std::string>& truth, const std::string& map,
+                  const std::vector<std::string>& over, double within) {
   measure::SweepRequest request{.root = ProjectRoot(), .grammar = grammar.name_or_path()};
   for (const auto& [name, value] : grammar.parameters())
     request.settings.push_back(name + "=" + value);
@@ -170,7 +160,7 @@ std::string MarginsCsv(const std::vector<std::string>& files, const Grammar& gra
   const std::vector<std::string>& left_out = margins.sweep.left_out;
   if (margins.sweep.IsRefused(request) || margins.sweep.episodes == 0)
     Refuse("", left_out.empty() ? "no episode has events to compare with" : left_out.front());
-  return measure::MarginsCsv(margins);
+  return {measure::MarginsCsv(margins), margins.sweep.label_warning};
 }
 
 std::string TimelineSvg(const grammar::Timeline& timeline, grammar::Tick end,

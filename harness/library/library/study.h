@@ -43,20 +43,26 @@ PREHEND_API Explanation Explain(const Episode& episode, const Grammar* grammar,
 PREHEND_API grammar::Timeline ReadLabels(const Episode& episode, const Grammar* grammar,
                                          const std::string& file, const std::string& map);
 
+/// Somebody's text, and what is strange in the labels: lines.
+using Warned = std::pair<std::string, std::string>;
+
 struct Compared {
-  grammar::Timeline found, truth;
-  grammar::Tick end = 0;
+  Episode episode;
+  grammar::Timeline found;
+  std::string labels;     ///< a file
+  grammar::Tick end = 0;  ///< of what was looked at
 };
-/// JSON as of `prehend score --json`: "grammars"[0]. Events are compared in the roles that all true
-/// ones of their name have; those that the truth never names are not judged.
-PREHEND_API std::string ScoreJson(const std::vector<Compared>& episodes, double collar_s);
+/// JSON as of `prehend score --truth .. --map .. --json`: "grammars"[0]. Without `collar_s` that of
+/// the map, or 50 ms. At least one episode.
+PREHEND_API Warned ScoreJson(const Grammar& grammar, const std::vector<Compared>& episodes,
+                             const std::string& map, std::optional<double> collar_s);
 
 /// How far parameters may be from their values, against labels, goldens ("golden") or recorded
 /// events ("recorded"): CSV as of `prehend grammar margins -o`. `over`: these parameters; empty:
 /// all. It works in processes of its own.
-PREHEND_API std::string MarginsCsv(const std::vector<std::string>& files, const Grammar& grammar,
-                                   const std::vector<std::string>& truth, const std::string& map,
-                                   const std::vector<std::string>& over, double within);
+PREHEND_API Warned MarginsCsv(const std::vector<std::string>& files, const Grammar& grammar,
+                              const std::vector<std::string>& truth, const std::string& map,
+                              const std::vector<std::string>& over, double within);
 
 /// A picture of a timeline, SVG: a row per event name and hand, in the grammar's colours.
 PREHEND_API std::string TimelineSvg(const grammar::Timeline& timeline, grammar::Tick end,

@@ -32,22 +32,6 @@ std::string DifferencesOf(const EpisodeToScore& episode, double collar_s) {
   return lines.empty() ? "" : episode.scenario + ":\n" + lines;
 }
 
-std::string ClockWarning(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
-                         const exchange::LabelReading& truths) {
-  std::vector<std::pair<grammar::Timeline, grammar::Timeline>> compared;
-  for (const EpisodeToScore& episode : episodes)
-    if (episode.failure.empty()) compared.emplace_back(episode.truth, episode.found);
-  const auto clock = exchange::FindClockOffset(compared);
-  if (!clock) return "";
-  const std::optional<double> offset_s = truths.offset_s();
-  return fmt::format(
-      "warning: {}: of {} labels {} are found, and {} if all of them were moved by {:+.2f} s; "
-      "does the video begin when the tracker does?\n  hint: {}\n",
-      grammar, clock->all, clock->found_now, clock->found_then, clock->offset_s,
-      offset_s ? fmt::format("offset_s: {:.2f} in the map", *offset_s + clock->offset_s)
-               : fmt::format("add {:.2f} to each offset_s", clock->offset_s));
-}
-
 /// The labels of one take, and nothing found yet.
 Result<EpisodeToScore> Labelled(episode::Episode& episode, const episode::Take& take,
                                 std::size_t index, const exchange::LabelReading& truths) {
@@ -62,18 +46,6 @@ Result<EpisodeToScore> Labelled(episode::Episode& episode, const episode::Take& 
                         .set = take.set,
                         .video = truths.rows(index).video,
                         .offset_s = truths.rows(index).offset_s};
-}
-
-/// Of what was found what the labels can judge.
-void AddFound(const grammar::Timeline& found, std::size_t index,
-              const exchange::LabelReading& truths, double collar_s, EpisodeToScore& labelled) {
-  labelled.found = exchange::Compared(found, truths.compared());
-  labelled.moments = truths.TakeMoments(
-      index, labelled.truth,
-      static_cast<grammar::Tick>(collar_s * static_cast<double>(found.ticks_per_second)),
-      labelled.found);
-  for (const grammar::NamedEvent& event : found.events)
-    if (!truths.compared().contains(event.event)) ++labelled.ignored[event.event];
 }
 
 /// Without a recording there is no rate.
@@ -255,6 +227,33 @@ class LabelScorer {
 };
 
 }  // namespace
+
+std::string ClockWarning(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
+                         const exchange::LabelReading& truths) {
+  std::vector<std::pair<grammar::Timeline, grammar::Timeline>> compared;
+  for (const EpisodeToScore& episode : episodes)
+    if (episode.failure.empty()) compared.emplace_back(episode.truth, episode.found);
+  const auto clock = exchange::FindClockOffset(compared);
+  if (!clock) return "";
+  const std::optional<double> offset_s = truths.offset_s();
+  return fmt::format(
+      "warning: {}: of {} labels {} are found, and {} if all of them were moved by {:+.2f} s; "
+      "does the video begin when the tracker does?\n  hint: {}\n",
+      grammar, clock->all, clock->found_now, clock->found_then, clock->offset_s,
+      offset_s ? fmt::format("offset_s: {:.2f} in the map", *offset_s + clock->offset_s)
+               : fmt::format("add {:.2f} to each offset_s", clock->offset_s));
+}
+
+void AddFound(const grammar::Timeline& found, std::size_t index,
+              const exchange::LabelReading& truths, double collar_s, EpisodeToScore& labelled) {
+  labelled.found = exchange::Compared(found, truths.compared());
+  labelled.moments = truths.TakeMoments(
+      index, labelled.truth,
+      static_cast<grammar::Tick>(collar_s * static_cast<double>(found.ticks_per_second)),
+      labelled.found);
+  for (const grammar::NamedEvent& event : found.events)
+    if (!truths.compared().contains(event.event)) ++labelled.ignored[event.event];
+}
 
 void AddScores(const std::string& grammar, std::vector<EpisodeToScore> episodes, double collar_s,
                const Collars& collars, LabelScores& scores) {

@@ -58,6 +58,14 @@ struct LabelFilesRequest {
 };
 Result<LabelScores> ScoreLabelFiles(const LabelFilesRequest& request, std::string& warnings);
 
+/// Adds of what was found in one take what the labels can judge.
+void AddFound(const grammar::Timeline& found, std::size_t take,
+              const exchange::LabelReading& truths, double collar_s, EpisodeToScore& labelled);
+
+/// Where labels are found if they are moved: lines, or "".
+std::string ClockWarning(const std::string& grammar, const std::vector<EpisodeToScore>& episodes,
+                         const exchange::LabelReading& truths);
+
 /// Adds the scores of one grammar, for all and for each hand.
 void AddScores(const std::string& grammar, std::vector<EpisodeToScore> episodes, double collar_s,
                const Collars& collars, LabelScores& scores);
