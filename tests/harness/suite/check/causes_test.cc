@@ -55,6 +55,8 @@ TEST(Causes, AreGroupedWithCountMedianAndOneCommand) {
             "     look: prehend explain s/b --expected s\n");
   EXPECT_EQ(CausesJson(causes)[0]["effects"][0]["median_ms"], 120);
   EXPECT_EQ(CausesText(CausesOf({})), "");
+  const auto two = CausesOf({Failed("s/a", {Late(120)}), Failed("s/b", {Late(71)})});
+  EXPECT_EQ(CausesJson(two)[0]["effects"][0]["median_ms"], 95.5) << "between the two";
 }
 
 TEST(Causes, APassAtTheLimitIsAWarning) {
