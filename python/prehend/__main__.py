@@ -5,17 +5,8 @@ import sys
 
 from .errors import Error, Visible
 
-COMMANDS = {  # name: module, whose main(arguments) returns the exit code
-    "baseline": "baselines",
-    "benchmark": "benchmark",
-    "dataset": "dataset",
-    "push": "push",
-    "query": "query",
-    "falsify": "falsify",
-    "mutate": "mutate",
-    "shrink": "shrink",
-    "lsp": "lsp",
-}
+COMMANDS = {"baseline": "baselines"}  # name: module, whose main(arguments) returns the exit code
+COMMANDS |= {name: name for name in ("benchmark", "dataset", "push", "query", "falsify", "mutate", "shrink", "lsp")}
 
 
 def main(arguments):

@@ -280,12 +280,9 @@ def train(folder, output):
     if len(rows) > ROWS:
         some = sorted(random.Random(1).sample(range(len(rows)), ROWS))
         rows, phases, helds = rows[some], phases[some], helds[some]
-
-    def trees():
-        return ExtraTreesClassifier(60, min_samples_leaf=3, max_depth=24, random_state=1, n_jobs=1)
-
-    def convolution():  # a window that is moved over time: one convolution, then layers of width one
-        return make_pipeline(StandardScaler(), MLPClassifier((64, 32), early_stopping=True, max_iter=150, random_state=1))
+    trees = lambda: ExtraTreesClassifier(60, min_samples_leaf=3, max_depth=24, random_state=1, n_jobs=1)
+    # A window that is moved over time: one convolution, then layers of width one.
+    convolution = lambda: make_pipeline(StandardScaler(), MLPClassifier((64, 32), early_stopping=True, max_iter=150, random_state=1))
     pathlib.Path(output).mkdir(parents=True, exist_ok=True)
     for kind, make in (("trees", trees), ("convolution", convolution)):
         fitted = {"phase": make().fit(rows, phases), "held": make().fit(rows, helds)}

@@ -269,11 +269,8 @@ def spend(folder, options, rows):
 
 def page(result):
     """The table as Markdown."""
-    def percent(x):
-        return "-" if x is None else f"{100 * x:.1f}"
-
-    def span(pair):
-        return f"{100 * pair[0]:.1f} .. {100 * pair[1]:.1f}"
+    percent = lambda x: "-" if x is None else f"{100 * x:.1f}"
+    span = lambda pair: f"{100 * pair[0]:.1f} .. {100 * pair[1]:.1f}"
     lines = [f"# {result['set']}, {result['split']} split: {result['episodes']} episodes", ""]
     if result["split"] != "test":
         lines += [f"**Parameters may be chosen on {result['split']}: these are no results.**", ""]

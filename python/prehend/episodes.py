@@ -43,8 +43,7 @@ class Episode:
     name = property(lambda self: self._opened.name, doc="'skill/name' of a scenario, or that of a recording; str.")
     file = property(lambda self: self._opened.file, doc="The file that it is in; '' if it was made of arrays.")
     number = property(lambda self: self._opened.number, doc="Its number in an episode file; else None.")
-    kind = property(lambda self: "simulated" if self._opened.was_simulated else "recording",
-                    doc="'simulated' or 'recording'.")
+    kind = property(lambda self: "simulated" if self._opened.was_simulated else "recording", doc="'simulated' or 'recording'.")
     grammar = property(lambda self: self._opened.grammar, doc="Name of the grammar that it names for itself.")
     ticks_per_second = property(lambda self: self._opened.ticks_per_second(), doc="How many ticks a second has; int.")
     duration_s = property(lambda self: self._opened.end() / self.ticks_per_second, doc="Its length in seconds.")

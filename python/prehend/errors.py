@@ -92,6 +92,11 @@ def fail(kind, message, remedy="", file=""):
     raise kind([(file, 0, 0, message, remedy, text)])
 
 
+def wrong(message, remedy=""):
+    """The same of arrays, tables and poses."""
+    fail(FrameError, message, remedy, "frames")
+
+
 def warn(text, kind=MissingFacts):
     """A Python warning for each of the program's, at the caller's line."""
     frame, depth = sys._getframe(), 1

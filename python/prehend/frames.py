@@ -6,10 +6,11 @@ import numpy as np
 import pandas as pd
 
 from . import _prehend
-from .errors import DoubtfulFrames, FrameError, fail, warn
+from .errors import DoubtfulFrames, FrameError, fail, warn, wrong
 
 _FINE = 10_000  # ticks per second, as `prehend import` has them
 _POSE = ["x", "y", "z", "qw", "qx", "qy", "qz"]
+FAR_M, FAR = 20, "positions are up to {:g} m apart\n  hint: metres are wanted; divide millimetres by 1000"
 _HAND_SIZE_M = (0.09, 0.084, 0.025)
 
 
@@ -34,18 +35,18 @@ def _entity(name, spec):
     """An entity as in the first line of a recording, and where it stands if nothing says so."""
     if isinstance(spec, str):
         if spec != "Hand" and spec.lower() == "hand":
-            fail(FrameError, f"entity '{name}': found {spec!r}, wanted 'Hand'", f"{name!r}: 'Hand'", "frames")
+            wrong(f"entity '{name}': found {spec!r}, wanted 'Hand'", f"{name!r}: 'Hand'")
         if spec != "Hand":
-            fail(FrameError, f"entity '{name}' has no size", f"{name!r}: ({spec!r}, (x, y, z)) with the edges of its "
-                 "bounding box in metres, or a dict as in docs/recording-format.md", "frames")
+            wrong(f"entity '{name}' has no size", f"{name!r}: ({spec!r}, (x, y, z)) with the edges of its bounding box in metres, "
+                  "or a dict as in docs/recording-format.md")
         spec = (spec, _HAND_SIZE_M)
     if isinstance(spec, (tuple, list)):
         if len(spec) != 2 or not isinstance(spec[0], str) or np.shape(spec[1]) != (3,):
-            fail(FrameError, f"entity '{name}': found {spec!r}, wanted (class, (x, y, z)) in metres", file="frames")
+            wrong(f"entity '{name}': found {spec!r}, wanted (class, (x, y, z)) in metres")
         spec = {"class": spec[0], "size_m": [float(edge) for edge in spec[1]]}
     if not isinstance(spec, dict):
-        fail(FrameError, f"entity '{name}': found a {type(spec).__name__}, wanted a class with a size, or a dict",
-             f"{name!r}: ('Cup', (0.08, 0.08, 0.1))", "frames")
+        wrong(f"entity '{name}': found a {type(spec).__name__}, wanted a class with a size, or a dict",
+              f"{name!r}: ('Cup', (0.08, 0.08, 0.1))")
     spec = dict(spec)
     if spec.get("class") == "Hand":
         del spec["class"]
@@ -57,8 +58,7 @@ def _entity(name, spec):
 def first_line(entities, ticks_per_second, name="episode", grammar="pick_and_place_from_motion", **more):
     """The first line of a recording, and the poses of what stands where it is said to."""
     if not isinstance(entities, dict) or not entities:
-        fail(FrameError, "entities: wanted a dict with at least one of them",
-             "{'cup': ('Cup', (0.08, 0.08, 0.1)), 'right_hand': 'Hand'}", "frames")
+        wrong("entities: wanted a dict with at least one of them", "{'cup': ('Cup', (0.08, 0.08, 0.1)), 'right_hand': 'Hand'}")
     members, standing = {}, {}
     for entity, spec in entities.items():
         members[entity], at = _entity(entity, spec)
@@ -70,43 +70,52 @@ def first_line(entities, ticks_per_second, name="episode", grammar="pick_and_pla
 
 
 def _number_array(values, what, columns=None):
-    """As float64; without a copy if it is one."""
+    """As float64; without a copy if it is one. What is masked is NaN; columns that have names are found by these."""
+    if isinstance(values, pd.DataFrame) and any(isinstance(name, str) for name in values.columns):
+        names = _POSE if len(values.columns) == 7 else _POSE[:3]
+        if set(values.columns) != set(names):
+            wrong(f"{what}: found the columns {', '.join(map(str, values.columns))}, wanted x, y, z, or these and qw, qx, qy, qz",
+                  "to_numpy(), if they are in this order")
+        values = values[names]
     array = np.asarray(values)
+    if np.ma.is_masked(values) and array.dtype.kind in "fiu":
+        array = values.astype(np.float64).filled(np.nan)
     if array.dtype.kind not in "fiu":
-        fail(FrameError, f"{what}: found an array of {array.dtype}, wanted numbers",
-             "array.astype(float)" if array.dtype.kind in "bOUS" else "", "frames")
+        wrong(f"{what}: found an array of {array.dtype}, wanted numbers",
+              "array.astype(float)" if array.dtype.kind in "bOUS" else "")
     if columns is None and array.ndim != 1 or columns and (array.ndim != 2 or array.shape[1] not in columns):
         wanted = "(N,)" if columns is None else " or ".join(f"(N, {count})" for count in columns)
-        fail(FrameError, f"{what}: found the shape {array.shape}, wanted {wanted}",
-             "" if columns is None else "x, y, z in metres, then qw, qx, qy, qz; one row per frame", "frames")
+        wrong(f"{what}: found the shape {array.shape}, wanted {wanted}",
+              "" if columns is None else "x, y, z in metres, then qw, qx, qy, qz; one row per frame")
     return array.astype(np.float64, copy=False)
 
 
 def _times(t, rate_hz, frames):
     """Ticks, and how many there are in a second: frames at a regular rate lie on whole ticks."""
     if (t is None) == (rate_hz is None):
-        fail(FrameError, "wanted either t or rate_hz", "t=seconds of each frame, or rate_hz=frames per second", "frames")
+        wrong("wanted either t or rate_hz", "t=seconds of each frame, or rate_hz=frames per second")
     if rate_hz is not None:
         if isinstance(rate_hz, bool) or not isinstance(rate_hz, (int, float, np.number)) or not 0.1 <= rate_hz <= 1e5:
-            fail(FrameError, f"rate_hz: found {rate_hz!r}, wanted frames per second, 0.1 to 100000", file="frames")
+            wrong(f"rate_hz: found {rate_hz!r}, wanted frames per second, 0.1 to 100000")
         t = np.arange(frames) / float(rate_hz)
     t = _number_array(t, "t")
     if len(t) != frames:
-        fail(FrameError, f"t has {len(t)} times, and there are {frames} frames", "one time per frame", "frames")
+        wrong(f"t has {len(t)} times, and there are {frames} frames", "one time per frame")
     if frames == 0:
-        fail(FrameError, "there are no frames", file="frames")
+        wrong("there are no frames")
     if not np.isfinite(t).all():
-        fail(FrameError, f"t[{np.flatnonzero(~np.isfinite(t))[0]}] is no number", "every frame has a time", "frames")
+        wrong(f"t[{np.flatnonzero(~np.isfinite(t))[0]}] is no number", "every frame has a time")
     steps = np.diff(t)
     if frames > 1 and steps.min() <= 0:
         row = int(np.argmin(steps > 0)) + 1
-        fail(FrameError, f"t[{row}] = {t[row]:g} is not after {t[row - 1]:g}", "sort the frames by time; one frame per time",
-             "frames")
+        wrong(f"t[{row}] = {t[row]:g} is not after {t[row - 1]:g}", "sort the frames by time; one frame per time")
     usual = float(np.median(steps)) if frames > 1 else 1.0
+    if rate_hz is None and frames > 9 and (np.round(steps) == steps).all() and np.mean(steps == 1) > 0.9:
+        wrong("t are whole numbers that grow by 1 each: they look like frame numbers", "seconds: t / frames_per_second; or rate_hz")
     if usual > 2:
-        fail(FrameError, f"frames are {usual:g} s apart", "t is in seconds; divide milliseconds by 1000", "frames")
+        wrong(f"frames are {usual:g} s apart", "t is in seconds; divide milliseconds by 1000")
     if abs(t[0]) > 1e6:
-        fail(FrameError, f"t begins at {t[0]:g} s", "count from the beginning: t - t[0]", "frames")
+        wrong(f"t begins at {t[0]:g} s", "count from the beginning: t - t[0]")
     per_second = _FINE
     rate = round(1 / usual)
     if 1 <= rate <= _FINE and np.abs(t * rate - np.round(t * rate)).max() < 0.01:
@@ -114,7 +123,7 @@ def _times(t, rate_hz, frames):
         return np.round(t * rate).astype(np.int64) * (per_second // rate), per_second
     ticks = np.round(t * per_second).astype(np.int64)
     if frames > 1 and np.diff(ticks).min() <= 0:
-        fail(FrameError, f"frames are less than {1 / per_second} s apart", "are the times seconds?", "frames")
+        wrong(f"frames are less than {1 / per_second} s apart", "are the times seconds?")
     return ticks, per_second
 
 
@@ -122,23 +131,23 @@ def _of_table(table):
     """A long table as arrays by entity: (t, {entity: (poses, mentioned)}, grips, touches)."""
     missing = [name for name in ("t", "entity", "x", "y", "z") if name not in table.columns]
     if missing:
-        fail(FrameError, f"the table has no column {missing[0]!r}",
-             "one row per frame and entity: t, entity, x, y, z, and optionally qw, qx, qy, qz, grip, touches", "frames")
+        wrong(f"the table has no column {missing[0]!r}",
+              "one row per frame and entity: t, entity, x, y, z, and optionally qw, qx, qy, qz, grip, touches")
     turned = [name for name in _POSE[3:] if name in table.columns]
     if turned and len(turned) != 4:
-        fail(FrameError, f"the table has {turned}, wanted all of qw, qx, qy, qz", file="frames")
+        wrong(f"the table has {turned}, wanted all of qw, qx, qy, qz")
     columns = _POSE[:3] + turned
     t, row = np.unique(_number_array(table["t"].to_numpy(), "column 't'"), return_inverse=True)
     codes, names = pd.factorize(table["entity"], sort=False)
     if (codes < 0).any():
-        fail(FrameError, f"row {int(np.argmax(codes < 0))}: no entity", "each row names one", "frames")
+        wrong(f"row {int(np.argmax(codes < 0))}: no entity", "each row names one")
     frames, values = len(t), np.column_stack([_number_array(table[name].to_numpy(), f"column {name!r}") for name in columns])
     poses, grips, touches = {}, {}, {}
     grip = _number_array(table["grip"].to_numpy(), "column 'grip'") if "grip" in table.columns else None
     for code, name in enumerate(names):
         own = codes == code
         if len(np.unique(row[own])) != own.sum():
-            fail(FrameError, f"'{name}' has two rows at the same time", "one row per frame and entity", "frames")
+            wrong(f"'{name}' has two rows at the same time", "one row per frame and entity")
         array, mentioned = np.full((frames, len(columns)), np.nan), np.zeros(frames, dtype=bool)
         array[row[own]], mentioned[row[own]] = values[own], True
         poses[name] = (array, np.zeros(0, dtype=bool) if mentioned.all() else mentioned)
@@ -167,8 +176,13 @@ def doubts(entities, poses):
             if not spec.get("fixed") and "size_m" in spec and max(spec["size_m"]) > 3]
     seen = {one: at[~np.isnan(at[:, :3]).any(axis=1), :3] for one, at in poses.items()}
     seen = {one: at for one, at in seen.items() if len(at)}
-    if seen and (span := np.ptp(np.concatenate(list(seen.values())), axis=0).max()) > 20:
-        told.append(f"positions are up to {span:g} m apart\n  hint: metres are wanted; divide millimetres by 1000")
+    if seen and (span := np.ptp(np.concatenate(list(seen.values())), axis=0).max()) > FAR_M:
+        told.append(FAR.format(span))
+    turns = [at[~np.isnan(at[:, 3]), 3:] for one, at in poses.items() if at.shape[1] == 7 and not sizes[one].get("fixed")]
+    w, _, _, last = np.median(np.abs(np.concatenate(turns)), axis=0) if any(map(len, turns)) else (1, 0, 0, 0)
+    if w <= 0.5 and last >= 0.85:
+        told.append(f"the first of four numbers, as w, is {w:.2f} (median, without its sign), the last is {last:.2f}: this looks "
+                    "like (x, y, z, w)\n  hint: quaternions are (w, x, y, z): array[:, [0, 1, 2, 6, 3, 4, 5]]")
     for one, at in seen.items():
         if sizes[one].get("fixed") and (way := np.ptp(np.quantile(at, (0.025, 0.975), axis=0), axis=0).max()) > 0.03:
             told.append(f"'{one}' is said to be fixed, and moves by {way:.2f} m\n  hint: fixed is only what never moves")
@@ -193,28 +207,29 @@ def doubts(entities, poses):
 def make(frames, *, entities, t=None, rate_hz=None, grips=None, touches=None, name="episode",
          grammar="pick_and_place_from_motion", bridge_s=0.1):
     """See `prehend.episode`."""
+    given = touches or {}
     if isinstance(frames, pd.DataFrame):
         if t is not None or rate_hz is not None:
-            fail(FrameError, "a table has its times in the column 't'", "leave t and rate_hz away", "frames")
+            wrong("a table has its times in the column 't'", "leave t and rate_hz away")
         t, poses, table_grips, table_touches = _of_table(frames)
-        grips, touches = {**table_grips, **(grips or {})}, {**table_touches, **(touches or {})}
+        grips, touches = {**table_grips, **(grips or {})}, {**table_touches, **given}
         count = len(t)
     elif isinstance(frames, dict):
         nothing = np.zeros(0, dtype=bool)
         poses = {one: (_number_array(array, f"'{one}'", (3, 7)), nothing) for one, array in frames.items()}
         lengths = {one: len(array) for one, (array, _) in poses.items()}
         if len(set(lengths.values())) > 1:
-            fail(FrameError, f"arrays of different lengths: {lengths}", "one row per frame in each; NaN: not tracked", "frames")
+            wrong(f"arrays of different lengths: {lengths}", "one row per frame in each; NaN: not tracked")
         count = next(iter(lengths.values()), 0)
     else:
-        fail(FrameError, f"frames: found a {type(frames).__name__}, wanted a DataFrame or a dict of arrays by entity",
-             "{'cup': array of shape (N, 7), ..}", "frames")
+        wrong(f"frames: found a {type(frames).__name__}, wanted a DataFrame or a dict of arrays by entity",
+              "{'cup': array of shape (N, 7), ..}")
     ticks, per_second = _times(t, rate_hz, count)
     line, standing = first_line(entities, per_second, name, grammar, bridge_s=bridge_s)
     names = list(entities)
     for entity in poses:
         if entity not in entities:
-            fail(FrameError, f"entities: '{entity}' is missing, of which there are poses", f"known: {', '.join(names)}", "frames")
+            wrong(f"entities: '{entity}' is missing, of which there are poses", f"known: {', '.join(names)}")
     for entity, at in standing.items():
         if entity not in poses:  # mentioned once, and then it stays
             poses[entity] = (np.repeat(at, count, axis=0), np.arange(count) == 0)
@@ -223,18 +238,22 @@ def make(frames, *, entities, t=None, rate_hz=None, grips=None, touches=None, na
     held = []
     for hand, values in (grips or {}).items():
         if hand not in entities:
-            fail(FrameError, f"grips: no entity is called '{hand}'", f"known: {', '.join(names)}", "frames")
+            wrong(f"grips: no entity is called '{hand}'", f"known: {', '.join(names)}")
         held.append((names.index(hand), _number_array(values, f"grips of '{hand}'")))
         if len(held[-1][1]) != count:
-            fail(FrameError, f"grips of '{hand}': {len(held[-1][1])} values for {count} frames", "one per frame", "frames")
+            wrong(f"grips of '{hand}': {len(held[-1][1])} values for {count} frames", "one per frame")
     rows, ups = [np.zeros((0, 3), dtype=np.int64)], [np.zeros(0)]
     for pair, values in (touches or {}).items():
         if not isinstance(pair, tuple) or len(pair) != 2 or any(one not in entities for one in pair):
-            fail(FrameError, f"touches: found {pair!r}, wanted a pair of entities", f"known: {', '.join(names)}", "frames")
-        up = np.asarray(values)
-        up = np.where(up, 0.0, np.nan) if up.dtype.kind == "b" else _number_array(up, f"touches of {pair}")
+            wrong(f"touches: found {pair!r}, wanted a pair of entities", f"known: {', '.join(names)}")
+        kind = np.asarray(values).dtype
+        up = (np.where(np.ma.filled(values, False), 0.0, np.nan) if kind == bool
+              else _number_array(values, f"touches of {pair}"))
+        if pair in given and kind != bool and (kind.kind in "iu" or np.isin(up, (0, 1)).all() and 0 in up):
+            wrong(f"touches of {pair}: found {kind} of whole numbers: whether they touch, or the normal's upward part?",
+                  "array.astype(bool); or floats, NaN where they do not touch")
         if up.shape != (count,):
-            fail(FrameError, f"touches of {pair}: found the shape {up.shape} for {count} frames", "one value per frame", "frames")
+            wrong(f"touches of {pair}: found the shape {up.shape} for {count} frames", "one value per frame")
         at = np.flatnonzero(~np.isnan(up))
         rows.append(np.column_stack([at, np.full((len(at), 2), [names.index(one) for one in pair])]))
         ups.append(up[at])

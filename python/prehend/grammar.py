@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from . import _prehend, episodes, events, frames
-from .errors import DoubtfulFrames, DoubtfulLabels, Error, FrameError, GrammarError, fail, warn
+from .errors import DoubtfulFrames, DoubtfulLabels, Error, GrammarError, fail, warn, wrong
 
 
 class Grammar:
@@ -84,16 +84,16 @@ class Grammar:
     def _episode(self, one, **arrays):
         if isinstance(one, (dict, pd.DataFrame)):
             if "entities" not in arrays:
-                fail(FrameError, "entities are missing", "segment(frames, rate_hz=60, entities={'cup': ('Cup', (0.08, 0.08, "
-                     "0.1)), 'right_hand': 'Hand'})", "frames")
+                wrong("entities are missing",
+                      "segment(frames, rate_hz=60, entities={'cup': ('Cup', (0.08, 0.08, 0.1)), 'right_hand': 'Hand'})")
             return episodes.episode(one, **arrays)
         if isinstance(one, (str, os.PathLike)):
             one = episodes.open(one)
         if not isinstance(one, (episodes.Episode, episodes.Episodes)):
-            fail(FrameError, f"frames: found a {type(one).__name__}, wanted an episode, a DataFrame or a dict of arrays",
-                 "{'cup': array of shape (N, 3), ..}", "frames")
+            wrong(f"frames: found a {type(one).__name__}, wanted an episode, a DataFrame or a dict of arrays",
+                  "{'cup': array of shape (N, 3), ..}")
         if arrays:
-            fail(FrameError, f"{', '.join(arrays)}: only of arrays and tables", "frames is an episode already", "frames")
+            wrong(f"{', '.join(arrays)}: only of arrays and tables", "frames is an episode already")
         return one
 
     def monitor(self, entities: dict, **more) -> "Monitor":
@@ -268,18 +268,26 @@ class Monitor:
         """
         tick = self._tick(t)
         if not isinstance(poses, dict):
-            fail(FrameError, f"poses: found a {type(poses).__name__}, wanted a dict by entity", "{'cup': (x, y, z)}", "frames")
+            wrong(f"poses: found a {type(poses).__name__}, wanted a dict by entity", "{'cup': (x, y, z)}")
         samples = {one: self._sample(one, pose) for one, pose in poses.items()}
         if self._last is None:
             for one, at in self._standing.items():
                 samples.setdefault(one, self._sample(one, at[0]))
-            at_m = {one: np.array([pose["at_m"]]) for one, pose in samples.items() if pose and "at_m" in pose and one in self._entities}
-            warn(frames.doubts(self._entities, at_m), DoubtfulFrames)
+            at = {one: np.array([[*pose["at_m"], *pose.get("quat_wxyz", [])]]) for one, pose in samples.items()
+                  if pose and "at_m" in pose and one in self._entities}
+            doubts = frames.doubts(self._entities, at)
+            warn(doubts, DoubtfulFrames)
+            self._near = [] if doubts else None
         line = {"tick": tick, "samples": samples,
                 "hands": {hand: grip if isinstance(grip, dict) else {"trigger": grip} for hand, grip in (grips or {}).items()},
                 "touches": [self._touch(one) for one in touches]}
         found = self._monitor.take(frames.to_json(line))
         self._last, self._t = tick, t
+        for at in (pose["at_m"] for pose in samples.values() if pose and "at_m" in pose):
+            self._near = list(at) if self._near is None else self._near
+            if self._near and (span := max(abs(a - b) for a, b in zip(at, self._near))) > frames.FAR_M:
+                warn(frames.FAR.format(span), DoubtfulFrames)
+                self._near = []  # it is said
         return self._told(found)
 
     def finish(self, t: Optional[float] = None) -> list:
@@ -304,19 +312,18 @@ class Monitor:
         if isinstance(one, dict):
             return one
         if not isinstance(one, (tuple, list)) or len(one) not in (2, 3):
-            fail(FrameError, f"touches: found {one!r}, wanted a pair", "[('cup', 'table')]", "frames")
+            wrong(f"touches: found {one!r}, wanted a pair", "[('cup', 'table')]")
         return dict(zip(("a", "b", "up_on_a"), one))
 
     def _tick(self, t):
         if isinstance(t, bool) or not isinstance(t, (int, float, np.number)) or not np.isfinite(t):
-            fail(FrameError, f"t: found {t!r}, wanted seconds", file="frames")
+            wrong(f"t: found {t!r}, wanted seconds")
         if abs(t - (self._t or 0)) > 1e6:
-            fail(FrameError, f"t: found {t:g} s, {'the first frame' if self._t is None else f'after {self._t:g} s'}",
-                 "count seconds from the beginning: t - t0", "frames")
+            wrong(f"t: found {t:g} s, {'the first frame' if self._t is None else f'after {self._t:g} s'}",
+                  "count seconds from the beginning: t - t0")
         tick = int(round(float(t) * self._per_second))
         if self._last is not None and tick <= self._last:
-            fail(FrameError, f"t = {t:g} s is not after {self._t:g} s by 1/{self._per_second} s",
-                 "times increase; leave late frames out", "frames")
+            wrong(f"t = {t:g} s is not after {self._t:g} s by 1/{self._per_second} s", "times increase; leave late frames out")
         return tick
 
     @staticmethod
@@ -326,14 +333,13 @@ class Monitor:
         try:
             values = [float(one) for one in pose]
         except (TypeError, ValueError):
-            fail(FrameError, f"'{entity}': found {pose!r}, wanted numbers", "(x, y, z) or (x, y, z, qw, qx, qy, qz)", "frames")
+            wrong(f"'{entity}': found {pose!r}, wanted numbers", "(x, y, z) or (x, y, z, qw, qx, qy, qz)")
         if len(values) not in (3, 7):
-            fail(FrameError, f"'{entity}': found {len(values)} numbers, wanted 3 or 7", "(x, y, z) or (x, y, z, qw, qx, qy, qz)",
-                 "frames")
+            wrong(f"'{entity}': found {len(values)} numbers, wanted 3 or 7", "(x, y, z) or (x, y, z, qw, qx, qy, qz)")
         if all(np.isnan(values[:3])):
             return None
         if not np.isfinite(values).all():
-            fail(FrameError, f"'{entity}': found {tuple(values)}", "numbers, or NaN in all of x, y, z: not tracked", "frames")
+            wrong(f"'{entity}': found {tuple(values)}", "numbers, or NaN in all of x, y, z: not tracked")
         return {"at_m": values[:3], **({"quat_wxyz": values[3:]} if len(values) == 7 else {})}
 
     def _told(self, timeline):

@@ -194,9 +194,7 @@ class Server:
 
     def hover(self, params):
         grammar, line, token = self._asked(params)
-        if token is None or token[0] != "name":
-            return None
-        if token[1] in grammar.roles(line):
+        if token is None or token[0] != "name" or token[1] in grammar.roles(line):
             return None
         for other in self.used(grammar).values():
             if token[1] in other.defined:

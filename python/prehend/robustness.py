@@ -71,11 +71,8 @@ def turned(lines):
 
 def mirrored(lines):
     """The world in a mirror, y for -y: right hands are left ones."""
-    def point(p):
-        return [p[0], -p[1], p[2]]
-
-    def turn(q):
-        return [q[0], -q[1], q[2], -q[3]] if len(q) == 4 else [-q[0], q[1], -q[2]]
+    point = lambda p: [p[0], -p[1], p[2]]
+    turn = lambda q: [q[0], -q[1], q[2], -q[3]] if len(q) == 4 else [-q[0], q[1], -q[2]]
     header = next(lines)
     for one in header["entities"].values():
         if "centre_m" in one:

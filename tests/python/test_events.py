@@ -4,6 +4,7 @@ import unittest
 import warnings
 
 import numpy as np
+import pandas as pd
 
 import prehend
 import takes
@@ -116,6 +117,30 @@ class OfArrays(takes.Folder, unittest.TestCase):
         table = takes.long_table(self.t, frames, ("x", "y", "z", "qw", "qx", "qy", "qz"))
         table["grip"] = np.where(table["entity"] == "right_hand", np.clip(table["t"] - 1, 0, 1), np.nan)
         self.assertEqual(self.segment(table), told)
+
+    def test_columns_have_names_and_masks_count(self):
+        told = self.segment(self.arrays, rate_hz=60)
+        named = {name: pd.DataFrame(array[:, ::-1], columns=["z", "y", "x"]) for name, array in self.arrays.items()}
+        self.assertEqual(self.segment(named, rate_hz=60), told)
+        numbered = {name: pd.DataFrame(array) for name, array in self.arrays.items()}
+        self.assertEqual(self.segment(numbered, rate_hz=60), told, "columns without names are in their order")
+        lost = np.zeros((len(self.t), 3), dtype=bool)
+        lost[200:260] = True
+        masked = {**self.arrays, "cup": np.ma.masked_array(self.arrays["cup"], lost)}
+        gone = {**self.arrays, "cup": np.where(lost, np.nan, self.arrays["cup"])}
+        self.assertEqual(self.segment(masked, rate_hz=60), self.segment(gone, rate_hz=60))
+        self.assertNotEqual(self.segment(masked, rate_hz=60), told)
+
+    def test_masked_touches_are_none(self):
+        touching = np.ma.masked_array(np.ones(len(self.t), dtype=bool), self.t < 2)
+        touches = {("cup", "right_hand"): touching}
+        events = prehend.Grammar("contact").segment(self.arrays, rate_hz=60, entities=takes.ENTITIES, touches=touches)
+        self.assertEqual(events["begin_s"].tolist(), [2.0])
+        from_below = np.ma.masked_array((self.t > 2).astype(float), self.t < 2)
+        events = prehend.Grammar("contact").segment(self.arrays, rate_hz=60, entities=takes.ENTITIES,
+                                                    touches={("cup", "table"): from_below + (self.t == 2)})
+        self.assertEqual(sorted(events["event"]), ["contact", "supported_by"])
+        self.assertEqual(events["begin_s"].min(), 2.0)
 
     def test_irregular_times(self):
         t, arrays = takes.tracker()

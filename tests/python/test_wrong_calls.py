@@ -96,6 +96,13 @@ CALLS = {
     "too few grips": (lambda: segment(grips={"right_hand": np.zeros(3)}), F, "3 values for 120 frames"),
     "a touch of one": (lambda: segment(touches={"cup": np.ones(N)}), F, "pair of entities"),
     "a touch of itself": (lambda: segment(touches={("cup", "cup"): np.ones(N)}), F, "cannot touch itself"),
+    "touches as 0 and 1": (lambda: segment(touches={("cup", "table"): (T < 1).astype(np.uint8)}), F,
+                           r"touches of .*: found uint8 of whole numbers.*astype\(bool\)"),
+    "touches as 0.0 and 1.0": (lambda: segment(touches={("cup", "table"): (T < 1).astype(float)}), F, "float64 of whole numbers"),
+    "no touches as 0.0": (lambda: segment(touches={("cup", "table"): np.zeros(N)}), F, "NaN where they do not touch"),
+    "columns of other names": (lambda: segment(cup(pd.DataFrame(GOOD["cup"], columns=["a", "b", "c"]))), F,
+                               r"'cup': found the columns a, b, c, wanted x, y, z.*to_numpy\(\)"),
+    "a column twice": (lambda: segment(cup(pd.DataFrame(GOOD["cup"], columns=["x", "y", "y"]))), F, "columns x, y, y, wanted"),
     "a normal of length 2": (lambda: segment(touches={("cup", "table"): np.full(N, 2.0)}), F, "-1 to 1"),
     # times
     "no times": (lambda: prehend.episode(GOOD, entities=takes.ENTITIES), F, "either t or rate_hz"),
@@ -104,6 +111,9 @@ CALLS = {
     "a time twice": (lambda: segment(t=at(T, 7, T[6])), F, "is not after"),
     "no number for a time": (lambda: segment(t=at(T, 7, NAN)), F, r"t\[7\] is no number"),
     "times that are too few": (lambda: segment(t=T[:5]), F, "5 times.*120 frames"),
+    "frame numbers": (lambda: segment(t=np.arange(N)), F, r"t are whole numbers that grow by 1.*frame numbers.*rate_hz"),
+    "frame numbers, and a gap": (lambda: segment(t=np.arange(N) + 3.0 * (np.arange(N) > 60)), F, "frame numbers"),
+    "a masked time": (lambda: segment(t=np.ma.masked_array(T, T == T[5])), F, r"t\[5\] is no number"),
     "milliseconds": (lambda: segment(t=T * 1000), F, "16.6667 s apart.*divide milliseconds by 1000"),
     "seconds since 1970": (lambda: segment(t=T + 1.7e9), F, r"t - t\[0\]"),
     "a rate of zero": (lambda: segment(rate_hz=0), F, "rate_hz: found 0"),
@@ -236,6 +246,23 @@ class Doubtful(unittest.TestCase):
         still = np.repeat(GOOD["cup"][:1], len(GOOD["cup"]), axis=0)
         still[7] += (0.5, 0, 0)  # an error of the tracker
         self.assertEqual(self.told({**GOOD, "cup": still}, fixed), "")
+
+    def test_a_quaternion_with_w_last(self):
+        turn = np.tile([0.3827, 0, 0, 0.9239], (N, 1))  # by 45 degrees, w last
+        for order, says in ((turn, "this looks like (x, y, z, w)"), (turn[:, [3, 0, 1, 2]], "")):
+            said = self.told({one: np.hstack([at, order]) for one, at in GOOD.items()})
+            self.assertEqual(said != "", says != "", said)
+            self.assertIn(says, said)
+
+    def test_live_and_later(self):
+        monitor = prehend.Grammar("contact").monitor(takes.ENTITIES)
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            for frame, z in enumerate((0.86, 0.9, 100, 1000, 0.9)):
+                monitor.update(frame / 10, {"cup": (0, 0, z)})
+        doubts = [str(one.message) for one in told if one.category is prehend.DoubtfulFrames]
+        self.assertEqual(len(doubts), 1, "it is said once")
+        self.assertIn("positions are up to 99.14 m apart", doubts[0])
 
     def test_live(self):
         with self.assertWarns(prehend.DoubtfulFrames):
