@@ -69,7 +69,10 @@ HandClearance::HandClearance(const Scene& scene, HandIndex hand, const std::vect
       balls_.push_back({X_HL[i] * corner, kCorner_m});
     }
   }
-  for (const Ball& ball : balls_) reach_m_ = std::max(reach_m_, ball.p_H_m.norm() + ball.radius_m);
+  for (Ball& ball : balls_) {
+    ball.reach_m = ball.p_H_m.norm() + ball.radius_m;
+    reach_m_ = std::max(reach_m_, ball.reach_m);
+  }
 }
 
 double HandClearance::At(const Pose& X_WH, const Snapshot& now) const {
@@ -86,9 +89,11 @@ double HandClearance::LessTo(BodyIndex body, const Pose& X_WH, const Snapshot& n
                              double least) const {
   for (const PlacedShape& placed : scene_.body(body).shapes) {
     const Pose X_SH = (now.body(body).X_WB * placed.X_BS).inverse() * X_WH;
-    if (SignedDistance(placed.shape, X_SH.p_m) > reach_m_ + least) continue;
+    const double distance_m = SignedDistance(placed.shape, X_SH.p_m);
+    if (distance_m > reach_m_ + least) continue;
     for (const Ball& ball : balls_)
-      least = std::min(least, SignedDistance(placed.shape, X_SH * ball.p_H_m) - ball.radius_m);
+      if (distance_m <= ball.reach_m + least)
+        least = std::min(least, SignedDistance(placed.shape, X_SH * ball.p_H_m) - ball.radius_m);
   }
   return least;
 }
@@ -112,9 +117,10 @@ double HandClearance::Along(const Segment& segment, const Snapshot& now) const {
   Trajectory trajectory({});
   trajectory.Append(segment);
   double least = kFar_m;
-  for (int i = 1; i <= kLooks; ++i) {
+  // From its end on, where things are near: what is farther than that costs next to nothing.
+  for (int i = kLooks; i >= 1; --i) {
     const Pose X_WH = trajectory.At(segment.duration_s * i / kLooks).X_WH;
-    least = std::min(least, At(X_WH, now));
+    for (const BodyIndex body : obstacles_) least = LessTo(body, X_WH, now, least);
   }
   return least;
 }

@@ -41,6 +41,7 @@ class HandClearance {
   struct Ball {
     Eigen::Vector3d p_H_m;
     double radius_m;
+    double reach_m = 0;  ///< from the origin of H to the far side
   };
   const Scene& scene_;
   std::vector<BodyIndex> obstacles_;
