@@ -55,21 +55,21 @@ TaskFiles PackTask(const RunRequest& run, const std::vector<std::string>& tried,
   return task;
 }
 
-UnpackedTasks::UnpackedTasks() : root_(folder_.path().string() + "/project") {
-  std::error_code error;
-  if (folder_.path().empty()) return;
-  fs::create_directories(root_ + "/grammar/library", error);
-  fs::create_directories(root_ + "/physics/library", error);
-}
-
 std::string UnpackedTasks::PathOf(const std::string& path) const {
   // A file says where it wants to be: it stays below the folder.
   const fs::path normal = fs::path("/" + path).lexically_normal().relative_path();
-  return (path.starts_with('/') ? folder_.path() / "outside" : fs::path(root_)) / normal;
+  return (path.starts_with('/') ? folder_->path() / "outside" : fs::path(root_)) / normal;
 }
 
 std::string UnpackedTasks::Unpack(const TaskFiles& task) {
-  if (!folder_.problem().empty()) return folder_.problem();
+  if (!folder_) folder_.emplace();
+  if (!folder_->problem().empty()) return folder_->problem();
+  if (root_.empty()) {
+    root_ = folder_->path().string() + "/project";
+    std::error_code error;
+    fs::create_directories(root_ + "/grammar/library", error);
+    fs::create_directories(root_ + "/physics/library", error);
+  }
   for (const auto& [path, content] : task.files) {
     const std::string hash = ContentHash(content);
     const auto [known, is_new] = written_.try_emplace(path, hash);
@@ -90,7 +90,7 @@ RunRequest UnpackedTasks::RequestOf(const TaskFiles& task) const {
 }
 
 std::string UnpackedTasks::Original(const std::string& path) const {
-  const std::string outside = folder_.path().string() + "/outside";
+  const std::string outside = folder_->path().string() + "/outside";
   if (path.starts_with(root_ + "/")) return path.substr(root_.size() + 1);
   if (path.starts_with(outside + "/")) return path.substr(outside.size());
   return path;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,12 +28,10 @@ struct TaskFiles {
 TaskFiles PackTask(const RunRequest& run, const std::vector<std::string>& tried,
                    const std::string& root);
 
-/// A folder in which tasks are unpacked, to be loaded as if they were the project; it is removed at
-/// the end.
+/// A folder in which tasks are unpacked, to be loaded as if they were the project; it is made for
+/// the first of them, and removed at the end.
 class UnpackedTasks {
  public:
-  UnpackedTasks();
-
   /// Writes the files that are not there yet. Returns "" or what went wrong.
   std::string Unpack(const TaskFiles& task);
   /// After Unpack(): what LoadRun() needs.
@@ -47,7 +46,7 @@ class UnpackedTasks {
  private:
   std::string PathOf(const std::string& path) const;
 
-  TemporaryFolder folder_;
+  std::optional<TemporaryFolder> folder_;
   std::string root_;
   std::size_t writes_ = 0;
   std::map<std::string, std::string> written_;  ///< path -> content hash

@@ -44,6 +44,18 @@ TEST(TaskFilesOfARun, ComeBackWhereTheProjectIsGone) {
   EXPECT_FALSE(fs::exists(unpacked));
 }
 
+TEST(TaskFilesOfARun, HaveAFolderFromTheFirstTaskOn) {
+  UnpackedTasks tasks;
+  EXPECT_EQ(tasks.root(), "") << "most episodes that are checked are played, and unpack nothing";
+  TaskFiles task;
+  task.files = {{"scenarios/a/a.yaml", "scenario: a"}};
+  ASSERT_EQ(tasks.Unpack(task), "");
+  const std::string root = tasks.root();
+  EXPECT_TRUE(fs::is_directory(root + "/grammar/library"));
+  ASSERT_EQ(tasks.Unpack(task), "");
+  EXPECT_EQ(tasks.root(), root);
+}
+
 TEST(TaskFilesOfARun, StayBelowTheFolderOfTheirTask) {
   UnpackedTasks tasks;
   const std::string victim =
