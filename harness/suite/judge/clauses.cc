@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 
 namespace prehend::suite {
 namespace {
@@ -62,6 +63,7 @@ std::ptrdiff_t Depth(const Words& words, std::size_t end) {
 
 std::vector<Clause> ClausesOf(std::string_view grammar) {
   std::vector<Clause> clauses;
+  std::map<std::string, int> twins;  // by name, without their numbers
   std::string rule;
   bool is_law = false;
   std::size_t indent = 0;  // of the rule's clauses; 0: none yet
@@ -87,15 +89,13 @@ std::vector<Clause> ClausesOf(std::string_view grammar) {
       rule = head.substr(0, head.find('('));
       is_law = words[0] == "law";
       indent = 0;
+      ++twins[rule + " roles"];
       clauses.push_back({rule + " roles", Joined({words.begin() + kind + 1, words.end()}),
                          static_cast<std::size_t>(grammar.find(head, start)), end});
     } else if (!rule.empty() && (indent == 0 || (depth <= indent && !is_law))) {
       indent = depth;
       std::string name = rule + " " + (is_law ? "law" : words[0]);
-      const auto twins = std::ranges::count_if(clauses, [&](const Clause& one) {
-        return one.name == name || one.name.starts_with(name + " ");
-      });
-      if (twins > 0) name += fmt::format(" {}", twins + 1);
+      if (const int twin = ++twins[name]; twin > 1) name += fmt::format(" {}", twin);
       clauses.push_back({std::move(name), Joined(words), start + depth, end});
     } else if (!rule.empty()) {
       clauses.back().text += " " + Joined(words);
