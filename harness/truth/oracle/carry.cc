@@ -72,9 +72,12 @@ class Carrier {
     return false;
   }
 
-  /// How far the object got along a support between two frames, where the two touch.
+  /// How far the object got along a support between two frames, its load and its middle.
   double WayAlong(int support, int from, int to) const {
-    return (On(support)[to].along_m - On(support)[from].along_m).norm();
+    const auto way = [&](int of) {
+      return (On(support)[to].along_m[of] - On(support)[from].along_m[of]).norm();
+    };
+    return std::min(way(0), way(1));
   }
 
   /// How far the object got along what supported it at the span's begin, from where it was then.

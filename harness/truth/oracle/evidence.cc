@@ -93,7 +93,7 @@ class EvidenceReader {
     const auto& [object, support] = pair;
     std::vector<Bearing>& bearings = evidence_.bearings[pair];
     bearings.resize(recording_.size());
-    Vector3d along_m = Vector3d::Zero(), nhat_S = Vector3d::UnitZ();
+    Vector3d nhat_S = Vector3d::UnitZ();
     std::size_t first = 0, next = 0;  // the pushes of the last ticks: [first, next)
     int first_frame = 0;              // of the last ticks
     for (int frame = 0; frame < recording_.size(); ++frame) {
@@ -135,15 +135,21 @@ class EvidenceReader {
       const auto relative_at = [&](const Vector3d& p_W_m) {
         return Vector3d(VelocityAt(held, p_W_m) - VelocityAt(by, p_W_m));
       };
-      const Vector3d where_they_touch = relative_at(centre_W_m);
       if (bearing.touching)
-        bearing.vertical_m_per_s =
-            std::min(std::abs(where_they_touch.z()), std::abs(relative_at(held.X_WB.p_m).z()));
+        bearing.vertical_m_per_s = std::min(std::abs(relative_at(centre_W_m).z()),
+                                            std::abs(relative_at(held.X_WB.p_m).z()));
       const Vector3d nhat_W = by.X_WB.q * nhat_S;
-      const Vector3d along = where_they_touch - where_they_touch.dot(nhat_W) * nhat_W;
-      bearing.along_m_per_s = along.norm();
-      if (frame > 0) along_m += by.X_WB.q.inverse() * along * recording_.Seconds(frame - 1, frame);
-      bearing.along_m = along_m;
+      const double off_m = (held.X_WB.p_m - centre_W_m).dot(nhat_W);
+      bearing.along_m_per_s = std::numeric_limits<double>::infinity();
+      for (const int middle : {0, 1}) {
+        const Vector3d v = relative_at(middle ? held.X_WB.p_m - off_m * nhat_W : centre_W_m);
+        const Vector3d along = v - v.dot(nhat_W) * nhat_W;
+        bearing.along_m_per_s = std::min(bearing.along_m_per_s, along.norm());
+        if (frame > 0)
+          bearing.along_m[middle] =
+              bearings[frame - 1].along_m[middle] +
+              by.X_WB.q.inverse() * along * recording_.Seconds(frame - 1, frame);
+      }
     }
   }
 

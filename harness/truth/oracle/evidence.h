@@ -4,6 +4,7 @@
 // serves every choice of numbers. Tested by tests/harness/truth/oracle/oracle_test.cc
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -25,11 +26,12 @@ struct Bearing {
   /// Of the object relative to the support, vertical: the slower of its middle and of the point
   /// where it is borne.
   double vertical_m_per_s = std::numeric_limits<double>::infinity();
-  /// Of the object's material relative to the support's, where they touch, along their common
-  /// tangent plane.
+  /// Of the object's material relative to the support's, along their common tangent plane, where
+  /// the load has its centre or below the object's middle: the slower of the two, so that it does
+  /// not slide where it turns about either.
   double along_m_per_s = 0;
-  /// Sum of that motion since the first frame, as seen from the support.
-  Eigen::Vector3d along_m = Eigen::Vector3d::Zero();
+  /// Sums of that motion since the first frame, as seen from the support: of the load, the middle.
+  std::array<Eigen::Vector3d, 2> along_m = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
 };
 
 class Evidence {

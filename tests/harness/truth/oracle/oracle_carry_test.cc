@@ -124,6 +124,26 @@ TEST_F(OracleCarry, AWayIsMeasuredWhereTheTwoTouch) {
   }
 }
 
+TEST_F(OracleCarry, WhatIsTurnedOnTheSpotDoesNotSlideWhereverItBears) {
+  for (const double m_per_s : {0.0, 0.15}) {
+    stage_ = Stage();
+    SetUp();
+    // Fingers press one corner to the table, 4 cm from the middle, while the cup turns by 57
+    // degrees about its middle: the corner gets 4 cm along the table. Then it moves on, too.
+    stage_.cup_on_table = false;
+    stage_.contacts = {{.a = Stage::BodySide(stage_.cup),
+                        .b = Stage::BodySide(stage_.table),
+                        .from_a_m = {0.03, 0.03, -0.03}}};
+    stage_.body(stage_.cup).w_WB_rad_per_s = {0, 0, 2};
+    const Tick begin = stage_.now();
+    stage_.Carry(0.5, {m_per_s, 0, 0});
+    const Tick end = stage_.now();
+    stage_.body(stage_.cup).w_WB_rad_per_s.setZero();
+    stage_.Play(0.3);
+    ExpectNear(Events("sliding"), m_per_s > 0 ? Intervals{{begin, end}} : Intervals{});
+  }
+}
+
 TEST_F(OracleCarry, AWayOnASlopeIsMeasuredInItsPlane) {
   // A board of 45 degrees: 2.4 cm along it are 1.7 cm on the level.
   stage_.cup_on_table = false;
