@@ -85,7 +85,7 @@ class ClaimParser {
     Claim claim;
     claim.text = std::string(text_);
     ParseQuantity(claim);
-    const std::size_t begin = next_.offset;
+    const std::size_t begin = first_event_ = next_.offset;
     ParseEvent(claim);
     while (!problem_ && !next_.text.empty()) {
       ParseRelation(claim);
@@ -310,21 +310,26 @@ class ClaimParser {
   }
 
   /// `next_` is no relation.
-  std::string RemedyForRelation() const {
+  std::string RemedyForRelation() {
     const std::string_view before = Trimmed(text_.substr(0, next_.offset));
-    const std::string_view after = Trimmed(text_.substr(at_));
-    if (next_.text == "and" || next_.text == "," || next_.text == ";")
+    std::string_view after = Trimmed(text_.substr(at_));
+    const bool counts = next_.IsNumber() || NumberNamed(next_.text);
+    const bool begins_claim = (counts || next_.text == "no" || next_.text == "every") &&
+                              IsBeforeAnother() && !after.starts_with("times");
+    if (begins_claim) after = text_.substr(next_.offset);
+    if (begins_claim || next_.text == "and" || next_.text == "," || next_.text == ";")
       return after.empty()
                  ? ""
                  : fmt::format("two claims stand on two lines: '{}' and '{}'", before, after);
     if (next_.text == "or")
       return "claims hold together, there is no 'or': claim what is certain, or use "
              "'at least' and 'at most'";
-    if (next_.text == "once" || next_.text == "twice")
-      return fmt::format("the number stands first: {} {}", next_.text == "once" ? "one" : "two",
-                         before);
-    if (next_.IsNumber() || NumberNamed(next_.text))
-      return fmt::format("the number stands first: {} {}", next_.text, before);
+    const std::string_view number = next_.text == "once"    ? "one"
+                                    : next_.text == "twice" ? "two"
+                                                            : next_.text;
+    if (counts || number != next_.text)
+      return fmt::format("the number stands first: {} {}", number,
+                         Trimmed(text_.substr(first_event_, next_.offset - first_event_)));
     struct Instead {
       std::string_view said, ours;
     };
@@ -413,7 +418,7 @@ class ClaimParser {
   }
 
   std::string_view text_;
-  std::size_t at_ = 0;
+  std::size_t at_ = 0, first_event_ = 0;
   Token next_;
   std::optional<ClaimProblem> problem_;
 };

@@ -189,6 +189,15 @@ TEST(ParseClaim, WordsThatPeopleTryGetTheRemedy) {
   EXPECT_EQ(Problem("sliding 3 times"), "8: " + relation +
                                             "'3' | the number stands first: "
                                             "3 sliding");
+  EXPECT_EQ(Problem("one sliding twice"), "12: " + relation +
+                                              "'twice' | the number stands first: "
+                                              "two sliding");
+  EXPECT_EQ(Problem("one grasping(hand, cup) one transporting"),
+            "24: " + relation +
+                "'one' | two claims stand on two lines: 'one grasping(hand, cup)' and 'one "
+                "transporting'");
+  EXPECT_EQ(Problem("sliding no grasping"),
+            "8: " + relation + "'no' | two claims stand on two lines: 'sliding' and 'no grasping'");
   EXPECT_EQ(Problem("sliding starts before grasping"),
             "15: expected an event, found 'before' | "
             "one relation stands between two events: sliding before grasping");
