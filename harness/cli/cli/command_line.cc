@@ -188,7 +188,6 @@ constexpr const char* kFooter =
   --time-limit-s S      Seconds that most commands may take; 0: no limit; default: 600, of many
                         episodes 3600, sweeps 86400, a scenario in 'check' 120, 'episode ask' 10,
                         with --trials or --on-save none
-  -j,--jobs N           Where many are looked at: so many at a time; default: one per core
   --memory-limit-mb MB  Memory that it may take; 0: no limit; default: 4000, in 'check' 1000
 
 Exit codes: 0 agrees, 1 differs, 2 bad input or usage, 3 failure, 4 nothing found, 5 goldens wait.

@@ -122,7 +122,7 @@ Option ParametersOption();       ///< of a grammar alone
 Option OutputOption(const std::string& help, const std::string& placeholder = "FILE");
 Option JobsOption();
 Option FilterOption();
-/// The program's help tells of --jobs, both limits and of their defaults.
+/// The program's help tells of both limits and of their defaults.
 Option TimeLimitOption(double least_s, double most_s);
 Option MemoryLimitOption();
 Option JsonOption();

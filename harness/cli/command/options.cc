@@ -193,10 +193,10 @@ Option OutputOption(const std::string& help, const std::string& placeholder) {
 
 Option JobsOption() {
   return {.name = "--jobs",
+          .help = "work on so many at a time; default: one per core",
           .placeholder = "N",
           .other_name = "-j",
-          .rule = IntegersFrom(1, kMaxJobs),
-          .unlisted = true};
+          .rule = IntegersFrom(1, kMaxJobs)};
 }
 
 Option FilterOption() {
