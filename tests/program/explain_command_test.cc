@@ -56,6 +56,18 @@ TEST(ExplainCommand, AnEventAtTheWrongMomentEndsWithExitCodeFourAndTheNearestOne
       << said.err;
 }
 
+TEST(ExplainCommand, AMomentAfterTheEndIsToldApart) {
+  const std::string warning =
+      "prehend: warning: 99 s is after the end; this is the end of the episode\n";
+  const Said missing = Prehend({"explain", "milk_carton_wrap", "--expected", "sliding@99s"});
+  EXPECT_EQ(missing.exit_code, 0);
+  EXPECT_EQ(missing.err, warning);
+  const Said event = Prehend({"explain", "milk_carton_wrap", "--event", "grasping @99 s"});
+  EXPECT_EQ(event.exit_code, 4);
+  EXPECT_TRUE(event.err.starts_with(warning)) << event.err;
+  EXPECT_EQ(Prehend({"explain", "milk_carton_wrap", "--expected", "sliding@1s"}).err, "");
+}
+
 TEST(ExplainCommand, WhyNotIsAskedOfTheSameGrammarAndSettings) {
   const Said said = Prehend({"explain", "milk_carton_wrap", "--grammar", "original_2020", "--set",
                              "entities.milk.mass_kg=0.9", "--event", "transporting@0.1s"});

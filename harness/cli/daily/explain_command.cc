@@ -118,6 +118,14 @@ ExitCode RunExplain(const ParsedOptions& options, const CommandContext& context)
   }
   const show::Watched watched = show::Watch(episode);
   if (!watched.problem.empty()) return Refuse(context, watched.problem);
+  const grammar::ReplayMonitor& past = *watched.past;
+  const std::optional<Ask>& ask = question.event ? question.event : question.expected;
+  if (ask && ask->time_s &&
+      truth::TickAt(*ask->time_s, past.entity_table().ticks_per_second) >
+          past.TickOf(past.frames()))
+    context.err << fmt::format(
+        "prehend: warning: {:g} s is after the end; this is the end of the episode\n",
+        *ask->time_s);
   const ExitCode code = Answer(options, context, episode, question, *watched.past);
   if (watched.failure.empty() || code != ExitCode::kAgrees) return code;
   return Complain(context, ExitCode::kFailure, watched.failure);
