@@ -95,7 +95,7 @@ const Arrows& ProjectArrows() {
        {"grammar/base", "harness/base/base", "harness/exchange/cells", "harness/exchange/hdf5",
         "harness/exchange/messages", "harness/exchange/poses", "harness/scenario/motion"}},
       {"harness/exchange/doubts",
-       {"grammar/base", "harness/episode/sense", "harness/exchange/poses"}},
+       {"harness/base/base", "grammar/base", "harness/episode/sense", "harness/exchange/poses"}},
       {"harness/exchange/import",
        {"grammar/base", "harness/base/base", "harness/exchange/arrays", "harness/exchange/cells",
         "harness/exchange/doubts", "harness/exchange/poses", "harness/episode/sense",
