@@ -131,7 +131,7 @@ void ScriptPlayer::Resolver::MoveBy(const Eigen::Vector3d& by_m, double duration
 }
 
 void ScriptPlayer::Resolver::TurnUpright(BodyIndex body) {
-  if (body == kNone || !At(stood_, body)) return;
+  if (body == kNone || !At(stood_, body) || HandsOn(body, now_) == 0) return;
   const Pose& X_WB = now_.body(body).X_WB;
   const Eigen::Vector3d up_W = X_WB.q * At(stood_, body)->up_B;
   if (up_W.z() < kCosMostLean) return;
