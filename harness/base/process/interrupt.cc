@@ -4,6 +4,8 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include <csignal>
+
 namespace prehend {
 
 Interrupt::Interrupt() {

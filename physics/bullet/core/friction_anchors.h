@@ -10,6 +10,7 @@
 // physics/bullet/core. Tested by tests/physics/world/holding_test.cc
 #pragma once
 
+#include <BulletCollision/NarrowPhaseCollision/btManifoldPoint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 
