@@ -442,8 +442,8 @@ double EventReasons::LooksBack_s(InstanceId instance) {
   return target == kNone ? 0 : LooksBack_s(target);
 }
 
-// What it refers to and was known at that very moment only; or what might still have come in that
-// time.
+// What it refers to and was known at that very moment only, each once; or what might still have
+// come in that time.
 Reasons EventReasons::WaitedFor(InstanceId instance, const CandidateOutcome& outcome, int depth) {
   const Rule& rule = past_.RuleOf(instance);
   std::vector<InstanceId> targets = past_.MembersOf(instance);
@@ -452,6 +452,7 @@ Reasons EventReasons::WaitedFor(InstanceId instance, const CandidateOutcome& out
   }
   std::erase(targets, kNone);
   Reasons reasons;
+  bool waits = false;
   for (const InstanceId target : targets) {
     const std::vector<CandidateOutcome>& outcomes = past_.OutcomesOf(target);
     const auto only_then = [&](const CandidateOutcome& other) {
@@ -460,15 +461,22 @@ Reasons EventReasons::WaitedFor(InstanceId instance, const CandidateOutcome& out
     };
     const auto other = std::find_if(outcomes.begin(), outcomes.end(), only_then);
     if (other == outcomes.end()) continue;
+    waits = true;
+    if (!told_.insert(target).second) continue;
     const bool ends_then = other->span.end.tick == other->decided;
     Reason reason =
         Remark(Label(past_, target), ends_then ? "ended only then" : "was decided only then");
     reason.because = Waited(target, *other, depth + 1);
-    reasons.push_back(std::move(reason));
+    if (reason.what == Label(past_, instance)) {
+      std::ranges::move(reason.because, std::back_inserter(reasons));
+    } else {
+      reasons.push_back(std::move(reason));
+    }
   }
   for (const InstanceId target : targets) {
     const double back_s = LooksBack_s(target);
-    if (!reasons.empty() || back_s <= 0) continue;
+    if (waits || back_s <= 0) continue;
+    waits = true;
     reasons.push_back(
         Remark(Label(past_, target),
                "could still become true: it is known only at its end, and reaches back up to " +
@@ -489,6 +497,7 @@ WhyEvent EventReasons::Explain(InstanceId instance, const CandidateOutcome& outc
                .ended = End(instance, outcome)};
   if (brief) return why;
   why.counted = Counted(instance, outcome);
+  told_ = {instance};
   why.waited = Waited(instance, outcome, 0);
   return why;
 }

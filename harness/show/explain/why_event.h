@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <set>
 
 #include "grammar/base/timeline.h"
 #include "harness/show/explain/clauses.h"
@@ -61,6 +62,7 @@ class EventReasons {
   grammar::ReplayMonitor& past_;
   Clauses clauses_;
   bool brief_ = false;
+  std::set<grammar::InstanceId> told_;  ///< waited for, and said so already
 };
 
 // The decisive clause: the one whose number, changed by the smallest share, makes an event happen

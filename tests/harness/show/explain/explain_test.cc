@@ -160,6 +160,31 @@ TEST(Explain, RememberingChangesNothing) {
   }
 }
 
+// Two conditions of the event, each of which waits for the same third one.
+TEST(Explain, WhatIsWaitedForTwiceIsSaidOnce) {
+  Stage stage(
+      "condition apart(c: Cup, t: Movable)\n"
+      "  while distance(position(c), position(t)) > 20 cm bridging 20 ms\n"
+      "condition one(c: Cup, t: Movable) while apart(c, t)\n"
+      "condition two(c: Cup, t: Movable) while apart(c, t)\n"
+      "event moved(c: Cup, t: Movable) while one(c, t) and two(c, t)");
+  stage.Show(2);
+  stage.CupAt(0.3);
+  stage.Show(3);
+  stage.CupAt(0.1);
+  stage.Show(5);
+  const WhyEvent why = Why(stage.Finish(), "moved");
+  ASSERT_EQ(why.waited.size(), 2U);
+  EXPECT_EQ(why.waited[0].what, "one(cup, tray)");
+  ASSERT_EQ(why.waited[0].because.size(), 1U);
+  EXPECT_EQ(why.waited[0].because[0].what, "apart(cup, tray)");
+  ASSERT_EQ(why.waited[0].because[0].because.size(), 1U);
+  EXPECT_EQ(why.waited[0].because[0].because[0].how,
+            "a gap of up to 20 ms would have been bridged");
+  EXPECT_EQ(why.waited[1].what, "two(cup, tray)");
+  EXPECT_TRUE(why.waited[1].because.empty());
+}
+
 TEST(Explain, TheTextIsAlignedAndTheJsonHasTheNumbers) {
   Stage stage("event moved(c: Cup, t: Movable) while distance(position(c), position(t)) > 20 cm");
   stage.Show(2);
