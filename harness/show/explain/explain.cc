@@ -362,18 +362,25 @@ struct Change {
   }
 };
 
-using IsThere = std::function<bool(const grammar::Timeline&)>;
+using IsThere = std::function<bool(const NamedEvent&)>;
 
+/// `came`: the event that the decisive change brings.
 std::optional<Decisive> Search(const grammar::ReplayMonitor& past, const std::string& rule,
-                               bool wanted, const Recognise& recognise, const IsThere& is_there) {
+                               bool wanted, const Recognise& recognise, const IsThere& is_there,
+                               std::optional<NamedEvent>& came) {
   const Program& program = past.program();
   const std::vector<Limit> limits = grammar::LimitsOf(program, rule);
+  std::optional<NamedEvent> last;
   const auto does = [&](const Change& change, double share) {
     const double value = change.At(share);
     if (value == change.limit->value.value) return false;
     const auto changed = grammar::WithLimit(program, rule, *change.limit, value);
     const auto timeline = changed ? recognise(changed) : std::nullopt;
-    return timeline && is_there(*timeline) == wanted;
+    if (!timeline) return false;
+    const auto there = std::ranges::find_if(timeline->events, is_there);
+    if ((there != timeline->events.end()) != wanted) return false;
+    if (wanted) last = *there;
+    return true;
   };
   const Change* best = nullptr;
   double least = 1;
@@ -394,6 +401,7 @@ std::optional<Decisive> Search(const grammar::ReplayMonitor& past, const std::st
       if (high >= least) continue;
       least = high;
       best = &change;
+      came = last;
     }
     if (best != nullptr) break;
     before = share;
@@ -427,31 +435,46 @@ bool Answers(const Ask& ask, const Program& program, const grammar::EntityTable&
   return event.interval.begin <= tick + 1 && tick <= event.interval.end;
 }
 
-void FindDecisive(const grammar::ReplayMonitor& past, const Ask& ask, const Recognise& recognise,
+void FindDecisive(grammar::ReplayMonitor& past, const Ask& ask, const Recognise& recognise,
                   WhyMissing& why) {
   if (ask.rule == grammar::kTouchingRule) return;
   const Program& program = past.program();
-  const IsThere is_there = [&](const grammar::Timeline& timeline) {
-    return std::ranges::any_of(timeline.events, [&](const NamedEvent& event) {
-      return Answers(ask, program, past.entity_table(), event);
-    });
-  };
-  why.decisive =
-      Search(past, program.rules[ask.rule].name, true, recognise, is_there).value_or(Decisive());
+  std::optional<NamedEvent> came;
+  Decisive decisive = Search(
+                          past, program.rules[ask.rule].name, true, recognise,
+                          [&](const NamedEvent& event) {
+                            return Answers(ask, program, past.entity_table(), event);
+                          },
+                          came)
+                          .value_or(Decisive());
+  if (came && came->Label() != why.event) {
+    // What nearly happened, happened to others than those that were taken for the nearest.
+    Ask nearer = ask;
+    const auto& entities = past.entity_table().entities;
+    for (std::size_t role = 0; role < program.rules[ask.rule].roles.size(); ++role) {
+      const auto plays =
+          std::ranges::find(entities, came->roles[role].value, &grammar::EntityInfo::name);
+      if (plays != entities.end())
+        nearer.entities[role] = static_cast<int>(plays - entities.begin());
+    }
+    why = ExplainMissing(past, nearer);
+  }
+  why.decisive = std::move(decisive);
 }
 
 void FindDecisive(const grammar::ReplayMonitor& past, const Ask& ask, const Recognise& recognise,
                   WhyEvent& why) {
   if (ask.rule == grammar::kTouchingRule) return;
-  const Program& program = past.program();
-  const IsThere is_there = [&](const grammar::Timeline& timeline) {
-    return std::ranges::any_of(timeline.events, [&](const NamedEvent& event) {
-      return event.Label() == why.event && event.interval.begin < why.interval.end &&
-             why.interval.begin < event.interval.end;
-    });
-  };
-  why.decisive =
-      Search(past, program.rules[ask.rule].name, false, recognise, is_there).value_or(Decisive());
+  std::optional<NamedEvent> came;
+  why.decisive = Search(
+                     past, past.program().rules[ask.rule].name, false, recognise,
+                     [&](const NamedEvent& event) {
+                       return event.Label() == why.event &&
+                              event.interval.begin < why.interval.end &&
+                              why.interval.begin < event.interval.end;
+                     },
+                     came)
+                     .value_or(Decisive());
 }
 
 }  // namespace prehend::show

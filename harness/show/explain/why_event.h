@@ -77,8 +77,9 @@ using Recognise =
 bool Answers(const Ask& ask, const grammar::Program& program, const grammar::EntityTable& entities,
              const grammar::NamedEvent& event);
 
-/// Sets `decisive`. With no such clause, what it says is empty.
-void FindDecisive(const grammar::ReplayMonitor& past, const Ask& ask, const Recognise& recognise,
+/// Sets `decisive`. With no such clause, what it says is empty. What is missing is explained of
+/// those whom it would have happened to.
+void FindDecisive(grammar::ReplayMonitor& past, const Ask& ask, const Recognise& recognise,
                   WhyMissing& why);
 void FindDecisive(const grammar::ReplayMonitor& past, const Ask& ask, const Recognise& recognise,
                   WhyEvent& why);

@@ -307,5 +307,31 @@ TEST(Decisive, OfADrinkingThatNeverReachedTheMouthNamesTheDistance) {
   EXPECT_NEAR(why.decisive->instead, 0.302, 0.002);
 }
 
+// The cup was away, but far too short; the tray is 1 mm too near all the time. So a threshold of
+// 19.9 cm brings the tray's event, and it is the tray whose clauses are told.
+TEST(Decisive, WhatIsToldIsOfThoseToWhomItWouldHaveHappened) {
+  const char* text =
+      "grammar test\n"
+      "event away(thing: Movable, hand: Hand) while distance(thing, hand) > 20 cm lasting 0.1 s\n";
+  Play play;
+  for (int frame = 0; frame < 100; ++frame) {
+    Scene scene;
+    scene.looks[Scene::kCup].p_WB_m.x() = frame == 50 ? 0.5 : 0;
+    scene.looks[Scene::kTray].p_WB_m.x() = 0.199;
+    play.scenes.push_back(scene);
+  }
+  const auto past = play.Watched(text);
+  const Ask ask = Asked(*past, "away");
+  WhyMissing why = ExplainMissing(*past, ask);
+  EXPECT_EQ(why.event, "away(cup, hand)");
+  FindDecisive(
+      *past, ask, [&](const auto& program) { return play.Recognised(program); }, why);
+  EXPECT_EQ(why.event, "away(tray, hand)");
+  EXPECT_TRUE(why.because.starts_with("distance(tray, hand) > 0.2 m: is 199 mm")) << why.because;
+  ASSERT_TRUE(why.decisive);
+  EXPECT_EQ(why.decisive->clause, "distance(thing, hand) > 0.2 m");
+  EXPECT_NEAR(why.decisive->instead, 0.199, 0.001);
+}
+
 }  // namespace
 }  // namespace prehend::show::testing
