@@ -177,7 +177,8 @@ Reason Clauses::Impossible(InstanceId instance, int slot) {
   }
   return {.mark = Mark::kHeld,
           .what = fmt::format("{}({})", rule.name, names),
-          .how = "impossible: " + why};
+          .how = "impossible: " + why,
+          .impossible = true};
 }
 
 Reason Clauses::Reference(InstanceId instance, int slot, FrameNumber frame, bool truth,

@@ -41,6 +41,7 @@ struct Reason {
   std::optional<grammar::Tick> tick;  ///< when
   std::optional<Reading> reading;
   std::vector<Reason> because;
+  bool impossible = false;  ///< by the classes of the entities, whatever happens
 };
 using Reasons = std::vector<Reason>;
 

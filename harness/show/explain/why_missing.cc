@@ -28,14 +28,15 @@ namespace {
 
 constexpr double kAround_s = 0.25;  // a person's or a golden's idea of a moment is not exact
 
-// The innermost clause that failed first.
+// The innermost clause that failed first; one that can't hold only where no other failed.
 const Reason* FirstFailure(const Reasons& reasons) {
+  const Reason* first = nullptr;
   for (const Reason& reason : reasons) {
     if (reason.mark != Mark::kFailed) continue;
-    const Reason* inner = FirstFailure(reason.because);
-    return inner != nullptr ? inner : &reason;
+    if (first == nullptr || (first->impossible && !reason.impossible)) first = &reason;
   }
-  return nullptr;
+  const Reason* inner = first == nullptr ? nullptr : FirstFailure(first->because);
+  return inner != nullptr ? inner : first;
 }
 
 Reasons OnlyFailed(std::string what, std::string how) {

@@ -66,6 +66,21 @@ TEST(ExplainMissing, NoTransportBeforeTheGrasp) {
   EXPECT_GT(why.nearest.front().interval.begin, *why.expected_at);
 }
 
+// Either order of the roles would do; a hand is no Thing, but that is not why they were not near.
+TEST(ExplainMissing, WhatCanNotBeIsNoReasonWhereAnotherFailed) {
+  Stage stage(
+      "condition near(t: Thing, h: Hand) while distance(t, h) <= 5 cm\n"
+      "symmetric event met(a: Entity, b: Entity) while near(a, b) or near(b, a)");
+  stage.CupAt(0.3);
+  stage.Show(10);
+  const WhyMissing why = WhyNot(stage.Finish(), "met hand cup");
+  EXPECT_EQ(why.because,
+            "distance(cup, hand) <= 0.05 m: is 300 mm, 250 mm above 50 mm, at 0.0000 s");
+  const Reason* impossible = Find(why.reasons, "near(hand, cup)");
+  ASSERT_NE(impossible, nullptr);
+  EXPECT_TRUE(impossible->impossible);
+}
+
 // Every way in which a run comes to nothing, on frames written by hand.
 
 TEST(ExplainMissing, TooShort) {
