@@ -316,7 +316,7 @@ class McapPoseReader {
       }
     }
     for (std::size_t i = 0; i < found_.size(); ++i) RefuseRing(poses.bodies[i].name, *found_[i]);
-    if (!problems_.empty()) return;
+    if (!problems_.empty() || found_.empty()) return;
     const std::optional<std::string> world = World();
     if (!world) return;
     if (const auto link = series_->tree.links.find(*world); link != series_->tree.links.end())
