@@ -93,7 +93,7 @@ class MotionFinder {
         best.hand = hand;
         best.distance_m = (near_m + far_m) / 2;
       }
-      if (best.distance_m > 0) seen_.carries.push_back(best);
+      if (least_m < kSlips_m) seen_.carries.push_back(best);
     }
   }
 
@@ -127,17 +127,19 @@ double UsualStep_s(const PoseSeries& samples) {
   return Median(std::move(steps));
 }
 
-double MedianOfPoses(const PoseFile& poses,
-                     const std::function<double(const PoseSample&)>& number) {
+double MedianOfPoses(const PoseFile& poses, const std::function<double(const PoseSample&)>& number,
+                     const std::set<std::string>& without) {
   // As bits, numbers that are not negative are sorted alike: 16 bits of it by each time through.
   std::uint64_t median = 0;
   std::size_t before = 0;  ///< how many there are up to it, of those that begin with these bits
-  for (const PoseBody& body : poses.bodies) before += body.samples.size();
+  for (const PoseBody& body : poses.bodies)
+    if (!without.contains(body.name)) before += body.samples.size();
   if (before == 0) return 0;
   before /= 2;
   for (int shift = 48; shift >= 0; shift -= 16) {
     std::vector<std::size_t> counts(1 << 16);
     for (const PoseBody& body : poses.bodies) {
+      if (without.contains(body.name)) continue;
       for (const PoseSample& sample : body.samples) {
         const auto bits = std::bit_cast<std::uint64_t>(number(sample)) >> shift;
         if (bits >> 16 == median) ++counts[bits & 0xFFFF];

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <set>
 #include <vector>
 
 #include "harness/base/base/median.h"
@@ -47,8 +48,9 @@ struct MotionSeen {
 MotionSeen MotionIn(const PoseFile& poses, const ImportMap& map, double metres_per_unit);
 
 /// The middle one, of an even number the upper, of `number` of all poses of the file, at least 0
-/// each, without keeping them. 0 of none.
-double MedianOfPoses(const PoseFile& poses, const std::function<double(const PoseSample&)>& number);
+/// each, without keeping them; but of bodies of these names. 0 of none.
+double MedianOfPoses(const PoseFile& poses, const std::function<double(const PoseSample&)>& number,
+                     const std::set<std::string>& without = {});
 
 /// The usual time between two of them, s.
 double UsualStep_s(const PoseSeries& samples);

@@ -297,6 +297,36 @@ std::vector<std::string> HandsThatAreFetched(const MotionSeen& seen) {
   return lines;
 }
 
+/// A gripper is wider open than what it carries, before or after.
+std::vector<std::string> GrippersTheOtherWay(const PoseFile& poses, const ImportMap& map,
+                                             const MotionSeen& seen) {
+  constexpr double kAlike = 0.05, kClearly = 0.1;  // of the way from closed to open
+  std::vector<std::string> lines;
+  for (const OpeningSeries& series : poses.openings) {
+    const MappedEntity& hand = map.entities[series.entity].value;
+    std::vector<double> carrying;
+    double widest = 0, least = 1;  // of the rest
+    for (const OpeningSeries::Sample& sample : series.samples) {
+      const bool carries = std::ranges::any_of(seen.carries, [&](const Carry& carry) {
+        const double look = sample.t_s / seen.look_s;
+        return seen.entities[carry.hand] == &hand && look >= static_cast<double>(carry.begin) &&
+               look < static_cast<double>(carry.end);
+      });
+      if (carries) carrying.push_back(sample.open);
+      if (!carries) widest = std::max(widest, sample.open), least = std::min(least, sample.open);
+    }
+    const double held = Median(carrying);
+    if (!series.is_grip || carrying.size() < 10 || held < widest - kAlike ||
+        held < least + kClearly)
+      continue;
+    lines.push_back(fmt::format(
+        "the gripper '{}' is never wider open than while it carries things: are open and closed "
+        "exchanged? (open: {:g}, closed: {:g}); or, if not, sure: [place]",
+        hand.from->value, hand.grip->closed, hand.grip->open));
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::vector<std::string> OddlyHeld(const PoseFile& poses, const ImportMap& map) {
@@ -317,6 +347,7 @@ std::vector<std::string> OddlyHeld(const PoseFile& poses, const ImportMap& map) 
     }
   }
   std::vector<std::string> lines = HandsThatAreFetched(seen);
+  for (std::string& line : GrippersTheOtherWay(poses, map, seen)) lines.push_back(std::move(line));
   for (const auto& [hand, axes] : held) {
     if (Median(gaps_m[hand]) < kFar_m) continue;
     const Eigen::Vector3d& now = seen.entities[hand]->offset_m;
@@ -333,13 +364,17 @@ std::vector<std::string> OddlyHeld(const PoseFile& poses, const ImportMap& map) 
 Guess GuessOrder(const PoseFile& poses, const ImportMap& map) {
   const bool is_wxyz = poses.quaternion_order == QuaternionOrder::kWxyz;
   Guess guess{map.quaternion_order ? map.quaternion_order->where : FirstBodyWhere(map),
-              Warning::kQuaternionOrder,
+              Warning::kOrder,
               {},
               fmt::format("quaternion_order: {}", is_wxyz ? "xyzw" : "wxyz")};
-  // A body that stands as when it was defined has w near 1.
-  const double w = MedianOfPoses(poses, [](const auto& at) { return std::abs(at.q.w()); });
-  const double other_w =
-      MedianOfPoses(poses, [&](const auto& at) { return std::abs(is_wxyz ? at.q.z() : at.q.x()); });
+  // A body that stands as when it was defined has w near 1; grippers point down.
+  std::set<std::string> grippers;
+  for (const Named<MappedEntity>& entity : map.entities)
+    if (entity.value.grip && entity.value.from) grippers.insert(entity.value.from->value);
+  const double w = MedianOfPoses(
+      poses, [](const auto& at) { return std::abs(at.q.w()); }, grippers);
+  const double other_w = MedianOfPoses(
+      poses, [&](const auto& at) { return std::abs(is_wxyz ? at.q.z() : at.q.x()); }, grippers);
   const bool looks_so = w <= 0.5 && other_w >= 0.85;
   if (looks_so)
     guess.signs.push_back(
@@ -363,7 +398,7 @@ Guess GuessOrder(const PoseFile& poses, const ImportMap& map) {
   // What stands, is carried and carries mostly stays upright; of some the map says when.
   std::vector<double> askew_deg, other_askew_deg;
   for (std::size_t body = 0; body < seen.looks.size(); ++body) {
-    if (seen.entities[body]->upright_at_s || seen.entities[body]->axes_quat_wxyz) continue;
+    if (SaysAxes(*seen.entities[body]) || seen.entities[body]->grip) continue;
     for (const BodyLook& look : seen.looks[body]) {
       if (!look.p_m.allFinite()) continue;
       askew_deg.push_back(TiltOf(look.q, map.Up()));

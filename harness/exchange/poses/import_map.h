@@ -26,10 +26,10 @@ enum class Lost { kRefuse, kHold, kUnknown };
 enum class OutlierRule { kKeep, kLost };
 enum class Clock { kHeader, kLog, kPublish };
 /// What looks wrong, and is accepted because the map says that it is right.
-enum class Warning { kUnit, kAxes, kQuaternionOrder, kTime, kPlace, kZero, kUpright, kHanded };
+enum class Warning { kUnit, kAxes, kOrder, kTime, kPlace, kZero, kUpright, kHanded, kAngles };
 
-inline constexpr std::array kWarningNames = {"unit",  "axes", "quaternion_order", "time",
-                                             "place", "zero", "upright",          "handed"};
+inline constexpr std::array kWarningNames = {
+    "unit", "axes", "quaternion_order", "time", "place", "zero", "upright", "handed", "angle_unit"};
 
 /// The names of columns. `{}` in a name stands for the body's name: then a row has all bodies.
 struct Columns {

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Signs that the map says something wrong of a recording of a person or a robot: angles, times,
+// grippers, sizes, and times that the file does not have. Each is silent where the map is right.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/program/carried_cup.h"
+#include "tests/program/import_csv.h"
+
+namespace prehend::house {
+namespace {
+
+class ImportSigns : public testing::Test {
+ protected:
+  /// What import says of the carried cup at 60 Hz; `turn`: the cells of a body's orientation.
+  Said Carried(const std::function<std::string(bool is_cup, double t_s)>& turn,
+               const std::string& columns, const std::string& map = "", double times = 1) const {
+    std::string csv = "t,name,x,y,z,a,b,c,d\n";
+    for (int i = 0; i <= 300; ++i) {
+      for (const bool is_cup : {true, false}) {
+        const Row at = is_cup ? CupAt(i / 60.0) : HandAt(i / 60.0);
+        char text[100];
+        std::snprintf(text, sizeof text, "%.5f,%s,%.5f,%.5f,%.5f,", i / 60.0 * times,
+                      is_cup ? "Mug" : "Glove", at.x, at.y, at.z);
+        csv += text + turn(is_cup, i / 60.0) + "\n";
+      }
+    }
+    std::string text = kCupMap;
+    text = Replaced(text, "quaternion_order: wxyz\n", map);
+    return ImportCsv(folder_, csv, Replaced(text, "quaternion: [qw, qx, qy, qz]", columns));
+  }
+
+  /// Tips the cup by 110 degrees in the air, in a unit that is so many degrees, as `columns`.
+  std::string Tipped(const std::string& unit, double degrees, const std::string& columns) const {
+    const auto turn = [&](bool, double t_s) {
+      const double tip = Along({{2, 0}, {2.4, 110}, {2.6, 110}, {3, 0}}, t_s) / degrees;
+      return std::to_string(tip) + ",0,0,0";
+    };
+    const bool is_euler = columns.starts_with("euler");
+    const Said said = Carried(turn, columns, (is_euler ? "euler_order: XYZ\n" : "") + unit);
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    return said.err;
+  }
+
+  const std::filesystem::path folder_ = FreshFolder("import_signs");
+};
+
+std::string Upright(bool, double) { return "1,0,0,0"; }
+
+/// A gripper that points down, with the fingers' width in `d`, carries the cup.
+class ImportGripperSigns : public ImportSigns {
+ protected:
+  std::string Said_(const std::string& order, const std::string& grip) const {
+    std::string csv =
+        "t,cup_x,cup_y,cup_z,cup_a,cup_b,cup_c,cup_d,eef_x,eef_y,eef_z,eef_a,eef_b,"
+        "eef_c,eef_d,width\n";
+    for (int i = 0; i <= 100; ++i) {
+      const double t_s = i / 20.0;
+      const Row cup = CupAt(t_s), hand = HandAt(t_s);
+      char text[250];
+      std::snprintf(text, sizeof text, "%.3f,%.5f,%.5f,%.5f,0,0,0,1,%.5f,%.5f,%.5f,1,0,0,0,%.5f\n",
+                    t_s, cup.x, cup.y, cup.z, hand.x + 0.08, hand.y, hand.z,
+                    Along({{0.9, 0.08}, {1.2, 0.043}, {3.5, 0.043}, {3.7, 0.08}}, t_s));
+      csv += text;
+    }
+    const Said said = ImportCsv(
+        folder_, csv,
+        "import: 1\nunit: m\naxes: z_up\ntime_unit: s\nquaternion_order: " + order +
+            "\ncolumns: {time: t, position: ['{}_x', '{}_y', '{}_z'], quaternion: ['{}_a', '{}_b', "
+            "'{}_c', '{}_d']}\nentities:\n  table: {at_m: [0, 0, 0.7], fixed: true, class: Table, "
+            "size_m: [2.0, 1.0, 0.04]}\n  cup: {from: cup, class: Cup, size_m: [0.08, 0.08, 0.1]}\n"
+            "  hand: {from: eef, hand: true, size_m: [0, 0, 0], grip: {from: [width], " +
+            grip + "}}\n");
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    return said.err;
+  }
+};
+
+TEST_F(ImportGripperSigns, ARightMapOfAGripperThatPointsDownIsNotDoubted) {
+  EXPECT_EQ(Said_("xyzw", "open: 0.08, closed: 0"), "");
+}
+
+TEST_F(ImportGripperSigns, TheOtherOrderIsDoubtedByWhatItCarries) {
+  EXPECT_EQ(Said_("wxyz", "open: 0.08, closed: 0"),
+            "warning: the first of four numbers, as w, is 0.00 (median, without its sign), the "
+            "last is 1.00: this looks like xyzw: quaternion_order: xyzw; or, if it is right, sure: "
+            "[quaternion_order]\n");
+}
+
+TEST_F(ImportGripperSigns, OpenAndClosedAreExchanged) {
+  EXPECT_EQ(Said_("xyzw", "open: 0, closed: 0.08"),
+            "warning: the gripper 'eef' is never wider open than while it carries things: are open "
+            "and closed exchanged? (open: 0.08, closed: 0); or, if not, sure: [place]\n");
+}
+
+}  // namespace
+}  // namespace prehend::house
