@@ -47,6 +47,23 @@ class ImportSigns : public testing::Test {
   const std::filesystem::path folder_ = FreshFolder("import_signs");
 };
 
+constexpr double kRadian_deg = 57.29577951308232;
+
+TEST_F(ImportSigns, AnglesInTheOtherUnit) {
+  for (const char* columns : {"euler: [a, b, c]", "axis_angle: [a, b, c]"}) {
+    EXPECT_EQ(Tipped("angle_unit: deg\n", 1, columns), "");
+    EXPECT_EQ(Tipped("angle_unit: rad\n", kRadian_deg, columns), "");
+    EXPECT_EQ(Tipped("angle_unit: rad\n", 1, columns),
+              "warning: angles of up to 110 are read as radians: they look like degrees: "
+              "angle_unit: deg; or, if it is right, sure: [angle_unit]\n");
+    EXPECT_EQ(Tipped("angle_unit: deg\n", kRadian_deg, columns),
+              "warning: angles of up to 1.92 are read as degrees, and nothing turns by more than "
+              "1.9 degrees; in radians that is 110: angle_unit: rad; or, if it is right, sure: "
+              "[angle_unit]\n");
+    EXPECT_EQ(Tipped("angle_unit: rad\nsure: [angle_unit]\n", 1, columns), "");
+  }
+}
+
 std::string Upright(bool, double) { return "1,0,0,0"; }
 
 /// A gripper that points down, with the fingers' width in `d`, carries the cup.

@@ -210,7 +210,7 @@ class RowPoseReader {
 
   /// What is wrong, "", or "-": it is not tracked.
   std::string Convert(const OrientationFormat& format, std::span<const double> numbers,
-                      std::span<const double> turn, bool matrix, PoseSample& sample) const {
+                      std::span<const double> turn, bool matrix, PoseSample& sample) {
     const auto finite = [](double v) { return std::isfinite(v); };
     if (!std::ranges::all_of(numbers, finite) || !std::ranges::all_of(turn, finite))
       return NanIsMissing() ? "-" : "it is no number; if that means 'not tracked', missing: [nan]";
@@ -237,7 +237,7 @@ class RowPoseReader {
     std::vector<double> ordered(turn.begin(), turn.end());
     for (std::size_t i = 0; format.form == OrientationForm::kEuler && i < 3; ++i)
       ordered[i] = turn[static_cast<std::size_t>((format.euler_order[i] | 0x20) - 'x')];
-    return ReadOrientation(format, ordered, sample.q);
+    return ReadOrientation(format, ordered, sample.q, &poses_.most_angle);
   }
 
   void ReadOpening(OpeningSeries& opening) {

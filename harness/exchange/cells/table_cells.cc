@@ -118,7 +118,8 @@ std::size_t NumbersOf(OrientationForm form) {
 }
 
 std::string ReadOrientation(const OrientationFormat& format, std::span<const double> v,
-                            Eigen::Quaterniond& q) {
+                            Eigen::Quaterniond& q, double* most_angle) {
+  double angle = 0;
   switch (format.form) {
     case OrientationForm::kQuaternion:
       q = format.order == QuaternionOrder::kWxyz ? Eigen::Quaterniond(v[0], v[1], v[2], v[3])
@@ -130,6 +131,7 @@ std::string ReadOrientation(const OrientationFormat& format, std::span<const dou
       q.setIdentity();
       for (std::size_t i = 0; i < 3; ++i) {
         const char letter = format.euler_order[i];
+        angle = std::max(angle, std::abs(v[i]));
         const Eigen::Quaterniond turn(Eigen::AngleAxisd(v[i] * format.radians_per_unit,
                                                         Eigen::Vector3d::Unit(AxisOf(letter))));
         q = letter <= 'Z' ? q * turn : turn * q;
@@ -138,13 +140,14 @@ std::string ReadOrientation(const OrientationFormat& format, std::span<const dou
     case OrientationForm::kMatrix:
       return ReadMatrix(v, q);
     case OrientationForm::kAxisAngle: {
-      const Eigen::Vector3d turn = Eigen::Vector3d(v[0], v[1], v[2]) * format.radians_per_unit;
-      const double angle = turn.norm();
+      const Eigen::Vector3d turn(v[0], v[1], v[2]);
+      angle = turn.norm();
       q.setIdentity();
-      if (angle > 0) q = Eigen::AngleAxisd(angle, turn / angle);
+      if (angle > 0) q = Eigen::AngleAxisd(angle * format.radians_per_unit, turn / angle);
       break;
     }
   }
+  if (most_angle && angle > *most_angle) *most_angle = angle;
   q.normalize();
   return "";
 }

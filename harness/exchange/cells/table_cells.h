@@ -53,9 +53,9 @@ struct OrientationFormat {
 /// 4 numbers of a quaternion, 3 angles, 9 of a matrix row by row, 3 of an axis times its angle.
 std::size_t NumbersOf(OrientationForm form);
 
-/// Returns why they are none, or "".
+/// Returns why they are none, or "". Angles are noted in `most_angle`, if it is less, as they are.
 std::string ReadOrientation(const OrientationFormat& format, std::span<const double> numbers,
-                            Eigen::Quaterniond& q);
+                            Eigen::Quaterniond& q, double* most_angle = nullptr);
 
 /// What is wrong with the order of angles, or "".
 std::string FaultOfEulerOrder(const std::string& order);

@@ -43,8 +43,10 @@ class Judge {
     Add(Fractions());
     if (found_.warnings.size() == before && errors_.empty()) Add(GuessUnit(poses_, map_));
     found_.unit = !errors_.empty() || found_.warnings.size() > before;
-    // With a wrong unit, lengths mean nothing.
-    if (!found_.unit) {
+    const Guess angles = GuessAngleUnit(poses_, map_);
+    Add(angles);
+    // With a wrong unit, lengths mean nothing, and with one of angles no turn does.
+    if (!found_.unit && angles.signs.empty()) {
       const Guess axes = GuessAxes(poses_, map_);
       Add(axes);
       if (axes.signs.empty()) Add(GuessHandedness(poses_, map_));

@@ -41,6 +41,7 @@ Guess GuessPlace(const PoseFile& poses, const ImportMap& map);
 /// `any_sign`: one is enough, where nothing was said before.
 Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign = false);
 Guess GuessOrder(const PoseFile& poses, const ImportMap& map);
+Guess GuessAngleUnit(const PoseFile& poses, const ImportMap& map);
 Guess GuessHandedness(const PoseFile& poses, const ImportMap& map);
 
 /// What grippers carry far off their origins, and what looks exchanged with a hand, each a line.

@@ -417,6 +417,40 @@ Guess GuessOrder(const PoseFile& poses, const ImportMap& map) {
   return guess;
 }
 
+/// More than a turn; or less than half of one in the other unit, while something turns smoothly.
+Guess GuessAngleUnit(const PoseFile& poses, const ImportMap& map) {
+  constexpr double kMost_rad = 7, kHalf_rad = 3.15, kTurns_deg = 0.5, kSmooth = 10,
+                   kDegrees = 180 / EIGEN_PI;
+  const bool in_degrees = map.angles_in_degrees && map.angles_in_degrees->value;
+  Guess guess{map.angles_in_degrees ? map.angles_in_degrees->where : FirstBodyWhere(map),
+              Warning::kAngles,
+              {},
+              in_degrees              ? "angle_unit: rad"
+              : map.angles_in_degrees ? "angle_unit: deg"
+                                      : "angles in radians, which these files have"};
+  if (!in_degrees && poses.most_angle > kMost_rad)
+    guess.signs.push_back(fmt::format(
+        "angles of up to {:.4g} are read as radians: they look like degrees", poses.most_angle));
+  if (!in_degrees || poses.most_angle > kHalf_rad || poses.most_angle == 0) return guess;
+  double turned = 0;  // in the file's unit
+  for (const PoseBody& body : poses.bodies) {
+    std::vector<double> steps;
+    double most = 0;
+    for (std::size_t i = 1; i < body.samples.size(); ++i) {
+      steps.push_back(body.samples[i].q.angularDistance(body.samples[i - 1].q) * kDegrees);
+      most = std::max(most, body.samples[i].q.angularDistance(body.samples[0].q) * kDegrees);
+    }
+    LetGo(body.samples);
+    if (most > kSmooth * Median(std::move(steps))) turned = std::max(turned, most);
+  }
+  if (turned > kTurns_deg)
+    guess.signs.push_back(fmt::format(
+        "angles of up to {:.3g} are read as degrees, and nothing turns by more than {:.2g} "
+        "degrees; in radians that is {:.0f}",
+        poses.most_angle, turned, turned * kDegrees));
+  return guess;
+}
+
 /// A right hand is to the right of a left one, as both see what they work with.
 Guess GuessHandedness(const PoseFile& poses, const ImportMap& map) {
   Guess guess{FirstBodyWhere(map), Warning::kHanded, {}, "handed: left"};

@@ -61,8 +61,9 @@ struct PoseFile {
   /// Of a skeleton: from its feet to its head, in the file's unit and axes.
   std::optional<Eigen::Vector3d> stature;
   std::optional<QuaternionOrder> quaternion_order;  ///< as they were read; none: there are none
-  bool has_orientations = true;                     ///< else only positions
-  bool counts_frames = false;  ///< its times, in a unit of time, are whole and grow by one each
+  double most_angle = 0;         ///< of angles and axes times angles, as they are in the file
+  bool has_orientations = true;  ///< else only positions
+  bool counts_frames = false;    ///< its times, in a unit of time, are whole and grow by one each
   std::size_t rows = 0;
   double first_s = 0, last_s = 0;  ///< of all rows, also of those in which nothing is tracked
 };

@@ -493,7 +493,7 @@ class CsvPoseReader {
                       fmt::format("'{}' has two poses at {:.6g} s", body.name, t_s));
     if (seats.all.size() > 3) {
       const std::string fault =
-          ReadOrientation(orientation_, std::span(values_).subspan(3), sample.q);
+          ReadOrientation(orientation_, std::span(values_).subspan(3), sample.q, &poses.most_angle);
       if (!fault.empty())
         return Complain({line_, cells[seats.all[3]].column},
                         fmt::format("'{}': {}", body.name, fault),
