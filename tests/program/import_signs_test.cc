@@ -66,6 +66,26 @@ TEST_F(ImportSigns, AnglesInTheOtherUnit) {
 
 std::string Upright(bool, double) { return "1,0,0,0"; }
 
+TEST_F(ImportSigns, NumbersThatStandForNoPoseAreNamedAsWhatTheyAre) {
+  const std::string columns = "quaternion: [a, b, c, d]", order = "quaternion_order: wxyz\n";
+  ASSERT_EQ(Carried(Upright, columns, order).exit_code, 0);
+  const std::string csv = ReadFile(folder_ / "poses.csv"), map = ReadFile(folder_ / "map.yaml");
+  const std::size_t at = csv.find("Mug,", csv.size() / 2);
+  for (const auto& [cells, hint] :
+       {std::pair{"-1.0,-1.0,-1.0,-1.0,-1.0,-1.0,-1.0",
+                  "if this means 'not tracked', in the map: missing: [-1.0]"},
+        std::pair{"0,0,0,0,0,0,0",
+                  "if this means 'not tracked', in the map: zero_is_missing: true"},
+        std::pair{"0.1,0.2,0.3,4,4,4,4",
+                  "are these the four columns of one body's orientation?"}}) {
+    std::string lost = csv;
+    lost.replace(at + 4, lost.find('\n', at) - at - 4, cells);
+    const Said said = ImportCsv(folder_, lost, map);
+    EXPECT_EQ(said.exit_code, 2);
+    EXPECT_NE(said.err.find(std::string("hint: ") + hint + "\n"), std::string::npos) << said.err;
+  }
+}
+
 /// A gripper that points down, with the fingers' width in `d`, carries the cup.
 class ImportGripperSigns : public ImportSigns {
  protected:

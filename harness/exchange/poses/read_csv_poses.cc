@@ -472,6 +472,15 @@ class CsvPoseReader {
     Seats seats = {};
   };
 
+  /// `cell`: one of a pose that has none.
+  std::string HintOfNoQuaternion(const CsvCell& cell) const {
+    if (orientation_.form != OrientationForm::kQuaternion) return "";
+    if (std::ranges::count(values_, values_[0]) < std::ssize(values_))
+      return "are these the four columns of one body's orientation?";
+    return "if this means 'not tracked', in the map: " +
+           (values_[0] == 0 ? "zero_is_missing: true" : fmt::format("missing: [{}]", cell.text));
+  }
+
   void TakePose(const std::vector<CsvCell>& cells, const Seats& seats, double t_s, Wanted& wanted) {
     PoseBody& body = *wanted.body;
     const auto missing = [&](std::size_t seat) { return IsMissing(cells[seat]); };
@@ -497,9 +506,7 @@ class CsvPoseReader {
       if (!fault.empty())
         return Complain({line_, cells[seats.all[3]].column},
                         fmt::format("'{}': {}", body.name, fault),
-                        orientation_.form == OrientationForm::kQuaternion
-                            ? "are these the four columns of one body's orientation?"
-                            : "");
+                        HintOfNoQuaternion(cells[seats.all[3]]));
     }
     if (seats.error && !IsMissing(cells[*seats.error])) {
       const auto error = Number(cells[*seats.error]);
