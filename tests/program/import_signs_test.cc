@@ -66,6 +66,34 @@ TEST_F(ImportSigns, AnglesInTheOtherUnit) {
 
 std::string Upright(bool, double) { return "1,0,0,0"; }
 
+TEST_F(ImportSigns, HandsThatAreTooFastAreNamedAlone) {
+  const std::string columns = "quaternion: [a, b, c, d]", order = "quaternion_order: wxyz\n";
+  EXPECT_EQ(Carried(Upright, columns, order).err, "");
+  // It reaches and leaves with 0.745 m/s, five and twenty times that.
+  EXPECT_EQ(Carried(Upright, columns, order, 0.2).err.find("the hands go"), std::string::npos);
+  const Said fast = Carried(Upright, columns, order, 0.05);
+  EXPECT_EQ(fast.exit_code, 0) << fast.err;
+  EXPECT_NE(fast.err.find("warning: the hands go 0.828 m far, at up to 14.9 m/s: correct unit, or "
+                          "what the map says of times; or, if it is right, sure: [unit]\n"),
+            std::string::npos)
+      << fast.err;
+  EXPECT_EQ(Carried(Upright, columns, order + "sure: [unit]\n", 0.05).err.find("the hands go"),
+            std::string::npos);
+}
+
+TEST_F(ImportSigns, SizesInMillimetres) {
+  const std::string columns = "quaternion: [a, b, c, d]", order = "quaternion_order: wxyz\n";
+  ASSERT_EQ(Carried(Upright, columns, order).exit_code, 0);
+  const std::string csv = ReadFile(folder_ / "poses.csv"), map = ReadFile(folder_ / "map.yaml");
+  for (const auto& [size, of] :
+       {std::pair{"[80, 80, 100]", "millimetres"}, std::pair{"[8, 8, 10]", "centimetres"}}) {
+    const Said said = ImportCsv(folder_, csv, Replaced(map, "[0.08, 0.08, 0.1]", size));
+    EXPECT_NE(said.err.find(std::string("if these are ") + of + ": size_m: [0.08, 0.08, 0.1]\n"),
+              std::string::npos)
+        << said.err;
+  }
+}
+
 TEST_F(ImportSigns, NumbersThatStandForNoPoseAreNamedAsWhatTheyAre) {
   const std::string columns = "quaternion: [a, b, c, d]", order = "quaternion_order: wxyz\n";
   ASSERT_EQ(Carried(Upright, columns, order).exit_code, 0);

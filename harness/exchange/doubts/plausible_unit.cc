@@ -17,7 +17,8 @@ constexpr double kNothingMoves_m = 0.03, kSomethingMoves_m = 0.1;  ///< all pose
 constexpr double kNoMove_m = 0.0005;                       ///< in no unit does something move
 constexpr double kHandsWidth_m = 0.15, kMostReach_m = 20;  ///< where hands go
 constexpr double kLeastHands_m = 0.2, kMostHands_m = 5;
-constexpr double kSlow_m_per_s = 0.02, kFast_m_per_s = 7;      ///< of hands, 95 % below it
+constexpr double kSlow_m_per_s = 0.02, kFast_m_per_s = 7;      ///< of hands, 98 % below it
+constexpr double kSpeedOver_s = 0.02;                          ///< or over three frames
 constexpr double kFarFromOrigin_m = 30;                        ///< median distance of all poses
 constexpr double kNearPlace_m = 0.5, kAt_m = 0.1;              ///< of what the map places
 constexpr double kLeastStature_m = 0.5, kMostStature_m = 2.3;  ///< from feet to head
@@ -41,21 +42,22 @@ Lengths LengthsIn(const PoseFile& poses, const MotionSeen& seen) {
       extent.extend(sample.p);
       if (seen.entities[body]->hand) hands.extend(sample.p);
     }
-    LetGo(poses.bodies[body].samples);
-  }
-  for (std::size_t body = 0; body < seen.looks.size(); ++body) {
-    for (std::size_t k = 0; k < seen.looks[body].size(); ++k) {
-      if (!seen.entities[body]->hand) continue;
+    const PoseSeries& samples = poses.bodies[body].samples;
+    for (std::size_t k = 0, next = 0; seen.entities[body]->hand && k < samples.size(); ++k) {
       lengths.has_hands = true;
-      const double way = k > 0 ? (seen.looks[body][k].p_m - seen.looks[body][k - 1].p_m).norm() : 0;
-      if (way > 0) speeds.push_back(way / seen.look_s);
+      next = std::max(next, k + 3);
+      while (next < samples.size() && samples[next].t_s < samples[k].t_s + kSpeedOver_s) ++next;
+      if (next >= samples.size()) break;
+      const double way = (samples[next].p - samples[k].p).norm();
+      if (way > 0) speeds.push_back(way / (samples[next].t_s - samples[k].t_s));
     }
+    LetGo(samples);
   }
   lengths.from_origin = MedianOfPoses(poses, [](const PoseSample& at) { return at.p.norm(); });
   lengths.span = extent.isEmpty() ? 0 : extent.diagonal().norm();
   lengths.hands = hands.isEmpty() ? 0 : hands.diagonal().norm();
   std::ranges::sort(speeds);
-  if (!speeds.empty()) lengths.speed = speeds[speeds.size() * 95 / 100];
+  if (!speeds.empty()) lengths.speed = speeds[speeds.size() * 98 / 100];
   return lengths;
 }
 
@@ -104,7 +106,8 @@ class UnitGuesser {
         places += fmt::format("; in {} it would come to it", unit->first);
     }
     if (poses_.stature && sizes.empty()) return guess;  // its length is known
-    const bool far_only = motion.empty() && sizes.empty();
+    const bool far_only = motion.empty() && sizes.empty(),
+               too_fast = motion.starts_with("the hands go");
     for (std::string* sign : poses_.stature ? std::array{&sizes, &places, &motion}
                              : places.starts_with("the poses")
                                  ? std::array{&places, &motion, &sizes}
@@ -113,6 +116,8 @@ class UnitGuesser {
     if (poses_.stature)
       guess.remedy = fmt::format("correct unit, or metres_per_unit: {:.3g}, if it is 1.6 m",
                                  1.6 / poses_.stature->norm());
+    else if (!is_known && too_fast)
+      guess.remedy = "correct unit, or what the map says of times";
     // Far away alone is no unit; and what is still in every unit does not move.
     else if (!is_known && (far_only || (guess.signs.size() == 1 && lengths_.span < kNoMove_m)))
       guess.signs.clear();
@@ -191,14 +196,15 @@ Guess GuessUnit(const PoseFile& poses, const ImportMap& map) {
 }
 
 DoubtfulThings ThingsTooLarge(const ImportMap& map) {
-  constexpr double kMostSize_m = 3;
+  constexpr double kMostSize_m = 3, kUsualSize_m = 0.6;
   DoubtfulThings large;
   for (std::size_t i = 0; i < map.entities.size(); ++i) {
     const MappedEntity& e = map.entities[i].value;
     const Eigen::Vector3d& size = e.size_m;
     if (!e.from || e.fixed || size.maxCoeff() <= kMostSize_m) continue;
     const bool in_millimetres = map.MetresPerUnit() < 0.002 && size.maxCoeff() > 10;
-    const double factor = in_millimetres || size.maxCoeff() / 100 > kMostSize_m ? 1000 : 100;
+    const double most_m = map.MetresPerUnit() == 0.01 ? kMostSize_m : kUsualSize_m;
+    const double factor = in_millimetres || size.maxCoeff() / 100 > most_m ? 1000 : 100;
     large.things.insert(i);
     large.warnings.push_back(fmt::format(
         "'{}' is {:g} x {:g} x {:g} m large, and size_m is in metres; if these are {}: size_m: "
