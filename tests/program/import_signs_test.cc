@@ -81,6 +81,20 @@ TEST_F(ImportSigns, HandsThatAreTooFastAreNamedAlone) {
             std::string::npos);
 }
 
+TEST_F(ImportSigns, ATableAFewCentimetresOffSupportsAsTheGrammarSays) {
+  const std::string columns = "quaternion: [a, b, c, d]", order = "quaternion_order: wxyz\n";
+  ASSERT_EQ(Carried(Upright, columns, order).exit_code, 0);
+  const std::string csv = ReadFile(folder_ / "poses.csv"), map = ReadFile(folder_ / "map.yaml");
+  const Said low =
+      ImportCsv(folder_, csv, Replaced(map, "at_m: [0, 0, 0.7]", "at_m: [0, 0, 0.64]"));
+  EXPECT_EQ(low.err,
+            "warning: 'cup' rests 60 mm above 'table': is at_m or size_m of 'table', or offset_m "
+            "or size_m of 'cup' wrong?\n");
+  EXPECT_NE(
+      Prehend({"episode", "resegment", (folder_ / "take.jsonl").string()}).out.find("putting_down"),
+      std::string::npos);
+}
+
 TEST_F(ImportSigns, SizesInMillimetres) {
   const std::string columns = "quaternion: [a, b, c, d]", order = "quaternion_order: wxyz\n";
   ASSERT_EQ(Carried(Upright, columns, order).exit_code, 0);

@@ -379,7 +379,7 @@ TEST(Import, ThingsThatRestOnNothingAreNamedWithWhatTheMapCouldSay) {
   const std::size_t begin = without.err.find("could be 'table:"),
                     end = without.err.find("'\n", begin);
   EXPECT_NE(without.err.find("warning: 'cup' rests with the lowest point at 0.72 m, and nothing in "
-                             "the map has its top within 5 cm of that: no support, pick-up or "
+                             "the map has its top within 8 cm of that: no support, pick-up or "
                              "put-down is recognised"),
             std::string::npos)
       << without.err;

@@ -18,7 +18,7 @@
 namespace prehend::exchange {
 namespace {
 
-constexpr double kOnTop_m = 0.05;  ///< lie_about of grammar/library/support_from_motion.grammar
+constexpr double kOnTop_m = 0.08;  ///< lie_about of grammar/library/support_from_motion.grammar
 constexpr double kHigh_m = 1.6;
 constexpr double kOffTop_m = 0.015;
 constexpr double kLeast_s = 1;  ///< a shorter rest says nothing
