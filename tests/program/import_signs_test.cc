@@ -81,6 +81,35 @@ TEST_F(ImportSigns, HandsThatAreTooFastAreNamedAlone) {
             std::string::npos);
 }
 
+TEST_F(ImportSigns, ATimeAtWhichNothingStandsUprightIsNamed) {
+  const std::string columns = "quaternion: [a, b, c, d]", order = "quaternion_order: wxyz\n";
+  ASSERT_EQ(Carried(Upright, columns, order).exit_code, 0);
+  const std::string csv = ReadFile(folder_ / "poses.csv"), map = ReadFile(folder_ / "map.yaml");
+  const auto upright_at = [&](const std::string& csv_text, const std::string& t_s) {
+    return ImportCsv(
+        folder_, csv_text,
+        Replaced(map, "class: Cup", "class: Cup, upright_at_s: " + t_s) + "lost: unknown\n");
+  };
+  EXPECT_EQ(upright_at(csv, "4.9").err, "");
+  const Said late = upright_at(csv, "60");
+  EXPECT_EQ(late.exit_code, 2);
+  EXPECT_NE(late.err.find("map.yaml:14:46: error: the file ends at 5.000 s\n"), std::string::npos)
+      << late.err;
+  std::string gap;  // of the cup, from 1.5 to 2.5 s
+  std::size_t at = 0;
+  for (std::size_t next = csv.find('\n') + 1; at < csv.size(); at = next) {
+    next = csv.find('\n', at) + 1;
+    const double t_s = std::atof(csv.c_str() + at);
+    if (csv.compare(at, next - at, "t") > 0 || t_s < 1.5 || t_s > 2.5 ||
+        csv.substr(at, next - at).find("Mug") == std::string::npos)
+      gap += csv.substr(at, next - at);
+  }
+  EXPECT_NE(upright_at(gap, "1.8")
+                .err.find("warning: 'Mug' is not tracked at its upright_at_s, "
+                          "1.8 s: its pose at 1.483 s counts\n"),
+            std::string::npos);
+}
+
 TEST_F(ImportSigns, ATableAFewCentimetresOffSupportsAsTheGrammarSays) {
   const std::string columns = "quaternion: [a, b, c, d]", order = "quaternion_order: wxyz\n";
   ASSERT_EQ(Carried(Upright, columns, order).exit_code, 0);

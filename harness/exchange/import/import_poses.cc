@@ -295,7 +295,7 @@ class Importer {
     imported_.openings +=
         fmt::format("{}: {} '{}': {} values at {:.1f} Hz, {:.0f} to {:.0f} % open\n", entity.name,
                     series.is_grip ? "grip" : "joint", said.Names(), series.samples.size(),
-                    report.rate_hz, 100 * least.open, 100 * most.open);
+                    report.rate_hz, std::round(100 * least.open) + 0.0, 100 * most.open);
   }
 
   /// The file's poses become those of the track.
@@ -307,9 +307,17 @@ class Importer {
     poses_ += samples.size();
     if (entity.upright_at_s) {
       const double t_s = entity.upright_at_s->value;
-      kept.upright = std::ranges::min_element(samples, {}, [&](const PoseSample& sample) {
-                       return std::abs(sample.t_s - t_s);
-                     })->q;
+      const PoseSample& nearest = *std::ranges::min_element(
+          samples, {}, [&](const PoseSample& sample) { return std::abs(sample.t_s - t_s); });
+      kept.upright = nearest.q;
+      if (t_s > file_.last_s + kGap * kept.usual_s)
+        errors_.Add(entity.upright_at_s->where,
+                    fmt::format("the file ends at {:.3f} s", file_.last_s));
+      else if (std::abs(nearest.t_s - t_s) > std::max(map_.bridge_s, kGap * kept.usual_s))
+        Warn(
+            fmt::format("'{}' is not tracked at its upright_at_s, {:g} s: its pose at {:.3f} s "
+                        "counts",
+                        entity.from->value, t_s, nearest.t_s));
     }
     for (PoseSample& sample : samples) sample = InRecording(sample, entity, map_, kept.upright);
     track.poses = std::move(samples);
