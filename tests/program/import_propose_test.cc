@@ -148,6 +148,51 @@ TEST(ImportPropose, WhatIsDoubtfulIsSaid) {
   EXPECT_NE(still.find("rate_hz: 30             # fill in"), std::string::npos) << still;
 }
 
+TEST(ImportPropose, CentimetresMayBeInchesAndUpIsFoundInBoth) {
+  const auto folder = FreshFolder("propose");
+  const auto table = [](double scale) {
+    return Plain(
+        "t,Cup_x,Cup_y,Cup_z,Hand_x,Hand_y,Hand_z", ",",
+        [](int i) { return Text(i / kRate_hz) + ","; }, scale, true, "");
+  };
+  const std::string doubt = "# doubt: unit: cm or inch: hands move as far and as fast in both\n";
+  for (const double scale : {100.0, 1 / 0.0254}) {
+    const std::string map = Proposed(folder, "a.csv", table(scale));
+    EXPECT_NE(map.find("unit: cm "), std::string::npos) << map;
+    EXPECT_NE(map.find(doubt), std::string::npos) << map;
+    EXPECT_NE(map.find("axes: y_up"), std::string::npos) << map;
+  }
+  for (const double scale : {1.0, 1000.0}) {
+    const std::string map = Proposed(folder, "a.csv", table(scale));
+    EXPECT_EQ(map.find(doubt), std::string::npos) << map;
+  }
+}
+
+TEST(ImportPropose, PointsThatAreCountedMayBeMarkersOfOneBody) {
+  const auto folder = FreshFolder("propose");
+  const auto points = [&](const std::string& names) {
+    return Proposed(folder, "a.tsv",
+                    "t\t" + names + "\n" + Rows([](int i) {
+                      const Row cup = CupAt(i / kRate_hz);
+                      return Text(i / kRate_hz) + "\t" + Three(cup, 1, "\t") + "\t" +
+                             Three({0, cup.x + 0.05, cup.y, cup.z}, 1, "\t") + "\t" +
+                             Three({0, cup.x, cup.y + 0.05, cup.z}, 1, "\t") + "\t" +
+                             Three(HandAt(i / kRate_hz), 1, "\t");
+                    }));
+  };
+  const std::string of_one = points(
+      "cup_1_x\tcup_1_y\tcup_1_z\tcup_2_x\tcup_2_y\tcup_2_z\tcup_3_x\tcup_3_y\tcup_3_z\t"
+      "hand_x\thand_y\thand_z");
+  EXPECT_NE(of_one.find("# doubt: are these markers of one body? markers: [\"cup_1\", \"cup_2\", "
+                        "\"cup_3\"], in the place of from, gives it orientations\n"),
+            std::string::npos)
+      << of_one;
+  const std::string of_two = points(
+      "cup_1_x\tcup_1_y\tcup_1_z\tcup_2_x\tcup_2_y\tcup_2_z\tjar_x\tjar_y\tjar_z\t"
+      "hand_x\thand_y\thand_z");
+  EXPECT_EQ(of_two.find("markers of one body"), std::string::npos) << of_two;
+}
+
 TEST(ImportPropose, SkeletonsAndMessages) {
   const auto folder = FreshFolder("propose");
   const std::string docs = PREHEND_SOURCE_DIR "/docs/motion_capture/";

@@ -12,6 +12,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -183,7 +184,24 @@ class MapProposer {
         bodies_.push_back(DraftOf(name, taken));
     }
     if (bodies_.empty()) return ErrorOfFile(path_, "it has no bodies with poses");
+    if (!poses.has_orientations) DoubtMarkers();
     return {};
+  }
+
+  /// "cup_1, cup_2, cup_3" without orientations may be one body.
+  void DoubtMarkers() {
+    std::map<std::string, std::vector<std::string>> groups;
+    for (const Draft& body : bodies_) {
+      const std::size_t end = body.from.find_last_not_of("0123456789");
+      if (end + 1 < body.from.size())
+        groups[body.from.substr(0, end + 1)].push_back(Quoted(body.from));
+    }
+    for (const auto& [name, markers] : groups)
+      if (markers.size() >= 3)
+        doubts_.push_back(
+            fmt::format("are these markers of one body? markers: [{}], in the place "
+                        "of from, gives it orientations",
+                        fmt::join(markers, ", ")));
   }
 
   static Draft DraftOf(const std::string& from, std::set<std::string>& taken) {
@@ -241,9 +259,18 @@ class MapProposer {
     }
     if (!says_unit_ && guessed(unit_, GuessUnit(poses, map))) {
       unit_why_ = "by how far and how fast hands move";
+      if (unit_.ends_with(" cm"))
+        doubts_.push_back("unit: cm or inch: hands move as far and as fast in both");
       return true;
     }
-    if (const Guess axes = GuessAxes(poses, map, /*any_sign=*/true); guessed(axes_, axes)) {
+    Guess axes = GuessAxes(poses, map, /*any_sign=*/true);
+    if (axes.signs.empty() && unit_.ends_with(" cm") &&
+        unit_why_.starts_with("by")) {  // too near to each other, perhaps
+      ImportMap larger = map;
+      larger.unit->value = LengthUnit::kInch;
+      axes = GuessAxes(poses, larger, /*any_sign=*/true);
+    }
+    if (guessed(axes_, axes)) {
       axes_why_ = axes.signs.front();
       return true;
     }
