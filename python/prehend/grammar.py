@@ -176,8 +176,8 @@ class Grammar:
                 if not one.file:
                     one.write(file)
             labels = [tables.enter_context(_file_of(one, self)) for one in truth]
-            text, strange = _prehend.margins(list(dict.fromkeys(files)), self._compiled, labels, str(map or ""), list(over),
-                                             float(within))
+            text, strange = _prehend.margins(list(dict.fromkeys(files)), self._compiled, labels, str(map or ""),
+                                             [over] if isinstance(over, str) else list(over), float(within))
         warn(strange, DoubtfulLabels)
         return pd.read_csv(io.StringIO(text)).set_index("parameter")
 

@@ -185,7 +185,7 @@ TEST_F(Labelled, MarginsOfSomeParametersOnly) {
   const Said unknown = margins("hold_wey");
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_TRUE(Has(unknown.err,
-                  "--over: the grammar has no parameter 'hold_wey'\n  hint: did you "
+                  "--over: error: the grammar has no parameter 'hold_wey'\n  hint: did you "
                   "mean 'hold_way'?"))
       << unknown.err;
 }

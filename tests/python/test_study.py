@@ -91,7 +91,7 @@ class Study(takes.Folder, unittest.TestCase):
         pd.testing.assert_frame_equal(mine, pd.read_csv(file).set_index("parameter"))
         t, arrays = takes.carried()
         made = prehend.episode(arrays, t=t, entities=takes.ENTITIES)
-        again = self.grammar.margins(made, made.events, over=["hold_way"])
+        again = self.grammar.margins(made, made.events, over="hold_way")
         self.assertEqual(again.loc["hold_way", "f1"], 1.0)
         made.events.write(self.folder / "made.eaf")
         kept = self.grammar.margins(made, self.folder / "made.eaf", over=["hold_way"])

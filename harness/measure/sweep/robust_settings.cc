@@ -142,7 +142,8 @@ std::optional<grammar::Diagnostics> UnknownAmong(const std::vector<std::string>&
     if (std::ranges::count(known, name) > 0) continue;
     const std::string near = grammar::NearestName(name, known);
     return grammar::Diagnostics{
-        {.message = fmt::format("--over: the grammar has no parameter '{}'", name),
+        {.file = "--over",
+         .message = fmt::format("the grammar has no parameter '{}'", name),
          .hint = near.empty() ? "" : fmt::format("did you mean '{}'?", near)}};
   }
   return std::nullopt;
