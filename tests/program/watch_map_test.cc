@@ -167,6 +167,19 @@ TEST(WatchMap, FaultyRowsAreNamedOnceOfAKindAndLeftOut) {
       << watched.said.err;
 }
 
+TEST(WatchMap, TimesThatGoBackAreToldInSeconds) {
+  const Watched watched = Watch(Csv([](int i) { return Row(i < 200 ? i : i - 100); }), kMap);
+  EXPECT_EQ(watched.said.exit_code, 2);
+  EXPECT_NE(watched.said.err.find("poses.csv:202:1: error: times must increase: 1.66667 s comes "
+                                  "after 3.31667 s\n"),
+            std::string::npos)
+      << watched.said.err;
+  EXPECT_NE(watched.said.err.find("100 lines in all, the first: times must increase: 1.66667 s "
+                                  "comes after 3.31667 s\n"),
+            std::string::npos)
+      << watched.said.err;
+}
+
 TEST(WatchMap, AMapThatIsWrongIsAnErrorAtOnce) {
   const std::string csv = Csv([](int i) { return Row(i); });
   const auto refused = [&](const std::string& map, const std::string& why) {

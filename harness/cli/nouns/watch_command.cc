@@ -164,7 +164,10 @@ class LineWatcher {
     std::string kind = wrong_.front().message;
     std::erase_if(kind, [](unsigned char c) { return std::isdigit(c) || c == '.'; });
     if (faults_.size() >= kMostKinds && !faults_.contains(kind)) kind = "others";
-    if (++faults_[kind] == 1) context_.err << grammar::Format(wrong_) << std::flush;
+    auto& [count, first] = faults_[kind];
+    if (++count > 1) return true;
+    first = wrong_.front().message;
+    context_.err << grammar::Format(wrong_) << std::flush;
     return true;
   }
 
@@ -175,9 +178,10 @@ class LineWatcher {
   ExitCode End() const {
     if (stream_.end_tick() == 0) return EndsTooEarly();
     context_.err << stream_.gaps();
-    for (const auto& [kind, count] : faults_) {
-      if (count > 1)
-        context_.err << fmt::format("prehend: {}: {} lines in all: {}\n", name_, count, kind);
+    for (const auto& [kind, fault] : faults_) {
+      if (const auto& [count, first] = fault; count > 1)
+        context_.err << fmt::format("prehend: {}: {} lines in all, the first: {}\n", name_, count,
+                                    first);
     }
     if (!stream_.says_its_end() && !live_)
       context_.err << fmt::format(
@@ -195,7 +199,8 @@ class LineWatcher {
   bool ended_ = false;
   grammar::Diagnostics wrong_;  ///< with the last line
   std::size_t line_ = 0, skipped_ = 0;
-  std::map<std::string, std::size_t> faults_;  ///< by message, without its numbers
+  /// By message, without its numbers: how many, and the first of them.
+  std::map<std::string, std::pair<std::size_t, std::string>> faults_;
 };
 
 /// A run or a recording of an episode file, or a scenario while it is played.

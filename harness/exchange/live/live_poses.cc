@@ -193,9 +193,16 @@ grammar::Diagnostics LivePoses::Emit(episode::EpisodeStream& stream) {
       hand.ahead = Eigen::Quaterniond(q[0], q[1], q[2], q[3]) * e.ahead->value.normalized();
     }
   }
+  const double frame_s = *frame_s_;
   frame_s_.reset();
+  if (stream.frame() && last_s_ && frame_s <= *last_s_)
+    return {{.file = name_,
+             .place = {line_, 1},
+             .message = fmt::format("times must increase: {:.6g} s comes after {:.6g} s", frame_s,
+                                    *last_s_)}};
   grammar::Diagnostics wrong = stream.Take(frame);
-  for (grammar::Diagnostic& one : wrong) one.place.line = line_;
+  for (grammar::Diagnostic& one : wrong) one.place = {line_, 1};
+  if (wrong.empty()) last_s_ = frame_s;
   has_frame_ = has_frame_ || stream.frame() != nullptr;
   return wrong;
 }

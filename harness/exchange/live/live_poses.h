@@ -43,6 +43,7 @@ class LivePoses {
   std::optional<MapFile> map_;
   std::optional<PoseLines> lines_;
   bool collects_ = false;                        ///< a frame is of several lines
+  std::optional<double> last_s_;                 ///< of the frame before
   std::optional<double> frame_s_;                ///< of the frame that is being collected
   std::vector<episode::SampleEntry> samples_;    ///< of it, by entity
   std::vector<std::optional<double>> triggers_;  ///< by entity: the last ones
