@@ -36,13 +36,15 @@ TargetState SegmentAt(const Segment& segment, double t_s) {
   return state;
 }
 
-/// Slope at a way-point between two slopes: their harmonic mean, or zero if the sign changes.
+/// Slope at a way-point between two slopes: their harmonic mean, or zero if they turn by a right
+/// angle or more. Of heights by themselves: a way that was down does not go deeper.
 Eigen::Vector3d MonotoneRate(const Eigen::Vector3d& before, const Eigen::Vector3d& after) {
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double product = before[axis] * after[axis];
-    if (product > 0) rate[axis] = 2 * product / (before[axis] + after[axis]);
-  }
+  const auto mean = [](const auto& a, const auto& b) {
+    const double product = a.dot(b);
+    return ((a + b) * (product > 0 ? 2 * product / (a + b).squaredNorm() : 0)).eval();
+  };
+  Eigen::Vector3d rate;
+  rate << mean(before.head<2>(), after.head<2>()), mean(before.tail<1>(), after.tail<1>());
   return rate;
 }
 

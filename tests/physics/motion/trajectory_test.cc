@@ -51,6 +51,30 @@ TEST(TrajectoryTest, WaypointsArePassedAndNeverOvershot) {
   ExpectConsistentRates(trajectory);
 }
 
+TEST(TrajectoryTest, AWayThroughWaypointsTurnsWithThem) {
+  const Quaterniond turn(Eigen::AngleAxisd(0.65, Vector3d::UnitZ()));
+  std::vector<TimedPose> poses, turned;
+  for (int i = 1; i <= 12; ++i) {  // a circle of 5 cm
+    const double angle = i * 0.52;
+    poses.push_back({.t_s = 0.1 * i, .X_WH = {{0.05 - 0.05 * cos(angle), 0.05 * sin(angle), 0}}});
+    turned.push_back({.t_s = 0.1 * i, .X_WH = {turn * poses.back().X_WH.p_m}});
+  }
+  const Trajectory way = WaypointTrajectory({}, poses), its = WaypointTrajectory({}, turned);
+  for (double t = 0; t <= 1.2; t += 0.01)
+    EXPECT_LT((turn * way.At(t).X_WH.p_m - its.At(t).X_WH.p_m).norm(), 1e-12) << t;
+  // Between way-points it stays near the circle.
+  for (double t = 0.1; t <= 1.1; t += 0.01)
+    EXPECT_NEAR((way.At(t).X_WH.p_m - Vector3d(0.05, 0, 0)).norm(), 0.05, 0.0003) << t;
+}
+
+TEST(TrajectoryTest, AWayThatIsDownGoesNoDeeper) {
+  const Trajectory way = WaypointTrajectory({.X_WH = {{0, 0, 1}}}, {{.t_s = 1, .X_WH = {{1, 0, 0}}},
+                                                                   {.t_s = 2, .X_WH = {{2, 1, 0}}},
+                                                                   {.t_s = 3, .X_WH = {{3, 1, 1}}}});
+  for (double t = 0; t <= 3; t += 0.01) EXPECT_GE(way.At(t).X_WH.p_m.z(), -1e-12) << t;
+  EXPECT_GT(way.At(1).v_m_per_s.x(), 0.5);
+}
+
 TEST(TrajectoryTest, AFirstWaypointAtZeroIsTheStart) {
   const Trajectory trajectory =
       WaypointTrajectory({}, {{.t_s = 0, .X_WH = {{5, 0, 0}}}, {.t_s = 1, .X_WH = {{6, 0, 0}}}});
