@@ -165,7 +165,7 @@ TEST_F(ImportUp, WithoutOrientationsItIsSaidOnceWhatCannotBeJudged) {
     const Said said = Import(Csv(Turn{}), "axes: z_up\n", tail, check);
     EXPECT_EQ(said.exit_code, 0);
     EXPECT_EQ(said.err,
-              "warning: the file has positions only, 602 of 2 bodies, and no orientations: every "
+              "warning: the file has positions only, of 2 bodies, and no orientations: every "
               "tilt(..) is 0, so no pouring is recognised, hold_tips cannot tell what is tipped in "
               "a hand from what was put down, and up is always up in a thing (boxes, offset_m)\n");
   }

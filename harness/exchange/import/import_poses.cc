@@ -304,7 +304,6 @@ class Importer {
     PoseSeries& samples =
         std::ranges::find(file_.bodies, entity.from->value, &PoseBody::name)->samples;
     kept.usual_s = UsualStep_s(samples);
-    poses_ += samples.size();
     if (entity.upright_at_s) {
       const double t_s = entity.upright_at_s->value;
       const PoseSample& nearest = *std::ranges::min_element(
@@ -438,10 +437,10 @@ class Importer {
   void WarnOfNoOrientations() {
     if (file_.has_orientations) return;
     Warn(
-        fmt::format("the file has positions only, {} of {} {}, and no orientations: every tilt(..) "
+        fmt::format("the file has positions only, of {} {}, and no orientations: every tilt(..) "
                     "is 0, so no pouring is recognised, hold_tips cannot tell what is tipped in a "
                     "hand from what was put down, and up is always up in a thing (boxes, offset_m)",
-                    poses_, file_.bodies.size(), file_.bodies.size() == 1 ? "body" : "bodies"));
+                    file_.bodies.size(), file_.bodies.size() == 1 ? "body" : "bodies"));
   }
 
   std::int64_t TickOf(double t_s) const {
@@ -520,7 +519,6 @@ class Importer {
   bool unit_is_doubtful_ = false, world_is_doubtful_ = false;
   const Guess place_;
   std::vector<Kept> kept_{map_.entities.size()};
-  std::size_t poses_ = 0;  ///< of all bodies
   Imported imported_;
   const std::shared_ptr<FrameMaker> maker_ = std::make_shared<FrameMaker>(map_);
   std::vector<Track>&tracks_ = maker_->tracks, &openings_ = maker_->openings;
