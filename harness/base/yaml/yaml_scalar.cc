@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/yaml/located_yaml.h"
 
@@ -50,12 +50,6 @@ JsonNumber MatchJsonNumber(std::string_view text) {
     integer = false;
   }
   return {at == text.size(), integer};
-}
-
-std::string LowerCase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
 }
 
 template <std::size_t N>
@@ -190,11 +184,9 @@ ScalarMeaning MeaningOf(const YamlNode& node) {
     return meaning;
   }
   if (const JsonNumber match = MatchJsonNumber(text); match.matches) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || !std::isfinite(value))
+    meaning.number = WholeNumber<double>(text);
+    if (!meaning.number || !std::isfinite(*meaning.number))
       return Ambiguous("outside the range of numbers", "");
-    meaning.number = value;
     meaning.integer = match.integer;
     return meaning;
   }
@@ -259,10 +251,8 @@ std::string LookAlikeRemedy(std::string_view text) {
 
 const YamlNode* ChildOf(const YamlNode& node, std::string_view step) {
   if (node.kind != Kind::kSequence) return node.Find(step);
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(step.data(), step.data() + step.size(), index);
-  const bool whole = error == std::errc() && end == step.data() + step.size();
-  return whole && index < node.children.size() ? &node.children[index] : nullptr;
+  const auto index = WholeNumber<std::size_t>(step);
+  return index && *index < node.children.size() ? &node.children[*index] : nullptr;
 }
 
 Diagnostics ApplyOverride(const std::string& assignment, const SchemaJson& schema,

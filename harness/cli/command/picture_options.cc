@@ -5,8 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
+
+#include "harness/base/base/number_text.h"
 
 namespace prehend::cli {
 namespace {
@@ -21,10 +22,8 @@ constexpr double kPixelsPerInch = 96;
 /// Of "89mm" or "89".
 std::optional<double> Millimetres(std::string_view text) {
   if (text.ends_with("mm")) text.remove_suffix(2);
-  double width_mm = 0;
-  const auto [end, error] = std::from_chars(text.begin(), text.end(), width_mm);
-  const bool is_width = error == std::errc() && end == text.end() && !text.empty();
-  return is_width && width_mm >= 30 && width_mm <= 500 ? std::optional(width_mm) : std::nullopt;
+  const auto width_mm = WholeNumber<double>(text);
+  return width_mm && *width_mm >= 30 && *width_mm <= 500 ? width_mm : std::nullopt;
 }
 
 }  // namespace

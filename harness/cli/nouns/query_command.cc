@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/quoting.h"
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/find_episodes.h"
@@ -189,11 +189,8 @@ std::optional<Bounds> BoundsIn(const std::string& text) {
   const std::size_t dots = text.find("..");
   Bounds bounds;
   const auto read = [](const std::string& part, std::optional<double>& into) {
-    double seconds = 0;
-    const auto [rest, error] = std::from_chars(part.data(), part.data() + part.size(), seconds);
-    if (error != std::errc() || rest != part.data() + part.size() || !(seconds >= 0)) return false;
-    into = seconds;
-    return true;
+    into = WholeNumber<double>(part);
+    return into && *into >= 0;
   };
   const std::string least = text.substr(0, dots);
   const std::string most = dots == std::string::npos ? "" : text.substr(dots + 2);

@@ -15,6 +15,7 @@
 #include <tuple>
 
 #include "grammar/base/diagnostic.h"
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/text_file.h"
 #include "harness/scenario/read/read_scenario.h"
@@ -51,9 +52,7 @@ std::vector<const ScenarioFile*> Matching(const std::vector<ScenarioFile>& scena
 
 /// A YAML file, whatever the case of its ending, with a line `scenario: ..`.
 bool LooksLikeScenario(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = LowerCase(file.extension().string());
   std::error_code error;
   if ((ending != ".yaml" && ending != ".yml") || !fs::is_regular_file(file, error)) return false;
   std::ifstream in(file);

@@ -5,22 +5,20 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 
 #include "grammar/contents.h"
 #include "grammar/name_events.h"
+#include "harness/base/base/number_text.h"
 #include "harness/episode/sense/episode_format.h"
 #include "harness/episode/sense/sensing.h"
 
 namespace prehend::episode {
 
 std::optional<EventTime> ParseEventTime(const std::string& text) {
-  double time_s = 0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), time_s);
-  if (parsed.ec == std::errc() && parsed.ptr == text.data() + text.size()) {
-    if (!std::isfinite(time_s) || time_s < 0) return std::nullopt;
+  if (const auto time_s = WholeNumber<double>(text)) {
+    if (!std::isfinite(*time_s) || *time_s < 0) return std::nullopt;
     return EventTime{.time_s = time_s};
   }
   for (const char* boundary : {".begin", ".end"}) {

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/cells/column_names.h"
@@ -190,10 +190,8 @@ std::optional<JsonStep> StepInBrackets(std::string_view text) {
   text = Trimmed(text, kBlanks);
   if (text == "*") return JsonStep{.kind = JsonStep::Kind::kAll, .key = {}, .value = {}};
   if (IsQuoted(text)) return JsonStep{.key = std::string(text.substr(1, text.size() - 2))};
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-  if (error == std::errc() && end == text.data() + text.size())
-    return JsonStep{.kind = JsonStep::Kind::kIndex, .key = {}, .value = {}, .index = index};
+  if (const auto index = WholeNumber<std::size_t>(text))
+    return JsonStep{.kind = JsonStep::Kind::kIndex, .key = {}, .value = {}, .index = *index};
   // [type=right], and as JSONPath has it: [?(@.type == 'right')]
   if (text.starts_with('?')) text = Trimmed(text.substr(1), kBlanks);
   if (text.starts_with('(') && text.ends_with(')')) text = text.substr(1, text.size() - 2);
@@ -276,8 +274,7 @@ bool NumbersOfObject(const Json& value, std::vector<double>& numbers, bool& by_n
   std::map<std::string, const Json*> members;
   bool is_matrix = value.size() == 9 || value.size() == 16;
   for (const auto& [key, member] : value.items()) {
-    std::string name = key;
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+    std::string name = LowerCase(key);
     is_matrix = is_matrix && name.size() == 3 &&
                 std::isdigit(static_cast<unsigned char>(name[1])) &&
                 std::isdigit(static_cast<unsigned char>(name[2]));

@@ -8,6 +8,7 @@
 #include <regex>
 #include <set>
 
+#include "harness/base/base/number_text.h"
 #include "harness/exchange/cells/body_words.h"
 
 namespace prehend::exchange {
@@ -27,11 +28,6 @@ struct Part {
   std::string Pattern() const { return before + (body.empty() ? "" : "{}") + after; }
 };
 
-std::string Small(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 /// "Cup_pos_x", "cup.qw", "x_cup", "CupX", "X (mm)", "cup_yaw".
 Part PartOf(const std::string& name) {
   const std::string words =
@@ -50,7 +46,7 @@ Part PartOf(const std::string& name) {
   if (name.size() > kLongestName) return part;
   if (std::regex_match(name, m, kBehind)) {
     static const std::regex kWord("^(?:pose|" + words + ")$", std::regex::icase);
-    part.body = m[1], word = m[3], axis = m[4], part.unit = Small(m[6]);
+    part.body = m[1], word = m[3], axis = m[4], part.unit = LowerCase(m[6]);
     if (word.empty() && std::regex_match(part.body, kWord)) word.swap(part.body);  // of one body
     part.after = name.substr(part.body.size());
     if (word.size() == 2 && !part.body.empty() &&
@@ -65,8 +61,8 @@ Part PartOf(const std::string& name) {
   } else {
     return part;
   }
-  axis = Small(axis);
-  word = axis.size() > 1 ? "angle" : Small(word);
+  axis = LowerCase(axis);
+  word = axis.size() > 1 ? "angle" : LowerCase(word);
   part.axis = std::string_view(axis.size() > 1 ? "rpy" : "xyzw").find(axis.front());
   const char first = word.empty() ? 'p' : word.front();
   part.kind = word.starts_with("or") || first == 'q' || first == 'o' ? kQuaternion
@@ -136,7 +132,7 @@ class Finder {
       if (part.letter == 0 || IsWhole(bodies[part.body], kPosition)) continue;
       const std::string body = name.substr(0, part.letter);
       const std::string left = body.substr(0, part.letter - 1) + (body.back() == 'r' ? 'l' : 'L');
-      if (Small(body).back() != 'r' ||
+      if (LowerCase(body).back() != 'r' ||
           !(IsHand(WordsIn(part.body)) || bodies.contains(left) || bodies.contains(body)))
         continue;
       part.after = name.substr(part.letter);
@@ -172,7 +168,7 @@ class Finder {
       found_.form = four ? OrientationForm::kQuaternion : OrientationForm::kEuler;
       for (const std::string& name : std::span(best->at(kind)).first(3))
         found_.in_degrees |= parts_.at(name).unit == "deg" || Largest(name) > 2 * 3.2;
-      found_.roll_first = Small(best->at(kind).front()).find("roll") != std::string::npos;
+      found_.roll_first = LowerCase(best->at(kind).front()).find("roll") != std::string::npos;
     }
     FindTime(names);
     if (one && of.empty()) FindKeys(names);
@@ -252,7 +248,7 @@ NamedTime TimeAmong(const std::vector<std::string>& names, const CellsOfName& ce
           m[3].matched != frames)
         continue;
       time.name = name;
-      time.unit = frames ? "frame" : Small(m[2]);
+      time.unit = frames ? "frame" : LowerCase(m[2]);
     }
   }
   if (time.name.empty() || time.unit == "frame") return time;

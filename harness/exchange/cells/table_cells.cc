@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <string>
+
+#include "harness/base/base/number_text.h"
 
 namespace prehend::exchange {
 namespace {
@@ -85,11 +86,7 @@ std::optional<double> NumberOf(std::string_view cell, bool decimal_comma) {
     std::ranges::replace(with_point, ',', '.');
     cell = with_point;
   }
-  double value = 0;
-  const char* const end = cell.data() + cell.size();
-  const auto [rest, error] = std::from_chars(cell.data(), end, value);
-  if (error != std::errc() || rest != end) return std::nullopt;
-  return value;
+  return WholeNumber<double>(cell);
 }
 
 std::optional<double> SecondsOfIsoTime(std::string_view cell) {

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -13,6 +12,7 @@
 #include <set>
 #include <tuple>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/episode/episode/take.h"
@@ -26,18 +26,8 @@ using grammar::Place;
 
 std::optional<double> NumberIn(std::string_view text) {
   if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number))
-    return std::nullopt;
-  return number;
-}
-
-std::string Lower(std::string_view text) {
-  std::string lower(text);
-  std::ranges::transform(lower, lower.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
+  const auto number = WholeNumber<double>(text);
+  return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 /// A number, or seconds after minutes and hours: 1:02:03.5, 02:03.5; or a date.
@@ -73,7 +63,7 @@ struct TimeColumn {
 
 /// "Start Time" and "start_time" are one name.
 std::string Plain(std::string_view word) {
-  std::string plain = Lower(word);
+  std::string plain = LowerCase(word);
   std::ranges::replace(plain, ' ', '_');
   return plain;
 }
@@ -354,7 +344,7 @@ class RowTaker {
     if (!at_s) return;
     label.begin_s = label.end_s = *at_s;
     const CsvCell& kind = cells[*columns_.kind];
-    const std::string plain = Lower(kind.text);
+    const std::string plain = LowerCase(kind.text);
     if (plain == "point") return Keep(std::move(label));
     const auto begun = begun_.find(Same(label));
     if (IsOneOf(plain, {"start", "begin"})) {
@@ -432,7 +422,7 @@ Diagnostics ReadCsvLabels(LabelFile& file, const CsvReading& how) {
     const std::string_view line = text.substr(begin, end - begin);
     begin = end + 1;
     if (++line_number == 1) {
-      separator = Lower(file.file).ends_with(".tsv") ? '\t' : SeparatorOf(line);
+      separator = LowerCase(file.file).ends_with(".tsv") ? '\t' : SeparatorOf(line);
       std::vector<std::string> words;
       for (const CsvCell& cell : CsvCellsOf(line, separator)) words.emplace_back(cell.text);
       PREHEND_TRY(CsvColumns known, ColumnFinder(file, words, how).Find());
@@ -460,7 +450,7 @@ std::vector<std::string> HeadOfTable(const std::string& path) {
   const Result<std::string> text = ReadTextFile(path);
   if (!text) return words;
   const std::string_view line = std::string_view(*text).substr(0, text->find('\n'));
-  const char separator = Lower(path).ends_with(".tsv") ? '\t' : SeparatorOf(line);
+  const char separator = LowerCase(path).ends_with(".tsv") ? '\t' : SeparatorOf(line);
   for (const CsvCell& cell : CsvCellsOf(line, separator)) words.emplace_back(cell.text);
   return words;
 }

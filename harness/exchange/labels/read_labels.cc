@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +15,7 @@
 #include <pugixml.hpp>
 #include <set>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
 #include "harness/truth/golden/golden.h"
 
@@ -69,10 +69,7 @@ Result<std::string> ReadAnyUtf(const std::string& path) {
 }
 
 std::string LowerEnding(const std::string& path) {
-  std::string ending = fs::path(path).extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
+  return LowerCase(fs::path(path).extension().string());
 }
 
 /// Leaves them out, or says what is wrong with each.
@@ -337,11 +334,9 @@ class Reader {
       const bool is_value = word == "=";  // what stands before it is only words
       word = Word();
       if (word.empty()) break;
-      double number = 0;
       if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
-      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-      if (error == std::errc() && end == word.data() + word.size() && std::isfinite(number))
-        return number;
+      const auto number = WholeNumber<double>(word);
+      if (number && std::isfinite(*number)) return *number;
       if (is_value || word.front() == '"' || word.front() == '<')
         Fail(place_, fmt::format("found {}, wanted {}", word, what));
     }

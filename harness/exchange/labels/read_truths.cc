@@ -76,11 +76,6 @@ class TruthReader {
   }
 
   /// One file or folder of what was found.
-  Result<LabelReading> NothingMarked(std::size_t takes, const grammar::Program& program) {
-    return LabelReading::Of({LabelFile{}}, nullptr, grammar::EventSignatures(program),
-                            std::vector<TakeRows>(takes));
-  }
-
   Result<LabelReading> ReadFound(const std::string& given,
                                  const std::vector<grammar::EventSignature>& events,
                                  std::vector<std::size_t> only) {

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/messages/log_file.h"
 #include "harness/exchange/messages/pose_fields.h"
@@ -199,12 +199,11 @@ class NumberDecoder : public MessageBytes {
     if (!address_.keys.empty()) {
       const std::string& key = address_.keys.back();
       const auto name = std::ranges::find(facts_.names, key);
-      const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
-      const bool is_number = error == std::errc() && end == key.data() + key.size();
-      if (name != facts_.names.end())
-        index = static_cast<std::size_t>(name - facts_.names.begin());
-      else if (!is_number)
-        return "";
+      const auto number = name != facts_.names.end()
+                              ? static_cast<std::size_t>(name - facts_.names.begin())
+                              : WholeNumber<std::size_t>(key);
+      if (!number) return "";
+      index = *number;
     } else if (found_.size() > 1) {
       return fmt::format("it has {} numbers there; TOPIC[NAME], or TOPIC[0], says which",
                          found_.size());

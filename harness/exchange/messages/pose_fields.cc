@@ -8,6 +8,7 @@
 #include <map>
 #include <string_view>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/messages/message_definition.h"
 
@@ -15,13 +16,6 @@ namespace prehend::exchange {
 namespace {
 
 using Many = DefinedField::Many;
-
-std::string LowerCase(std::string_view text) {
-  std::string lower(text);
-  std::ranges::transform(lower, lower.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
 
 bool IsOneOf(std::string_view name, std::initializer_list<std::string_view> names) {
   return std::ranges::find(names, name) != names.end();

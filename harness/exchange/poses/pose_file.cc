@@ -6,12 +6,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <map>
 
 #include "harness/base/base/median.h"
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
 
 namespace prehend::exchange {
@@ -289,10 +289,7 @@ void MirrorPoses(const ImportMap& map, PoseFile& poses) {
 namespace {
 
 std::string EndingOf(const std::string& poses_path) {
-  std::string ending = std::filesystem::path(poses_path).extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
+  return LowerCase(std::filesystem::path(poses_path).extension().string());
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "grammar/contents.h"
 #include "harness/base/base/median.h"
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/visible_stream.h"
 #include "harness/base/process/worker_pool.h"
 #include "harness/episode/episode/episode.h"
@@ -231,11 +232,8 @@ std::optional<Axis> ParseAxis(const std::string& text, std::string& problem) {
   if (!is_formed) return std::nullopt;
   const auto from = Quantity(std::string_view(text).substr(equals + 1, dots - equals - 1)),
              to = Quantity(std::string_view(text).substr(dots + 2, colon - dots - 2));
-  int count = 0;
-  const auto [end, error] =
-      std::from_chars(text.data() + colon + 1, text.data() + text.size(), count);
-  if (!from || !to || error != std::errc() || end != text.data() + text.size() || count < 2)
-    return std::nullopt;
+  const int count = WholeNumber<int>(std::string_view(text).substr(colon + 1)).value_or(0);
+  if (!from || !to || count < 2) return std::nullopt;
   if (from->second != to->second) {
     problem = fmt::format("'{}' goes from '{}' to '{}': both ends need the same unit", text,
                           from->second, to->second);

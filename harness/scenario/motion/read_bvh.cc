@@ -5,12 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
 #include <string_view>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
 #include "physics/base/pose.h"
 
@@ -113,12 +113,10 @@ class BvhReader {
   }
 
   std::optional<double> Number(const Word& word, double least, double most) {
-    double value = 0;
-    const char *begin = word.text.data(), *end = begin + word.text.size();
-    const auto [rest, error] = std::from_chars(begin, end, value);
-    if (error != std::errc() || rest != end || !std::isfinite(value)) {
+    const auto value = WholeNumber<double>(word.text);
+    if (!value || !std::isfinite(*value)) {
       Complain(PlaceOf(word), fmt::format("expected a number, found '{}'", word.text));
-    } else if (value < least || value > most) {
+    } else if (*value < least || *value > most) {
       Complain(PlaceOf(word),
                fmt::format("expected a number from {} to {}, found {}", least, most, word.text));
     } else {

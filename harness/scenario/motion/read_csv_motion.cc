@@ -6,12 +6,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <string_view>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/yaml/struct_format.h"
 #include "harness/scenario/motion/body_motion.h"
@@ -187,10 +187,8 @@ class CsvReader {
   }
 
   std::optional<double> Number(const Cell& cell) {
-    double value = 0;
-    const char *begin = cell.text.data(), *end = begin + cell.text.size();
-    const auto [rest, error] = std::from_chars(begin, end, value);
-    if (error == std::errc() && rest == end && std::isfinite(value)) return value;
+    const auto value = WholeNumber<double>(cell.text);
+    if (value && std::isfinite(*value)) return value;
     Complain({line_, cell.column}, fmt::format("expected a number, found '{}'", cell.text));
     return std::nullopt;
   }

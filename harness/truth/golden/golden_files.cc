@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 #include <tuple>
 
+#include "harness/base/base/number_text.h"
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/text_file.h"
 #include "harness/truth/golden/golden.h"
@@ -82,10 +82,8 @@ int PictureNumber(const std::string& stem, std::string& name) {
   name = stem.substr(0, dash);
   if (stem.find('.') != std::string::npos) return 0;
   if (dash == std::string::npos) return 1;
-  int number = 0;
-  const char* const end = stem.data() + stem.size();
-  const auto [rest, error] = std::from_chars(stem.data() + dash + 1, end, number);
-  return error == std::errc() && rest == end && number > 1 ? number : 0;
+  const int number = WholeNumber<int>(std::string_view(stem).substr(dash + 1)).value_or(0);
+  return number > 1 ? number : 0;
 }
 
 /// Of one folder; ids are relative to `above`.
