@@ -4,6 +4,7 @@
 #pragma once
 
 #include <charconv>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,6 +25,11 @@ inline std::string LowerCase(std::string_view text) {
   std::string lower(text);
   for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return lower;
+}
+
+/// Of a file's name, in small letters: ".csv".
+inline std::string EndingOf(const std::filesystem::path& path) {
+  return LowerCase(path.extension().string());
 }
 
 }  // namespace prehend

@@ -160,9 +160,7 @@ Result<grammar::Timeline> Episode::Segment(const std::shared_ptr<const grammar::
   if (played_) return Resegment(scenario, played_->recording, program, end);
   if (!sensed_) {
     const Sensing sensing(scenario.scene, scenario.sensing);
-    auto sensed = ReadSnapshots([&](std::int64_t tick) { return sensing.Due(tick); });
-    if (!sensed) return tl::unexpected(std::move(sensed.error()));
-    sensed_ = std::move(*sensed);
+    PREHEND_TRY(sensed_, ReadSnapshots([&](std::int64_t tick) { return sensing.Due(tick); }));
   }
   return Resegment(scenario, *sensed_, program, end);
 }

@@ -52,7 +52,7 @@ std::vector<const ScenarioFile*> Matching(const std::vector<ScenarioFile>& scena
 
 /// A YAML file, whatever the case of its ending, with a line `scenario: ..`.
 bool LooksLikeScenario(const fs::path& file) {
-  const std::string ending = LowerCase(file.extension().string());
+  const std::string ending = EndingOf(file);
   std::error_code error;
   if ((ending != ".yaml" && ending != ".yml") || !fs::is_regular_file(file, error)) return false;
   std::ifstream in(file);

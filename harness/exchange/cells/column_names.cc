@@ -46,7 +46,7 @@ Part PartOf(const std::string& name) {
   if (name.size() > kLongestName) return part;
   if (std::regex_match(name, m, kBehind)) {
     static const std::regex kWord("^(?:pose|" + words + ")$", std::regex::icase);
-    part.body = m[1], word = m[3], axis = m[4], part.unit = LowerCase(m[6]);
+    part.body = m[1], word = m[3], axis = m[4], part.unit = LowerCase(m.str(6));
     if (word.empty() && std::regex_match(part.body, kWord)) word.swap(part.body);  // of one body
     part.after = name.substr(part.body.size());
     if (word.size() == 2 && !part.body.empty() &&
@@ -248,7 +248,7 @@ NamedTime TimeAmong(const std::vector<std::string>& names, const CellsOfName& ce
           m[3].matched != frames)
         continue;
       time.name = name;
-      time.unit = frames ? "frame" : LowerCase(m[2]);
+      time.unit = frames ? "frame" : LowerCase(m.str(2));
     }
   }
   if (time.name.empty() || time.unit == "frame") return time;

@@ -172,9 +172,7 @@ Result<Motion> Motion::Of(episode::Episode& episode, bool other_grammar) {
   std::string uuid;
   if (episode.row()) uuid = episode.row()->uuid;
   if (episode.row() ? !other_grammar : episode.was_simulated()) {
-    Result<grammar::Timeline> recorded = episode.Recorded();  // of a scenario: plays it
-    if (!recorded) return tl::unexpected(std::move(recorded.error()));
-    motion.timeline = std::move(*recorded);
+    PREHEND_TRY(motion.timeline, episode.Recorded());  // of a scenario: plays it
   }
   if (!episode.row() || other_grammar) {
     PREHEND_TRY(episode::RunResult run, episode.Run(false));

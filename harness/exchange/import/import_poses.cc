@@ -548,9 +548,8 @@ Result<MapFile> ReadMapFor(const std::string& poses_path, PoseFormat format,
                            Result<YamlDocument> map) {
   if (format == PoseFormat::kCsv) return ReadMapOfTable(std::move(map), poses_path);
   if (format != PoseFormat::kC3d) return ReadImportMap(std::move(map), format);
-  Result<TableLayout> layout = LayoutOfC3d(poses_path);  // it says its unit and rate
-  if (!layout) return tl::unexpected(layout.error());
-  return ReadMapWith(std::move(map), format, std::move(*layout));
+  PREHEND_TRY(TableLayout layout, LayoutOfC3d(poses_path));  // it says its unit and rate
+  return ReadMapWith(std::move(map), format, std::move(layout));
 }
 
 Result<PoseFile> ReadPoses(const std::string& poses_path, PoseFormat format, const MapFile& map) {
@@ -561,13 +560,12 @@ Result<PoseFile> ReadPoses(const std::string& poses_path, PoseFormat format, con
 }
 
 Result<Imported> ImportPoses(const std::string& poses_path, const std::string& map_path) {
-  const Result<PoseFormat> format = PoseFormatOf(poses_path);
-  if (!format) return tl::unexpected(format.error());
-  if (*format == PoseFormat::kHdf5)
+  PREHEND_TRY(const PoseFormat format, PoseFormatOf(poses_path));
+  if (format == PoseFormat::kHdf5)
     return tl::unexpected(ErrorOfFile(
         poses_path, "demonstrations in HDF5 are imported alone: all of one file in one call"));
-  PREHEND_TRY(const MapFile map, ReadMapFor(poses_path, *format, ReadYamlFile(map_path)));
-  PREHEND_TRY(PoseFile poses, ReadPoses(poses_path, *format, map));
+  PREHEND_TRY(const MapFile map, ReadMapFor(poses_path, format, ReadYamlFile(map_path)));
+  PREHEND_TRY(PoseFile poses, ReadPoses(poses_path, format, map));
   return ImportPoses(std::move(poses), map);
 }
 

@@ -435,10 +435,9 @@ class MapProposer {
 }  // namespace
 
 Result<std::string> ProposedMap(const std::string& poses_path) {
-  const Result<PoseFormat> format = PoseFormatOf(poses_path);
-  if (!format) return tl::unexpected(format.error());
-  if (*format == PoseFormat::kHdf5) return ProposedMapOfDemonstrations(poses_path);
-  return MapProposer(poses_path, *format).Propose();
+  PREHEND_TRY(const PoseFormat format, PoseFormatOf(poses_path));
+  if (format == PoseFormat::kHdf5) return ProposedMapOfDemonstrations(poses_path);
+  return MapProposer(poses_path, format).Propose();
 }
 
 }  // namespace prehend::exchange

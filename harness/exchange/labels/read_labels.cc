@@ -68,10 +68,6 @@ Result<std::string> ReadAnyUtf(const std::string& path) {
   return text;
 }
 
-std::string LowerEnding(const std::string& path) {
-  return LowerCase(fs::path(path).extension().string());
-}
-
 /// Leaves them out, or says what is wrong with each.
 void TakeBackward(LabelFile& file, Backward how, Diagnostics& problems) {
   const auto is_backward = [](const Label& label) { return label.end_s < label.begin_s; };
@@ -433,19 +429,19 @@ const std::vector<std::string>& LabelEndings() {
 
 bool IsLabelFile(const std::string& path) {
   return std::ranges::any_of(LabelEndings(), [&](const std::string& ending) {
-    return LowerEnding(path) == LowerEnding("x" + ending);
+    return EndingOf(path) == EndingOf("x" + ending);
   });
 }
 
 bool IsTable(const std::string& path) {
-  const std::string ending = LowerEnding(path);
+  const std::string ending = EndingOf(path);
   return ending == ".csv" || ending == ".tsv";
 }
 
 Result<LabelFile> ReadLabels(const std::string& path, const CsvReading& csv, Backward backward) {
   PREHEND_TRY(std::string text, ReadAnyUtf(path));
   LabelFile file{.file = path, .text = std::move(text)};
-  const std::string ending = LowerEnding(path);
+  const std::string ending = EndingOf(path);
   Diagnostics problems;
   if (IsTable(path)) {
     problems = ReadCsvLabels(file, csv);

@@ -452,10 +452,8 @@ Result<LabelReading> ReadTruths(const std::vector<episode::Take>& takes,
                                 const grammar::Program& program, Backward backward,
                                 std::vector<std::size_t> only) {
   const std::vector<grammar::EventSignature> events = grammar::EventSignatures(program);
-  const auto read = MapOf(takes, map, events);
-  if (!read) return tl::unexpected(read.error());
-  return TruthReader(takes, *read ? &**read : nullptr, backward)
-      .Read(given, events, std::move(only));
+  PREHEND_TRY(const auto read, MapOf(takes, map, events));
+  return TruthReader(takes, read ? &*read : nullptr, backward).Read(given, events, std::move(only));
 }
 
 Result<LabelReading> NothingMarked(std::size_t takes, const grammar::Program& program) {
@@ -468,23 +466,21 @@ Result<LabelReading> ReadFound(const std::vector<episode::Take>& takes, std::siz
                                const grammar::Program& program,
                                const std::function<TakeClock()>& clock) {
   const std::vector<grammar::EventSignature> events = grammar::EventSignatures(program);
-  const auto read = MapOf(takes, map, events);
-  if (!read) return tl::unexpected(read.error());
+  PREHEND_TRY(const auto read, MapOf(takes, map, events));
   // What the takes know of labels, and by which clock, is not so of what was found.
   std::vector<episode::Take> bare = episode::TakesOf(episode::EpisodesOf(takes));
   for (episode::Take& one : bare) one.offset_s = 0;
-  return TruthReader(bare, *read ? &**read : nullptr, Backward::kRefuse, clock)
+  return TruthReader(bare, read ? &*read : nullptr, Backward::kRefuse, clock)
       .ReadFound(given, events, {take});
 }
 
 Result<LabelReading> AsFound(LabelFile file, const std::vector<episode::Take>& takes,
                              const std::string& map, const grammar::Program& program) {
   const std::vector<grammar::EventSignature> events = grammar::EventSignatures(program);
-  const auto read = MapOf(takes, map, events);
-  if (!read) return tl::unexpected(read.error());
+  PREHEND_TRY(const auto read, MapOf(takes, map, events));
   TakeRows rows;
   for (std::size_t i = 0; i < file.labels.size(); ++i) rows.labels.push_back(i);
-  return LabelReading::Of({std::move(file)}, *read ? &**read : nullptr, events, {std::move(rows)},
+  return LabelReading::Of({std::move(file)}, read ? &*read : nullptr, events, {std::move(rows)},
                           Side::kFound);
 }
 

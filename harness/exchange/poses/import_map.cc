@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "harness/base/base/number_text.h"
 #include "harness/exchange/hdf5/hdf5_file.h"
 
 namespace prehend::exchange {
@@ -20,13 +21,10 @@ void CheckEulerOrder(const ImportMap& map, DiagnosticList& errors) {
   const std::string fault = FaultOfEulerOrder(map.euler_order->value);
   if (!fault.empty()) return errors.Add(map.euler_order->where, fault);
   std::string letters;
-  for (const Located<std::string>& column : map.columns.euler) {
-    const char last = static_cast<char>(
-        std::tolower(static_cast<unsigned char>(column.value.empty() ? ' ' : column.value.back())));
-    letters += last;
-  }
-  std::string order = map.euler_order->value;
-  for (char& c : order) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const Located<std::string>& column : map.columns.euler)
+    letters += column.value.empty() ? ' ' : column.value.back();
+  letters = LowerCase(letters);
+  const std::string order = LowerCase(map.euler_order->value);
   if (letters.find_first_not_of("xyz") == std::string::npos && letters != order &&
       std::ranges::is_permutation(letters, order))
     errors.Add(map.columns.euler.front().where,

@@ -286,14 +286,6 @@ void MirrorPoses(const ImportMap& map, PoseFile& poses) {
   if (poses.stature) poses.stature = map.Mirrored(*poses.stature);
 }
 
-namespace {
-
-std::string EndingOf(const std::string& poses_path) {
-  return LowerCase(std::filesystem::path(poses_path).extension().string());
-}
-
-}  // namespace
-
 bool IsBag(const std::string& poses_path) { return EndingOf(poses_path) == ".bag"; }
 bool IsDb3(const std::string& poses_path) { return EndingOf(poses_path) == ".db3"; }
 

@@ -145,16 +145,16 @@ class LabelScorer {
     PREHEND_TRY(const auto settings, episode::ParameterSettings(request_.settings));
     const grammar::CompileResult compiled = opener_.Compile(names.front(), group.asked, settings);
     if (!compiled.program) return tl::unexpected(compiled.diagnostics);
-    const auto truths =
+    PREHEND_TRY(
+        const auto truths,
         request_.first_is_truth
             ? exchange::NothingMarked(group.takes.size(), *compiled.program)
             : exchange::ReadTruths(request_.takes, request_.label_files, request_.asking.label_map,
-                                   *compiled.program, request_.backward, group.takes);
-    if (!truths) return tl::unexpected(truths.error());
-    if (const std::string strange = exchange::WarningsOf(*truths);
+                                   *compiled.program, request_.backward, group.takes));
+    if (const std::string strange = exchange::WarningsOf(truths);
         is_first && said_.insert(strange).second)
       warnings_ += strange;
-    if (is_first) scores_.counted += truths->counted();
+    if (is_first) scores_.counted += truths.counted();
     std::vector<EpisodeToScore> all;
     std::size_t true_events = 0;
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -162,19 +162,19 @@ class LabelScorer {
       if (episode->recording() && !foreign)
         AddMissing(episode::FindMissingFacts(*episode->recording(), *compiled.program));
       PREHEND_TRY(EpisodeToScore labelled,
-                  Labelled(*episode, request_.takes[group.takes[i]], i, *truths));
+                  Labelled(*episode, request_.takes[group.takes[i]], i, truths));
       true_events += labelled.truth.events.size();
       if (is_first)
         scores_.counted.cut +=
-            truths->Cut(i, static_cast<double>(labelled.ticks) /
-                               static_cast<double>(episode->entities().ticks_per_second));
+            truths.Cut(i, static_cast<double>(labelled.ticks) /
+                              static_cast<double>(episode->entities().ticks_per_second));
       PREHEND_TRY(const grammar::Timeline found,
                   foreign ? foreign->Find(request_.takes, group.takes[i], Watched(*episode),
-                                          *compiled.program, truths->compared(), labelled)
+                                          *compiled.program, truths.compared(), labelled)
                           : episode->Segment(compiled.program));
       if (const auto said = first_.find(group.takes[i]); said != first_.end())
         labelled.truth = said->second;
-      AddFound(found, i, *truths, request_.collar_s, labelled);
+      AddFound(found, i, truths, request_.collar_s, labelled);
       labelled.take = group.takes[i];
       if (said_.insert(labelled.notes).second) warnings_ += labelled.notes;
       if (!labelled.failure.empty())
@@ -182,7 +182,7 @@ class LabelScorer {
                                         named, labelled.failure);
       all.push_back(std::move(labelled));
     }
-    if (is_first) scores_.counted.merged += truths->counted().labels - true_events;
+    if (is_first) scores_.counted.merged += truths.counted().labels - true_events;
     if (std::ranges::none_of(all, [](const auto& one) { return one.failure.empty(); })) return {};
     const std::string& name = named.empty() && group.asked.empty() ? GrammarName(*compiled.program)
                               : named.empty()                      ? group.asked
@@ -192,11 +192,11 @@ class LabelScorer {
       for (EpisodeToScore& one : all) first_[one.take] = std::move(one.found);
       return {};
     }
-    warnings_ += ClockWarning(name, all, *truths);
+    warnings_ += ClockWarning(name, all, truths);
     Opinion& opinion = scores_.opinions.back();
     if (opinion.name.empty()) opinion.name = name;
     opinion.takes.insert(opinion.takes.end(), all.begin(), all.end());
-    scores_.collars_s = request_.is_collar_asked ? Collars{} : truths->collars_s();
+    scores_.collars_s = request_.is_collar_asked ? Collars{} : truths.collars_s();
     AddScores(name, std::move(all), request_.collar_s, scores_.collars_s, scores_);
     scores_.of_grammars.back().set = scores_.by_hand.back().set = group.set;
     return {};

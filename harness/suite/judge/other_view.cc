@@ -119,17 +119,16 @@ tl::expected<NamedSheet, episode::NotFound> SheetAgainst(
       return Refused(ExitCode::kNothing, "--against: " + id + " has no golden pictures; " +
                                              AcceptPicturesCommand(id) + " keeps those of now");
   } else {
-    const Viewed other = ViewOf(played, view, root, heard);
-    if (!other) return tl::unexpected(other.error());
-    const bool in_other_engine = !other->run.recording.empty();
-    const show::Side first{.name = made.name = other->name,
-                           .events = &other->run,
-                           .scenes = in_other_engine ? &other->run : &played.run},
+    PREHEND_TRY(const auto other, ViewOf(played, view, root, heard));
+    const bool in_other_engine = !other.run.recording.empty();
+    const show::Side first{.name = made.name = other.name,
+                           .events = &other.run,
+                           .scenes = in_other_engine ? &other.run : &played.run},
         second{.name = in_other_engine ? NameOf(scenario.scene.world.engine) : scenario.grammar,
                .events = &played.run,
                .scenes = &played.run};
     made.sheet =
-        show::ComparisonSheet(scenario, first, second, other->comparison, window, format, painter);
+        show::ComparisonSheet(scenario, first, second, other.comparison, window, format, painter);
   }
   if (!painter.error().empty())
     return Refused(ExitCode::kFailure, "no picture: " + painter.error());

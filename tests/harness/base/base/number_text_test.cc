@@ -30,5 +30,10 @@ TEST(LowerCase, IsOfAsciiAlone) {
   EXPECT_EQ(LowerCase("\xC3\x84@[`{"), "\xC3\x84@[`{") << "other bytes stay";
 }
 
+TEST(EndingOf, IsSmallAndTheLastOne) {
+  EXPECT_EQ(EndingOf("takes/Take.1.CSV"), ".csv");
+  EXPECT_EQ(EndingOf("takes.d/take"), "");
+}
+
 }  // namespace
 }  // namespace prehend
