@@ -165,38 +165,30 @@ class Pairer {
       const std::size_t first_pair = comparison_.pairings.size();
       for (const auto& [i, j] : label.pairs) AddPair(i, j);
       const std::size_t end_of_pairs = comparison_.pairings.size();
-      for (const std::size_t j : label.only_actual) AddFragment(j, first_pair, end_of_pairs);
-      for (const std::size_t i : label.only_expected) AddMerged(i, first_pair, end_of_pairs);
+      for (const std::size_t j : label.only_actual)
+        AddPiece(LineVerdict::kFragmented, j, first_pair, end_of_pairs);
+      for (const std::size_t i : label.only_expected)
+        AddPiece(LineVerdict::kMerged, i, first_pair, end_of_pairs);
     }
   }
 
-  /// A recognised event that overlaps the expected one of a pair of its label is a piece of it.
-  void AddFragment(std::size_t j, std::size_t first_pair, std::size_t end_of_pairs) {
-    const Interval interval = actual_[j].interval;
+  /// Of a pair of its label, a recognised event that overlaps the expected one is a piece of it; an
+  /// expected event that overlaps the recognised one is merged into it.
+  void AddPiece(LineVerdict as, std::size_t k, std::size_t first_pair, std::size_t end_of_pairs) {
+    const bool recognised = as == LineVerdict::kFragmented;
+    const Interval piece = (recognised ? actual_[k] : expected_[k]).interval;
     for (std::size_t pair = first_pair; pair < end_of_pairs; ++pair) {
-      if (Overlap(comparison_.pairings[pair].expected->interval, interval) <= 0) continue;
-      AddOnlyActual(LineVerdict::kFragmented, j);
-      return AddPiece(comparison_.pairings[pair], LineVerdict::kFragmented,
-                      comparison_.pairings[pair].actual->interval, interval);
+      const Interval expected = comparison_.pairings[pair].expected->interval,
+                     actual = comparison_.pairings[pair].actual->interval;
+      if (Overlap(recognised ? expected : actual, piece) <= 0) continue;
+      recognised ? AddOnlyActual(as, k) : AddOnlyExpected(as, k);
+      Pairing& pairing = comparison_.pairings[pair];
+      if (pairing.pieces.empty()) pairing.pieces.push_back(recognised ? actual : expected);
+      pairing.pieces.push_back(piece);
+      std::ranges::sort(pairing.pieces, {}, &Interval::begin);
+      pairing.agreement = as;
+      return;
     }
-  }
-
-  /// An expected event that overlaps the recognised one of a pair of its label is merged into it.
-  void AddMerged(std::size_t i, std::size_t first_pair, std::size_t end_of_pairs) {
-    const Interval interval = expected_[i].interval;
-    for (std::size_t pair = first_pair; pair < end_of_pairs; ++pair) {
-      if (Overlap(comparison_.pairings[pair].actual->interval, interval) <= 0) continue;
-      AddOnlyExpected(LineVerdict::kMerged, i);
-      return AddPiece(comparison_.pairings[pair], LineVerdict::kMerged,
-                      comparison_.pairings[pair].expected->interval, interval);
-    }
-  }
-
-  static void AddPiece(Pairing& pairing, LineVerdict agreement, Interval own, Interval piece) {
-    if (pairing.pieces.empty()) pairing.pieces.push_back(own);
-    pairing.pieces.push_back(piece);
-    std::ranges::sort(pairing.pieces, {}, &Interval::begin);
-    pairing.agreement = agreement;
   }
 
   /// What is left over, nearest first: fewest roles changed, then closest in time.
