@@ -49,9 +49,7 @@ class Carrier {
   const Vector3d& place(int frame) const { return recording_.place(grasp_.body, frame); }
 
   /// How the object bears on one of its supports, by frame.
-  const std::vector<Bearing>& On(int support) const {
-    return evidence_.bearings.at({grasp_.body, support});
-  }
+  const Bearings& On(int support) const { return evidence_.bearings.at({grasp_.body, support}); }
 
   /// Whether the object moves along something that supports it. Its velocity must say so and it
   /// must get somewhere: a squeezed object trembles faster than it slides. Where it gets is asked
@@ -91,20 +89,15 @@ class Carrier {
     return farthest;
   }
 
-  Spans BridgedFor(double gap_s, const Spans& spans) const {
-    return Bridged(spans, recording_.ticks, recording_.Ticks(gap_s));
-  }
-
   /// `held`: it is grasped and supported.
   void FindSlides(Span held) {
-    std::vector<bool> moving(recording_.size());
-    for (int frame = held.begin; frame < held.end; ++frame) moving[frame] = Slides(frame);
-    Spans motions = BridgedFor(settings_.slide_moment_s, WhereTrue(moving));
+    const Spans moving = Where({held}, [&](int frame) { return Slides(frame); });
+    Spans motions = recording_.Bridged(moving, settings_.slide_moment_s);
     // The jerk of a grip or of a lift that begins is none.
     std::erase_if(motions, [&](const Span& motion) {
       return recording_.Lasts_s(motion) < settings_.slide_moment_s;
     });
-    for (const Span& slide : BridgedFor(settings_.slide_pause_s, motions))
+    for (const Span& slide : recording_.Bridged(motions, settings_.slide_pause_s))
       if (Displacement(slide) >= settings_.slide_displacement_m) found_.slides.push_back(slide);
   }
 
@@ -283,6 +276,7 @@ std::optional<int> LastTurn(std::span<const DistanceAt> path, double dead_band_m
 /// after.
 std::vector<DistanceAt> MediansOver(double window_s, std::span<const DistanceAt> path) {
   std::vector<DistanceAt> medians;
+  std::vector<double> distances_m;
   const int size = static_cast<int>(path.size());
   for (int at = 0; at < size; ++at) {
     int reach = 0;
@@ -290,7 +284,7 @@ std::vector<DistanceAt> MediansOver(double window_s, std::span<const DistanceAt>
            path[at].t_s - path[at - reach - 1].t_s <= window_s / 2 &&
            path[at + reach + 1].t_s - path[at].t_s <= window_s / 2)
       ++reach;
-    std::vector<double> distances_m;
+    distances_m.clear();
     for (int i = at - reach; i <= at + reach; ++i) distances_m.push_back(path[i].distance_m);
     std::ranges::nth_element(distances_m, distances_m.begin() + reach);
     medians.push_back({path[at].t_s, distances_m[reach]});
@@ -346,7 +340,7 @@ int ReachBegin(const Evidence& evidence, const OracleSettings& settings, int han
   const Recording& recording = evidence.recording;
   int begin = touch;
   while (begin > earliest && recording.Seconds(begin - 1, touch) <= settings.reach_look_back_s &&
-         InReachRegion(recording, hand, body, begin - 1, settings.reach_radius_m))
+         evidence.InReachRegion(hand, body, begin - 1, settings.reach_radius_m))
     --begin;
   const HandMotion motion(evidence, settings, hand, touch);
   begin = LastIdleEnd(recording, motion, settings, begin, touch);

@@ -32,22 +32,34 @@ struct Push {
   }
 };
 
+/// How one body bears on another, read frame by frame.
+struct BearingRead {
+  Bearings& bearings;
+  std::vector<Push> pushes;  ///< of the last ticks: contacts of a body at rest flicker
+  std::size_t repeated = 0;  ///< so many of them, up to the last one, are as the one before
+  bool still = false;        ///< in the last frame, neither load nor middle moved along
+  Vector3d nhat_S = Vector3d::UnitZ();
+};
+
 class EvidenceReader {
  public:
   EvidenceReader(const Recording& recording, Evidence& evidence)
       : recording_(recording), evidence_(evidence), has_forces_(HasForces()) {}
 
   void Read() {
-    for (int frame = 0; frame < recording_.size(); ++frame) {
+    for (int frame = 0, first = 0; frame < recording_.size(); ++frame) {
+      while (recording_.ticks[frame] - recording_.ticks[first] > kReleaseTicks) ++first;
+      lasting_.push_back(frame - first + 1);
       std::map<Pair, std::uint32_t> sets;  // of (hand, body)
-      for (const auto& points : recording_.frames[frame].AllContacts())
-        for (const physics::ContactPoint& point : points) ReadPoint(point, frame, sets);
+      const physics::Snapshot& now = recording_.frames[frame];
+      ReadResting(now.resting.get(), frame, sets);
+      for (const physics::ContactPoint& point : now.contacts) ReadPoint(point, frame, sets);
       for (const auto& [pair, bits] : sets) {
         evidence_.sensor_sets[pair].resize(recording_.size());
         evidence_.sensor_sets[pair][frame] = bits;
       }
+      for (auto& [pair, read] : reads_) ReadBearing(pair, frame, read);
     }
-    for (const auto& [pair, pushes] : pushes_) ReadBearing(pair, pushes);
   }
 
  private:
@@ -59,13 +71,36 @@ class EvidenceReader {
     return false;
   }
 
+  /// Frames share the points between bodies at rest until one falls asleep or wakes.
+  void ReadResting(const std::vector<physics::ContactPoint>* points, int frame,
+                   std::map<Pair, std::uint32_t>& sets) {
+    if (points == resting_) {
+      for (Spans* touching : resting_touching_) touching->back().end = frame + 1;
+      for (BearingRead* read : resting_reads_) {
+        read->pushes.push_back(read->pushes.back());
+        read->pushes.back().frame = frame;
+        ++read->repeated;
+      }
+      return;
+    }
+    resting_ = points;
+    resting_touching_.clear();
+    resting_reads_.clear();
+    if (!points) return;
+    for (const physics::ContactPoint& point : *points) ReadPoint(point, frame, sets);
+    for (auto& [pair, touching] : evidence_.touching)
+      if (touching.back().end > frame) resting_touching_.push_back(&touching);
+    for (auto& [pair, read] : reads_)
+      if (IsPushed(read, frame)) resting_reads_.push_back(&read);
+  }
+
   void ReadPoint(const physics::ContactPoint& point, int frame,
                  std::map<Pair, std::uint32_t>& sets) {
     const int a = Entity(point.a), b = Entity(point.b);
     if (a == b) return;
-    std::vector<bool>& touching = evidence_.touching[std::minmax(a, b)];
-    touching.resize(recording_.size());
-    touching[frame] = true;
+    Spans& touching = evidence_.touching[std::minmax(a, b)];
+    if (touching.empty() || touching.back().end < frame) touching.push_back({frame, frame});
+    touching.back().end = frame + 1;
     if (IsBody(a) && IsBody(b)) {
       AddPush({a, b}, point, frame, point.nhat_BA_W);
       AddPush({b, a}, point, frame, -point.nhat_BA_W);
@@ -83,78 +118,98 @@ class EvidenceReader {
     if (!physics::MovesFreely(recording_.scene, physics::BodyIndex(pair.first)) ||
         !physics::IsThing(recording_.scene.body(physics::BodyIndex(pair.second))))
       return;
-    std::vector<Push>& pushes = pushes_[pair];
-    if (pushes.empty() || pushes.back().frame != frame) pushes.push_back({.frame = frame});
-    pushes.back().Add(nhat_W, point.p_W_m, has_forces_ ? point.normal_impulse_n_s : 1.0);
+    const auto [at, is_new] = reads_.try_emplace(pair, evidence_.bearings[pair]);
+    BearingRead& read = at->second;
+    for (int before = 0; is_new && before < frame; ++before) ReadBearing(pair, before, read);
+    if (!IsPushed(read, frame)) {
+      read.pushes.push_back({.frame = frame});
+      read.repeated = 0;
+    }
+    read.pushes.back().Add(nhat_W, point.p_W_m, has_forces_ ? point.normal_impulse_n_s : 1.0);
   }
 
-  /// What pushed in the last ticks still bears: contacts of a body at rest flicker.
-  void ReadBearing(Pair pair, const std::vector<Push>& pushes) {
+  static bool IsPushed(const BearingRead& read, int frame) {
+    return !read.pushes.empty() && read.pushes.back().frame == frame;
+  }
+
+  void ReadBearing(Pair pair, int frame, BearingRead& read) {
     const auto& [object, support] = pair;
-    std::vector<Bearing>& bearings = evidence_.bearings[pair];
-    bearings.resize(recording_.size());
-    Vector3d nhat_S = Vector3d::UnitZ();
-    std::size_t first = 0, next = 0;  // the pushes of the last ticks: [first, next)
-    int first_frame = 0;              // of the last ticks
-    for (int frame = 0; frame < recording_.size(); ++frame) {
-      Bearing& bearing = bearings[frame];
-      if (next < pushes.size() && pushes[next].frame == frame) {
-        bearing.touching = true;
-        ++next;
-      }
-      while (first < next &&
-             recording_.ticks[frame] - recording_.ticks[pushes[first].frame] > kReleaseTicks)
-        ++first;
-      while (recording_.ticks[frame] - recording_.ticks[first_frame] > kReleaseTicks) ++first_frame;
-      Push sum;
-      for (std::size_t i = first; i < next; ++i) {
-        sum.impulse_n_s += pushes[i].impulse_n_s;
-        sum.centre_W_m += pushes[i].centre_W_m;
-        sum.weight += pushes[i].weight;
-      }
-      const physics::BodyState &held = recording_.body(object, frame),
-                               &by = recording_.body(support, frame);
-      Vector3d centre_W_m = held.X_WB.p_m;
-      if (sum.weight > 0) {
-        centre_W_m = sum.centre_W_m / sum.weight;
-        bearing.share = ShareOf(object, sum.impulse_n_s.z() / (frame - first_frame + 1));
-      }
-      if (const double force = sum.impulse_n_s.norm(); force > 0) {
-        bearing.up = sum.impulse_n_s.z() / force;
-        nhat_S = by.X_WB.q.inverse() * (sum.impulse_n_s / force);
-      } else if (bearing.touching && frame > 0) {
-        bearing.up = bearings[frame - 1].up;  // no force passes, and they have not parted yet
-      }
-      // Of a contact that rests, a snapshot repeats the last tick, whose impulse may be next to
-      // none: what sleeps is borne as it was before it fell asleep.
-      if (frame > 0 && held.asleep && bearing.touching && bearings[frame - 1].touching) {
-        const bool falls_asleep = !recording_.body(object, frame - 1).asleep;
-        bearing.up = bearings[frame - 1].up;
-        bearing.share = falls_asleep ? MeanShareBefore(bearings, frame) : bearings[frame - 1].share;
-      }
-      const auto relative_at = [&](const Vector3d& p_W_m) {
-        return Vector3d(VelocityAt(held, p_W_m) - VelocityAt(by, p_W_m));
-      };
-      if (bearing.touching)
-        bearing.vertical_m_per_s = std::min(std::abs(relative_at(centre_W_m).z()),
-                                            std::abs(relative_at(held.X_WB.p_m).z()));
-      const Vector3d nhat_W = by.X_WB.q * nhat_S;
-      const double off_m = (held.X_WB.p_m - centre_W_m).dot(nhat_W);
-      bearing.along_m_per_s = std::numeric_limits<double>::infinity();
-      for (const int middle : {0, 1}) {
+    auto& [bearings, pushes, repeated, still, nhat_S] = read;
+    const bool touching = IsPushed(read, frame);
+    const std::size_t all = pushes.size(),
+                      gone = std::erase_if(pushes, [&](const Push&push) {
+                        return recording_.ticks[frame] - recording_.ticks[push.frame] >
+                               kReleaseTicks;
+                      });
+    const bool repeats =
+        repeated + 1 >= all && gone == (touching ? 1u : 0u) && Rest(object, support, frame) &&
+        still && bearings[frame - 1].touching == touching && lasting_[frame] == lasting_[frame - 1];
+    if (!repeats) bearings.kept.emplace_back();
+    bearings.which.push_back(bearings.kept.size() - 1);
+    if (repeats) return;
+    Bearing& bearing = bearings.kept.back();
+    bearing.touching = touching;
+    Push sum;
+    for (const Push& push : pushes) {
+      sum.impulse_n_s += push.impulse_n_s;
+      sum.centre_W_m += push.centre_W_m;
+      sum.weight += push.weight;
+    }
+    const physics::BodyState &held = recording_.body(object, frame),
+                             &by = recording_.body(support, frame);
+    Vector3d centre_W_m = held.X_WB.p_m;
+    if (sum.weight > 0) {
+      centre_W_m = sum.centre_W_m / sum.weight;
+      bearing.share = ShareOf(object, sum.impulse_n_s.z() / lasting_[frame]);
+    }
+    if (const double force = sum.impulse_n_s.norm(); force > 0) {
+      bearing.up = sum.impulse_n_s.z() / force;
+      nhat_S = by.X_WB.q.inverse() * (sum.impulse_n_s / force);
+    } else if (bearing.touching && frame > 0) {
+      bearing.up = bearings[frame - 1].up;  // no force passes, and they have not parted yet
+    }
+    // Of a contact that rests, a snapshot repeats the last tick, whose impulse may be next to
+    // none: what sleeps is borne as it was before it fell asleep.
+    if (frame > 0 && held.asleep && bearing.touching && bearings[frame - 1].touching) {
+      const bool falls_asleep = !recording_.body(object, frame - 1).asleep;
+      bearing.up = bearings[frame - 1].up;
+      bearing.share = falls_asleep ? MeanShareBefore(bearings, frame) : bearings[frame - 1].share;
+    }
+    const auto relative_at = [&](const Vector3d& p_W_m) {
+      return Vector3d(VelocityAt(held, p_W_m) - VelocityAt(by, p_W_m));
+    };
+    if (bearing.touching)
+      bearing.vertical_m_per_s =
+          std::min(std::abs(relative_at(centre_W_m).z()), std::abs(relative_at(held.X_WB.p_m).z()));
+    const Vector3d nhat_W = by.X_WB.q * nhat_S;
+    const double off_m = (held.X_WB.p_m - centre_W_m).dot(nhat_W);
+    bearing.along_m_per_s = std::numeric_limits<double>::infinity();
+    still = true;
+    Vector3d along;
+    for (const int middle : {0, 1}) {
+      if (middle == 0 || sum.weight > 0) {  // else both are in one place
         const Vector3d v = relative_at(middle ? held.X_WB.p_m - off_m * nhat_W : centre_W_m);
-        const Vector3d along = v - v.dot(nhat_W) * nhat_W;
+        along = v - v.dot(nhat_W) * nhat_W;
         bearing.along_m_per_s = std::min(bearing.along_m_per_s, along.norm());
-        if (frame > 0)
-          bearing.along_m[middle] =
-              bearings[frame - 1].along_m[middle] +
-              by.X_WB.q.inverse() * along * recording_.Seconds(frame - 1, frame);
+        still = still && along.isZero(0);
       }
+      if (frame > 0)
+        bearing.along_m[middle] =
+            bearings[frame - 1].along_m[middle] +
+            by.X_WB.q.inverse() * along * recording_.Seconds(frame - 1, frame);
     }
   }
 
+  /// Whether both are as they were in the frame before.
+  bool Rest(int object, int support, int frame) const {
+    if (frame == 0) return false;
+    const physics::Snapshot &now = recording_.frames[frame], &before = recording_.frames[frame - 1];
+    return !now.MayHaveMoved(object, before.tick) && !now.MayHaveMoved(support, before.tick) &&
+           now.bodies[object].asleep == before.bodies[object].asleep;
+  }
+
   /// In the last ticks before a frame, the first of which may be before the recording.
-  double MeanShareBefore(const std::vector<Bearing>& bearings, int frame) const {
+  double MeanShareBefore(const Bearings& bearings, int frame) const {
     double sum = 0;
     int first = frame;
     while (first > 0 && recording_.ticks[frame] - recording_.ticks[first - 1] <= kAsleepTicks)
@@ -186,7 +241,11 @@ class EvidenceReader {
   const Recording& recording_;
   Evidence& evidence_;
   const bool has_forces_;
-  std::map<Pair, std::vector<Push>> pushes_;
+  std::map<Pair, BearingRead> reads_;
+  std::vector<int> lasting_;  ///< by frame: how many the last ticks are, with itself
+  const std::vector<physics::ContactPoint>* resting_ = nullptr;  ///< of the frame before
+  std::vector<Spans*> resting_touching_;                         ///< those of resting_
+  std::vector<BearingRead*> resting_reads_;
 };
 
 /// The farthest that palm or a finger is in one state from where it is in the other.
@@ -244,13 +303,15 @@ struct Nearest {
   Vector3d operator()(const physics::Hull& hull) const { return physics::NearestIn(hull, p); }
 };
 
+Vector3d NearestIn(const physics::Shape& shape, const physics::Pose& X_WS, const Vector3d& p_W) {
+  return X_WS * std::visit(Nearest{X_WS.inverse() * p_W}, shape);
+}
+
 struct Solid {
   physics::Shape shape;
   physics::Pose X_WS;
 
-  Vector3d NearestTo(const Vector3d& p_W) const {
-    return X_WS * std::visit(Nearest{X_WS.inverse() * p_W}, shape);
-  }
+  Vector3d NearestTo(const Vector3d& p_W) const { return NearestIn(shape, X_WS, p_W); }
 };
 
 double Distance(const Solid& a, const Solid& b) {
@@ -278,52 +339,41 @@ std::vector<Solid> PartsOf(const physics::HandModel& model, const physics::HandS
 
 /// From where it is at rest on what bears its weight until they part or that is no longer below: it
 /// may tip or roll in between, and a hand may take the weight. What is over in a moment was a blow.
-Spans SupportsOf(const std::vector<Bearing>& bearings, const Recording& recording,
-                 const TouchSettings& settings) {
-  std::vector<bool> borne;
-  for (const Bearing& bearing : bearings) {
-    const bool bears = bearing.share >= settings.support_share || (!borne.empty() && borne.back());
-    borne.push_back(bearing.touching && bearing.up >= settings.support_up && bears);
-  }
+Spans SupportsOf(const Spans& touching, const Bearings& bearings, const Recording& recording,
+                 const SupportSettings& settings) {
+  int borne_until = -1;
+  const Spans where_borne = Where(touching, [&](int frame) {
+    const Bearing& bearing = bearings[frame];
+    const bool borne = bearing.up >= settings.support_up &&
+                       (borne_until == frame || bearing.share >= settings.support_share);
+    if (borne) borne_until = frame + 1;
+    return borne;
+  });
   Spans spans;
-  for (Span span : WhereTrue(borne)) {
+  for (Span span : where_borne) {
     while (!span.empty() && bearings[span.begin].vertical_m_per_s > settings.support_speed_m_per_s)
       ++span.begin;
     if (!span.empty()) spans.push_back(span);
   }
-  spans = Bridged(spans, recording.ticks, recording.Ticks(settings.contact_bridge_s));
+  spans = recording.Bridged(spans, settings.contact_bridge_s);
   std::erase_if(spans, [&](const Span& span) {
     return recording.Lasts_s(span) < settings.support_minimum_s;
   });
   return spans;
 }
 
-Spans WhereGripIsCommanded(const Recording& recording, const TouchSettings& settings, int hand) {
-  std::vector<bool> commanded;
-  for (int frame = 0; frame < recording.size(); ++frame)
-    commanded.push_back(recording.hand(hand, frame).trigger >= settings.commanded_trigger);
-  return WhereTrue(commanded);
-}
-
-/// Whether the grip opens, in the 10 ms around each frame.
-std::vector<bool> WhereGripOpens(const Recording& recording, const TouchSettings& settings,
-                                 int hand) {
+/// Whether the grip opens, in the 10 ms around the frame.
+bool GripOpens(const Recording& recording, const GraspSettings& settings, int hand, int frame) {
   constexpr double kWindow_s = 0.02;
-  std::vector<bool> opens(recording.size());
-  for (int frame = 0; frame < recording.size(); ++frame) {
-    int before = frame, after = frame;
-    while (before > 0 && recording.Seconds(before, frame) < kWindow_s / 2) --before;
-    while (after + 1 < recording.size() && recording.Seconds(frame, after) < kWindow_s / 2) ++after;
-    const double change =
-        recording.hand(hand, after).trigger - recording.hand(hand, before).trigger;
-    opens[frame] =
-        after > before && change <= -settings.opening_per_s * recording.Seconds(before, after);
-  }
-  return opens;
+  int before = frame, after = frame;
+  while (before > 0 && recording.Seconds(before, frame) < kWindow_s / 2) --before;
+  while (after + 1 < recording.size() && recording.Seconds(frame, after) < kWindow_s / 2) ++after;
+  const double change = recording.hand(hand, after).trigger - recording.hand(hand, before).trigger;
+  return after > before && change <= -settings.opening_per_s * recording.Seconds(before, after);
 }
 
 /// Held with one sensor set that bears force, without slipping out of the hand, as a bar in a hook.
-bool HangsOn(const Evidence& evidence, const TouchSettings& settings, Pair pair, int frame) {
+bool HangsOn(const Evidence& evidence, const GraspSettings& settings, Pair pair, int frame) {
   if (evidence.forces_n.at(pair)[frame] < settings.hook_force_n) return false;
   const physics::BodyState& body = evidence.recording.body(pair.second, frame);
   const physics::BodyState& palm = evidence.recording.hand(pair.first, frame).palm;
@@ -335,21 +385,20 @@ bool HangsOn(const Evidence& evidence, const TouchSettings& settings, Pair pair,
 /// touches.
 class Helpers {
  public:
-  Helpers(const Evidence& evidence, const TouchSettings& settings)
-      : evidence_(evidence), settings_(settings) {
-    for (const auto& [pair, forces_n] : evidence.forces_n)
-      for (int frame = 0; frame < evidence.recording.size(); ++frame)
-        presses_[pair].push_back(forces_n[frame] >= settings.press_force_n &&
-                                 !HoldsAlone(pair, frame));
-  }
+  Helpers(const Evidence& evidence, const GraspSettings& settings)
+      : evidence_(evidence), settings_(settings) {}
 
-  /// Of (hand index, body): by frame.
-  const std::vector<bool>& WherePressed(Pair pair) const { return presses_.at(pair); }
+  /// `pair` is a hand's index and a body.
+  bool Presses(Pair pair, int frame) const {
+    return evidence_.forces_n.at(pair)[frame] >= settings_.press_force_n &&
+           !HoldsAlone(pair, frame);
+  }
 
   /// Another hand presses on the other side, with a palm that faces this one's. `pair` presses.
   bool IsPressedBetween(Pair pair, int frame) const {
-    for (const auto& [other, presses] : presses_) {
-      if (other.second != pair.second || other.first == pair.first || !presses[frame]) continue;
+    for (const auto& [other, forces_n] : evidence_.forces_n) {
+      if (other.second != pair.second || other.first == pair.first || !Presses(other, frame))
+        continue;
       const double cosine = Back(pair.first, frame).dot(Back(other.first, frame));
       if (cosine <= std::cos(settings_.press_facing_rad)) return true;
     }
@@ -360,13 +409,13 @@ class Helpers {
   /// fingers one side touches this one and the other side that one. `pair` presses.
   bool IsSqueezedWithAnother(Pair pair, int frame) const {
     if (!Moves(pair.second)) return false;
-    for (const auto& [other, presses] : presses_) {
-      if (other.first != pair.first || other.second == pair.second || !presses[frame] ||
+    for (const auto& [other, forces_n] : evidence_.forces_n) {
+      if (other.first != pair.first || other.second == pair.second || !Presses(other, frame) ||
           !Moves(other.second) ||
           IsTouchedByFirstSet(pair, frame) == IsTouchedByFirstSet(other, frame))
         continue;
       const auto touching = evidence_.touching.find(std::minmax(pair.second, other.second));
-      if (touching != evidence_.touching.end() && touching->second[frame]) return true;
+      if (touching != evidence_.touching.end() && Covers(touching->second, frame)) return true;
     }
     return false;
   }
@@ -387,21 +436,8 @@ class Helpers {
   }
 
   const Evidence& evidence_;
-  const TouchSettings& settings_;
-  std::map<Pair, std::vector<bool>> presses_;
+  const GraspSettings& settings_;
 };
-
-void SayHowLongTheyTouched(const Recording& recording, Touches& touches) {
-  const Grasp* before = nullptr;
-  for (Grasp& grasp : touches.grasps) {
-    for (const Span& contact :
-         touches.contacts.at({grasp.body, recording.body_count() + grasp.hand}))
-      if (contact.Contains(grasp.span.begin)) grasp.touched_since = contact.begin;
-    const bool again = before && before->hand == grasp.hand && before->body == grasp.body;
-    if (again) grasp.touched_since = std::max(grasp.touched_since, before->span.end);
-    before = &grasp;
-  }
-}
 
 }  // namespace
 
@@ -452,76 +488,95 @@ bool Evidence::Leaves(int hand, int frame, double distance_m, double window_s, i
   return Cached(leaves_[{hand, distance_m, window_s}], recording.size(), frame, leaves) != 0;
 }
 
-bool InReachRegion(const Recording& recording, int hand, int body, int frame, double radius_m) {
-  const Vector3d centre_W_m = recording.hand(hand, frame).palm.X_WB *
-                              Vector3d(radius_m * recording.scene.hands[hand].model.ahead);
-  return PointDistance(centre_W_m, recording.scene.bodies[body], recording.body(body, frame)) <=
-         radius_m;
+bool Evidence::InReachRegion(int hand, int body, int frame, double radius_m) const {
+  return Cached(in_reach_[{hand, body, radius_m}], recording.size(), frame, [&] {
+           const Vector3d centre_W_m = recording.hand(hand, frame).palm.X_WB *
+                                       Vector3d(radius_m * recording.scene.hands[hand].model.ahead);
+           return PointDistance(centre_W_m, recording.scene.bodies[body],
+                                recording.body(body, frame)) <= radius_m;
+         }) != 0;
 }
 
 double SurfaceDistance(const physics::HandModel& model, const physics::HandState& hand,
                        const physics::Body& body, const physics::BodyState& state) {
   double distance = std::numeric_limits<double>::infinity();
-  for (const Solid& part : PartsOf(model, hand))
-    for (const physics::PlacedShape& placed : body.shapes)
-      distance = std::min(distance, Distance(part, {placed.shape, state.X_WB * placed.X_BS}));
+  const std::vector<Solid> parts = PartsOf(model, hand);
+  std::vector<std::pair<double, const Solid*>> at_least;  // no part is nearer than that
+  for (const physics::PlacedShape& placed : body.shapes) {
+    const Solid solid{placed.shape, state.X_WB * placed.X_BS};
+    at_least.clear();
+    for (const Solid& part : parts) {
+      const Vector3d& p_W_m = part.X_WS.p_m;
+      const double radius_m = std::get<physics::Box>(part.shape).size_m.norm() / 2;
+      at_least.emplace_back((solid.NearestTo(p_W_m) - p_W_m).norm() - radius_m, &part);
+    }
+    std::ranges::sort(at_least);
+    for (const auto& [least, part] : at_least)
+      if (least < distance) distance = std::min(distance, Distance(*part, solid));
+  }
   return distance;
 }
 
 double PointDistance(const Vector3d& p_W_m, const physics::Body& body,
                      const physics::BodyState& state) {
   double distance = std::numeric_limits<double>::infinity();
-  for (const physics::PlacedShape& placed : body.shapes) {
-    const Solid solid{placed.shape, state.X_WB * placed.X_BS};
-    distance = std::min(distance, (p_W_m - solid.NearestTo(p_W_m)).norm());
-  }
+  for (const physics::PlacedShape& placed : body.shapes)
+    distance = std::min(distance,
+                        (p_W_m - NearestIn(placed.shape, state.X_WB * placed.X_BS, p_W_m)).norm());
   return distance;
 }
 
-Touches FindTouches(const Evidence& evidence, const TouchSettings& settings) {
+Touches FindTouches(const Evidence& evidence, const SupportSettings& settings) {
   const Recording& recording = evidence.recording;
   Touches touches;
-  for (const auto& [pair, frames] : evidence.touching)
-    touches.contacts[pair] =
-        Bridged(WhereTrue(frames), recording.ticks, recording.Ticks(settings.contact_bridge_s));
+  for (const auto& [pair, spans] : evidence.touching)
+    touches.contacts[pair] = recording.Bridged(spans, settings.contact_bridge_s);
   for (const auto& [pair, bearings] : evidence.bearings)
-    touches.supports[pair] = SupportsOf(bearings, recording, settings);
+    touches.supports[pair] = SupportsOf(evidence.touching.at(std::minmax(pair.first, pair.second)),
+                                        bearings, recording, settings);
+  return touches;
+}
+
+std::vector<Grasp> FindGrasps(const Evidence& evidence, const GraspSettings& settings) {
+  const Recording& recording = evidence.recording;
+  std::vector<Grasp> grasps;
   const Helpers helpers(evidence, settings);
-  const auto bridged = [&](const std::vector<bool>& frames) {
-    return Bridged(WhereTrue(frames), recording.ticks, recording.Ticks(settings.grasp_bridge_s));
-  };
-  std::map<int, std::vector<bool>> grip_opens;
   std::map<int, Spans> commanded;
   for (const auto& [pair, sets] : evidence.sensor_sets) {
     const auto& [hand, body] = pair;
-    if (!commanded.contains(hand)) {
-      commanded[hand] = WhereGripIsCommanded(recording, settings, hand);
-      grip_opens[hand] = WhereGripOpens(recording, settings, hand);
-    }
-    const std::vector<bool>&opens = grip_opens[hand], &presses = helpers.WherePressed(pair);
+    if (!commanded.contains(hand))
+      commanded[hand] = Where({{0, recording.size()}}, [&, of = hand](int frame) {
+        return recording.hand(of, frame).trigger >= settings.commanded_trigger;
+      });
     // A grasp begins where it is gripped, and lasts while held.
-    std::vector<bool> gripped(recording.size()), held = gripped, between = gripped;
-    for (int frame = 0; frame < recording.size(); ++frame) {
-      if (sets[frame] == 0) continue;
-      const bool has_sets = std::popcount(sets[frame]) >= settings.grasp_sensor_sets ||
-                            (presses[frame] && helpers.IsSqueezedWithAnother(pair, frame));
-      between[frame] = presses[frame] && helpers.IsPressedBetween(pair, frame);
-      gripped[frame] = (has_sets && !opens[frame]) || between[frame];
-      held[frame] =
-          has_sets || between[frame] || (!opens[frame] && HangsOn(evidence, settings, pair, frame));
-    }
-    const Spans tight = bridged(held);
+    const auto opens = [&](int frame) { return GripOpens(recording, settings, pair.first, frame); };
+    const auto has_sets = [&](int frame) {
+      return std::popcount(sets[frame]) >= settings.grasp_sensor_sets ||
+             (helpers.Presses(pair, frame) && helpers.IsSqueezedWithAnother(pair, frame));
+    };
+    const auto between = [&](int frame) {
+      return helpers.Presses(pair, frame) && helpers.IsPressedBetween(pair, frame);
+    };
+    const auto gripped = [&](int frame) {
+      return (has_sets(frame) && !opens(frame)) || between(frame);
+    };
+    const auto held = [&](int frame) {
+      return has_sets(frame) || between(frame) ||
+             (HangsOn(evidence, settings, pair, frame) && !opens(frame));
+    };
+    const Spans& touching = evidence.touching.at({body, recording.body_count() + hand});
+    const Spans tight = recording.Bridged(Where(touching, held), settings.grasp_bridge_s);
     // Letting go ends a grasp at once, and none begins before the hand feels the object again.
-    for (const Span& squeeze : Union(commanded[hand], bridged(between))) {
+    const Spans pressed = recording.Bridged(Where(touching, between), settings.grasp_bridge_s);
+    for (const Span& squeeze : Union(commanded[hand], pressed)) {
       for (Span span : Within(tight, squeeze)) {
-        while (!span.empty() && !gripped[span.begin]) ++span.begin;
+        while (!span.empty() && !gripped(span.begin)) ++span.begin;
         if (recording.Lasts_s(span) >= settings.grasp_minimum_s)
-          touches.grasps.push_back({hand, body, span, span.begin});
+          grasps.push_back({hand, body, span, span.begin});
       }
     }
   }
-  SayHowLongTheyTouched(recording, touches);
-  return touches;
+  return grasps;
 }
 
 }  // namespace prehend::truth

@@ -34,18 +34,25 @@ struct Bearing {
   std::array<Eigen::Vector3d, 2> along_m = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
 };
 
+/// One per frame. What rests bears as in the frame before, which is kept once.
+struct Bearings {
+  std::vector<Bearing> kept;
+  std::vector<std::size_t> which;  ///< by frame
+  const Bearing& operator[](int frame) const { return kept[which[frame]]; }
+};
+
 class Evidence {
  public:
   explicit Evidence(const Recording& recording);
 
-  /// Entities a < b that ever touch, and in which frames.
-  std::map<Pair, std::vector<bool>> touching;
+  /// Entities a < b that ever touch, and when.
+  std::map<Pair, Spans> touching;
   /// Of (hand index, body): which sensor sets touch, one bit each, by frame.
   std::map<Pair, std::vector<std::uint32_t>> sensor_sets;
   /// Of (hand index, body): the normal force between them, newtons, by frame.
   std::map<Pair, std::vector<double>> forces_n;
   /// Of (object, support), the object movable, the support a thing: by frame.
-  std::map<Pair, std::vector<Bearing>> bearings;
+  std::map<Pair, Bearings> bearings;
 
   const Recording& recording;
 
@@ -58,16 +65,16 @@ class Evidence {
   /// Whether palm or a finger gets farther than this from where it is, within `window_s` / 2 before
   /// or after, in frames before `end`.
   bool Leaves(int hand, int frame, double distance_m, double window_s, int end) const;
+  /// Whether the body's true shape reaches into the hand's region of interest: the sphere ahead of
+  /// the palm that touches its centre.
+  bool InReachRegion(int hand, int body, int frame, double radius_m) const;
 
  private:
   mutable std::map<Pair, std::vector<double>> distances_;
   mutable std::map<int, std::vector<double>> motions_;
   mutable std::map<std::tuple<int, double, double>, std::vector<double>> leaves_;
+  mutable std::map<std::tuple<int, int, double>, std::vector<double>> in_reach_;
 };
-
-/// Whether the body's true shape reaches into the hand's region of interest: the sphere ahead of
-/// the palm that touches its centre.
-bool InReachRegion(const Recording& recording, int hand, int body, int frame, double radius_m);
 
 // Distances between true surfaces: boxes, spheres, cylinders, capsules, hulls and what is made of
 // them. Tested by tests/harness/truth/oracle/oracle_test.cc
@@ -96,9 +103,11 @@ struct Grasp {
 struct Touches {
   std::map<Pair, Spans> contacts;  ///< entities a < b
   std::map<Pair, Spans> supports;  ///< (object, support), both bodies, the object movable
-  std::vector<Grasp> grasps;       ///< sorted by hand, body, time
 };
-Touches FindTouches(const Evidence& evidence, const TouchSettings& settings);
+Touches FindTouches(const Evidence& evidence, const SupportSettings& settings);
+
+/// Sorted by hand, body, time; without `touched_since`.
+std::vector<Grasp> FindGrasps(const Evidence& evidence, const GraspSettings& settings);
 
 // What a hand does with an object during one grasp. Tested by
 // tests/harness/truth/oracle/oracle_test.cc

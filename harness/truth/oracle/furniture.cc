@@ -17,15 +17,17 @@ using Fractions = std::vector<double>;  ///< of a joint's range, by frame
 std::array<Spans, 4> StatesOf(const Fractions& fractions) {
   constexpr std::array kLimits = {0.1, 0.5, 0.9};
   constexpr double kBack = 0.02;
-  std::array<std::vector<bool>, 4> holds;
+  std::vector<std::size_t> state_at;
   std::size_t state = 0;
   for (const double fraction : fractions) {
     while (state < kLimits.size() && fraction >= kLimits[state]) ++state;
     while (state > 0 && fraction < kLimits[state - 1] - kBack) --state;
-    for (std::size_t i = 0; i < holds.size(); ++i) holds[i].push_back(i == state);
+    state_at.push_back(state);
   }
+  const Spans all{{0, static_cast<int>(state_at.size())}};
   std::array<Spans, 4> states;
-  for (std::size_t i = 0; i < states.size(); ++i) states[i] = WhereTrue(holds[i]);
+  for (std::size_t i = 0; i < states.size(); ++i)
+    states[i] = Where(all, [&](int frame) { return state_at[frame] == i; });
   return states;
 }
 
@@ -70,7 +72,7 @@ class Growth {
         if (values_[at] > values_[high]) high = at;
       std::fill(fast.begin() + low, fast.begin() + high + 1, true);
     }
-    return WhereTrue(fast);
+    return Where({{0, size}}, [&](int frame) { return fast[frame]; });
   }
 
   /// After a short halt it goes on if it gets farther than before; else it trembles. If it has lost
@@ -115,8 +117,8 @@ class Growth {
   const FurnitureSettings& settings_;
 };
 
-/// Who ever touches the part or what is fixed to it: hands and parts of persons; in which frames.
-std::map<int, std::vector<bool>> TouchesOf(const Evidence& evidence, physics::BodyIndex part) {
+/// Who ever touches the part or what is fixed to it: hands and parts of persons; and when.
+std::map<int, Spans> TouchesOf(const Evidence& evidence, physics::BodyIndex part) {
   const Recording& recording = evidence.recording;
   const auto belongs = [&](int entity) {
     return entity < recording.body_count() &&
@@ -125,15 +127,10 @@ std::map<int, std::vector<bool>> TouchesOf(const Evidence& evidence, physics::Bo
   const auto acts = [&](int entity) {
     return entity >= recording.body_count() || recording.scene.bodies[entity].kinematic;
   };
-  std::map<int, std::vector<bool>> touches;
-  for (const auto& [pair, frames] : evidence.touching) {
-    for (const auto& [touched, agent] : {pair, Pair(pair.second, pair.first)}) {
-      if (!belongs(touched) || !acts(agent)) continue;
-      std::vector<bool>& of_agent = touches[agent];
-      of_agent.resize(frames.size());
-      for (std::size_t i = 0; i < frames.size(); ++i) of_agent[i] = of_agent[i] || frames[i];
-    }
-  }
+  std::map<int, Spans> touches;
+  for (const auto& [pair, spans] : evidence.touching)
+    for (const auto& [touched, agent] : {pair, Pair(pair.second, pair.first)})
+      if (belongs(touched) && acts(agent)) touches[agent] = Union(touches[agent], spans);
   return touches;
 }
 
@@ -160,9 +157,8 @@ std::vector<Part> FindParts(const Evidence& evidence, const FurnitureSettings& s
       for (const Span& span : growth.Find())
         part.motions.push_back({.opens = opens, .span = span, .way = growth.Way(span)});
     }
-    for (const auto& [agent, frames] : TouchesOf(evidence, joint.body)) {
-      const Spans touches =
-          Bridged(WhereTrue(frames), recording.ticks, recording.Ticks(contact_bridge_s));
+    for (const auto& [agent, spans] : TouchesOf(evidence, joint.body)) {
+      const Spans touches = recording.Bridged(spans, contact_bridge_s);
       for (PartMotion& motion : part.motions)
         for (const Span& touch : Within(touches, motion.span))
           if (touch.begin == motion.span.begin || recording.Lasts_s(touch) >= settings.part_touch_s)

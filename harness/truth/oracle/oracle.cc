@@ -16,21 +16,35 @@ namespace {
 
 /// What was found with some settings: most choices change none of those that it depends on.
 struct Known {
+  std::map<SupportSettings, Touches> touches;
+  std::map<GraspSettings, std::vector<Grasp>> grasps;
   std::map<std::tuple<Grasp, int, int, ReachSettings>, int> reaches;
   std::map<std::tuple<Grasp, std::map<int, Spans>, CarrySettings, double>, Carrying> carryings;
   std::map<std::tuple<FurnitureSettings, double>, std::vector<Part>> parts;
+
+  template <class Found, class Find>
+  static const typename Found::mapped_type& Once(Found& found, const typename Found::key_type& key,
+                                                 const Find& find) {
+    const auto [at, is_new] = found.try_emplace(key);
+    if (is_new) at->second = find();
+    return at->second;
+  }
 };
 
 class TimelineBuilder {
  public:
-  TimelineBuilder(const Evidence& evidence, const Touches& touches, const OracleSettings& settings,
-                  grammar::Tick end, Known& known)
+  TimelineBuilder(const Evidence& evidence, const OracleSettings& settings, grammar::Tick end,
+                  Known& known)
       : evidence_(evidence),
         recording_(evidence.recording),
         settings_(settings),
         end_(end),
-        touches_(touches),
+        touches_(
+            Known::Once(known.touches, settings, [&] { return FindTouches(evidence, settings); })),
+        grasps_(
+            Known::Once(known.grasps, settings, [&] { return FindGrasps(evidence, settings); })),
         known_(known) {
+    DateTouches();
     timeline_.ticks_per_second = recording_.scene.world.rate_hz;
   }
 
@@ -41,13 +55,28 @@ class TimelineBuilder {
         Add("supported_by",
             {{"object", recording_.name(pair.first)}, {"support", recording_.name(pair.second)}},
             span);
-    for (const Grasp& grasp : touches_.grasps) AddGrasp(grasp);
+    for (const Grasp& grasp : grasps_) AddGrasp(grasp);
     AddFurniture();
     grammar::Sort(timeline_);
     return std::move(timeline_);
   }
 
  private:
+  void DateTouches() {
+    const Grasp* before = nullptr;
+    for (Grasp& grasp : grasps_) {
+      for (const Span& contact : ContactsOf(grasp))
+        if (contact.Contains(grasp.span.begin)) grasp.touched_since = contact.begin;
+      const bool again = before && before->hand == grasp.hand && before->body == grasp.body;
+      if (again) grasp.touched_since = std::max(grasp.touched_since, before->span.end);
+      before = &grasp;
+    }
+  }
+
+  const Spans& ContactsOf(const Grasp& grasp) const {
+    return touches_.contacts.at({grasp.body, recording_.body_count() + grasp.hand});
+  }
+
   grammar::Tick TickOf(int frame) const {
     return frame < recording_.size() ? recording_.ticks[frame] : end_;
   }
@@ -69,9 +98,10 @@ class TimelineBuilder {
 
   void AddFurniture() {
     constexpr std::array kStates = {"closed", "half_closed", "half_open", "open"};
-    const auto [known, is_new] = known_.parts.try_emplace({settings_, settings_.contact_bridge_s});
-    if (is_new) known->second = FindParts(evidence_, settings_, settings_.contact_bridge_s);
-    for (const Part& part : known->second) {
+    const double bridge_s = settings_.contact_bridge_s;
+    for (const Part& part : Known::Once(known_.parts, {settings_, bridge_s}, [&] {
+           return FindParts(evidence_, settings_, bridge_s);
+         })) {
       const grammar::Role role{"part", recording_.name(part.body)};
       for (std::size_t i = 0; i < kStates.size(); ++i)
         for (const Span& span : part.states[i]) Add(kStates[i], {role}, span);
@@ -106,16 +136,14 @@ class TimelineBuilder {
   /// Only the first grasp of a contact was reached for; for a second one the hand was already
   /// there.
   Span AddReach(const Grasp& grasp) {
-    const Spans& contacts =
-        touches_.contacts.at({grasp.body, recording_.body_count() + grasp.hand});
     Span contact, contact_before;
-    for (const Span& span : contacts) {
+    for (const Span& span : ContactsOf(grasp)) {
       const bool brushes = recording_.Lasts_s(span) < settings_.reach_brush_s;
       if (span.end <= grasp.span.begin && !brushes) contact_before = span;
       if (span.Contains(grasp.span.begin)) contact = span;
     }
     int earliest = contact_before.end;
-    for (const Grasp& other : touches_.grasps) {
+    for (const Grasp& other : grasps_) {
       if (other.hand != grasp.hand) continue;
       if (other.body == grasp.body &&
           Span{contact.begin, grasp.span.begin}.Contains(other.span.begin))
@@ -124,12 +152,9 @@ class TimelineBuilder {
       if (other.span.begin < contact.begin) earliest = std::max(earliest, other.span.begin + 1);
     }
     Add("fixation", RolesOf(grasp), {contact.begin, grasp.span.begin});
-    const auto [known, is_new] =
-        known_.reaches.try_emplace({grasp, earliest, contact.begin, settings_});
-    if (is_new)
-      known->second =
-          ReachBegin(evidence_, settings_, grasp.hand, grasp.body, earliest, contact.begin);
-    const int begin = known->second;
+    const int begin = Known::Once(known_.reaches, {grasp, earliest, contact.begin, settings_}, [&] {
+      return ReachBegin(evidence_, settings_, grasp.hand, grasp.body, earliest, contact.begin);
+    });
     if (recording_.Seconds(begin, contact.begin) < settings_.reach_minimum_s) return {};
     Add("reaching", RolesOf(grasp), {begin, contact.begin});
     return {begin, contact.begin};
@@ -139,10 +164,9 @@ class TimelineBuilder {
     std::map<int, Spans> supports;
     for (const auto& [pair, spans] : touches_.supports)
       if (pair.first == grasp.body) supports[pair.second] = spans;
-    const auto [known, is_new] =
-        known_.carryings.try_emplace({grasp, supports, settings_, settings_.onset_speed_m_per_s});
-    if (is_new) known->second = FindCarrying(evidence_, settings_, grasp, supports);
-    const Carrying& carrying = known->second;
+    const Carrying& carrying =
+        Known::Once(known_.carryings, {grasp, supports, settings_, settings_.onset_speed_m_per_s},
+                    [&] { return FindCarrying(evidence_, settings_, grasp, supports); });
     for (const Span& span : carrying.slides) Add("sliding", RolesOf(grasp), span);
     for (const Span& span : carrying.pick_ups) Add("picking_up", RolesOf(grasp), span);
     for (const Span& span : carrying.hovers) Add("hovering", RolesOf(grasp), span);
@@ -156,6 +180,7 @@ class TimelineBuilder {
   const OracleSettings& settings_;
   grammar::Tick end_;
   const Touches& touches_;
+  std::vector<Grasp> grasps_;
   Known& known_;
   grammar::Timeline timeline_;
 };
@@ -190,7 +215,7 @@ grammar::Timeline TrueTimeline(const physics::Scene& scene,
   const Recording frames = MakeRecording(scene, recording);
   const Evidence evidence(frames);
   Known known;
-  return TimelineBuilder(evidence, FindTouches(evidence, settings), settings, end, known).Build();
+  return TimelineBuilder(evidence, settings, end, known).Build();
 }
 
 std::vector<grammar::Timeline> PossibleTimelines(const physics::Scene& scene,
@@ -200,13 +225,8 @@ std::vector<grammar::Timeline> PossibleTimelines(const physics::Scene& scene,
   const Evidence evidence(frames);
   Known known;
   std::vector<grammar::Timeline> timelines;
-  const Touches usual = FindTouches(evidence, {});  // most choices change none of their numbers
-  for (const OracleSettings& choice : DefinitionChoices()) {
-    const TouchSettings& touch = choice;
-    const Touches own = touch == TouchSettings{} ? Touches{} : FindTouches(evidence, choice);
-    const Touches& touches = touch == TouchSettings{} ? usual : own;
-    timelines.push_back(TimelineBuilder(evidence, touches, choice, end, known).Build());
-  }
+  for (const OracleSettings& choice : DefinitionChoices())
+    timelines.push_back(TimelineBuilder(evidence, choice, end, known).Build());
   return timelines;
 }
 
@@ -246,21 +266,11 @@ Spans Union(const Spans& a, const Spans& b) {
   return joined;
 }
 
-Spans WhereTrue(const std::vector<bool>& flags) {
-  Spans spans;
-  for (int i = 0; i < static_cast<int>(flags.size()); ++i) {
-    if (!flags[i]) continue;
-    if (spans.empty() || spans.back().end < i) spans.push_back({i, i});
-    spans.back().end = i + 1;
-  }
-  return spans;
-}
-
-Spans Bridged(const Spans& spans, const std::vector<grammar::Tick>& frame_ticks, double ticks) {
+Spans Recording::Bridged(const Spans& spans, double gap_s) const {
   Spans joined;
   for (const Span& span : spans) {
-    if (!joined.empty() &&
-        static_cast<double>(frame_ticks[span.begin] - frame_ticks[joined.back().end]) <= ticks)
+    if (!joined.empty() && static_cast<double>(ticks[span.begin] - ticks[joined.back().end]) <=
+                               gap_s * scene.world.rate_hz)
       joined.back().end = span.end;
     else
       joined.push_back(span);

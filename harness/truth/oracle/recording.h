@@ -44,11 +44,19 @@ Spans Rest(const Spans& spans, Span window);
 /// Everything that is covered by one or the other.
 Spans Union(const Spans& a, const Spans& b);
 
-/// Maximal intervals of true frames.
-Spans WhereTrue(const std::vector<bool>& flags);
-
-/// Joins spans whose gap lasts `ticks` or less; `frame_ticks[i]` is the tick of frame i.
-Spans Bridged(const Spans& spans, const std::vector<grammar::Tick>& frame_ticks, double ticks);
+/// Maximal intervals of frames of the spans for which it holds; it is asked of each, in order.
+template <class Holds>
+Spans Where(const Spans& spans, const Holds& holds) {
+  Spans found;
+  for (const Span& span : spans) {
+    for (int i = span.begin; i < span.end; ++i) {
+      if (!holds(i)) continue;
+      if (found.empty() || found.back().end < i) found.push_back({i, i});
+      found.back().end = i + 1;
+    }
+  }
+  return found;
+}
 
 struct Recording {
   const physics::Scene& scene;
@@ -57,9 +65,10 @@ struct Recording {
 
   int size() const { return static_cast<int>(frames.size()); }
   int body_count() const { return static_cast<int>(scene.bodies.size()); }
-  double Ticks(double seconds) const { return seconds * scene.world.rate_hz; }
   double Seconds(int from_frame, int to_frame) const;
   double Lasts_s(Span span) const;
+  /// Joins spans whose gap lasts so long or less.
+  Spans Bridged(const Spans& spans, double gap_s) const;
 
   const physics::BodyState& body(int body, int frame) const { return frames[frame].bodies[body]; }
   const physics::HandState& hand(int hand, int frame) const { return frames[frame].hands[hand]; }
@@ -80,26 +89,29 @@ using Pair = std::pair<int, int>;
 // One choice of the numbers in the definitions, and the bands that the page of definitions,
 // docs/events.md, gives them. Tested by tests/harness/truth/oracle/oracle_test.cc
 
-/// What contacts, supports and grasps depend on.
-struct TouchSettings {
-  double contact_bridge_s = 0.100;  ///< a gap in contact or support that is bridged
-  double grasp_bridge_s = 0.060;    ///< a loss of grip on the object that is bridged
-
+/// What contacts and supports depend on.
+struct SupportSettings {
+  double contact_bridge_s = 0.100;      ///< a gap in contact or support that is bridged
   double support_up = 0.5;              ///< upward component of the direction of the bearing force
   double support_share = 0.02;          ///< of the object's weight that is borne, at least
   double support_speed_m_per_s = 0.02;  ///< vertical, of the object's middle or of its load
   double support_minimum_s = 0.02;      ///< a blow is over sooner
-  double grasp_minimum_s = 0.02;        ///< a brush of two sensor sets is over sooner
-  double commanded_trigger = 0.3;       ///< from here on the grip is commanded, 0..1
-  int grasp_sensor_sets = 2;            ///< of one hand on the object
-  double hook_force_n = 20;             ///< what pulls with this holds on with one sensor set
-  double hook_slip_m_per_s = 0.3;       ///< unless it slips out of the hand
-  double opening_per_s = 1;             ///< a grip that opens as fast takes hold of nothing
-  double press_force_n = 2;             ///< of each side of what is pressed between two hands
+  auto operator<=>(const SupportSettings&) const = default;
+};
+
+/// What grasps depend on.
+struct GraspSettings {
+  double grasp_bridge_s = 0.060;   ///< a loss of grip on the object that is bridged
+  double grasp_minimum_s = 0.02;   ///< a brush of two sensor sets is over sooner
+  double commanded_trigger = 0.3;  ///< from here on the grip is commanded, 0..1
+  int grasp_sensor_sets = 2;       ///< of one hand on the object
+  double hook_force_n = 20;        ///< what pulls with this holds on with one sensor set
+  double hook_slip_m_per_s = 0.3;  ///< unless it slips out of the hand
+  double opening_per_s = 1;        ///< a grip that opens as fast takes hold of nothing
+  double press_force_n = 2;        ///< of each side of what is pressed between two hands
   double press_facing_rad =
       2 * std::numbers::pi / 3;  ///< between the backs of their palms, at least
-
-  bool operator==(const TouchSettings&) const = default;
+  auto operator<=>(const GraspSettings&) const = default;
 };
 
 /// What the begin of a reach depends on.
@@ -151,7 +163,11 @@ struct FurnitureSettings {
   auto operator<=>(const FurnitureSettings&) const = default;
 };
 
-struct OracleSettings : TouchSettings, ReachSettings, CarrySettings, FurnitureSettings {
+struct OracleSettings : SupportSettings,
+                        GraspSettings,
+                        ReachSettings,
+                        CarrySettings,
+                        FurnitureSettings {
   double reach_minimum_s = 0.1;
   double reach_brush_s = 0.05;  ///< a shorter touch on the way does not end a reach
 };
