@@ -19,6 +19,7 @@
 #include "physics/bullet/core/flat_impacts.h"
 #include "physics/bullet/core/grain_contacts.h"
 #include "physics/bullet/core/parts.h"
+#include "physics/bullet/core/swept_motion.h"
 #include "physics/bullet/first_rest.h"
 #include "physics/bullet/hand.h"
 #include "physics/scene/joint.h"
@@ -215,6 +216,10 @@ class BulletWorld final : public World {
   Sight Look(const SightLine& line) const override;
 
  private:
+  /// How far the surfaces of two sides are from each other.
+  double Apart(const ContactSide& a, const ContactSide& b) const;
+  /// The shapes of a side as they stand in the world; none of grains and hands.
+  std::vector<Part> PartsAt(const ContactSide& side) const;
   void Configure();
   void AddBodies();
   /// Adds one rigid body made of these bodies of the scene, the root first.
@@ -371,7 +376,29 @@ void BulletWorld::Step(const std::vector<HandCommand>& commands) {
   });
   touching_.BeginTick(stillness_.rests());
   ReadContacts(engine_->ChangedManifolds(), sides_, touching_);
-  touching_.EndTick();
+  // Bullet drops points that slid by some 0.3 mm, and finds none where boxes are apart.
+  touching_.EndTick([this](const ContactSide& a, const ContactSide& b) { return Apart(a, b); });
+}
+
+double BulletWorld::Apart(const ContactSide& a, const ContactSide& b) const {
+  double least_m = SIMD_INFINITY;
+  for (const Part& part_a : PartsAt(a))
+    for (const Part& part_b : PartsAt(b))
+      if (const Gap gap = GapBetween(*part_a.shape, part_a.X_BP, *part_b.shape, part_b.X_BP);
+          gap.is_known)
+        least_m = std::min(least_m, gap.distance_m);
+  return least_m;
+}
+
+std::vector<Part> BulletWorld::PartsAt(const ContactSide& side) const {
+  if (side.hand != kNone || scene_.bodies[side.body.index()].grains) return {};
+  const btRigidBody& object = rigids_[At(places_, side.body).rigid]->rigid();
+  std::vector<Part> parts;
+  int shape = 0;
+  for (const Part& part : PartsOf(*object.getCollisionShape()))
+    if (SideOf(sides_, object, shape++) == side)
+      parts.push_back({part.shape, object.getWorldTransform() * part.X_BP});
+  return parts;
 }
 
 void BulletWorld::MoveKinematic(BodyIndex body, const Pose& X_WB) {

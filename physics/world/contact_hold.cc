@@ -53,13 +53,15 @@ void TouchingPairs::Add(ContactPoint point) {
   pair.points.push_back(point);
 }
 
-void TouchingPairs::EndTick() {
+void TouchingPairs::EndTick(
+    const std::function<double(const ContactSide&, const ContactSide&)>& apart_m) {
   for (auto& [key, pair] : pairs_) {
     if (pair.seen) {
       std::sort(pair.points.begin(), pair.points.end(), ComesBefore);
       continue;
     }
-    const bool lasts = pair.near && pair.pressed_ticks > blow_ticks_;
+    const bool lasts = pair.pressed_ticks > blow_ticks_ &&
+                       (pair.near || (apart_m && apart_m(key.first, key.second) <= kApart_m));
     pair.quiet_ticks = lasts ? 0 : pair.quiet_ticks + 1;
     for (ContactPoint& point : pair.points) point.normal_impulse_n_s = 0;
   }

@@ -8,6 +8,7 @@
 // tests/physics/world/contact_hold_test.cc, tests/physics/world/bounce_test.cc
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <utility>
@@ -33,8 +34,9 @@ class TouchingPairs {
   /// Adds a contact point of the engine. A point without impulse begins no contact; it makes one
   /// last while it is near. The sides may be in any order.
   void Add(ContactPoint point);
-  /// Call after the last point of the tick.
-  void EndTick();
+  /// Call after the last point of the tick. `apart_m` measures how far the surfaces of two sides
+  /// are from each other; it is asked where no point tells.
+  void EndTick(const std::function<double(const ContactSide&, const ContactSide&)>& apart_m = {});
   /// Writes contacts, sorted by (a, b, point), and the resting ones.
   void Describe(Snapshot& snapshot) const;
 

@@ -5,7 +5,6 @@
 #include "physics/bullet/core/swept_motion.h"
 
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
-#include <BulletCollision/CollisionShapes/btConvexShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
@@ -71,43 +70,6 @@ struct Way {
     return at;
   }
 };
-
-struct Gap {
-  bool is_known = false;
-  btScalar distance_m = 0;
-  btVector3 n_BA_W, p_W;  ///< from B to A; on B
-};
-
-Gap GapBetween(const btConvexShape& a, const btTransform& X_WA, const btConvexShape& b,
-               const btTransform& X_WB) {
-  btVoronoiSimplexSolver simplex;
-  btGjkEpaPenetrationDepthSolver depth;
-  btGjkPairDetector detector(&a, &b, &simplex, &depth);
-  btGjkPairDetector::ClosestPointInput input;
-  input.m_transformA = X_WA;
-  input.m_transformB = X_WB;
-  btPointCollector found;
-  detector.getClosestPoints(input, found, nullptr);
-  return {found.m_hasResult, found.m_distance, found.m_normalOnBInWorld, found.m_pointInWorld};
-}
-
-/// One convex part of a moving body.
-struct Part {
-  const btConvexShape* shape;
-  btTransform X_BP;
-};
-
-std::vector<Part> PartsOf(const btCollisionShape& shape) {
-  if (shape.isConvex())
-    return {{static_cast<const btConvexShape*>(&shape), btTransform::getIdentity()}};
-  std::vector<Part> parts;
-  if (!shape.isCompound()) return parts;
-  const auto& compound = static_cast<const btCompoundShape&>(shape);
-  for (int i = 0; i < compound.getNumChildShapes(); ++i)
-    for (const Part& part : PartsOf(*compound.getChildShape(i)))
-      parts.push_back({part.shape, compound.getChildTransform(i) * part.X_BP});
-  return parts;
-}
 
 /// A convex part on its way.
 struct MovedPart {
@@ -192,6 +154,31 @@ struct Nearby final : btBroadphaseAabbCallback {
 };
 
 }  // namespace
+
+Gap GapBetween(const btConvexShape& a, const btTransform& X_WA, const btConvexShape& b,
+               const btTransform& X_WB) {
+  btVoronoiSimplexSolver simplex;
+  btGjkEpaPenetrationDepthSolver depth;
+  btGjkPairDetector detector(&a, &b, &simplex, &depth);
+  btGjkPairDetector::ClosestPointInput input;
+  input.m_transformA = X_WA;
+  input.m_transformB = X_WB;
+  btPointCollector found;
+  detector.getClosestPoints(input, found, nullptr);
+  return {found.m_hasResult, found.m_distance, found.m_normalOnBInWorld, found.m_pointInWorld};
+}
+
+std::vector<Part> PartsOf(const btCollisionShape& shape) {
+  if (shape.isConvex())
+    return {{static_cast<const btConvexShape*>(&shape), btTransform::getIdentity()}};
+  std::vector<Part> parts;
+  if (!shape.isCompound()) return parts;
+  const auto& compound = static_cast<const btCompoundShape&>(shape);
+  for (int i = 0; i < compound.getNumChildShapes(); ++i)
+    for (const Part& part : PartsOf(*compound.getChildShape(i)))
+      parts.push_back({part.shape, compound.getChildTransform(i) * part.X_BP});
+  return parts;
+}
 
 void SweptMotion::Measure() {
   thinnest_m_ = SIMD_INFINITY;

@@ -6,11 +6,30 @@
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <vector>
 
 namespace prehend::physics {
+
+struct Gap {
+  bool is_known = false;
+  btScalar distance_m = 0;
+  btVector3 n_BA_W, p_W;  ///< from B to A; on B
+};
+
+Gap GapBetween(const btConvexShape& a, const btTransform& X_WA, const btConvexShape& b,
+               const btTransform& X_WB);
+
+/// One convex part of a body.
+struct Part {
+  const btConvexShape* shape;
+  btTransform X_BP;
+};
+
+/// In the order of a compound's shapes.
+std::vector<Part> PartsOf(const btCollisionShape& shape);
 
 class SweptMotion {
  public:

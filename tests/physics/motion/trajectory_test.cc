@@ -68,9 +68,10 @@ TEST(TrajectoryTest, AWayThroughWaypointsTurnsWithThem) {
 }
 
 TEST(TrajectoryTest, AWayThatIsDownGoesNoDeeper) {
-  const Trajectory way = WaypointTrajectory({.X_WH = {{0, 0, 1}}}, {{.t_s = 1, .X_WH = {{1, 0, 0}}},
-                                                                   {.t_s = 2, .X_WH = {{2, 1, 0}}},
-                                                                   {.t_s = 3, .X_WH = {{3, 1, 1}}}});
+  const Trajectory way =
+      WaypointTrajectory({.X_WH = {{0, 0, 1}}}, {{.t_s = 1, .X_WH = {{1, 0, 0}}},
+                                                 {.t_s = 2, .X_WH = {{2, 1, 0}}},
+                                                 {.t_s = 3, .X_WH = {{3, 1, 1}}}});
   for (double t = 0; t <= 3; t += 0.01) EXPECT_GE(way.At(t).X_WH.p_m.z(), -1e-12) << t;
   EXPECT_GT(way.At(1).v_m_per_s.x(), 0.5);
 }

@@ -44,6 +44,23 @@ TEST_F(ContactHold, WhatHasPressedTouchesUntilItIsApart) {
   EXPECT_EQ(TicksThatTouch(20, kFar_m), 4);
 }
 
+TEST_F(ContactHold, WhereNoPointTellsItIsMeasured) {
+  Press(20);
+  double apart_m = kNear_m;
+  const auto touches = [&] {
+    pairs_.BeginTick({1, 0});
+    pairs_.EndTick([&](const ContactSide&, const ContactSide&) { return apart_m; });
+    Snapshot snapshot;
+    pairs_.Describe(snapshot);
+    return !snapshot.contacts.empty();
+  };
+  for (int i = 0; i < 50; ++i) EXPECT_TRUE(touches()) << i;
+  apart_m = kFar_m;
+  int count = 0;
+  for (int i = 0; i < 20; ++i) count += touches() ? 1 : 0;
+  EXPECT_EQ(count, 4);
+}
+
 TEST_F(ContactHold, ABlowIsOverHoweverNearTheTwoStay) {
   Press(5);
   EXPECT_EQ(TicksThatTouch(20, kNear_m), 4);
