@@ -216,10 +216,8 @@ class BulletWorld final : public World {
   Sight Look(const SightLine& line) const override;
 
  private:
-  /// How far the surfaces of two sides are from each other.
+  /// How far the surfaces of two bodies are from each other; infinitely of grains and hands.
   double Apart(const ContactSide& a, const ContactSide& b) const;
-  /// The shapes of a side as they stand in the world; none of grains and hands.
-  std::vector<Part> PartsAt(const ContactSide& side) const;
   void Configure();
   void AddBodies();
   /// Adds one rigid body made of these bodies of the scene, the root first.
@@ -381,24 +379,22 @@ void BulletWorld::Step(const std::vector<HandCommand>& commands) {
 }
 
 double BulletWorld::Apart(const ContactSide& a, const ContactSide& b) const {
+  const auto parts_at = [this](const ContactSide& side) {
+    std::vector<Part> parts;
+    if (side.hand != kNone || scene_.bodies[side.body.index()].grains) return parts;
+    const btRigidBody& rigid = rigids_[At(places_, side.body).rigid]->rigid();
+    int shape = 0;
+    for (const Part& part : PartsOf(*rigid.getCollisionShape()))
+      if (SideOf(sides_, rigid, shape++) == side)
+        parts.push_back({part.shape, rigid.getWorldTransform() * part.X_BP});
+    return parts;
+  };
   double least_m = SIMD_INFINITY;
-  for (const Part& part_a : PartsAt(a))
-    for (const Part& part_b : PartsAt(b))
-      if (const Gap gap = GapBetween(*part_a.shape, part_a.X_BP, *part_b.shape, part_b.X_BP);
-          gap.is_known)
+  for (const Part& of_a : parts_at(a))
+    for (const Part& of_b : parts_at(b))
+      if (const Gap gap = GapBetween(*of_a.shape, of_a.X_BP, *of_b.shape, of_b.X_BP); gap.is_known)
         least_m = std::min(least_m, gap.distance_m);
   return least_m;
-}
-
-std::vector<Part> BulletWorld::PartsAt(const ContactSide& side) const {
-  if (side.hand != kNone || scene_.bodies[side.body.index()].grains) return {};
-  const btRigidBody& object = rigids_[At(places_, side.body).rigid]->rigid();
-  std::vector<Part> parts;
-  int shape = 0;
-  for (const Part& part : PartsOf(*object.getCollisionShape()))
-    if (SideOf(sides_, object, shape++) == side)
-      parts.push_back({part.shape, object.getWorldTransform() * part.X_BP});
-  return parts;
 }
 
 void BulletWorld::MoveKinematic(BodyIndex body, const Pose& X_WB) {
