@@ -71,6 +71,13 @@ std::string ProbeFor(const std::string& example) {
   return text;
 }
 
+TEST(ScenarioFormatDocument, ItsFirstExampleIsTheScenarioThatShips) {
+  const std::string shipped = TextOf(kRoot + "/scenarios/pick_and_place/milk_carton_wrap.yaml");
+  const auto blocks = YamlBlocks(TextOf(kRoot + "/docs/scenario-format.md"));
+  ASSERT_FALSE(blocks.empty());
+  EXPECT_EQ(blocks.front(), shipped.substr(shipped.find('\n') + 1));  // without the editor's line
+}
+
 TEST(ScenarioFormatDocument, ItsExamplesAreReadAndValid) {
   PythonValidator validator;
   int scenarios = 0;
