@@ -50,6 +50,16 @@ TEST(Causes, ThreeSeededFaultsAreNamedWithTheirValues) {
     EXPECT_NE(said.out.find(part), std::string::npos) << said.out;
   EXPECT_EQ(said.out.find("facts at"), std::string::npos) << "one line for each of so many";
 
+  // The page shows these lines; ".." stands for those left out.
+  const std::string page =
+      ReadFile(fs::path(PREHEND_SOURCE_DIR) / "docs/regression-suite.md");
+  const std::size_t shown = page.find("3 causes:\n");
+  std::istringstream lines(page.substr(shown, page.find("```", shown) - shown));
+  for (std::string line; std::getline(lines, line);) {
+    if (line == "     ..") continue;
+    EXPECT_NE(said.out.find(line + "\n"), std::string::npos) << line << "\n" << said.out;
+  }
+
   const auto json = nlohmann::json::parse(check({"--json", "slide/four*"}).out);
   EXPECT_EQ(json["causes"].size(), 2);
   EXPECT_EQ(json["causes"][0]["effects"][0]["count"], 1);

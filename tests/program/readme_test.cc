@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The failed test at the top of README.md is what the program prints.
+// The failed test at the top of README.md, and the answers on pages of docs/, are what the program
+// prints.
 #include <gtest/gtest.h>
 
 #include "tests/program/program.h"
@@ -43,6 +44,34 @@ TEST(Readme, ShowsAFailedTestAsItIsPrinted) {
   const std::string expected = checked.substr(at, checked.find('\'', at) - at);
   const std::string explained = Prehend({"explain", id, "--expected", expected}, environment).out;
   EXPECT_EQ(explained.substr(0, explained.find("\n\n") + 1), TextBlock(readme, 1));
+}
+
+std::string PageOfDocs(const char* name) {
+  return ReadFile(fs::path(PREHEND_SOURCE_DIR) / "docs" / name);
+}
+
+/// The page shows the first answer up to the decisive clause, and the whole of the second.
+TEST(DocumentOfExplain, ShowsAnswersAsTheyArePrinted) {
+  const std::string page = PageOfDocs("explain.md"), id = "four_centimetres_are_a_slide";
+  const std::string happened = Prehend({"explain", id, "--event", "sliding"}).out;
+  EXPECT_EQ(happened.substr(0, happened.find("  decisive: ")), TextBlock(page, 0));
+  const std::vector<std::string> words = {
+      "explain", id, "--set", "slide_distance=30 cm", "--expected", "sliding@1.7s"};
+  EXPECT_EQ(Prehend(words).out, TextBlock(page, 1));
+}
+
+TEST(DocumentOfFactsFromMotion, ShowsTheWarningAsItIsPrinted) {
+  const fs::path docs = fs::path(PREHEND_SOURCE_DIR) / "docs/motion_capture";
+  const std::string poses = (FreshFolder("facts_page") / "poses.jsonl").string();
+  ASSERT_EQ(Prehend({"import", (docs / "poses.csv").string(), "--map",
+                     (docs / "bodies.yaml").string(), "-o", poses})
+                .exit_code,
+            0);
+  std::string told = Prehend({"episode", "resegment", poses, "--grammar", "pick_and_place"}).err;
+  if (told.starts_with(PREHEND_SOURCE_DIR))
+    told.erase(0, std::string(PREHEND_SOURCE_DIR).size() + 1);
+  const std::string page = TextBlock(PageOfDocs("facts-from-motion.md"), 0);
+  EXPECT_EQ(told, page.substr(page.find('\n') + 1));
 }
 
 }  // namespace
