@@ -8,7 +8,7 @@ set(share ${CMAKE_INSTALL_DATADIR}/prehend)
 set(cmake_files ${CMAKE_INSTALL_LIBDIR}/cmake/prehend)
 
 install(TARGETS prehend RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-foreach(folder grammar/library physics/library scenarios golden)
+foreach(folder grammar/library physics/library scenarios golden docs)
   cmake_path(GET folder PARENT_PATH parent)
   install(DIRECTORY ${folder} DESTINATION ${share}/${parent})
 endforeach()

@@ -53,6 +53,13 @@ class Installed(unittest.TestCase):
         project = self.elsewhere / "kitchen"
         self.assertIn("0 passed, 0 failed", run(self.prehend, "check", cwd=project, code=5))
 
+    def test_pages_and_their_data_are_installed(self):
+        share = self.prefix / "share/prehend"
+        self.assertTrue((share / "docs/scenario-format.md").is_file())
+        run(self.prehend, "import", "docs/motion_capture/poses.csv", "--map", "docs/motion_capture/bodies.yaml", "-o",
+            self.elsewhere / "milk.jsonl", cwd=share)
+        self.assertIn("transporting", run(self.prehend, "episode", "resegment", "milk.jsonl", cwd=self.elsewhere))
+
     def test_writes_nothing_into_what_ships(self):
         before = sorted(self.prefix.rglob("*"))
         run(self.prehend, "check", "slide/four_centimetres_are_a_slide", cwd=self.elsewhere)
