@@ -51,8 +51,7 @@ TEST(Causes, ThreeSeededFaultsAreNamedWithTheirValues) {
   EXPECT_EQ(said.out.find("facts at"), std::string::npos) << "one line for each of so many";
 
   // The page shows these lines; ".." stands for those left out.
-  const std::string page =
-      ReadFile(fs::path(PREHEND_SOURCE_DIR) / "docs/regression-suite.md");
+  const std::string page = ReadFile(fs::path(PREHEND_SOURCE_DIR) / "docs/regression-suite.md");
   const std::size_t shown = page.find("3 causes:\n");
   std::istringstream lines(page.substr(shown, page.find("```", shown) - shown));
   for (std::string line; std::getline(lines, line);) {

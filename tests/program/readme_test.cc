@@ -74,5 +74,37 @@ TEST(DocumentOfFactsFromMotion, ShowsTheWarningAsItIsPrinted) {
   EXPECT_EQ(told, page.substr(page.find('\n') + 1));
 }
 
+TEST(DocumentOfTheFirstScenario, ItsLastQuestionIsTheOneThatCheckPrints) {
+  const fs::path project = FreshFolder("first_scenario") / "mine";
+  ASSERT_EQ(Prehend({"new", "--project", project.string()}).exit_code, 0);
+  const std::vector<std::string> mine = {"PREHEND_HOME=" + project.string(),
+                                         "PREHEND_COMMAND=./run", "CI="};
+  ASSERT_EQ(Prehend({"new", "first/carton_is_lifted"}, mine).exit_code, 0);
+  const Said accepted = Prehend({"accept", "carton_is_lifted", "--reason", "as its script"}, mine);
+  ASSERT_EQ(accepted.exit_code, 0) << accepted.out << accepted.err;
+  const std::string out =
+      Prehend({"check", "carton_is_lifted", "--no-pictures", "--set", "lift_rise=30cm"}, mine).out;
+  const std::size_t why = out.find("./run explain ");
+  ASSERT_NE(why, std::string::npos) << out;
+  const std::string page = PageOfDocs("first-scenario.md");
+  EXPECT_NE(page.find(out.substr(why, out.find('\n', why) - why)), std::string::npos) << out;
+  const std::string told = Prehend({"explain", "first/carton_is_lifted", "--set", "lift_rise=30cm",
+                                    "--expected", "picking_up@1.4750s"},
+                                   mine)
+                               .out;
+  EXPECT_NE(told.find("is 122 mm, 178 mm below 300 mm"), std::string::npos) << told;
+}
+
+TEST(Readme, ItsQuestionHasANumberForAnAnswer) {
+  const std::string readme = ReadFile(fs::path(PREHEND_SOURCE_DIR) / "README.md"),
+                    asks = "./run explain milk_carton_wrap --expected ";
+  const std::size_t at = readme.find(asks);
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t begin = at + asks.size();
+  const Said said = Prehend({"explain", "milk_carton_wrap", "--expected",
+                             readme.substr(begin, readme.find(' ', begin) - begin)});
+  EXPECT_NE(said.out.find("\n    with "), std::string::npos) << said.out;
+}
+
 }  // namespace
 }  // namespace prehend::house

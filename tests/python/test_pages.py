@@ -20,6 +20,7 @@ class Pages(unittest.TestCase):
             for number, block in enumerate(re.findall(r"```python\n(.*?)```", page, re.S)):
                 if "help(" not in block:
                     exec(compile(block, f"docs/python.md, block {number}", "exec"), names)
+        self.assertEqual((takes.ROOT / "docs/python_events.svg").read_text("utf-8"), names["events"].svg())
         said = told.getvalue()
         for words in ("transporting  right_hand   milk", "contact.grammar:10:17: warning", "s: picking_up of", "lift_rise",
                       "divide milliseconds by 1000"):
