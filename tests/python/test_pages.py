@@ -25,7 +25,9 @@ class Pages(unittest.TestCase):
         for words in ("transporting  right_hand   milk", "contact.grammar:10:17: warning", "s: picking_up of", "lift_rise",
                       "divide milliseconds by 1000"):
             self.assertIn(words, said)
-        for line in re.search(r"```text\n(.*?)```", page, re.S)[1].splitlines():  # ".." stands for what is left out
+        warned = re.search(r"```text\n(.*?)```", page, re.S)[1].splitlines()  # ".." stands for what is left out
+        self.assertEqual(len(warned), said.count("warning:"))
+        for line in warned:
             self.assertIn(line.strip("."), said)
         first = re.search(r"```python\n(.*?)```", page, re.S)[1]
         self.assertLessEqual(len([line for line in first.splitlines() if line.strip()]), 12)
