@@ -207,6 +207,12 @@ TEST_F(Recognisers, BrokenOnesAreNamedAndNothingIsLeft) {
        "the episode has no entity 'milc'"},
       {"unknown event", Python("    grasp['event'] = 'graspin'; say(grasp)\n"),
        "its first line has no event 'graspin'"},
+      {"a hand that is none",
+       Python(
+           "    if tick < 0: say(dict(grasp, roles={'hand': 'milk', 'object': 'right_hand'}))\n"),
+       "'milk' is never 'hand' of 'grasping', which takes a Hand"},
+      {"printed twice", Python("    if tick < 0: say(grasp); say(grasp)\n"),
+       "it has printed this event before"},
       {"a role is missing", Python("    del grasp['roles']['hand']; say(grasp)\n"),
        "grasping has the roles hand, object"},
       {"half a tick", Python("    grasp['end_tick'] = 0.5; say(grasp)\n"),
@@ -316,6 +322,19 @@ TEST_F(Recognisers, AFailedEpisodeIsInNoFigure) {
   EXPECT_EQ(both[0]["episodes"], 2);
   EXPECT_EQ(both[1]["episodes"], 1);
   EXPECT_EQ(both[1]["failed"], json({"other"}));
+}
+
+TEST_F(Recognisers, AnEntityOfAnotherClassFailsItAndNotTheGrammar) {
+  const std::string command =
+      Program(Python("    if 'end_tick' in line: say(dict(grasp, roles={'hand': 'milk', 'object': "
+                     "'right_hand'}))\n"));
+  const Said alone = Prehend({"score", Take(), "--truth", docs_ + "/labels.csv", "--map",
+                              docs_ + "/labels.yaml", "--grammar", kGrammar, "--json"});
+  const Said said = Score(Take(), command, {"--grammar", kGrammar, "--json"});
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_EQ(Has(said.err, "prehend: milk was not scored by python3"), "");
+  EXPECT_EQ(Has(said.err, ":64:1: error: 'milk' is never 'hand' of 'grasping'"), "");
+  EXPECT_EQ(json::parse(said.out)["grammars"][0], json::parse(alone.out)["grammars"][0]);
 }
 
 TEST_F(Recognisers, OneProcessForAllEpisodes) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "harness/base/process/child_process.h"
@@ -45,6 +46,7 @@ class Recogniser::Talk {
     episode_ = &episode;
     done_ = {.events = {.file = choice_.command}, .covers = std::move(done_.covers)};
     entities_.clear();
+    printed_.clear();
     for (const grammar::EntityInfo& one : episode.entities.entities) entities_.push_back(one.name);
     sent_ = ready_ = -1;
     is_done_ = false;
@@ -289,6 +291,8 @@ class Recogniser::Talk {
                    fmt::format("{} has the roles {}", label.text, fmt::join(roles, ", ")), "");
     if (!line.contains("begin_tick") || !line.contains("end_tick"))
       return Break(Rule::kTicks, "an event has a begin_tick and an end_tick", "");
+    if (!printed_.insert(line).second)
+      return Break(Rule::kEvents, "it has printed this event before", "an event is printed once");
     if (label.begin_s < 0 || label.end_s > static_cast<double>(sent_) / per_s)
       return Break(Rule::kTicks,
                    fmt::format("the event lies at {} to {}, and what it has got at 0 to {}",
@@ -305,6 +309,7 @@ class Recogniser::Talk {
   ChildProcess process_;
   std::map<std::string, std::vector<std::string>> declared_;  ///< events and their roles
   std::vector<std::string> entities_;
+  std::set<json> printed_;
   episode::WrittenFacts facts_;
   bool has_header_ = false, is_batch_ = false, is_done_ = false;
   int line_ = 0;

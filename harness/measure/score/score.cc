@@ -304,7 +304,12 @@ Result<grammar::Timeline> Foreign::Find(const std::vector<episode::Take>& takes,
   episode.notes += exchange::WarningsOf(*said);
   for (const auto& [label, count] : said->counted().ignored)
     if (label != "background") episode.ignored[label] += static_cast<int>(count);
-  return said->Found(0, watched.entities.entities, rate, episode.ticks, compared);
+  auto found = said->Found(0, watched.entities.entities, rate, episode.ticks, compared);
+  // Of its own lines, and not of the map.
+  if (source_.kind != Source::Kind::kProgram || found || found.error().front().file != source_.text)
+    return found;
+  episode.failure = grammar::Format(found.error());
+  return grammar::Timeline{.ticks_per_second = rate};
 }
 
 Result<EpisodeToScore> HeardIn(episode::Episode& episode, const Asking& asking) {
