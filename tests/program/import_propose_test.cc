@@ -193,6 +193,67 @@ TEST(ImportPropose, PointsThatAreCountedMayBeMarkersOfOneBody) {
   EXPECT_EQ(of_two.find("markers of one body"), std::string::npos) << of_two;
 }
 
+// y down, ahead and 35 degrees down: the cup is lifted along none of its axes.
+TEST(ImportPropose, OfACameraThatLooksDownItIsSaidAlongWhatThingsAreLifted) {
+  const auto folder = FreshFolder("propose");
+  const auto seen = [](const Row& r) {
+    return Three({0, r.x, -0.57358 * r.y - 0.81915 * r.z, 0.81915 * r.y - 0.57358 * r.z}, 1, ",") +
+           ",0.88701,0,0,0.46175";
+  };
+  const std::string csv =
+      "t,Cup_x,Cup_y,Cup_z,Cup_qx,Cup_qy,Cup_qz,Cup_qw,Hand_x,Hand_y,Hand_z,Hand_qx,Hand_qy,"
+      "Hand_qz,Hand_qw\n" +
+      Rows([&](int i) {
+        return Text(i / kRate_hz) + "," + seen(CupAt(i / kRate_hz)) + "," +
+               seen(HandAt(i / kRate_hz));
+      });
+  const std::string map = Proposed(folder, "a.csv", csv);
+  EXPECT_NE(map.find("# doubt: nothing is lifted along up; 'Cup' is carried 0.21 m off the line "
+                     "from where it stood to where it stands: if that was up, up: [0.00, -0.82, "
+                     "-0.57] in the place of axes\n"),
+            std::string::npos)
+      << map;
+  // The names of the columns say which is w.
+  EXPECT_EQ(map.find("this looks like"), std::string::npos) << map;
+  const std::size_t axes = map.find("axes: z_up"), table = map.find("  table: ");
+  ASSERT_NE(axes, std::string::npos) << map;
+  std::string right = map;
+  if (table != std::string::npos) right.erase(table, right.find('\n', table) + 1 - table);
+  right.replace(axes, 10, "up: [0.00, -0.82, -0.57]");
+  const Said said = ImportFile(folder, "a.csv", csv, right);
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(said.err.find("this looks like"), std::string::npos) << said.err;
+}
+
+TEST(ImportPropose, NamesOfBodiesThatLookLikeSomethingElse) {
+  const auto folder = FreshFolder("propose");
+  const auto of = [&](const std::string& cup, const std::string& hand) {
+    std::string head = "t";
+    for (const std::string& body : {cup, hand})
+      for (const char* axis : {"_x", "_y", "_z"}) head += "," + body + axis;
+    return Proposed(folder, "a.csv",
+                    Plain(
+                        head, ",", [](int i) { return Text(i / kRate_hz) + ","; }, 1, false, ""));
+  };
+  // "R_x" is of a body, and no rotation; it is used.
+  const std::string letters = of("C", "R");
+  EXPECT_NE(letters.find("  r: {from: \"R\""), std::string::npos) << letters;
+  EXPECT_EQ(letters.find("left aside"), std::string::npos) << letters;
+  const std::string chinese = of("杯", "手");
+  EXPECT_NE(chinese.find("  body: {from: \"杯\", class: Body, size_m: unknown}\n"),
+            std::string::npos)
+      << chinese;
+  EXPECT_NE(chinese.find("  body_2: {from: \"手\", class: Body, size_m: unknown}\n"),
+            std::string::npos)
+      << chinese;
+  const std::string no_name = of("y", "hand");  // "y" is true or false in YAML
+  EXPECT_NE(no_name.find("  body_y: {from: \"y\""), std::string::npos) << no_name;
+  const std::string doubt = "# doubt: 'hand_cream' is a hand by its name";
+  const std::string cream = of("hand_cream", "hand_r");
+  EXPECT_NE(cream.find(doubt), std::string::npos) << cream;
+  EXPECT_EQ(cream.find("# doubt: 'hand_r'"), std::string::npos) << cream;
+}
+
 TEST(ImportPropose, SkeletonsAndMessages) {
   const auto folder = FreshFolder("propose");
   const std::string docs = PREHEND_SOURCE_DIR "/docs/motion_capture/";

@@ -48,7 +48,7 @@ std::string SwingingMap(const char* rate_hz, const std::string& hand = "hand: tr
 
 TEST(ImportWarnings, ASmoothPathDoesNotTremble) {
   const auto folder = FreshFolder("import_warnings");
-  for (const char* rate_hz : {"15", "25", "30", "120"}) {
+  for (const char* rate_hz : {"3", "5", "15", "25", "30", "120"}) {
     const Said said =
         ImportCsv(folder, SwingingCsv(std::stod(rate_hz)), SwingingMap(rate_hz), {"--check"});
     EXPECT_EQ(said.err.find("tremble"), std::string::npos) << rate_hz << ": " << said.err;
@@ -81,6 +81,29 @@ TEST(ImportWarnings, NoiseOnASmoothPathTremblesAndItsRemedyHelps) {
   const Said smooth =
       ImportCsv(folder, csv, SwingingMap("30") + rough.err.substr(at, 13) + "\n", {"--check"});
   EXPECT_EQ(smooth.err.find("tremble"), std::string::npos) << smooth.err;
+}
+
+TEST(ImportWarnings, NoMeansAreProposedThatTheMapRefuses) {
+  const auto folder = FreshFolder("import_warnings");
+  const Said said = ImportCsv(folder, SwingingCsv(10, 0.1), SwingingMap("10"), {"--check"});
+  EXPECT_NE(said.err.find("'hand' trembles by"), std::string::npos) << said.err;
+  EXPECT_EQ(said.err.find("smooth_s"), std::string::npos) << said.err;
+}
+
+TEST(ImportWarnings, OfFewPosesASecondItIsSaidWhatIsNotRecognised) {
+  const auto folder = FreshFolder("import_warnings");
+  const auto says = [&](const char* rate_hz, const std::string& more = "") {
+    return ImportCsv(folder, SwingingCsv(std::stod(rate_hz)), SwingingMap(rate_hz) + more,
+                     {"--check"})
+        .err;
+  };
+  EXPECT_NE(says("5").find("warning: poses are 0.2 s apart, and what takes less than two of these, "
+                           "like picking_up, is not recognised: correct rate_hz or time_unit; or, "
+                           "if it is right, sure: [time]\n"),
+            std::string::npos)
+      << says("5");
+  EXPECT_EQ(says("5", "sure: [time]\n").find("is not recognised"), std::string::npos);
+  EXPECT_EQ(says("10").find("is not recognised"), std::string::npos) << says("10");
 }
 
 /// The errors, without what comes after the first line of each.

@@ -173,14 +173,14 @@ class Finder {
     FindTime(names);
     if (one && of.empty()) FindKeys(names);
     const auto in = [](const std::vector<std::string>& list, const std::string& name) {
-      return std::ranges::find(list, name) != list.end();
+      return std::ranges::any_of(list, [&](const std::string& pattern) {
+        return name == pattern || BodyOfColumn(pattern, name);
+      });
     };
-    for (const std::string& name : names) {
-      const std::string pattern = one ? name : parts_[name].Pattern();
+    for (const std::string& name : names)
       if (!name.empty() && name != found_.time && !in(found_.keys, name) &&
-          !in(found_.position, pattern) && !in(found_.orientation, pattern))
+          !in(found_.position, name) && !in(found_.orientation, name))
         found_.others.push_back(name);
-    }
     return found_;
   }
 
@@ -270,6 +270,14 @@ NamedTime TimeAmong(const std::vector<std::string>& names, const CellsOfName& ce
   unit = step < 0.6 ? "s" : step == 1 ? "frame" : step < 500 ? "ms" : step < 5e5 ? "us" : "ns";
   time.doubt = "by its steps";
   return time;
+}
+
+std::optional<std::string> BodyOfColumn(const std::string& pattern, const std::string& name) {
+  const std::size_t at = pattern.find("{}");
+  if (at == std::string::npos || name.size() + 2 <= pattern.size() ||
+      !name.starts_with(pattern.substr(0, at)) || !name.ends_with(pattern.substr(at + 2)))
+    return std::nullopt;
+  return name.substr(at, name.size() + 2 - pattern.size());
 }
 
 std::optional<NamedColumns> ColumnsOf(std::string_view text) {

@@ -40,6 +40,9 @@ using CellsOfName = std::function<std::vector<std::string>(const std::string&)>;
 NamedTime TimeAmong(const std::vector<std::string>& names, const CellsOfName& cells_of,
                     bool decimal_comma);
 
+/// "cup" of the pattern "{}_x" and the column "cup_x".
+std::optional<std::string> BodyOfColumn(const std::string& pattern, const std::string& name);
+
 /// By the first lines of a table; nothing if no three columns are called x, y and z.
 std::optional<NamedColumns> ColumnsOf(std::string_view text);
 

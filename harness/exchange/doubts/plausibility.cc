@@ -10,6 +10,7 @@ namespace prehend::exchange {
 namespace {
 
 constexpr double kLeastRate_hz = 2, kMostRate_hz = 2500;
+constexpr double kLiftsRate_hz = 8;  ///< from here on a picking up of 0.2 s is seen
 constexpr double kLeastSpeed_m_per_s = 0.02, kMostSpeed_m_per_s = 20;  ///< of what moves most
 constexpr double kJump_m = 0.05;  ///< into a pose that stands for none
 constexpr double kNear_m = 0.5;   ///< something gets so near to what stands
@@ -115,7 +116,15 @@ class Judge {
                                           : "correct rate_hz or time_unit";
       return guess;
     }
-    if (rate_hz >= kLeastRate_hz && rate_hz <= kMostRate_hz) return guess;
+    if (rate_hz >= kLiftsRate_hz && rate_hz <= kMostRate_hz) return guess;
+    if (rate_hz >= kLeastRate_hz && rate_hz < kLiftsRate_hz) {
+      guess.signs = {
+          fmt::format("poses are {:.3g} s apart, and what takes less than two of these, "
+                      "like picking_up, is not recognised",
+                      step_s)};
+      guess.remedy = "correct rate_hz or time_unit";
+      return guess;
+    }
     guess.signs.push_back(
         fmt::format("poses are {:.4g} s apart: {:.4g} Hz{}", step_s, rate_hz,
                     poses_.counts_frames             ? ""

@@ -40,6 +40,8 @@ Guess GuessUnit(const PoseFile& poses, const ImportMap& map);
 Guess GuessPlace(const PoseFile& poses, const ImportMap& map);
 /// `any_sign`: one is enough, where nothing was said before.
 Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign = false);
+/// Whether nothing is lifted along up, but something along no axis of the file; or "".
+std::string LiftedAskew(const PoseFile& poses, const ImportMap& map);
 Guess GuessOrder(const PoseFile& poses, const ImportMap& map);
 Guess GuessAngleUnit(const PoseFile& poses, const ImportMap& map);
 Guess GuessHandedness(const PoseFile& poses, const ImportMap& map);

@@ -94,6 +94,24 @@ class WayUp {
     return votes;
   }
 
+  /// How far what is carried gets off the line between its rests, and whose way it is, at most.
+  Eigen::Vector3d OffLine(std::string& whose) const {
+    Eigen::Vector3d most = Eigen::Vector3d::Zero();
+    for (std::size_t i = 1; i < seen_.rests.size(); ++i) {
+      const Rest &from = seen_.rests[i - 1], &to = seen_.rests[i];
+      if (from.body != to.body || !from.stands || !to.stands || Jumps(from, to)) continue;
+      const Eigen::Vector3d along = (to.p_m - from.p_m).normalized();
+      for (std::size_t k = from.begin; k < to.end; ++k) {
+        const Eigen::Vector3d way = seen_.looks[from.body][k].p_m - from.p_m,
+                              off = way - along * along.dot(way);
+        if (off.norm() <= most.norm()) continue;
+        most = off;
+        whose = seen_.entities[from.body]->from->value;
+      }
+    }
+    return most;
+  }
+
   /// What stands is on top of what the map places, were `turn` the way to the recording.
   Votes OnTops(const Eigen::Quaterniond& turn) const {
     Votes votes;
@@ -256,6 +274,21 @@ Guess GuessAxes(const PoseFile& poses, const ImportMap& map, bool any_sign) {
   return guess;
 }
 
+std::string LiftedAskew(const PoseFile& poses, const ImportMap& map) {
+  const MotionSeen seen = MotionIn(poses, map, map.MetresPerUnit());
+  const WayUp way(seen, map);
+  double highest_m = 0;
+  std::string whose;
+  const Votes lifts = way.Lifts(map.Up(), highest_m, whose);
+  const Eigen::Vector3d off = way.OffLine(whose);
+  if (lifts.yes > 0 || lifts.no == 0 || off.norm() < kLift_m) return "";
+  const Eigen::Array3d up = (100 * off.normalized().array()).round() / 100 + 0.0;  // no "-0"
+  return fmt::format(
+      "nothing is lifted along up; '{}' is carried {:.2f} m off the line from where it stood to "
+      "where it stands: if that was up, up: [{:.2f}, {:.2f}, {:.2f}] in the place of axes",
+      whose, off.norm(), up.x(), up.y(), up.z());
+}
+
 namespace {
 
 /// How far a body goes while none of `others` is within reach of it, m.
@@ -375,7 +408,11 @@ Guess GuessOrder(const PoseFile& poses, const ImportMap& map) {
       poses, [](const auto& at) { return std::abs(at.q.w()); }, grippers);
   const double other_w = MedianOfPoses(
       poses, [&](const auto& at) { return std::abs(is_wxyz ? at.q.z() : at.q.x()); }, grippers);
-  const bool looks_so = w <= 0.5 && other_w >= 0.85;
+  // Names of columns that say w are right.
+  const auto& names = map.columns.quaternion;
+  const std::string is_w = names.empty() ? "" : names[is_wxyz ? 0 : 3].value;
+  const bool says_w = is_w.ends_with('w') || is_w.ends_with('W');
+  const bool looks_so = !says_w && w <= 0.5 && other_w >= 0.85;
   if (looks_so)
     guess.signs.push_back(
         fmt::format("the {} of four numbers, as w, is {:.2f} (median, without its sign), the {} is "
@@ -407,7 +444,8 @@ Guess GuessOrder(const PoseFile& poses, const ImportMap& map) {
   }
   const double askew = Median(std::move(askew_deg)),
                other_askew = Median(std::move(other_askew_deg));
-  const bool is_askew = !looks_so && askew > kAskew_deg && other_askew < kUprightMost_deg;
+  const bool is_askew =
+      !says_w && !looks_so && askew > kAskew_deg && other_askew < kUprightMost_deg;
   if (is_askew)
     guess.signs.push_back(fmt::format(
         "bodies are {:.0f} degrees away from upright (median), in the other order {:.0f}", askew,

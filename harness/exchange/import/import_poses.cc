@@ -26,7 +26,7 @@ constexpr double kGap = 1.5;         ///< of the usual step: longer is a gap
 constexpr double kFarthest_m = 1e4;  ///< of the recording format
 constexpr double kUnmoved_m = 0.001;
 constexpr double kTrembles_m = 0.0008;  ///< more than this hides how things move
-constexpr double kMostTrembling_m = 0.5;
+constexpr double kMostTrembling_m = 0.5, kTrembleRate_hz = 8;  ///< fewer poses: it is motion
 constexpr double kSmoothedOff_m = 0.02;
 constexpr double kFixedMoves_m = 0.03;
 
@@ -415,7 +415,9 @@ class Importer {
   void NoteTrembling(double as_read_m, const PoseSeries& poses, const EntityReport& report) {
     const double trembling_m = map_.smooth_s > 0 ? Trembling_m(poses) : as_read_m;
     // What goes farther from frame to frame jumps, and means hide nothing of that.
-    if (trembling_m <= kTrembles_m || trembling_m > kMostTrembling_m) return;
+    if (trembling_m <= kTrembles_m || trembling_m > kMostTrembling_m ||
+        report.rate_hz < kTrembleRate_hz)
+      return;
     trembling_.push_back("'" + report.from + "'");
     trembles_m_ = std::max(trembles_m_, trembling_m);
     smooth_s_ = std::max(smooth_s_, std::ceil(10 * as_read_m / kTrembles_m / report.rate_hz) / 10);
@@ -428,7 +430,7 @@ class Importer {
     Warn(fmt::format("{} {} by {}{:.1f} mm from frame to frame, which hides how {}{}",
                      fmt::join(trembling_, ", "), one ? "trembles" : "tremble", one ? "" : "up to ",
                      1e3 * trembles_m_, one ? "it moves" : "they move",
-                     smooth_s_ > map_.smooth_s
+                     smooth_s_ > map_.smooth_s && smooth_s_ <= kMostSmooth_s
                          ? fmt::format("; smooth_s: {:g} takes means over that long", smooth_s_)
                          : ""));
   }

@@ -113,7 +113,7 @@ class MapProposer {
         continue;
       }
       if (!body.has_order) order_ = "xyzw";
-      Draft draft = DraftOf(WordsIn(body.called).empty() ? "body" : body.called, taken);
+      Draft draft = DraftOf(body.called, taken);
       draft.from = body.From(), draft.keys = body.Keys();
       bodies_.push_back(std::move(draft));
     }
@@ -177,7 +177,7 @@ class MapProposer {
                               }) >= 5;
     for (const std::string& name : names) {
       const Words words = WordsIn(name);
-      if (name.size() > kLongestName || words.empty() || bodies_.size() >= kMostEntities ||
+      if (name.size() > kLongestName || bodies_.size() >= kMostEntities ||
           (has_skeleton && IsBone(words)))
         aside_.push_back(name);
       else
@@ -204,13 +204,17 @@ class MapProposer {
                         fmt::join(markers, ", ")));
   }
 
-  static Draft DraftOf(const std::string& from, std::set<std::string>& taken) {
+  Draft DraftOf(const std::string& from, std::set<std::string>& taken) {
     const std::size_t last = from.find_last_of("[:");
     Words words = WordsIn(last == std::string::npos ? from : from.substr(last + 1));
     const bool is_side = words.size() == 1 && (words[0] == "left" || words[0] == "right");
     if (words.empty() || is_side || taken.contains(fmt::format("{}", fmt::join(words, "_"))))
       words = WordsIn(from);
+    if (words.empty()) words = {"body"};  // of letters that names of entities do not have
     Draft draft{.from = from, .hand = IsHand(words)};
+    if (draft.hand && !IsHand({words.back()}) && !IsSide(words.back()))
+      doubts_.push_back("'" + from +
+                        "' is a hand by its name; if it is none: class, not hand: true");
     draft.name = fmt::format("{}", fmt::join(words, "_"));
     for (const char* side : {"right", "left"}) {
       const std::string name = side + std::string("_hand");
@@ -219,7 +223,10 @@ class MapProposer {
           AnyOf(words, {side, letter, letter + "h", letter + "hand", side + std::string("hand")}))
         draft.name = name;
     }
-    if (std::isdigit(static_cast<unsigned char>(draft.name[0]))) draft.name = "body_" + draft.name;
+    static const std::set<std::string> kNoNames = {"y",   "n",    "yes",   "no",  "on",
+                                                   "off", "true", "false", "null"};  // in YAML
+    if (std::isdigit(static_cast<unsigned char>(draft.name[0])) || kNoNames.contains(draft.name))
+      draft.name = "body_" + draft.name;
     const std::string name = draft.name;
     for (int i = 2; !taken.insert(draft.name).second; ++i)
       draft.name = fmt::format("{}_{}", name, i);
@@ -279,8 +286,16 @@ class MapProposer {
       order_ = order.substr(order.find(' ') + 1);
       return true;
     }
+    if (std::string askew = LiftedAskew(poses, map); !askew.empty())
+      doubts_.push_back(std::move(askew));
     LookAt(poses, map);
     return false;
+  }
+
+  /// "left", "r", "2".
+  static bool IsSide(const std::string& word) {
+    return word.size() == 1 || word == "left" || word == "right" ||
+           std::isdigit(static_cast<unsigned char>(word[0]));
   }
 
   /// Where things stand upright; what is a table; whether 0, 0, 0 is a place.

@@ -31,6 +31,8 @@ enum class Warning { kUnit, kAxes, kOrder, kTime, kPlace, kZero, kUpright, kHand
 inline constexpr std::array kWarningNames = {
     "unit", "axes", "quaternion_order", "time", "place", "zero", "upright", "handed", "angle_unit"};
 
+inline constexpr double kMostSmooth_s = 2;
+
 /// The names of columns. `{}` in a name stands for the body's name: then a row has all bodies.
 struct Columns {
   Where where;

@@ -249,7 +249,7 @@ ValueFormat<ImportMap> MapFormat() {
       .Optional("outlier", &M::outlier,
                 Choice<OutlierRule>({{"keep", OutlierRule::kKeep}, {"lost", OutlierRule::kLost}}),
                 "Poses that leave and come back faster than hands do: as they are, or not tracked.")
-      .Optional("smooth_s", &M::smooth_s, Number(0, 2),
+      .Optional("smooth_s", &M::smooth_s, Number(0, kMostSmooth_s),
                 "Each pose is the mean of those at most half of this before or after it.")
       .Optional("sure", &M::sure, ListOf(Choice<Warning>(warnings), 0, kWarningNames.size()),
                 "Looks wrong, but is right.")

@@ -15,6 +15,7 @@
 #include "grammar/base/wording.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
+#include "harness/exchange/cells/column_names.h"
 #include "harness/exchange/poses/pose_file.h"
 #include "harness/exchange/poses/table_layout.h"
 
@@ -336,16 +337,10 @@ class CsvPoseReader {
 
   /// The names for which the pattern of x has a column.
   std::vector<std::string> BodiesOfHeader() const {
-    const std::string& pattern = map_.columns.position.front().value;
-    const std::size_t at = pattern.find("{}");
-    if (at == std::string::npos) return {};
-    const std::string before = pattern.substr(0, at), after = pattern.substr(at + 2);
     std::vector<std::string> bodies;
-    for (const std::string& name : names_) {
-      if (name.size() > before.size() + after.size() && name.starts_with(before) &&
-          name.ends_with(after))
-        bodies.push_back(name.substr(before.size(), name.size() - before.size() - after.size()));
-    }
+    for (const std::string& name : names_)
+      if (auto body = BodyOfColumn(map_.columns.position.front().value, name))
+        bodies.push_back(*std::move(body));
     return bodies;
   }
 
