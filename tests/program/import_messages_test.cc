@@ -295,8 +295,7 @@ TEST_F(ImportMessages, PositionsAloneAreReadAndTold) {
                                  }}}),
                           Map("/a", "/b"));
   EXPECT_EQ(all.exit_code, 0) << all.err;
-  EXPECT_NE(all.err.find("warning: the file has positions only, of 2 bodies"),
-            std::string::npos)
+  EXPECT_NE(all.err.find("warning: the file has positions only, of 2 bodies"), std::string::npos)
       << all.err;
 }
 
