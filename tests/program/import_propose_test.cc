@@ -235,10 +235,6 @@ TEST(ImportPropose, NamesOfBodiesThatLookLikeSomethingElse) {
                     Plain(
                         head, ",", [](int i) { return Text(i / kRate_hz) + ","; }, 1, false, ""));
   };
-  // "R_x" is of a body, and no rotation; it is used.
-  const std::string letters = of("C", "R");
-  EXPECT_NE(letters.find("  r: {from: \"R\""), std::string::npos) << letters;
-  EXPECT_EQ(letters.find("left aside"), std::string::npos) << letters;
   const std::string chinese = of("杯", "手");
   EXPECT_NE(chinese.find("  body: {from: \"杯\", class: Body, size_m: unknown}\n"),
             std::string::npos)

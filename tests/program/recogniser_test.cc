@@ -333,7 +333,7 @@ TEST_F(Recognisers, AnEntityOfAnotherClassFailsItAndNotTheGrammar) {
   const Said said = Score(Take(), command, {"--grammar", kGrammar, "--json"});
   EXPECT_EQ(said.exit_code, 2);
   EXPECT_EQ(Has(said.err, "prehend: milk was not scored by python3"), "");
-  EXPECT_EQ(Has(said.err, ":64:1: error: 'milk' is never 'hand' of 'grasping'"), "");
+  EXPECT_EQ(Has(said.err, ":312:1: error: 'milk' is never 'hand' of 'grasping'"), "");
   EXPECT_EQ(json::parse(said.out)["grammars"][0], json::parse(alone.out)["grammars"][0]);
 }
 

@@ -408,11 +408,11 @@ Guess GuessOrder(const PoseFile& poses, const ImportMap& map) {
       poses, [](const auto& at) { return std::abs(at.q.w()); }, grippers);
   const double other_w = MedianOfPoses(
       poses, [&](const auto& at) { return std::abs(is_wxyz ? at.q.z() : at.q.x()); }, grippers);
-  // Names of columns that say w are right.
+  // Names of columns that say w are believed, but where nothing turns and w is nothing.
   const auto& names = map.columns.quaternion;
   const std::string is_w = names.empty() ? "" : names[is_wxyz ? 0 : 3].value;
   const bool says_w = is_w.ends_with('w') || is_w.ends_with('W');
-  const bool looks_so = !says_w && w <= 0.5 && other_w >= 0.85;
+  const bool looks_so = w <= (says_w ? 0.05 : 0.5) && other_w >= (says_w ? 0.99 : 0.85);
   if (looks_so)
     guess.signs.push_back(
         fmt::format("the {} of four numbers, as w, is {:.2f} (median, without its sign), the {} is "

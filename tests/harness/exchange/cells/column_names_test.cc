@@ -90,8 +90,12 @@ TEST(ColumnNames, SeparatorsHeadsKeysAndUnits) {
   EXPECT_EQ(Of("t,head_r_x,head_r_y,head_r_z,cup_x,cup_y,cup_z\n0,1,2,3,1,2,3\n").position,
             (Names{"cup_x", "cup_y", "cup_z"}));
   // Bodies whose columns are called in another way are left aside, and said.
+  EXPECT_EQ(Of("t,a_x,a_y,a_z,b_x,b_y,b_z,c.x,c.y,c.z\n0,1,2,3,1,2,3,1,2,3\n").others,
+            (Names{"c.x", "c.y", "c.z"}));
+  // These are read: one is the body "c_pos", the other is called R, and is no rotation.
   EXPECT_EQ(Of("t,a_x,a_y,a_z,b_x,b_y,b_z,c_pos_x,c_pos_y,c_pos_z\n0,1,2,3,1,2,3,1,2,3\n").others,
-            (Names{"c_pos_x", "c_pos_y", "c_pos_z"}));
+            Names{});
+  EXPECT_EQ(Of("t,R_x,R_y,R_z,C_x,C_y,C_z,B_x,B_y,B_z\n0,1,2,3,1,2,3,1,2,3\n").others, Names{});
   EXPECT_FALSE(ColumnsOf("when,what\n1,2\n"));
   EXPECT_FALSE(ColumnsOf("1,2,3\n4,5,6\n"));
   EXPECT_FALSE(ColumnsOf(""));
