@@ -11,6 +11,7 @@
 #include "harness/show/explain/explain.h"
 #include "harness/show/explain/query.h"
 #include "harness/show/explain/why_event.h"
+#include "harness/suite/check/last_pass.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::cli {
