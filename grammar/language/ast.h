@@ -206,7 +206,5 @@ struct File {
 std::string Dump(const Expr& expr);
 /// What the law says, without its name and roles.
 std::string Dump(const Law& law);
-/// The whole file as fully bracketed text in SI units, one definition per line.
-std::string Dump(const File& file);
 
 }  // namespace prehend::grammar::ast

@@ -8,6 +8,7 @@
 #include "grammar/language/lexer.h"
 #include "grammar/language/parser.h"
 #include "tests/grammar/corpus.h"
+#include "tests/grammar/language/dump_file.h"
 
 namespace prehend::grammar {
 namespace {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/grammar/corpus.h"
+#include "tests/grammar/language/dump_file.h"
 
 namespace prehend::grammar {
 namespace {
