@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """parts.py PROGRAM: parts of a suite and of trials that are stopped, merged, lost, and there twice (docs/many-machines.md)."""
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -242,10 +243,16 @@ def one_writer(folder):
     file = folder / "written.episodes"
     words = ["check", "long/a_table_is_set_for_two", "milk_carton_wrap", "--no-pictures", "--jobs", "1", "--record", file, "--report"]
     first = begun([*words, folder / "first"], lambda: file.exists() and file.stat().st_size > 100_000)
-    refused = f"prehend: --record: {file}: another process is writing this file\n"
-    for second in ([*words, folder / "second", "--shuffle", "3"], ["run", "milk_carton_wrap", "--record", file]):
-        assert refused in run(*second, code=3).stderr
-    assert "another process is writing this file" in run("episode", "merge", folder / "part-1.episodes", "-o", file, code=3).stderr
+    refused = f"{file}: another process is writing this file\n"
+    others = (
+        [*words, folder / "second", "--shuffle", "3"],
+        ["run", "milk_carton_wrap", "--record", file],
+        ["episode", "merge", folder / "part-1.episodes", "-o", file],
+    )
+    with concurrent.futures.ThreadPoolExecutor() as at_once:  # each waits for a second, and the first goes on
+        said = list(at_once.map(lambda other: run(*other, code=3).stderr, others))
+    assert all(refused in one for one in said), said
+    assert all("prehend: --record: " in one for one in said[:2]), said
     said = first.communicate()
     assert first.returncode == 0, said
     assert len(set(episodes(file))) == len(episodes(file)) == 2
