@@ -13,7 +13,7 @@ namespace prehend {
 
 /// The number that all of `text` is; none if it is something else, or too large for the type.
 template <typename Number>
-std::optional<Number> WholeNumber(std::string_view text) {
+std::optional<Number> NumberFrom(std::string_view text) {
   Number number{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;

@@ -184,7 +184,7 @@ ScalarMeaning MeaningOf(const YamlNode& node) {
     return meaning;
   }
   if (const JsonNumber match = MatchJsonNumber(text); match.matches) {
-    meaning.number = WholeNumber<double>(text);
+    meaning.number = NumberFrom<double>(text);
     if (!meaning.number || !std::isfinite(*meaning.number))
       return Ambiguous("outside the range of numbers", "");
     meaning.integer = match.integer;
@@ -251,7 +251,7 @@ std::string LookAlikeRemedy(std::string_view text) {
 
 const YamlNode* ChildOf(const YamlNode& node, std::string_view step) {
   if (node.kind != Kind::kSequence) return node.Find(step);
-  const auto index = WholeNumber<std::size_t>(step);
+  const auto index = NumberFrom<std::size_t>(step);
   return index && *index < node.children.size() ? &node.children[*index] : nullptr;
 }
 

@@ -17,7 +17,7 @@ template <typename Number>
 ValueRule RuleFor(const char* what, Number least, Number most) {
   const std::string range = fmt::format("{} to {}", least, most);
   return {.range = range, .problem = [=](const std::string& value) {
-            const auto number = WholeNumber<Number>(value);
+            const auto number = NumberFrom<Number>(value);
             // A comparison with nan is false: it is refused, too.
             if (number && *number >= least && *number <= most) return std::string();
             return fmt::format("found '{}', wanted {} from {}", value, what, range);
@@ -113,15 +113,15 @@ std::string ParsedOptions::TextOr(const std::string& name, const std::string& fa
 }
 
 int ParsedOptions::IntOr(const std::string& name, int fallback) const {
-  return Has(name) ? WholeNumber<int>(All(name).back()).value() : fallback;
+  return Has(name) ? NumberFrom<int>(All(name).back()).value() : fallback;
 }
 
 std::uint64_t ParsedOptions::UnsignedOr(const std::string& name, std::uint64_t fallback) const {
-  return Has(name) ? WholeNumber<std::uint64_t>(All(name).back()).value() : fallback;
+  return Has(name) ? NumberFrom<std::uint64_t>(All(name).back()).value() : fallback;
 }
 
 double ParsedOptions::NumberOr(const std::string& name, double fallback) const {
-  return Has(name) ? WholeNumber<double>(All(name).back()).value() : fallback;
+  return Has(name) ? NumberFrom<double>(All(name).back()).value() : fallback;
 }
 
 Option ScenarioArgument() { return Required(Argument("scenario", "a name, skill/name or a file")); }

@@ -22,7 +22,7 @@ constexpr double kPixelsPerInch = 96;
 /// Of "89mm" or "89".
 std::optional<double> Millimetres(std::string_view text) {
   if (text.ends_with("mm")) text.remove_suffix(2);
-  const auto width_mm = WholeNumber<double>(text);
+  const auto width_mm = NumberFrom<double>(text);
   return width_mm && *width_mm >= 30 && *width_mm <= 500 ? width_mm : std::nullopt;
 }
 

@@ -189,7 +189,7 @@ std::optional<Bounds> BoundsIn(const std::string& text) {
   const std::size_t dots = text.find("..");
   Bounds bounds;
   const auto read = [](const std::string& part, std::optional<double>& into) {
-    into = WholeNumber<double>(part);
+    into = NumberFrom<double>(part);
     return into && *into >= 0;
   };
   const std::string least = text.substr(0, dots);

@@ -17,7 +17,7 @@
 namespace prehend::episode {
 
 std::optional<EventTime> ParseEventTime(const std::string& text) {
-  if (const auto time_s = WholeNumber<double>(text)) {
+  if (const auto time_s = NumberFrom<double>(text)) {
     if (!std::isfinite(*time_s) || *time_s < 0) return std::nullopt;
     return EventTime{.time_s = time_s};
   }

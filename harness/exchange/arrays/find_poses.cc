@@ -190,7 +190,7 @@ std::optional<JsonStep> StepInBrackets(std::string_view text) {
   text = Trimmed(text, kBlanks);
   if (text == "*") return JsonStep{.kind = JsonStep::Kind::kAll, .key = {}, .value = {}};
   if (IsQuoted(text)) return JsonStep{.key = std::string(text.substr(1, text.size() - 2))};
-  if (const auto index = WholeNumber<std::size_t>(text))
+  if (const auto index = NumberFrom<std::size_t>(text))
     return JsonStep{.kind = JsonStep::Kind::kIndex, .key = {}, .value = {}, .index = *index};
   // [type=right], and as JSONPath has it: [?(@.type == 'right')]
   if (text.starts_with('?')) text = Trimmed(text.substr(1), kBlanks);

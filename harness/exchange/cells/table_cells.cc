@@ -86,7 +86,7 @@ std::optional<double> NumberOf(std::string_view cell, bool decimal_comma) {
     std::ranges::replace(with_point, ',', '.');
     cell = with_point;
   }
-  return WholeNumber<double>(cell);
+  return NumberFrom<double>(cell);
 }
 
 std::optional<double> SecondsOfIsoTime(std::string_view cell) {

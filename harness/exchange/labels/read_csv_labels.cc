@@ -26,7 +26,7 @@ using grammar::Place;
 
 std::optional<double> NumberIn(std::string_view text) {
   if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
-  const auto number = WholeNumber<double>(text);
+  const auto number = NumberFrom<double>(text);
   return number && std::isfinite(*number) ? number : std::nullopt;
 }
 

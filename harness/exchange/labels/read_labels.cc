@@ -331,7 +331,7 @@ class Reader {
       word = Word();
       if (word.empty()) break;
       if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
-      const auto number = WholeNumber<double>(word);
+      const auto number = NumberFrom<double>(word);
       if (number && std::isfinite(*number)) return *number;
       if (is_value || word.front() == '"' || word.front() == '<')
         Fail(place_, fmt::format("found {}, wanted {}", word, what));

@@ -201,7 +201,7 @@ class NumberDecoder : public MessageBytes {
       const auto name = std::ranges::find(facts_.names, key);
       const auto number = name != facts_.names.end()
                               ? static_cast<std::size_t>(name - facts_.names.begin())
-                              : WholeNumber<std::size_t>(key);
+                              : NumberFrom<std::size_t>(key);
       if (!number) return "";
       index = *number;
     } else if (found_.size() > 1) {

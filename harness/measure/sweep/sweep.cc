@@ -232,7 +232,7 @@ std::optional<Axis> ParseAxis(const std::string& text, std::string& problem) {
   if (!is_formed) return std::nullopt;
   const auto from = Quantity(std::string_view(text).substr(equals + 1, dots - equals - 1)),
              to = Quantity(std::string_view(text).substr(dots + 2, colon - dots - 2));
-  const int count = WholeNumber<int>(std::string_view(text).substr(colon + 1)).value_or(0);
+  const int count = NumberFrom<int>(std::string_view(text).substr(colon + 1)).value_or(0);
   if (!from || !to || count < 2) return std::nullopt;
   if (from->second != to->second) {
     problem = fmt::format("'{}' goes from '{}' to '{}': both ends need the same unit", text,

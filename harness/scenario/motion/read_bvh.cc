@@ -113,7 +113,7 @@ class BvhReader {
   }
 
   std::optional<double> Number(const Word& word, double least, double most) {
-    const auto value = WholeNumber<double>(word.text);
+    const auto value = NumberFrom<double>(word.text);
     if (!value || !std::isfinite(*value)) {
       Complain(PlaceOf(word), fmt::format("expected a number, found '{}'", word.text));
     } else if (*value < least || *value > most) {

@@ -187,7 +187,7 @@ class CsvReader {
   }
 
   std::optional<double> Number(const Cell& cell) {
-    const auto value = WholeNumber<double>(cell.text);
+    const auto value = NumberFrom<double>(cell.text);
     if (value && std::isfinite(*value)) return value;
     Complain({line_, cell.column}, fmt::format("expected a number, found '{}'", cell.text));
     return std::nullopt;

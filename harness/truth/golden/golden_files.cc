@@ -82,7 +82,7 @@ int PictureNumber(const std::string& stem, std::string& name) {
   name = stem.substr(0, dash);
   if (stem.find('.') != std::string::npos) return 0;
   if (dash == std::string::npos) return 1;
-  const int number = WholeNumber<int>(std::string_view(stem).substr(dash + 1)).value_or(0);
+  const int number = NumberFrom<int>(std::string_view(stem).substr(dash + 1)).value_or(0);
   return number > 1 ? number : 0;
 }
 

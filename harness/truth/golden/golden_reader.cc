@@ -164,7 +164,7 @@ class GoldenReader {
   void ReadEnsemble(std::string_view value) {
     if (golden_.ensemble_plays > 0) return Complain("second 'ensemble' line");
     std::optional<int> plays;
-    if (value.ends_with(" plays")) plays = WholeNumber<int>(value.substr(0, value.size() - 6));
+    if (value.ends_with(" plays")) plays = NumberFrom<int>(value.substr(0, value.size() - 6));
     if (!plays || *plays < 1 || *plays > kMaxPlays)
       return Complain(
           fmt::format("expected the number of plays, from 1 to {}, like '6 plays'", kMaxPlays));
@@ -181,7 +181,7 @@ class GoldenReader {
 
   void ReadTicksPerSecond(const std::string& value) {
     if (has_ticks_per_second_) return Complain("second 'ticks_per_second' line");
-    const auto ticks = WholeNumber<Tick>(value);
+    const auto ticks = NumberFrom<Tick>(value);
     if (!ticks || *ticks < 1 || *ticks > kMaxTicksPerSecond) {
       return Complain(
           fmt::format("ticks_per_second must be a whole number from 1 to {}", kMaxTicksPerSecond));
@@ -294,7 +294,7 @@ class GoldenReader {
 
   bool ReadAcceptedBy(GoldenEvent& line) {
     const std::size_t value_column = column_;
-    const auto number = WholeNumber<int>(Word());
+    const auto number = NumberFrom<int>(Word());
     const int next = static_cast<int>(golden_.accepted.size()) + 1;
     if (!number || *number < 1 || *number > next) {
       return FailAt(value_column,
@@ -310,8 +310,8 @@ class GoldenReader {
     const std::size_t slash = value.find('/');
     std::optional<double> begin_ms, end_ms;
     if (value.ends_with("ms") && slash != std::string_view::npos) {
-      begin_ms = WholeNumber<double>(value.substr(0, slash));
-      end_ms = WholeNumber<double>(value.substr(slash + 1, value.size() - slash - 3));
+      begin_ms = NumberFrom<double>(value.substr(0, slash));
+      end_ms = NumberFrom<double>(value.substr(slash + 1, value.size() - slash - 3));
     }
     const auto is_spread = [](const std::optional<double>& ms) {
       return ms && *ms >= 0 && *ms <= kMaxSpread_ms;
@@ -327,7 +327,7 @@ class GoldenReader {
     const std::size_t value_column = column_;
     std::string_view value = Word();
     std::optional<int> milliseconds;
-    if (value.ends_with("ms")) milliseconds = WholeNumber<int>(value.substr(0, value.size() - 2));
+    if (value.ends_with("ms")) milliseconds = NumberFrom<int>(value.substr(0, value.size() - 2));
     if (!milliseconds || *milliseconds < 0 || *milliseconds > 10'000) {
       return FailAt(value_column, "a tolerance is whole milliseconds up to 10000, like 20ms");
     }
@@ -353,13 +353,13 @@ class GoldenReader {
   bool ReadTime(Tick& tick, std::string_view what) {
     SkipBlanks();
     const std::size_t value_column = column_;
-    const auto seconds = WholeNumber<double>(Word());
+    const auto seconds = NumberFrom<double>(Word());
     if (!seconds || !std::isfinite(*seconds) || *seconds < 0 || *seconds > 1e6) {
       return FailAt(value_column, fmt::format("expected {}, a time in seconds", what));
     }
     tick = TickAt(*seconds, golden_.ticks_per_second);
     const std::string nearest = SecondsText(tick, golden_.ticks_per_second);
-    if (std::abs(*seconds - *WholeNumber<double>(nearest)) > 1e-9 &&
+    if (std::abs(*seconds - *NumberFrom<double>(nearest)) > 1e-9 &&
         std::abs(*seconds * golden_.ticks_per_second - static_cast<double>(tick)) > 1e-6) {
       return FailAt(value_column,
                     fmt::format("{} is not on a tick of 1/{} s", what, golden_.ticks_per_second),

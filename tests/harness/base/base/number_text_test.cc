@@ -8,21 +8,21 @@
 namespace prehend {
 namespace {
 
-TEST(WholeNumber, IsAllOfTheText) {
-  EXPECT_EQ(WholeNumber<double>("-2.5e1"), -25);
-  EXPECT_EQ(WholeNumber<int>("-7"), -7);
+TEST(NumberFrom, IsAllOfTheText) {
+  EXPECT_EQ(NumberFrom<double>("-2.5e1"), -25);
+  EXPECT_EQ(NumberFrom<int>("-7"), -7);
   for (const char* none : {"", " 1", "1 ", "+1", "1,5", "1cm", "x"}) {
-    EXPECT_EQ(WholeNumber<double>(none), std::nullopt) << none;
-    EXPECT_EQ(WholeNumber<int>(none), std::nullopt) << none;
+    EXPECT_EQ(NumberFrom<double>(none), std::nullopt) << none;
+    EXPECT_EQ(NumberFrom<int>(none), std::nullopt) << none;
   }
-  EXPECT_EQ(WholeNumber<int>("1.5"), std::nullopt);
+  EXPECT_EQ(NumberFrom<int>("1.5"), std::nullopt);
 }
 
-TEST(WholeNumber, FitsItsType) {
-  EXPECT_EQ(WholeNumber<std::uint64_t>("18446744073709551615"), UINT64_MAX);
-  EXPECT_EQ(WholeNumber<std::uint64_t>("18446744073709551616"), std::nullopt);
-  EXPECT_EQ(WholeNumber<std::uint64_t>("-1"), std::nullopt);
-  EXPECT_EQ(WholeNumber<double>("1e999"), std::nullopt);
+TEST(NumberFrom, FitsItsType) {
+  EXPECT_EQ(NumberFrom<std::uint64_t>("18446744073709551615"), UINT64_MAX);
+  EXPECT_EQ(NumberFrom<std::uint64_t>("18446744073709551616"), std::nullopt);
+  EXPECT_EQ(NumberFrom<std::uint64_t>("-1"), std::nullopt);
+  EXPECT_EQ(NumberFrom<double>("1e999"), std::nullopt);
 }
 
 TEST(LowerCase, IsOfAsciiAlone) {

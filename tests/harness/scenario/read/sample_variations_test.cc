@@ -112,7 +112,7 @@ TEST(Vary, ChanceStaysWithinThreeDeviations) {
     ASSERT_NEAR(NumberIn(Draw(vary, 1, trial)[0]), 0.8, 0.600001);
 }
 
-TEST(Vary, WhereWholeNumbersAreWantedTheNearestIsDrawn) {
+TEST(Vary, WhereNumberFromsAreWantedTheNearestIsDrawn) {
   EXPECT_EQ(Draw("vary:\n  - {fields: [world.seed], uniform: [7.6, 8.4]}\n", 1, 1)[0],
             "world.seed=8");
   EXPECT_EQ(Draw("vary:\n  - {fields: [settle_s], uniform: [0.5, 0.5]}\n", 1, 1)[0],
