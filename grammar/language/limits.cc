@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "grammar/language/limits.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace prehend::grammar::ast {
@@ -84,12 +85,19 @@ class Finder {
       if (is_joint) {
         Condition(arg);
       } else {
-        Number(arg, Dump(expr));
+        Number(arg, Dump(expr), IsOfACount(expr));
       }
     }
   }
 
  private:
+  /// `sensor_sets(..) >= 2`: there is no half of a set.
+  static bool IsOfACount(const Expr& expr) {
+    return std::ranges::any_of(expr.args, [](const Expr& arg) {
+      return arg.kind == Expr::Kind::kCall && arg.text == "sensor_sets";
+    });
+  }
+
   // Numbers of regions and of definitions: `in_sphere(cup, here, 30 cm)`, `near(a, b, 5 cm)`.
   void Call(Expr& expr) {
     if (expr.text == "sensor_set") return;  // its number is a name

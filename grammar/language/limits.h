@@ -17,7 +17,7 @@ struct FoundLimit {
   std::string owner;   ///< the rule or definition in which it stands
   std::string clause;  ///< "(speed(cup) > 0.1 m/s)", "lasting 0.3 s"
   Place place;
-  bool is_count = false;   ///< of `at least`: a whole number
+  bool is_count = false;   ///< of `at least`, or of sensor sets
   Expr* number = nullptr;  ///< a quantity, or a name: of a parameter, or of something else
 };
 
