@@ -29,6 +29,20 @@ TEST(MissingFacts, AreNamedAndNothingRecognisedIsExitCodeFour) {
   EXPECT_NE(said.err.find("use contact from motion"), std::string::npos);
 }
 
+TEST(MissingFacts, NoTrackIsExitCodeFourAndNothingIsWritten) {
+  const auto folder = FreshFolder("missing");
+  WriteFile(folder / "poses.jsonl", kPoses);
+  const std::string tracks = (folder / "tracks.csv").string();
+  const Said said = Prehend({"grammar", "tracks", (folder / "poses.jsonl").string(), "--grammar",
+                             "pick_and_place", "-o", tracks});
+  EXPECT_EQ(said.exit_code, 4);
+  EXPECT_EQ(said.out, "");
+  EXPECT_NE(said.err.find("no track: nothing that the grammar looks at is in this episode"),
+            std::string::npos)
+      << said.err;
+  EXPECT_FALSE(std::filesystem::exists(tracks));
+}
+
 TEST(MissingFacts, WhatCanStillBeRecognisedIsExitCodeZero) {
   const auto folder = FreshFolder("missing");
   WriteFile(folder / "poses.jsonl", kPoses);

@@ -463,6 +463,10 @@ ExitCode RunTracks(const ParsedOptions& options, const CommandContext& context) 
   if (!watched.problem.empty()) return Refuse(context, watched.problem);
   const show::Tracks tracks = show::CollectTracks(*watched.past, {only.begin(), only.end()});
   if (!tracks.problem.empty()) return Refuse(context, tracks.problem);
+  if (tracks.tracks.empty())
+    return Complain(context, ExitCode::kNothing,
+                    "no track: nothing that the grammar looks at is in this episode; 'prehend "
+                    "episode resegment' says what it lacks");
   std::ostream& out = file ? file->stream() : context.out;
   if (as_json) {
     show::WriteJson(tracks, episode.loaded().scenario.name, GrammarName(*episode.program()), out);
@@ -487,7 +491,7 @@ Command TracksCommand() {
       .summary = "Write conditions and signals over time, for plots",
       .examples = {"grammar tracks milk_carton_wrap -o milk.csv",
                    "grammar tracks milk_carton_wrap --only grasping --only speed_along",
-                   "grammar tracks milk.jsonl --grammar my/rules.grammar -o milk.json"},
+                   "grammar tracks milk.jsonl -o milk.json"},
       .options = {EpisodeArgument(), EpisodeOption(),
                   OutputOption("the file to write, .csv or .json; - or nothing: print CSV"),
                   Repeatable(Value("--only", "NAME",
