@@ -81,6 +81,19 @@ TEST_F(ImportSigns, HandsThatAreTooFastAreNamedAlone) {
             std::string::npos);
 }
 
+TEST_F(ImportSigns, AnOutlierOfAHandIsNoSpeed) {
+  std::string csv = "t,name,x,y,z,qw,qx,qy,qz\n";
+  for (int i = 0; i <= 300; ++i) {
+    const double t_s = i / 100.0,
+                 away = i >= 168 && i < 171 ? 0.4 : Along({{1, 0}, {1.2, 0.05}}, t_s);
+    csv += AsWritten("Mug", {t_s, 0, 0, 0.77}) + AsWritten("Glove", {t_s, away, 0, 1.65});
+  }
+  const Said said = ImportCsv(folder_, csv, std::string(kCupMap) + "outlier: lost\n");
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.err.find("goes out and back 1 time"), std::string::npos) << said.err;
+  EXPECT_EQ(said.err.find("the hands go"), std::string::npos) << said.err;
+}
+
 TEST_F(ImportSigns, ATimeAtWhichNothingStandsUprightIsNamed) {
   const std::string columns = "quaternion: [a, b, c, d]", order = "quaternion_order: wxyz\n";
   ASSERT_EQ(Carried(Upright, columns, order).exit_code, 0);

@@ -33,6 +33,23 @@ struct Lengths {
   bool has_hands = false;
 };
 
+/// Over three frames or more. What goes out and back at once is an outlier, no speed.
+void AddSpeeds(const PoseSeries& samples, std::vector<double>& speeds) {
+  const auto way = [&](std::size_t from, std::size_t to) {
+    return (samples[std::min(to, samples.size() - 1)].p - samples[from].p).norm();
+  };
+  for (std::size_t k = 0, next = 0; k < samples.size(); ++k) {
+    next = std::max(next, k + 3);
+    while (next < samples.size() && samples[next].t_s < samples[k].t_s + kSpeedOver_s) ++next;
+    if (next >= samples.size()) break;
+    const double step = way(k, next);
+    const std::size_t frames = next - k;
+    if (step > 0 && way(k, next + frames) >= step / 2 &&
+        way(k - std::min(k, frames), next) >= step / 2)
+      speeds.push_back(step / (samples[next].t_s - samples[k].t_s));
+  }
+}
+
 Lengths LengthsIn(const PoseFile& poses, const MotionSeen& seen) {
   Lengths lengths;
   std::vector<double> speeds;
@@ -43,13 +60,9 @@ Lengths LengthsIn(const PoseFile& poses, const MotionSeen& seen) {
       if (seen.entities[body]->hand) hands.extend(sample.p);
     }
     const PoseSeries& samples = poses.bodies[body].samples;
-    for (std::size_t k = 0, next = 0; seen.entities[body]->hand && k < samples.size(); ++k) {
+    if (seen.entities[body]->hand) {
       lengths.has_hands = true;
-      next = std::max(next, k + 3);
-      while (next < samples.size() && samples[next].t_s < samples[k].t_s + kSpeedOver_s) ++next;
-      if (next >= samples.size()) break;
-      const double way = (samples[next].p - samples[k].p).norm();
-      if (way > 0) speeds.push_back(way / (samples[next].t_s - samples[k].t_s));
+      AddSpeeds(samples, speeds);
     }
     LetGo(samples);
   }
