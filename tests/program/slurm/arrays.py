@@ -81,7 +81,8 @@ def suite(folder):
     print(f"part 1 was queued again after {kept_first} episodes, part 2 killed after {kept_second}")
     run("scontrol", "requeue", f"{array}_{second}")
     ended()
-    assert {state for job, state in states().items() if job.startswith(array + "_")} == {"COMPLETED"}, states()
+    assert {state for job, state in states().items() if job.startswith(array + "_")} == {"COMPLETED"}, \
+        (states(), *[(folder / f"parts/prehend-check-{i}.log").read_text() for i in (first, second)])
     log = (folder / "parts/prehend-check-2.log").read_text()
     assert f"it has {kept_second} of " in log, log
 
