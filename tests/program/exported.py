@@ -51,8 +51,8 @@ def turned(q, v):
     return v + q[..., :1] * t + np.cross(u, t)
 
 
-def poses_alone(lines, mapped):
-    """What a tracker would know of a recording: bodies of the map as boxes, their poses, no velocities, nothing else."""
+def poses_alone(lines, mapped, jointed):
+    """What a tracker would know of a recording: bodies of the map as boxes, which are jointed, their poses, nothing else."""
     head, (ticks, p, q) = lines[0], poses_of(lines, mapped)
     first = {"recording": 1, "episode": head["episode"], "grammar": "pick_and_place_from_motion",
              "ticks_per_second": head["ticks_per_second"], "entities": {}}
@@ -61,7 +61,7 @@ def poses_alone(lines, mapped):
         if old.get("hand"):
             first["entities"][name] = {"hand": True, "size_m": old["size_m"]}
         else:
-            first["entities"][name] = {"class": old["class"], "fixed": old["fixed"], "size_m": old["size_m"]}
+            first["entities"][name] = {"class": old["class"], "fixed": old["fixed"], "size_m": old["size_m"], "jointed": name in jointed}
         p[:, i] += turned(q[:, i], np.array(old["centre_m"]))
     hands = [i for i, name in enumerate(mapped) if head["entities"][name].get("hand")]
     ahead = {}
@@ -164,22 +164,25 @@ def openings_of(lines):
 
 def check_openings(folder):
     """Grips and joints, by the map beside a table."""
-    seen = 0
+    seen = {}
     for scenario in ("milk_carton_wrap", *sorted(glob.glob("scenarios/furniture/*.yaml"))[:3]):
-        kept, name = folder / "o.jsonl", folder / "o.csv"
+        kept = folder / "o.jsonl"
         said("run", scenario, "--record", kept, ok=(0, 1))
-        said("episode", "export", kept, "--to", "csv", "-o", name)
-        said("import", name, "--map", f"{name}.map.yaml", "-o", folder / "back.jsonl")
-        there, back = ([json.loads(line) for line in open(folder / one, encoding="utf-8")] for one in ("o.jsonl", "back.jsonl"))
-        known = set(back[0]["entities"])
-        for (hands, joints), (hands2, joints2) in zip(openings_of(there), openings_of(back), strict=True):
-            for hand, grip in hands.items():
-                assert abs(grip - hands2.get(hand, 0)) < 1e-9, (scenario, hand, grip, hands2)
-            for thing, joint in joints.items():
-                if thing in known:
-                    assert np.abs(np.subtract(joint, joints2.get(thing, (0, 0)))).max() < 1e-9, (scenario, thing, joint, joints2)
-                    seen += 1
-    assert seen > 100, seen
+        there = [json.loads(line) for line in open(kept, encoding="utf-8")]
+        for form in ("csv", "mcap", "npz"):
+            name = folder / f"o.{form}"
+            said("episode", "export", kept, "--to", form, "-o", name)
+            said("import", name, "--map", f"{name}.map.yaml", "-o", folder / "back.jsonl")
+            back = [json.loads(line) for line in open(folder / "back.jsonl", encoding="utf-8")]
+            known = set(back[0]["entities"])
+            for (hands, joints), (hands2, joints2) in zip(openings_of(there), openings_of(back), strict=True):
+                for hand, grip in hands.items():
+                    assert abs(grip - hands2.get(hand, 0)) < 1e-9, (scenario, form, hand, grip, hands2)
+                for thing, joint in joints.items():
+                    if thing in known:
+                        assert np.abs(np.subtract(joint, joints2.get(thing, (0, 0)))).max() < 1e-9, (scenario, form, thing, joint, joints2)
+                        seen[form] = seen.get(form, 0) + 1
+    assert len(seen) == 3 and min(seen.values()) > 100, seen
 
 
 def main():
@@ -207,13 +210,14 @@ def main():
                 check_files(folder / name, name, lines)
                 again = json.loads(said("episode", "resegment", folder / name / f"{name}.jsonl", "--json"))["events"]
                 assert run == again, name
-            text = (folder / name / f"{name}.csv.map.yaml").read_text(encoding="utf-8")
-            mapped = [json.loads(one) for one in re.findall(r'^  (".*?"): {', text, re.M)]
-            wanted = folder / name / "wanted.jsonl"
-            wanted.write_text(poses_alone(lines, mapped), encoding="utf-8")
-            truth = resegmented(wanted)
-            events += len(truth)
             for form in ("csv", "mcap"):
+                text = (folder / name / f"{name}.{form}.map.yaml").read_text(encoding="utf-8")
+                mapped = [json.loads(one) for one in re.findall(r'^  (".*?"): {', text, re.M)]
+                jointed = [json.loads(one) for one in re.findall(r'^  (".*?"): {.* joint: ', text, re.M)]
+                wanted = folder / name / f"wanted_{form}.jsonl"
+                wanted.write_text(poses_alone(lines, mapped, jointed), encoding="utf-8")
+                truth = resegmented(wanted)
+                events += len(truth) if form == "csv" else 0
                 take = folder / name / f"{form}.jsonl"
                 said("import", folder / name / f"{name}.{form}", "--map", folder / name / f"{name}.{form}.map.yaml", "-o", take)
                 read = poses_of([json.loads(line) for line in open(take, encoding="utf-8")], mapped)

@@ -55,10 +55,10 @@ std::string YamlVector(const Eigen::Vector3d& v) {
   return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
 }
 
-/// `grip` and `joint` of a map, in columns of WriteCsv().
-std::string OpeningText(const Motion::Seen& of) {
+/// `grip` and `joint` of a map, with where its file has them.
+std::string OpeningText(const Motion::Seen& of, const std::string& grip, const std::string& joint) {
   std::string text;
-  if (of.most_grip > 0) text += ", grip: {from: grip, open: 0, closed: 1}";
+  if (of.most_grip > 0) text += ", grip: {from: " + grip + ", open: 0, closed: 1}";
   if (!of.has_joint) return text;
   const auto& [at, fraction] = std::pair(of.shut.joint_position, of.shut.joint_fraction);
   const double way = of.open.joint_fraction - fraction;
@@ -68,8 +68,7 @@ std::string OpeningText(const Motion::Seen& of) {
     closed = at - fraction * full;
     open = of.open.joint_fraction == 1 ? of.open.joint_position : closed + full;
   }
-  return text +
-         fmt::format(", joint: {{from: joint_position, open: {}, closed: {}}}", open, closed);
+  return text + fmt::format(", joint: {{from: {}, open: {}, closed: {}}}", joint, open, closed);
 }
 
 // See harness/exchange/export/export_episode.h: a zip file of arrays of NumPy (.npy, version 1.0),
@@ -326,10 +325,18 @@ std::string MapText(const Motion& motion, const std::string& ending) {
       text += ", hand: true";
     else
       text += ", class: " + quoted(own);
-    const bool has_joint = ending == ".csv" && motion.seen[i].has_joint;
-    if (!has_joint && std::ranges::find(entity.classes, "Fixed") != entity.classes.end())
+    if (!motion.seen[i].has_joint &&
+        std::ranges::find(entity.classes, "Fixed") != entity.classes.end())
       text += ", fixed: true";
-    if (ending == ".csv") text += OpeningText(motion.seen[i]);
+    const auto element = [&](const char* of, const std::string& which) {
+      return quoted(fmt::format("{}[{}]", of, which));
+    };
+    text += ending == ".csv" ? OpeningText(motion.seen[i], "grip", "joint_position")
+            : ending == ".npz"
+                ? OpeningText(motion.seen[i], element("grip", std::to_string(i)),
+                              element("joint_position", std::to_string(i)))
+                : OpeningText(motion.seen[i], element("/joint_states", entity.name + "_grip"),
+                              element("/joint_states", entity.name));
     if (const auto& ahead = motion.seen[i].ahead_B)
       text += ", ahead: " + YamlVector(ahead->normalized());
     text += "}\n";
