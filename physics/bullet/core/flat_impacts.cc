@@ -84,6 +84,20 @@ bool CanMeetFlat(const btCollisionObjectWrapper& side) {
          side.getCollisionShape()->getShapeType() != SPHERE_SHAPE_PROXYTYPE;
 }
 
+/// Whether a box around one is so far from the other, in the other's frame, that Bullet's search
+/// finds no point.
+bool IsBeside(const btCollisionObjectWrapper& one, const btCollisionObjectWrapper& other,
+              btScalar kept_m) {
+  btVector3 least, most, others_least, others_most;
+  one.getCollisionShape()->getAabb(other.getWorldTransform().inverseTimes(one.getWorldTransform()),
+                                   least, most);
+  other.getCollisionShape()->getAabb(btTransform::getIdentity(), others_least, others_most);
+  least -= others_most;
+  others_least -= most;
+  least.setMax(others_least);
+  return least[least.maxAxis()] > kept_m + kSlack_m;
+}
+
 class ImpactAlgorithm final : public btConvexConvexAlgorithm {
  public:
   ImpactAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
@@ -93,8 +107,14 @@ class ImpactAlgorithm final : public btConvexConvexAlgorithm {
 
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                         const btDispatcherInfo& info, btManifoldResult* found) override {
+    // Most parts of a hand are beside what is near it.
+    if (manifold_ && manifold_->getNumContacts() == 0) {
+      const btScalar kept_m = manifold_->getContactBreakingThreshold();
+      if (IsBeside(*a, *b, kept_m) || IsBeside(*b, *a, kept_m)) return;
+    }
     btConvexConvexAlgorithm::processCollision(a, b, info, found);
-    const btPersistentManifold& manifold = *found->getPersistentManifold();
+    manifold_ = found->getPersistentManifold();
+    const btPersistentManifold& manifold = *manifold_;
     const int count = manifold.getNumContacts();
     if (count == 0 || count > 2 || !CanMeetFlat(*a) || !CanMeetFlat(*b)) return;
     if (ApproachSpeed(manifold, manifold.getContactPoint(0)) < kMinImpact_m_per_s) return;
@@ -122,6 +142,8 @@ class ImpactAlgorithm final : public btConvexConvexAlgorithm {
     btConvexConvexAlgorithm::processCollision(a_is_smaller ? &side : &a, a_is_smaller ? &b : &side,
                                               info, &points);
   }
+
+  const btPersistentManifold* manifold_ = nullptr;  ///< of the last call
 };
 
 btDefaultCollisionConstructionInfo WithRoomForImpacts() {
