@@ -228,23 +228,24 @@ BulletSolver::Side BulletSolver::MakeSide(btMultiBody* multibody, int solver_bod
                                           int speeds, const btVector3& linear,
                                           const btVector3& angular,
                                           const btVector3& angular_response) {
-  if (multibody) return MakeSide(*multibody, &m_data.m_jacobians[jacobian], speeds);
+  if (multibody) return MakeSide(*multibody, jacobian, speeds);
   if (solver_body < 0) return {};
   return {.rigid = MakeRigidSide(m_tmpSolverBodyPool[solver_body], rigid_.SpeedsOf(solver_body),
                                  linear, angular, angular_response)};
 }
 
-BulletSolver::Side BulletSolver::MakeSide(btMultiBody& multibody, const btScalar* jacobian,
-                                          int speeds) {
+BulletSolver::Side BulletSolver::MakeSide(btMultiBody& multibody, int place, int speeds) {
+  const btScalar* const jacobian = &m_data.m_jacobians[place];
   MultibodyUse& use = UseOf(multibody, speeds);
   const MultibodyInertia& inertia = *use.inertia;
   Side side;
   const MultibodyInertia::Places limbs = inertia.LimbsOf(jacobian);
-  side.rigid.jacobian = inertia.OnBase(jacobian);
   // Bullet gives a joint motor a second side without effect.
-  if (limbs.end == 0 && side.rigid.jacobian == Six{}) return {};
+  if (limbs.end == 0 && std::count(jacobian, jacobian + 6, 0) == 6) return {};
   side.rigid.speeds = &use.base;
-  side.rigid.response = inertia.BaseResponse(side.rigid.jacobian);
+  side.rigid.jacobian = inertia.OnBase(jacobian);
+  // Bullet asked for it when it made the row.
+  std::copy_n(&m_data.m_deltaVelocitiesUnitImpulse[place], 6, side.rigid.response.begin());
   side.first_joint = use.first_joint + limbs.first;
   const std::size_t count = limbs.end - limbs.first;
   side.joint_count = count + count % 2;
@@ -254,6 +255,9 @@ BulletSolver::Side BulletSolver::MakeSide(btMultiBody& multibody, const btScalar
   for (std::size_t i = 0; i < count; ++i) {
     elements[i] = jacobian[6 + inertia.JointAt(limbs.first + i)];
     elements[side.joint_count + i] = inertia.JointResponse(limbs.first + i, jacobian);
+    if (elements[i] == 0) continue;
+    if (side.acts_to == 0) side.acts_from = i;
+    side.acts_to = i + 1;
   }
   return side;
 }
@@ -302,10 +306,7 @@ inline btScalar BulletSolver::SpeedAlong(const Side& side) const {
   btScalar speed = side.rigid.SpeedAlong();
   const btScalar* const factors = coefficients_.data() + side.coefficients;
   const btScalar* const speeds = joint_speeds_.data() + side.first_joint;
-  for (std::size_t i = 0; i < side.joint_count; i += 2) {
-    const Two product = Load(factors + i) * Load(speeds + i);
-    speed = speed + product[0] + product[1];
-  }
+  for (std::size_t i = side.acts_from; i < side.acts_to; ++i) speed += factors[i] * speeds[i];
   return speed;
 }
 
@@ -314,7 +315,9 @@ btScalar BulletSolver::Pressure(const Row& friction) const {
 }
 
 inline btScalar BulletSolver::SpeedError(const Row& row) const {
-  return row.wanted - row.impulse * row.softness - SpeedAlong(row.a) - SpeedAlong(row.b);
+  // Each row waits for the one before, so that a sum with nothing counts, too.
+  const btScalar error = row.wanted - row.impulse * row.softness - SpeedAlong(row.a);
+  return row.b.rigid.speeds ? error - SpeedAlong(row.b) : error;
 }
 
 inline void BulletSolver::Push(const Side& side, btScalar impulse) {

@@ -64,6 +64,7 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
     /// Of the joints in coefficients_: elements of the Jacobian, then changes of speed by a unit
     /// impulse. Two joints are done at once: if their number is odd, one more has zeros.
     std::size_t coefficients = 0;
+    std::size_t acts_from = 0, acts_to = 0;  ///< of the joints those that the row acts on
   };
   struct Row {
     Side a, b;
@@ -94,7 +95,7 @@ class BulletSolver final : public btMultiBodyConstraintSolver {
   Side MakeSide(btMultiBody* multibody, int solver_body, int jacobian, int speeds,
                 const btVector3& linear, const btVector3& angular,
                 const btVector3& angular_response);
-  Side MakeSide(btMultiBody& multibody, const btScalar* jacobian, int speeds);
+  Side MakeSide(btMultiBody& multibody, int place, int speeds);
   [[gnu::always_inline]] btScalar SpeedAlong(const Side& side) const;
   /// Impulse of the contact of a friction row.
   btScalar Pressure(const Row& friction) const;
