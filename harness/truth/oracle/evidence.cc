@@ -16,6 +16,8 @@ using Eigen::Vector3d;
 constexpr grammar::Tick kReleaseTicks = 4;
 /// The impulse of a resting contact flickers; its mean over so many ticks does not.
 constexpr grammar::Tick kAsleepTicks = 48;
+/// So long before two bodies first touch, nothing asks how one moves along the other.
+constexpr double kBeforeTouch_s = 1;
 
 /// The points between two bodies in one frame, as they act on the first. Of a touch without known
 /// forces, all points count alike.
@@ -50,6 +52,7 @@ class EvidenceReader {
     for (int frame = 0, first = 0; frame < recording_.size(); ++frame) {
       while (recording_.ticks[frame] - recording_.ticks[first] > kReleaseTicks) ++first;
       lasting_.push_back(frame - first + 1);
+      for (int body = 0; body < recording_.body_count(); ++body) rests_[body] = Rests(body, frame);
       std::map<Pair, std::uint32_t> sets;  // of (hand, body)
       const physics::Snapshot& now = recording_.frames[frame];
       ReadResting(now.resting.get(), frame, sets);
@@ -58,7 +61,8 @@ class EvidenceReader {
         evidence_.sensor_sets[pair].resize(recording_.size());
         evidence_.sensor_sets[pair][frame] = bits;
       }
-      for (auto& [pair, read] : reads_) ReadBearing(pair, frame, read);
+      for (auto& [pair, read] : reads_)
+        ReadBearing(pair, frame, rests_[pair.first] && rests_[pair.second], read);
     }
   }
 
@@ -120,7 +124,14 @@ class EvidenceReader {
       return;
     const auto [at, is_new] = reads_.try_emplace(pair, evidence_.bearings[pair]);
     BearingRead& read = at->second;
-    for (int before = 0; is_new && before < frame; ++before) ReadBearing(pair, before, read);
+    if (is_new) {
+      int before = frame;
+      while (before > 0 && recording_.Seconds(before - 1, frame) <= kBeforeTouch_s) --before;
+      read.bearings.kept.emplace_back();
+      read.bearings.which.resize(before);
+      for (; before < frame; ++before)
+        ReadBearing(pair, before, Rests(pair.first, before) && Rests(pair.second, before), read);
+    }
     if (!IsPushed(read, frame)) {
       read.pushes.push_back({.frame = frame});
       read.repeated = 0;
@@ -132,7 +143,8 @@ class EvidenceReader {
     return !read.pushes.empty() && read.pushes.back().frame == frame;
   }
 
-  void ReadBearing(Pair pair, int frame, BearingRead& read) {
+  /// `rest`: both are as they were in the frame before.
+  void ReadBearing(Pair pair, int frame, bool rest, BearingRead& read) {
     const auto& [object, support] = pair;
     auto& [bearings, pushes, repeated, still, nhat_S] = read;
     const bool touching = IsPushed(read, frame);
@@ -141,9 +153,9 @@ class EvidenceReader {
                         return recording_.ticks[frame] - recording_.ticks[push.frame] >
                                kReleaseTicks;
                       });
-    const bool repeats =
-        repeated + 1 >= all && gone == (touching ? 1u : 0u) && Rest(object, support, frame) &&
-        still && bearings[frame - 1].touching == touching && lasting_[frame] == lasting_[frame - 1];
+    const bool repeats = repeated + 1 >= all && gone == (touching ? 1u : 0u) && rest && still &&
+                         bearings[frame - 1].touching == touching &&
+                         lasting_[frame] == lasting_[frame - 1];
     if (!repeats) bearings.kept.emplace_back();
     bearings.which.push_back(bearings.kept.size() - 1);
     if (repeats) return;
@@ -200,12 +212,11 @@ class EvidenceReader {
     }
   }
 
-  /// Whether both are as they were in the frame before.
-  bool Rest(int object, int support, int frame) const {
+  bool Rests(int body, int frame) const {
     if (frame == 0) return false;
     const physics::Snapshot &now = recording_.frames[frame], &before = recording_.frames[frame - 1];
-    return !now.MayHaveMoved(object, before.tick) && !now.MayHaveMoved(support, before.tick) &&
-           now.bodies[object].asleep == before.bodies[object].asleep;
+    return !now.MayHaveMoved(body, before.tick) &&
+           now.bodies[body].asleep == before.bodies[body].asleep;
   }
 
   /// In the last ticks before a frame, the first of which may be before the recording.
@@ -242,6 +253,7 @@ class EvidenceReader {
   Evidence& evidence_;
   const bool has_forces_;
   std::map<Pair, BearingRead> reads_;
+  std::vector<char> rests_ = std::vector<char>(recording_.scene.bodies.size());  ///< by body
   std::vector<int> lasting_;  ///< by frame: how many the last ticks are, with itself
   const std::vector<physics::ContactPoint>* resting_ = nullptr;  ///< of the frame before
   std::vector<Spans*> resting_touching_;                         ///< those of resting_
