@@ -84,18 +84,16 @@ bool CanMeetFlat(const btCollisionObjectWrapper& side) {
          side.getCollisionShape()->getShapeType() != SPHERE_SHAPE_PROXYTYPE;
 }
 
-/// Whether a box around one is so far from the other, in the other's frame, that Bullet's search
-/// finds no point.
+/// Whether a box around one, in the other's frame, is too far from it for Bullet to find points.
 bool IsBeside(const btCollisionObjectWrapper& one, const btCollisionObjectWrapper& other,
-              btScalar kept_m) {
-  btVector3 least, most, others_least, others_most;
+              const btPersistentManifold& manifold) {
+  btVector3 least, most, its_least, its_most;
   one.getCollisionShape()->getAabb(other.getWorldTransform().inverseTimes(one.getWorldTransform()),
                                    least, most);
-  other.getCollisionShape()->getAabb(btTransform::getIdentity(), others_least, others_most);
-  least -= others_most;
-  others_least -= most;
-  least.setMax(others_least);
-  return least[least.maxAxis()] > kept_m + kSlack_m;
+  other.getCollisionShape()->getAabb(btTransform::getIdentity(), its_least, its_most);
+  btVector3 gap = least - its_most;
+  gap.setMax(its_least - most);
+  return gap[gap.maxAxis()] > manifold.getContactBreakingThreshold() + kSlack_m;
 }
 
 class ImpactAlgorithm final : public btConvexConvexAlgorithm {
@@ -108,10 +106,9 @@ class ImpactAlgorithm final : public btConvexConvexAlgorithm {
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                         const btDispatcherInfo& info, btManifoldResult* found) override {
     // Most parts of a hand are beside what is near it.
-    if (manifold_ && manifold_->getNumContacts() == 0) {
-      const btScalar kept_m = manifold_->getContactBreakingThreshold();
-      if (IsBeside(*a, *b, kept_m) || IsBeside(*b, *a, kept_m)) return;
-    }
+    if (manifold_ && manifold_->getNumContacts() == 0 &&
+        (IsBeside(*a, *b, *manifold_) || IsBeside(*b, *a, *manifold_)))
+      return;
     btConvexConvexAlgorithm::processCollision(a, b, info, found);
     manifold_ = found->getPersistentManifold();
     const btPersistentManifold& manifold = *manifold_;

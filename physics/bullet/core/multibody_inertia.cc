@@ -212,13 +212,6 @@ Six MultibodyInertia::OnBase(const btScalar* impulse) const {
   return sum;
 }
 
-Six MultibodyInertia::BaseResponse(const Six& impulse) const {
-  Six change{};
-  for (std::size_t j = 0; j < 6; ++j)  // symmetric: columns are rows
-    for (std::size_t i = 0; i < 6; ++i) change[i] += base_response_[j * 6 + i] * impulse[j];
-  return change;
-}
-
 void MultibodyInertia::ToSpeeds(const Six& base, const btScalar* u, btScalar* speeds) const {
   ToSpeeds(base, u, {0, joint_count()}, speeds);
 }
@@ -249,7 +242,11 @@ void MultibodyInertia::RespondWhereItActs(const btScalar* impulse, btScalar* cha
 void MultibodyInertia::Respond(const btScalar* impulse, Places limbs, Places wanted,
                                btScalar* change) {
   for (std::size_t i = limbs.first; i < limbs.end; ++i) scratch_[i] = JointResponse(i, impulse);
-  ToSpeeds(BaseResponse(OnBase(impulse)), scratch_.data(), wanted, change);
+  const Six on_base = OnBase(impulse);
+  Six base{};
+  for (std::size_t j = 0; j < 6; ++j)  // symmetric: columns are rows
+    for (std::size_t i = 0; i < 6; ++i) base[i] += base_response_[j * 6 + i] * on_base[j];
+  ToSpeeds(base, scratch_.data(), wanted, change);
 }
 
 namespace {

@@ -43,8 +43,6 @@ class MultibodyInertia {
   btScalar JointResponse(std::size_t place, const btScalar* impulse) const;
   /// Impulse on x of an impulse of 6 + n elements.
   Six OnBase(const btScalar* impulse) const;
-  /// Change of x by an impulse on it.
-  Six BaseResponse(const Six& impulse) const;
   /// The 6 + n speeds of x and u.
   void ToSpeeds(const Six& base, const btScalar* u, btScalar* speeds) const;
   /// Change of the 6 + n speeds by an impulse of 6 + n elements.

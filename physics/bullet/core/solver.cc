@@ -255,9 +255,8 @@ BulletSolver::Side BulletSolver::MakeSide(btMultiBody& multibody, int place, int
   for (std::size_t i = 0; i < count; ++i) {
     elements[i] = jacobian[6 + inertia.JointAt(limbs.first + i)];
     elements[side.joint_count + i] = inertia.JointResponse(limbs.first + i, jacobian);
-    if (elements[i] == 0) continue;
-    if (side.acts_to == 0) side.acts_from = i;
-    side.acts_to = i + 1;
+    if (elements[i] != 0 && side.acts_to == 0) side.acts_from = i;
+    if (elements[i] != 0) side.acts_to = i + 1;
   }
   return side;
 }
