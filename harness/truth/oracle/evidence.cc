@@ -52,7 +52,6 @@ class EvidenceReader {
     for (int frame = 0, first = 0; frame < recording_.size(); ++frame) {
       while (recording_.ticks[frame] - recording_.ticks[first] > kReleaseTicks) ++first;
       lasting_.push_back(frame - first + 1);
-      for (int body = 0; body < recording_.body_count(); ++body) rests_[body] = Rests(body, frame);
       std::map<Pair, std::uint32_t> sets;  // of (hand, body)
       const physics::Snapshot& now = recording_.frames[frame];
       ReadResting(now.resting.get(), frame, sets);
@@ -61,8 +60,7 @@ class EvidenceReader {
         evidence_.sensor_sets[pair].resize(recording_.size());
         evidence_.sensor_sets[pair][frame] = bits;
       }
-      for (auto& [pair, read] : reads_)
-        ReadBearing(pair, frame, rests_[pair.first] && rests_[pair.second], read);
+      for (auto& [pair, read] : reads_) ReadBearing(pair, frame, read);
     }
   }
 
@@ -129,8 +127,7 @@ class EvidenceReader {
       while (before > 0 && recording_.Seconds(before - 1, frame) <= kBeforeTouch_s) --before;
       read.bearings.kept.emplace_back();
       read.bearings.which.resize(before);
-      for (; before < frame; ++before)
-        ReadBearing(pair, before, Rests(pair.first, before) && Rests(pair.second, before), read);
+      for (; before < frame; ++before) ReadBearing(pair, before, read);
     }
     if (!IsPushed(read, frame)) {
       read.pushes.push_back({.frame = frame});
@@ -143,8 +140,7 @@ class EvidenceReader {
     return !read.pushes.empty() && read.pushes.back().frame == frame;
   }
 
-  /// `rest`: both are as they were in the frame before.
-  void ReadBearing(Pair pair, int frame, bool rest, BearingRead& read) {
+  void ReadBearing(Pair pair, int frame, BearingRead& read) {
     const auto& [object, support] = pair;
     auto& [bearings, pushes, repeated, still, nhat_S] = read;
     const bool touching = IsPushed(read, frame);
@@ -153,8 +149,8 @@ class EvidenceReader {
                         return recording_.ticks[frame] - recording_.ticks[push.frame] >
                                kReleaseTicks;
                       });
-    const bool repeats = repeated + 1 >= all && gone == (touching ? 1u : 0u) && rest && still &&
-                         bearings[frame - 1].touching == touching &&
+    const bool repeats = repeated + 1 >= all && gone == (touching ? 1u : 0u) && still &&
+                         Rest(object, support, frame) && bearings[frame - 1].touching == touching &&
                          lasting_[frame] == lasting_[frame - 1];
     if (!repeats) bearings.kept.emplace_back();
     bearings.which.push_back(bearings.kept.size() - 1);
@@ -212,11 +208,12 @@ class EvidenceReader {
     }
   }
 
-  bool Rests(int body, int frame) const {
+  /// Whether both are as they were in the frame before.
+  bool Rest(int object, int support, int frame) const {
     if (frame == 0) return false;
     const physics::Snapshot &now = recording_.frames[frame], &before = recording_.frames[frame - 1];
-    return !now.MayHaveMoved(body, before.tick) &&
-           now.bodies[body].asleep == before.bodies[body].asleep;
+    return !now.MayHaveMoved(object, before.tick) && !now.MayHaveMoved(support, before.tick) &&
+           now.bodies[object].asleep == before.bodies[object].asleep;
   }
 
   /// In the last ticks before a frame, the first of which may be before the recording.
@@ -253,7 +250,6 @@ class EvidenceReader {
   Evidence& evidence_;
   const bool has_forces_;
   std::map<Pair, BearingRead> reads_;
-  std::vector<char> rests_ = std::vector<char>(recording_.scene.bodies.size());  ///< by body
   std::vector<int> lasting_;  ///< by frame: how many the last ticks are, with itself
   const std::vector<physics::ContactPoint>* resting_ = nullptr;  ///< of the frame before
   std::vector<Spans*> resting_touching_;                         ///< those of resting_
@@ -516,11 +512,12 @@ double SurfaceDistance(const physics::HandModel& model, const physics::HandState
   std::vector<std::pair<double, const Solid*>> at_least;  // no part is nearer than that
   for (const physics::PlacedShape& placed : body.shapes) {
     const Solid solid{placed.shape, state.X_WB * placed.X_BS};
+    const physics::Pose X_SW = solid.X_WS.inverse();
     at_least.clear();
     for (const Solid& part : parts) {
-      const Vector3d& p_W_m = part.X_WS.p_m;
       const double radius_m = std::get<physics::Box>(part.shape).size_m.norm() / 2;
-      at_least.emplace_back((solid.NearestTo(p_W_m) - p_W_m).norm() - radius_m, &part);
+      const Vector3d p_S = X_SW * part.X_WS.p_m, near_S = std::visit(Nearest{p_S}, placed.shape);
+      at_least.emplace_back((near_S - p_S).norm() - radius_m, &part);
     }
     std::ranges::sort(at_least);
     for (const auto& [least, part] : at_least)
