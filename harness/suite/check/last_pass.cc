@@ -150,8 +150,11 @@ std::optional<Divergence> FirstDivergence(const StateTrace& a, const StateTrace&
 }
 
 std::string WriteTrace(const std::filesystem::path& path, const StateTrace& trace) {
-  return WriteTextFile(
-      path, RecordJson(trace).dump(-1, ' ', false, RecordJson::error_handler_t::replace));
+  const std::string entities =
+      RecordJson(trace.entities).dump(-1, ' ', false, RecordJson::error_handler_t::replace);
+  return WriteTextFile(path,
+                       fmt::format(R"({{"entities":{},"hashes":[{}],"ticks":[{}]}})", entities,
+                                   fmt::join(trace.hashes, ","), fmt::join(trace.ticks, ",")));
 }
 
 std::optional<StateTrace> ReadTrace(const std::filesystem::path& path) {
