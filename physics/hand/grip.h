@@ -25,7 +25,7 @@ class Grip {
   /// Of a hand that lets go: where joints stopped, from their targets.
   std::vector<double> shifts_;
   double trigger_ = 0, to_ = 1;
-  bool opens_ = false;
+  bool opens_ = false, stands_ = false;  ///< so the trigger moved last; it did not in this tick
 };
 
 }  // namespace prehend::physics

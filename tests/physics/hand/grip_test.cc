@@ -63,6 +63,18 @@ TEST(GripTest, WhatLetsGoOpensFromWhereItsJointsStoppedAtOnce) {
   ExpectTargets(grip.Targets(model, model.styles[0], 0.5, {0, 0}), {0.5, 0.25});
 }
 
+TEST(GripTest, JointThatIsHeldBackByLittleOpensAtOnceToo) {
+  const HandModel model = TwoFingers();
+  const Joints held = {0.995, 0.5};  // the first by 0.005 rad, less than joints lag when they move
+  Grip grip;
+  grip.Targets(model, model.styles[0], 1, held);
+  grip.Targets(model, model.styles[0], 1, held);
+  ExpectTargets(grip.Targets(model, model.styles[0], 0.999, held, 0), {0.994, 0.4995});
+  Grip at_once;
+  at_once.Targets(model, model.styles[0], 1, held);
+  ExpectTargets(at_once.Targets(model, model.styles[0], 0.999, held, 0), {0.999, 0.4995});
+}
+
 TEST(GripTest, WhatLetsGoAndStopsHalfWayOpensNoFartherThanItsTrigger) {
   const HandModel model = TwoFingers();
   Grip grip = Closed(model);
