@@ -414,9 +414,9 @@ class Helpers {
   }
 
   /// It is held against another thing that the hand presses from the other side: of thumb and
-  /// fingers one side touches this one and the other side that one. `pair` presses.
+  /// fingers one side touches this one and the other side that one.
   bool IsSqueezedWithAnother(Pair pair, int frame) const {
-    if (!Moves(pair.second)) return false;
+    if (!Moves(pair.second) || !Presses(pair, frame)) return false;
     for (const auto& [other, forces_n] : evidence_.forces_n) {
       if (other.first != pair.first || other.second == pair.second || !Presses(other, frame) ||
           !Moves(other.second) ||
@@ -561,7 +561,7 @@ std::vector<Grasp> FindGrasps(const Evidence& evidence, const GraspSettings& set
     const auto opens = [&](int frame) { return GripOpens(recording, settings, pair.first, frame); };
     const auto has_sets = [&](int frame) {
       return std::popcount(sets[frame]) >= settings.grasp_sensor_sets ||
-             (helpers.Presses(pair, frame) && helpers.IsSqueezedWithAnother(pair, frame));
+             (!opens(frame) && helpers.IsSqueezedWithAnother(pair, frame));
     };
     const auto between = [&](int frame) {
       return helpers.Presses(pair, frame) && helpers.IsPressedBetween(pair, frame);

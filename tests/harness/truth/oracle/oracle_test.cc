@@ -329,6 +329,32 @@ TEST(OracleGrasp, OfTwoThingsThatAreSqueezedTogetherIsThatOfBoth) {
   EXPECT_EQ(squeezed(5, 1, 1, false), 0u);
 }
 
+TEST(OracleGrasp, FingersThatOpenAndStrikeAnotherThingDoNotHoldOn) {
+  Stage stage;
+  const int box = stage.AddBody("box", {0.06, 0.06, 0.06}, {0.56, 0, 0.03}, false);
+  const auto touch = [&](int body, int set) {
+    stage.contacts.push_back(
+        {.a = Stage::BodySide(body), .b = Stage::HandSide(0, set), .impulse_n_s = 5.0 / 480});
+  };
+  stage.contacts = {{.a = Stage::BodySide(stage.cup), .b = Stage::BodySide(box)}};
+  touch(stage.cup, 1);
+  touch(stage.cup, 2);
+  stage.trigger = 1;
+  stage.Play(0.3);
+  stage.contacts.pop_back();
+  stage.trigger = 0.95;
+  stage.Play(0.02);
+  for (int frame = 0; frame < 10; ++frame) {
+    stage.trigger -= 0.02;
+    if (frame == 5) touch(box, 0);
+    stage.Play(0.01);
+  }
+  const Intervals held = Of("grasping(hand, cup)", stage.Truth());
+  ASSERT_EQ(held.size(), 1u);
+  EXPECT_NEAR(static_cast<double>(held[0].end), 0.3 * 480, 4);
+  EXPECT_TRUE(Of("grasping(hand, box)", stage.Truth()).empty());
+}
+
 TEST(Oracle, TellsTheSameStoryAtEverySensingRate) {
   const auto play = [](int ticks_per_frame) {
     Stage stage(ticks_per_frame);
