@@ -4,10 +4,8 @@
 // tests/grammar/drawing/read_drawings_test.cc
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "grammar/base/diagnostic.h"
@@ -77,7 +75,6 @@ std::vector<DrawnRow> DrawEvents(const DrawnEpisode& drawn, const Timeline& time
 std::string Text(const std::vector<DrawnRow>& rows);
 
 // What a row of a drawing can say, of whom, and with which characters. docs/drawings.md lists it.
-// Tested by tests/grammar/drawing/read_drawings_test.cc
 
 struct DrawnFact {
   std::string name;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <utility>
 
 #include "grammar/base/wording.h"
 #include "grammar/drawing/drawn_episode.h"

@@ -2,7 +2,6 @@
 // First what each table says of others, then the nodes of each rule from the roots down.
 #include "grammar/program/check_ids.h"
 
-#include <algorithm>
 
 namespace prehend::grammar {
 namespace {

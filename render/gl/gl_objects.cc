@@ -337,7 +337,6 @@ Eigen::Quaternionf RotationBetween(const Vector3f& from, const Vector3f& to) {
 }
 
 // Shader sources. Light is computed in linear space, and a soft tone map converts to sRGB.
-// Tested by tests/render/painter_test.cc
 
 // Every pass that draws solids uses this shader, so that depth values are equal to the bit in all
 // passes.

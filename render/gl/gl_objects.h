@@ -49,7 +49,6 @@ Mesh TubeMesh(const std::vector<Eigen::Vector3f>& points, int segments);
 Eigen::Quaternionf RotationBetween(const Eigen::Vector3f& from, const Eigen::Vector3f& to);
 
 // The shader sources (GLSL 3.30). render/gl/gl_objects.cc describes what each computes.
-// Tested by tests/render/painter_test.cc
 
 /// Version of the pixels: raise it whenever they change on purpose. Part of the fingerprint.
 inline constexpr int kRendererVersion = 3;

@@ -16,7 +16,6 @@ namespace prehend::render {
 
 // A TrueType font: text widths and anti-aliased glyphs. Text is UTF-8; missing characters are drawn
 // as the font's empty box.
-// Tested by tests/render/image/canvas_test.cc
 
 struct Glyph {
   int left_px = 0, top_px = 0;  ///< from the pen on the baseline to the bitmap's corner, y down

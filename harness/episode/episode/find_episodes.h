@@ -53,7 +53,6 @@ Result<std::vector<EpisodeName>> EpisodesOf(const std::string& file, const std::
 Result<std::string> WhatIsMissing(const std::vector<std::string>& files);
 
 // For commands that ask an episode file: what is in none is played, or imported, into one first.
-// Tested by tests/program/episode_kinds_test.cc
 
 class EpisodeKeeper {
  public:

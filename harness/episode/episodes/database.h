@@ -99,7 +99,6 @@ class Transaction {
 };
 
 // Where exceptions of the database and of frames become diagnostics: they do not leave this room.
-// Tested by tests/harness/episode/episodes/episode_file_test.cc
 
 /// What `work` returns, or an error about the file. `about`: begins its message.
 template <typename Work>

@@ -48,8 +48,7 @@ std::uint64_t HashOfFrames(Recording& recording);
 
 // A scene that stands in for a recording, so that pictures of it can be drawn: what is not known is
 // not made up. Things have the shapes that the recording gives, hands a palm without fingers; there
-// are no joints, no grains and no gazes. Tested by
-// tests/harness/episode/episodes/recordings_test.cc
+// are no joints, no grains and no gazes.
 
 /// Bodies and hands in the order of the recording's entities, hands apart.
 scenario::Scenario PlaceholderFor(const EpisodeHeader& header);

@@ -85,8 +85,7 @@ std::string NearestScenario(const std::vector<ScenarioFile>& scenarios, const st
 /// name, or "".
 std::string HintForScenario(const std::vector<ScenarioFile>& scenarios, const std::string& typed);
 
-// The grammars and hands that scenarios of a project can name. Tested by
-// tests/harness/episode/run/find_scenario_test.cc
+// The grammars and hands that scenarios of a project can name.
 
 /// Grammars and hands of the project. `files` receives the path of every hand that is read, and
 /// must outlive the result.

@@ -81,8 +81,7 @@ class Motion {
   episode::Episode* episode_;
 };
 
-// Motion in the formats of other programs (docs/episodes.md). Tested by
-// tests/program/exported.py
+// Motion in the formats of other programs (docs/episodes.md).
 
 void WriteLines(const Motion& motion, std::ostream& out);
 void WriteCsv(const Motion& motion, std::ostream& out);

@@ -189,7 +189,6 @@ grammar::Timeline Compared(const grammar::Timeline& timeline, const ComparedRole
 grammar::Timeline ByHand(grammar::Timeline timeline);
 
 // Videos and trackers begin at different times: labels that are all too early, or all too late.
-// Tested by tests/harness/exchange/labels/labels_test.cc
 
 /// Labels that are found: something of the same name and roles shares half of the union with them.
 struct ClockOffset {

@@ -148,8 +148,7 @@ std::string DecodeJsonPoses(JsonContent content, std::string_view data,
 std::string DecodeBinaryPoses(const PoseLayout& layout, bool ros1, std::string_view data,
                               const std::vector<bool>& wanted, std::vector<MessagePose>& poses);
 
-// Reads the poses in the messages of a channel, whatever their encoding is. Tested by
-// tests/program/import_messages_test.cc
+// Reads the poses in the messages of a channel, whatever their encoding is.
 
 class MessageReader {
  public:

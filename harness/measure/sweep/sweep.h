@@ -124,8 +124,7 @@ class SweepProgress {
   bool said_ = false;
 };
 
-// How far each parameter of a grammar may be from its value before the score drops. Tested by
-// tests/program/sweep_test.cc
+// How far each parameter of a grammar may be from its value before the score drops.
 
 /// One parameter, while the others keep their values.
 struct Margin {

@@ -229,8 +229,6 @@ void CheckEntity(const YamlNode& node, const EntityYaml& entity, DiagnosticList&
   }
 }
 
-// Tested by tests/harness/scenario/format/scenario_fields_test.cc
-
 ValueFormat<PidOverride> PidFormat(const std::string& noun, const std::string (&keys)[4]) {
   return StructFormat<PidOverride>(noun)
       .Optional(keys[0], &PidOverride::proportional, Number(0, 1e6), "Force or torque per error.")

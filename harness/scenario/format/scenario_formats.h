@@ -61,8 +61,7 @@ ValueFormat<StageYaml> StageFormat();
 ValueFormat<VariationYaml> VariationFormat();
 ValueFormat<std::vector<ConditionYaml>> OutcomeFormat();
 
-// What people write first in a script, and what is written instead. Tested by
-// tests/harness/scenario/format/scenario_errors_test.cc
+// What people write first in a script, and what is written instead.
 
 /// How steps are repeated.
 inline constexpr const char* kRepeatRemedy =

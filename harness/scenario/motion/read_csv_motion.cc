@@ -245,8 +245,7 @@ class CsvReader {
 
 // The format of aframe-motion-capture-components 0.2.7 (src/components/motion-capture-recorder.js):
 // metres, y up, z towards the viewer, Euler angles in degrees applied in the order y, x, z,
-// milliseconds. JSON is YAML, so the located YAML reader reads it. Tested by
-// tests/harness/scenario/motion/hand_motion_test.cc
+// milliseconds. JSON is YAML, so the located YAML reader reads it.
 
 constexpr double kSPerMs = 1e-3;
 constexpr int kMaxButtons = 1000;

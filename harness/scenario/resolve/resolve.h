@@ -141,8 +141,7 @@ void CheckStepOrder(const std::vector<StageYaml>& stages, const std::vector<std:
                     const std::vector<std::string>& persons, const physics::Script& script,
                     DiagnosticList& errors);
 
-// From entries to the steps of persons. Tested by
-// tests/harness/scenario/resolve/build_persons_test.cc
+// From entries to the steps of persons.
 
 /// Reports steps that are for hands, unknown entities to look at, and limbs that follow a hand.
 physics::PersonStep MakePersonStep(const Named<StepYaml>& step, int person,

@@ -15,8 +15,7 @@
 namespace prehend::scenario {
 
 // The templates of new scenarios, scenarios/templates/: one file per verb, and the things that a
-// name can mention. A project's own come before those that ship. Tested by
-// tests/program/new_command_test.cc
+// name can mention. A project's own come before those that ship.
 
 /// What a name without a verb means.
 inline constexpr const char* kDefaultVerb = "carry";

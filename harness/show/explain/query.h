@@ -31,7 +31,6 @@ Result<Ask> ParseAsk(const std::string& option, const std::string& text,
                      const grammar::Program& program, const grammar::EntityTable& entity_table);
 
 // The bindings of a rule that could be meant where some of its roles are left open.
-// Tested by tests/harness/show/explain/explain_test.cc
 
 inline constexpr std::size_t kMaxBindings = 64;
 
@@ -61,7 +60,6 @@ Watched Watch(episode::Episode& episode);
 // slide_speed". Tested by tests/harness/show/explain/explain_test.cc
 
 // What kind of clause a node of a program is.
-// Tested by tests/harness/show/explain/explain_test.cc
 
 inline bool IsRegion(grammar::Op op) {
   return op == grammar::Op::kInSphere || op == grammar::Op::kSolidInSphere ||

@@ -71,9 +71,8 @@ render::Image DrawImage(render::Painter& painter, const render::Picture& picture
 /// The first picture in pale grey, with every pixel in red that differs. Both have one size.
 render::Image PaleWithRed(const render::Image& first, const render::Image& second);
 
-// From where a picture is seen. A camera is fitted to the whole episode, not to the moment, so
-// that pictures of one scenario can be laid over each other. Tested by
-// tests/harness/show/pictures/compose_picture_test.cc
+// From where a picture is seen. A camera is fitted to the whole episode, not to the moment, so that
+// pictures of one scenario can be laid over each other.
 
 /// `name` is one of CamerasOf(): a camera of the scenario, or
 ///  - front, left, right, top, three_quarter: hands, small things and what moves, all the time;

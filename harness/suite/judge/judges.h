@@ -78,8 +78,7 @@ Findings JudgeLimits(const scenario::Scenario& scenario,
 /// One per contradicted claim.
 Findings ClaimFindings(const std::vector<truth::ClaimVerdict>& verdicts);
 
-// A run against its golden and the ground truth. Tested by
-// tests/harness/suite/judge/judge_golden_test.cc
+// A run against its golden and the ground truth.
 
 struct GoldenComparison {
   bool has_golden = false;  ///< false: the comparison is with an empty one

@@ -83,7 +83,6 @@ void AddHistory(pugi::xml_node body, const std::vector<PastRun>& history);
 
 // Texts of the report page, embedded when the program is built: its style and script
 // (harness/suite/report/page), and the script of the 3D replay (harness/suite/report/replay).
-// Tested by tests/harness/suite/report/report_test.cc
 
 std::string_view PageStyle();
 std::string_view PageScript();

@@ -293,8 +293,7 @@ std::string Relation(const NamedEvent& a, const NamedEvent& b) {
       grammar::kAllenNames[static_cast<std::size_t>(grammar::Relate(a.interval, b.interval))]);
 }
 
-// A comparison in words. A comparison for programs. Tested by
-// tests/harness/truth/golden/compare_test.cc
+// A comparison in words. A comparison for programs.
 
 /// "begin +50.0 ms, end -2.1 ms (tolerance 8.3 ms)"
 std::string OffsetText(const Pairing& pairing, Tick ticks_per_second) {

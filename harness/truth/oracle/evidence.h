@@ -88,8 +88,7 @@ double SurfaceDistance(const physics::HandModel& model, const physics::HandState
 double PointDistance(const Eigen::Vector3d& p_W_m, const physics::Body& body,
                      const physics::BodyState& state);
 
-// Contacts, supports and grasps: what follows from touching alone. Tested by
-// tests/harness/truth/oracle/oracle_test.cc
+// Contacts, supports and grasps: what follows from touching alone.
 
 struct Grasp {
   int hand = 0;  ///< index into Scene::hands
@@ -109,8 +108,7 @@ Touches FindTouches(const Evidence& evidence, const SupportSettings& settings);
 /// Sorted by hand, body, time; without `touched_since`.
 std::vector<Grasp> FindGrasps(const Evidence& evidence, const GraspSettings& settings);
 
-// What a hand does with an object during one grasp. Tested by
-// tests/harness/truth/oracle/oracle_test.cc
+// What a hand does with an object during one grasp.
 
 struct Carrying {
   Spans slides, pick_ups, hovers, transports, put_downs;
@@ -121,8 +119,7 @@ struct Carrying {
 Carrying FindCarrying(const Evidence& evidence, const OracleSettings& settings, const Grasp& grasp,
                       const std::map<int, Spans>& supports);
 
-// How something came to a place: the moment since which it was coming. Tested by
-// tests/harness/truth/oracle/oracle_test.cc
+// How something came to a place: the moment since which it was coming.
 
 struct DistanceAt {
   double t_s = 0;

@@ -17,8 +17,7 @@
 
 namespace prehend::truth {
 
-// Intervals of frames and what can be done with them. Tested by
-// tests/harness/truth/oracle/oracle_test.cc
+// Intervals of frames and what can be done with them.
 
 /// Half-open, indices into the recording. `end` may be the number of frames: then it never ended.
 struct Span {
