@@ -7,7 +7,7 @@
 #include <map>
 #include <tuple>
 
-#include "grammar/base/interval_set.h"
+#include "grammar/base/timeline.h"
 
 namespace prehend::grammar {
 namespace {

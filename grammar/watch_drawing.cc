@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "grammar/check_laws.h"
 #include "grammar/contents.h"
 #include "grammar/drawing/drawn_episode.h"

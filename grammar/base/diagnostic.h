@@ -4,6 +4,7 @@
 // Tested by tests/grammar/base/diagnostic_test.cc
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -53,5 +54,20 @@ void ShowLine(Diagnostic& diagnostic, std::string_view line, int column);
 /// The candidate with the smallest edit distance to `name`, or "" when none is near enough to be
 /// worth suggesting (distance above a third of the longer name's length).
 std::string NearestName(std::string_view name, const std::vector<std::string>& candidates);
+
+// Counts and articles in English, for whatever is said to people.
+// Tested by tests/grammar/base/wording_test.cc
+
+/// "row" for 1, else "rows", "entries", "faulty lines". The last word has a regular plural.
+std::string Plural(long long count, std::string_view noun);
+
+/// "1 row", "3 rows".
+template <std::integral Count>
+std::string CountOf(Count count, std::string_view noun) {
+  return std::to_string(count) + " " + Plural(static_cast<long long>(count), noun);
+}
+
+/// "a Thing", "an Object", "an 8 cm cube".
+std::string WithArticle(std::string_view noun);
 
 }  // namespace prehend::grammar

@@ -47,4 +47,15 @@ bool ComesBefore(const NamedEvent& a, const NamedEvent& b);
 /// Sorts into the canonical order.
 void Sort(Timeline& timeline);
 
+// Sets of ticks as sorted lists of disjoint half-open intervals. Tested by
+// tests/grammar/base/interval_set_test.cc
+
+/// Sorted, disjoint, not touching, none empty: what Union() makes.
+using IntervalSet = std::vector<Interval>;
+
+IntervalSet Union(std::vector<Interval> intervals);
+
+/// What is left of `whole` without `parts`.
+IntervalSet Without(Interval whole, const IntervalSet& parts);
+
 }  // namespace prehend::grammar

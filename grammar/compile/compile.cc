@@ -14,7 +14,7 @@
 #include "grammar/compile/lower.h"
 #include "grammar/compile/mistakes.h"
 #include "grammar/language/parser.h"
-#include "grammar/program/check_ids.h"
+#include "grammar/program/program.h"
 
 namespace prehend::grammar {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "grammar/analysis/value_ranges.h"
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "grammar/compile/lower.h"
 
 namespace prehend::grammar {

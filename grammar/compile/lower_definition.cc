@@ -6,7 +6,7 @@
 #include <initializer_list>
 
 #include "grammar/analysis/contradictions.h"
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "grammar/compile/lower.h"
 
 namespace prehend::grammar {

@@ -3,7 +3,7 @@
 // unknown events, conditions in a law, roles that do not fit or are not used, unknown relations.
 #include <algorithm>
 
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "grammar/compile/lower.h"
 
 namespace prehend::grammar {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "grammar/drawing/drawn_episode.h"
 
 namespace prehend::grammar {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <sstream>
 
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "grammar/drawing/drawn_episode.h"
 
 namespace prehend::grammar {

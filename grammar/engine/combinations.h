@@ -19,7 +19,6 @@
 #include "grammar/base/span.h"
 #include "grammar/program/program.h"
 #include "grammar/state/instances.h"
-#include "grammar/state/rule_ticks.h"
 
 namespace prehend::grammar {
 

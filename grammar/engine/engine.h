@@ -21,18 +21,19 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "grammar/base/candidate_log.h"
 #include "grammar/base/event.h"
+#include "grammar/base/frame.h"
 #include "grammar/engine/alarms.h"
 #include "grammar/engine/combinations.h"
 #include "grammar/state/history.h"
 #include "grammar/state/idle_queue.h"
 #include "grammar/state/instances.h"
 #include "grammar/state/remembered_past.h"
-#include "grammar/state/rule_ticks.h"
 #include "grammar/values/backward_walk.h"
 #include "grammar/values/evaluate.h"
 
@@ -337,5 +338,16 @@ class Engine final {
   std::vector<UndecidedEnd> undecided_ends_;  // only if they are
   std::string error_;
 };
+
+// Why a frame cannot be watched; empty when it can. Bodies of messages, no places: the caller knows
+// what the frame is from. Tested by tests/grammar/monitor_test.cc
+
+/// Far enough from the limits of a Tick that times can be added and subtracted.
+inline constexpr Tick kLatestTick = 1'000'000'000'000'000;
+
+std::string_view WhyNoTick(Tick tick, const History& history);
+/// `entities`: how many there are in the episode.
+std::string_view WhyNotWatchable(const Frame& frame, int entities);
+std::string_view WhyNotWatchable(const FrameChanges& changes, int entities);
 
 }  // namespace prehend::grammar

@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "grammar/engine/engine.h"
-#include "grammar/engine/frame_checks.h"
 
 namespace prehend::grammar {
 namespace {

@@ -5,7 +5,6 @@
 #include <tuple>
 
 #include "grammar/engine/engine.h"
-#include "grammar/engine/frame_checks.h"
 
 namespace prehend::grammar {
 namespace {

@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "grammar/base/quantity.h"
-#include "grammar/language/lexer.h"
 #include "grammar/language/parser.h"
+#include "grammar/language/token_reader.h"
 
 namespace prehend::grammar {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "grammar/language/law_parser.h"
+#include "grammar/language/expression_parser.h"
 
 namespace prehend::grammar {
 namespace {

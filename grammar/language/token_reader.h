@@ -7,9 +7,24 @@
 #include <string_view>
 #include <vector>
 
-#include "grammar/language/lexer.h"
+#include "grammar/base/diagnostic.h"
+#include "grammar/base/source.h"
 
 namespace prehend::grammar {
+
+// Grammar text -> tokens. Line ends mean nothing; `#` starts a comment.
+
+struct Token {
+  enum class Kind { kName, kNumber, kText, kSymbol, kBad, kEnd };  // kBad: was complained of
+  Kind kind = Kind::kEnd;
+  std::string text;  ///< of a kText, what is between the quotes
+  Place place;
+  double number = 0;
+};
+
+/// The last token is always kEnd. Text that is too large, binary or not UTF-8 yields one diagnostic
+/// and no tokens.
+std::vector<Token> Tokenize(const GrammarText& grammar, Diagnostics& diagnostics);
 
 /// Words that cannot name a role, a parameter or a rule.
 bool IsReserved(std::string_view word);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "grammar/state/history.h"
-#include "grammar/state/rule_ticks.h"
+#include "grammar/state/instances.h"
 
 namespace prehend::grammar {
 

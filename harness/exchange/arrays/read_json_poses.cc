@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/arrays/row_poses.h"

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/hdf5/hdf5_file.h"
 

@@ -9,8 +9,8 @@
 #include <map>
 #include <memory>
 
+#include "grammar/base/diagnostic.h"
 #include "grammar/base/frame.h"
-#include "grammar/base/wording.h"
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/exchange/arrays/read_array_poses.h"
 #include "harness/exchange/arrays/row_poses.h"

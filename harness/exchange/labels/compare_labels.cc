@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "harness/exchange/labels/label_map.h"
 #include "harness/truth/timeline/event_text.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "harness/base/yaml/diagnostic_list.h"
 #include "harness/truth/timeline/event_text.h"
 

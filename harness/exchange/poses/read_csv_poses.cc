@@ -12,7 +12,7 @@
 #include <set>
 #include <span>
 
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/cells/column_names.h"

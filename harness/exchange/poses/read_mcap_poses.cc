@@ -11,7 +11,7 @@
 #include <iterator>
 #include <set>
 
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "harness/base/base/text_file.h"
 #include "harness/exchange/messages/log_file.h"
 #include "harness/exchange/poses/log_series.h"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "harness/base/process/worker_pool.h"
 #include "harness/episode/episode/episode.h"
 #include "harness/measure/coverage/coverage.h"

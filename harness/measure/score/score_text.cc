@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "grammar/base/wording.h"
+#include "grammar/base/diagnostic.h"
 #include "harness/measure/score/score.h"
 #include "harness/truth/timeline/event_text.h"
 

@@ -8,8 +8,8 @@
 #include <optional>
 #include <span>
 
+#include "grammar/base/diagnostic.h"
 #include "grammar/base/quantity.h"
-#include "grammar/base/wording.h"
 #include "grammar/describe.h"
 #include "harness/episode/episode/episode.h"
 #include "harness/episode/run/load_run.h"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grammar/analysis/allen_network.h"
-
 #include <gtest/gtest.h>
 
+#include "grammar/analysis/contradictions.h"
 #include "grammar/base/allen.h"
 
 namespace prehend::grammar {

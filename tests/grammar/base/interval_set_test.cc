@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grammar/base/interval_set.h"
-
 #include <gtest/gtest.h>
+
+#include "grammar/base/timeline.h"
 
 namespace prehend::grammar {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grammar/base/wording.h"
-
 #include <gtest/gtest.h>
+
+#include "grammar/base/diagnostic.h"
 
 namespace prehend::grammar {
 namespace {

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <random>
 
-#include "grammar/language/lexer.h"
 #include "grammar/language/parser.h"
+#include "grammar/language/token_reader.h"
 #include "tests/grammar/corpus.h"
 #include "tests/grammar/language/dump_file.h"
 

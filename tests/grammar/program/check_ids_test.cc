@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "grammar/program/check_ids.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <stdexcept>
 #include <string>
 
+#include "grammar/program/program.h"
 #include "tests/grammar/scene.h"
 
 namespace prehend::grammar {
