@@ -18,7 +18,7 @@
 #include "bench/yardsticks/resting_boxes.h"
 #include "bench/yardsticks/workload.h"
 #include "bench/yardsticks/worlds.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/sense/episode_format.h"
 #include "harness/episode/sense/sensing.h"

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 
 namespace prehend::witnesses {
 namespace {

@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "physics/scene/geometry.h"
 #include "tests/witnesses/closed_form_score.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/suite/judge/judges.h"
 #include "harness/truth/golden/golden.h"
 #include "tests/witnesses/closed_form_score.h"

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/process/interrupt.h"
+#include "harness/base/process/child_process.h"
 
 namespace prehend {
 

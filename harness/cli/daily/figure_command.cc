@@ -12,7 +12,7 @@
 #include "harness/base/base/text_file.h"
 #include "harness/cli/command/command.h"
 #include "harness/cli/command/picture_options.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/show/figures/figures.h"
 #include "harness/show/figures/scene_tiles.h"
 #include "harness/show/pictures/pictures.h"

@@ -18,7 +18,6 @@
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/find_episodes.h"
 #include "harness/episode/run/find_scenario.h"
-#include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/scenario/read/read_scenario.h"
 #include "harness/suite/check/run_suite.h"

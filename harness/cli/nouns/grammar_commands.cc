@@ -15,7 +15,7 @@
 #include "harness/cli/command/command.h"
 #include "harness/episode/episode/episode.h"
 #include "harness/episode/episode/find_episodes.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/measure/coverage/coverage.h"
 #include "harness/measure/score/score.h"
 #include "harness/measure/speed/measure.h"

@@ -17,7 +17,7 @@
 #include <sstream>
 
 #include "harness/cli/command/command.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/episode/run/segment_recording.h"
 #include "harness/episode/sense/episode_file.h"
 #include "harness/exchange/live/live_poses.h"

@@ -14,6 +14,7 @@
 
 #include "harness/episode/episodes/load_episode.h"
 #include "harness/episode/run/find_scenario.h"
+#include "harness/episode/run/run_text.h"
 #include "harness/episode/run/segment_recording.h"
 
 namespace prehend::episode {
@@ -121,5 +122,31 @@ grammar::Diagnostics WhyNotOneGrammar(std::span<const EpisodeName> episodes,
 /// A single one.
 Result<Episode> OpenEpisode(const EpisodeName& name, const GrammarChoice& choice,
                             const std::string& root, std::vector<std::string>* files = nullptr);
+
+// Many episodes, segmented again on all cores. Tested by
+// tests/program/episodes_test.cc
+
+struct ResegmentRequest {
+  std::string root;
+  GrammarChoice choice;
+  bool compare = false;  ///< with what was recognised when it was recorded
+  bool replay = false;   ///< read every tick, and check the state hash
+  int jobs = 1;
+};
+
+struct Resegmented {
+  EpisodeName episode;
+  RunHeading heading;
+  RunResult run;            ///< without its frames
+  std::string differences;  ///< lines "- event" (only recorded) and "+ event" (only now)
+  std::string warnings;
+  std::string problem;        ///< empty, or why it could not be read or segmented
+  bool nothing_left = false;  ///< no event of the grammar can be recognised in it
+  bool finished = false;      ///< its recording was not cut off
+};
+
+/// One result per episode, in their order.
+std::vector<Resegmented> ResegmentAll(const std::vector<EpisodeName>& episodes,
+                                      const ResegmentRequest& request);
 
 }  // namespace prehend::episode

@@ -11,12 +11,12 @@
 
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/quoting.h"
+#include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/episode_file.h"
 #include "harness/episode/episodes/plan.h"
 #include "harness/episode/episodes/query_events.h"
 #include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/episodes/recordings.h"
-#include "harness/episode/episodes/schema.h"
 #include "harness/episode/sense/episode_file.h"
 
 namespace prehend::episode {

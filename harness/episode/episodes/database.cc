@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/episode/episodes/database.h"
 
+#include <fmt/format.h>
 #include <sqlite3.h>
 #include <unistd.h>
 
@@ -9,8 +10,14 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <set>
 #include <utility>
 
+#include "harness/base/base/atomic_file.h"
+#include "harness/base/base/content_hash.h"
 #include "harness/base/base/text_file.h"
 
 namespace prehend::episode {
@@ -56,6 +63,157 @@ std::string AsUri(const std::string& path, const std::string& options) {
     }
   }
   return uri + options;
+}
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMagic{"SQLite format 3\0", 16};
+
+constexpr const char* kTables = R"(CREATE TABLE asset(
+  hash TEXT PRIMARY KEY, bytes INTEGER NOT NULL, content BLOB NOT NULL) WITHOUT ROWID;
+CREATE TABLE task(
+  id INTEGER PRIMARY KEY, uuid TEXT NOT NULL UNIQUE, scenario TEXT NOT NULL, file TEXT NOT NULL,
+  asked_grammar TEXT NOT NULL, settings TEXT NOT NULL, shows TEXT NOT NULL);
+CREATE TABLE task_asset(
+  task INTEGER NOT NULL REFERENCES task, path TEXT NOT NULL, hash TEXT NOT NULL REFERENCES asset,
+  PRIMARY KEY(task, path)) WITHOUT ROWID;
+CREATE TABLE entity(
+  task INTEGER NOT NULL REFERENCES task, number INTEGER NOT NULL, uuid TEXT NOT NULL,
+  name TEXT NOT NULL, class TEXT NOT NULL, part_of INTEGER, mass_kg REAL, size_x_m REAL NOT NULL,
+  size_y_m REAL NOT NULL, size_z_m REAL NOT NULL, PRIMARY KEY(task, number)) WITHOUT ROWID;
+CREATE TABLE entity_class(
+  task INTEGER NOT NULL REFERENCES task, number INTEGER NOT NULL, depth INTEGER NOT NULL,
+  class TEXT NOT NULL, PRIMARY KEY(task, number, depth)) WITHOUT ROWID;
+CREATE TABLE episode(
+  id INTEGER PRIMARY KEY, uuid TEXT NOT NULL UNIQUE, task INTEGER NOT NULL REFERENCES task,
+  status TEXT NOT NULL, grammar TEXT NOT NULL, ticks_per_second INTEGER NOT NULL,
+  ticks INTEGER NOT NULL, state_hash TEXT NOT NULL, outcome TEXT NOT NULL, engine TEXT NOT NULL,
+  seed INTEGER NOT NULL, program TEXT NOT NULL, program_hash TEXT NOT NULL,
+  recorded_on TEXT NOT NULL, failure_entity TEXT NOT NULL, failure_reason TEXT NOT NULL,
+  failure_advice TEXT NOT NULL);
+CREATE TABLE event(
+  id INTEGER PRIMARY KEY, episode INTEGER NOT NULL REFERENCES episode, event TEXT NOT NULL,
+  begin_tick INTEGER NOT NULL, end_tick INTEGER NOT NULL, decided_tick INTEGER NOT NULL,
+  open_end INTEGER NOT NULL, begin_s REAL NOT NULL, end_s REAL NOT NULL, duration_s REAL NOT NULL);
+CREATE INDEX event_by_episode ON event(episode, begin_tick);
+CREATE INDEX event_by_name ON event(event, episode);
+CREATE TABLE event_role(
+  event INTEGER NOT NULL REFERENCES event, position INTEGER NOT NULL, role TEXT NOT NULL,
+  value TEXT NOT NULL, entity INTEGER, PRIMARY KEY(event, position)) WITHOUT ROWID;
+CREATE INDEX event_role_by_value ON event_role(role, value);
+CREATE TABLE event_value(
+  event INTEGER NOT NULL REFERENCES event, position INTEGER NOT NULL, name TEXT NOT NULL,
+  value REAL, unit TEXT NOT NULL, PRIMARY KEY(event, position)) WITHOUT ROWID;
+CREATE TABLE note(
+  episode INTEGER NOT NULL REFERENCES episode, position INTEGER NOT NULL, tick INTEGER NOT NULL,
+  hand INTEGER NOT NULL, text TEXT NOT NULL, PRIMARY KEY(episode, position)) WITHOUT ROWID;
+CREATE TABLE chunk(
+  episode INTEGER NOT NULL REFERENCES episode, first_tick INTEGER NOT NULL,
+  last_tick INTEGER NOT NULL, frames INTEGER NOT NULL,
+  PRIMARY KEY(episode, first_tick)) WITHOUT ROWID;
+CREATE TABLE part(
+  id INTEGER PRIMARY KEY, episode INTEGER NOT NULL REFERENCES episode, part INTEGER NOT NULL,
+  first_tick INTEGER NOT NULL, data BLOB NOT NULL);
+CREATE UNIQUE INDEX part_by_place ON part(episode, part, first_tick);
+CREATE VIEW episodes_flat AS
+  SELECT episode.id, episode.uuid, scenario, status, grammar,
+    CAST(ticks AS REAL) / ticks_per_second AS seconds, ticks, state_hash, outcome, seed, settings,
+    recorded_on
+  FROM episode JOIN task ON task.id = episode.task;
+CREATE VIEW events_flat AS
+  SELECT event.id, event.episode, scenario, event.event,
+    (SELECT group_concat(value, ', ') FROM (SELECT value FROM event_role AS one
+      WHERE one.event = event.id ORDER BY position)) AS roles,
+    (SELECT value FROM event_role AS one WHERE one.event = event.id AND role = 'hand') AS hand,
+    (SELECT value FROM event_role AS one WHERE one.event = event.id AND role = 'object') AS object,
+    (SELECT class FROM event_role AS one JOIN entity ON entity.number = one.entity
+      AND entity.task = episode.task
+      WHERE one.event = event.id AND role = 'object') AS object_class,
+    begin_s, end_s, duration_s
+  FROM event JOIN episode ON episode.id = event.episode JOIN task ON task.id = episode.task;
+)";
+
+std::string AsUuid(std::uint64_t high, std::uint64_t low, unsigned version) {
+  high = (high & ~std::uint64_t{0xf000}) | (std::uint64_t{version} << 12);
+  low = (low & ~(std::uint64_t{3} << 62)) | (std::uint64_t{1} << 63);
+  return fmt::format("{:08x}-{:04x}-{:04x}-{:04x}-{:012x}", high >> 32, (high >> 16) & 0xffff,
+                     high & 0xffff, low >> 48, low & 0xffffffffffff);
+}
+
+/// Why these bytes begin no episode file, as far as can be seen without SQLite; or "".
+std::string WhyNotEpisodes(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) return "no such file";
+  if (!fs::is_regular_file(status)) return "is not a regular file";
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::string("cannot be read: ") + std::strerror(errno);
+  std::string begin(100, '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(file.gcount()));
+  if (begin.empty()) return "the file is empty";
+  if (!begin.starts_with(kMagic)) {
+    return begin.front() == '{' ? "is a recording in JSON Lines, not an episode file"
+                                : "is no episode file: it does not begin as an SQLite database";
+  }
+  if (begin.size() < 100) return "is cut off: an episode file has at least 100 bytes";
+  const auto byte = [&](std::size_t i) {
+    return std::uint64_t{static_cast<std::uint8_t>(begin[i])};
+  };
+  const std::uint64_t page = byte(16) << 8 | byte(17);
+  const std::uint64_t pages = byte(28) << 24 | byte(29) << 16 | byte(30) << 8 | byte(31);
+  const std::uint64_t wanted = (page == 1 ? 65536 : page) * pages;
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (!fs::exists(path + "-journal") && size < wanted)
+    return fmt::format("is cut off: it has {} of {} bytes", size, wanted);
+  return "";
+}
+
+/// Whether its tables are those that this program makes, word by word.
+bool IsAsMade(const Database& database) {
+  std::string made;
+  Statement rows =
+      database.Prepare("SELECT sql FROM sqlite_master WHERE sql IS NOT NULL ORDER BY rowid");
+  while (rows.Step()) made += rows.Text(0) + ";\n";
+  if (made == kTables) return true;
+  std::string with_plans = kPlanTables;  // SQLite keeps the text without these words
+  const std::string if_new = "IF NOT EXISTS ";
+  for (std::size_t at = 0; (at = with_plans.find(if_new)) != std::string::npos;)
+    with_plans.erase(at, if_new.size());
+  return made == kTables + with_plans;
+}
+
+void RefuseOthers(const Database& database) {
+  const std::int64_t application = database.Number("PRAGMA application_id");
+  if (application != kApplicationId)
+    throw DatabaseError("is an SQLite database of another program, not an episode file");
+  const std::int64_t version = database.Number("PRAGMA user_version");
+  if (version > kSchemaVersion) {
+    throw DatabaseError(fmt::format(
+        "has version {} of the format; this program reads version {}, a newer one is needed",
+        version, kSchemaVersion));
+  }
+  if (version < 1) throw DatabaseError("is damaged: its format has no version");
+  if (IsAsMade(database)) return;
+  // Tables and columns that a program reads must be there; what others added is left alone.
+  constexpr const char* kColumns =
+      "SELECT tables.name, columns.name FROM sqlite_master AS tables,"
+      " pragma_table_info(tables.name) AS columns WHERE tables.type = 'table'";
+  const Database model = Database::InMemory();
+  model.Execute(kTables);
+  std::map<std::string, std::set<std::string>> found;
+  Statement columns = database.Prepare(kColumns);
+  while (columns.Step()) found[columns.Text(0)].insert(columns.Text(1));
+  Statement wanted = model.Prepare(kColumns);
+  while (wanted.Step()) {
+    const auto table = found.find(wanted.Text(0));
+    if (table == found.end())
+      throw DatabaseError(fmt::format("is damaged: it has no table '{}'", wanted.Text(0)));
+    if (!table->second.contains(wanted.Text(1))) {
+      throw DatabaseError(fmt::format("is damaged: its table '{}' has no column '{}'",
+                                      wanted.Text(0), wanted.Text(1)));
+    }
+  }
 }
 
 }  // namespace
@@ -244,6 +402,87 @@ Transaction::~Transaction() {
 void Transaction::Commit() {
   database_.Execute("COMMIT");
   open_ = false;
+}
+
+const char* const kPlanTables = R"(CREATE TABLE IF NOT EXISTS plan(
+  id INTEGER PRIMARY KEY, what TEXT NOT NULL, uuid TEXT NOT NULL, part INTEGER NOT NULL,
+  parts INTEGER NOT NULL);
+CREATE TABLE IF NOT EXISTS plan_owed(
+  plan INTEGER NOT NULL REFERENCES plan, position INTEGER NOT NULL, part INTEGER NOT NULL,
+  name TEXT NOT NULL, uuid TEXT NOT NULL, PRIMARY KEY(plan, position)) WITHOUT ROWID;
+)";
+
+bool IsEpisodeFile(const std::string& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return path.ends_with(".episodes");
+  if (!fs::is_regular_file(path, error)) return false;
+  std::ifstream file(path, std::ios::binary);
+  std::string begin(kMagic.size(), '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return path.ends_with(".episodes") ||
+         (file.gcount() == static_cast<std::streamsize>(kMagic.size()) && begin == kMagic);
+}
+
+Database OpenToWrite(const std::string& path) {
+  std::error_code error;
+  if (fs::exists(path, error) && !(fs::is_regular_file(path, error) && fs::is_empty(path, error))) {
+    if (const std::string why = WhyNotEpisodes(path); !why.empty()) throw DatabaseError(why);
+  }
+  if (const std::string why = MakeFolderOf(path); !why.empty()) throw DatabaseError(why);
+  Database database(path, Database::Mode::kWrite);
+  // It survives a crash of the program, not a power cut.
+  database.Execute("PRAGMA synchronous=OFF; PRAGMA cache_size=-4000");
+  Transaction transaction(database);
+  if (database.Number("SELECT count(*) FROM sqlite_master") == 0) {
+    database.Execute(kTables);
+    database.Execute(fmt::format("PRAGMA application_id={}; PRAGMA user_version={}", kApplicationId,
+                                 kSchemaVersion));
+  }
+  transaction.Commit();
+  RefuseOthers(database);
+  // A trigger would run when something is added; a view or a column of others could be wronged.
+  if (!IsAsMade(database)) {
+    throw DatabaseError(
+        "has tables, views or triggers of another program; it is read, but nothing is added to it");
+  }
+  return database;
+}
+
+Database OpenToRead(const std::string& path) {
+  if (const std::string why = WhyNotEpisodes(path); !why.empty()) throw DatabaseError(why);
+  std::error_code error;
+  if (fs::exists(path + "-journal", error)) {
+    // A program that wrote to it is at it, or was killed: then SQLite undoes what was half written.
+    try {
+      const Database mended(path, Database::Mode::kWrite);
+      (void)mended.Number("SELECT count(*) FROM sqlite_master");
+    } catch (const DatabaseError&) {
+      throw DatabaseError(
+          "was being written when its program was killed, and cannot be mended "
+          "where it cannot be written: copy it with its -journal file");
+    }
+  }
+  Database database(path, Database::Mode::kRead);
+  RefuseOthers(database);
+  return database;
+}
+
+std::string NewUuid() {
+  std::random_device random;
+  const auto word = [&] { return std::uint64_t{random()} << 32 | random(); };
+  const std::uint64_t high = word(), low = word();
+  return AsUuid(high, low, 4);
+}
+
+std::string UuidOf(const std::string& text) {
+  const auto word = [](const std::string& bytes) {
+    return std::stoull(ContentHash(bytes), nullptr, 16);
+  };
+  return AsUuid(word("1" + text), word("2" + text), 8);
+}
+
+std::string UuidOfEvent(const std::string& episode_uuid, std::size_t index) {
+  return UuidOf(episode_uuid + " event " + std::to_string(index));
 }
 
 }  // namespace prehend::episode

@@ -13,7 +13,7 @@
 
 #include "grammar/base/timeline.h"
 #include "harness/base/base/result.h"
-#include "harness/episode/episodes/schema.h"
+#include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/task_files.h"
 #include "harness/episode/frames/chunk.h"
 #include "physics/simulation.h"

@@ -9,7 +9,7 @@
 #include "harness/episode/episodes/record_episode.h"
 #include "harness/episode/episodes/recordings.h"
 #include "harness/episode/run/find_scenario.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/segment_recording.h"
 #include "harness/episode/sense/episode_format.h"

@@ -11,9 +11,9 @@
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/text_file.h"
+#include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/plan.h"
 #include "harness/episode/episodes/record_episode.h"
-#include "harness/episode/episodes/schema.h"
 
 namespace prehend::episode {
 namespace {

@@ -11,8 +11,8 @@
 #include "harness/base/base/content_hash.h"
 #include "harness/base/base/quoting.h"
 #include "harness/base/base/text_file.h"
+#include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/record_episode.h"
-#include "harness/episode/episodes/schema.h"
 
 namespace prehend::episode {
 namespace {

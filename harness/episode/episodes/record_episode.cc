@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/base/base/content_hash.h"
-#include "harness/episode/episodes/schema.h"
+#include "harness/episode/episodes/database.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/sense/episode_format.h"
 

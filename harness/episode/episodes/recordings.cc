@@ -9,9 +9,8 @@
 #include "grammar/contents.h"
 #include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/record_episode.h"
-#include "harness/episode/episodes/schema.h"
-#include "harness/episode/frames/recorded_frames.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/frames/frame_layout.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_text.h"
 #include "physics/scene/snapshot.h"
 

@@ -1,20 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "harness/episode/run/load_run.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 
+#include "grammar/compile/compile.h"
 #include "grammar/contents.h"
+#include "harness/base/base/project_paths.h"
+#include "harness/base/base/text_file.h"
 #include "harness/episode/run/find_scenario.h"
-#include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/run_scenario.h"
 #include "harness/episode/sense/episode_format.h"
 #include "harness/scenario/format/scenario_fields.h"
+#include "harness/scenario/scenario/scenario.h"
 
 namespace prehend::episode {
-
 namespace {
 
 class ClaimDiagnostics {
@@ -193,6 +200,192 @@ Result<grammar::Overrides> ParameterSettings(const std::vector<std::string>& set
 
 std::string ScenarioId(const std::string& skill, const std::string& name) {
   return skill.empty() ? name : skill + "/" + name;
+}
+
+namespace fs = std::filesystem;
+
+std::string GrammarFile(const std::string& root, const std::string& name_or_path) {
+  const bool is_path =
+      name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".grammar");
+  return is_path ? name_or_path : GrammarPath(root, name_or_path);
+}
+
+namespace {
+
+/// A grammar that uses all of these: its text, and where each is.
+struct JoinedGrammars {
+  std::string text;
+  std::map<std::string, std::string, std::less<>> paths;  ///< by name; only of files
+};
+
+JoinedGrammars Join(const std::string& joined) {
+  JoinedGrammars all;
+  std::string name, uses;
+  for (std::size_t begin = 0; begin <= joined.size();) {
+    const std::size_t end = std::min(joined.find('+', begin), joined.size());
+    const std::string one = joined.substr(begin, end - begin);
+    begin = end + 1;
+    const std::string stem = one.ends_with(kGrammarEnding) ? fs::path(one).stem().string() : one;
+    if (stem != one) all.paths[stem] = one;
+    name += (name.empty() ? "" : "_and_") + stem;
+    uses += "use " + stem + "\n";
+  }
+  all.text = "grammar " + name + "\n" + uses;
+  return all;
+}
+
+/// Whether the file ships with the program and no scenario names it: `use` of another grammar took
+/// it along. It has no typing errors, and not every episode has all that it knows of.
+bool IsUsedFromLibrary(const std::string& file, const std::string& grammar) {
+  const std::string stem = fs::path(file).stem().string(), joint = "_and_";  // see Join()
+  return fs::path(file).parent_path() == fs::path(ShippedRoot()) / "grammar/library" &&
+         (joint + grammar + joint).find(joint + stem + joint) == std::string::npos;
+}
+
+// Warns of names in the grammar that nothing in the episode has. A class that every scenario knows
+// is no typing error.
+void WarnOfUnknownNames(const std::vector<grammar::NameInSource>& names,
+                        const std::set<std::string>& known, std::string_view message,
+                        const std::string& remedy, grammar::Diagnostics& warnings) {
+  for (const grammar::NameInSource& named : names) {
+    if (known.contains(named.name) || scenario::IsScenarioBuiltinClass(named.name)) continue;
+    const bool is_number = named.name.find_first_not_of("0123456789") == std::string::npos;
+    const std::string near =
+        is_number ? "" : grammar::NearestName(named.name, {known.begin(), known.end()});
+    warnings.push_back(
+        grammar::DiagnosticAt(named.file, ReadTextFile(named.file).value_or(""), named.place,
+                              fmt::format("{} '{}'", message, named.name),
+                              near.empty() ? remedy : "did you mean '" + near + "'?"));
+    warnings.back().is_warning = true;
+  }
+}
+
+}  // namespace
+
+grammar::CompileResult LoadGrammar(const std::string& root, const std::string& name_or_path,
+                                   const grammar::Overrides& overrides,
+                                   std::vector<std::string>* files, const GrammarTexts& instead) {
+  const auto read = [&](const std::string& path) -> Result<std::string> {
+    const auto text = instead.find(path);
+    return text == instead.end() ? ReadTextFile(path) : text->second;
+  };
+  const auto note = [files](const std::string& path) {
+    if (files) files->push_back(path);
+  };
+  if (name_or_path.find('+') != std::string::npos && !fs::exists(name_or_path)) {
+    const JoinedGrammars all = Join(name_or_path);
+    std::string beside;  // a file's own files are searched there
+    const auto include = [&](std::string_view used) -> std::optional<grammar::GrammarText> {
+      const auto path = all.paths.find(used);
+      std::vector<std::string> candidates = {GrammarPath(root, std::string(used))};
+      if (path != all.paths.end()) {
+        candidates = {path->second};
+        beside = fs::path(path->second).parent_path().string();
+      } else if (used.ends_with(kGrammarEnding)) {
+        candidates = {std::string(used)};
+      } else if (!beside.empty()) {
+        candidates.insert(candidates.begin(), beside + "/" + std::string(used) + kGrammarEnding);
+      }
+      for (const std::string& candidate : candidates) {
+        note(candidate);
+        if (Result<std::string> found = read(candidate))
+          return grammar::GrammarText{candidate, std::move(*found)};
+      }
+      return std::nullopt;
+    };
+    return grammar::Compile({name_or_path, all.text}, include, overrides,
+                            ProjectLibrary(root).grammars);
+  }
+  const std::string file = GrammarFile(root, name_or_path);
+  note(file);
+  Result<std::string> text = read(file);
+  const std::vector<std::string> known = ProjectLibrary(root).grammars;
+  if (!text) {
+    const bool is_name = file != name_or_path;
+    if (is_name && std::ranges::count(known, name_or_path) == 0) {
+      const std::string near = grammar::NearestName(name_or_path, known);
+      const std::vector<std::string> folders = GrammarFolders(root);
+      const std::string looked =
+          folders.size() < 2 ? "" : fmt::format(" (looked for in {})", fmt::join(folders, " and "));
+      text.error().front().hint =
+          (near.empty() ? fmt::format("there are: {}", fmt::join(known, ", "))
+                        : fmt::format("did you mean '{}'?", near)) +
+          looked;
+    }
+    return {nullptr, std::move(text.error())};
+  }
+  grammar::Diagnostics unreadable;
+  const auto include = [&](std::string_view used) -> std::optional<grammar::GrammarText> {
+    const std::string name(used);
+    const std::string beside = (fs::path(file).parent_path() / (name + ".grammar")).string();
+    const std::vector<std::string> candidates = name.ends_with(".grammar")
+                                                    ? std::vector{name}
+                                                    : std::vector{beside, GrammarPath(root, name)};
+    for (const std::string& candidate : candidates) {
+      note(candidate);
+      Result<std::string> found = read(candidate);
+      if (found) return grammar::GrammarText{candidate, std::move(*found)};
+      std::error_code error;
+      if (fs::symlink_status(candidate, error).type() == fs::file_type::not_found) continue;
+      // It is there: neither is another one meant, nor is there none.
+      std::ranges::move(found.error(), std::back_inserter(unreadable));
+      break;
+    }
+    return std::nullopt;
+  };
+  grammar::CompileResult compiled =
+      grammar::Compile({file, std::move(*text)}, include, overrides, known);
+  if (unreadable.empty()) return compiled;
+  return {nullptr, std::move(unreadable)};
+}
+
+grammar::CompileResult LoadGrammarOf(const EpisodeHeader& recording, const std::string& asked,
+                                     const std::string& root, const grammar::Overrides& overrides,
+                                     std::vector<std::string>* files) {
+  const std::string& own = recording.grammar;
+  grammar::CompileResult compiled =
+      LoadGrammar(root, asked.empty() ? own : asked, overrides, files);
+  const bool is_name = GrammarFile(root, own) != own && own.find('+') == std::string::npos;
+  if (compiled.program || !asked.empty() || !is_name || recording.grammar_named.file.empty() ||
+      std::ranges::count(GrammarNames(root), own) > 0)
+    return compiled;
+  grammar::Diagnostic unknown = recording.grammar_named;
+  unknown.message = fmt::format("grammar: no grammar is called '{}'", own);
+  unknown.hint = compiled.diagnostics.front().hint;
+  if (unknown.hint.starts_with("there are"))  // no name is near
+    unknown.hint.insert(0, "if it is a file of yours, --grammar FILE names it; ");
+  return {nullptr, {std::move(unknown)}};
+}
+
+grammar::Diagnostics Warnings(const grammar::Program& program,
+                              const grammar::EntityTable& entity_table) {
+  std::set<std::string> classes;
+  std::set<std::string> sensor_sets;
+  std::set<std::string> numbers;
+  for (const grammar::EntityInfo& member : entity_table.entities) {
+    classes.insert(member.classes.begin(), member.classes.end());
+    sensor_sets.insert(member.sensor_sets.begin(), member.sensor_sets.end());
+    for (std::size_t i = 1; i <= member.sensor_sets.size(); ++i) numbers.insert(std::to_string(i));
+  }
+  grammar::Diagnostics warnings = CompileWarnings(program);
+  const auto asked_for = [&](std::vector<grammar::NameInSource> names) {
+    std::erase_if(names, [&](const grammar::NameInSource& named) {
+      return IsUsedFromLibrary(named.file, GrammarName(program));
+    });
+    return names;
+  };
+  WarnOfUnknownNames(asked_for(NamedClasses(program)), classes, "no entity of this episode is a",
+                     "an entity is one by its 'class', or by a line of the scenario's 'classes'; "
+                     "without one, what needs it never happens",
+                     warnings);
+  WarnOfUnknownNames(
+      asked_for(NamedSensorSets(program)), sensor_sets, "no hand of this episode has a sensor set",
+      sensor_sets.empty() ? "" : fmt::format("there are: {}", fmt::join(sensor_sets, ", ")),
+      warnings);
+  WarnOfUnknownNames(asked_for(NumberedSensorSets(program)), numbers,
+                     "no hand of this episode has a sensor set",
+                     fmt::format("a hand has {} of them here at most", numbers.size()), warnings);
+  return warnings;
 }
 
 }  // namespace prehend::episode

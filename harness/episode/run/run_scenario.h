@@ -13,7 +13,7 @@
 #include "grammar/compile/compile.h"
 #include "grammar/monitor.h"
 #include "harness/scenario/scenario/scenario.h"
-#include "harness/truth/timeline/event_drawings.h"
+#include "harness/truth/timeline/event_text.h"
 #include "physics/simulation.h"
 
 namespace prehend::episode {

@@ -16,7 +16,7 @@
 #include "harness/base/base/median.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/process/worker_pool.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/episode/sense/episode_format.h"
 
 namespace prehend::episode {

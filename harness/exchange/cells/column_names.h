@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,5 +46,20 @@ std::optional<std::string> BodyOfColumn(const std::string& pattern, const std::s
 
 /// By the first lines of a table; nothing if no three columns are called x, y and z.
 std::optional<NamedColumns> ColumnsOf(std::string_view text);
+
+// What the names of bodies say: hands, bones of a skeleton, tables. Tested by
+// tests/program/import_propose_test.cc
+
+using Words = std::vector<std::string>;
+
+/// "global:LeftHand_2" -> left, hand, 2.
+Words WordsIn(const std::string& name);
+
+/// Also with a letter for the side: "lhand".
+bool AnyOf(const Words& words, const std::set<std::string>& of);
+/// A bone of a skeleton that is no hand.
+bool IsBone(const Words& words);
+bool IsHand(const Words& words);
+bool IsTable(const Words& words);
 
 }  // namespace prehend::exchange

@@ -17,7 +17,7 @@
 #include "harness/base/base/atomic_file.h"
 #include "harness/base/base/quoting.h"
 #include "harness/episode/episode/episode.h"
-#include "harness/episode/episodes/schema.h"
+#include "harness/episode/episodes/database.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::exchange {

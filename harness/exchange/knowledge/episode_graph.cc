@@ -11,8 +11,8 @@
 
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/text_file.h"
+#include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/query_events.h"
-#include "harness/episode/episodes/schema.h"
 
 namespace prehend::exchange {
 namespace {

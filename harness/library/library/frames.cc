@@ -8,7 +8,7 @@
 #include "grammar/monitor.h"
 #include "grammar/name_events.h"
 #include "harness/base/base/project_paths.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/episode/sense/episode_file.h"
 #include "harness/episode/sense/episode_format.h"
 #include "harness/library/library/opened.h"

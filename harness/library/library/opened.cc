@@ -9,7 +9,7 @@
 #include "harness/base/base/project_paths.h"
 #include "harness/base/base/quoting.h"
 #include "harness/episode/episode/find_episodes.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/exchange/labels/read_truths.h"
 

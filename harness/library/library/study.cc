@@ -9,7 +9,7 @@
 
 #include "grammar/contents.h"
 #include "grammar/language/parser.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/exchange/labels/read_truths.h"
 #include "harness/library/library/opened.h"
 #include "harness/measure/score/score_labels.h"
@@ -19,7 +19,6 @@
 #include "harness/show/explain/query.h"
 #include "harness/show/explain/why_event.h"
 #include "harness/show/tracks/tracks.h"
-#include "harness/truth/timeline/event_drawings.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend {

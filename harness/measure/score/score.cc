@@ -11,7 +11,7 @@
 #include <set>
 
 #include "grammar/contents.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/truth/timeline/event_text.h"
 #include "harness/truth/timeline/match_events.h"
 

@@ -13,7 +13,6 @@
 
 #include "grammar/contents.h"
 #include "harness/episode/episode/episode.h"
-#include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/segment_recording.h"
 #include "harness/exchange/labels/label_map.h"

@@ -10,7 +10,6 @@
 #include "harness/base/base/project_paths.h"
 #include "harness/base/process/worker_pool.h"
 #include "harness/episode/episode/episode.h"
-#include "harness/episode/run/load_grammar.h"
 #include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/segment_recording.h"

@@ -14,7 +14,6 @@
 #include <tuple>
 
 #include "harness/show/pictures/pictures.h"
-#include "harness/truth/timeline/event_drawings.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::show {

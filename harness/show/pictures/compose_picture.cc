@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Events are drawn as the grammar asks (harness/truth/timeline/event_drawings.h). Tested by
+// Events are drawn as the grammar asks (harness/truth/timeline/event_text.h). Tested by
 // tests/harness/show/pictures/compose_picture_test.cc
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "harness/show/pictures/scenery.h"
-#include "harness/truth/timeline/event_drawings.h"
+#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::show {
 

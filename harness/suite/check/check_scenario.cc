@@ -18,7 +18,7 @@
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/segment_recording.h"
 #include "harness/show/replay/replay_data.h"
-#include "harness/suite/check/attribute_run.h"
+#include "harness/suite/check/causes.h"
 #include "harness/suite/check/last_pass.h"
 #include "harness/suite/judge/judges.h"
 #include "harness/suite/judge/other_view.h"

@@ -13,7 +13,7 @@
 #include "grammar/describe.h"
 #include "harness/base/base/text_file.h"
 #include "harness/base/yaml/located_yaml.h"
-#include "harness/suite/judge/clauses.h"
+#include "harness/suite/judge/judges.h"
 #include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {

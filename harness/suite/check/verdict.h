@@ -19,7 +19,7 @@
 #include "harness/suite/judge/judges.h"
 #include "harness/truth/claims/judge_claims.h"
 #include "harness/truth/golden/compare.h"
-#include "harness/truth/timeline/event_drawings.h"
+#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {
 

@@ -4,6 +4,7 @@
 // tests/harness/suite/judge/judge_golden_test.cc and tests/harness/suite/judge/judge_claims_test.cc
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <iterator>
@@ -29,7 +30,7 @@
 #include "harness/truth/claims/judge_claims.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/golden/golden.h"
-#include "harness/truth/timeline/event_drawings.h"
+#include "harness/truth/timeline/event_text.h"
 #include "physics/scene/snapshot.h"
 
 namespace prehend::suite {
@@ -312,5 +313,28 @@ std::optional<Demonstration> DemonstrationOf(episode::Recording& recording,
 /// Of each that failed, the first thing that went wrong and was not made good; compared with what
 /// most of those do that succeeded.
 std::vector<std::optional<Mishap>> FirstCauses(const std::vector<const Demonstration*>& all);
+
+// The clauses of a grammar's rules as they are written, so that a changed one can be named and put
+// back. Tested by tests/harness/suite/judge/clauses_test.cc
+
+/// Of a rule, a condition, a law, a definition: "transporting(..)" has "transporting roles",
+/// "transporting outside", "transporting drawn"; of a law "NAME law" is all that it demands. A
+/// parameter is one by itself: "far" is "2 cm".
+struct Clause {
+  std::string name;  ///< of the rule, and the clause's first word; a second such clause: ".. 2"
+  std::string text;  ///< without comments, one space where there were some
+  std::size_t begin = 0, end = 0;  ///< in the file
+};
+
+/// In their order. A rule begins at the left margin; its clauses are indented as its first one is,
+/// and go on where a line is indented further.
+std::vector<Clause> ClausesOf(std::string_view grammar);
+
+/// The file with this clause as it was: another text, none, or one again. "" without its rule.
+std::string WithClause(std::string_view grammar, const std::string& name, const std::string& text);
+
+/// "lost `putting_down(hand, object)`", "gained ..", "`>= 2 cm` -> `>= 5 cm`": what lies between
+/// the words that both begin and end with.
+std::string ClauseChangeText(std::string_view before, std::string_view after);
 
 }  // namespace prehend::suite

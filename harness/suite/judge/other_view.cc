@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/episode/run/run_text.h"
 #include "harness/episode/run/segment_recording.h"
 #include "harness/suite/judge/validate_golden.h"

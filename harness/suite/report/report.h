@@ -18,7 +18,7 @@
 #include "harness/suite/check/explained.h"
 #include "harness/suite/check/verdict.h"
 #include "harness/truth/golden/compare.h"
-#include "harness/truth/timeline/event_drawings.h"
+#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::suite {
 

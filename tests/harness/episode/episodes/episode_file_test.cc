@@ -10,10 +10,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "harness/episode/episodes/database.h"
 #include "harness/episode/episodes/load_episode.h"
 #include "harness/episode/episodes/query_events.h"
 #include "harness/episode/episodes/record_episode.h"
-#include "harness/episode/episodes/schema.h"
 #include "harness/episode/run/run_text.h"
 
 namespace prehend::episode {

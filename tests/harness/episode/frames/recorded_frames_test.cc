@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/episode/frames/recorded_frames.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "harness/episode/frames/columns.h"
+#include "harness/episode/frames/frame_layout.h"
 
 namespace prehend::episode {
 namespace {

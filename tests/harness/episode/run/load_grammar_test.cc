@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Grammars that use other files, and warnings about what nobody in an episode is.
-#include "harness/episode/run/load_grammar.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -11,6 +9,7 @@
 #include <string>
 
 #include "grammar/program/program.h"
+#include "harness/episode/run/load_run.h"
 
 namespace prehend::episode {
 namespace {

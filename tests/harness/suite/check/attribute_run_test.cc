@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cause names the entity that moved differently, or says that none did, and the files that
 // changed.
-#include "harness/suite/check/attribute_run.h"
-
 #include <gtest/gtest.h>
+
+#include "harness/suite/check/causes.h"
 
 namespace prehend::suite {
 namespace {

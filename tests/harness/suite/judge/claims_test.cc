@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "harness/base/base/text_file.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/truth/golden/compare.h"
 #include "harness/truth/oracle/oracle.h"
 #include "harness/truth/timeline/match_events.h"

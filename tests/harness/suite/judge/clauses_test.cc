@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clauses are found, named and put back as they were.
-#include "harness/suite/judge/clauses.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
+
+#include "harness/suite/judge/judges.h"
 
 namespace prehend::suite {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "grammar/describe.h"
 #include "harness/episode/run/find_scenario.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/truth/golden/golden.h"
 
 namespace prehend::truth {

@@ -14,7 +14,7 @@
 #include <string>
 
 #include "grammar/program/program.h"
-#include "harness/episode/run/load_grammar.h"
+#include "harness/episode/run/load_run.h"
 #include "harness/truth/oracle/recording.h"
 
 namespace prehend::truth {

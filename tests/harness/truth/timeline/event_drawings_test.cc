@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "harness/truth/timeline/event_drawings.h"
-
 #include <gtest/gtest.h>
 
 #include "grammar/compile/compile.h"
+#include "harness/truth/timeline/event_text.h"
 
 namespace prehend::truth {
 namespace {
