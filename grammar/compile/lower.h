@@ -231,6 +231,7 @@ class Lowering {
   bool attribute_ = false;     ///< signals are taken where the interval begins
   bool full_ = false;          ///< the grammar has too many expressions
   bool checking_ = false;      ///< numbers of parameters are placeholders
+  bool too_deep_ = false;      ///< definitions, which is told once: each might double what to read
   bool from_outside_ = false;  ///< a parameter that was set from outside has been met
   bool handed_in_ = false;     ///< likewise, or a number that a definition was called with
   bool vacuous_ = false;       ///< a clause of the rule is never or always true

@@ -229,7 +229,9 @@ Lowering::Typed Lowering::LowerDefine(const DefineSource& source, const Expr& ex
     if (outer->define == define.name)
       return Bad(expr.place, Quoted(define.name) + " refers to itself");
   }
+  if (too_deep_) return {.bad = true};
   if (scope.depth > kMaxDefineDepth) {
+    too_deep_ = true;
     return Bad(expr.place,
                "definitions use each other more than " + std::to_string(kMaxDefineDepth) + " deep");
   }

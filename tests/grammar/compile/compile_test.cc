@@ -169,6 +169,23 @@ TEST(Compile, LimitsTheSizeOfAGrammar) {
             std::string::npos);
 }
 
+// Each doubles what the one before makes.
+TEST(Compile, SaysOnceOfEachDefinitionThatItIsTooDeep) {
+  std::string text = "grammar g\ndefine d0 = 1\n";
+  for (int i = 1; i <= 30; ++i) {
+    const std::string before = "d" + std::to_string(i - 1);
+    text += "define d" + std::to_string(i) + " = " + before + " + " + before + "\n";
+  }
+  const CompileResult result =
+      CompileText(text + "event e(x: Thing) while speed(x) > d2 * (1 m/s)\n");
+  std::set<std::pair<int, int>> places;
+  for (const Diagnostic& one : result.diagnostics) {
+    EXPECT_NE(one.message.find("more than 16 deep"), std::string::npos) << one.message;
+    EXPECT_TRUE(places.insert({one.place.line, one.place.column}).second) << one.place.line;
+  }
+  EXPECT_EQ(places.size(), 14u);  // d17 to d30
+}
+
 TEST(Compile, ReadsEachUsedGrammarOnceAndSurvivesCircles) {
   int asked = 0;
   const Includer circular = [&](std::string_view name) -> std::optional<GrammarText> {
